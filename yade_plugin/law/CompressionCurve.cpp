@@ -1,0 +1,27 @@
+#include "CompressionCurve.hpp"
+
+namespace masonry {
+
+CompressionCurve::CompressionCurve(double kn, double fcp, double elasticLimitRatio, double residualRatio,
+                                   double peakRatio, double Gc)
+    : elasticLimit(elasticLimitRatio * fcp),
+      peak(fcp),
+      middle(0.5 * (1 + residualRatio) * fcp),
+      residual(residualRatio * fcp),
+      limitClosure(elasticLimit / kn),
+      peakClosure(peakRatio * fcp / kn) {                                 // eq. (19)
+    const double kappa = peakClosure * peak, xi = peakClosure * residual; // eq. (25)
+    softeningRatio =                                                      // eq. (24)
+        (Gc - fcp * fcp / (18 * kn) - 0.65 * (peakClosure - limitClosure) * fcp + 0.75 * kappa + 0.25 * xi) /
+        (kappa + xi);
+    middleClosure = softeningRatio * peakClosure; // eq. (23)
+}
+
+double CompressionCurve::smallestFractureEnergy(double kn, double fcp, double elasticLimitRatio, double residualRatio,
+                                                double peakRatio) {
+    const CompressionCurve c(kn, fcp, elasticLimitRatio, residualRatio, peakRatio, 0);
+    const double kappa = c.peakClosure * c.peak, xi = c.peakClosure * c.residual;
+    return fcp * fcp / (18 * kn) + 0.65 * (c.peakClosure - c.limitClosure) * fcp + 0.25 * kappa + 0.75 * xi;
+}
+
+} // namespace masonry

@@ -1,0 +1,50 @@
+// Damage as a piecewise linear function of the displacement ratio, paper eqs. (12)-(17), law.md §3.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace masonry {
+
+struct TableRow {
+    double ratio;  // [-] displacement over the displacement at peak strength, >= 1
+    double damage; // [-] 0 at the peak, at most 1
+};
+
+class SofteningTable {
+public:
+    SofteningTable() = default; // no rows: never any damage
+    explicit SofteningTable(std::vector<TableRow> rows);
+
+    // What is wrong with these rows, in words that name the row; empty if nothing is.
+    static std::vector<std::string> problems(const std::vector<TableRow> &rows);
+
+    // exp(-decay (ratio - 1)) of the strength is left; 200 segments as in the paper §4.1, the last row at damage 1.
+    static std::vector<TableRow> exponential(double decay, int segments = 200);
+
+    // Strength is lost at the first yield: the usual Coulomb slip law, law.md §9.
+    static std::vector<TableRow> brittle() { return {{1, 0}, {1 + 1e-6, 1}}; }
+
+    // Linear between rows; past the last one its damage stays (law.md §3 [decided]).
+    double damage(double ratio) const {
+        if (rows_.empty() || !(ratio > 1)) return 0;
+        if (ratio >= rows_.back().ratio) return rows_.back().damage;
+        std::size_t low = 0, span = rows_.size() - 1; // rows_[low].ratio <= ratio < rows_[low + span].ratio
+        while (span > 1) {
+            const std::size_t half = span / 2;
+            if (rows_[low + half].ratio <= ratio) {
+                low += half;
+                span -= half;
+            } else
+                span = half;
+        }
+        return rows_[low].damage + slopes_[low] * (ratio - rows_[low].ratio);
+    }
+
+    const std::vector<TableRow> &rows() const { return rows_; }
+
+private:
+    std::vector<TableRow> rows_;
+    std::vector<double> slopes_;
+};
+
+} // namespace masonry
