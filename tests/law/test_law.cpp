@@ -12,7 +12,7 @@ namespace {
 
 const JointProperties bed;
 
-ElasticStiffness own(const JointProperties &p) { return {p.normalStiffness, p.shearStiffness}; }
+ElasticStiffness own(const JointProperties& p) { return {p.normalStiffness, p.shearStiffness}; }
 
 JointProperties head() {
     JointProperties p;
@@ -29,10 +29,10 @@ struct Path {
     Energies dissipated{};
     double work = 0;
 
-    Path(const JointProperties &p, ElasticStiffness stiffness) : law(p), k(stiffness) {}
-    explicit Path(const JointProperties &p) : Path(p, own(p)) {}
+    Path(const JointProperties& p, ElasticStiffness stiffness) : law(p), k(stiffness) {}
+    explicit Path(const JointProperties& p) : Path(p, own(p)) {}
 
-    void step(const Jump &jump) {
+    void step(const Jump& jump) {
         const auto old = state;
         const auto r = law.advance(k, state, jump);
         state = r.state;
@@ -44,7 +44,7 @@ struct Path {
                        (old.shearStress.b + state.shearStress.b) * jump.slide.b);
     }
     void move(
-        const Jump &total, int steps, const std::function<void()> &look = [] {}) {
+        const Jump& total, int steps, const std::function<void()>& look = [] {}) {
         for (int i = 0; i < steps; ++i) {
             step({total.opening / steps, {total.slide.a / steps, total.slide.b / steps}});
             look();
@@ -150,7 +150,7 @@ TEST_CASE("the exponential tables keep the area under the curve") {
 
 TEST_CASE("a table is linear between its rows and keeps its last damage") {
     const SofteningTable t({{1, 0}, {2, 0.5}, {4, 0.5}, {8, 0.9}});
-    for (const auto &[ratio, damage] : std::vector<std::pair<double, double>>{
+    for (const auto& [ratio, damage] : std::vector<std::pair<double, double>>{
              {0, 0}, {1, 0}, {1.5, 0.25}, {2, 0.5}, {3, 0.5}, {6, 0.7}, {8, 0.9}, {100, 0.9}, {HUGE_VAL, 0.9}})
         CHECK(t.damage(ratio) == within(damage, 1e-15));
 }
@@ -272,76 +272,76 @@ TEST_CASE("ten thousand steps or ten to the same end of a monotonic path give th
 }
 
 TEST_CASE("refusals name the joint, the value with its unit and the bound, all at once") {
-    const auto refused = [](const std::function<void(JointProperties &)> &spoil) {
+    const auto refused = [](const std::function<void(JointProperties&)>& spoil) {
         JointProperties p;
         spoil(p);
         try {
             JointLaw law(p);
-        } catch (const std::invalid_argument &e) {
+        } catch (const std::invalid_argument& e) {
             return std::string(e.what());
         }
         return std::string("accepted");
     };
     using P = JointProperties;
     const double nan = std::nan("");
-    CHECK(refused([](P &) {}) == "accepted");
-    CHECK(refused([](P &p) { p.compressiveFractureEnergy = 12000; }) ==
+    CHECK(refused([](P&) {}) == "accepted");
+    CHECK(refused([](P& p) { p.compressiveFractureEnergy = 12000; }) ==
           "joint \"bed\": compressive fracture energy 12000 J/m² is too small for peak ratio 68.5 (needs at least "
           "12208 J/m²)");
-    CHECK(refused([](P &p) { p.compressiveFractureEnergy = 12208; }) == "accepted");
-    CHECK(refused([](P &p) { p.name = "", p.tensileStrength = -1; }) ==
+    CHECK(refused([](P& p) { p.compressiveFractureEnergy = 12208; }) == "accepted");
+    CHECK(refused([](P& p) { p.name = "", p.tensileStrength = -1; }) ==
           "joint \"\": name must not be empty\njoint \"\": tensile strength -1 Pa must be at least 0");
     const struct {
-        std::function<void(P &)> spoil;
-        const char *message;
+        std::function<void(P&)> spoil;
+        const char* message;
     } cases[] = {
-        {[](P &p) { p.normalStiffness = 0; }, "normal stiffness 0 Pa/m must be above 0"},
-        {[=](P &p) { p.shearStiffness = nan; }, "shear stiffness nan Pa/m must be a finite number"},
-        {[](P &p) { p.tensileStrength = 0.3e6; },
+        {[](P& p) { p.normalStiffness = 0; }, "normal stiffness 0 Pa/m must be above 0"},
+        {[=](P& p) { p.shearStiffness = nan; }, "shear stiffness nan Pa/m must be a finite number"},
+        {[](P& p) { p.tensileStrength = 0.3e6; },
          "tensile strength 300000 Pa is above the apex of the Coulomb cone, cohesion/friction = 255814 Pa"},
-        {[](P &p) { p.cohesion = -2; }, "cohesion -2 Pa must be at least 0"},
-        {[](P &p) { p.residualCohesion = 0.2e6; }, "residual cohesion 200000 Pa must be at most 110000"},
-        {[](P &p) { p.friction = -0.1; }, "friction -0.1 must be at least 0"},
-        {[](P &p) { p.residualFriction = 0.5; }, "residual friction 0.5 must be at most 0.43"},
-        {[](P &p) { p.dilatancy = 0.44; }, "dilatancy 0.44 must be at most 0.43"},
-        {[](P &p) { p.dilatancyDecay = -1; }, "dilatancy decay -1 1/m must be at least 0"},
-        {[](P &p) { p.modeIFractureEnergy = 0; }, "mode I fracture energy 0 J/m² must be above 0"},
-        {[](P &p) { p.modeIIFractureEnergy = -1; }, "mode II fracture energy -1 J/m² must be above 0"},
-        {[](P &p) { p.compressiveStrength = 0; }, "compressive strength 0 Pa must be above 0"},
-        {[](P &p) { p.elasticLimitRatio = 1; }, "elastic limit ratio 1 must be at most 0.999"},
-        {[](P &p) { p.residualStrengthRatio = 1; }, "residual strength ratio 1 must be at most 0.999"},
-        {[](P &p) { p.peakRatio = 0.5; }, "peak ratio 0.5 must be at least 1"},
-        {[](P &p) { p.capNormal = 0; }, "cap constant Cnn 0 must be above 0"},
-        {[](P &p) { p.capShear = -1; }, "cap constant Css -1 must be at least 0"},
-        {[](P &p) {
+        {[](P& p) { p.cohesion = -2; }, "cohesion -2 Pa must be at least 0"},
+        {[](P& p) { p.residualCohesion = 0.2e6; }, "residual cohesion 200000 Pa must be at most 110000"},
+        {[](P& p) { p.friction = -0.1; }, "friction -0.1 must be at least 0"},
+        {[](P& p) { p.residualFriction = 0.5; }, "residual friction 0.5 must be at most 0.43"},
+        {[](P& p) { p.dilatancy = 0.44; }, "dilatancy 0.44 must be at most 0.43"},
+        {[](P& p) { p.dilatancyDecay = -1; }, "dilatancy decay -1 1/m must be at least 0"},
+        {[](P& p) { p.modeIFractureEnergy = 0; }, "mode I fracture energy 0 J/m² must be above 0"},
+        {[](P& p) { p.modeIIFractureEnergy = -1; }, "mode II fracture energy -1 J/m² must be above 0"},
+        {[](P& p) { p.compressiveStrength = 0; }, "compressive strength 0 Pa must be above 0"},
+        {[](P& p) { p.elasticLimitRatio = 1; }, "elastic limit ratio 1 must be at most 0.999"},
+        {[](P& p) { p.residualStrengthRatio = 1; }, "residual strength ratio 1 must be at most 0.999"},
+        {[](P& p) { p.peakRatio = 0.5; }, "peak ratio 0.5 must be at least 1"},
+        {[](P& p) { p.capNormal = 0; }, "cap constant Cnn 0 must be above 0"},
+        {[](P& p) { p.capShear = -1; }, "cap constant Css -1 must be at least 0"},
+        {[](P& p) {
              p.tensionTable = {{1, 0}};
          },
          "tension table, needs at least two rows, has 1"},
-        {[](P &p) {
+        {[](P& p) {
              p.tensionTable = {{1.1, 0}, {2, 1}};
          },
          "tension table, row 1: must be ratio 1, damage 0 (the peak), is 1.1, 0"},
-        {[](P &p) {
+        {[](P& p) {
              p.shearTable = {{1, 0}, {2, 0.5}, {2, 1}};
          },
          "shear table, row 3: ratio 2 must be above 2 of the row before"},
-        {[](P &p) {
+        {[](P& p) {
              p.shearTable = {{1, 0}, {2, 0.5}, {3, 0.4}};
          },
          "shear table, row 3: damage 0.4 falls below 0.5 of the row before"},
-        {[](P &p) {
+        {[](P& p) {
              p.shearTable = {{1, 0}, {2, 1.5}};
          },
          "shear table, row 2: damage 1.5 is outside 0 to 1"},
-        {[=](P &p) {
+        {[=](P& p) {
              p.shearTable = {{1, 0}, {nan, 1}};
          },
          "shear table, row 2: ratio and damage must be finite numbers"},
-        {[](P &p) { p.cohesion = p.tensileStrength = 0, p.residualFriction = 0.3; },
+        {[](P& p) { p.cohesion = p.tensileStrength = 0, p.residualFriction = 0.3; },
          "friction softens from 0.43 to 0.3 without cohesion: give a shear table, no exponential one follows from zero "
          "cohesion"},
     };
-    for (const auto &c : cases)
+    for (const auto& c : cases)
         CHECK(refused(c.spoil) == std::string("joint \"bed\": ") + c.message);
 }
 
@@ -404,7 +404,7 @@ TEST_CASE("on a million random steps no yield surface is passed, nothing heals a
             const Jump jump{size * dice.between(-1, 1), {size * dice.between(-1, 1), size * dice.between(-1, 1)}};
             const auto old = path.state;
             path.step(jump);
-            const auto &s = path.state;
+            const auto& s = path.state;
             const double stress = std::abs(s.normalStress) + std::hypot(s.shearStress.a, s.shearStress.b);
             scale = std::max(scale, stress + path.k.normal * size);
             work += std::abs(path.work);
@@ -450,7 +450,7 @@ TEST_CASE("turning the slide turns the shear stress") {
         const double n = dice.between(-2e-6, 1e-6), a = dice.between(-2e-6, 3e-6), b = dice.between(-1e-6, 1e-6);
         straight.step({n, {a, b}});
         turned.step({n, {c * a - s * b, s * a + c * b}});
-        const auto &t = straight.state.shearStress;
+        const auto& t = straight.state.shearStress;
         const double size = 1e-9 * (std::hypot(t.a, t.b) + 1e3);
         REQUIRE(std::abs(turned.state.shearStress.a - (c * t.a - s * t.b)) < size);
         REQUIRE(std::abs(turned.state.shearStress.b - (s * t.a + c * t.b)) < size);

@@ -7,7 +7,7 @@ namespace masonry {
 namespace {
 
 // law.md §3: the exponential that dissipates the fracture energy; without strength there is nothing to soften.
-SofteningTable tableOr(const std::vector<TableRow> &rows, double strength, double stiffness, double fractureEnergy) {
+SofteningTable tableOr(const std::vector<TableRow>& rows, double strength, double stiffness, double fractureEnergy) {
     if (!rows.empty()) return SofteningTable(rows);
     if (strength == 0) return SofteningTable(SofteningTable::brittle());
     return SofteningTable(SofteningTable::exponential(strength * strength / (stiffness * fractureEnergy)));
@@ -15,7 +15,7 @@ SofteningTable tableOr(const std::vector<TableRow> &rows, double strength, doubl
 
 } // namespace
 
-JointLaw::JointLaw(const JointProperties &properties) : p_(properties) {
+JointLaw::JointLaw(const JointProperties& properties) : p_(properties) {
     const auto problems = p_.problems();
     if (!problems.empty())
         throw std::invalid_argument("joint \"" + p_.name +
@@ -30,7 +30,7 @@ JointLaw::JointLaw(const JointProperties &properties) : p_(properties) {
     smallestStrengthSquared_ = smallest * smallest;
 }
 
-JointLaw::Yield JointLaw::yield(const ElasticStiffness &k, const JointState &s) const {
+JointLaw::Yield JointLaw::yield(const ElasticStiffness& k, const JointState& s) const {
     const double sigma = s.normalStress, tau2 = s.shearStress.a * s.shearStress.a + s.shearStress.b * s.shearStress.b;
     Yield f{sigma - p_.tensileStrength * (1 - coupled(s)), std::sqrt(tau2) - slipStrength(s), -1};
     if (p_.cap && sigma < 0) {

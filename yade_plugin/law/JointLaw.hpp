@@ -12,16 +12,18 @@ namespace masonry {
 class JointLaw {
 public:
     // Throws std::invalid_argument with all problems of the properties at once.
-    explicit JointLaw(const JointProperties &properties);
+    explicit JointLaw(const JointProperties& properties);
 
-    const JointProperties &properties() const { return p_; }
-    const CompressionCurve &compression() const { return curve_; }
+    const JointProperties& properties() const { return p_; }
+    const CompressionCurve& compression() const { return curve_; }
+    const SofteningTable& tension() const { return tension_; }
+    const SofteningTable& shear() const { return shear_; }
 
     // One step. `k` is the stiffness that the joint shows, its own or lumped with rigid units; softening and crushing
     // displacements stay those of the joint itself (law.md §7).
-    JointResponse advance(const ElasticStiffness &k, const JointState &old, const Jump &jump) const {
+    JointResponse advance(const ElasticStiffness& k, const JointState& old, const Jump& jump) const {
         JointResponse r{old, {}};
-        JointState &s = r.state;
+        JointState& s = r.state;
         s.opening += jump.opening;
         s.regime = Regime::Elastic;
         Shear trial{old.shearStress.a + k.shear * jump.slide.a, old.shearStress.b + k.shear * jump.slide.b}; // eq. (7)
@@ -112,14 +114,14 @@ public:
     }
 
     // Elastic energy by mode [J/m²].
-    static Energies stored(const ElasticStiffness &k, const JointState &s) {
+    static Energies stored(const ElasticStiffness& k, const JointState& s) {
         const double normal = 0.5 * s.normalStress * (s.opening + s.crushing - s.dilation);
         const double shear = 0.5 * (s.shearStress.a * s.shearStress.a + s.shearStress.b * s.shearStress.b) / k.shear;
         return s.normalStress > 0 ? Energies{normal, shear, 0} : Energies{0, shear, normal};
     }
 
     // Compression damage dc, eq. (21).
-    double compressionDamage(const ElasticStiffness &k, const JointState &s) const {
+    double compressionDamage(const ElasticStiffness& k, const JointState& s) const {
         return p_.cap ? curve_.damage(s.largestClosure, 1 / k.normal - 1 / p_.normalStiffness) : 0;
     }
 
@@ -127,21 +129,21 @@ public:
     struct Yield {
         double tension, slip, cap; // [Pa], [Pa], [Pa²]
     };
-    Yield yield(const ElasticStiffness &k, const JointState &s) const;
+    Yield yield(const ElasticStiffness& k, const JointState& s) const;
 
 private:
-    static double coupled(const JointState &s) { // d_ts, eq. (10)
+    static double coupled(const JointState& s) { // d_ts, eq. (10)
         return s.tensionDamage + s.shearDamage - s.tensionDamage * s.shearDamage;
     }
-    double friction(const JointState &s) const { // eq. (17b)
+    double friction(const JointState& s) const { // eq. (17b)
         return p_.residualFriction + (p_.friction - p_.residualFriction) * (1 - coupled(s));
     }
-    double slipStrength(const JointState &s) const { // eqs. (16), (17a)
+    double slipStrength(const JointState& s) const { // eqs. (16), (17a)
         const double cohesion = p_.residualCohesion + (p_.cohesion - p_.residualCohesion) * (1 - coupled(s));
         return std::max(0.0, cohesion - s.normalStress * friction(s));
     }
     // Secant to the softened strength at the largest opening, eq. (11): closes at the origin, never pushes [decided].
-    double openStress(const ElasticStiffness &k, const JointState &s, double elasticOpening) const {
+    double openStress(const ElasticStiffness& k, const JointState& s, double elasticOpening) const {
         return std::min(k.normal, p_.tensileStrength * (1 - coupled(s)) / s.largestOpening) * elasticOpening;
     }
 

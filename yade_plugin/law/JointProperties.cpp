@@ -14,7 +14,7 @@ public:
     std::vector<std::string> found;
 
     // A finite number within [low, high]; `above` excludes low itself.
-    void number(const char *what, double value, const char *unit, double low, double high = infinity,
+    void number(const char* what, double value, const char* unit, double low, double high = infinity,
                 bool above = false) {
         const std::string shown = std::string(what) + " " + text(value) + (*unit ? " " : "") + unit;
         if (!std::isfinite(value))
@@ -25,9 +25,9 @@ public:
             found.push_back(shown + " must be at most " + text(high));
     }
 
-    void table(const char *what, const std::vector<TableRow> &rows) {
+    void table(const char* what, const std::vector<TableRow>& rows) {
         if (rows.empty()) return;
-        for (const auto &problem : SofteningTable::problems(rows))
+        for (const auto& problem : SofteningTable::problems(rows))
             found.push_back(std::string(what) + ", " + problem);
     }
 };
@@ -83,7 +83,7 @@ std::vector<std::string> JointProperties::problems() const {
     return door.found;
 }
 
-ElasticStiffness inSeriesWithUnits(const JointProperties &p, double normalCompliance, double shearCompliance) {
+ElasticStiffness inSeriesWithUnits(const JointProperties& p, double normalCompliance, double shearCompliance) {
     return {1 / (1 / p.normalStiffness + normalCompliance), 1 / (1 / p.shearStiffness + shearCompliance)};
 }
 

@@ -47,6 +47,6 @@ struct ElasticStiffness {
 };
 
 // 1/kn* = 1/kn + L/E, 1/ks* = 1/ks + L/G, with the units' part (sum of L/E and L/G over both sides) given in m/Pa.
-ElasticStiffness inSeriesWithUnits(const JointProperties &, double normalCompliance, double shearCompliance);
+ElasticStiffness inSeriesWithUnits(const JointProperties&, double normalCompliance, double shearCompliance);
 
 } // namespace masonry

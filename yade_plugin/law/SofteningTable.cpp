@@ -9,12 +9,12 @@ SofteningTable::SofteningTable(std::vector<TableRow> rows) : rows_(std::move(row
         slopes_.push_back((rows_[i + 1].damage - rows_[i].damage) / (rows_[i + 1].ratio - rows_[i].ratio));
 }
 
-std::vector<std::string> SofteningTable::problems(const std::vector<TableRow> &rows) {
+std::vector<std::string> SofteningTable::problems(const std::vector<TableRow>& rows) {
     std::vector<std::string> found;
     const auto at = [](std::size_t i) { return "row " + std::to_string(i + 1) + ": "; };
     if (rows.size() < 2) found.push_back("needs at least two rows, has " + std::to_string(rows.size()));
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        const auto &[ratio, damage] = rows[i];
+        const auto& [ratio, damage] = rows[i];
         if (!std::isfinite(ratio) || !std::isfinite(damage)) {
             found.push_back(at(i) + "ratio and damage must be finite numbers");
             continue;

@@ -16,7 +16,7 @@ public:
     explicit SofteningTable(std::vector<TableRow> rows);
 
     // What is wrong with these rows, in words that name the row; empty if nothing is.
-    static std::vector<std::string> problems(const std::vector<TableRow> &rows);
+    static std::vector<std::string> problems(const std::vector<TableRow>& rows);
 
     // exp(-decay (ratio - 1)) of the strength is left; 200 segments as in the paper §4.1, the last row at damage 1.
     static std::vector<TableRow> exponential(double decay, int segments = 200);
@@ -40,7 +40,7 @@ public:
         return rows_[low].damage + slopes_[low] * (ratio - rows_[low].ratio);
     }
 
-    const std::vector<TableRow> &rows() const { return rows_; }
+    const std::vector<TableRow>& rows() const { return rows_; }
 
 private:
     std::vector<TableRow> rows_;

@@ -12,9 +12,9 @@ inline std::string text(double value) {
     return buffer;
 }
 
-inline std::string joined(const std::vector<std::string> &parts, const char *separator = "\n  ") {
+inline std::string joined(const std::vector<std::string>& parts, const char* separator = "\n  ") {
     std::string all;
-    for (const auto &part : parts)
+    for (const auto& part : parts)
         all += (all.empty() ? "" : separator) + part;
     return all;
 }

@@ -1,0 +1,26 @@
+"""Masonry for YADE: the joint law of a published paper on polyhedral blocks.
+
+Import it from a YADE script (or after ``import yade``)::
+
+    from masonry import MasonryMat, MasonryJoint, connect
+
+The classes registered in YADE (``masonry.classes``) are also in ``yade.wrapper``, with their manual in ``help()``.
+Without YADE only the modules that read results work: :mod:`masonry.results`, :mod:`masonry.figures`.
+"""
+
+import sys
+
+if "yade" in sys.modules:
+    try:
+        from ._masonry import classes, commit, criticalTimeStep, touchingPairs
+    except ImportError as error:
+        if "undefined symbol" not in str(error):
+            raise
+        raise ImportError(
+            "this YADE does not fit the masonry plugin, which knows YADE 2023.02a (Debian 12, double precision): "
+            "expected a function or table of that version, found none: " + str(error)
+        ) from None
+    import yade.wrapper as _wrapper
+
+    globals().update({_name: getattr(_wrapper, _name) for _name in classes})
+    from .scene import addBlock, connect, engines

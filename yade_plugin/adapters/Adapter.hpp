@@ -1,0 +1,224 @@
+// What every class that YADE sees has in common: one list of attributes serves Python, dict(), saving and the docs.
+//
+// A class `T : Adapter<T, HostBase>` gives `className`, `baseName`, `doc` and
+//     template <class Visit> static void attributes(Visit&& visit) { visit("young", &T::young, "Young's modulus [Pa]");
+//     }
+// and may define `void postLoad()`, which checks and prepares after any change, and `static void extras(PyClass&)`.
+#pragma once
+#include "host/Yade.hpp"
+#include "law/JointState.hpp"
+#include "law/SofteningTable.hpp"
+#include <boost/archive/binary_iarchive.hpp>
+#include <boost/archive/binary_oarchive.hpp>
+#include <boost/archive/xml_iarchive.hpp>
+#include <boost/archive/xml_oarchive.hpp>
+#include <boost/python/raw_function.hpp>
+#include <boost/serialization/export.hpp>
+#include <boost/serialization/nvp.hpp>
+#include <boost/serialization/shared_ptr.hpp>
+#include <boost/serialization/string.hpp>
+#include <boost/serialization/vector.hpp>
+#include <type_traits>
+
+namespace masonry {
+
+namespace py = boost::python;
+using boost::shared_ptr;
+using yade::Quaternionr;
+using yade::Vector3r;
+
+enum Flags { Plain = 0, ReadOnly = 1, Unsaved = 2, Hidden = 4 };
+
+template <class T> struct IsNumbers : std::false_type {}; // types of fixed size that are saved as plain numbers
+template <> struct IsNumbers<Vector3r> : std::true_type {};
+template <> struct IsNumbers<Quaternionr> : std::true_type {};
+template <> struct IsNumbers<TableRow> : std::true_type {};
+template <> struct IsNumbers<JointState> : std::true_type {};
+
+// Calls `each` with every number of a value, in a fixed order.
+template <class F> void numbers(Vector3r& v, F&& each) { each(v[0]), each(v[1]), each(v[2]); }
+template <class F> void numbers(Quaternionr& q, F&& each) { each(q.w()), each(q.x()), each(q.y()), each(q.z()); }
+template <class F> void numbers(TableRow& r, F&& each) { each(r.ratio), each(r.damage); }
+template <class F> void numbers(JointState& s, F&& each) {
+    double regime = double(s.regime);
+    each(s.opening), each(s.crushing), each(s.dilation), each(s.slip), each(s.largestOpening), each(s.largestClosure);
+    each(s.tensionDamage), each(s.shearDamage), each(s.normalStress), each(s.shearStress.a), each(s.shearStress.b);
+    each(regime);
+    s.regime = Regime(int(regime));
+}
+
+template <class Archive, class T> void archive(Archive& ar, const char* name, T& value) {
+    ar& boost::serialization::make_nvp(name, value);
+}
+
+template <class Archive, class T> void archiveNumbers(Archive& ar, const char* name, std::vector<T>& values) {
+    std::vector<double> flat;
+    if (Archive::is_saving::value)
+        for (auto& value : values)
+            numbers(value, [&](double& number) { flat.push_back(number); });
+    archive(ar, name, flat);
+    if (Archive::is_saving::value) return;
+    std::size_t width = 0, next = 0;
+    T sample;
+    numbers(sample, [&](double&) { ++width; });
+    if (flat.size() % width != 0) throw std::runtime_error(std::string("saved file is damaged at ") + name);
+    values.resize(flat.size() / width);
+    for (auto& value : values)
+        numbers(value, [&](double& number) { number = flat[next++]; });
+}
+
+template <class T> std::string expectedType() {
+    if (std::is_same<T, bool>::value) return "True or False";
+    if (std::is_arithmetic<T>::value) return "a number";
+    if (std::is_same<T, std::string>::value) return "a text";
+    if (std::is_same<T, Vector3r>::value) return "a Vector3";
+    if (std::is_same<T, std::vector<TableRow>>::value) return "a list of (ratio, damage) rows";
+    return "another type";
+}
+
+template <class Derived, class Base> class Adapter : public Base {
+public:
+    std::string getClassName() const override { return Derived::className; }
+    std::string getBaseClassName(unsigned i = 0) const override { return i == 0 ? Derived::baseName : ""; }
+    int getBaseClassNumber() const override { return 1; }
+
+    void postLoad() {}
+    template <class PyClass> static void extras(PyClass&) {}
+
+    void callPostLoad() override {
+        Base::callPostLoad();
+        self().postLoad();
+    }
+
+    void pySetAttr(const std::string& key, const py::object& value) override {
+        bool known = false;
+        Derived::attributes([&](const char* name, auto member, const char*, int flags = Plain) {
+            if (key != name) return;
+            known = true;
+            if (flags & ReadOnly)
+                throw std::invalid_argument(std::string(Derived::className) + "." + key + " is read-only");
+            using T = std::decay_t<decltype(self().*member)>;
+            py::extract<T> extracted(value);
+            if (!extracted.check()) {
+                const std::string given = py::extract<std::string>(py::str(value));
+                throw std::invalid_argument(std::string(Derived::className) + "." + key + ": expected " +
+                                            expectedType<T>() + ", got " + given);
+            }
+            self().*member = extracted();
+        });
+        if (!known) Base::pySetAttr(key, value);
+    }
+
+    py::dict pyDict() const override {
+        py::dict all;
+        Derived::attributes([&](const char* name, auto member, const char*, int flags = Plain) {
+            if (!(flags & Hidden)) all[name] = py::object(static_cast<const Derived&>(*this).*member);
+        });
+        all.update(Base::pyDict());
+        return all;
+    }
+
+    void pyRegisterClass(py::object scope) override {
+        const py::scope here(scope);
+        const py::docstring_options options(true, false, false);
+        using PyClass = py::class_<Derived, shared_ptr<Derived>, py::bases<Base>, boost::noncopyable>;
+        PyClass cls(Derived::className, Derived::doc);
+        cls.def("__init__",
+                py::raw_function(
+                    [construct = py::make_constructor(&Adapter::construct)](py::tuple args, py::dict keywords) {
+                        return construct(py::object(args[0]), py::tuple(args.slice(1, py::_)), keywords);
+                    },
+                    1));
+        const Derived standard;
+        Derived::attributes([&](const char* name, auto member, const char* text, int flags = Plain) {
+            if (flags & Hidden) return;
+            using T = std::decay_t<decltype(self().*member)>;
+            T Derived::*const own = member;
+            std::string about = text;
+            if (std::is_arithmetic<T>::value || std::is_same<T, std::string>::value ||
+                std::is_same<T, Vector3r>::value) {
+                const std::string value = py::extract<std::string>(py::str(py::object(standard.*own)));
+                about += flags & ReadOnly ? " Read-only." : " Default: " + value + ".";
+            } else if (flags & ReadOnly)
+                about += " Read-only.";
+            const auto get = py::make_getter(own, py::return_value_policy<py::return_by_value>());
+            if (flags & ReadOnly)
+                cls.add_property(name, get, about.c_str());
+            else {
+                const auto set = [own](Derived& object, const T& value) { object.change(own, value); };
+                cls.add_property(
+                    name, get,
+                    py::make_function(set, py::default_call_policies(), boost::mpl::vector<void, Derived&, const T&>()),
+                    about.c_str());
+            }
+        });
+        Derived::extras(cls);
+    }
+
+    template <class Archive> void serialize(Archive& ar, unsigned) {
+        ar& boost::serialization::make_nvp(Derived::baseName, boost::serialization::base_object<Base>(self()));
+        Derived::attributes([&](const char* name, auto member, const char*, int flags = Plain) {
+            if (!(flags & Unsaved)) save(ar, name, self().*member);
+        });
+        if (Archive::is_loading::value) self().postLoad();
+    }
+
+private:
+    Derived& self() { return static_cast<Derived&>(*this); }
+
+    template <class T> void change(T Derived::*member, const T& value) { // a refused value leaves the old one
+        const T old = self().*member;
+        self().*member = value;
+        try {
+            self().postLoad();
+        } catch (...) {
+            self().*member = old;
+            throw;
+        }
+    }
+
+    static shared_ptr<Derived> construct(py::tuple args, py::dict keywords) {
+        shared_ptr<Derived> made(new Derived);
+        made->pyHandleCustomCtorArgs(args, keywords);
+        if (py::len(args) > 0)
+            throw std::invalid_argument(std::string(Derived::className) + " takes keyword arguments only");
+        if (py::len(keywords) > 0) made->pyUpdateAttrs(keywords);
+        return made;
+    }
+
+    template <class Archive, class T> static void save(Archive& ar, const char* name, T& value) {
+        if constexpr (IsNumbers<T>::value) {
+            std::vector<T> one{value};
+            archiveNumbers(ar, name, one);
+            if (one.size() != 1) throw std::runtime_error(std::string("saved file is damaged at ") + name);
+            value = one[0];
+        } else
+            archive(ar, name, value);
+    }
+    template <class Archive, class T> static void save(Archive& ar, const char* name, std::vector<T>& values) {
+        if constexpr (IsNumbers<T>::value)
+            archiveNumbers(ar, name, values);
+        else
+            archive(ar, name, values);
+    }
+};
+
+// The number by which dispatchers know a class of materials, geometries or physics.
+#define MASONRY_DISPATCHED(Class, HostBase)                                                                            \
+public:                                                                                                                \
+    int& modifyClassIndex() override { return dispatchIndex(); }                                                       \
+    const int& getClassIndex() const override { return dispatchIndex(); }                                              \
+    const int& getBaseClassIndex(int depth) const override {                                                           \
+        static HostBase base;                                                                                          \
+        return depth == 1 ? base.getClassIndex() : base.getBaseClassIndex(depth - 1);                                  \
+    }                                                                                                                  \
+                                                                                                                       \
+private:                                                                                                               \
+    static int& dispatchIndex() {                                                                                      \
+        static int index = -1;                                                                                         \
+        return index;                                                                                                  \
+    }                                                                                                                  \
+                                                                                                                       \
+public:
+
+} // namespace masonry

@@ -1,0 +1,244 @@
+#include "MasonryEngines.hpp"
+#include "MasonryJointGeom.hpp"
+#include "MasonryJointPhys.hpp"
+#include <Eigen/Eigenvalues>
+#include <map>
+
+BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryLoad)
+BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryEnergy)
+
+namespace masonry {
+
+using yade::Matrix3r;
+using yade::State;
+
+namespace {
+
+bool blocked(const State& s, int axis) { return s.blockedDOFs >> axis & 1; } // 0-2 translations, 3-5 rotations
+
+bool rotationRestrained(const State& s) { return s.blockedDOFs >> 3 != 0; }
+
+// Inverse inertia in global axes as the integrator uses it: with a blocked rotation the three values stand for the
+// global axes, without for the body's own.
+Matrix3r inverseInertia(const State& s) {
+    Vector3r inverse = s.inertia.cwiseInverse();
+    if (!rotationRestrained(s)) {
+        const Matrix3r axes = s.ori.toRotationMatrix();
+        return axes * inverse.asDiagonal() * axes.transpose();
+    }
+    for (int i = 0; i < 3; ++i)
+        if (blocked(s, 3 + i)) inverse[i] = 0;
+    return inverse.asDiagonal();
+}
+
+Vector3r inverseMass(const State& s) {
+    Vector3r inverse;
+    for (int i = 0; i < 3; ++i)
+        inverse[i] = blocked(s, i) ? 0 : 1 / s.mass;
+    return inverse;
+}
+
+yade::NewtonIntegrator* integratorOf(const yade::Scene& scene) {
+    for (const auto& engine : scene.engines)
+        if (engine->getClassName() == "NewtonIntegrator") return static_cast<yade::NewtonIntegrator*>(engine.get());
+    return nullptr;
+}
+
+template <class F> void eachJoint(const yade::Scene& scene, F&& visit) {
+    for (std::size_t i = 0; i < scene.interactions->currSize; ++i) {
+        const auto& interaction = *scene.interactions->linIntrs[i];
+        auto* geom = dynamic_cast<MasonryJointGeom*>(interaction.geom.get());
+        auto* phys = dynamic_cast<MasonryJointPhys*>(interaction.phys.get());
+        if (geom && phys) visit(interaction, *geom, *phys);
+    }
+}
+
+} // namespace
+
+double MasonryLoad::ramp() const {
+    return rampTime > 0 ? std::min(1.0, std::max(0.0, (scene->time + scene->dt - rampStart) / rampTime)) : 1;
+}
+
+void MasonryLoad::action() {
+    if (body < 0 || std::size_t(body) >= scene->bodies->body.size() || !scene->bodies->body[body])
+        throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) + " does not exist");
+    if (!(direction.norm() > 0)) throw std::invalid_argument("MasonryLoad.direction must not be zero");
+    auto& state = *scene->bodies->body[body]->state;
+    state.isDamped = false;
+    arm = state.ori * state.refOri.conjugate() * (point - state.refPos);
+    total = ramp() * force;
+    auto& forces = scene->forces();
+    forces.sync();
+    if (driven) {
+        // The force R that gives the point its velocity after this step: d·(v + w x arm) = V with
+        // v' = v + dt (F + R d)/m + dt g, w' = w + dt I^-1 (T + arm x R d).
+        const auto* integrator = integratorOf(*scene);
+        const Vector3r d = direction.normalized(), lever = arm.cross(d), perMass = inverseMass(state);
+        const Matrix3r perInertia = inverseInertia(state);
+        const Vector3r push =
+            forces.getForce(body) + total + state.mass * (integrator ? integrator->gravity : Vector3r::Zero());
+        const Vector3r v = state.vel + scene->dt * perMass.cwiseProduct(push);
+        const Vector3r w = state.angVel + scene->dt * (perInertia * (forces.getTorque(body) + arm.cross(total)));
+        const double mobility = d.dot(perMass.cwiseProduct(d)) + lever.dot(perInertia * lever);
+        if (!(mobility > 0))
+            throw std::invalid_argument("MasonryLoad: body " + std::to_string(body) +
+                                        " is blocked in the driven direction");
+        reaction = (ramp() * velocity - d.dot(v) - lever.dot(w)) / (mobility * scene->dt);
+        total += reaction * d;
+    } else
+        reaction = 0;
+    forces.addForce(body, total);
+    forces.addTorque(body, arm.cross(total));
+}
+
+Vector3r MasonryLoad::displacement() const {
+    const auto& state = *yade::Body::byId(body, Singleton<yade::Omega>::instance().getScene().get())->state;
+    const Vector3r r = point - state.refPos;
+    return state.pos + state.ori * state.refOri.conjugate() * r - point;
+}
+
+// The integrator's step n takes v- to v+ with the forces at x_n. Between x_n and x_n+1 a force does the work of its
+// mean over both ends: half of it with v- at n, half with v+ (kept pending until n+1). With the kinetic energy m v-·v+
+// / 2 the balance at x_n is then an identity, and the joints' trapezoidal work is its counterpart.
+void MasonryEnergy::action() {
+    const auto* integrator = integratorOf(*scene);
+    const double alpha = integrator ? integrator->damping : 0, dt = scene->dt;
+    const Vector3r g = integrator ? integrator->gravity : Vector3r::Zero();
+    auto& forces = scene->forces();
+    forces.sync();
+    std::map<int, std::vector<MasonryLoad*>> loads;
+    for (const auto& engine : scene->engines)
+        if (auto* load = dynamic_cast<MasonryLoad*>(engine.get()); load && !load->dead)
+            loads[load->body].push_back(load);
+
+    external += pendingExternal, damping += pendingDamping;
+    pendingExternal = pendingDamping = kinetic = gravity = 0;
+    for (const auto& body : scene->bodies->body) {
+        if (!body || !body->state) continue;
+        const State& s = *body->state;
+        const bool moves = (s.blockedDOFs & 63) != 63;
+        if (!moves && s.vel.isZero() && s.angVel.isZero()) continue;
+        const Vector3r force = forces.getForce(body->id), torque = forces.getTorque(body->id);
+        const Vector3r angularAcceleration = inverseInertia(s) * torque;
+        Vector3r vel = s.vel, angVel = s.angVel;
+        gravity += s.mass * g.dot(s.pos - s.refPos);
+        for (int i = 0; i < 3; ++i) {
+            if (blocked(s, i)) {
+                external -= 0.5 * dt * s.vel[i] * (force[i] + s.mass * g[i]);
+                pendingExternal -= 0.5 * dt * s.vel[i] * (force[i] + s.mass * g[i]);
+            } else {
+                const double free = force[i] / s.mass + g[i], trend = free * (s.vel[i] + 0.5 * dt * free);
+                const double drag = s.isDamped ? alpha * free * ((trend > 0) - (trend < 0)) : 0;
+                vel[i] += dt * (free - drag);
+                damping += 0.5 * dt * s.mass * drag * s.vel[i];
+                pendingDamping += 0.5 * dt * s.mass * drag * vel[i];
+                kinetic += 0.5 * s.mass * s.vel[i] * vel[i];
+            }
+            if (blocked(s, 3 + i)) {
+                external -= 0.5 * dt * s.angVel[i] * torque[i];
+                pendingExternal -= 0.5 * dt * s.angVel[i] * torque[i];
+            } else {
+                const double free = angularAcceleration[i], trend = free * (s.angVel[i] + 0.5 * dt * free);
+                const double drag = s.isDamped ? alpha * free * ((trend > 0) - (trend < 0)) : 0;
+                angVel[i] += dt * (free - drag);
+                damping += 0.5 * dt * s.inertia[i] * drag * s.angVel[i];
+                pendingDamping += 0.5 * dt * s.inertia[i] * drag * angVel[i];
+                kinetic += 0.5 * s.inertia[i] * s.angVel[i] * angVel[i];
+            }
+        }
+        if (const auto mine = loads.find(body->id); mine != loads.end())
+            for (auto* load : mine->second) {
+                load->work += load->pendingWork + 0.5 * dt * load->total.dot(s.vel + s.angVel.cross(load->arm));
+                load->pendingWork = 0.5 * dt * load->total.dot(vel + angVel.cross(load->arm));
+            }
+    }
+}
+
+py::dict MasonryEnergy::balance() {
+    const auto& running = *Singleton<yade::Omega>::instance().getScene();
+    Energies stored;
+    Vector3r lost = Vector3r::Zero();
+    eachJoint(running, [&](const auto&, const MasonryJointGeom& geom, const MasonryJointPhys& phys) {
+        lost += phys.dissipated;
+        for (std::size_t i = 0; i < phys.states.size(); ++i) {
+            const auto e = JointLaw::stored(phys.stiffness(), phys.states[i]);
+            stored.tension += geom.areas[i] * e.tension;
+            stored.shear += geom.areas[i] * e.shear;
+            stored.compression += geom.areas[i] * e.compression;
+        }
+    });
+    double work = external;
+    for (const auto& engine : running.engines)
+        if (const auto* load = dynamic_cast<MasonryLoad*>(engine.get())) work += load->work;
+    const double in = work + gravity;
+    const double out = kinetic + damping + stored.tension + stored.shear + stored.compression + lost.sum();
+    const double size = std::max(std::abs(work) + std::abs(gravity), std::abs(out));
+    const double error = size > 0 ? (in - out) / size : 0;
+    largestError = std::max(largestError, std::abs(error));
+    py::dict all;
+    all["external"] = work, all["gravity"] = gravity, all["kinetic"] = kinetic, all["damping"] = damping;
+    all["elastic_tension"] = stored.tension, all["elastic_shear"] = stored.shear;
+    all["elastic_compression"] = stored.compression;
+    all["dissipated_tension"] = lost[0], all["dissipated_shear"] = lost[1], all["dissipated_compression"] = lost[2];
+    all["error"] = error;
+    return all;
+}
+
+// Bound of Irons and Treharne: the highest frequency of the whole is at most the highest of any element that carries
+// its share of the masses. A joint is an element; a body's mass is shared out degree by degree in proportion to the
+// joints' stiffnesses, which makes the bound exact for a regular chain.
+py::tuple criticalTimeStep() {
+    const auto& scene = *Singleton<yade::Omega>::instance().getScene();
+    using Vector12 = Eigen::Matrix<double, 12, 1>;
+    using Matrix12 = Eigen::Matrix<double, 12, 12>;
+    struct Element {
+        int ids[2];
+        Matrix12 stiffness;
+    };
+    std::vector<Element> elements;
+    std::map<int, Eigen::Matrix<double, 6, 1>> share; // sum of the diagonals of a body's joints
+    eachJoint(scene, [&](const yade::Interaction& interaction, const MasonryJointGeom& geom,
+                         const MasonryJointPhys& phys) {
+        Element e{{interaction.id1, interaction.id2}, Matrix12::Zero()};
+        const State* states[2];
+        for (int side = 0; side < 2; ++side)
+            states[side] = scene.bodies->body[e.ids[side]]->state.get();
+        const Vector3r directions[3] = {geom.normal, geom.tangent, geom.normal.cross(geom.tangent)};
+        for (std::size_t i = 0; i < geom.centres.size(); ++i)
+            for (int d = 0; d < 3; ++d) {
+                Vector12 b;
+                for (int side = 0; side < 2; ++side) {
+                    Vector3r turn = (geom.centres[i] - (side ? geom.position2 : geom.position1)).cross(directions[d]);
+                    if (!rotationRestrained(*states[side])) turn = states[side]->ori.conjugate() * turn;
+                    b.segment<3>(6 * side) = (side ? 1 : -1) * directions[d];
+                    b.segment<3>(6 * side + 3) = (side ? 1 : -1) * turn;
+                }
+                e.stiffness +=
+                    geom.areas[i] * (d == 0 ? phys.normalStiffness : phys.shearStiffness) * b * b.transpose();
+            }
+        for (int side = 0; side < 2; ++side) {
+            auto& sum = share.emplace(e.ids[side], Eigen::Matrix<double, 6, 1>::Zero()).first->second;
+            sum += e.stiffness.diagonal().segment<6>(6 * side);
+        }
+        elements.push_back(e);
+    });
+    double highest = 0;
+    int worst[2] = {-1, -1};
+    for (auto& e : elements) {
+        Vector12 scale; // 1/sqrt of the element's share of the mass; zero where the body cannot move
+        for (int side = 0; side < 2; ++side) {
+            const State& s = *scene.bodies->body[e.ids[side]]->state;
+            for (int i = 0; i < 6; ++i) {
+                const double part = e.stiffness(6 * side + i, 6 * side + i) / share[e.ids[side]][i];
+                const double mass = i < 3 ? s.mass : s.inertia[i - 3];
+                scale[6 * side + i] = blocked(s, i) || !(part > 0) ? 0 : 1 / std::sqrt(part * mass);
+            }
+        }
+        const Matrix12 dynamic = scale.asDiagonal() * e.stiffness * scale.asDiagonal();
+        const double value = Eigen::SelfAdjointEigenSolver<Matrix12>(dynamic, Eigen::EigenvaluesOnly).eigenvalues()[11];
+        if (value > highest) highest = value, worst[0] = e.ids[0], worst[1] = e.ids[1];
+    }
+    return py::make_tuple(2 / std::sqrt(highest), worst[0], worst[1]);
+}
+
+} // namespace masonry

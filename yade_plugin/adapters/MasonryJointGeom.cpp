@@ -1,0 +1,136 @@
+#include "MasonryJointGeom.hpp"
+#include "law/Text.hpp"
+#include <algorithm>
+
+BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJointGeom)
+BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Ig2_Polyhedra_Polyhedra_MasonryJointGeom)
+
+namespace masonry {
+
+void MasonryJointGeom::define(const FaceContact& face, const Vector3r& alongDirection, int columns, int rows,
+                              const yade::State& state1, const yade::State& state2) {
+    normal = face.normal, tangent = alongDirection;
+    along = columns, across = rows;
+    polygon = face.polygon;
+    centres.clear(), areas.clear();
+    for (const auto& cell : cells()) {
+        centres.push_back(cell.centre);
+        areas.push_back(cell.area);
+    }
+    jumps.assign(areas.size(), Vector3r::Zero());
+    position1 = state1.pos, position2 = state2.pos;
+    orientation1 = state1.ori, orientation2 = state2.ori;
+    distance1 = (polygon[0] - position1).dot(normal);
+    distance2 = (position2 - polygon[0]).dot(normal);
+}
+
+std::vector<Subcontact> MasonryJointGeom::cells() const { return subdivide(polygon, normal, tangent, along, across); }
+
+void MasonryJointGeom::update(const yade::State& state1, const yade::State& state2) {
+    const Quaternionr turn1 = state1.ori * orientation1.conjugate(), turn2 = state2.ori * orientation2.conjugate();
+    const yade::Matrix3r rotation1 = turn1.toRotationMatrix(), rotation2 = turn2.toRotationMatrix();
+    const bool opposite = turn1.dot(turn2) < 0; // a quaternion and its negative are the same rotation
+    const Quaternionr mean(opposite ? (turn1.coeffs() - turn2.coeffs()).eval()
+                                    : (turn1.coeffs() + turn2.coeffs()).eval());
+    yade::Matrix3r reference;
+    reference << normal, tangent, normal.cross(tangent);
+    axes = mean.normalized().toRotationMatrix() * reference;
+    between = state2.pos - state1.pos;
+    scratch.resize(centres.size());
+    for (std::size_t i = 0; i < centres.size(); ++i) {
+        const Vector3r arm1 = rotation1 * (centres[i] - position1);
+        const Vector3r gap = between + rotation2 * (centres[i] - position2) - arm1;
+        const Vector3r jump = axes.transpose() * gap;
+        const Vector3r step = jump - jumps[i];
+        jumps[i] = jump;
+        // Forces act at the middle of the jump and the axes turn with the mean rotation: together this keeps both
+        // angular momentum and the power of the joint.
+        scratch[i] = {{step[0], {step[1], step[2]}}, arm1 + 0.5 * gap};
+    }
+}
+
+ConvexBlock blockOf(yade::Polyhedra& shape, const yade::State& state) {
+    ConvexBlock block;
+    const auto corners = shape.GetSurfaceTriangulation();
+    for (const auto& v : shape.v)
+        block.vertices.push_back(state.pos + state.ori * v);
+    for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+        std::array<int, 3> t{corners[i], corners[i + 1], corners[i + 2]};
+        const auto &a = block.vertices[t[0]], &b = block.vertices[t[1]], &c = block.vertices[t[2]];
+        if ((b - a).cross(c - a).dot(a - state.pos) < 0) std::swap(t[1], t[2]); // outward from the centre
+        block.triangles.push_back(t);
+    }
+    return block;
+}
+
+void Ig2_Polyhedra_Polyhedra_MasonryJointGeom::postLoad() {
+    std::vector<std::string> wrong;
+    const auto count = [&](const char* what, int n) {
+        if (n < 1 || n > 1000) wrong.push_back(std::string(what) + " " + std::to_string(n) + " must be 1 to 1000");
+    };
+    count("subcontacts", subcontacts);
+    count("rows", rows);
+    if (!(tolerance > 0 && tolerance <= 0.01))
+        wrong.push_back("tolerance " + text(tolerance) + " must be above 0 and at most 0.01");
+    if (!rowDirection.allFinite()) wrong.push_back("rowDirection must be finite numbers");
+    if (!wrong.empty()) throw std::invalid_argument(std::string(className) + ": " + joined(wrong, "; "));
+}
+
+bool Ig2_Polyhedra_Polyhedra_MasonryJointGeom::go(const shared_ptr<yade::Shape>& shape1,
+                                                  const shared_ptr<yade::Shape>& shape2, const yade::State& state1,
+                                                  const yade::State& state2, const Vector3r&, const bool& force,
+                                                  const shared_ptr<yade::Interaction>& interaction) {
+    if (!interaction->geom) {
+        const auto face = coincidentFaces(blockOf(static_cast<yade::Polyhedra&>(*shape1), state1),
+                                          blockOf(static_cast<yade::Polyhedra&>(*shape2), state2), tolerance);
+        if (!face) {
+            if (!force) return false;
+            throw std::invalid_argument(
+                "bodies " + std::to_string(interaction->id1) + " and " + std::to_string(interaction->id2) +
+                " share no face: no joint can be made (tolerance " + text(tolerance) + " of the smaller block's size)");
+        }
+        const Vector3r across = rowDirection - rowDirection.dot(face->normal) * face->normal;
+        const bool given = across.norm() > 1e-6 * rowDirection.norm();
+        const Vector3r along = given ? Vector3r(across.cross(face->normal).normalized()) : longestEdge(face->polygon);
+        const shared_ptr<MasonryJointGeom> geom(new MasonryJointGeom);
+        geom->define(*face, along, subcontacts, rows, state1, state2);
+        interaction->geom = geom;
+    }
+    static_cast<MasonryJointGeom&>(*interaction->geom).update(state1, state2);
+    return true;
+}
+
+py::list touchingPairs(double tolerance) {
+    struct Candidate {
+        int id;
+        ConvexBlock block;
+        Vector3r low, high;
+    };
+    std::vector<Candidate> all;
+    for (const auto& body : Singleton<yade::Omega>::instance().getScene()->bodies->body) {
+        auto* shape = body ? dynamic_cast<yade::Polyhedra*>(body->shape.get()) : nullptr;
+        if (!shape) continue;
+        Candidate c{body->id, blockOf(*shape, *body->state), Vector3r::Constant(HUGE_VAL),
+                    Vector3r::Constant(-HUGE_VAL)};
+        for (const auto& v : c.block.vertices)
+            c.low = c.low.cwiseMin(v), c.high = c.high.cwiseMax(v);
+        const Vector3r margin = Vector3r::Constant(tolerance * c.block.size());
+        c.low -= margin, c.high += margin;
+        all.push_back(std::move(c));
+    }
+    std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.low[0] < b.low[0]; });
+    std::vector<std::pair<int, int>> pairs; // sweep along x
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (std::size_t j = i + 1; j < all.size() && all[j].low[0] <= all[i].high[0]; ++j)
+            if ((all[j].low.array() <= all[i].high.array()).all() &&
+                (all[i].low.array() <= all[j].high.array()).all() &&
+                coincidentFaces(all[i].block, all[j].block, tolerance))
+                pairs.emplace_back(std::minmax(all[i].id, all[j].id));
+    std::sort(pairs.begin(), pairs.end());
+    py::list result;
+    for (const auto& [one, two] : pairs)
+        result.append(py::make_tuple(one, two));
+    return result;
+}
+
+} // namespace masonry

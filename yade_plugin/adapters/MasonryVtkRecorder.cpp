@@ -1,0 +1,174 @@
+#include "MasonryVtkRecorder.hpp"
+#include "MasonryJointGeom.hpp"
+#include "MasonryJointPhys.hpp"
+#include <algorithm>
+#include <fstream>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkIdList.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLPolyDataWriter.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryVtkRecorder)
+
+namespace masonry {
+
+namespace {
+
+template <class Array> Array* column(vtkDataSetAttributes* data, const char* name, int components = 1) {
+    vtkNew<Array> array;
+    array->SetName(name);
+    array->SetNumberOfComponents(components);
+    data->AddArray(array);
+    return array; // owned by `data`
+}
+
+// Displacement of a point given in the reference state, moved with a body.
+Vector3r moved(const yade::State& s, const Vector3r& position, const Quaternionr& orientation, const Vector3r& point) {
+    return s.pos + s.ori * orientation.conjugate() * (point - position) - point;
+}
+
+template <class Writer, class Data> void write(const std::string& path, Data* data) {
+    vtkNew<Writer> writer;
+    writer->SetFileName(path.c_str());
+    writer->SetInputData(data);
+    if (!writer->Write()) throw std::runtime_error("cannot write " + path);
+}
+
+std::string frame(const std::string& name, std::size_t number, const std::string& extension) {
+    const auto digits = std::to_string(number);
+    return name + "_" + std::string(4 - std::min<std::size_t>(4, digits.size()), '0') + digits + extension;
+}
+
+} // namespace
+
+bool MasonryVtkRecorder::isActivated() { return stepPeriod > 0 && scene->iter % stepPeriod == 0; }
+
+void MasonryVtkRecorder::action() {
+    writeBlocks(directory + "/" + frame("blocks", times.size(), ".vtu"));
+    writeJoints(directory + "/" + frame("joints", times.size(), ".vtp"));
+    times.push_back(scene->time);
+    writeCollection("blocks", ".vtu");
+    writeCollection("joints", ".vtp");
+}
+
+void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
+    vtkNew<vtkUnstructuredGrid> grid;
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    auto* displacement = column<vtkDoubleArray>(grid->GetPointData(), "displacement", 3);
+    auto* velocity = column<vtkDoubleArray>(grid->GetPointData(), "velocity", 3);
+    auto* ids = column<vtkIntArray>(grid->GetCellData(), "body");
+    for (const auto& body : scene->bodies->body) {
+        auto* shape = body ? dynamic_cast<yade::Polyhedra*>(body->shape.get()) : nullptr;
+        if (!shape) continue;
+        const auto& s = *body->state;
+        const auto first = points->GetNumberOfPoints();
+        for (const auto& v : shape->v) {
+            const Vector3r reference = s.refPos + s.refOri * v, arm = s.ori * v;
+            points->InsertNextPoint(reference.data());
+            displacement->InsertNextTuple(Vector3r(s.pos + arm - reference).data());
+            velocity->InsertNextTuple(Vector3r(s.vel + s.angVel.cross(arm)).data());
+        }
+        ConvexBlock block;
+        block.vertices = shape->v;
+        const auto corners = shape->GetSurfaceTriangulation();
+        for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+            block.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+        vtkNew<vtkIdList> faces; // number of faces, then each face's count and corners
+        faces->InsertNextId(block.triangles.size());
+        for (const auto& t : block.triangles) {
+            faces->InsertNextId(3);
+            for (int corner : t)
+                faces->InsertNextId(first + corner);
+        }
+        grid->InsertNextCell(VTK_POLYHEDRON, faces);
+        ids->InsertNextValue(body->id);
+    }
+    grid->SetPoints(points);
+    write<vtkXMLUnstructuredGridWriter>(path, grid.Get());
+}
+
+void MasonryVtkRecorder::writeJoints(const std::string& path) {
+    vtkNew<vtkPolyData> data;
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    vtkNew<vtkCellArray> cells;
+    auto* displacement = column<vtkDoubleArray>(data->GetPointData(), "displacement", 3);
+    auto* values = data->GetCellData();
+    auto *opening = column<vtkDoubleArray>(values, "opening"), *slip = column<vtkDoubleArray>(values, "slip");
+    auto *slide = column<vtkDoubleArray>(values, "slide", 3), *normal = column<vtkDoubleArray>(values, "normal", 3);
+    auto *normalStress = column<vtkDoubleArray>(values, "normal_stress"),
+         *shearStress = column<vtkDoubleArray>(values, "shear_stress");
+    auto *tension = column<vtkDoubleArray>(values, "damage_tension"),
+         *shear = column<vtkDoubleArray>(values, "damage_shear"),
+         *compression = column<vtkDoubleArray>(values, "damage_compression"),
+         *crushing = column<vtkDoubleArray>(values, "crushing");
+    auto* area = column<vtkDoubleArray>(values, "area");
+    auto* lost = column<vtkDoubleArray>(values, "joint_dissipated", 3);
+    auto *regime = column<vtkIntArray>(values, "regime"), *kind = column<vtkIntArray>(values, "kind"),
+         *ids = column<vtkIntArray>(values, "bodies", 2);
+
+    for (std::size_t n = 0; n < scene->interactions->currSize; ++n) {
+        const auto& interaction = *scene->interactions->linIntrs[n];
+        const auto* geom = dynamic_cast<MasonryJointGeom*>(interaction.geom.get());
+        const auto* phys = dynamic_cast<MasonryJointPhys*>(interaction.phys.get());
+        if (!geom || !phys) continue;
+        const auto& s1 = *yade::Body::byId(interaction.id1, scene)->state;
+        const auto& s2 = *yade::Body::byId(interaction.id2, scene)->state;
+        const auto known = std::find(kinds.begin(), kinds.end(), phys->joint->name);
+        const int number = int(known - kinds.begin());
+        if (known == kinds.end()) kinds.push_back(phys->joint->name);
+        const Vector3r side = geom->normal.cross(geom->tangent);
+        const auto parts = geom->cells();
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            cells->InsertNextCell(int(parts[i].cell.size()));
+            for (const auto& corner : parts[i].cell) {
+                cells->InsertCellPoint(points->InsertNextPoint(corner.data()));
+                displacement->InsertNextTuple(Vector3r(0.5 * (moved(s1, geom->position1, geom->orientation1, corner) +
+                                                              moved(s2, geom->position2, geom->orientation2, corner)))
+                                                  .data());
+            }
+            const auto& s = phys->states[i];
+            opening->InsertNextValue(s.opening);
+            slip->InsertNextValue(s.slip);
+            slide->InsertNextTuple(Vector3r(geom->jumps[i][1] * geom->tangent + geom->jumps[i][2] * side).data());
+            normal->InsertNextTuple(geom->normal.data());
+            normalStress->InsertNextValue(s.normalStress);
+            shearStress->InsertNextValue(std::hypot(s.shearStress.a, s.shearStress.b));
+            tension->InsertNextValue(s.tensionDamage);
+            shear->InsertNextValue(s.shearDamage);
+            compression->InsertNextValue(phys->law().compressionDamage(phys->stiffness(), s));
+            crushing->InsertNextValue(s.crushing);
+            area->InsertNextValue(geom->areas[i]);
+            lost->InsertNextTuple(phys->dissipated.data());
+            regime->InsertNextValue(int(s.regime));
+            kind->InsertNextValue(number);
+            const double bodies[2] = {double(interaction.id1), double(interaction.id2)};
+            ids->InsertNextTuple(bodies);
+        }
+    }
+    data->SetPoints(points);
+    data->SetPolys(cells);
+    write<vtkXMLPolyDataWriter>(path, data.Get());
+}
+
+void MasonryVtkRecorder::writeCollection(const std::string& name, const std::string& extension) const {
+    const auto path = directory + "/" + name + ".pvd";
+    std::ofstream out(path);
+    out.precision(12);
+    out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
+    for (std::size_t i = 0; i < times.size(); ++i)
+        out << "<DataSet timestep=\"" << times[i] << "\" file=\"" << frame(name, i, extension) << "\"/>\n";
+    out << "</Collection>\n</VTKFile>\n";
+    if (!out.flush()) throw std::runtime_error("cannot write " + path);
+}
+
+} // namespace masonry

@@ -1,0 +1,221 @@
+#include "SelfCheck.hpp"
+#include "Yade.hpp"
+#include <boost/core/demangle.hpp>
+#include <cstddef>
+#include <cstring>
+#include <dlfcn.h>
+
+#ifndef MASONRY_FALSIFY // the tests build a second module that expects this much more at State.mass
+#define MASONRY_FALSIFY 0
+#endif
+
+namespace masonry::host {
+
+namespace {
+
+using namespace yade;
+
+struct Member {
+    const char *ofClass, *name;
+    std::size_t offset;
+};
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Winvalid-offsetof" // these classes have virtual functions; GCC supports it
+#define AT(Class, member)                                                                                              \
+    { #Class, #member, offsetof(Class, member) }
+const Member members[] = {
+    {"State", "se3", offsetof(State, pos)},
+    AT(State, vel),
+    {"State", "mass", offsetof(State, mass) + MASONRY_FALSIFY},
+    AT(State, angVel),
+    AT(State, angMom),
+    AT(State, inertia),
+    AT(State, refPos),
+    AT(State, refOri),
+    AT(State, isDamped),
+    AT(State, densityScaling),
+    AT(Shape, color),
+    AT(Shape, wire),
+    AT(Polyhedra, v),
+    AT(Material, id),
+    AT(Material, label),
+    AT(Material, density),
+    {"LudingMat", "k1", sizeof(Material)}, // the first member of a derived class gives the size of its base
+    {"NormPhys", "kn", sizeof(IPhys)},
+    {"PartialEngine", "ids", sizeof(Engine)},
+    AT(Body, id),
+    AT(Body, groupMask),
+    AT(Body, flags),
+    AT(Body, material),
+    AT(Body, state),
+    AT(Body, shape),
+    AT(Body, bound),
+    AT(Body, clumpId),
+    AT(Interaction, isActive),
+    AT(Interaction, id1),
+    AT(Interaction, id2),
+    AT(Interaction, iterMadeReal),
+    AT(Interaction, geom),
+    AT(Interaction, phys),
+    AT(Scene, dt),
+    AT(Scene, iter),
+    AT(Scene, time),
+    AT(Scene, isPeriodic),
+    AT(Scene, tags),
+    AT(Engine, dead),
+    AT(Engine, ompThreads),
+    AT(Engine, label),
+    AT(NewtonIntegrator, damping),
+    AT(NewtonIntegrator, gravity),
+    AT(NewtonIntegrator, exactAsphericalRot),
+    AT(Functor, label),
+};
+#undef AT
+#pragma GCC diagnostic pop
+
+struct Slot {
+    const char* ofClass;
+    int index;
+    const char* function; // text that the demangled name of the function in that slot contains
+};
+
+const Slot slots[] = {
+    {"Serializable", 2, "getBaseClassName"},
+    {"Serializable", 3, "getBaseClassNumber"},
+    {"Serializable", 4, "getClassName"},
+    {"Serializable", 5, "pySetAttr"},
+    {"Serializable", 6, "pyDict()"},
+    {"Serializable", 7, "pyDictCustom"},
+    {"Serializable", 8, "callPostLoad"},
+    {"Serializable", 9, "checkPyClassRegistersItself"},
+    {"Serializable", 10, "pyRegisterClass"},
+    {"Serializable", 11, "pyHandleCustomCtorArgs"},
+    {"IGeom", 12, "modifyClassIndex"},
+    {"IGeom", 13, "getClassIndex"},
+    {"IGeom", 14, "getBaseClassIndex"},
+    {"IGeom", 15, "getMaxCurrentlyUsedClassIndexOfKin"},
+    {"IGeom", 16, "incrementMaxCurrentlyUsedClassIndexOfKin"},
+    {"IGeom", 19, "incrementMaxCurrentlyUsedClassIndexOfKin"},
+    {"IGeom", 20, "modifyClassIndex"},
+    {"IGeom", 23, "getClassIndex"},
+    {"IGeom", 24, "getBaseClassIndex"},
+    {"IPhys", 12, "modifyClassIndex"},
+    {"IPhys", 16, "incrementMaxCurrentlyUsedClassIndexOfKin"},
+    {"IPhys", 19, "incrementMaxCurrentlyUsedClassIndexOfKin"},
+    {"IPhys", 24, "getBaseClassIndex"},
+    {"Material", 12, "newAssocState"},
+    {"Material", 13, "stateTypeOk"},
+    {"Material", 14, "modifyClassIndex"},
+    {"Material", 18, "incrementMaxCurrentlyUsedClassIndexOfKin"},
+    {"Material", 21, "incrementMaxCurrentlyUsedClassIndexOfKin"},
+    {"Material", 26, "getBaseClassIndex"},
+    {"Engine", 12, "isActivated"},
+    {"Engine", 13, "action"},
+    {"GlobalEngine", 13, "action"},
+    {"LawFunctor", 12, "getFunctorTypes"},
+    {"LawFunctor", 13, "get2DFunctorType1"},
+    {"LawFunctor", 14, "get2DFunctorType2"},
+    {"LawFunctor", 19, "checkOrder"},
+    {"LawFunctor", 22, "::go(boost::shared_ptr<yade::IGeom>&, boost::shared_ptr<yade::IPhys>&, yade::Interaction*)"},
+    {"IPhysFunctor", 19, "checkOrder"},
+    {"IPhysFunctor", 22,
+     "::go(boost::shared_ptr<yade::Material> const&, boost::shared_ptr<yade::Material> const&, "
+     "boost::shared_ptr<yade::Interaction> const&)"},
+    {"IGeomFunctor", 15, "preStep"},
+    {"IGeomFunctor", 20, "checkOrder"},
+    {"IGeomFunctor", 27,
+     "::go(boost::shared_ptr<yade::Shape> const&, boost::shared_ptr<yade::Shape> const&, "
+     "yade::State const&, yade::State const&, Eigen::Matrix<double, 3, 1, 0, 3, 1> const&, "
+     "bool const&, boost::shared_ptr<yade::Interaction> const&)"},
+};
+
+constexpr const char* version = "2023.02a";
+
+void** tableOf(const std::string& name) { // first slot of a host class's virtual function table
+    const auto symbol = "_ZTVN4yade" + std::to_string(name.size()) + name + "E";
+    auto* table = static_cast<void**>(dlsym(RTLD_DEFAULT, symbol.c_str()));
+    return table ? table + 2 : nullptr;
+}
+
+// Boost.Python keeps the member pointer of an attribute in its getter: function object -> caller -> offset.
+long offsetSeenByPython(const py::object& wrapper, const Member& m) {
+    const py::object property = wrapper.attr(m.ofClass).attr("__dict__")[m.name];
+    const py::object getter = property.attr("fget");
+    if (std::strcmp(Py_TYPE(getter.ptr())->tp_name, "Boost.Python.function") != 0) return -1;
+    const char* caller = *reinterpret_cast<char* const*>(reinterpret_cast<const char*>(getter.ptr()) + 16);
+    return *reinterpret_cast<const long*>(caller + 8);
+}
+
+std::string found(long offset) { return offset < 0 ? "no such data member" : "offset " + std::to_string(offset); }
+
+template <class T> bool isReally(const T* object, const char* name) {
+    return object && *reinterpret_cast<void** const*>(object) == tableOf(name);
+}
+
+// What Python cannot see is tried out in a scene of its own, so that the user's stays as it is.
+void probe(std::vector<std::string>& wrong, const py::object& wrapper) {
+    py::object omega = wrapper.attr("Omega")();
+    const py::object usersScene = omega.attr("thisScene");
+    omega.attr("switchToScene")(omega.attr("addScene")());
+    omega.attr("bodies").attr("append")(wrapper.attr("Body")());
+    py::list engines;
+    engines.append(wrapper.attr("ForceResetter")());
+    omega.attr("engines") = engines;
+
+    Scene* scene = Singleton<Omega>::instance().getScene().get();
+    const auto expect = [&](bool fits, const char* what) {
+        if (!fits) wrong.push_back(std::string("Scene.") + what + ", found something else");
+        return fits;
+    };
+    if (expect(isReally(scene->bodies.get(), "BodyContainer"), "bodies: expected at offset 600"))
+        expect(scene->bodies->body.size() == 1, "bodies: expected the one body of the probe");
+    if (expect(isReally(scene->interactions.get(), "InteractionContainer"), "interactions: expected at offset 616"))
+        expect(scene->interactions->currSize == 0, "interactions: expected none in the probe");
+    expect(scene->engines.size() == 1 && isReally(scene->engines[0].get(), "ForceResetter"),
+           "engines: expected the one ForceResetter of the probe at offset 552");
+    scene->forces().addForce(0, Vector3r(1, 2, 4));
+    const Vector3r seen = py::extract<Vector3r>(omega.attr("forces").attr("f")(0, true));
+    expect(seen == Vector3r(1, 2, 4), "forces: expected a force added at offset 32 to be seen by O.forces");
+
+    omega.attr("switchToScene")(usersScene);
+}
+
+} // namespace
+
+std::string knownVersions() { return std::string(version) + " (Debian 12, double precision)"; }
+
+std::vector<std::string> differences() {
+    std::vector<std::string> wrong;
+    const py::object config = py::import("yade.config"), wrapper = py::import("yade.wrapper");
+    const std::string running = py::extract<std::string>(config.attr("version"));
+    if (running != version) wrong.push_back("YADE version: expected " + std::string(version) + ", found " + running);
+    const int digits = py::extract<int>(py::import("yade.math").attr("getDigits10")(1));
+    if (digits != 15) wrong.push_back("Real: expected 15 digits (double), found " + std::to_string(digits));
+    if (!wrong.empty()) return wrong;
+
+    for (const auto& m : members) {
+        long offset = -1;
+        try {
+            offset = offsetSeenByPython(wrapper, m);
+        } catch (const py::error_already_set&) {
+            PyErr_Clear();
+        }
+        if (offset != long(m.offset))
+            wrong.push_back(std::string(m.ofClass) + "." + m.name + ": expected offset " + std::to_string(m.offset) +
+                            ", found " + found(offset));
+    }
+    for (const auto& s : slots) {
+        void** table = tableOf(s.ofClass);
+        Dl_info info{};
+        const bool known = table && dladdr(table[s.index], &info) && info.dli_sname;
+        const auto name = known ? boost::core::demangle(info.dli_sname) : std::string("nothing");
+        if (name.find(s.function) == std::string::npos)
+            wrong.push_back(std::string(s.ofClass) + ", virtual function " + std::to_string(s.index) + ": expected " +
+                            s.function + ", found " + name);
+    }
+    if (wrong.empty()) probe(wrong, wrapper);
+    return wrong;
+}
+
+} // namespace masonry::host

@@ -1,0 +1,353 @@
+// The host's classes as far as this plugin touches them, in our own words: YADE ships no headers. Layouts are those of
+// YADE 2023.02a with double precision; SelfCheck.cpp compares them with the installed YADE when the plugin is imported.
+// Destructors stand first and nothing virtual is defined here, so that the host's own tables and type information are
+// used: dispatch, dynamic_cast and saving meet one type, not two.
+#pragma once
+#include <Eigen/Geometry>
+#include <boost/enable_shared_from_this.hpp>
+#include <boost/python.hpp>
+#include <boost/serialization/access.hpp>
+#include <boost/shared_ptr.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace yade {
+
+using Real = double;
+using Vector2r = Eigen::Matrix<Real, 2, 1>;
+using Vector3r = Eigen::Matrix<Real, 3, 1>;
+using Matrix3r = Eigen::Matrix<Real, 3, 3>;
+using Quaternionr = Eigen::Quaternion<Real>;
+using boost::shared_ptr;
+namespace py = boost::python;
+
+class Factorable : public boost::enable_shared_from_this<Factorable> {
+public:
+    virtual ~Factorable();
+    virtual std::string getBaseClassName(unsigned = 0) const;
+    virtual int getBaseClassNumber() const;
+    virtual std::string getClassName() const;
+};
+
+// What every serializable host class overrides, in the order of its table. The host's own instantiation of `serialize`
+// is found first at run time (host.md); the one here only lets our classes name their base.
+#define MASONRY_HOST_CLASS(Class)                                                                                      \
+public:                                                                                                                \
+    virtual ~Class();                                                                                                  \
+    std::string getBaseClassName(unsigned = 0) const override;                                                         \
+    int getBaseClassNumber() const override;                                                                           \
+    std::string getClassName() const override;                                                                         \
+    void pySetAttr(const std::string& key, const py::object& value) override;                                          \
+    py::dict pyDict() const override;                                                                                  \
+    void callPostLoad() override;                                                                                      \
+    void pyRegisterClass(py::object scope) override;                                                                   \
+    template <class Archive> void serialize(Archive&, unsigned) {}
+
+class Serializable : public Factorable {
+public:
+    virtual ~Serializable();
+    std::string getBaseClassName(unsigned = 0) const override;
+    int getBaseClassNumber() const override;
+    std::string getClassName() const override;
+    virtual void pySetAttr(const std::string& key, const py::object& value);
+    virtual py::dict pyDict() const;
+    virtual py::dict pyDictCustom() const;
+    virtual void callPostLoad();
+    virtual void checkPyClassRegistersItself(const std::string& name) const;
+    virtual void pyRegisterClass(py::object scope);
+    virtual void pyHandleCustomCtorArgs(py::tuple& args, py::dict& keywords);
+    void pyUpdateAttrs(const py::dict&);
+    template <class Archive> void serialize(Archive&, unsigned) {}
+};
+
+// Gives each class of a kind the number by which dispatchers know it. The host exports no table of this class, so ours
+// is defined inline.
+class Indexable {
+public:
+    virtual void incrementMaxCurrentlyUsedClassIndexOfKin() { unexpected(); }
+    virtual int& modifyClassIndex() { return unexpected(); }
+    virtual ~Indexable() = default;
+    virtual const int& getClassIndex() const { return unexpected(); }
+    virtual const int& getBaseClassIndex(int) const { return unexpected(); }
+    virtual const int& getMaxCurrentlyUsedClassIndexOfKin() const { return unexpected(); }
+
+protected:
+    void createIndex() {
+        int& index = modifyClassIndex();
+        if (index != -1) return;
+        index = getMaxCurrentlyUsedClassIndexOfKin() + 1;
+        incrementMaxCurrentlyUsedClassIndexOfKin();
+    }
+
+private:
+    [[noreturn]] static int& unexpected() { throw std::logic_error("class without a dispatch index"); }
+};
+
+#define MASONRY_HOST_INDEX                                                                                             \
+    int& modifyClassIndex() override;                                                                                  \
+    const int& getClassIndex() const override;                                                                         \
+    const int& getBaseClassIndex(int depth) const override;                                                            \
+    const int& getMaxCurrentlyUsedClassIndexOfKin() const override;                                                    \
+    void incrementMaxCurrentlyUsedClassIndexOfKin() override;
+
+class State : public Serializable, public Indexable {
+    MASONRY_HOST_CLASS(State)
+    MASONRY_HOST_INDEX
+    enum : unsigned { blockX = 1, blockY = 2, blockZ = 4, blockRX = 8, blockRY = 16, blockRZ = 32 };
+
+private:
+    void *posReference_, *oriReference_;
+    char updateMutex_[40];
+
+public:
+    Vector3r pos;
+    Quaternionr ori;
+    Vector3r vel;
+    Real mass;
+    Vector3r angVel, angMom, inertia, refPos;
+    Quaternionr refOri;
+    unsigned blockedDOFs;
+    bool isDamped;
+    Real densityScaling;
+};
+
+class Shape : public Serializable, public Indexable {
+    MASONRY_HOST_CLASS(Shape)
+    MASONRY_HOST_INDEX
+private:
+    shared_ptr<void> boundFunctor_, internalForceFunctor_;
+
+public:
+    Vector3r color;
+    bool wire, highlight;
+};
+
+class Polyhedra : public Shape {
+    MASONRY_HOST_CLASS(Polyhedra)
+    int& modifyClassIndex() override;
+    const int& getClassIndex() const override;
+    const int& getBaseClassIndex(int depth) const override;
+    std::vector<int> GetSurfaceTriangulation();
+    Real GetVolume();
+
+private:
+    char hull_[328 - 96];
+
+public:
+    std::vector<Vector3r> v; // vertices about the centroid, in the body's own axes
+};
+
+class Material : public Serializable, public Indexable {
+    MASONRY_HOST_CLASS(Material)
+    virtual shared_ptr<State> newAssocState() const;
+    virtual bool stateTypeOk(State*) const;
+    MASONRY_HOST_INDEX
+    int id = -1;
+    std::string label;
+    Real density = 1000;
+    Material() = default;
+};
+
+class IGeom : public Serializable, public Indexable {
+    MASONRY_HOST_CLASS(IGeom)
+    MASONRY_HOST_INDEX
+    IGeom() = default;
+};
+
+class IPhys : public Serializable, public Indexable {
+    MASONRY_HOST_CLASS(IPhys)
+    MASONRY_HOST_INDEX
+    IPhys() = default;
+};
+
+class Interaction : public Serializable {
+    MASONRY_HOST_CLASS(Interaction)
+    bool isActive;
+
+private:
+    char functorCache_[88 - 25];
+
+public:
+    int id1, id2;
+    long iterMadeReal, iterLastSeen;
+    shared_ptr<IGeom> geom;
+    shared_ptr<IPhys> phys;
+};
+
+class Scene;
+
+class Body : public Serializable {
+    MASONRY_HOST_CLASS(Body)
+    static const shared_ptr<Body>& byId(int id, Scene* scene);
+    int id, groupMask, flags, subdomain;
+    shared_ptr<Material> material;
+    shared_ptr<State> state;
+    shared_ptr<Shape> shape;
+    shared_ptr<void> bound;
+    std::map<int, shared_ptr<Interaction>> intrs;
+    int clumpId;
+};
+
+class BodyContainer : public Serializable {
+    MASONRY_HOST_CLASS(BodyContainer)
+    std::vector<shared_ptr<Body>> body;
+};
+
+class InteractionContainer : public Serializable {
+    MASONRY_HOST_CLASS(InteractionContainer)
+    std::vector<shared_ptr<Interaction>> linIntrs, sortedIntrs;
+    void* bodies;
+    std::size_t currSize;
+};
+
+class ForceContainer { // only ever reached by reference
+public:
+    void addForce(int id, const Vector3r&);
+    void addTorque(int id, const Vector3r&);
+    void sync();
+    const Vector3r& getForce(int id);
+    const Vector3r& getTorque(int id);
+};
+
+class Engine : public Serializable {
+    MASONRY_HOST_CLASS(Engine)
+    virtual bool isActivated();
+    virtual void action();
+    Scene* scene;
+
+private:
+    long executions_;
+    unsigned long long nanoseconds_;
+
+public:
+    shared_ptr<void> timingDeltas;
+    bool dead;
+    int ompThreads;
+    std::string label;
+    Engine();
+};
+
+class GlobalEngine : public Engine {
+    MASONRY_HOST_CLASS(GlobalEngine)
+    GlobalEngine() = default;
+};
+
+class NewtonIntegrator : public GlobalEngine {
+    MASONRY_HOST_CLASS(NewtonIntegrator)
+private:
+    char inner_[256 - 104];
+
+public:
+    Real damping;
+    Vector3r gravity;
+    Real maxVelocitySq;
+    bool exactAsphericalRot;
+};
+
+class Scene : public Serializable {
+    MASONRY_HOST_CLASS(Scene)
+private:
+    char head_[32 - 24];
+    char forces_[440 - 32];
+
+public:
+    Real dt;
+    long iter;
+    bool subStepping;
+    int subStep;
+    Real time, speed;
+    long stopAtIter;
+    Real stopAtTime;
+    bool isPeriodic, trackEnergy, doSort, consistencyChecks;
+    int selectedBody, subdomain;
+    shared_ptr<Shape> subD;
+    std::vector<std::string> tags;
+    std::vector<shared_ptr<Engine>> engines, nextEngines;
+    shared_ptr<BodyContainer> bodies;
+    shared_ptr<InteractionContainer> interactions;
+    ForceContainer& forces() { return *reinterpret_cast<ForceContainer*>(forces_); }
+};
+
+class Functor : public Serializable {
+    MASONRY_HOST_CLASS(Functor)
+    virtual std::vector<std::string> getFunctorTypes() const;
+    shared_ptr<void> timingDeltas;
+    Scene* scene = nullptr;
+    std::string label;
+    Functor() = default;
+};
+
+// The calls that a dispatcher makes on a functor, in the order of its table: checkOrder, go and goReverse with one to
+// seven arguments. Law and physics functors take three (the rest are void places), geometry functors seven.
+struct NoArgument {};
+
+template <class R, class A, class B, class C, class D = NoArgument, class E = NoArgument, class F = NoArgument,
+          class G = NoArgument>
+class FunctorCalls {
+public:
+    virtual ~FunctorCalls() = default;
+    virtual std::string checkOrder() const { unexpected(); }
+#define MASONRY_CALLS(name)                                                                                            \
+    virtual R name(A) { unexpected(); }                                                                                \
+    virtual R name(A, B) { unexpected(); }                                                                             \
+    virtual R name(A, B, C) { unexpected(); }                                                                          \
+    virtual R name(A, B, C, D) { unexpected(); }                                                                       \
+    virtual R name(A, B, C, D, E) { unexpected(); }                                                                    \
+    virtual R name(A, B, C, D, E, F) { unexpected(); }                                                                 \
+    virtual R name(A, B, C, D, E, F, G) { unexpected(); }
+    MASONRY_CALLS(go)
+    MASONRY_CALLS(goReverse)
+#undef MASONRY_CALLS
+
+private:
+    [[noreturn]] static void unexpected() { throw std::logic_error("functor called with arguments it does not take"); }
+};
+
+class LawFunctor : public Functor, public FunctorCalls<bool, shared_ptr<IGeom>&, shared_ptr<IPhys>&, Interaction*> {
+    MASONRY_HOST_CLASS(LawFunctor)
+    virtual std::string get2DFunctorType1() const { return {}; }
+    virtual std::string get2DFunctorType2() const { return {}; }
+    LawFunctor() = default;
+};
+
+class IPhysFunctor : public Functor,
+                     public FunctorCalls<void, const shared_ptr<Material>&, const shared_ptr<Material>&,
+                                         const shared_ptr<Interaction>&> {
+    MASONRY_HOST_CLASS(IPhysFunctor)
+    virtual std::string get2DFunctorType1() const { return {}; }
+    virtual std::string get2DFunctorType2() const { return {}; }
+    IPhysFunctor() = default;
+};
+
+class IGeomFunctor : public Functor,
+                     public FunctorCalls<bool, const shared_ptr<Shape>&, const shared_ptr<Shape>&, const State&,
+                                         const State&, const Vector3r&, const bool&, const shared_ptr<Interaction>&> {
+    MASONRY_HOST_CLASS(IGeomFunctor)
+    virtual std::string get2DFunctorType1() const { return {}; }
+    virtual std::string get2DFunctorType2() const { return {}; }
+    virtual void preStep() {}
+    IGeomFunctor() = default;
+};
+
+class ClassFactory {
+public:
+    bool registerFactorable(std::string name, Factorable* (*create)(), shared_ptr<Factorable> (*createShared)(),
+                            void* (*createPureCustom)());
+};
+
+class Omega {
+public:
+    void buildDynlibDatabase(const std::vector<std::string>& names);
+    const shared_ptr<Scene>& getScene() const;
+};
+
+} // namespace yade
+
+template <class T> class Singleton { // defined and kept by the host
+public:
+    static T& instance();
+};
+
+#undef MASONRY_HOST_CLASS
+#undef MASONRY_HOST_INDEX

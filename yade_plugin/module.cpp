@@ -1,0 +1,125 @@
+// The Python module masonry._masonry: checks itself against the running YADE, then registers its classes there.
+#include "adapters/MasonryEngines.hpp"
+#include "adapters/MasonryJointGeom.hpp"
+#include "adapters/MasonryJointPhys.hpp"
+#include "adapters/MasonryVtkRecorder.hpp"
+#include "host/SelfCheck.hpp"
+#include "law/Text.hpp"
+
+namespace {
+
+using namespace masonry;
+
+template <class T> void enroll(std::vector<std::string>& names) {
+    Singleton<yade::ClassFactory>::instance().registerFactorable(
+        T::className, [] { return static_cast<yade::Factorable*>(new T); },
+        [] { return shared_ptr<yade::Factorable>(new T); }, [] { return static_cast<void*>(new T); });
+    names.push_back(T::className);
+}
+
+// Lists of what the host has no converter for, from and to Python sequences.
+template <class T, class ToPython, class FromPython> struct Sequence {
+    static PyObject* convert(const std::vector<T>& values) {
+        py::list all;
+        for (const auto& value : values)
+            all.append(ToPython()(value));
+        return py::incref(all.ptr());
+    }
+    static void* convertible(PyObject* object) {
+        if (!PySequence_Check(object) || PyUnicode_Check(object)) return nullptr;
+        const py::object sequence{py::handle<>(py::borrowed(object))};
+        for (py::ssize_t i = 0; i < py::len(sequence); ++i)
+            if (!FromPython::fits(sequence[i])) return nullptr;
+        return object;
+    }
+    static void construct(PyObject* object, py::converter::rvalue_from_python_stage1_data* data) {
+        void* place = reinterpret_cast<py::converter::rvalue_from_python_storage<std::vector<T>>*>(data)->storage.bytes;
+        auto* values = new (place) std::vector<T>;
+        data->convertible = place;
+        const py::object sequence{py::handle<>(py::borrowed(object))};
+        for (py::ssize_t i = 0; i < py::len(sequence); ++i)
+            values->push_back(FromPython()(sequence[i]));
+    }
+    static void enroll() {
+        py::to_python_converter<std::vector<T>, Sequence>();
+        py::converter::registry::push_back(&convertible, &construct, py::type_id<std::vector<T>>());
+    }
+};
+
+struct RowToPython {
+    py::object operator()(const TableRow& row) const { return py::make_tuple(row.ratio, row.damage); }
+};
+struct RowFromPython {
+    static bool fits(const py::object& row) {
+        return PySequence_Check(row.ptr()) && py::len(row) == 2 && py::extract<double>(row[0]).check() &&
+               py::extract<double>(row[1]).check();
+    }
+    TableRow operator()(const py::object& row) const {
+        return {py::extract<double>(row[0]), py::extract<double>(row[1])};
+    }
+};
+struct JointToPython {
+    py::object operator()(const shared_ptr<MasonryJoint>& joint) const { return py::object(joint); }
+};
+struct JointFromPython {
+    static bool fits(const py::object& joint) {
+        return !joint.is_none() && py::extract<shared_ptr<MasonryJoint>>(joint).check();
+    }
+    shared_ptr<MasonryJoint> operator()(const py::object& joint) const {
+        return py::extract<shared_ptr<MasonryJoint>>(joint);
+    }
+};
+
+} // namespace
+
+static void registerAll() {
+    Sequence<TableRow, RowToPython, RowFromPython>::enroll();
+    Sequence<shared_ptr<MasonryJoint>, JointToPython, JointFromPython>::enroll();
+
+    std::vector<std::string> names;
+    enroll<MasonryMat>(names);
+    enroll<MasonryJoint>(names);
+    enroll<MasonryJointGeom>(names);
+    enroll<MasonryJointPhys>(names);
+    enroll<Ig2_Polyhedra_Polyhedra_MasonryJointGeom>(names);
+    enroll<Ip2_MasonryMat_MasonryMat_MasonryJointPhys>(names);
+    enroll<Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening>(names);
+    enroll<MasonryLoad>(names);
+    enroll<MasonryEnergy>(names);
+    enroll<MasonryVtkRecorder>(names);
+    Singleton<yade::Omega>::instance().buildDynlibDatabase(names);
+
+    py::list classes;
+    for (const auto& name : names)
+        classes.append(name);
+    py::scope().attr("classes") = classes;
+    py::scope().attr("commit") = MASONRY_COMMIT;
+    py::def("touchingPairs", &touchingPairs, (py::arg("tolerance") = 1e-4),
+            "Pairs (id1, id2) of bodies whose Polyhedra share a face; tolerance as in "
+            "Ig2_Polyhedra_Polyhedra_MasonryJointGeom.");
+    py::def("criticalTimeStep", &criticalTimeStep,
+            "(dt, id1, id2): a safe bound of the stable time step [s] and the pair of bodies whose joint sets it.");
+}
+
+// Written out because BOOST_PYTHON_MODULE hands the module over even when its body failed: an import that refuses must
+// raise, and must have registered nothing.
+extern "C" PyObject* PyInit__masonry() {
+    std::vector<std::string> differences;
+    if (py::handle_exception([&] { differences = host::differences(); })) return nullptr;
+    if (!differences.empty()) {
+        const auto message = "this YADE does not fit the masonry plugin, which knows YADE " + host::knownVersions() +
+                             "; nothing was registered:\n  " + joined(differences);
+        PyErr_SetString(PyExc_ImportError, message.c_str());
+        return nullptr;
+    }
+    static PyModuleDef definition = {PyModuleDef_HEAD_INIT,
+                                     "_masonry",
+                                     "The masonry classes of YADE.",
+                                     -1,
+                                     nullptr,
+                                     nullptr,
+                                     nullptr,
+                                     nullptr,
+                                     nullptr};
+    return py::detail::init_module(definition, &registerAll);
+}
