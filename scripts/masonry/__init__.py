@@ -23,4 +23,5 @@ if "yade" in sys.modules:
     import yade.wrapper as _wrapper
 
     globals().update({_name: getattr(_wrapper, _name) for _name in classes})
+    from . import options
     from .scene import addBlock, connect, engines

@@ -55,10 +55,6 @@ template <class F> void eachJoint(const yade::Scene& scene, F&& visit) {
 
 } // namespace
 
-double MasonryLoad::ramp() const {
-    return rampTime > 0 ? std::min(1.0, std::max(0.0, (scene->time + scene->dt - rampStart) / rampTime)) : 1;
-}
-
 void MasonryLoad::action() {
     if (body < 0 || std::size_t(body) >= scene->bodies->body.size() || !scene->bodies->body[body])
         throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) + " does not exist");
@@ -66,7 +62,7 @@ void MasonryLoad::action() {
     auto& state = *scene->bodies->body[body]->state;
     state.isDamped = false;
     arm = state.ori * state.refOri.conjugate() * (point - state.refPos);
-    total = ramp() * force;
+    total = force;
     auto& forces = scene->forces();
     forces.sync();
     if (driven) {
@@ -83,7 +79,7 @@ void MasonryLoad::action() {
         if (!(mobility > 0))
             throw std::invalid_argument("MasonryLoad: body " + std::to_string(body) +
                                         " is blocked in the driven direction");
-        reaction = (ramp() * velocity - d.dot(v) - lever.dot(w)) / (mobility * scene->dt);
+        reaction = (velocity - d.dot(v) - lever.dot(w)) / (mobility * scene->dt);
         total += reaction * d;
     } else
         reaction = 0;

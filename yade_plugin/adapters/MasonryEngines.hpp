@@ -17,18 +17,16 @@ public:
     int body = 0;
     Vector3r point = Vector3r::Zero(), force = Vector3r::Zero(), direction = Vector3r::UnitX();
     bool driven = false;
-    double velocity = 0, rampTime = 0, rampStart = 0, reaction = 0, pendingWork = 0, work = 0;
+    double velocity = 0, reaction = 0, pendingWork = 0, work = 0;
 
     template <class Visit> static void attributes(Visit&& visit) {
         using L = MasonryLoad;
         visit("body", &L::body, "Id of the loaded body.");
         visit("point", &L::point, "Loaded point in the reference state of the body [m], global axes.");
-        visit("force", &L::force, "Force at the point [N], growing with the ramp.");
+        visit("force", &L::force, "Force at the point [N].");
         visit("direction", &L::direction, "Direction of the driven velocity; not zero.");
         visit("driven", &L::driven, "Whether the velocity is prescribed.");
-        visit("velocity", &L::velocity, "Velocity of the point along the direction [m/s], growing with the ramp.");
-        visit("rampTime", &L::rampTime, "Time from nothing to all of force and velocity [s], >= 0.");
-        visit("rampStart", &L::rampStart, "Simulation time at which the ramp starts [s].");
+        visit("velocity", &L::velocity, "Velocity of the point along the direction [m/s].");
         visit("reaction", &L::reaction, "Force that the drive applies along the direction [N].", ReadOnly);
         visit("work", &L::work, "Work done on the block by force and drive so far [J]; kept by MasonryEnergy.",
               ReadOnly);
@@ -45,8 +43,6 @@ public:
                 "Displacement of the loaded point since the reference state [m].");
     }
 
-private:
-    double ramp() const;
 };
 
 class MasonryEnergy : public Adapter<MasonryEnergy, yade::GlobalEngine> {

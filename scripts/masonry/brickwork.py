@@ -1,0 +1,40 @@
+"""Bricks of a wall as plain records, before anything is made in YADE."""
+
+from collections import namedtuple
+
+#: One block of a wall: ``brick`` numbers the unit it belongs to, ``low`` and ``high`` are opposite corners [m].
+Block = namedtuple("Block", "brick course column low high")
+
+
+def runningBond(courses, halfUnits, unit=(0.220, 0.102, 0.081), halves=True):
+    """Blocks of a running-bond wall in the x-z plane, its lower left front corner at the origin.
+
+    Even courses start with a whole unit, odd ones with a half.
+
+    :param courses: number of courses
+    :param halfUnits: length of the wall in half units; even
+    :param unit: length, thickness and height of a unit, joints included [m]
+    :param halves: every unit as two half bricks that may crack apart; else whole units
+    """
+    if courses < 1 or halfUnits < 2 or halfUnits % 2:
+        raise ValueError(
+            "running bond needs at least 1 course and an even number of half units >= 2, "
+            f"got {courses} and {halfUnits}"
+        )
+    half, thickness, height = unit[0] / 2, unit[1], unit[2]
+    blocks, brick = [], -1
+    for course in range(courses):
+        starts = [c for c in range(halfUnits) if c == 0 or c % 2 == course % 2] + [halfUnits]
+        for first, beyond in zip(starts, starts[1:]):
+            brick += 1
+            pieces = [(c, c + 1) for c in range(first, beyond)] if halves else [(first, beyond)]
+            for a, b in pieces:
+                low = (a * half, 0.0, course * height)
+                high = (b * half, thickness, (course + 1) * height)
+                blocks.append(Block(brick, course, a, low, high))
+    return blocks
+
+
+def corners(low, high):
+    """The eight corners of an axis-parallel box."""
+    return [(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]

@@ -1,0 +1,149 @@
+"""Figures of a run, made from the files in its folder and nothing else.
+
+``/usr/bin/python3 -m masonry.figures results/wall_comp4`` draws curve.png and, where ParaView files are, cracks.png.
+"""
+
+import glob
+import os
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import LineCollection, PolyCollection
+
+from .results import readCurve, readRun
+
+MAGNIFICATION = 30  # of displacements in cracks.png, as in the paper's figure 6
+CRACK = 0.05e-3  # [m] opening or slip from which a joint is drawn as cracked
+CRUSHED = 0.5e-3  # [m] plastic closure from which a joint is drawn as crushed
+
+
+def readFrame(directory, kind, number=-1):
+    """A frame of blocks or joints as a dict: 'points' and 'cells' (lists of point numbers), and every data array."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
+
+    path = sorted(glob.glob(os.path.join(directory, kind + "_*.vt?")))[number]
+    reader = vtkXMLPolyDataReader() if kind == "joints" else vtkXMLUnstructuredGridReader()
+    reader.SetFileName(path)
+    reader.Update()
+    data = reader.GetOutput()
+    frame = {"points": vtk_to_numpy(data.GetPoints().GetData())}
+    for arrays in (data.GetPointData(), data.GetCellData()):
+        for i in range(arrays.GetNumberOfArrays()):
+            frame[arrays.GetArrayName(i)] = vtk_to_numpy(arrays.GetArray(i))
+    cells = data.GetPolys() if kind == "joints" else data.GetCells()
+    offsets, corners = vtk_to_numpy(cells.GetOffsetsArray()), vtk_to_numpy(cells.GetConnectivityArray())
+    frame["cells"] = np.split(corners, offsets[1:-1])
+    return frame
+
+
+def curve(directory):
+    """curve.png: base shear and, below, the energies over the displacement."""
+    run, data = readRun(directory), readCurve(directory)
+    x = data["displacement_mm"]
+    figure, (top, bottom) = plt.subplots(2, 1, figsize=(7, 7), sharex=True, height_ratios=[3, 2])
+    top.plot(x, data["base_shear_kN"], color="black", lw=1.2, label="base")
+    top.plot(x, data["top_shear_kN"], color="tab:orange", lw=0.6, label="loaded point", zorder=1)
+    top.plot(run["displacement_at_peak_mm"], run["peak_base_shear_kN"], "o", color="tab:red", ms=5)
+    top.annotate(
+        f"{run['peak_base_shear_kN']:.1f} kN at {run['displacement_at_peak_mm']:.2f} mm",
+        (run["displacement_at_peak_mm"], run["peak_base_shear_kN"]),
+        textcoords="offset points",
+        xytext=(6, 8),
+    )
+    top.set_ylabel("shear [kN]")
+    top.set_ylim(0, 1.15 * run["peak_base_shear_kN"])
+    top.set_title(run["title"])
+    top.legend(loc="lower right")
+    top.grid(alpha=0.3)
+    start = {k: data[k][0] for k in data if k.endswith("_J")}
+    since = lambda name: np.array(data[name + "_J"]) - start[name + "_J"]
+    work = since("external") + since("gravity")
+    stack = [
+        ("elastic", sum(since("elastic_" + m) for m in ("tension", "shear", "compression"))),
+        ("tension", since("dissipated_tension")),
+        ("shear", since("dissipated_shear")),
+        ("compression", since("dissipated_compression")),
+        ("damping", since("damping")),
+    ]
+    for name, values in stack:
+        bottom.plot(x, values, lw=1, label=name)
+    bottom.plot(x, work, color="black", lw=1, ls="--", label="work done")
+    bottom.set_xlabel("displacement at the top of the masonry [mm]")
+    bottom.set_ylabel("energy since the push began [J]")
+    bottom.legend(fontsize=8)
+    bottom.grid(alpha=0.3)
+    figure.tight_layout()
+    figure.savefig(os.path.join(directory, "curve.png"), dpi=110)
+    plt.close(figure)
+
+
+def _faces(blocks, displaced):
+    """Front faces of the blocks, their corners in order around: arrays of (x, z)."""
+    outlines = []
+    for cell in blocks["cells"]:
+        corners = np.unique(cell)
+        front = corners[blocks["points"][corners, 1] < blocks["points"][corners, 1].mean()]
+        reference = blocks["points"][front][:, [0, 2]]
+        around = reference - reference.mean(axis=0)
+        order = np.argsort(np.arctan2(around[:, 1], around[:, 0]))
+        shift = MAGNIFICATION * blocks["displacement"][front][:, [0, 2]] if displaced else 0
+        outlines.append((reference + shift)[order])
+    return outlines
+
+
+def cracks(directory):
+    """cracks.png: the deformed wall, magnified, over the undeformed one; cracks red, sliding blue, crushed spots black."""
+    run = readRun(directory)
+    blocks, joints = readFrame(directory, "blocks"), readFrame(directory, "joints")
+    figure, axes = plt.subplots(figsize=(9, 8))
+    axes.add_collection(PolyCollection(_faces(blocks, False), facecolor="0.9", edgecolor="0.8", lw=0.3))
+    axes.add_collection(PolyCollection(_faces(blocks, True), facecolor="#f3e3c8", edgecolor="0.45", lw=0.35))
+
+    slide = np.linalg.norm(joints["slide"], axis=1)
+    segments = {"open": [], "slid": []}
+    spots, sizes = [], []
+    for i, cell in enumerate(joints["cells"]):
+        points = joints["points"][cell] + MAGNIFICATION * joints["displacement"][cell]
+        points = points[:, [0, 2]]
+        if joints["crushing"][i] > CRUSHED:
+            spots.append(points.mean(axis=0))
+            sizes.append(joints["crushing"][i])
+        kind = "open" if joints["opening"][i] > max(CRACK, 0.5 * slide[i]) else "slid" if slide[i] > CRACK else None
+        if kind and max(joints["damage_tension"][i], joints["damage_shear"][i]) > 0.05:
+            far = np.linalg.norm(points[:, None] - points[None], axis=2)
+            a, b = np.unravel_index(np.argmax(far), far.shape)
+            segments[kind].append(points[[a, b]])
+    axes.add_collection(LineCollection(segments["slid"], color="tab:blue", lw=1.6, label="slid"))
+    axes.add_collection(LineCollection(segments["open"], color="tab:red", lw=1.8, label="open"))
+    if spots:
+        spots = np.array(spots)
+        axes.scatter(spots[:, 0], spots[:, 1], s=12 + 8e3 * np.array(sizes), color="black", marker="X", lw=0, label="crushed", zorder=5)
+    axes.autoscale()
+    axes.set_aspect("equal")
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("z [m]")
+    axes.set_title(
+        f"{run['title']}\nat {run['displacement_end_mm']:.1f} mm, displacements × {MAGNIFICATION}; "
+        f"open or slid more than {1e3 * CRACK:g} mm, crushed more than {1e3 * CRUSHED:g} mm",
+        fontsize=10,
+    )
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8)
+    figure.tight_layout()
+    figure.savefig(os.path.join(directory, "cracks.png"), dpi=110)
+    plt.close(figure)
+
+
+def draw(directory):
+    """All figures that the files of a run allow."""
+    curve(directory)
+    if glob.glob(os.path.join(directory, "joints_*.vtp")):
+        cracks(directory)
+
+
+if __name__ == "__main__":
+    draw(sys.argv[1])

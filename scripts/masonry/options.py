@@ -1,0 +1,114 @@
+"""Command-line options that all scenes share."""
+
+import argparse
+import math
+import os
+import sys
+
+
+class Refused(Exception):
+    """Input that cannot be run, with all problems at once."""
+
+
+def _number(text, low=-math.inf, high=math.inf, above=False):
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number") from None
+    if not math.isfinite(value) or value < low or value > high or (above and value == low):
+        bound = f"above {low:g}" if above else f"at least {low:g}"
+        raise argparse.ArgumentTypeError(f"{text} must be {bound}" + (f" and at most {high:g}" if high < math.inf else ""))
+    return value
+
+
+def _count(text, high):
+    if not text.isdigit() or not 1 <= int(text) <= high:
+        raise argparse.ArgumentTypeError(f"'{text}' must be a whole number from 1 to {high}")
+    return int(text)
+
+
+def _setting(text):
+    target, equals, value = text.partition("=")
+    joint, dot, attribute = target.partition(".")
+    if not (equals and dot and joint and attribute):
+        raise argparse.ArgumentTypeError(f"'{text}' must read JOINT.PROPERTY=VALUE, for example bed.tensileStrength=2e5")
+    return joint, attribute, value
+
+
+def parser(description, until, rate=20.0):
+    """Parser with the common options; a scene adds its own.
+
+    :param until: default displacement to stop at [mm]
+    :param rate: default loading rate [mm/s]
+    """
+    p = argparse.ArgumentParser(
+        prog="yade " + os.path.basename(sys.argv[0]),
+        description=description,
+        formatter_class=argparse.ArgumentDefaultsHelpFormatter,
+    )
+    mm = lambda text: _number(text, 0, 1000, above=True)
+    p.add_argument("--until", metavar="MM", type=mm, default=until, help="displacement to stop at [mm]")
+    p.add_argument("--rate", metavar="MM_PER_S", type=mm, default=rate, help="loading rate [mm/s]")
+    p.add_argument("--blocks", choices=["rigid"], default="rigid", help="block model")
+    p.add_argument("--subcontacts", metavar="N", type=lambda t: _count(t, 100), default=4, help="points along each joint")
+    p.add_argument(
+        "--damping", metavar="A", type=lambda t: _number(t, 0, 0.99), default=0.8, help="local damping, paper eq. (3) [-]"
+    )
+    p.add_argument(
+        "--dt-fraction",
+        metavar="F",
+        type=lambda t: _number(t, 0, 1, above=True),
+        default=0.8,
+        help="time step over its stable limit [-]",
+    )
+    p.add_argument("--crack-surfaces", choices=["on", "off"], default="on", help="whether bricks can crack in half")
+    p.add_argument("--joints", choices=["softening", "brittle"], default="softening", help="the full law, or brittle Coulomb slip")
+    p.add_argument(
+        "--set",
+        metavar="JOINT.PROPERTY=VALUE",
+        type=_setting,
+        action="append",
+        default=[],
+        help="change a property of the bed, head, crack or support joints, in SI units; repeatable "
+        "(help(MasonryJoint) lists them)",
+    )
+    p.add_argument("--out", metavar="DIR", default=None, help="folder of the results (default: results/SCENE)")
+    p.add_argument("--vtk-every", metavar="MM", type=mm, default=1.0, help="displacement between ParaView frames [mm]")
+    p.add_argument("--no-vtk", action="store_true", help="write no ParaView files and no crack figure")
+    return p
+
+
+def applySettings(joints, settings):
+    """Apply ``--set`` to a dict of MasonryJoint objects; raises Refused with all problems at once."""
+    problems, changes = [], {}
+    for name, attribute, text in settings:
+        if name not in joints:
+            problems.append(f"--set {name}.{attribute}: no joint '{name}', there are {', '.join(joints)}")
+            continue
+        values = joints[name].dict()
+        if attribute not in values or attribute in ("name", "jointSet", "direction"):
+            close = [a for a in values if a.lower() == attribute.lower()]
+            hint = f", did you mean {close[0]}?" if close else ""
+            problems.append(f"--set {name}.{attribute}: a MasonryJoint has no such property{hint}")
+            continue
+        try:
+            changes.setdefault(name, {})[attribute] = _value(text, values[attribute])
+        except ValueError:
+            kind = {bool: "on or off", list: "rows as ratio:damage,ratio:damage,..."}.get(type(values[attribute]), "a number")
+            problems.append(f"--set {name}.{attribute}={text}: must be {kind}")
+    for name, change in changes.items():
+        try:
+            joints[name].updateAttrs(change)
+        except ValueError as error:
+            problems.append(str(error))
+    if problems:
+        raise Refused("\n".join(problems))
+
+
+def _value(text, example):
+    if isinstance(example, bool):
+        return {"on": True, "true": True, "1": True, "off": False, "false": False, "0": False}[text.lower()] \
+            if text.lower() in ("on", "true", "1", "off", "false", "0") else float("no switch")
+    if isinstance(example, list):
+        return [tuple(float(v) for v in row.split(":")) for row in text.split(",")]
+    return float(text)

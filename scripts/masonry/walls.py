@@ -1,0 +1,268 @@
+"""Walls under precompression and a lateral push: paper §4, validation.md §1."""
+
+import os
+import subprocess
+import sys
+import time
+from dataclasses import asdict, dataclass
+
+import yade.config
+from yade import O, Vector3
+from yade.wrapper import MasonryLoad, MasonryVtkRecorder
+
+from . import brickwork, commit, criticalTimeStep, materials
+from .options import Refused, applySettings
+from .results import ENERGIES, Interrupted, Progress, Results, initialStiffness
+from .scene import addBlock, connect, engines
+
+CURVE = ["time_s", "displacement_mm", "base_shear_kN", "top_shear_kN", "vertical_mm", "rotation_mrad"]
+CURVE += [name + "_J" for name in ENERGIES] + ["balance_error"]
+
+BLOCK_HEIGHT = 0.2  # [m] of the support, and of the loading block of a clamped wall
+RAMP = 0.02  # [s] in which precompression and velocity grow: some ten periods of a wave through the height
+ROW_EVERY = 0.01  # [mm] between rows of curve.csv
+
+
+@dataclass
+class Wall:
+    """A running-bond wall and its test, in SI units.
+
+    ``loadHeight`` is h0 of a cantilever: the height above the base at which the loading block is pushed and free to
+    turn; None is double clamped. ``halfUnits`` is the length in half units.
+    """
+
+    name: str
+    title: str
+    halfUnits: int
+    precompression: float
+    loadHeight: float = None
+    courses: int = 34
+    unit: tuple = (0.220, 0.102, 0.081)
+
+    @property
+    def length(self):
+        return self.halfUnits * self.unit[0] / 2
+
+    @property
+    def height(self):
+        return self.courses * self.unit[2]
+
+    @property
+    def area(self):
+        return self.length * self.unit[1]
+
+
+class WallModel:
+    """The wall in YADE, and the stages of its test. ``args`` are the options of :func:`masonry.options.parser`."""
+
+    def __init__(self, wall, args):
+        self.wall, self.args = wall, args
+        self.joints = materials.calciumSilicateJoints(brittle=args.joints == "brittle")
+        applySettings(self.joints, args.set)
+        self.results = Results(args.out or os.path.join("results", wall.name), CURVE)
+        self.progress = Progress()
+        self.steps, self.steppingTime, self.collapsed = 0, 0.0, False
+        self._build()
+
+    def _build(self):
+        O.reset()
+        wall, brick, rigid = self.wall, materials.calciumSilicateUnit(), materials.loadingBlock()
+        O.materials.append([brick, rigid])
+        length, thickness, height = wall.length, wall.unit[1], wall.height
+        top = wall.loadHeight or height + BLOCK_HEIGHT
+        self.base = addBlock(brickwork.corners((0, 0, -BLOCK_HEIGHT), (length, thickness, 0)), rigid, inPlane=True)
+        O.bodies[self.base].state.blockedDOFs = "xyzXYZ"
+        self.brickOf = {}
+        for block in brickwork.runningBond(wall.courses, wall.halfUnits, wall.unit, halves=self.args.crack_surfaces == "on"):
+            self.brickOf[addBlock(brickwork.corners(block.low, block.high), brick, inPlane=True)] = block.brick
+        self.top = addBlock(brickwork.corners((0, 0, height), (length, thickness, top)), rigid, inPlane=True)
+        topState = O.bodies[self.top].state
+        if wall.loadHeight is None:
+            topState.blockedDOFs = "yXYZ"
+
+        self.load = MasonryLoad(
+            body=self.top,
+            point=(length / 2, thickness / 2, top),
+            driven=True,
+            label="load",
+        )
+        found = [joint for name, joint in self.joints.items() if name != "crack"]
+        engines(
+            found, damping=self.args.damping, subcontacts=self.args.subcontacts, inPlane=True, loads=[self.load]
+        )
+        self.energy = next(e for e in O.engines if e.label == "energy")
+        crack = self.joints["crack"]
+        sameBrick = lambda b1, b2: b1.id in self.brickOf and self.brickOf[b1.id] == self.brickOf.get(b2.id)
+        self.interactions = connect(lambda b1, b2, geom: crack if sameBrick(b1, b2) else None)
+        self.limit = criticalTimeStep()[0]
+        O.dt = self.args.dt_fraction * self.limit
+        self.vtk = None if self.args.no_vtk else MasonryVtkRecorder(directory=self.results.directory)
+        self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)
+        kinds = {}
+        for i in self.interactions:
+            kinds[i.phys.joint.name] = kinds.get(i.phys.joint.name, 0) + 1
+        self.results.run.update(
+            scene=wall.name,
+            title=wall.title,
+            wall=dict(asdict(wall), length_m=wall.length, height_m=wall.height, unit_m=wall.unit, unit=None),
+            options={k: v for k, v in vars(self.args).items()},
+            joints={name: joint.dict() for name, joint in self.joints.items()},
+            unit_material={k: brick.dict()[k] for k in ("young", "poisson", "density")},
+            versions={"yade": yade.config.version, "python": sys.version.split()[0], "masonry": commit},
+            commit=commit,
+            threads=O.numThreads,
+            time_step_s=O.dt,
+            time_step_limit_s=self.limit,
+            units=len(self.brickOf),
+            joint_count=len(self.interactions),
+            joints_by_kind=kinds,
+            subcontacts=self.subcontacts,
+        )
+        self.results.run["wall"].pop("unit")
+        for joint in self.results.run["joints"].values():
+            joint["direction"] = list(joint["direction"])
+
+    # -- stages ---------------------------------------------------------------------------------------------------
+
+    def _advance(self, steps):
+        self.results.checkInterrupt()
+        began = time.perf_counter()
+        for _ in range(steps):
+            O.step()
+        self.steppingTime += time.perf_counter() - began
+        self.steps += steps
+
+    def _rate(self):
+        return self.steps / self.steppingTime if self.steppingTime else 0.0
+
+    def _rest(self, stage, mostSteps=20000):
+        """Advance until the kinetic energy is nothing beside the elastic one."""
+        quiet = 0
+        for done in range(0, mostSteps, 100):
+            self._advance(100)
+            e = self.energy.balance()
+            elastic = e["elastic_compression"] + e["elastic_shear"] + e["elastic_tension"]
+            quiet = quiet + 1 if abs(e["kinetic"]) < 1e-9 * elastic else 0
+            self.progress.show(stage, done / mostSteps, f"kinetic/elastic {abs(e['kinetic']) / elastic:.1e}", self._rate(), quiet == 3)
+            if quiet == 3:
+                return
+        print(f"note: the wall is not quite at rest after {mostSteps} steps of {stage}")
+
+    def settle(self):
+        """Gravity, to rest."""
+        self._rest("gravity")
+
+    def precompress(self):
+        """Precompression on the loading block, to rest. It is what the top course feels: the block's weight is part."""
+        force = self.wall.precompression * self.wall.area - O.bodies[self.top].state.mass * 9.81
+        pieces = 40
+        for piece in range(1, pieces + 1):
+            self.load.force = Vector3(0, 0, -force * piece / pieces)
+            self._advance(int(RAMP / pieces / O.dt) + 1)
+        self._rest("precompress")
+
+    def push(self):
+        """Lateral velocity at the loaded point, to ``--until`` or to collapse."""
+        args = self.args
+        every = max(1, int(ROW_EVERY / (args.rate * O.dt * 1e3)))
+        peak = peakAt = nextFrame = 0.0
+        self.origin = self._topDisplacement()
+        values = self._record()
+        began = O.time
+        while values["displacement_mm"] < args.until:
+            if self.vtk and values["displacement_mm"] >= nextFrame:
+                self.vtk()
+                nextFrame += args.vtk_every
+            self.load.velocity = args.rate * 1e-3 * min(1.0, (O.time - began + every * O.dt) / RAMP)
+            self._advance(every)
+            values = self._record()
+            shear, moved = values["base_shear_kN"], values["displacement_mm"]
+            if shear > peak:
+                peak, peakAt = shear, moved
+            detail = f"{moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
+            self.progress.show("push", max(0, moved / args.until), detail, self._rate())
+            sunk = -values["vertical_mm"] > 500 * self.wall.unit[2]
+            if moved > peakAt + 1 and (shear < 0.2 * peak or sunk):
+                self.collapsed = True
+                break
+        self.progress.show("push", 1, detail, self._rate(), final=True)
+        if self.collapsed:
+            print(f"the wall has collapsed at {moved:.2f} mm")
+
+    def _topDisplacement(self):
+        """Displacement of the loading block at the top of the masonry [m]."""
+        s = O.bodies[self.top].state
+        arm = Vector3(self.wall.length / 2, self.wall.unit[1] / 2, self.wall.height) - s.refPos
+        return s.pos + s.ori * (s.refOri.conjugate() * arm) - s.refPos - arm
+
+    def _record(self):
+        moved = self._topDisplacement() - self.origin
+        e = self.energy.balance()
+        s = O.bodies[self.top].state
+        axis, angle = (s.ori * s.refOri.conjugate()).toAxisAngle()
+        values = {
+            "time_s": O.time,
+            "displacement_mm": 1e3 * moved[0],
+            "base_shear_kN": 1e-3 * O.forces.f(self.base, True)[0],
+            "top_shear_kN": 1e-3 * self.load.reaction,
+            "vertical_mm": 1e3 * moved[2],
+            "rotation_mrad": 1e3 * angle * axis[1],
+            "balance_error": e["error"],
+        }
+        values.update({name + "_J": e[name] for name in ENERGIES})
+        self.results.row(values)
+        return values
+
+    def finish(self):
+        """Last frame, run.json and figures, from whatever was computed."""
+        results, run = self.results, self.results.run
+        if self.vtk and results.rows:
+            self.vtk()
+        if results.rows:
+            shear, moved = results.column("base_shear_kN"), results.column("displacement_mm")
+            at = max(range(len(shear)), key=shear.__getitem__)
+            run.update(
+                peak_base_shear_kN=shear[at],
+                displacement_at_peak_mm=moved[at],
+                base_shear_end_kN=shear[-1],
+                displacement_end_mm=moved[-1],
+                initial_stiffness_kN_per_mm=initialStiffness(moved, shear),
+                energy_balance_error=self.energy.largestError,
+            )
+        run.update(
+            collapsed=self.collapsed,
+            interrupted=results.interrupted,
+            steps=self.steps,
+            kinds=self.vtk.kinds if self.vtk else [],
+        )
+        if self.steps:
+            run["microseconds_per_step"] = 1e6 * self.steppingTime / self.steps
+            run["nanoseconds_per_subcontact_step"] = 1e9 * self.steppingTime / self.steps / self.subcontacts
+        results.close()
+        if results.rows:
+            subprocess.run([sys.executable, "-m", "masonry.figures", results.directory], check=True)
+        if run.get("energy_balance_error", 0) > 0.01:
+            print(f"warning: the energy balance is off by {100 * run['energy_balance_error']:.1f} % of the work done")
+        if results.rows:
+            print(
+                f"{self.wall.name}: peak {run['peak_base_shear_kN']:.1f} kN at {run['displacement_at_peak_mm']:.2f} mm, "
+                f"{run['base_shear_end_kN']:.1f} kN at {run['displacement_end_mm']:.2f} mm; {self.steps} steps of "
+                f"{run['microseconds_per_step']:.0f} µs, {run['wall_clock_s']:.1f} s in all; see {results.directory}"
+            )
+
+
+def test(wall, args):
+    """Gravity, precompression, push and results of a wall; the exit status of the scene."""
+    try:
+        model = WallModel(wall, args)
+    except Refused as refused:
+        print(refused, file=sys.stderr)
+        return 2
+    try:
+        model.settle()
+        model.precompress()
+        model.push()
+    except Interrupted:
+        print("\ninterrupted: what was computed is kept")
+    model.finish()
+    return 130 if model.results.interrupted else 0
