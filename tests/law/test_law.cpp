@@ -34,11 +34,10 @@ struct Path {
 
     void step(const Jump& jump) {
         const auto old = state;
-        const auto r = law.advance(k, state, jump);
-        state = r.state;
-        dissipated.tension += r.dissipated.tension;
-        dissipated.shear += r.dissipated.shear;
-        dissipated.compression += r.dissipated.compression;
+        const auto lost = law.advance(k, state, jump);
+        dissipated.tension += lost.tension;
+        dissipated.shear += lost.shear;
+        dissipated.compression += lost.compression;
         work += 0.5 * ((old.normalStress + state.normalStress) * jump.opening +
                        (old.shearStress.a + state.shearStress.a) * jump.slide.a +
                        (old.shearStress.b + state.shearStress.b) * jump.slide.b);

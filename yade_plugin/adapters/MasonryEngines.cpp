@@ -115,7 +115,9 @@ void MasonryEnergy::action() {
         const bool moves = (s.blockedDOFs & 63) != 63;
         if (!moves && s.vel.isZero() && s.angVel.isZero()) continue;
         const Vector3r force = forces.getForce(body->id), torque = forces.getTorque(body->id);
-        const Vector3r angularAcceleration = inverseInertia(s) * torque;
+        // (blocked rotations are passed over below, so the restrained case needs no masking)
+        const Vector3r angularAcceleration =
+            rotationRestrained(s) ? Vector3r(torque.cwiseQuotient(s.inertia)) : Vector3r(inverseInertia(s) * torque);
         Vector3r vel = s.vel, angVel = s.angVel;
         gravity += s.mass * g.dot(s.pos - s.refPos);
         for (int i = 0; i < 3; ++i) {

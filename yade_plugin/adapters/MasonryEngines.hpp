@@ -42,7 +42,6 @@ public:
         cls.def("displacement", &MasonryLoad::displacement,
                 "Displacement of the loaded point since the reference state [m].");
     }
-
 };
 
 class MasonryEnergy : public Adapter<MasonryEnergy, yade::GlobalEngine> {

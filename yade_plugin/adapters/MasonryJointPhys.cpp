@@ -75,15 +75,14 @@ bool Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening::go(shared_ptr<ya
     const auto k = phys.stiffness();
     Vector3r force = Vector3r::Zero(), torque = Vector3r::Zero(), lost = Vector3r::Zero();
     for (std::size_t i = 0; i < phys.states.size(); ++i) {
-        const auto response = law.advance(k, phys.states[i], geom.scratch[i].increment);
-        const auto& s = phys.states[i] = response.state;
+        auto& s = phys.states[i];
+        const auto spent = law.advance(k, s, geom.scratch[i].increment);
         // The one place where stress meets area, and tension meets the host's forces: an open joint pulls body 1 on.
         const double area = geom.areas[i];
         const Vector3r pull = geom.axes * Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) * area;
         force += pull;
         torque += geom.scratch[i].arm.cross(pull);
-        lost +=
-            area * Vector3r(response.dissipated.tension, response.dissipated.shear, response.dissipated.compression);
+        lost += area * Vector3r(spent.tension, spent.shear, spent.compression);
     }
     phys.dissipated += lost;
     auto& forces = scene->forces();

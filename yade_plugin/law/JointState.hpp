@@ -1,6 +1,5 @@
 // What one subcontact remembers, and what it is told and answers in a step. Opening and tension are positive.
 #pragma once
-#include <cstdint>
 
 namespace masonry {
 
@@ -13,7 +12,7 @@ struct Jump { // increment of the displacement jump in a step [m]
     Shear slide;
 };
 
-enum class Regime : std::uint8_t { Elastic, Opening, Slipping, Crushing }; // what acted in the last step
+enum class Regime : int { Elastic, Opening, Slipping, Crushing }; // what acted in the last step
 
 struct JointState {
     double opening = 0;        // [m] un, total, positive open
@@ -29,13 +28,8 @@ struct JointState {
     Regime regime = Regime::Elastic;
 };
 
-struct Energies { // [J/m²] by mode
+struct Energies { // [J/m²] by mode; what a step dissipates is its work less the stored energy, so that a balance closes
     double tension = 0, shear = 0, compression = 0;
-};
-
-struct JointResponse {
-    JointState state;
-    Energies dissipated; // in this step; work less stored energy, so that a balance over a run closes exactly
 };
 
 } // namespace masonry
