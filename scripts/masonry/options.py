@@ -106,9 +106,15 @@ def applySettings(joints, settings):
 
 
 def _value(text, example):
+    """The value that a setting's text stands for, of the kind of ``example``; ValueError if it is none."""
     if isinstance(example, bool):
-        return {"on": True, "true": True, "1": True, "off": False, "false": False, "0": False}[text.lower()] \
-            if text.lower() in ("on", "true", "1", "off", "false", "0") else float("no switch")
+        switches = {"on": True, "true": True, "1": True, "off": False, "false": False, "0": False}
+        if text.lower() not in switches:
+            raise ValueError(text)
+        return switches[text.lower()]
     if isinstance(example, list):
-        return [tuple(float(v) for v in row.split(":")) for row in text.split(",")]
+        rows = [tuple(float(v) for v in row.split(":")) for row in text.split(",")]
+        if any(len(row) != 2 for row in rows):
+            raise ValueError(text)
+        return rows
     return float(text)

@@ -42,7 +42,7 @@ class Results:
             for name in os.listdir(self.directory):  # frames of an earlier run would be shown with ours
                 if name.startswith(("blocks_", "joints_")) or name in ("curve.csv", "run.json", "curve.png", "cracks.png"):
                     os.remove(os.path.join(self.directory, name))
-            self._file = open(self.path("curve.csv"), "w", newline="")
+            self._file = open(self.path("curve.csv"), "w", newline="", buffering=1)  # a row at a time
         except OSError as error:
             raise Refused(f"--out: cannot write to {self.directory}: {error.strerror}") from None
         self.columns, self.rows, self.run = columns, [], {}

@@ -1,0 +1,6 @@
+#!/usr/bin/env bash
+# Sets up what is missing and runs all tests, fastest ring first. Arguments go to pytest.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+bash scripts/setup.sh
+exec /usr/bin/python3 -m pytest -q -p no:cacheprovider -W ignore::DeprecationWarning "${@:-tests}"

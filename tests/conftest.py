@@ -1,0 +1,81 @@
+"""Rings: law and blocks (C++, doctest), host, package, scenes. The host is the installed YADE, in this process."""
+
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+BUILD = os.path.join(ROOT, "build")
+RINGS = ["law", "blocks", "host", "package", "scenes"]
+
+sys.path.insert(1, "/usr/lib/x86_64-linux-gnu/yade-double/py")  # as /usr/bin/yade does
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # as /usr/bin/yade does
+import yade  # noqa: E402
+import yade.config  # noqa: E402
+
+
+class Cpp(pytest.File):
+    """A doctest program: every test case is an item."""
+
+    def collect(self):
+        program = os.path.join(BUILD, self.path.stem)
+        listing = subprocess.run([program, "--list-test-cases", "--no-version"], capture_output=True, text=True, check=True)
+        for line in listing.stdout.splitlines():
+            if line and not line.startswith(("[doctest]", "===")):
+                yield CppCase.from_parent(self, name=line, program=program)
+
+
+class CppCase(pytest.Item):
+    def __init__(self, *, program, **kw):
+        super().__init__(**kw)
+        self.program = program
+
+    def runtest(self):
+        pattern = self.name.replace(",", "\\,")
+        run = subprocess.run([self.program, "--test-case=" + pattern, "--no-version"], capture_output=True, text=True)
+        if run.returncode or not re.search(r"test cases: +1 \| +1 passed", run.stdout):
+            pytest.fail(run.stdout + run.stderr, pytrace=False)
+
+    def reportinfo(self):
+        return self.path, 0, self.name
+
+
+def pytest_collect_file(parent, file_path):
+    if file_path.suffix == ".cpp" and file_path.name.startswith("test_"):
+        return Cpp.from_parent(parent, path=file_path)
+
+
+def pytest_collection_modifyitems(items):
+    def ring(item):
+        parts = item.path.relative_to(os.path.join(ROOT, "tests")).parts
+        return RINGS.index(parts[0]) if parts[0] in RINGS else len(RINGS)
+
+    items.sort(key=ring)
+
+
+@pytest.fixture
+def scene():
+    """An empty YADE scene, left empty."""
+    from yade import O
+
+    O.reset()
+    yield O
+    O.reset()
+
+
+@pytest.fixture
+def runScene(tmp_path):
+    """Run a program of scripts/ as a user does; returns the finished process and its folder of results."""
+
+    def run(name, *options, cwd=None, check=True):
+        out = tmp_path / "results"
+        command = ["yade", "-n", "-x", os.path.join(ROOT, "scripts", name + ".py"), "--out", str(out), *options]
+        process = subprocess.run(command, capture_output=True, text=True, cwd=cwd or tmp_path, timeout=300)
+        if check:
+            assert process.returncode == 0, process.stdout + process.stderr
+        return process, str(out)
+
+    return run

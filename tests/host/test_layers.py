@@ -1,0 +1,33 @@
+"""Who may know whom, by what the sources include."""
+
+import os
+import re
+
+import pytest
+from conftest import ROOT
+
+PLUGIN = os.path.join(ROOT, "yade_plugin")
+STANDARD = {"Eigen"}
+MAY_INCLUDE = {"law": {"law"}, "blocks": {"blocks"}, "host": {"host"}, "adapters": {"law", "blocks", "host", "adapters"}}
+
+
+@pytest.mark.parametrize("layer", MAY_INCLUDE)
+def test_a_layer_includes_only_what_it_may_know(layer):
+    folder = os.path.join(PLUGIN, layer)
+    files = os.listdir(folder)
+    assert files
+    for name in files:
+        text = open(os.path.join(folder, name)).read()
+        for included in re.findall(r'#include "([^"]+)"', text):
+            owner = included.split("/")[0] if "/" in included else layer
+            assert owner in MAY_INCLUDE[layer], f"{layer}/{name} includes {included}"
+        if layer in ("law", "blocks"):
+            for included in re.findall(r"#include <([^>]+)>", text):
+                assert "/" not in included or included.split("/")[0] in STANDARD, f"{layer}/{name} includes {included}"
+
+
+def test_host_classes_are_declared_in_one_file_only():
+    for folder, _, names in os.walk(PLUGIN):
+        for name in names:
+            if os.path.basename(folder) != "host":
+                assert "namespace yade {" not in open(os.path.join(folder, name)).read()

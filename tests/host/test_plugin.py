@@ -1,0 +1,356 @@
+"""The plugin in the running YADE: self-check, registration, dispatch, joints between polyhedra, saving."""
+
+import math
+import os
+import random
+import subprocess
+import sys
+
+import pytest
+import yade
+from conftest import BUILD
+from masonry import (
+    MasonryJoint,
+    MasonryLoad,
+    MasonryMat,
+    addBlock,
+    classes,
+    connect,
+    criticalTimeStep,
+    engines,
+    touchingPairs,
+)
+from yade import O, Quaternion, Vector3, utils
+from yade.wrapper import *
+
+BRICK = (0.220, 0.102, 0.081)
+
+
+def box(low, size=BRICK):
+    return [tuple(low[i] + size[i] * c[i] for i in range(3)) for c in [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]]
+
+
+def turned(points, turn, shift=(0, 0, 0)):
+    return [turn * Vector3(*p) + Vector3(*shift) for p in points]
+
+
+def pair(turn=Quaternion.Identity, offset=(0, 0, BRICK[2]), joints=None, **kw):
+    """A fixed brick and a free one on it; returns the interaction."""
+    mat = MasonryMat(density=1800)
+    addBlock(turned(box((0, 0, 0)), turn), mat)
+    addBlock(turned(box(offset), turn), mat)
+    O.bodies[0].state.blockedDOFs = "xyzXYZ"
+    engines(joints or [MasonryJoint()], gravity=(0, 0, 0), **kw)
+    (interaction,) = connect()
+    O.dt = 0.5 * criticalTimeStep()[0]
+    return interaction
+
+
+# -- self-check and registration --------------------------------------------------------------------------------------
+
+
+def inFreshYade(code):
+    program = "import sys; sys.path.insert(1, '/usr/lib/x86_64-linux-gnu/yade-double/py')\nimport yade\n" + code
+    return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+
+
+def test_a_yade_that_does_not_fit_is_refused_with_one_import_error_and_stays_usable():
+    run = inFreshYade(f"""
+from yade import *
+import importlib.util, yade.wrapper
+O.bodies.append(Body())
+before, scenes = O.engines, O.thisScene
+spec = importlib.util.spec_from_file_location("_masonry", {os.path.join(BUILD, "misfit", "_masonry.so")!r})
+try:
+    importlib.util.module_from_spec(spec)
+except ImportError as error:
+    print("REFUSED:", error)
+assert not hasattr(yade.wrapper, "MasonryMat")
+assert O.engines == before and len(O.bodies) == 1 and O.thisScene == scenes
+O.reset()
+O.bodies.append(utils.sphere((0, 0, 0), 1))
+O.engines = [ForceResetter(), NewtonIntegrator(gravity=(0, 0, -10), damping=0)]
+O.dt = 0.1
+O.step()
+assert abs(O.bodies[0].state.vel[2] + 1) < 1e-12
+print("USABLE")
+""")
+    assert run.returncode == 0, run.stdout + run.stderr
+    assert "State.mass: expected offset 176, found offset 168" in run.stdout
+    assert "knows YADE 2023.02a" in run.stdout and "nothing was registered" in run.stdout
+    assert "USABLE" in run.stdout
+
+
+def test_the_fitting_module_leaves_the_users_scene_alone():
+    run = inFreshYade("""
+from yade import *
+O.bodies.append(utils.sphere((0, 0, 0), 1))
+engines = O.engines
+import masonry
+assert len(O.bodies) == 1 and O.engines == engines and O.thisScene == 0
+print("ALONE")
+""")
+    assert "ALONE" in run.stdout, run.stdout + run.stderr
+
+
+def test_without_yade_the_package_still_reads_results():
+    run = subprocess.run([sys.executable, "-c", "import masonry.results, masonry; print(hasattr(masonry, 'MasonryMat'))"], capture_output=True, text=True)
+    assert run.stdout.strip() == "False", run.stderr
+
+
+@pytest.mark.parametrize("name", classes)
+def test_a_class_stands_in_yade_with_docs_keywords_and_dict(name):
+    cls = getattr(yade.wrapper, name)
+    assert name.startswith("Masonry") or name.split("_")[0] in ("Ig2", "Ip2", "Law2")
+    assert len(cls.__doc__) > 60
+    instance = cls()
+    own = {k: v for k, v in cls.__dict__.items() if isinstance(v, property)}
+    for attribute, value in own.items():
+        assert len(value.__doc__) > 10, attribute
+    assert cls(**{}).dict().keys() == instance.dict().keys()
+    with pytest.raises(AttributeError, match="nonsense"):
+        cls(nonsense=1)
+    with pytest.raises(ValueError, match="keyword arguments only"):
+        cls(1)
+
+
+def test_numbers_say_their_unit_and_default():
+    for cls in (MasonryMat, MasonryJoint):
+        for attribute, value in cls.__dict__.items():
+            if isinstance(value, property) and isinstance(getattr(cls(), attribute), float):
+                assert "[" in value.__doc__ and "Default: " in value.__doc__, attribute
+
+
+def test_wrong_attributes_are_refused_and_change_nothing():
+    joint = MasonryJoint(name="bed")
+    with pytest.raises(ValueError, match='joint "bed": friction -1 must be at least 0'):
+        joint.friction = -1
+    assert joint.friction == 0.43
+    with pytest.raises(ValueError, match="MasonryJoint.tensileStrength: expected a number, got much"):
+        MasonryJoint(tensileStrength="much")
+    with pytest.raises(ValueError, match=r"MasonryJoint.tensionTable: expected a list of \(ratio, damage\) rows"):
+        MasonryJoint(tensionTable=[1, 2])
+    with pytest.raises(ValueError) as refused:
+        MasonryJoint(name="b", tensileStrength=-1, friction=-1)
+    assert str(refused.value).count('joint "b": ') == 2
+    with pytest.raises(ValueError, match="young -1 Pa must be a finite number above 0; poisson 0.5 must be above -1 and below 0.5"):
+        MasonryMat(young=-1, poisson=0.5)
+    with pytest.raises(ValueError, match="subcontacts 0 must be 1 to 1000"):
+        Ig2_Polyhedra_Polyhedra_MasonryJointGeom(subcontacts=0)
+
+
+def test_tables_of_the_user_are_kept_and_used():
+    joint = MasonryJoint(tensionTable=[(1, 0), (3, 0.5), (9, 1)])
+    assert joint.tensionTable == [(1, 0), (3, 0.5), (9, 1)] == joint.softening()["tension"]
+    assert len(MasonryJoint().softening()["tension"]) == 201
+    brittle = joint.brittleCoulomb()
+    assert not brittle.cap and len(brittle.softening()["shear"]) == 2 and joint.cap
+
+
+# -- joints -----------------------------------------------------------------------------------------------------------
+
+
+def test_every_joint_is_found_once_and_no_other(scene):
+    mat = MasonryMat(density=1800)
+    for course in range(3):
+        for column in range(3):
+            addBlock(box((0.22 * column + 0.11 * (course % 2), 0, 0.081 * course)), mat)
+    pairs = touchingPairs()
+    assert len(pairs) == len(set(pairs)) == 3 * 2 + 2 * 5
+    assert all(a < b for a, b in pairs)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_joint_in_any_orientation_has_the_overlap_as_area(scene, seed):
+    rng = random.Random(seed)
+    turn = Quaternion(*[rng.gauss(0, 1) for _ in range(4)])
+    turn.normalize()
+    interaction = pair(turn, offset=(0.07, 0.03, BRICK[2]), subcontacts=3, rows=2)
+    geom = interaction.geom
+    assert len(geom.areas) == 6
+    assert sum(geom.areas) == pytest.approx((0.22 - 0.07) * (0.102 - 0.03), rel=1e-9)
+    assert (geom.normal - turn * Vector3(0, 0, 1)).norm() < 1e-9
+
+
+def test_blocks_without_a_shared_face_get_no_joint(scene):
+    with pytest.raises(ValueError):
+        pair(offset=(0.3, 0, 0.5))
+    assert touchingPairs() == []
+    with pytest.raises(ValueError, match="bodies 0 and 1 share no face"):
+        utils.createInteraction(0, 1)
+
+
+def test_direction_joint_set_and_the_users_rule_choose_the_joint(scene):
+    unit, support = MasonryMat(density=1800), MasonryMat(density=1800, jointSet="support")
+    addBlock(box((0, 0, -0.081), (0.44, 0.102, 0.081)), support)
+    for corner in ((0, 0, 0), (0.22, 0, 0), (0, 0, 0.081), (0.22, 0, 0.081)):
+        addBlock(box(corner), unit)
+    special = MasonryJoint(name="special")
+    engines(
+        [
+            MasonryJoint(name="support", jointSet="support", elastic=True),
+            MasonryJoint(name="bed", direction=(0, 0, 1)),
+            MasonryJoint(name="head", direction=(-1, 0, 0)),
+        ]
+    )
+    connect(lambda b1, b2, geom: special if {b1.id, b2.id} == {3, 4} else None)
+    kind = lambda a, b: O.interactions[a, b].phys.joint.name
+    assert [kind(0, 1), kind(0, 2), kind(1, 2), kind(1, 3), kind(2, 4), kind(3, 4)] == ["support", "support", "head", "bed", "bed", "special"]
+
+
+def test_a_pair_that_no_joint_fits_is_named(scene):
+    with pytest.raises(ValueError, match=r'no joint fits bodies 0 and 1: joint sets "brick" and "brick", normal \(0, 0, 1\); offered: head'):
+        pair(joints=[MasonryJoint(name="head", direction=(1, 0, 0))])
+
+
+def test_rigid_units_are_lumped_in_series(scene):
+    phys = pair().phys
+    assert phys.normalStiffness == pytest.approx(5.04e10, rel=1e-3)  # law.md §7
+    assert phys.shearStiffness == pytest.approx(2.17e10, rel=2e-3)
+
+
+# -- mechanics --------------------------------------------------------------------------------------------------------
+
+
+def kick(turn=Quaternion.Identity, steps=400, **kw):
+    interaction = pair(turn, damping=0, subcontacts=3, rows=3, **kw)
+    s = O.bodies[1].state
+    s.vel = turn * Vector3(0.001, 0.0007, -0.002)
+    s.angVel = turn * Vector3(0.01, -0.02, 0.015)
+    s.angMom = s.ori * Vector3(*[i * w for i, w in zip(s.inertia, s.ori.conjugate() * s.angVel)])
+    for _ in range(steps):
+        O.step()
+    return interaction
+
+
+def test_a_turned_scene_gives_the_turned_answer(scene):
+    straight = kick()
+    stresses, position = straight.phys.stress, O.bodies[1].state.pos
+    O.reset()
+    turn = Quaternion(0.3, -0.5, 0.7, 0.4)
+    turn.normalize()
+    again = kick(turn)
+    assert (O.bodies[1].state.pos - turn * position).norm() < 1e-12
+    size = max(s.norm() for s in stresses)
+    assert size > 1e3
+    for a, b in zip(sorted(s[0] for s in stresses), sorted(s[0] for s in again.phys.stress)):
+        assert abs(a - b) < 1e-5 * size
+
+
+def test_forces_and_torques_of_a_joint_balance(scene):
+    kick(steps=100)
+    f = [O.forces.f(i, True) for i in (0, 1)]
+    t = [O.forces.t(i, True) for i in (0, 1)]
+    arm = [O.bodies[i].state.pos for i in (0, 1)]
+    # the last step moved the bodies after the forces were found; that shift is all that may remain
+    moved = O.bodies[1].state.vel.norm() * O.dt
+    assert f[0].norm() > 10
+    assert (f[0] + f[1]).norm() < 1e-9 * f[0].norm()
+    assert (t[0] + t[1] + arm[0].cross(f[0]) + arm[1].cross(f[1])).norm() < 2 * moved * f[0].norm()
+
+
+def test_free_vibration_keeps_its_energy(scene):
+    elastic = MasonryJoint(elastic=True)
+    pair(joints=[elastic], damping=0, inPlane=True)
+    s = O.bodies[1].state
+    s.blockedDOFs = "yXZ"
+    s.vel = Vector3(0.01, 0, 0.02)
+    start = 0.5 * s.mass * s.vel.squaredNorm()
+    energy = next(e for e in O.engines if e.label == "energy")
+    for _ in range(20):
+        for _ in range(500):
+            O.step()
+        b = energy.balance()
+        total = b["kinetic"] + b["elastic_tension"] + b["elastic_compression"] + b["elastic_shear"]
+        assert total == pytest.approx(start, rel=2e-3)  # the first half step is not in the trapezoidal work
+    assert b["damping"] == b["dissipated_shear"] == 0
+
+
+def test_damping_takes_what_is_lost(scene):
+    pair(damping=0.5)
+    O.engines[-1].gravity = (0, 0, -9.81)
+    energy = next(e for e in O.engines if e.label == "energy")
+    for _ in range(3000):
+        O.step()
+    b = energy.balance()
+    weight, area = O.bodies[1].state.mass * 9.81, 0.22 * 0.102
+    sag = weight / (area * O.interactions[0, 1].phys.normalStiffness)
+    assert b["gravity"] == pytest.approx(weight * sag, rel=1e-3)
+    assert b["elastic_compression"] == pytest.approx(0.5 * weight * sag, rel=1e-3)
+    assert b["damping"] == pytest.approx(0.5 * weight * sag, rel=1e-3)
+    assert abs(b["error"]) < 1e-6
+
+
+def test_a_driven_point_keeps_its_velocity_while_the_block_turns(scene):
+    pair(inPlane=True, damping=0.8)
+    O.bodies[1].state.blockedDOFs = "yXZ"
+    top = (0.11, 0.051, 0.162)
+    load = MasonryLoad(body=1, point=top, direction=(1, 0, 0), driven=True, velocity=0.002)
+    O.engines = O.engines[:2] + [load] + O.engines[2:]
+    for _ in range(2000):
+        O.step()
+    assert load.displacement()[0] == pytest.approx(0.002 * O.time, rel=1e-4)
+    assert abs(O.bodies[1].state.angVel[1]) > 1e-4
+    assert abs(next(e for e in O.engines if e.label == "energy").balance()["error"]) < 1e-5
+    load.body = 7
+    with pytest.raises(ValueError, match="MasonryLoad.body 7 does not exist"):
+        O.step()
+
+
+def swing(fraction):
+    """Largest excursion of a brick bouncing on an elastic joint, over the start's, after many steps."""
+    O.reset()
+    pair(joints=[MasonryJoint(elastic=True)], damping=0)
+    O.bodies[1].state.blockedDOFs = "xyXYZ"
+    O.dt = fraction * criticalTimeStep()[0]
+    O.bodies[1].state.vel = Vector3(0, 0, 0.001)
+    largest = 0
+    for _ in range(400):
+        O.step()
+        largest = max(largest, abs(O.bodies[1].state.pos[2] - 1.5 * BRICK[2]))
+    return largest / (0.001 * O.dt)
+
+
+def test_the_time_step_bound_is_the_limit_of_a_single_joint(scene):
+    pair(joints=[MasonryJoint(elastic=True)])
+    O.bodies[1].state.blockedDOFs = "xyXYZ"
+    stiffness = O.interactions[0, 1].phys.normalStiffness * 0.22 * 0.102
+    dt, one, two = criticalTimeStep()
+    assert dt == pytest.approx(2 * math.sqrt(O.bodies[1].state.mass / stiffness), rel=1e-9)
+    assert (one, two) == (0, 1)
+    assert swing(0.99) < 50
+    assert swing(1.01) > 1e3
+
+
+# -- saving -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("extension", [".xml", ".yade.gz"])
+def test_a_run_saved_in_the_middle_goes_on_as_if_nothing_had_happened(scene, tmp_path, extension):
+    def shove(steps):
+        for _ in range(steps):
+            O.step()
+
+    table = [(1, 0), (40, 0.6), (400, 1)]
+    pair(joints=[MasonryJoint(name="mine", tensionTable=table)], inPlane=True, damping=0.3)
+    O.bodies[1].state.blockedDOFs = "yXZ"
+    load = MasonryLoad(body=1, point=(0.11, 0.051, 0.162), direction=(1, 0, 0), driven=True, velocity=0.01, label="load")
+    O.engines = O.engines[:2] + [load] + O.engines[2:]
+    shove(2000)
+    path = str(tmp_path / ("run" + extension))
+    O.save(path)
+
+    def state():
+        i = O.interactions[0, 1]
+        energy = next(e for e in O.engines if e.label == "energy")
+        reaction = next(e for e in O.engines if e.label == "load").reaction
+        return (O.time, O.iter, reaction, i.phys.stress, i.phys.damage, i.phys.slip, i.phys.regime, i.phys.dissipated, i.geom.jumps, energy.balance())
+
+    shove(2000)
+    there = state()
+    assert any(d[0] > 0 for d in there[4])
+    O.load(path)
+    i = O.interactions[0, 1]
+    assert (i.phys.joint.name, i.phys.joint.tensionTable, O.bodies[1].mat.young, O.bodies[1].mat.density) == ("mine", table, 4.8e9, 1800)
+    shove(2000)
+    assert state() == there

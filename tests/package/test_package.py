@@ -1,0 +1,163 @@
+"""The Python package: brickwork, materials, options, results."""
+
+import argparse
+import itertools
+import json
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from masonry import brickwork, materials, options, results
+
+
+# -- brickwork --------------------------------------------------------------------------------------------------------
+
+
+def test_the_squat_wall_has_1224_half_bricks_in_running_bond():
+    blocks = brickwork.runningBond(34, 36)
+    assert len(blocks) == 1224
+    assert max(b.high[0] for b in blocks) == pytest.approx(3.96)
+    assert max(b.high[2] for b in blocks) == pytest.approx(2.754)
+    assert len({b.brick for b in blocks}) == 17 * 18 + 17 * 19
+
+
+@settings(max_examples=50, deadline=None)
+@given(courses=st.integers(1, 12), units=st.integers(1, 10), halves=st.booleans())
+def test_blocks_fill_the_wall_and_head_joints_never_meet(courses, units, halves):
+    blocks = brickwork.runningBond(courses, 2 * units, halves=halves)
+    volume = sum(math.prod(h - l for l, h in zip(b.low, b.high)) for b in blocks)
+    assert volume == pytest.approx(0.11 * 2 * units * 0.102 * 0.081 * courses)
+    for course in range(courses):
+        mine = [b for b in blocks if b.course == course]
+        for number, pieces in itertools.groupby(mine, key=lambda b: b.brick):
+            assert len(list(pieces)) <= (2 if halves else 1)
+    heads = lambda c: {round(a.high[0], 6) for a, b in zip(blocks, blocks[1:]) if a.course == b.course == c and a.brick != b.brick}
+    for course in range(courses - 1):
+        assert not heads(course) & heads(course + 1)
+
+
+@pytest.mark.parametrize("courses, halfUnits", [(0, 4), (3, 0), (3, 5)])
+def test_impossible_brickwork_is_refused(courses, halfUnits):
+    with pytest.raises(ValueError, match=f"got {courses} and {halfUnits}"):
+        brickwork.runningBond(courses, halfUnits)
+
+
+# -- materials --------------------------------------------------------------------------------------------------------
+
+
+def test_the_published_set_is_the_paper_s_table_2():
+    joints = materials.calciumSilicateJoints()
+    assert list(joints) == ["support", "bed", "head", "crack"]
+    bed, head = joints["bed"], joints["head"]
+    kn = 4800e6 * 1973.7e6 / (0.01 * (4800e6 - 1973.7e6))  # eq. (26)
+    assert bed.normalStiffness == pytest.approx(kn, rel=1e-3)
+    assert bed.shearStiffness == pytest.approx(kn / (2 * 1.16), rel=1e-3)
+    assert (bed.tensileStrength, bed.cohesion, bed.friction) == (0.1e6, 0.11e6, 0.43)
+    assert (bed.compressiveStrength, bed.compressiveFractureEnergy, bed.peakRatio) == (7.55e6, 15000, 68.5)
+    assert (head.compressiveStrength, head.compressiveFractureEnergy) == (5.93e6, 31500)
+    assert joints["support"].elastic and not joints["crack"].cap
+
+
+def test_the_compression_curve_passes_its_named_points():
+    bed = materials.calciumSilicateJoints()["bed"]
+    curve = bed.compressionCurve([0, 1.543e-3, 1.851e-3, 0.1])
+    assert curve == pytest.approx([2.265e6, 7.55e6, 4.53e6, 1.51e6], rel=1e-3)
+
+
+# -- options ----------------------------------------------------------------------------------------------------------
+
+
+def parse(*words):
+    return options.parser("a wall", until=12).parse_args(words)
+
+
+def test_settings_change_the_named_property_only():
+    joints = materials.calciumSilicateJoints()
+    options.applySettings(joints, parse("--set", "bed.tensileStrength=5e4", "--set", "head.cap=off", "--set", "bed.tensionTable=1:0,2:1").set)
+    assert joints["bed"].tensileStrength == 5e4 and joints["head"].tensileStrength == 1e5
+    assert not joints["head"].cap and joints["bed"].tensionTable == [(1, 0), (2, 1)]
+
+
+def test_all_wrong_settings_are_told_at_once():
+    joints = materials.calciumSilicateJoints()
+    words = ["bad.friction=1", "bed.Friction=1", "bed.cap=maybe", "bed.tensionTable=1", "bed.cohesion=much", "head.friction=-1", "crack.name=x"]
+    with pytest.raises(options.Refused) as refused:
+        options.applySettings(joints, [options._setting(w) for w in words])
+    message = str(refused.value)
+    for part in (
+        "--set bad.friction: no joint 'bad', there are support, bed, head, crack",
+        "--set bed.Friction: a MasonryJoint has no such property, did you mean friction?",
+        "--set bed.cap=maybe: must be on or off",
+        "--set bed.tensionTable=1: must be rows as ratio:damage,ratio:damage,...",
+        "--set bed.cohesion=much: must be a number",
+        'joint "head": friction -1 must be at least 0',
+        "--set crack.name: a MasonryJoint has no such property",
+    ):
+        assert part in message
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        (["--until", "-1"], "-1 must be above 0"),
+        (["--until", "x"], "'x' is not a number"),
+        (["--until", "inf"], "inf must be above 0"),
+        (["--rate", "0"], "0 must be above 0"),
+        (["--subcontacts", "0"], "'0' must be a whole number from 1 to 100"),
+        (["--subcontacts", "2.5"], "'2.5' must be a whole number"),
+        (["--damping", "1"], "1 must be at least 0 and at most 0.99"),
+        (["--dt-fraction", "1.1"], "1.1 must be above 0 and at most 1"),
+        (["--crack-surfaces", "maybe"], "invalid choice: 'maybe'"),
+        (["--blocks", "soft"], "invalid choice: 'soft'"),
+        (["--set", "bed"], "'bed' must read JOINT.PROPERTY=VALUE"),
+        (["--vtk-every", "nan"], "nan must be above 0"),
+        (["--nonsense"], "unrecognized arguments: --nonsense"),
+    ],
+)
+def test_wrong_options_are_refused_with_the_bound(capsys, words, message):
+    with pytest.raises(SystemExit) as refused:
+        parse(*words)
+    assert refused.value.code == 2
+    assert message in capsys.readouterr().err
+
+
+def test_every_option_is_explained_with_its_default(capsys):
+    parser = options.parser("a wall", until=12)
+    for action in parser._actions:
+        assert action.help
+        if action.metavar in ("MM", "MM_PER_S"):
+            assert "[mm" in action.help
+
+
+# -- results ----------------------------------------------------------------------------------------------------------
+
+
+def test_an_unwritable_folder_is_told_at_the_start(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(options.Refused, match="--out: cannot write to"):
+        results.Results(str(tmp_path / "file" / "below"), ["a"])
+
+
+def test_rows_and_run_are_read_back(tmp_path):
+    r = results.Results(str(tmp_path), ["a_mm", "b_kN"])
+    r.row({"a_mm": 1, "b_kN": 2.5})
+    r.row({"a_mm": 2, "b_kN": -3})
+    r.run["title"] = "t"
+    r.close()
+    assert results.readCurve(str(tmp_path)) == {"a_mm": [1, 2], "b_kN": [2.5, -3]}
+    assert results.readRun(str(tmp_path))["title"] == "t"
+
+
+def test_a_run_that_leaves_finite_numbers_is_stopped(tmp_path):
+    r = results.Results(str(tmp_path), ["a_mm", "b_kN"])
+    with pytest.raises(FloatingPointError, match="finite numbers in b_kN"):
+        r.row({"a_mm": 1, "b_kN": math.nan})
+
+
+@given(slope=st.floats(0.1, 1e3))
+def test_initial_stiffness_is_the_slope_of_a_straight_start(slope):
+    x = [0.01 * i for i in range(400)]
+    y = [min(slope * v, slope) for v in x]
+    assert results.initialStiffness(x, y) == pytest.approx(slope, rel=1e-9)
+    assert results.initialStiffness([], []) == 0

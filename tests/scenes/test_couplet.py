@@ -1,0 +1,56 @@
+"""Two bricks through the whole of the host against the closed forms of law.md §6."""
+
+import numpy as np
+import pytest
+from masonry.results import readCurve, readRun
+
+
+def couplet(runScene, path, *options):
+    _, out = runScene("couplet", "--path", path, "--no-vtk", *options)
+    return readCurve(out), readRun(out)
+
+
+def test_opening_peaks_at_ft_and_takes_the_mode_I_energy(runScene):
+    curve, run = couplet(runScene, "opening", "--until", "3", "--rate", "40")
+    assert run["end_normal_stress_MPa"] == pytest.approx(0, abs=1e-6)
+    assert run["dissipated_tension_J_per_m2"] == pytest.approx(16, rel=0.006)  # GfI
+    curve, run = couplet(runScene, "opening", "--until", "0.004")
+    assert run["peak_normal_stress_MPa"] == pytest.approx(0.1, rel=0.005)
+
+
+@pytest.mark.parametrize("stress", [-0.1, -0.5, -1.0])
+def test_shear_under_constant_stress_peaks_on_the_coulomb_line_and_keeps_friction(runScene, stress):
+    curve, run = couplet(runScene, "shear", "--normal-stress", str(stress), "--until", "60", "--rate", "100")
+    peak, residual = 0.11 - 0.43 * stress, -0.43 * stress
+    assert run["peak_shear_stress_MPa"] == pytest.approx(peak, rel=0.005)
+    assert run["end_shear_stress_MPa"] == pytest.approx(residual, rel=0.005)
+    above = 1e3 * np.trapz(np.array(curve["shear_stress_MPa"]) - residual, curve["slide_mm"])  # J/m²
+    assert above + 1e6 * residual**2 / 2 / 2.17e10 == pytest.approx(160 * peak / 0.11, rel=0.02)
+    assert np.allclose(np.array(curve["normal_stress_MPa"])[-1000:], stress, rtol=1e-3)
+
+
+def test_closure_peaks_at_fc_and_ends_at_the_residual(runScene):
+    curve, run = couplet(runScene, "closure", "--until", "12", "--rate", "40")
+    assert run["peak_compressive_stress_MPa"] == pytest.approx(7.55, rel=0.002)
+    assert run["end_normal_stress_MPa"] == pytest.approx(-1.51, rel=0.02)
+    work = np.trapz(curve["normal_force_kN"], curve["opening_mm"])
+    assert curve["dissipated_compression_J"][-1] + curve["elastic_compression_J"][-1] == pytest.approx(work, rel=0.01)
+
+
+def test_shear_after_closure_stays_inside_the_cap(runScene):
+    curve, run = couplet(runScene, "closure-shear", "--until", "2", "--rate", "20")
+    sigma, tau = np.array(curve["normal_stress_MPa"]), np.array(curve["shear_stress_MPa"])
+    assert np.all(np.sqrt(sigma**2 + 9 * tau**2) <= 7.55 * 1.001)
+    assert tau.max() > 1.5
+
+
+@pytest.mark.parametrize("path", ["opening", "shear", "closure"])
+def test_the_energy_balance_closes(runScene, path):
+    _, run = couplet(runScene, path, "--until", "0.5")
+    assert run["energy_balance_error"] < 1e-6
+
+
+def test_the_brittle_set_drops_at_once(runScene):
+    curve, run = couplet(runScene, "shear", "--joints", "brittle", "--until", "0.1")
+    assert run["end_shear_stress_MPa"] == pytest.approx(0.215, rel=0.002)
+    assert run["dissipated_shear_J_per_m2"] < 0.25e6 * 0.1e-3
