@@ -134,7 +134,7 @@ def cracks(directory):
     )
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8)
     figure.tight_layout()
-    figure.savefig(os.path.join(directory, "cracks.png"), dpi=110)
+    figure.savefig(os.path.join(directory, "cracks.png"), dpi=90)
     plt.close(figure)
 
 
