@@ -78,6 +78,12 @@ def parser(description, until, rate=20.0):
     return p
 
 
+def units(cls):
+    """Units of a class's attributes, as their docs give them: dict of attribute -> text between the first brackets."""
+    docs = {name: value.__doc__ for name, value in vars(cls).items() if isinstance(value, property)}
+    return {name: doc[doc.index("[") + 1 : doc.index("]")] for name, doc in docs.items() if "[" in doc}
+
+
 def applySettings(joints, settings):
     """Apply ``--set`` to a dict of MasonryJoint objects; raises Refused with all problems at once."""
     problems, changes = [], {}

@@ -4,13 +4,13 @@ import os
 import subprocess
 import sys
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import yade.config
 from yade import O, Vector3
 from yade.wrapper import MasonryLoad, MasonryVtkRecorder
 
-from . import brickwork, commit, criticalTimeStep, materials
+from . import brickwork, commit, criticalTimeStep, materials, options
 from .options import Refused, applySettings
 from .results import ENERGIES, Interrupted, Progress, Results, initialStiffness
 from .scene import addBlock, connect, engines
@@ -104,10 +104,21 @@ class WallModel:
         self.results.run.update(
             scene=wall.name,
             title=wall.title,
-            wall=dict(asdict(wall), length_m=wall.length, height_m=wall.height, unit_m=wall.unit, unit=None),
-            options={k: v for k, v in vars(self.args).items()},
+            wall={
+                "length_m": wall.length,
+                "height_m": wall.height,
+                "thickness_m": wall.unit[1],
+                "courses": wall.courses,
+                "half_units": wall.halfUnits,
+                "unit_m": wall.unit,
+                "precompression_Pa": wall.precompression,
+                "load_height_m": wall.loadHeight,
+            },
+            options=dict(vars(self.args)),
+            option_units={"until": "mm", "rate": "mm/s", "vtk_every": "mm"},
             joints={name: joint.dict() for name, joint in self.joints.items()},
-            unit_material={k: brick.dict()[k] for k in ("young", "poisson", "density")},
+            joint_units=options.units(materials.MasonryJoint),
+            unit_material={"young_Pa": brick.young, "poisson": brick.poisson, "density_kg_per_m3": brick.density},
             versions={"yade": yade.config.version, "python": sys.version.split()[0], "masonry": commit},
             commit=commit,
             threads=O.numThreads,
@@ -118,7 +129,6 @@ class WallModel:
             joints_by_kind=kinds,
             subcontacts=self.subcontacts,
         )
-        self.results.run["wall"].pop("unit")
         for joint in self.results.run["joints"].values():
             joint["direction"] = list(joint["direction"])
 

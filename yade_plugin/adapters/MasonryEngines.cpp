@@ -160,9 +160,9 @@ py::dict MasonryEnergy::balance() {
         lost += phys.dissipated;
         for (std::size_t i = 0; i < phys.states.size(); ++i) {
             const auto e = JointLaw::stored(phys.stiffness(), phys.states[i]);
-            stored.tension += geom.areas[i] * e.tension;
-            stored.shear += geom.areas[i] * e.shear;
-            stored.compression += geom.areas[i] * e.compression;
+            stored.tension += geom.points[i].area * e.tension;
+            stored.shear += geom.points[i].area * e.shear;
+            stored.compression += geom.points[i].area * e.compression;
         }
     });
     double work = external;
@@ -202,17 +202,18 @@ py::tuple criticalTimeStep() {
         for (int side = 0; side < 2; ++side)
             states[side] = scene.bodies->body[e.ids[side]]->state.get();
         const Vector3r directions[3] = {geom.normal, geom.tangent, geom.normal.cross(geom.tangent)};
-        for (std::size_t i = 0; i < geom.centres.size(); ++i)
+        for (std::size_t i = 0; i < geom.points.size(); ++i)
             for (int d = 0; d < 3; ++d) {
                 Vector12 b;
                 for (int side = 0; side < 2; ++side) {
-                    Vector3r turn = (geom.centres[i] - (side ? geom.position2 : geom.position1)).cross(directions[d]);
+                    Vector3r turn =
+                        (geom.centre(geom.points[i]) - (side ? geom.position2 : geom.position1)).cross(directions[d]);
                     if (!rotationRestrained(*states[side])) turn = states[side]->ori.conjugate() * turn;
                     b.segment<3>(6 * side) = (side ? 1 : -1) * directions[d];
                     b.segment<3>(6 * side + 3) = (side ? 1 : -1) * turn;
                 }
                 e.stiffness +=
-                    geom.areas[i] * (d == 0 ? phys.normalStiffness : phys.shearStiffness) * b * b.transpose();
+                    geom.points[i].area * (d == 0 ? phys.normalStiffness : phys.shearStiffness) * b * b.transpose();
             }
         for (int side = 0; side < 2; ++side) {
             auto& sum = share.emplace(e.ids[side], Eigen::Matrix<double, 6, 1>::Zero()).first->second;

@@ -12,40 +12,47 @@ void MasonryJointGeom::define(const FaceContact& face, const Vector3r& alongDire
     normal = face.normal, tangent = alongDirection;
     along = columns, across = rows;
     polygon = face.polygon;
-    centres.clear(), areas.clear();
-    for (const auto& cell : cells()) {
-        centres.push_back(cell.centre);
-        areas.push_back(cell.area);
-    }
-    jumps.assign(areas.size(), Vector3r::Zero());
     position1 = state1.pos, position2 = state2.pos;
     orientation1 = state1.ori, orientation2 = state2.ori;
+    const Quaternionr reference(referenceAxes());
+    frame1 = orientation1.conjugate() * reference, frame2 = orientation2.conjugate() * reference;
+    points.clear();
+    for (const auto& cell : cells()) {
+        JointPoint point;
+        point.offset = referenceAxes().transpose() * (cell.centre - position1);
+        point.area = cell.area;
+        points.push_back(point);
+    }
+    centreToCentre = referenceAxes().transpose() * (position2 - position1);
     distance1 = (polygon[0] - position1).dot(normal);
     distance2 = (position2 - polygon[0]).dot(normal);
 }
 
 std::vector<Subcontact> MasonryJointGeom::cells() const { return subdivide(polygon, normal, tangent, along, across); }
 
+// Each body carries the joint's axes along; the mean of both is the frame of the joint, and `half` turns it to body 2's
+// place as its inverse does to body 1's. In that frame a point at offset a from body 1's centre shows the jump
+// between - half d + (half - half^T) a, d from centre to centre in the reference state, and half - half^T = 4 w [v ×]
+// for the unit quaternion (w, v). Forces act at the middle of the jump and the axes turn with the mean rotation:
+// together this keeps both angular momentum and the power of the joint.
 void MasonryJointGeom::update(const yade::State& state1, const yade::State& state2) {
-    const Quaternionr turn1 = state1.ori * orientation1.conjugate(), turn2 = state2.ori * orientation2.conjugate();
-    const yade::Matrix3r rotation1 = turn1.toRotationMatrix(), rotation2 = turn2.toRotationMatrix();
-    const bool opposite = turn1.dot(turn2) < 0; // a quaternion and its negative are the same rotation
-    const Quaternionr mean(opposite ? (turn1.coeffs() - turn2.coeffs()).eval()
-                                    : (turn1.coeffs() + turn2.coeffs()).eval());
-    yade::Matrix3r reference;
-    reference << normal, tangent, normal.cross(tangent);
-    axes = mean.normalized().toRotationMatrix() * reference;
+    const Quaternionr by1 = state1.ori * frame1;
+    Quaternionr by2 = state2.ori * frame2;
+    if (by1.dot(by2) < 0) by2.coeffs() *= -1; // a quaternion and its negative are the same rotation
+    const Quaternionr mean = Quaternionr((by1.coeffs() + by2.coeffs()).eval()).normalized();
+    const Quaternionr half = mean.conjugate() * by2;
+    axes = mean.toRotationMatrix();
     between = state2.pos - state1.pos;
-    scratch.resize(centres.size());
-    for (std::size_t i = 0; i < centres.size(); ++i) {
-        const Vector3r arm1 = rotation1 * (centres[i] - position1);
-        const Vector3r gap = between + rotation2 * (centres[i] - position2) - arm1;
-        const Vector3r jump = axes.transpose() * gap;
-        const Vector3r step = jump - jumps[i];
-        jumps[i] = jump;
-        // Forces act at the middle of the jump and the axes turn with the mean rotation: together this keeps both
-        // angular momentum and the power of the joint.
-        scratch[i] = {{step[0], {step[1], step[2]}}, arm1 + 0.5 * gap};
+
+    const Vector3r v = half.vec(), twist = 4 * half.w() * v, twice = 2 * v;
+    const Vector3r turned = twice.cross(centreToCentre); // half d = d + w (2v × d) + v × (2v × d)
+    const Vector3r common = axes.transpose() * between - (centreToCentre + half.w() * turned + v.cross(turned));
+    const double shrink = 1 - 2 * v.squaredNorm();
+    for (auto& point : points) {
+        const Vector3r jump = common + twist.cross(point.offset), step = jump - point.jump;
+        point.jump = jump;
+        point.increment = {step[0], {step[1], step[2]}};
+        point.arm = shrink * point.offset + v.dot(point.offset) * twice + 0.5 * common; // half^T a + jump / 2
     }
 }
 

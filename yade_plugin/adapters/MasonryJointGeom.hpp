@@ -4,6 +4,20 @@
 
 namespace masonry {
 
+// One subcontact of a joint, all that a step touches in one place. Vectors are in the axes of the joint: normal,
+// tangent, normal × tangent.
+struct JointPoint {
+    Vector3r offset = Vector3r::Zero(); // from the centre of body 1, reference
+    double area = 0;
+    Vector3r jump = Vector3r::Zero(); // since the reference state
+    Jump increment;                   // scratch of a step
+    Vector3r arm = Vector3r::Zero();                     // scratch: from the centre of body 1 to the middle of the jump
+};
+template <> struct IsNumbers<JointPoint> : std::true_type {};
+template <class F> void numbers(JointPoint& p, F&& each) {
+    numbers(p.offset, each), each(p.area), numbers(p.jump, each);
+}
+
 class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
     MASONRY_DISPATCHED(MasonryJointGeom, yade::IGeom)
     static constexpr const char* className = "MasonryJointGeom";
@@ -14,13 +28,14 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
         "and turns with the mean rotation of its two blocks.";
 
     Vector3r normal = Vector3r::UnitX(), tangent = Vector3r::UnitY(); // reference, global axes; normal from 1 to 2
-    std::vector<Vector3r> polygon, centres;                           // reference, global axes
-    std::vector<double> areas;
+    std::vector<Vector3r> polygon;                                    // reference, global axes
+    std::vector<JointPoint> points;
     int along = 1, across = 1;
     double distance1 = 0, distance2 = 0;
     Vector3r position1 = Vector3r::Zero(), position2 = Vector3r::Zero();
     Quaternionr orientation1 = Quaternionr::Identity(), orientation2 = Quaternionr::Identity();
-    std::vector<Vector3r> jumps; // (opening, slide along tangent, slide across)
+    Vector3r centreToCentre = Vector3r::Zero();                                     // reference, in the joint's axes
+    Quaternionr frame1 = Quaternionr::Identity(), frame2 = Quaternionr::Identity(); // the joint's axes in each body's
 
     template <class Visit> static void attributes(Visit&& visit) {
         using G = MasonryJointGeom;
@@ -28,39 +43,66 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
         visit("tangent", &G::tangent,
               "First in-plane direction in the reference state; the second is normal × tangent.", ReadOnly);
         visit("polygon", &G::polygon, "Corners of the joint polygon in the reference state [m].", ReadOnly);
-        visit("centres", &G::centres, "Centres of the subcontacts in the reference state [m].", ReadOnly);
-        visit("areas", &G::areas, "Areas of the subcontacts [m²]; they add up to the polygon's.", ReadOnly);
         visit("along", &G::along, "Divisions of the polygon along the tangent [-].", ReadOnly);
         visit("across", &G::across, "Divisions across the tangent [-].", ReadOnly);
         visit("distance1", &G::distance1, "Distance of body 1's centre from the joint plane [m].", ReadOnly);
         visit("distance2", &G::distance2, "Distance of body 2's centre from the joint plane [m].", ReadOnly);
-        visit("jumps", &G::jumps,
-              "Displacement jump at each subcontact since the reference state: opening, slide along the tangent, slide "
-              "across it [m].",
-              ReadOnly);
+        visit("points", &G::points, "", Hidden);
         visit("position1", &G::position1, "", Hidden);
         visit("position2", &G::position2, "", Hidden);
         visit("orientation1", &G::orientation1, "", Hidden);
         visit("orientation2", &G::orientation2, "", Hidden);
+        visit("centreToCentre", &G::centreToCentre, "", Hidden);
+        visit("frame1", &G::frame1, "", Hidden);
+        visit("frame2", &G::frame2, "", Hidden);
     }
 
-    struct Scratch { // of one step, per subcontact
-        Jump increment;
-        Vector3r arm; // from the centre of body 1 to the middle of the jump
-    };
-    std::vector<Scratch> scratch;
-    yade::Matrix3r axes; // columns: normal and tangents, turned with the mean rotation of the two blocks
-    Vector3r between;    // from the centre of body 1 to that of body 2
+    yade::Matrix3r axes; // scratch: columns normal and tangents, turned with the mean rotation of the two blocks
+    Vector3r between;    // scratch: from the centre of body 1 to that of body 2
 
     MasonryJointGeom() { createIndex(); }
+
+    template <class PyClass> static void extras(PyClass& cls) {
+        cls.add_property("centres", &MasonryJointGeom::centres,
+                         "Centres of the subcontacts in the reference state [m].")
+            .add_property("areas", &MasonryJointGeom::areas,
+                          "Areas of the subcontacts [m²]; they add up to the polygon's.")
+            .add_property("jumps", &MasonryJointGeom::jumps,
+                          "Displacement jump at each subcontact since the reference state: opening, slide along the "
+                          "tangent, slide across it [m].");
+    }
 
     // Joint in the reference state, from the polygon that two blocks share.
     void define(const FaceContact&, const Vector3r& along, int rows, int columns, const yade::State&,
                 const yade::State&);
     // Jumps, their increments and the arms of the current step.
     void update(const yade::State& state1, const yade::State& state2);
+    // Reference axes of the joint as columns, and the centre of a subcontact, in global axes.
+    yade::Matrix3r referenceAxes() const {
+        yade::Matrix3r columns;
+        columns << normal, tangent, normal.cross(tangent);
+        return columns;
+    }
+    Vector3r centre(const JointPoint& point) const { return position1 + referenceAxes() * point.offset; }
     // The subcontact cells as polygons in the reference state, for pictures.
     std::vector<Subcontact> cells() const;
+
+private:
+    template <class F> py::list perPoint(F&& value) const {
+        py::list all;
+        for (const auto& point : points)
+            all.append(value(point));
+        return all;
+    }
+    py::list centres() const {
+        return perPoint([&](const JointPoint& p) { return centre(p); });
+    }
+    py::list areas() const {
+        return perPoint([](const JointPoint& p) { return p.area; });
+    }
+    py::list jumps() const {
+        return perPoint([](const JointPoint& p) { return p.jump; });
+    }
 };
 
 class Ig2_Polyhedra_Polyhedra_MasonryJointGeom

@@ -32,7 +32,7 @@ void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::assign(const MasonryMat& mat1, 
     const shared_ptr<MasonryJointPhys> phys(new MasonryJointPhys);
     phys->joint = joint;
     phys->normalStiffness = k.normal, phys->shearStiffness = k.shear;
-    phys->states.resize(geom.areas.size());
+    phys->states.resize(geom.points.size());
     interaction.phys = phys;
 }
 
@@ -76,15 +76,16 @@ bool Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening::go(shared_ptr<ya
     Vector3r force = Vector3r::Zero(), torque = Vector3r::Zero(), lost = Vector3r::Zero();
     for (std::size_t i = 0; i < phys.states.size(); ++i) {
         auto& s = phys.states[i];
-        const auto spent = law.advance(k, s, geom.scratch[i].increment);
+        const auto& point = geom.points[i];
+        const auto spent = law.advance(k, s, point.increment);
         // The one place where stress meets area, and tension meets the host's forces: an open joint pulls body 1 on.
-        const double area = geom.areas[i];
-        const Vector3r pull = geom.axes * Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) * area;
+        const Vector3r pull = Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) * point.area;
         force += pull;
-        torque += geom.scratch[i].arm.cross(pull);
-        lost += area * Vector3r(spent.tension, spent.shear, spent.compression);
+        torque += point.arm.cross(pull);
+        lost += point.area * Vector3r(spent.tension, spent.shear, spent.compression);
     }
     phys.dissipated += lost;
+    force = geom.axes * force, torque = geom.axes * torque;
     auto& forces = scene->forces();
     forces.addForce(interaction->id1, force);
     forces.addTorque(interaction->id1, torque);

@@ -139,7 +139,8 @@ void MasonryVtkRecorder::writeJoints(const std::string& path) {
             const auto& s = phys->states[i];
             opening->InsertNextValue(s.opening);
             slip->InsertNextValue(s.slip);
-            slide->InsertNextTuple(Vector3r(geom->jumps[i][1] * geom->tangent + geom->jumps[i][2] * side).data());
+            slide->InsertNextTuple(
+                Vector3r(geom->points[i].jump[1] * geom->tangent + geom->points[i].jump[2] * side).data());
             normal->InsertNextTuple(geom->normal.data());
             normalStress->InsertNextValue(s.normalStress);
             shearStress->InsertNextValue(std::hypot(s.shearStress.a, s.shearStress.b));
@@ -147,7 +148,7 @@ void MasonryVtkRecorder::writeJoints(const std::string& path) {
             shear->InsertNextValue(s.shearDamage);
             compression->InsertNextValue(phys->law().compressionDamage(phys->stiffness(), s));
             crushing->InsertNextValue(s.crushing);
-            area->InsertNextValue(geom->areas[i]);
+            area->InsertNextValue(geom->points[i].area);
             lost->InsertNextTuple(phys->dissipated.data());
             regime->InsertNextValue(int(s.regime));
             kind->InsertNextValue(number);
