@@ -1,9 +1,13 @@
 // Joint polygons and subcontacts of convex blocks, in any orientation.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "blocks/FaceContact.hpp"
+#include "blocks/BlockElasticity.hpp"
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <doctest/doctest.h>
+#include <map>
 #include <random>
+#include <stdexcept>
+#include <string>
 
 using namespace masonry;
 
@@ -133,4 +137,183 @@ TEST_CASE("a row of four subcontacts stands at the middle of the quarters") {
         CHECK(row[i].area == doctest::Approx(0.11 * 0.102 / 4));
         CHECK(row[i].cell.size() == 4);
     }
+}
+
+// ---- zones -------------------------------------------------------------------------------------------------------
+
+namespace {
+
+BlockElasticity elastic(const ConvexBlock& block, std::array<int, 3> divisions) {
+    return BlockElasticity(divide(block, divisions), 4.8e9, 0.16, 1800);
+}
+
+ConvexBlock prism() { // five faces: no hexahedron
+    ConvexBlock b;
+    b.vertices = {{0, 0, 0}, {0.2, 0, 0}, {0.05, 0.1, 0}, {0, 0, 0.1}, {0.2, 0, 0.1}, {0.05, 0.1, 0.1}};
+    b.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+    return b;
+}
+
+} // namespace
+
+TEST_CASE("zones fill a block, their surface closes, and the masses add up") {
+    for (const auto& divisions : {std::array<int, 3>{1, 1, 1}, {2, 1, 2}, {3, 2, 4}}) {
+        const auto e = elastic(box({0.3, 0.1, 0.2}, brick), divisions);
+        const auto& mesh = e.mesh();
+        CHECK(mesh.zones.size() == 12u * divisions[0] * divisions[1] * divisions[2]);
+        double inside = 0, mass = 0;
+        for (const auto& z : mesh.zones)
+            inside += volume({mesh.nodes[z[0]], mesh.nodes[z[1]], mesh.nodes[z[2]], mesh.nodes[z[3]]});
+        for (double m : e.masses())
+            mass += m;
+        CHECK(inside == doctest::Approx(brick.prod()));
+        CHECK(mass == doctest::Approx(1800 * brick.prod()));
+        Point closed = Point::Zero();
+        double flux = 0; // of x through the surface: three times the volume
+        for (const auto& t : mesh.triangles) {
+            const Point &a = mesh.nodes[t[0]], &b = mesh.nodes[t[1]], &c = mesh.nodes[t[2]];
+            const Point n = 0.5 * (b - a).cross(c - a);
+            closed += n;
+            flux += n.dot(a + b + c) / 3;
+        }
+        CHECK(closed.norm() < 1e-15);
+        CHECK(flux == doctest::Approx(3 * brick.prod()));
+    }
+    const auto e = elastic(prism(), {1, 1, 1});
+    CHECK(e.mass() == doctest::Approx(1800 * 0.5 * 0.2 * 0.1 * 0.1));
+}
+
+TEST_CASE("neighbouring cells conform: every inner face belongs to two zones") {
+    const auto mesh = divide(box(Point::Zero(), brick), {3, 2, 2});
+    std::map<std::array<int, 3>, int> faces;
+    for (const auto& z : mesh.zones)
+        for (int i = 0; i < 4; ++i) {
+            std::array<int, 3> f{z[(i + 1) % 4], z[(i + 2) % 4], z[(i + 3) % 4]};
+            std::sort(f.begin(), f.end());
+            ++faces[f];
+        }
+    std::size_t once = 0;
+    for (const auto& [face, count] : faces) {
+        CHECK(count <= 2);
+        once += count == 1;
+    }
+    CHECK(once == mesh.triangles.size());
+}
+
+TEST_CASE("rigid motions of any size give no force and show their rotation") {
+    std::mt19937 dice(4);
+    for (const auto& block : {box(Point::Zero(), brick), prism()}) {
+        const auto e = elastic(block, {2, 1, 1});
+        const auto n = e.mesh().nodes.size();
+        for (int trial = 0; trial < 50; ++trial) {
+            const auto motion = randomMotion(dice);
+            std::vector<Point> u(n), f(n, Point::Zero());
+            for (std::size_t i = 0; i < n; ++i)
+                u[i] = motion * e.mesh().nodes[i] - e.mesh().nodes[i];
+            // far turns start Newton's iteration far away, but at a rotation it is already exact
+            const Matrix3 r = e.rotation(u.data());
+            CHECK((r - motion.rotation()).norm() < 1e-11);
+            const double energy = e.addForces(u.data(), r, f.data());
+            for (const auto& force : f)
+                CHECK(force.norm() < 1e-3); // N, of a block whose zones carry 1e8 N at unit strain
+            CHECK(energy < 1e-9);
+        }
+    }
+}
+
+TEST_CASE("patch test: a linear displacement field is a constant stress on any mesh") {
+    std::mt19937 dice(5);
+    std::uniform_real_distribution<> u01(-1, 1);
+    Matrix3 g;
+    for (int i = 0; i < 9; ++i)
+        g(i) = 1e-7 * u01(dice);
+    const Matrix3 strain = 0.5 * (g + g.transpose());
+    const double E = 4.8e9, nu = 0.16, lambda = E * nu / ((1 + nu) * (1 - 2 * nu)), mu = E / (2 * (1 + nu));
+    const Matrix3 exact = lambda * strain.trace() * Matrix3::Identity() + 2 * mu * strain;
+    for (const auto& block : {box(Point::Zero(), brick), prism()}) {
+        const auto e = elastic(block, {2, 2, 3});
+        const auto& mesh = e.mesh();
+        std::vector<Point> u, f(mesh.nodes.size(), Point::Zero());
+        for (const auto& x : mesh.nodes)
+            u.push_back(g * x);
+        const Matrix3 r = e.rotation(u.data());
+        e.addForces(u.data(), r, f.data());
+        for (std::size_t z = 0; z < mesh.zones.size(); ++z)
+            CHECK((e.stress(int(z), u.data(), r) - exact).norm() < 1e-5 * exact.norm());
+        std::vector<char> surface(mesh.nodes.size(), 0);
+        for (const auto& t : mesh.triangles)
+            for (int i : t)
+                surface[i] = 1;
+        for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
+            if (!surface[i]) CHECK(f[i].norm() < 1e-6 * exact.norm() * 0.01);
+    }
+}
+
+TEST_CASE("forces are the gradient of the energy and keep momentum, turned or not") {
+    std::mt19937 dice(6);
+    std::uniform_real_distribution<> u01(-1, 1);
+    const auto e = elastic(box(Point::Zero(), brick), {1, 1, 1});
+    const auto n = e.mesh().nodes.size();
+    Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
+    turn.rotate(Eigen::AngleAxisd(0.02, Point(1, 2, 3).normalized()));
+    std::vector<Point> u(n), f(n, Point::Zero());
+    for (std::size_t i = 0; i < n; ++i)
+        u[i] = turn * e.mesh().nodes[i] - e.mesh().nodes[i] + 1e-6 * Point(u01(dice), u01(dice), u01(dice));
+    e.addForces(u.data(), e.rotation(u.data()), f.data());
+    Point sum = Point::Zero(), moment = Point::Zero();
+    double size = 0;
+    for (std::size_t i = 0; i < n; ++i)
+        sum += f[i], moment += (e.mesh().nodes[i] + u[i]).cross(f[i]), size += f[i].norm();
+    CHECK(sum.norm() < 1e-9 * size);
+    CHECK(moment.norm() < 1e-4 * size * 0.1);
+    const auto energy = [&](const std::vector<Point>& at) {
+        std::vector<Point> ignored(n, Point::Zero());
+        return e.addForces(at.data(), e.rotation(at.data()), ignored.data());
+    };
+    for (std::size_t i = 0; i < n; ++i)
+        for (int d = 0; d < 3; ++d) {
+            auto plus = u, minus = u;
+            plus[i][d] += 1e-8, minus[i][d] -= 1e-8;
+            CHECK(-(energy(plus) - energy(minus)) / 2e-8 == doctest::Approx(f[i][d]).epsilon(1e-4).scale(size));
+        }
+}
+
+TEST_CASE("a surface point is found with weights that return it") {
+    const auto mesh = divide(box(Point::Zero(), brick), {2, 1, 3});
+    std::mt19937 dice(8);
+    std::uniform_real_distribution<> u01(0, 1);
+    for (int i = 0; i < 100; ++i) {
+        const Point p(0.22 * u01(dice), 0.102 * u01(dice), i % 2 ? 0.081 : 0);
+        const auto s = nearestOnSurface(mesh, p);
+        Point back = Point::Zero();
+        double sum = 0;
+        for (int k = 0; k < 3; ++k)
+            back += s.weights[k] * mesh.nodes[s.nodes[k]], sum += s.weights[k];
+        CHECK((back - p).norm() < 1e-12);
+        CHECK(sum == doctest::Approx(1));
+    }
+}
+
+TEST_CASE("blocks and constants that cannot be meshed are refused") {
+    const auto refused = [](auto&& make) {
+        try {
+            make();
+        } catch (const std::invalid_argument& e) {
+            return std::string(e.what());
+        }
+        return std::string("accepted");
+    };
+    const auto good = box(Point::Zero(), brick);
+    CHECK(refused([&] { divide(good, {1, 1, 1}); }) == "accepted");
+    CHECK(refused([&] { divide(good, {0, 1, 1}); }) == "divisions 0 must be 1 to 100");
+    CHECK(refused([&] {
+              divide(box(Point::Zero(), {0.22, 0.102, 1e-5}), {1, 1, 1});
+          }).find("sliver") != std::string::npos);
+    auto dented = good;
+    dented.vertices[7] = {0.05, 0.02, 0.02};
+    CHECK(refused([&] { divide(dented, {1, 1, 1}); }).find("inverted zone") != std::string::npos);
+    CHECK(refused([&] { BlockElasticity(divide(good, {1, 1, 1}), 0, 0.2, 1); }).find("Young") != std::string::npos);
+    CHECK(refused([&] { BlockElasticity(divide(good, {1, 1, 1}), 1, 0.5, 1); }).find("Poisson") != std::string::npos);
+    CHECK(refused([&] { BlockElasticity(divide(good, {1, 1, 1}), 1, -1, 1); }).find("Poisson") != std::string::npos);
+    CHECK(refused([&] { BlockElasticity(divide(good, {1, 1, 1}), 1, 0, 0); }).find("density") != std::string::npos);
 }

@@ -1,0 +1,47 @@
+// Linear elasticity of a meshed block, paper §2: constant-strain zones, lumped masses, small strains in axes that turn
+// with the block. Congruent blocks share one.
+#pragma once
+#include "BlockMesh.hpp"
+
+namespace masonry {
+
+using Matrix3 = Eigen::Matrix3d;
+
+class BlockElasticity {
+public:
+    // Throws std::invalid_argument with what is wrong with the constants (E > 0, -1 < nu < 0.5, density > 0).
+    BlockElasticity(BlockMesh mesh, double youngModulus, double poissonRatio, double density);
+
+    const BlockMesh& mesh() const { return mesh_; }
+    const std::vector<double>& masses() const { return masses_; } // [kg] of the nodes
+    double mass() const { return mass_; }
+
+    // Rotation of the block: the polar part of its mean deformation gradient, from displacements of all nodes.
+    Matrix3 rotation(const Point* displacements) const;
+
+    // Adds the zones' forces on the nodes [N]; returns the elastic energy [J].
+    double addForces(const Point* displacements, const Matrix3& rotation, Point* forces) const;
+
+    // Stress of a zone [Pa], in the axes turned back by the rotation.
+    Matrix3 stress(int zone, const Point* displacements, const Matrix3& rotation) const;
+
+    // Stiffness matrix of a zone without rotation, nodes x 3 [N/m].
+    Eigen::Matrix<double, 12, 12> stiffness(int zone) const;
+
+private:
+    struct Zone {
+        std::array<int, 4> nodes;
+        std::array<Point, 4> gradients; // of the shape functions [1/m]
+        double volume;
+    };
+    Matrix3 strain(const Zone&, const Point* displacements, const Matrix3& rotation) const;
+    Matrix3 stressOf(const Matrix3& strain) const;
+
+    BlockMesh mesh_;
+    std::vector<Zone> zones_;
+    std::vector<double> masses_;
+    std::vector<Point> meanGradients_; // volume-averaged, per node
+    double mass_ = 0, lambda_ = 0, shear_ = 0;
+};
+
+} // namespace masonry

@@ -1,0 +1,157 @@
+#include "BlockMesh.hpp"
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <string>
+
+namespace masonry {
+
+namespace {
+
+// Eight corners of a hexahedron in the order of a unit cube (x fastest), axes turned to lie nearest to x, y and z;
+// empty if the block is no hexahedron.
+std::vector<Point> hexahedron(const ConvexBlock& block) {
+    if (block.vertices.size() != 8) return {};
+    const auto faces = block.faces();
+    if (faces.size() != 6) return {};
+    for (const auto& face : faces)
+        if (face.size() != 4) return {};
+    // neighbours of each vertex along the edges of the faces
+    const auto index = [&](const Point& p) {
+        return int(std::find(block.vertices.begin(), block.vertices.end(), p) - block.vertices.begin());
+    };
+    std::map<int, std::vector<int>> next;
+    for (const auto& face : faces)
+        for (int i = 0; i < 4; ++i)
+            next[index(face[i])].push_back(index(face[(i + 1) % 4]));
+    // start at the vertex nearest to the corner (-,-,-) and take its three edges nearest to x, y, z
+    int start = 0;
+    for (int i = 1; i < 8; ++i)
+        if (block.vertices[i].sum() < block.vertices[start].sum() - 1e-12 * block.size()) start = i;
+    if (next[start].size() != 3) return {};
+    std::array<int, 3> edge{next[start][0], next[start][1], next[start][2]}, best = edge;
+    std::sort(edge.begin(), edge.end());
+    double most = -HUGE_VAL;
+    do {
+        double along = 0;
+        for (int d = 0; d < 3; ++d)
+            along += (block.vertices[edge[d]] - block.vertices[start]).normalized()[d];
+        if (along > most) most = along, best = edge;
+    } while (std::next_permutation(edge.begin(), edge.end()));
+    const auto common = [&](int a, int b, int except) { // the other vertex next to both
+        for (int v : next[a])
+            if (v != except && std::count(next[b].begin(), next[b].end(), v)) return v;
+        return -1;
+    };
+    const int xy = common(best[0], best[1], start), xz = common(best[0], best[2], start),
+              yz = common(best[1], best[2], start);
+    if (xy < 0 || xz < 0 || yz < 0) return {};
+    const int xyz = common(xy, xz, best[0]);
+    if (xyz < 0) return {};
+    std::vector<Point> cube;
+    for (int v : {start, best[0], best[1], xy, best[2], xz, yz, xyz})
+        cube.push_back(block.vertices[v]);
+    return cube;
+}
+
+} // namespace
+
+double volume(const std::array<Point, 4>& c) { return (c[1] - c[0]).cross(c[2] - c[0]).dot(c[3] - c[0]) / 6; }
+
+BlockMesh divide(const ConvexBlock& block, const std::array<int, 3>& divisions, double sliver) {
+    for (int n : divisions)
+        if (n < 1 || n > 100) throw std::invalid_argument("divisions " + std::to_string(n) + " must be 1 to 100");
+    BlockMesh mesh;
+    const auto star = [&](int centre, const std::array<int, 3>& face) {
+        mesh.zones.push_back({face[0], face[1], face[2], centre});
+    };
+    const auto cube = hexahedron(block);
+    if (cube.empty()) {
+        mesh.nodes = block.vertices;
+        mesh.triangles = block.triangles;
+        Point centre = Point::Zero();
+        for (const auto& v : block.vertices)
+            centre += v / block.vertices.size();
+        mesh.nodes.push_back(centre);
+        for (const auto& t : block.triangles)
+            star(int(mesh.nodes.size()) - 1, {t[0], t[2], t[1]});
+    } else {
+        const auto [nx, ny, nz] = divisions;
+        const auto at = [&](double x, double y, double z) {
+            Point p = Point::Zero();
+            for (int c = 0; c < 8; ++c)
+                p += (c & 1 ? x : 1 - x) * (c & 2 ? y : 1 - y) * (c & 4 ? z : 1 - z) * cube[c];
+            return p;
+        };
+        const auto node = [&, ax = nx + 1, ay = ny + 1](int i, int j, int k) { return (k * ay + j) * ax + i; };
+        for (int k = 0; k <= nz; ++k)
+            for (int j = 0; j <= ny; ++j)
+                for (int i = 0; i <= nx; ++i)
+                    mesh.nodes.push_back(at(double(i) / nx, double(j) / ny, double(k) / nz));
+        for (int k = 0; k < nz; ++k)
+            for (int j = 0; j < ny; ++j)
+                for (int i = 0; i < nx; ++i) {
+                    const int centre = int(mesh.nodes.size());
+                    mesh.nodes.push_back(at((i + 0.5) / nx, (j + 0.5) / ny, (k + 0.5) / nz));
+                    const int base[3] = {i, j, k}, last[3] = {nx - 1, ny - 1, nz - 1};
+                    for (int axis = 0; axis < 3; ++axis)
+                        for (int side = 0; side < 2; ++side) {
+                            const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+                            int q[4], odd = 0;
+                            for (int c = 0; c < 4; ++c) { // around the face, outward for side 1
+                                int at[3] = {base[0], base[1], base[2]};
+                                at[axis] += side;
+                                at[u] += c == 1 || c == 2;
+                                at[v] += c >= 2;
+                                q[c] = node(at[0], at[1], at[2]);
+                                if (c == 0) odd = (at[0] + at[1] + at[2]) % 2;
+                            }
+                            if (!side) std::swap(q[1], q[3]);
+                            // the diagonal joins the corners with an even sum of indices
+                            const std::array<int, 3> halves[2][2] = {{{q[0], q[1], q[2]}, {q[0], q[2], q[3]}},
+                                                                     {{q[1], q[2], q[3]}, {q[1], q[3], q[0]}}};
+                            for (const auto& t : halves[odd]) {
+                                star(centre, {t[0], t[2], t[1]});
+                                if (base[axis] == (side ? last[axis] : 0)) mesh.triangles.push_back(t);
+                            }
+                        }
+                }
+    }
+    for (const auto& zone : mesh.zones) {
+        std::array<Point, 4> c;
+        double longest = 0, largest = 0;
+        for (int i = 0; i < 4; ++i)
+            c[i] = mesh.nodes[zone[i]];
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < i; ++j)
+                longest = std::max(longest, (c[i] - c[j]).norm());
+        for (int i = 0; i < 4; ++i)
+            largest = std::max(largest,
+                               0.5 * (c[(i + 1) % 4] - c[(i + 2) % 4]).cross(c[(i + 3) % 4] - c[(i + 2) % 4]).norm());
+        const double inside = volume(c);
+        if (!(inside > 0)) throw std::invalid_argument("block has an inverted zone: not convex, or without volume");
+        if (3 * inside / largest < sliver * longest)
+            throw std::invalid_argument("block has a sliver zone, height " + std::to_string(3 * inside / largest) +
+                                        " m beside an edge of " + std::to_string(longest) +
+                                        " m: choose other divisions");
+    }
+    return mesh;
+}
+
+SurfacePoint nearestOnSurface(const BlockMesh& mesh, const Point& p) {
+    SurfacePoint best{};
+    double nearest = HUGE_VAL;
+    for (const auto& t : mesh.triangles) {
+        const Point &a = mesh.nodes[t[0]], &b = mesh.nodes[t[1]], &c = mesh.nodes[t[2]];
+        const Point n = (b - a).cross(c - a);
+        Eigen::Vector3d w(n.dot((b - p).cross(c - p)), n.dot((c - p).cross(a - p)), n.dot((a - p).cross(b - p)));
+        w = (w / w.sum()).cwiseMax(0); // clipped to the triangle, so a point outside takes its rim
+        w /= w.sum();
+        const double distance = (w[0] * a + w[1] * b + w[2] * c - p).squaredNorm();
+        if (distance < nearest) nearest = distance, best = {t, {w[0], w[1], w[2]}};
+    }
+    return best;
+}
+
+} // namespace masonry
