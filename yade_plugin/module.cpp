@@ -3,6 +3,7 @@
 #include "adapters/MasonryJointGeom.hpp"
 #include "adapters/MasonryJointPhys.hpp"
 #include "adapters/MasonryVtkRecorder.hpp"
+#include "adapters/MasonryZones.hpp"
 #include "host/SelfCheck.hpp"
 #include "law/Text.hpp"
 
@@ -84,6 +85,7 @@ static void registerAll() {
     enroll<Ig2_Polyhedra_Polyhedra_MasonryJointGeom>(names);
     enroll<Ip2_MasonryMat_MasonryMat_MasonryJointPhys>(names);
     enroll<Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening>(names);
+    enroll<MasonryZones>(names);
     enroll<MasonryLoad>(names);
     enroll<MasonryEnergy>(names);
     enroll<MasonryVtkRecorder>(names);

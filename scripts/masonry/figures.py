@@ -64,7 +64,7 @@ def curve(directory):
     since = lambda name: np.array(data[name + "_J"]) - start[name + "_J"]
     work = since("external") + since("gravity")
     stack = [
-        ("elastic", sum(since("elastic_" + m) for m in ("tension", "shear", "compression"))),
+        ("elastic", sum(since("elastic_" + m) for m in ("units", "tension", "shear", "compression"))),
         ("tension", since("dissipated_tension")),
         ("shear", since("dissipated_shear")),
         ("compression", since("dissipated_compression")),
@@ -83,15 +83,22 @@ def curve(directory):
 
 
 def _faces(blocks, displaced):
-    """Front faces of the blocks, their corners in order around: arrays of (x, z)."""
+    """Outlines of the blocks' front faces, corners in order around: arrays of (x, z)."""
+    corners = {}
+    for body, cell in zip(blocks["body"], blocks["cells"]):
+        corners.setdefault(body, set()).update(cell)
     outlines = []
-    for cell in blocks["cells"]:
-        corners = np.unique(cell)
-        front = corners[blocks["points"][corners, 1] < blocks["points"][corners, 1].mean()]
-        reference = blocks["points"][front][:, [0, 2]]
-        around = reference - reference.mean(axis=0)
+    for nodes in map(np.array, map(sorted, corners.values())):
+        points = blocks["points"][nodes]
+        low, high = points.min(axis=0), points.max(axis=0)
+        near = 1e-6 * (high - low).max()
+        front = points[:, 1] < low[1] + near
+        rim = (np.abs(points[:, [0, 2]] - low[[0, 2]]) < near) | (np.abs(points[:, [0, 2]] - high[[0, 2]]) < near)
+        keep = nodes[front & rim.any(axis=1)]
+        reference = blocks["points"][keep][:, [0, 2]]
+        around = (reference - reference.mean(axis=0)) / (high - low)[[0, 2]]
         order = np.argsort(np.arctan2(around[:, 1], around[:, 0]))
-        shift = MAGNIFICATION * blocks["displacement"][front][:, [0, 2]] if displaced else 0
+        shift = MAGNIFICATION * blocks["displacement"][keep][:, [0, 2]] if displaced else 0
         outlines.append((reference + shift)[order])
     return outlines
 

@@ -49,10 +49,23 @@ def parser(description, until, rate=20.0):
     mm = lambda text: _number(text, 0, 1000, above=True)
     p.add_argument("--until", metavar="MM", type=mm, default=until, help="displacement to stop at [mm]")
     p.add_argument("--rate", metavar="MM_PER_S", type=mm, default=rate, help="loading rate [mm/s]")
-    p.add_argument("--blocks", choices=["rigid"], default="rigid", help="block model")
+    p.add_argument("--blocks", choices=["rigid", "deformable"], default="rigid", help="block model")
+    p.add_argument(
+        "--divisions",
+        metavar="N",
+        type=lambda t: _count(t, 10),
+        default=1,
+        help="cells of a deformable half brick along its length; along its height as many",
+    )
+    p.add_argument(
+        "--damping-kind",
+        choices=["local", "combined"],
+        default=None,
+        help="local (paper eq. (3)) or combined damping of deformable units (default: combined; rigid units: local)",
+    )
     p.add_argument("--subcontacts", metavar="N", type=lambda t: _count(t, 100), default=4, help="points along each joint")
     p.add_argument(
-        "--damping", metavar="A", type=lambda t: _number(t, 0, 0.99), default=0.8, help="local damping, paper eq. (3) [-]"
+        "--damping", metavar="A", type=lambda t: _number(t, 0, 0.99), default=0.8, help="damping constant, paper eq. (3) [-]"
     )
     p.add_argument(
         "--dt-fraction",

@@ -13,6 +13,7 @@ ENERGIES = [
     "gravity",
     "kinetic",
     "damping",
+    "elastic_units",
     "elastic_tension",
     "elastic_shear",
     "elastic_compression",

@@ -25,7 +25,7 @@ def addBlock(vertices, material, inPlane=False, color=(0.75, 0.7, 0.65)):
     return O.bodies.append(body)
 
 
-def engines(joints, damping=0.8, gravity=(0, 0, -9.81), subcontacts=4, rows=1, inPlane=False, loads=()):
+def engines(joints, damping=0.8, gravity=(0, 0, -9.81), subcontacts=4, rows=1, inPlane=False, loads=(), zones=None):
     """Fill O.engines for a masonry scene: joints, loads, energy balance, integration. No collider.
 
     :param joints: MasonryJoint objects; the first that fits a pair of units is taken
@@ -34,12 +34,17 @@ def engines(joints, damping=0.8, gravity=(0, 0, -9.81), subcontacts=4, rows=1, i
     :param subcontacts: per joint, along it
     :param rows: rows of subcontacts across a joint; 1 is enough in the plane
     :param loads: MasonryLoad engines
+    :param zones: MasonryZones of the deformable units, if there are any
     """
     across = Vector3(0, 1, 0) if inPlane else Vector3(0, 0, 0)
     O.engines = [
         ForceResetter(),
         InteractionLoop(
-            [Ig2_Polyhedra_Polyhedra_MasonryJointGeom(subcontacts=subcontacts, rows=rows, rowDirection=across)],
+            [
+                Ig2_Polyhedra_Polyhedra_MasonryJointGeom(
+                    subcontacts=subcontacts, rows=rows, rowDirection=across, **({"zones": zones} if zones else {})
+                )
+            ],
             [Ip2_MasonryMat_MasonryMat_MasonryJointPhys(joints=list(joints))],
             [Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening()],
             label="joints",
@@ -47,7 +52,7 @@ def engines(joints, damping=0.8, gravity=(0, 0, -9.81), subcontacts=4, rows=1, i
         *loads,
         MasonryEnergy(label="energy"),
         NewtonIntegrator(damping=damping, gravity=Vector3(*gravity), exactAsphericalRot=True, label="integrator"),
-    ]
+    ] + ([zones] if zones else [])
 
 
 def connect(rule=None, tolerance=1e-4):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import yade.config
 from yade import O, Vector3
-from yade.wrapper import MasonryLoad, MasonryVtkRecorder
+from yade.wrapper import MasonryLoad, MasonryVtkRecorder, MasonryZones
 
 from . import brickwork, commit, criticalTimeStep, materials, options
 from .options import Refused, applySettings
@@ -87,8 +87,24 @@ class WallModel:
             label="load",
         )
         found = [joint for name, joint in self.joints.items() if name != "crack"]
+        self.zones = None
+        if self.args.blocks == "deformable":
+            n = self.args.divisions
+            self.zones = MasonryZones(
+                bodies=list(self.brickOf),
+                divisions=[n, 1, n],
+                damping=self.args.damping,
+                dampingKind="local",  # brings a wall to rest; the push has its own
+                blocked="y",
+                label="zones",
+            )
         engines(
-            found, damping=self.args.damping, subcontacts=self.args.subcontacts, inPlane=True, loads=[self.load]
+            found,
+            damping=self.args.damping,
+            subcontacts=self.args.subcontacts,
+            inPlane=True,
+            loads=[self.load],
+            zones=self.zones,
         )
         self.energy = next(e for e in O.engines if e.label == "energy")
         crack = self.joints["crack"]
@@ -125,6 +141,7 @@ class WallModel:
             time_step_s=O.dt,
             time_step_limit_s=self.limit,
             units=len(self.brickOf),
+            nodes=len(self.zones.displacements) if self.zones else 0,
             joint_count=len(self.interactions),
             joints_by_kind=kinds,
             subcontacts=self.subcontacts,
@@ -151,7 +168,7 @@ class WallModel:
         for done in range(0, mostSteps, 100):
             self._advance(100)
             e = self.energy.balance()
-            elastic = e["elastic_compression"] + e["elastic_shear"] + e["elastic_tension"]
+            elastic = e["elastic_compression"] + e["elastic_shear"] + e["elastic_tension"] + e["elastic_units"]
             quiet = quiet + 1 if abs(e["kinetic"]) < 1e-9 * elastic else 0
             self.progress.show(stage, done / mostSteps, f"kinetic/elastic {abs(e['kinetic']) / elastic:.1e}", self._rate(), quiet == 3)
             if quiet == 3:
@@ -178,6 +195,8 @@ class WallModel:
         peak = peakAt = nextFrame = 0.0
         self.origin = self._topDisplacement()
         values = self._record()
+        if self.zones:
+            self.zones.dampingKind = args.damping_kind or "combined"
         began = O.time
         while values["displacement_mm"] < args.until:
             if self.vtk and values["displacement_mm"] >= nextFrame:

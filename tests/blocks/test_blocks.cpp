@@ -135,7 +135,18 @@ TEST_CASE("a row of four subcontacts stands at the middle of the quarters") {
     for (int i = 0; i < 4; ++i) {
         CHECK((row[i].centre - Point(0.11 * (i + 0.5) / 4, 0.051, 0.081)).norm() < 1e-12);
         CHECK(row[i].area == doctest::Approx(0.11 * 0.102 / 4));
-        CHECK(row[i].cell.size() == 4);
+    }
+}
+
+TEST_CASE("cells nearest to the subcontacts of a face are the cells of its grid") {
+    const auto contact = coincidentFaces(box(Point::Zero(), brick), box({0, 0, 0.081}, brick));
+    REQUIRE(contact);
+    std::vector<Point> centres;
+    for (const auto& s : subdivide(contact->polygon, contact->normal, Point::UnitX(), 4, 2))
+        centres.push_back(s.centre);
+    for (const auto& cell : nearestCells(contact->polygon, centres)) {
+        CHECK(cell.size() == 4);
+        CHECK(area(cell, contact->normal) == doctest::Approx(0.22 * 0.102 / 8));
     }
 }
 

@@ -165,16 +165,22 @@ py::dict MasonryEnergy::balance() {
             stored.compression += geom.points[i].area * e.compression;
         }
     });
-    double work = external;
+    double work = external, falls = gravity, moving = kinetic, drag = damping, inUnits = 0;
     for (const auto& engine : running.engines)
-        if (const auto* load = dynamic_cast<MasonryLoad*>(engine.get())) work += load->work;
-    const double in = work + gravity;
-    const double out = kinetic + damping + stored.tension + stored.shear + stored.compression + lost.sum();
-    const double size = std::max(std::abs(work) + std::abs(gravity), std::abs(out));
+        if (const auto* load = dynamic_cast<MasonryLoad*>(engine.get()))
+            work += load->work;
+        else if (const auto* zones = dynamic_cast<MasonryZones*>(engine.get())) {
+            falls += zones->gravityWork, moving += zones->kinetic, drag += zones->dampingWork;
+            inUnits += zones->elastic;
+        }
+    const double in = work + falls;
+    const double out = moving + drag + inUnits + stored.tension + stored.shear + stored.compression + lost.sum();
+    const double size = std::max(std::abs(work) + std::abs(falls), std::abs(out));
     const double error = size > 0 ? (in - out) / size : 0;
     largestError = std::max(largestError, std::abs(error));
     py::dict all;
-    all["external"] = work, all["gravity"] = gravity, all["kinetic"] = kinetic, all["damping"] = damping;
+    all["external"] = work, all["gravity"] = falls, all["kinetic"] = moving, all["damping"] = drag;
+    all["elastic_units"] = inUnits;
     all["elastic_tension"] = stored.tension, all["elastic_shear"] = stored.shear;
     all["elastic_compression"] = stored.compression;
     all["dissipated_tension"] = lost[0], all["dissipated_shear"] = lost[1], all["dissipated_compression"] = lost[2];
@@ -183,58 +189,121 @@ py::dict MasonryEnergy::balance() {
 }
 
 // Bound of Irons and Treharne: the highest frequency of the whole is at most the highest of any element that carries
-// its share of the masses. A joint is an element; a body's mass is shared out degree by degree in proportion to the
-// joints' stiffnesses, which makes the bound exact for a regular chain.
+// its share of the masses. Elements are the joints between rigid units, the single points of joints at deformable
+// units, and zones. A mass is shared out degree by degree in proportion to the elements' stiffnesses, which makes the
+// bound exact for a regular chain.
 py::tuple criticalTimeStep() {
     const auto& scene = *Singleton<yade::Omega>::instance().getScene();
-    using Vector12 = Eigen::Matrix<double, 12, 1>;
-    using Matrix12 = Eigen::Matrix<double, 12, 12>;
     struct Element {
+        std::vector<int> degrees;
+        Eigen::MatrixXd stiffness;
         int ids[2];
-        Matrix12 stiffness;
     };
     std::vector<Element> elements;
-    std::map<int, Eigen::Matrix<double, 6, 1>> share; // sum of the diagonals of a body's joints
+    std::vector<double> masses, share; // per degree: mass (infinite where blocked), sum of the elements' diagonals
+    std::map<int, int> firstOfBody;
+    std::map<const MasonryZones*, int> firstOfZones;
+    const auto freedom = [&](double mass) {
+        masses.push_back(mass);
+        share.push_back(0);
+    };
+    const auto degreesOfBody = [&](int id) {
+        const auto [at, fresh] = firstOfBody.emplace(id, int(masses.size()));
+        const State& s = *scene.bodies->body[id]->state;
+        for (int i = 0; fresh && i < 6; ++i)
+            freedom(blocked(s, i) ? HUGE_VAL : i < 3 ? s.mass : s.inertia[i - 3]);
+        return at->second;
+    };
+    const auto degreesOfZones = [&](MasonryZones& zones) {
+        const auto [at, fresh] = firstOfZones.emplace(&zones, int(masses.size()));
+        if (fresh)
+            for (const auto& unit : zones.units())
+                for (double mass : unit.elasticity->masses())
+                    for (int d = 0; d < 3; ++d)
+                        freedom(zones.holds(d) ? HUGE_VAL : mass);
+        return at->second;
+    };
+    const auto add = [&](Element e) {
+        for (std::size_t i = 0; i < e.degrees.size(); ++i)
+            share[e.degrees[i]] += e.stiffness(i, i);
+        elements.push_back(std::move(e));
+    };
+
     eachJoint(scene, [&](const yade::Interaction& interaction, const MasonryJointGeom& geom,
                          const MasonryJointPhys& phys) {
-        Element e{{interaction.id1, interaction.id2}, Matrix12::Zero()};
-        const State* states[2];
-        for (int side = 0; side < 2; ++side)
-            states[side] = scene.bodies->body[e.ids[side]]->state.get();
-        const Vector3r directions[3] = {geom.normal, geom.tangent, geom.normal.cross(geom.tangent)};
-        for (std::size_t i = 0; i < geom.points.size(); ++i)
-            for (int d = 0; d < 3; ++d) {
-                Vector12 b;
-                for (int side = 0; side < 2; ++side) {
-                    Vector3r turn =
-                        (geom.centre(geom.points[i]) - (side ? geom.position2 : geom.position1)).cross(directions[d]);
-                    if (!rotationRestrained(*states[side])) turn = states[side]->ori.conjugate() * turn;
-                    b.segment<3>(6 * side) = (side ? 1 : -1) * directions[d];
-                    b.segment<3>(6 * side + 3) = (side ? 1 : -1) * turn;
+        const int ids[2] = {interaction.id1, interaction.id2};
+        const std::vector<Attachment>* attachments[2] = {&geom.attachments1, &geom.attachments2};
+        const Vector3r centres[2] = {geom.position1, geom.position2};
+        const Matrix3r axes = geom.referenceAxes();
+        Element whole; // of a joint between rigid units
+        for (std::size_t p = 0; p < geom.points.size(); ++p) {
+            Element e;
+            std::vector<Vector3r> rows; // of the jump: its derivative by each degree
+            for (int side = 0; side < 2; ++side) {
+                const double sign = side ? 1 : -1;
+                if (!attachments[side]->empty()) {
+                    const auto& a = (*attachments[side])[p];
+                    const int first = degreesOfZones(*geom.zones);
+                    for (int n = 0; n < 3; ++n)
+                        for (int d = 0; a.weights[n] > 0 && d < 3; ++d) {
+                            e.degrees.push_back(first + 3 * a.nodes[n] + d);
+                            rows.push_back(sign * a.weights[n] * axes.row(d).transpose());
+                        }
+                    continue;
                 }
-                e.stiffness +=
-                    geom.points[i].area * (d == 0 ? phys.normalStiffness : phys.shearStiffness) * b * b.transpose();
+                const int first = degreesOfBody(ids[side]);
+                const State& s = *scene.bodies->body[ids[side]]->state;
+                const Matrix3r own = rotationRestrained(s) ? Matrix3r(Matrix3r::Identity()) : s.ori.toRotationMatrix();
+                for (int d = 0; d < 6; ++d) {
+                    e.degrees.push_back(first + d);
+                    const Vector3r arm = geom.centre(geom.points[p]) - centres[side];
+                    const Vector3r move = d < 3 ? Vector3r(Vector3r::Unit(d)) : Vector3r(own.col(d - 3).cross(arm));
+                    rows.push_back(sign * (axes.transpose() * move));
+                }
             }
-        for (int side = 0; side < 2; ++side) {
-            auto& sum = share.emplace(e.ids[side], Eigen::Matrix<double, 6, 1>::Zero()).first->second;
-            sum += e.stiffness.diagonal().segment<6>(6 * side);
+            e.ids[0] = ids[0], e.ids[1] = ids[1];
+            e.stiffness.resize(rows.size(), rows.size());
+            const Vector3r k =
+                geom.points[p].area * Vector3r(phys.normalStiffness, phys.shearStiffness, phys.shearStiffness);
+            for (std::size_t i = 0; i < rows.size(); ++i)
+                for (std::size_t j = 0; j < rows.size(); ++j)
+                    e.stiffness(i, j) = rows[i].dot(k.cwiseProduct(rows[j]));
+            if (geom.zones)
+                add(std::move(e));
+            else if (whole.degrees.empty())
+                whole = std::move(e);
+            else
+                whole.stiffness += e.stiffness;
         }
-        elements.push_back(e);
+        if (!whole.degrees.empty()) add(std::move(whole));
     });
+    for (const auto& engine : scene.engines)
+        if (auto* zones = dynamic_cast<MasonryZones*>(engine.get()))
+            for (const auto& unit : zones->units()) {
+                const int first = degreesOfZones(*zones) + 3 * unit.firstNode;
+                const auto& mesh = unit.elasticity->mesh();
+                for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
+                    Element e;
+                    for (int node : mesh.zones[z])
+                        for (int d = 0; d < 3; ++d)
+                            e.degrees.push_back(first + 3 * node + d);
+                    e.stiffness = unit.elasticity->stiffness(int(z));
+                    e.ids[0] = e.ids[1] = unit.body;
+                    add(std::move(e));
+                }
+            }
+
     double highest = 0;
     int worst[2] = {-1, -1};
-    for (auto& e : elements) {
-        Vector12 scale; // 1/sqrt of the element's share of the mass; zero where the body cannot move
-        for (int side = 0; side < 2; ++side) {
-            const State& s = *scene.bodies->body[e.ids[side]]->state;
-            for (int i = 0; i < 6; ++i) {
-                const double part = e.stiffness(6 * side + i, 6 * side + i) / share[e.ids[side]][i];
-                const double mass = i < 3 ? s.mass : s.inertia[i - 3];
-                scale[6 * side + i] = blocked(s, i) || !(part > 0) ? 0 : 1 / std::sqrt(part * mass);
-            }
+    for (const auto& e : elements) {
+        Eigen::VectorXd scale(e.degrees.size()); // 1/sqrt of the element's share of the mass; zero where nothing moves
+        for (std::size_t i = 0; i < e.degrees.size(); ++i) {
+            const double part = e.stiffness(i, i) / share[e.degrees[i]];
+            scale[i] = part > 0 ? 1 / std::sqrt(part * masses[e.degrees[i]]) : 0;
         }
-        const Matrix12 dynamic = scale.asDiagonal() * e.stiffness * scale.asDiagonal();
-        const double value = Eigen::SelfAdjointEigenSolver<Matrix12>(dynamic, Eigen::EigenvaluesOnly).eigenvalues()[11];
+        const Eigen::MatrixXd dynamic = scale.asDiagonal() * e.stiffness * scale.asDiagonal();
+        const double value =
+            Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dynamic, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
         if (value > highest) highest = value, worst[0] = e.ids[0], worst[1] = e.ids[1];
     }
     return py::make_tuple(2 / std::sqrt(highest), worst[0], worst[1]);

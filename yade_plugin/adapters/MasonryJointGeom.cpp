@@ -10,14 +10,13 @@ namespace masonry {
 void MasonryJointGeom::define(const FaceContact& face, const Vector3r& alongDirection, int columns, int rows,
                               const yade::State& state1, const yade::State& state2) {
     normal = face.normal, tangent = alongDirection;
-    along = columns, across = rows;
     polygon = face.polygon;
     position1 = state1.pos, position2 = state2.pos;
     orientation1 = state1.ori, orientation2 = state2.ori;
     const Quaternionr reference(referenceAxes());
     frame1 = orientation1.conjugate() * reference, frame2 = orientation2.conjugate() * reference;
     points.clear();
-    for (const auto& cell : cells()) {
+    for (const auto& cell : subdivide(polygon, normal, tangent, columns, rows)) {
         JointPoint point;
         point.offset = referenceAxes().transpose() * (cell.centre - position1);
         point.area = cell.area;
@@ -28,7 +27,12 @@ void MasonryJointGeom::define(const FaceContact& face, const Vector3r& alongDire
     distance2 = (position2 - polygon[0]).dot(normal);
 }
 
-std::vector<Subcontact> MasonryJointGeom::cells() const { return subdivide(polygon, normal, tangent, along, across); }
+std::vector<Polygon> MasonryJointGeom::cells() const {
+    std::vector<Point> around;
+    for (const auto& point : points)
+        around.push_back(centre(point));
+    return nearestCells(polygon, around);
+}
 
 // Each body carries the joint's axes along; the mean of both is the frame of the joint, and `half` turns it to body 2's
 // place as its inverse does to body 1's. In that frame a point at offset a from body 1's centre shows the jump
@@ -36,6 +40,7 @@ std::vector<Subcontact> MasonryJointGeom::cells() const { return subdivide(polyg
 // for the unit quaternion (w, v). Forces act at the middle of the jump and the axes turn with the mean rotation:
 // together this keeps both angular momentum and the power of the joint.
 void MasonryJointGeom::update(const yade::State& state1, const yade::State& state2) {
+    if (zones) return updateDeformable(state1, state2);
     const Quaternionr by1 = state1.ori * frame1;
     Quaternionr by2 = state2.ori * frame2;
     if (by1.dot(by2) < 0) by2.coeffs() *= -1; // a quaternion and its negative are the same rotation
@@ -56,15 +61,82 @@ void MasonryJointGeom::update(const yade::State& state1, const yade::State& stat
     }
 }
 
-ConvexBlock blockOf(yade::Polyhedra& shape, const yade::State& state) {
+// The same frame, with each side's displacement from its nodes or, where it is rigid, from its body.
+void MasonryJointGeom::updateDeformable(const yade::State& state1, const yade::State& state2) {
+    const Quaternionr by1 = state1.ori * frame1;
+    Quaternionr by2 = state2.ori * frame2;
+    if (by1.dot(by2) < 0) by2.coeffs() *= -1;
+    axes = Quaternionr((by1.coeffs() + by2.coeffs()).eval()).normalized().toRotationMatrix();
+    between = state2.pos - state1.pos;
+    const auto moved = [](const yade::State& s, const Vector3r& position, const Quaternionr& orientation,
+                          const Vector3r& point) {
+        return Vector3r(s.pos + s.ori * (orientation.conjugate() * (point - position)) - point);
+    };
+    const yade::Matrix3r reference = referenceAxes();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        auto& point = points[i];
+        const Vector3r place = position1 + reference * point.offset;
+        const Vector3r u1 = attachments1.empty() ? moved(state1, position1, orientation1, place)
+                                                 : zones->displacementAt(attachments1[i]);
+        const Vector3r u2 = attachments2.empty() ? moved(state2, position2, orientation2, place)
+                                                 : zones->displacementAt(attachments2[i]);
+        const Vector3r gap = u2 - u1, jump = axes.transpose() * gap, step = jump - point.jump;
+        point.jump = jump;
+        point.increment = {step[0], {step[1], step[2]}};
+        point.arm = axes.transpose() * (place + u1 + 0.5 * gap - state1.pos);
+    }
+}
+
+void MasonryJointGeom::attach(const shared_ptr<MasonryZones>& all, int body1, int body2) {
+    const auto *unit1 = all->unitOf(body1), *unit2 = all->unitOf(body2);
+    if (!unit1 && !unit2) return;
+    zones = all;
+    using Nodes = std::vector<std::pair<int, double>>;
+    const Nodes nodes1 = unit1 ? all->nodesOn(*unit1, polygon, normal) : Nodes{};
+    const Nodes nodes2 = unit2 ? all->nodesOn(*unit2, polygon, normal) : Nodes{};
+    const double close = 1e-3 * (polygon[2] - polygon[0]).norm();
+    std::vector<JointPoint> atNodes;
+    std::vector<Attachment> side1, side2;
+    const auto& lead = unit1 ? nodes1 : nodes2; // node to node, areas the mean of both sides
+    for (const auto& [node, part] : lead) {
+        const Vector3r place = all->reference(unit1 ? *unit1 : *unit2, node);
+        JointPoint point;
+        point.offset = referenceAxes().transpose() * (place - position1);
+        point.area = part;
+        Attachment mine;
+        mine.nodes.fill(node);
+        (unit1 ? side1 : side2).push_back(mine);
+        if (unit1 && unit2) {
+            const auto twin = std::find_if(nodes2.begin(), nodes2.end(), [&](const auto& other) {
+                return (all->reference(*unit2, other.first) - place).norm() < close;
+            });
+            if (twin == nodes2.end()) break;
+            point.area = 0.5 * (part + twin->second);
+            mine.nodes.fill(twin->first);
+            side2.push_back(mine);
+        }
+        atNodes.push_back(point);
+    }
+    const bool matching =
+        !lead.empty() && atNodes.size() == lead.size() && (!unit1 || !unit2 || nodes1.size() == nodes2.size());
+    if (matching)
+        points = atNodes, attachments1 = side1, attachments2 = side2;
+    else
+        for (const auto& point : points) {
+            if (unit1) attachments1.push_back(all->attach(*unit1, centre(point)));
+            if (unit2) attachments2.push_back(all->attach(*unit2, centre(point)));
+        }
+}
+
+ConvexBlock blockOf(yade::Polyhedra& shape, const Vector3r& position, const Quaternionr& orientation) {
     ConvexBlock block;
     const auto corners = shape.GetSurfaceTriangulation();
     for (const auto& v : shape.v)
-        block.vertices.push_back(state.pos + state.ori * v);
+        block.vertices.push_back(position + orientation * v);
     for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
         std::array<int, 3> t{corners[i], corners[i + 1], corners[i + 2]};
         const auto &a = block.vertices[t[0]], &b = block.vertices[t[1]], &c = block.vertices[t[2]];
-        if ((b - a).cross(c - a).dot(a - state.pos) < 0) std::swap(t[1], t[2]); // outward from the centre
+        if ((b - a).cross(c - a).dot(a - position) < 0) std::swap(t[1], t[2]); // outward from the centre
         block.triangles.push_back(t);
     }
     return block;
@@ -88,8 +160,9 @@ bool Ig2_Polyhedra_Polyhedra_MasonryJointGeom::go(const shared_ptr<yade::Shape>&
                                                   const yade::State& state2, const Vector3r&, const bool& force,
                                                   const shared_ptr<yade::Interaction>& interaction) {
     if (!interaction->geom) {
-        const auto face = coincidentFaces(blockOf(static_cast<yade::Polyhedra&>(*shape1), state1),
-                                          blockOf(static_cast<yade::Polyhedra&>(*shape2), state2), tolerance);
+        const auto face =
+            coincidentFaces(blockOf(static_cast<yade::Polyhedra&>(*shape1), state1.pos, state1.ori),
+                            blockOf(static_cast<yade::Polyhedra&>(*shape2), state2.pos, state2.ori), tolerance);
         if (!face) {
             if (!force) return false;
             throw std::invalid_argument(
@@ -101,6 +174,7 @@ bool Ig2_Polyhedra_Polyhedra_MasonryJointGeom::go(const shared_ptr<yade::Shape>&
         const Vector3r along = given ? Vector3r(across.cross(face->normal).normalized()) : longestEdge(face->polygon);
         const shared_ptr<MasonryJointGeom> geom(new MasonryJointGeom);
         geom->define(*face, along, subcontacts, rows, state1, state2);
+        if (zones) geom->attach(zones, interaction->id1, interaction->id2);
         interaction->geom = geom;
     }
     static_cast<MasonryJointGeom&>(*interaction->geom).update(state1, state2);
@@ -117,7 +191,7 @@ py::list touchingPairs(double tolerance) {
     for (const auto& body : Singleton<yade::Omega>::instance().getScene()->bodies->body) {
         auto* shape = body ? dynamic_cast<yade::Polyhedra*>(body->shape.get()) : nullptr;
         if (!shape) continue;
-        Candidate c{body->id, blockOf(*shape, *body->state), Vector3r::Constant(HUGE_VAL),
+        Candidate c{body->id, blockOf(*shape, body->state->pos, body->state->ori), Vector3r::Constant(HUGE_VAL),
                     Vector3r::Constant(-HUGE_VAL)};
         for (const auto& v : c.block.vertices)
             c.low = c.low.cwiseMin(v), c.high = c.high.cwiseMax(v);

@@ -1,5 +1,6 @@
 #pragma once
 #include "Adapter.hpp"
+#include "MasonryZones.hpp"
 #include "blocks/FaceContact.hpp"
 
 namespace masonry {
@@ -9,9 +10,10 @@ namespace masonry {
 struct JointPoint {
     Vector3r offset = Vector3r::Zero(); // from the centre of body 1, reference
     double area = 0;
-    Vector3r jump = Vector3r::Zero(); // since the reference state
-    Jump increment;                   // scratch of a step
-    Vector3r arm = Vector3r::Zero();                     // scratch: from the centre of body 1 to the middle of the jump
+    Vector3r jump = Vector3r::Zero();  // since the reference state
+    Jump increment;                    // scratch of a step
+    Vector3r arm = Vector3r::Zero();   // scratch: from the centre of body 1 to the middle of the jump
+    Vector3r force = Vector3r::Zero(); // scratch: on side 1, global axes; kept for deformable units only
 };
 template <> struct IsNumbers<JointPoint> : std::true_type {};
 template <class F> void numbers(JointPoint& p, F&& each) {
@@ -30,7 +32,8 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
     Vector3r normal = Vector3r::UnitX(), tangent = Vector3r::UnitY(); // reference, global axes; normal from 1 to 2
     std::vector<Vector3r> polygon;                                    // reference, global axes
     std::vector<JointPoint> points;
-    int along = 1, across = 1;
+    shared_ptr<MasonryZones> zones;                     // where a side is deformable
+    std::vector<Attachment> attachments1, attachments2; // of the points; empty at a rigid side
     double distance1 = 0, distance2 = 0;
     Vector3r position1 = Vector3r::Zero(), position2 = Vector3r::Zero();
     Quaternionr orientation1 = Quaternionr::Identity(), orientation2 = Quaternionr::Identity();
@@ -43,8 +46,6 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
         visit("tangent", &G::tangent,
               "First in-plane direction in the reference state; the second is normal × tangent.", ReadOnly);
         visit("polygon", &G::polygon, "Corners of the joint polygon in the reference state [m].", ReadOnly);
-        visit("along", &G::along, "Divisions of the polygon along the tangent [-].", ReadOnly);
-        visit("across", &G::across, "Divisions across the tangent [-].", ReadOnly);
         visit("distance1", &G::distance1, "Distance of body 1's centre from the joint plane [m].", ReadOnly);
         visit("distance2", &G::distance2, "Distance of body 2's centre from the joint plane [m].", ReadOnly);
         visit("points", &G::points, "", Hidden);
@@ -53,6 +54,9 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
         visit("orientation1", &G::orientation1, "", Hidden);
         visit("orientation2", &G::orientation2, "", Hidden);
         visit("centreToCentre", &G::centreToCentre, "", Hidden);
+        visit("zones", &G::zones, "", Hidden);
+        visit("attachments1", &G::attachments1, "", Hidden);
+        visit("attachments2", &G::attachments2, "", Hidden);
         visit("frame1", &G::frame1, "", Hidden);
         visit("frame2", &G::frame2, "", Hidden);
     }
@@ -75,6 +79,8 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
     // Joint in the reference state, from the polygon that two blocks share.
     void define(const FaceContact&, const Vector3r& along, int rows, int columns, const yade::State&,
                 const yade::State&);
+    // Points at the nodes of deformable sides where they match, else the grid's points hung on their surfaces.
+    void attach(const shared_ptr<MasonryZones>&, int body1, int body2);
     // Jumps, their increments and the arms of the current step.
     void update(const yade::State& state1, const yade::State& state2);
     // Reference axes of the joint as columns, and the centre of a subcontact, in global axes.
@@ -84,10 +90,11 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
         return columns;
     }
     Vector3r centre(const JointPoint& point) const { return position1 + referenceAxes() * point.offset; }
-    // The subcontact cells as polygons in the reference state, for pictures.
-    std::vector<Subcontact> cells() const;
+    // A polygon around every subcontact in the reference state, for pictures.
+    std::vector<Polygon> cells() const;
 
 private:
+    void updateDeformable(const yade::State& state1, const yade::State& state2);
     template <class F> py::list perPoint(F&& value) const {
         py::list all;
         for (const auto& point : points)
@@ -119,6 +126,7 @@ public:
     int rows = 1;
     Vector3r rowDirection = Vector3r::Zero();
     double tolerance = 1e-4;
+    shared_ptr<MasonryZones> zones;
 
     template <class Visit> static void attributes(Visit&& visit) {
         using F = Ig2_Polyhedra_Polyhedra_MasonryJointGeom;
@@ -131,6 +139,7 @@ public:
         visit("tolerance", &F::tolerance,
               "Largest gap or overlap of coincident faces, relative to the size of the smaller block [-], above 0, at "
               "most 0.01.");
+        visit("zones", &F::zones, "MasonryZones of the deformable units; None: all units are rigid.");
     }
 
     std::string get2DFunctorType1() const override { return "Polyhedra"; }
@@ -144,8 +153,8 @@ public:
     void postLoad();
 };
 
-// The block that a body's Polyhedra stands for, in global axes.
-ConvexBlock blockOf(yade::Polyhedra&, const yade::State&);
+// The block that a body's Polyhedra stands for at a place, in global axes.
+ConvexBlock blockOf(yade::Polyhedra&, const Vector3r& position, const Quaternionr& orientation);
 
 // Pairs of bodies whose Polyhedra share a face, each with the lower id first.
 py::list touchingPairs(double tolerance);

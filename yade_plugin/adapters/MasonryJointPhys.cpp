@@ -26,7 +26,9 @@ void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::assign(const MasonryMat& mat1, 
                                                         yade::Interaction& interaction,
                                                         const shared_ptr<MasonryJoint>& joint) const {
     const auto& geom = geometryOf(interaction);
-    const double d1 = rigidUnits ? geom.distance1 : 0, d2 = rigidUnits ? geom.distance2 : 0;
+    // a deformable side shows its elasticity itself
+    const double d1 = geom.attachments1.empty() ? geom.distance1 : 0,
+                 d2 = geom.attachments2.empty() ? geom.distance2 : 0;
     const auto k = inSeriesWithUnits(*joint, d1 / mat1.young + d2 / mat2.young,
                                      d1 / mat1.shearModulus() + d2 / mat2.shearModulus());
     const shared_ptr<MasonryJointPhys> phys(new MasonryJointPhys);
@@ -69,28 +71,33 @@ void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::go(const shared_ptr<yade::Mater
 bool Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening::go(shared_ptr<yade::IGeom>& ig,
                                                                    shared_ptr<yade::IPhys>& ip,
                                                                    yade::Interaction* interaction) {
-    const auto& geom = static_cast<MasonryJointGeom&>(*ig);
+    auto& geom = static_cast<MasonryJointGeom&>(*ig);
     auto& phys = static_cast<MasonryJointPhys&>(*ip);
     const JointLaw& law = phys.law();
     const auto k = phys.stiffness();
     Vector3r force = Vector3r::Zero(), torque = Vector3r::Zero(), lost = Vector3r::Zero();
     for (std::size_t i = 0; i < phys.states.size(); ++i) {
         auto& s = phys.states[i];
-        const auto& point = geom.points[i];
+        auto& point = geom.points[i];
         const auto spent = law.advance(k, s, point.increment);
         // The one place where stress meets area, and tension meets the host's forces: an open joint pulls body 1 on.
         const Vector3r pull = Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) * point.area;
         force += pull;
+        if (geom.zones) point.force = geom.axes * pull; // MasonryZones takes it to the nodes
         torque += point.arm.cross(pull);
         lost += point.area * Vector3r(spent.tension, spent.shear, spent.compression);
     }
     phys.dissipated += lost;
     force = geom.axes * force, torque = geom.axes * torque;
     auto& forces = scene->forces();
-    forces.addForce(interaction->id1, force);
-    forces.addTorque(interaction->id1, torque);
-    forces.addForce(interaction->id2, -force);
-    forces.addTorque(interaction->id2, geom.between.cross(force) - torque); // its arms are shorter by `between`
+    if (geom.attachments1.empty()) {
+        forces.addForce(interaction->id1, force);
+        forces.addTorque(interaction->id1, torque);
+    }
+    if (geom.attachments2.empty()) {
+        forces.addForce(interaction->id2, -force);
+        forces.addTorque(interaction->id2, geom.between.cross(force) - torque); // its arms are shorter by `between`
+    }
     return true;
 }
 

@@ -84,13 +84,10 @@ public:
                                        "user's: assign(interaction, joint).";
 
     std::vector<shared_ptr<MasonryJoint>> joints;
-    bool rigidUnits = true;
 
     template <class Visit> static void attributes(Visit&& visit) {
         using F = Ip2_MasonryMat_MasonryMat_MasonryJointPhys;
         visit("joints", &F::joints, "MasonryJoint objects; the first that fits a pair is taken.");
-        visit("rigidUnits", &F::rigidUnits,
-              "Whether the elasticity of the units is lumped into the joints, in series (law.md §7).");
     }
 
     template <class PyClass> static void extras(PyClass& cls) {

@@ -1,8 +1,10 @@
 #include "MasonryVtkRecorder.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <fstream>
+#include <set>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
@@ -30,7 +32,7 @@ template <class Array> Array* column(vtkDataSetAttributes* data, const char* nam
     return array; // owned by `data`
 }
 
-// Displacement of a point given in the reference state, moved with a body.
+// Displacement of a point given in the reference state, moved with a body; that of a deformable unit is its mean.
 Vector3r moved(const yade::State& s, const Vector3r& position, const Quaternionr& orientation, const Vector3r& point) {
     return s.pos + s.ori * orientation.conjugate() * (point - position) - point;
 }
@@ -66,7 +68,38 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
     auto* displacement = column<vtkDoubleArray>(grid->GetPointData(), "displacement", 3);
     auto* velocity = column<vtkDoubleArray>(grid->GetPointData(), "velocity", 3);
     auto* ids = column<vtkIntArray>(grid->GetCellData(), "body");
+    auto* stress = column<vtkDoubleArray>(grid->GetCellData(), "stress", 6);
+    auto* principal = column<vtkDoubleArray>(grid->GetCellData(), "principal_stress", 3);
+    const double none[6] = {};
+    std::set<int> deformable;
+    for (const auto& engine : scene->engines) {
+        auto* zones = dynamic_cast<MasonryZones*>(engine.get());
+        for (const auto& unit : zones ? zones->units() : std::vector<MasonryZones::Unit>{}) {
+            deformable.insert(unit.body);
+            const auto& mesh = unit.elasticity->mesh();
+            const auto first = points->GetNumberOfPoints();
+            const auto* u = &zones->displacements[unit.firstNode];
+            for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+                points->InsertNextPoint(Vector3r(unit.centre + mesh.nodes[n]).data());
+                displacement->InsertNextTuple(u[n].data());
+                velocity->InsertNextTuple(zones->velocities[unit.firstNode + n].data());
+            }
+            const Matrix3 rotation = unit.elasticity->rotation(u);
+            for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
+                vtkIdType corners[4];
+                for (int i = 0; i < 4; ++i)
+                    corners[i] = first + mesh.zones[z][i];
+                grid->InsertNextCell(VTK_TETRA, 4, corners);
+                ids->InsertNextValue(unit.body);
+                const Matrix3 s = unit.elasticity->stress(int(z), u, rotation);
+                const double six[6] = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)};
+                stress->InsertNextTuple(six);
+                principal->InsertNextTuple(Eigen::SelfAdjointEigenSolver<Matrix3>(s).eigenvalues().eval().data());
+            }
+        }
+    }
     for (const auto& body : scene->bodies->body) {
+        if (body && deformable.count(body->id)) continue;
         auto* shape = body ? dynamic_cast<yade::Polyhedra*>(body->shape.get()) : nullptr;
         if (!shape) continue;
         const auto& s = *body->state;
@@ -91,6 +124,8 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
         }
         grid->InsertNextCell(VTK_POLYHEDRON, faces);
         ids->InsertNextValue(body->id);
+        stress->InsertNextTuple(none);
+        principal->InsertNextTuple(none);
     }
     grid->SetPoints(points);
     write<vtkXMLUnstructuredGridWriter>(path, grid.Get());
@@ -129,8 +164,8 @@ void MasonryVtkRecorder::writeJoints(const std::string& path) {
         const Vector3r side = geom->normal.cross(geom->tangent);
         const auto parts = geom->cells();
         for (std::size_t i = 0; i < parts.size(); ++i) {
-            cells->InsertNextCell(int(parts[i].cell.size()));
-            for (const auto& corner : parts[i].cell) {
+            cells->InsertNextCell(int(parts[i].size()));
+            for (const auto& corner : parts[i]) {
                 cells->InsertCellPoint(points->InsertNextPoint(corner.data()));
                 displacement->InsertNextTuple(Vector3r(0.5 * (moved(s1, geom->position1, geom->orientation1, corner) +
                                                               moved(s2, geom->position2, geom->orientation2, corner)))

@@ -9,7 +9,9 @@ public:
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
         "Writes blocks.pvd and joints.pvd with their series for ParaView, a frame at every action: units in their "
-        "reference place with displacement [m] and velocity [m/s]; subcontacts as cells with opening and slip [m], "
+        "reference place with displacement [m] and velocity [m/s], deformable ones as zones with stress (xx, yy, zz, "
+        "xy, "
+        "yz, xz) and principal stresses [Pa]; subcontacts as cells with opening and slip [m], "
         "normal and shear stress [Pa], the three damages [-], regime (0 elastic, 1 opening, 2 slipping, 3 crushing), "
         "kind and displacement [m]. Kinds are numbered in the order of `kinds`. Call it, or give it a period.";
 

@@ -6,7 +6,8 @@
 
 namespace masonry {
 
-BlockElasticity::BlockElasticity(BlockMesh mesh, double E, double nu, double density) : mesh_(std::move(mesh)) {
+BlockElasticity::BlockElasticity(BlockMesh mesh, double E, double nu, double density, bool planeStress)
+    : mesh_(std::move(mesh)) {
     if (!(E > 0) || !std::isfinite(E))
         throw std::invalid_argument("Young's modulus must be a finite number above 0 Pa");
     if (!(nu > -1 && nu < 0.5)) throw std::invalid_argument("Poisson's ratio must be above -1 and below 0.5");
@@ -14,6 +15,7 @@ BlockElasticity::BlockElasticity(BlockMesh mesh, double E, double nu, double den
         throw std::invalid_argument("density must be a finite number above 0 kg/m³");
     lambda_ = E * nu / ((1 + nu) * (1 - 2 * nu));
     shear_ = E / (2 * (1 + nu));
+    if (planeStress) lambda_ = 2 * lambda_ * shear_ / (lambda_ + 2 * shear_);
     masses_.assign(mesh_.nodes.size(), 0);
     meanGradients_.assign(mesh_.nodes.size(), Point::Zero());
     double whole = 0;

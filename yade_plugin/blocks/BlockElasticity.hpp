@@ -10,7 +10,8 @@ using Matrix3 = Eigen::Matrix3d;
 class BlockElasticity {
 public:
     // Throws std::invalid_argument with what is wrong with the constants (E > 0, -1 < nu < 0.5, density > 0).
-    BlockElasticity(BlockMesh mesh, double youngModulus, double poissonRatio, double density);
+    // `planeStress` is for nodes held in one direction: it keeps that direction free of stress, not of strain.
+    BlockElasticity(BlockMesh mesh, double youngModulus, double poissonRatio, double density, bool planeStress = false);
 
     const BlockMesh& mesh() const { return mesh_; }
     const std::vector<double>& masses() const { return masses_; } // [kg] of the nodes

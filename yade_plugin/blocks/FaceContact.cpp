@@ -138,8 +138,19 @@ std::vector<Subcontact> subdivide(const Polygon& polygon, const Point& normal, c
             }
             if (cell.size() < 3) continue;
             const double size = area(cell, normal);
-            if (size > smallest) cells.push_back({centroid(cell, normal), size, cell});
+            if (size > smallest) cells.push_back({centroid(cell, normal), size});
         }
+    return cells;
+}
+
+std::vector<Polygon> nearestCells(const Polygon& polygon, const std::vector<Point>& points) {
+    std::vector<Polygon> cells;
+    for (const auto& mine : points) {
+        Polygon cell = polygon;
+        for (const auto& other : points)
+            if (&other != &mine && cell.size() > 2) cell = cut(cell, 0.5 * (mine + other), mine - other);
+        cells.push_back(cell);
+    }
     return cells;
 }
 

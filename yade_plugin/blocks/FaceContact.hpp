@@ -31,7 +31,6 @@ std::optional<FaceContact> coincidentFaces(const ConvexBlock& one, const ConvexB
 struct Subcontact {
     Point centre;
     double area; // [m²]
-    Polygon cell;
 };
 
 double area(const Polygon&, const Point& normal);
@@ -40,6 +39,9 @@ Point centroid(const Polygon&, const Point& normal);
 // A grid over the polygon's extent, `along` cells in the direction of that unit vector and `across` cells beside it,
 // cut by the polygon: the areas add up to the polygon's.
 std::vector<Subcontact> subdivide(const Polygon&, const Point& normal, const Point& direction, int along, int across);
+
+// The part of a polygon nearest to each of the given points, for pictures.
+std::vector<Polygon> nearestCells(const Polygon&, const std::vector<Point>& points);
 
 // Direction of the longest edge of a polygon, the default for `subdivide`.
 Point longestEdge(const Polygon&);

@@ -1,0 +1,196 @@
+#include "MasonryZones.hpp"
+#include "MasonryJointGeom.hpp"
+#include "MasonryMat.hpp"
+#include "law/Text.hpp"
+#include <algorithm>
+
+BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryZones)
+
+namespace masonry {
+
+void MasonryZones::postLoad() {
+    std::vector<std::string> wrong;
+    if (divisions.size() != 3) wrong.push_back("divisions must be three whole numbers");
+    for (int n : divisions)
+        if (n < 1 || n > 100) wrong.push_back("divisions " + std::to_string(n) + " must be 1 to 100");
+    if (!(damping >= 0 && damping <= 0.99)) wrong.push_back("damping " + text(damping) + " must be 0 to 0.99");
+    if (dampingKind != "combined" && dampingKind != "local")
+        wrong.push_back("dampingKind '" + dampingKind + "' must be 'combined' or 'local'");
+    if (blocked.find_first_not_of("xyz") != std::string::npos)
+        wrong.push_back("blocked '" + blocked + "' must be made of x, y and z");
+    if (!wrong.empty()) throw std::invalid_argument("MasonryZones: " + joined(wrong, "; "));
+    units_.clear(); // meshed again when needed: after loading, or for other bodies
+}
+
+const std::vector<MasonryZones::Unit>& MasonryZones::units() {
+    if (!units_.empty() || bodies.empty()) return units_;
+    const auto& all = Singleton<yade::Omega>::instance().getScene()->bodies->body;
+    struct Kind {
+        std::vector<Vector3r> corners;
+        const MasonryMat* mat;
+        std::shared_ptr<const BlockElasticity> elasticity;
+    };
+    std::vector<Kind> kinds;
+    unitOfBody_.assign(all.size(), -1);
+    int next = 0;
+    for (int id : bodies) {
+        const auto fail = [&](const std::string& what) {
+            units_.clear();
+            throw std::invalid_argument("MasonryZones: body " + std::to_string(id) + " " + what);
+        };
+        if (id < 0 || std::size_t(id) >= all.size() || !all[id]) fail("does not exist");
+        auto* shape = dynamic_cast<yade::Polyhedra*>(all[id]->shape.get());
+        const auto* mat = dynamic_cast<const MasonryMat*>(all[id]->material.get());
+        if (!shape || !mat) fail("is no Polyhedra of MasonryMat");
+        auto& state = *all[id]->state;
+        ConvexBlock block = blockOf(*shape, state.refPos, state.refOri);
+        for (auto& v : block.vertices)
+            v -= state.refPos;
+        auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) {
+            if (k.mat != mat || k.corners.size() != block.vertices.size()) return false;
+            for (std::size_t i = 0; i < k.corners.size(); ++i)
+                if ((k.corners[i] - block.vertices[i]).norm() > 1e-9 * block.size()) return false;
+            return true;
+        });
+        if (kind == kinds.end()) {
+            try {
+                kinds.push_back({block.vertices, mat,
+                                 std::make_shared<const BlockElasticity>(
+                                     divide(block, {divisions[0], divisions[1], divisions[2]}), mat->young,
+                                     mat->poisson, mat->density, blocked.size() == 1)});
+            } catch (const std::invalid_argument& e) {
+                fail(std::string("cannot be divided: ") + e.what());
+            }
+            kind = std::prev(kinds.end());
+        }
+        unitOfBody_[id] = int(units_.size());
+        units_.push_back({id, next, kind->elasticity, state.refPos, state.refOri});
+        next += int(kind->elasticity->masses().size());
+        state.blockedDOFs = 63; // the host's integrator leaves it alone
+        state.vel = state.angVel = Vector3r::Zero();
+    }
+    if (displacements.size() != std::size_t(next)) {
+        displacements.assign(next, Vector3r::Zero());
+        velocities = lastForces = displacements;
+    }
+    forces_.assign(next, Vector3r::Zero());
+    return units_;
+}
+
+const MasonryZones::Unit* MasonryZones::unitOf(int body) {
+    units();
+    const bool mine = body >= 0 && std::size_t(body) < unitOfBody_.size() && unitOfBody_[body] >= 0;
+    return mine ? &units_[unitOfBody_[body]] : nullptr;
+}
+
+py::tuple MasonryZones::nodesOf(int body) {
+    const auto* unit = unitOf(body);
+    if (!unit) throw std::invalid_argument("body " + std::to_string(body) + " is no deformable unit");
+    return py::make_tuple(unit->firstNode, unit->firstNode + int(unit->elasticity->masses().size()));
+}
+
+Vector3r MasonryZones::reference(const Unit& unit, int node) const {
+    return unit.centre + unit.elasticity->mesh().nodes[node - unit.firstNode];
+}
+
+Attachment MasonryZones::attach(const Unit& unit, const Vector3r& point) const {
+    const auto place = nearestOnSurface(unit.elasticity->mesh(), point - unit.centre);
+    Attachment a;
+    for (int i = 0; i < 3; ++i)
+        a.nodes[i] = unit.firstNode + place.nodes[i], a.weights[i] = place.weights[i];
+    return a;
+}
+
+std::vector<std::pair<int, double>> MasonryZones::nodesOn(const Unit& unit, const std::vector<Vector3r>& polygon,
+                                                          const Vector3r& normal) const {
+    const auto& mesh = unit.elasticity->mesh();
+    const double size = (polygon[2] - polygon[0]).norm(), whole = area(polygon, normal);
+    const auto inside = [&](const Vector3r& p) {
+        if (std::abs((p - polygon[0]).dot(normal)) > 1e-3 * size) return false;
+        for (std::size_t i = 0; i < polygon.size(); ++i)
+            if ((polygon[(i + 1) % polygon.size()] - polygon[i]).cross(p - polygon[i]).dot(normal) <
+                -1e-3 * size * size)
+                return false;
+        return true;
+    };
+    std::vector<std::pair<int, double>> found;
+    double sum = 0;
+    for (const auto& t : mesh.triangles) {
+        Vector3r c[3];
+        bool on = true;
+        for (int i = 0; i < 3; ++i)
+            on &= inside(c[i] = unit.centre + mesh.nodes[t[i]]);
+        if (!on) continue;
+        const double part = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]).norm();
+        sum += part;
+        for (int node : t) {
+            const int number = unit.firstNode + node;
+            auto at = std::find_if(found.begin(), found.end(), [&](const auto& f) { return f.first == number; });
+            if (at == found.end()) at = found.insert(found.end(), {number, 0.0});
+            at->second += part / 3;
+        }
+    }
+    if (std::abs(sum - whole) > 1e-3 * whole) found.clear();
+    return found;
+}
+
+void MasonryZones::action() {
+    units();
+    if (interactionsSeen_ != scene->interactions->currSize) { // joints are made once, before the run
+        joints_.clear();
+        for (std::size_t i = 0; i < scene->interactions->currSize; ++i)
+            if (const auto* geom = dynamic_cast<MasonryJointGeom*>(scene->interactions->linIntrs[i]->geom.get()))
+                if (geom->zones.get() == this) joints_.push_back(geom);
+        interactionsSeen_ = scene->interactions->currSize;
+    }
+    std::fill(forces_.begin(), forces_.end(), Vector3r::Zero());
+    const auto hang = [&](const Attachment& a, const Vector3r& force) {
+        for (int i = 0; i < 3; ++i)
+            forces_[a.nodes[i]] += a.weights[i] * force;
+    };
+    for (const auto* geom : joints_)
+        for (std::size_t i = 0; i < geom->points.size(); ++i) {
+            if (!geom->attachments1.empty()) hang(geom->attachments1[i], geom->points[i].force);
+            if (!geom->attachments2.empty()) hang(geom->attachments2[i], -geom->points[i].force);
+        }
+
+    const double dt = scene->dt;
+    const bool combined = dampingKind == "combined";
+    dampingWork += pendingDamping;
+    pendingDamping = kinetic = elastic = gravityWork = 0;
+    for (const auto& unit : units_) {
+        const auto& masses = unit.elasticity->masses();
+        auto *u = &displacements[unit.firstNode], *v = &velocities[unit.firstNode], *f = &forces_[unit.firstNode],
+             *last = &lastForces[unit.firstNode];
+        const Matrix3 rotation = unit.elasticity->rotation(u);
+        elastic += unit.elasticity->addForces(u, rotation, f);
+        Vector3r mean = Vector3r::Zero();
+        for (std::size_t n = 0; n < masses.size(); ++n) {
+            gravityWork += masses[n] * gravity.dot(u[n]);
+            for (int d = 0; d < 3; ++d) {
+                if (holds(d)) continue;
+                const double force = f[n][d] + masses[n] * gravity[d], old = v[n][d];
+                const double moving = (old > 0) - (old < 0);
+                double drag = -damping * std::abs(force) * moving; // paper eq. (3)
+                if (combined) {
+                    const double change = force - last[n][d];
+                    drag = 0.5 * (drag + damping * std::abs(force) * ((change > 0) - (change < 0)));
+                }
+                last[n][d] = force;
+                const double now = old + dt * (force + drag) / masses[n]; // eq. (2)
+                // trapezoidal work and kinetic energy at the same instant, as in MasonryEnergy
+                dampingWork -= 0.5 * dt * drag * old;
+                pendingDamping -= 0.5 * dt * drag * now;
+                kinetic += 0.5 * masses[n] * old * now;
+                v[n][d] = now;
+                u[n][d] += dt * now; // eq. (1)
+            }
+            mean += masses[n] * u[n];
+        }
+        auto& state = *scene->bodies->body[unit.body]->state;
+        state.pos = unit.centre + mean / unit.elasticity->mass();
+        state.ori = Quaternionr(rotation) * unit.orientation;
+    }
+}
+
+} // namespace masonry

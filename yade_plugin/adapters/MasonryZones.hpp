@@ -1,0 +1,109 @@
+#pragma once
+#include "Adapter.hpp"
+#include "blocks/BlockElasticity.hpp"
+#include "law/JointLaw.hpp"
+#include <memory>
+
+namespace masonry {
+
+class MasonryJointGeom;
+class MasonryMat;
+
+// Where a subcontact hangs on the surface of a deformable unit.
+struct Attachment {
+    std::array<int, 3> nodes{0, 0, 0}; // numbers in the arrays of MasonryZones
+    std::array<double, 3> weights{1, 0, 0};
+};
+template <> struct IsNumbers<Attachment> : std::true_type {};
+template <class F> void numbers(Attachment& a, F&& each) {
+    for (int i = 0; i < 3; ++i) {
+        double node = a.nodes[i];
+        each(node), each(a.weights[i]);
+        a.nodes[i] = int(node);
+    }
+}
+
+class MasonryZones : public Adapter<MasonryZones, yade::GlobalEngine> {
+public:
+    static constexpr const char* className = "MasonryZones";
+    static constexpr const char* baseName = "GlobalEngine";
+    static constexpr const char* doc =
+        "Deformable units: blocks divided into tetrahedral zones of linear elastic material, masses at the nodes, "
+        "joints "
+        "between nodes (paper §2, eqs. (1)-(7)). A unit stays one body with a Polyhedra shape, whose position and "
+        "orientation follow the centre of mass and the mean rotation; strains are small in axes that turn with the "
+        "unit. "
+        "Stands after the interaction loop; the host's integrator leaves these bodies alone. Give it to "
+        "Ig2_Polyhedra_Polyhedra_MasonryJointGeom.zones before joints are made.";
+
+    std::vector<int> bodies, divisions{1, 1, 1};
+    double damping = 0.8;
+    std::string dampingKind = "combined", blocked;
+    Vector3r gravity = Vector3r(0, 0, -9.81);
+    double kinetic = 0, elastic = 0, gravityWork = 0, dampingWork = 0, pendingDamping = 0;
+    std::vector<Vector3r> displacements, velocities, lastForces;
+
+    template <class Visit> static void attributes(Visit&& visit) {
+        using Z = MasonryZones;
+        visit("bodies", &Z::bodies, "Ids of the deformable units; their material is MasonryMat.");
+        visit("divisions", &Z::divisions,
+              "Cells of a hexahedral unit in the directions nearest to x, y and z [-], 1 to 100; each is twelve zones. "
+              "Default: 1, 1, 1.");
+        visit("damping", &Z::damping, "Damping constant alpha [-], 0 to 0.99 (paper eq. (3): 0.8).");
+        visit("dampingKind", &Z::dampingKind,
+              "'combined': alpha |F| (sgn(dF/dt) - sgn(v)) / 2, blind to steady motion; 'local': -alpha |F| sgn(v), "
+              "paper eq. (3), which drags deformable units.");
+        visit("blocked", &Z::blocked,
+              "Directions in which the nodes are held, as 'y': a wall in its plane, in plane stress.");
+        visit("gravity", &Z::gravity, "Gravity [m/s²].");
+        visit("kinetic", &Z::kinetic, "Kinetic energy of the nodes [J].", ReadOnly);
+        visit("elastic", &Z::elastic, "Elastic energy of the zones [J].", ReadOnly);
+        visit("gravityWork", &Z::gravityWork, "Work of gravity since the reference state [J].", ReadOnly);
+        visit("dampingWork", &Z::dampingWork, "Energy taken by damping so far [J].", ReadOnly);
+        visit("displacements", &Z::displacements, "Displacements of all nodes since the reference state [m].",
+              ReadOnly);
+        visit("velocities", &Z::velocities, "Velocities of all nodes [m/s].", ReadOnly);
+        visit("lastForces", &Z::lastForces, "", Hidden);
+        visit("pendingDamping", &Z::pendingDamping, "", Hidden);
+    }
+
+    template <class PyClass> static void extras(PyClass& cls) {
+        cls.def("nodesOf", &MasonryZones::nodesOf, py::args("body"), "Numbers (first, beyond) of a unit's nodes.");
+    }
+
+    void postLoad();
+    void action() override;
+
+    struct Unit {
+        int body, firstNode;
+        std::shared_ptr<const BlockElasticity> elasticity;
+        Vector3r centre; // reference
+        Quaternionr orientation;
+    };
+    const std::vector<Unit>& units(); // meshes the bodies when first asked
+    const Unit* unitOf(int body);     // null for a rigid body
+    bool holds(int direction) const { return blocked.find("xyz"[direction]) != std::string::npos; }
+    Vector3r reference(const Unit&, int node) const;
+    Vector3r displacementAt(const Attachment& a) const {
+        return a.weights[0] * displacements[a.nodes[0]] + a.weights[1] * displacements[a.nodes[1]] +
+               a.weights[2] * displacements[a.nodes[2]];
+    }
+    Attachment attach(const Unit&, const Vector3r& point) const;
+    // Nodes of a unit on a joint polygon with a third of the areas of the surface triangles around them; empty if those
+    // triangles do not make up the polygon.
+    std::vector<std::pair<int, double>> nodesOn(const Unit&, const std::vector<Vector3r>& polygon,
+                                                const Vector3r& normal) const;
+
+private:
+    py::tuple nodesOf(int body);
+
+    std::vector<Unit> units_;
+    std::vector<int> unitOfBody_;
+    std::vector<Vector3r> forces_;
+    std::vector<const MasonryJointGeom*> joints_;
+    std::size_t interactionsSeen_ = 0;
+};
+
+} // namespace masonry
+
+BOOST_CLASS_EXPORT_KEY(masonry::MasonryZones)
