@@ -145,7 +145,6 @@ TEST_CASE("cells nearest to the subcontacts of a face are the cells of its grid"
     for (const auto& s : subdivide(contact->polygon, contact->normal, Point::UnitX(), 4, 2))
         centres.push_back(s.centre);
     for (const auto& cell : nearestCells(contact->polygon, centres)) {
-        CHECK(cell.size() == 4);
         CHECK(area(cell, contact->normal) == doctest::Approx(0.22 * 0.102 / 8));
     }
 }

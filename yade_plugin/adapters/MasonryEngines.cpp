@@ -277,8 +277,10 @@ py::tuple criticalTimeStep() {
         }
         if (!whole.degrees.empty()) add(std::move(whole));
     });
+    double damping = 0; // of nodes: where it brakes it adds up to that share to a force, as a stiffer unit would
     for (const auto& engine : scene.engines)
-        if (auto* zones = dynamic_cast<MasonryZones*>(engine.get()))
+        if (auto* zones = dynamic_cast<MasonryZones*>(engine.get())) {
+            damping = std::max(damping, zones->damping);
             for (const auto& unit : zones->units()) {
                 const int first = degreesOfZones(*zones) + 3 * unit.firstNode;
                 const auto& mesh = unit.elasticity->mesh();
@@ -292,6 +294,7 @@ py::tuple criticalTimeStep() {
                     add(std::move(e));
                 }
             }
+        }
 
     double highest = 0;
     int worst[2] = {-1, -1};
@@ -306,7 +309,7 @@ py::tuple criticalTimeStep() {
             Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dynamic, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
         if (value > highest) highest = value, worst[0] = e.ids[0], worst[1] = e.ids[1];
     }
-    return py::make_tuple(2 / std::sqrt(highest), worst[0], worst[1]);
+    return py::make_tuple(2 / std::sqrt((1 + damping) * highest), worst[0], worst[1]);
 }
 
 } // namespace masonry

@@ -89,6 +89,20 @@ py::tuple MasonryZones::nodesOf(int body) {
     return py::make_tuple(unit->firstNode, unit->firstNode + int(unit->elasticity->masses().size()));
 }
 
+Vector3r MasonryZones::referencePoint(int body, int node) {
+    const auto* unit = unitOf(body);
+    if (!unit || node < unit->firstNode || node - unit->firstNode >= int(unit->elasticity->masses().size()))
+        throw std::invalid_argument("body " + std::to_string(body) + " has no node " + std::to_string(node));
+    return reference(*unit, node);
+}
+
+void MasonryZones::setVelocity(int node, const Vector3r& velocity) {
+    units();
+    if (node < 0 || std::size_t(node) >= velocities.size())
+        throw std::invalid_argument("there is no node " + std::to_string(node));
+    velocities[node] = velocity;
+}
+
 Vector3r MasonryZones::reference(const Unit& unit, int node) const {
     return unit.centre + unit.elasticity->mesh().nodes[node - unit.firstNode];
 }
@@ -170,7 +184,9 @@ void MasonryZones::action() {
             for (int d = 0; d < 3; ++d) {
                 if (holds(d)) continue;
                 const double force = f[n][d] + masses[n] * gravity[d], old = v[n][d];
-                const double moving = (old > 0) - (old < 0);
+                // the velocity in the middle of the step, as the host takes it: with the old one, damping pumps near
+                // the limit
+                const double middle = old + 0.5 * dt * force / masses[n], moving = (middle > 0) - (middle < 0);
                 double drag = -damping * std::abs(force) * moving; // paper eq. (3)
                 if (combined) {
                     const double change = force - last[n][d];

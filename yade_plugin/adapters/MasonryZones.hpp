@@ -68,7 +68,11 @@ public:
     }
 
     template <class PyClass> static void extras(PyClass& cls) {
-        cls.def("nodesOf", &MasonryZones::nodesOf, py::args("body"), "Numbers (first, beyond) of a unit's nodes.");
+        cls.def("nodesOf", &MasonryZones::nodesOf, py::args("body"), "Numbers (first, beyond) of a unit's nodes.")
+            .def("referencePoint", &MasonryZones::referencePoint, py::args("body", "node"),
+                 "Place of a node of a unit in the reference state [m].")
+            .def("setVelocity", &MasonryZones::setVelocity, py::args("node", "velocity"),
+                 "Give a node a velocity [m/s], as a start.");
     }
 
     void postLoad();
@@ -96,6 +100,8 @@ public:
 
 private:
     py::tuple nodesOf(int body);
+    Vector3r referencePoint(int body, int node);
+    void setVelocity(int node, const Vector3r& velocity);
 
     std::vector<Unit> units_;
     std::vector<int> unitOfBody_;

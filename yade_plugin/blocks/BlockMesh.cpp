@@ -105,10 +105,11 @@ BlockMesh divide(const ConvexBlock& block, const std::array<int, 3>& divisions, 
                                 at[u] += c == 1 || c == 2;
                                 at[v] += c >= 2;
                                 q[c] = node(at[0], at[1], at[2]);
-                                if (c == 0) odd = (at[0] + at[1] + at[2]) % 2;
+                                if (c == 0) odd = (at[0] + at[1] + at[2] - (axis == 1 ? 0 : at[axis])) % 2;
                             }
                             if (!side) std::swap(q[1], q[3]);
-                            // the diagonal joins the corners with an even sum of indices
+                            // The diagonal joins the corners with an even sum of indices. On faces across x and z it
+                            // does not depend on the layer, so that blocks laid in courses meet with equal triangles.
                             const std::array<int, 3> halves[2][2] = {{{q[0], q[1], q[2]}, {q[0], q[2], q[3]}},
                                                                      {{q[1], q[2], q[3]}, {q[1], q[3], q[0]}}};
                             for (const auto& t : halves[odd]) {

@@ -12,7 +12,8 @@ struct BlockMesh {
 
 // Zones of a block. A hexahedron is divided along its own edges into the given numbers of cells in the directions that
 // lie nearest to x, y and z, each cell a star of twelve zones about its centre; the diagonals of neighbouring faces
-// alternate, so that the mesh conforms and has no preferred direction. Any other convex block is one star about its
+// alternate, and opposite faces across x and z have the same, so that blocks laid in courses meet node to node with
+// equal triangles. Any other convex block is one star about its
 // centroid, and divisions do not apply. Throws std::invalid_argument for a block without volume, one that is not
 // convex, and slivers: zones whose height is less than `sliver` times their longest edge.
 BlockMesh divide(const ConvexBlock&, const std::array<int, 3>& divisions, double sliver = 0.01);
