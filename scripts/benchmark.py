@@ -23,12 +23,21 @@ def cost(steps):
 
 
 def plugin(steps):
-    wall = walls.Wall(name="benchmark", title="TUD-COMP-4", halfUnits=36, precompression=0.5e6)
-    model = walls.WallModel(wall, options.parser("", until=12).parse_args(["--no-vtk", "--out", "/tmp/masonry-benchmark"]))
+    wall = walls.Wall(
+        name="benchmark", title="TUD-COMP-4", halfUnits=36, precompression=0.5e6
+    )
+    model = walls.WallModel(
+        wall,
+        options.parser("", until=12).parse_args(
+            ["--no-vtk", "--out", "/tmp/masonry-benchmark"]
+        ),
+    )
     model.load.velocity = 0.02
     O.timingEnabled = True
     seconds = cost(steps)
-    print(f"this plugin: {len(model.interactions)} joints, {model.subcontacts} subcontacts")
+    print(
+        f"this plugin: {len(model.interactions)} joints, {model.subcontacts} subcontacts"
+    )
     timing.stats()
     O.timingEnabled = False
     return seconds, model.subcontacts
@@ -40,9 +49,16 @@ def stock(steps):
     mat = PolyhedraMat(density=1800, young=1e12, poisson=0.2, frictionAngle=0.4)
     O.materials.append(mat)
     for block in brickwork.runningBond(34, 36):
-        low, high = ([v * (0.999 if axis == 2 else 1.001) for axis, v in enumerate(p)] for p in (block.low, block.high))
+        low, high = (
+            [v * (0.999 if axis == 2 else 1.001) for axis, v in enumerate(p)]
+            for p in (block.low, block.high)
+        )
         high[2] = low[2] + 0.081
-        O.bodies.append(polyhedra_utils.polyhedra(mat, v=[Vector3(*p) for p in brickwork.corners(low, high)]))
+        O.bodies.append(
+            polyhedra_utils.polyhedra(
+                mat, v=[Vector3(*p) for p in brickwork.corners(low, high)]
+            )
+        )
     O.engines = [
         ForceResetter(),
         InsertionSortCollider([Bo1_Polyhedra_Aabb()]),
@@ -56,7 +72,9 @@ def stock(steps):
     O.dt = 1e-7
     O.step()
     seconds = cost(steps)
-    print(f"YADE's volumetric law: {sum(1 for i in O.interactions if i.isReal)} contacts")
+    print(
+        f"YADE's volumetric law: {sum(1 for i in O.interactions if i.isReal)} contacts"
+    )
     return seconds
 
 

@@ -6,9 +6,17 @@ The lower brick is fixed, the upper one moves without turning. Closed forms: law
 from masonry import couplet, options
 
 parser = options.parser(__doc__, until=2, rate=2)
-parser.add_argument("--path", choices=couplet.PATHS, default="shear", help="what the upper brick does")
 parser.add_argument(
-    "--normal-stress", metavar="MPA", type=float, default=-0.5, help="constant normal stress in shear [MPa], negative closed"
+    "--path", choices=couplet.PATHS, default="shear", help="what the upper brick does"
 )
-parser.add_argument("--closure", metavar="MM", type=float, default=1.0, help="closure before shear [mm]")
+parser.add_argument(
+    "--normal-stress",
+    metavar="MPA",
+    type=float,
+    default=-0.5,
+    help="constant normal stress in shear [MPa], negative closed",
+)
+parser.add_argument(
+    "--closure", metavar="MM", type=float, default=1.0, help="closure before shear [mm]"
+)
 raise SystemExit(couplet.test(parser.parse_args()))

@@ -22,7 +22,12 @@ class Cpp(pytest.File):
 
     def collect(self):
         program = os.path.join(BUILD, self.path.stem)
-        listing = subprocess.run([program, "--list-test-cases", "--no-version"], capture_output=True, text=True, check=True)
+        listing = subprocess.run(
+            [program, "--list-test-cases", "--no-version"],
+            capture_output=True,
+            text=True,
+            check=True,
+        )
         for line in listing.stdout.splitlines():
             if line and not line.startswith(("[doctest]", "===")):
                 yield CppCase.from_parent(self, name=line, program=program)
@@ -35,7 +40,11 @@ class CppCase(pytest.Item):
 
     def runtest(self):
         pattern = self.name.replace(",", "\\,")
-        run = subprocess.run([self.program, "--test-case=" + pattern, "--no-version"], capture_output=True, text=True)
+        run = subprocess.run(
+            [self.program, "--test-case=" + pattern, "--no-version"],
+            capture_output=True,
+            text=True,
+        )
         if run.returncode or not re.search(r"test cases: +1 \| +1 passed", run.stdout):
             pytest.fail(run.stdout + run.stderr, pytrace=False)
 
@@ -72,8 +81,18 @@ def runScene(tmp_path):
 
     def run(name, *options, cwd=None, check=True):
         out = tmp_path / "results"
-        command = ["yade", "-n", "-x", os.path.join(ROOT, "scripts", name + ".py"), "--out", str(out), *options]
-        process = subprocess.run(command, capture_output=True, text=True, cwd=cwd or tmp_path, timeout=300)
+        command = [
+            "yade",
+            "-n",
+            "-x",
+            os.path.join(ROOT, "scripts", name + ".py"),
+            "--out",
+            str(out),
+            *options,
+        ]
+        process = subprocess.run(
+            command, capture_output=True, text=True, cwd=cwd or tmp_path, timeout=300
+        )
         if check:
             assert process.returncode == 0, process.stdout + process.stderr
         return process, str(out)

@@ -24,10 +24,16 @@ def runningBond(courses, halfUnits, unit=(0.220, 0.102, 0.081), halves=True):
     half, thickness, height = unit[0] / 2, unit[1], unit[2]
     blocks, brick = [], -1
     for course in range(courses):
-        starts = [c for c in range(halfUnits) if c == 0 or c % 2 == course % 2] + [halfUnits]
+        starts = [c for c in range(halfUnits) if c == 0 or c % 2 == course % 2] + [
+            halfUnits
+        ]
         for first, beyond in zip(starts, starts[1:]):
             brick += 1
-            pieces = [(c, c + 1) for c in range(first, beyond)] if halves else [(first, beyond)]
+            pieces = (
+                [(c, c + 1) for c in range(first, beyond)]
+                if halves
+                else [(first, beyond)]
+            )
             for a, b in pieces:
                 low = (a * half, 0.0, course * height)
                 high = (b * half, thickness, (course + 1) * height)
@@ -37,4 +43,9 @@ def runningBond(courses, halfUnits, unit=(0.220, 0.102, 0.081), halves=True):
 
 def corners(low, high):
     """The eight corners of an axis-parallel box."""
-    return [(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
+    return [
+        (x, y, z)
+        for x in (low[0], high[0])
+        for y in (low[1], high[1])
+        for z in (low[2], high[2])
+    ]

@@ -13,7 +13,15 @@ from .results import ENERGIES, Interrupted, Progress, Results
 from .scene import addBlock, connect, engines
 
 PATHS = ["opening", "shear", "closure", "closure-shear"]
-CURVE = ["time_s", "opening_mm", "slide_mm", "normal_stress_MPa", "shear_stress_MPa", "normal_force_kN", "shear_force_kN"]
+CURVE = [
+    "time_s",
+    "opening_mm",
+    "slide_mm",
+    "normal_stress_MPa",
+    "shear_stress_MPa",
+    "normal_force_kN",
+    "shear_force_kN",
+]
 CURVE += [name + "_J" for name in ENERGIES] + ["balance_error"]
 UNIT = (0.220, 0.102, 0.081)
 ROWS = 2000
@@ -25,19 +33,33 @@ class Couplet:
     def __init__(self, args):
         joints = materials.calciumSilicateJoints(brittle=args.joints == "brittle")
         applySettings(joints, args.set)
-        self.args, self.results = args, Results(args.out or os.path.join("results", "couplet"), CURVE)
+        self.args, self.results = args, Results(
+            args.out or os.path.join("results", "couplet"), CURVE
+        )
         O.reset()
         brick = materials.calciumSilicateUnit()
         O.materials.append(brick)
         length, thickness, height = UNIT
         lower = addBlock(brickwork.corners((0, 0, 0), UNIT), brick, inPlane=True)
-        self.upper = addBlock(brickwork.corners((0, 0, height), (length, thickness, 2 * height)), brick, inPlane=True)
+        self.upper = addBlock(
+            brickwork.corners((0, 0, height), (length, thickness, 2 * height)),
+            brick,
+            inPlane=True,
+        )
         O.bodies[lower].state.blockedDOFs = "xyzXYZ"
         self.area = length * thickness
         normal, shear = Vector3(0, 0, 1), Vector3(1, 0, 0)
         middle = Vector3(length / 2, thickness / 2, height)
-        self.vertical = MasonryLoad(body=self.upper, point=middle, direction=normal, label="vertical", driven=True)
-        self.lateral = MasonryLoad(body=self.upper, point=middle, direction=shear, label="lateral", driven=True)
+        self.vertical = MasonryLoad(
+            body=self.upper,
+            point=middle,
+            direction=normal,
+            label="vertical",
+            driven=True,
+        )
+        self.lateral = MasonryLoad(
+            body=self.upper, point=middle, direction=shear, label="lateral", driven=True
+        )
         O.bodies[self.upper].state.blockedDOFs = "yXYZ"
         engines(
             [joints["bed"]],
@@ -51,7 +73,11 @@ class Couplet:
         (self.joint,) = connect()
         O.dt = args.dt_fraction * criticalTimeStep()[0]
         self.steps, self.progress = 0, Progress()
-        self.vtk = None if args.no_vtk else MasonryVtkRecorder(directory=self.results.directory)
+        self.vtk = (
+            None
+            if args.no_vtk
+            else MasonryVtkRecorder(directory=self.results.directory)
+        )
 
     def _move(self, load, distance, stage):
         """Drive ``load`` over a distance [m], rows on the way; the other direction keeps what it does."""
@@ -65,7 +91,12 @@ class Couplet:
                 O.step()
                 self.steps += 1
             self._record()
-            self.progress.show(stage, done / steps, f"{self.results.rows[-1][1]:9.4f} mm {self.results.rows[-1][2]:9.4f} mm", self.steps / (time.perf_counter() - self.results.started))
+            self.progress.show(
+                stage,
+                done / steps,
+                f"{self.results.rows[-1][1]:9.4f} mm {self.results.rows[-1][2]:9.4f} mm",
+                self.steps / (time.perf_counter() - self.results.started),
+            )
         load.velocity = 0
 
     def _record(self):
@@ -96,9 +127,15 @@ class Couplet:
             self._move(self.lateral, distance, "shear")
         else:
             # closed by just the elastic amount, then held by the force: nothing swings
-            self._move(self.vertical, args.normal_stress * 1e6 / self.joint.phys.normalStiffness, "closure")
+            self._move(
+                self.vertical,
+                args.normal_stress * 1e6 / self.joint.phys.normalStiffness,
+                "closure",
+            )
             O.step()
-            self.vertical.driven, self.vertical.force = False, Vector3(0, 0, args.normal_stress * 1e6 * self.area)
+            self.vertical.driven, self.vertical.force = False, Vector3(
+                0, 0, args.normal_stress * 1e6 * self.area
+            )
             self._move(self.lateral, distance, "shear")
 
     def finish(self):
@@ -119,12 +156,20 @@ class Couplet:
                 end_shear_stress_MPa=results.column("shear_stress_MPa")[-1],
                 energy_balance_error=self.energy.largestError,
                 **{
-                    f"dissipated_{mode}_J_per_m2": results.column(f"dissipated_{mode}_J")[-1] / self.area
+                    f"dissipated_{mode}_J_per_m2": results.column(
+                        f"dissipated_{mode}_J"
+                    )[-1]
+                    / self.area
                     for mode in ("tension", "shear", "compression")
                 },
             )
         results.close()
-        for key in ("peak_normal_stress_MPa", "peak_compressive_stress_MPa", "peak_shear_stress_MPa", "end_shear_stress_MPa"):
+        for key in (
+            "peak_normal_stress_MPa",
+            "peak_compressive_stress_MPa",
+            "peak_shear_stress_MPa",
+            "end_shear_stress_MPa",
+        ):
             if key in results.run:
                 print(f"{key:32} {results.run[key]:.4f}")
 

@@ -27,7 +27,9 @@ def readFrame(directory, kind, number=-1):
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
     path = sorted(glob.glob(os.path.join(directory, kind + "_*.vt?")))[number]
-    reader = vtkXMLPolyDataReader() if kind == "joints" else vtkXMLUnstructuredGridReader()
+    reader = (
+        vtkXMLPolyDataReader() if kind == "joints" else vtkXMLUnstructuredGridReader()
+    )
     reader.SetFileName(path)
     reader.Update()
     data = reader.GetOutput()
@@ -36,7 +38,9 @@ def readFrame(directory, kind, number=-1):
         for i in range(arrays.GetNumberOfArrays()):
             frame[arrays.GetArrayName(i)] = vtk_to_numpy(arrays.GetArray(i))
     cells = data.GetPolys() if kind == "joints" else data.GetCells()
-    offsets, corners = vtk_to_numpy(cells.GetOffsetsArray()), vtk_to_numpy(cells.GetConnectivityArray())
+    offsets, corners = vtk_to_numpy(cells.GetOffsetsArray()), vtk_to_numpy(
+        cells.GetConnectivityArray()
+    )
     frame["cells"] = np.split(corners, offsets[1:-1])
     return frame
 
@@ -45,10 +49,25 @@ def curve(directory):
     """curve.png: base shear and, below, the energies over the displacement."""
     run, data = readRun(directory), readCurve(directory)
     x = data["displacement_mm"]
-    figure, (top, bottom) = plt.subplots(2, 1, figsize=(7, 7), sharex=True, height_ratios=[3, 2])
+    figure, (top, bottom) = plt.subplots(
+        2, 1, figsize=(7, 7), sharex=True, height_ratios=[3, 2]
+    )
     top.plot(x, data["base_shear_kN"], color="black", lw=1.2, label="base")
-    top.plot(x, data["top_shear_kN"], color="tab:orange", lw=0.6, label="loaded point", zorder=1)
-    top.plot(run["displacement_at_peak_mm"], run["peak_base_shear_kN"], "o", color="tab:red", ms=5)
+    top.plot(
+        x,
+        data["top_shear_kN"],
+        color="tab:orange",
+        lw=0.6,
+        label="loaded point",
+        zorder=1,
+    )
+    top.plot(
+        run["displacement_at_peak_mm"],
+        run["peak_base_shear_kN"],
+        "o",
+        color="tab:red",
+        ms=5,
+    )
     top.annotate(
         f"{run['peak_base_shear_kN']:.1f} kN at {run['displacement_at_peak_mm']:.2f} mm",
         (run["displacement_at_peak_mm"], run["peak_base_shear_kN"]),
@@ -64,7 +83,13 @@ def curve(directory):
     since = lambda name: np.array(data[name + "_J"]) - start[name + "_J"]
     work = since("external") + since("gravity")
     stack = [
-        ("elastic", sum(since("elastic_" + m) for m in ("units", "tension", "shear", "compression"))),
+        (
+            "elastic",
+            sum(
+                since("elastic_" + m)
+                for m in ("units", "tension", "shear", "compression")
+            ),
+        ),
         ("tension", since("dissipated_tension")),
         ("shear", since("dissipated_shear")),
         ("compression", since("dissipated_compression")),
@@ -93,12 +118,16 @@ def _faces(blocks, displaced):
         low, high = points.min(axis=0), points.max(axis=0)
         near = 1e-6 * (high - low).max()
         front = points[:, 1] < low[1] + near
-        rim = (np.abs(points[:, [0, 2]] - low[[0, 2]]) < near) | (np.abs(points[:, [0, 2]] - high[[0, 2]]) < near)
+        rim = (np.abs(points[:, [0, 2]] - low[[0, 2]]) < near) | (
+            np.abs(points[:, [0, 2]] - high[[0, 2]]) < near
+        )
         keep = nodes[front & rim.any(axis=1)]
         reference = blocks["points"][keep][:, [0, 2]]
         around = (reference - reference.mean(axis=0)) / (high - low)[[0, 2]]
         order = np.argsort(np.arctan2(around[:, 1], around[:, 0]))
-        shift = MAGNIFICATION * blocks["displacement"][keep][:, [0, 2]] if displaced else 0
+        shift = (
+            MAGNIFICATION * blocks["displacement"][keep][:, [0, 2]] if displaced else 0
+        )
         outlines.append((reference + shift)[order])
     return outlines
 
@@ -108,8 +137,14 @@ def cracks(directory):
     run = readRun(directory)
     blocks, joints = readFrame(directory, "blocks"), readFrame(directory, "joints")
     figure, axes = plt.subplots(figsize=(9, 8))
-    axes.add_collection(PolyCollection(_faces(blocks, False), facecolor="0.9", edgecolor="0.8", lw=0.3))
-    axes.add_collection(PolyCollection(_faces(blocks, True), facecolor="#f3e3c8", edgecolor="0.45", lw=0.35))
+    axes.add_collection(
+        PolyCollection(_faces(blocks, False), facecolor="0.9", edgecolor="0.8", lw=0.3)
+    )
+    axes.add_collection(
+        PolyCollection(
+            _faces(blocks, True), facecolor="#f3e3c8", edgecolor="0.45", lw=0.35
+        )
+    )
 
     slide = np.linalg.norm(joints["slide"], axis=1)
     segments = {"open": [], "slid": []}
@@ -120,16 +155,35 @@ def cracks(directory):
         if joints["crushing"][i] > CRUSHED:
             spots.append(points.mean(axis=0))
             sizes.append(joints["crushing"][i])
-        kind = "open" if joints["opening"][i] > max(CRACK, 0.5 * slide[i]) else "slid" if slide[i] > CRACK else None
+        kind = (
+            "open"
+            if joints["opening"][i] > max(CRACK, 0.5 * slide[i])
+            else "slid"
+            if slide[i] > CRACK
+            else None
+        )
         if kind and max(joints["damage_tension"][i], joints["damage_shear"][i]) > 0.05:
             far = np.linalg.norm(points[:, None] - points[None], axis=2)
             a, b = np.unravel_index(np.argmax(far), far.shape)
             segments[kind].append(points[[a, b]])
-    axes.add_collection(LineCollection(segments["slid"], color="tab:blue", lw=1.6, label="slid"))
-    axes.add_collection(LineCollection(segments["open"], color="tab:red", lw=1.8, label="open"))
+    axes.add_collection(
+        LineCollection(segments["slid"], color="tab:blue", lw=1.6, label="slid")
+    )
+    axes.add_collection(
+        LineCollection(segments["open"], color="tab:red", lw=1.8, label="open")
+    )
     if spots:
         spots = np.array(spots)
-        axes.scatter(spots[:, 0], spots[:, 1], s=12 + 8e3 * np.array(sizes), color="black", marker="X", lw=0, label="crushed", zorder=5)
+        axes.scatter(
+            spots[:, 0],
+            spots[:, 1],
+            s=12 + 8e3 * np.array(sizes),
+            color="black",
+            marker="X",
+            lw=0,
+            label="crushed",
+            zorder=5,
+        )
     axes.autoscale()
     axes.set_aspect("equal")
     axes.set_xlabel("x [m]")

@@ -9,7 +9,13 @@ BED_DIRECTION, HEAD_DIRECTION = Vector3(0, 0, 1), Vector3(1, 0, 0)
 
 def calciumSilicateUnit():
     """Calcium-silicate brick of the TUD-COMP walls: paper table 2."""
-    return MasonryMat(label="calcium silicate", young=4.8e9, poisson=0.16, density=1800, jointSet="brick")
+    return MasonryMat(
+        label="calcium silicate",
+        young=4.8e9,
+        poisson=0.16,
+        density=1800,
+        jointSet="brick",
+    )
 
 
 def calciumSilicateJoints(brittle=False):
@@ -53,10 +59,14 @@ def calciumSilicateJoints(brittle=False):
     )
     joints = [support, bed, head, crack]
     if brittle:
-        joints = [joint if joint.elastic else joint.brittleCoulomb() for joint in joints]
+        joints = [
+            joint if joint.elastic else joint.brittleCoulomb() for joint in joints
+        ]
     return {joint.name: joint for joint in joints}
 
 
 def loadingBlock():
     """Stiff block that loads or supports a wall (paper §4.1): so stiff that it adds nothing to its elastic joint."""
-    return MasonryMat(label="loading block", young=1e16, poisson=0.0, density=1800, jointSet="support")
+    return MasonryMat(
+        label="loading block", young=1e16, poisson=0.0, density=1800, jointSet="support"
+    )

@@ -15,15 +15,25 @@ def _number(text, low=-math.inf, high=math.inf, above=False):
         value = float(text)
     except ValueError:
         raise argparse.ArgumentTypeError(f"'{text}' is not a number") from None
-    if not math.isfinite(value) or value < low or value > high or (above and value == low):
+    if (
+        not math.isfinite(value)
+        or value < low
+        or value > high
+        or (above and value == low)
+    ):
         bound = f"above {low:g}" if above else f"at least {low:g}"
-        raise argparse.ArgumentTypeError(f"{text} must be {bound}" + (f" and at most {high:g}" if high < math.inf else ""))
+        raise argparse.ArgumentTypeError(
+            f"{text} must be {bound}"
+            + (f" and at most {high:g}" if high < math.inf else "")
+        )
     return value
 
 
 def _count(text, high):
     if not text.isdigit() or not 1 <= int(text) <= high:
-        raise argparse.ArgumentTypeError(f"'{text}' must be a whole number from 1 to {high}")
+        raise argparse.ArgumentTypeError(
+            f"'{text}' must be a whole number from 1 to {high}"
+        )
     return int(text)
 
 
@@ -31,7 +41,9 @@ def _setting(text):
     target, equals, value = text.partition("=")
     joint, dot, attribute = target.partition(".")
     if not (equals and dot and joint and attribute):
-        raise argparse.ArgumentTypeError(f"'{text}' must read JOINT.PROPERTY=VALUE, for example bed.tensileStrength=2e5")
+        raise argparse.ArgumentTypeError(
+            f"'{text}' must read JOINT.PROPERTY=VALUE, for example bed.tensileStrength=2e5"
+        )
     return joint, attribute, value
 
 
@@ -47,9 +59,19 @@ def parser(description, until, rate=20.0):
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
     )
     mm = lambda text: _number(text, 0, 1000, above=True)
-    p.add_argument("--until", metavar="MM", type=mm, default=until, help="displacement to stop at [mm]")
-    p.add_argument("--rate", metavar="MM_PER_S", type=mm, default=rate, help="loading rate [mm/s]")
-    p.add_argument("--blocks", choices=["rigid", "deformable"], default="rigid", help="block model")
+    p.add_argument(
+        "--until",
+        metavar="MM",
+        type=mm,
+        default=until,
+        help="displacement to stop at [mm]",
+    )
+    p.add_argument(
+        "--rate", metavar="MM_PER_S", type=mm, default=rate, help="loading rate [mm/s]"
+    )
+    p.add_argument(
+        "--blocks", choices=["rigid", "deformable"], default="rigid", help="block model"
+    )
     p.add_argument(
         "--divisions",
         metavar="N",
@@ -63,9 +85,19 @@ def parser(description, until, rate=20.0):
         default=None,
         help="local (paper eq. (3)) or combined damping of deformable units (default: combined; rigid units: local)",
     )
-    p.add_argument("--subcontacts", metavar="N", type=lambda t: _count(t, 100), default=4, help="points along each joint")
     p.add_argument(
-        "--damping", metavar="A", type=lambda t: _number(t, 0, 0.99), default=0.8, help="damping constant, paper eq. (3) [-]"
+        "--subcontacts",
+        metavar="N",
+        type=lambda t: _count(t, 100),
+        default=4,
+        help="points along each joint",
+    )
+    p.add_argument(
+        "--damping",
+        metavar="A",
+        type=lambda t: _number(t, 0, 0.99),
+        default=0.8,
+        help="damping constant, paper eq. (3) [-]",
     )
     p.add_argument(
         "--dt-fraction",
@@ -74,8 +106,18 @@ def parser(description, until, rate=20.0):
         default=0.8,
         help="time step over its stable limit [-]",
     )
-    p.add_argument("--crack-surfaces", choices=["on", "off"], default="on", help="whether bricks can crack in half")
-    p.add_argument("--joints", choices=["softening", "brittle"], default="softening", help="the full law, or brittle Coulomb slip")
+    p.add_argument(
+        "--crack-surfaces",
+        choices=["on", "off"],
+        default="on",
+        help="whether bricks can crack in half",
+    )
+    p.add_argument(
+        "--joints",
+        choices=["softening", "brittle"],
+        default="softening",
+        help="the full law, or brittle Coulomb slip",
+    )
     p.add_argument(
         "--set",
         metavar="JOINT.PROPERTY=VALUE",
@@ -85,16 +127,39 @@ def parser(description, until, rate=20.0):
         help="change a property of the bed, head, crack or support joints, in SI units; repeatable "
         "(help(MasonryJoint) lists them)",
     )
-    p.add_argument("--out", metavar="DIR", default=None, help="folder of the results (default: results/SCENE)")
-    p.add_argument("--vtk-every", metavar="MM", type=mm, default=1.0, help="displacement between ParaView frames [mm]")
-    p.add_argument("--no-vtk", action="store_true", help="write no ParaView files and no crack figure")
+    p.add_argument(
+        "--out",
+        metavar="DIR",
+        default=None,
+        help="folder of the results (default: results/SCENE)",
+    )
+    p.add_argument(
+        "--vtk-every",
+        metavar="MM",
+        type=mm,
+        default=1.0,
+        help="displacement between ParaView frames [mm]",
+    )
+    p.add_argument(
+        "--no-vtk",
+        action="store_true",
+        help="write no ParaView files and no crack figure",
+    )
     return p
 
 
 def units(cls):
     """Units of a class's attributes, as their docs give them: dict of attribute -> text between the first brackets."""
-    docs = {name: value.__doc__ for name, value in vars(cls).items() if isinstance(value, property)}
-    return {name: doc[doc.index("[") + 1 : doc.index("]")] for name, doc in docs.items() if "[" in doc}
+    docs = {
+        name: value.__doc__
+        for name, value in vars(cls).items()
+        if isinstance(value, property)
+    }
+    return {
+        name: doc[doc.index("[") + 1 : doc.index("]")]
+        for name, doc in docs.items()
+        if "[" in doc
+    }
 
 
 def applySettings(joints, settings):
@@ -102,18 +167,25 @@ def applySettings(joints, settings):
     problems, changes = [], {}
     for name, attribute, text in settings:
         if name not in joints:
-            problems.append(f"--set {name}.{attribute}: no joint '{name}', there are {', '.join(joints)}")
+            problems.append(
+                f"--set {name}.{attribute}: no joint '{name}', there are {', '.join(joints)}"
+            )
             continue
         values = joints[name].dict()
         if attribute not in values or attribute in ("name", "jointSet", "direction"):
             close = [a for a in values if a.lower() == attribute.lower()]
             hint = f", did you mean {close[0]}?" if close else ""
-            problems.append(f"--set {name}.{attribute}: a MasonryJoint has no such property{hint}")
+            problems.append(
+                f"--set {name}.{attribute}: a MasonryJoint has no such property{hint}"
+            )
             continue
         try:
             changes.setdefault(name, {})[attribute] = _value(text, values[attribute])
         except ValueError:
-            kind = {bool: "on or off", list: "rows as ratio:damage,ratio:damage,..."}.get(type(values[attribute]), "a number")
+            kind = {
+                bool: "on or off",
+                list: "rows as ratio:damage,ratio:damage,...",
+            }.get(type(values[attribute]), "a number")
             problems.append(f"--set {name}.{attribute}={text}: must be {kind}")
     for name, change in changes.items():
         try:
@@ -127,7 +199,14 @@ def applySettings(joints, settings):
 def _value(text, example):
     """The value that a setting's text stands for, of the kind of ``example``; ValueError if it is none."""
     if isinstance(example, bool):
-        switches = {"on": True, "true": True, "1": True, "off": False, "false": False, "0": False}
+        switches = {
+            "on": True,
+            "true": True,
+            "1": True,
+            "off": False,
+            "false": False,
+            "0": False,
+        }
         if text.lower() not in switches:
             raise ValueError(text)
         return switches[text.lower()]

@@ -40,12 +40,23 @@ class Results:
         self.directory = os.path.abspath(directory)
         try:
             os.makedirs(self.directory, exist_ok=True)
-            for name in os.listdir(self.directory):  # frames of an earlier run would be shown with ours
-                if name.startswith(("blocks_", "joints_")) or name in ("curve.csv", "run.json", "curve.png", "cracks.png"):
+            for name in os.listdir(
+                self.directory
+            ):  # frames of an earlier run would be shown with ours
+                if name.startswith(("blocks_", "joints_")) or name in (
+                    "curve.csv",
+                    "run.json",
+                    "curve.png",
+                    "cracks.png",
+                ):
                     os.remove(os.path.join(self.directory, name))
-            self._file = open(self.path("curve.csv"), "w", newline="", buffering=1)  # a row at a time
+            self._file = open(
+                self.path("curve.csv"), "w", newline="", buffering=1
+            )  # a row at a time
         except OSError as error:
-            raise Refused(f"--out: cannot write to {self.directory}: {error.strerror}") from None
+            raise Refused(
+                f"--out: cannot write to {self.directory}: {error.strerror}"
+            ) from None
         self.columns, self.rows, self.run = columns, [], {}
         self._writer = csv.writer(self._file)
         self._writer.writerow(columns)
@@ -69,7 +80,9 @@ class Results:
         row = [values[c] for c in self.columns]
         if not all(math.isfinite(v) for v in row):
             broken = [c for c, v in zip(self.columns, row) if not math.isfinite(v)]
-            raise FloatingPointError(f"the run has left finite numbers in {', '.join(broken)}; see curve.csv up to here")
+            raise FloatingPointError(
+                f"the run has left finite numbers in {', '.join(broken)}; see curve.csv up to here"
+            )
         self.rows.append(row)
         self._writer.writerow([f"{v:.9g}" for v in row])
 
@@ -100,7 +113,9 @@ class Progress:
         if stage != self.stage:
             self.stage, self.began, self.lastTenth, self.last = stage, now, -1, 0
         tenth = int(10 * fraction)
-        if not final and (now - self.last < 0.2 if self.terminal else tenth == self.lastTenth):
+        if not final and (
+            now - self.last < 0.2 if self.terminal else tenth == self.lastTenth
+        ):
             return
         self.last, self.lastTenth = now, tenth
         left = (now - self.began) * (1 / fraction - 1) if fraction > 0.01 else None

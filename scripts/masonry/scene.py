@@ -13,19 +13,32 @@ def addBlock(vertices, material, inPlane=False, color=(0.75, 0.7, 0.65)):
     :param material: MasonryMat
     :param inPlane: only x, z and the rotation about y stay free: a wall in the x-z plane
     """
-    body = polyhedra_utils.polyhedra(material, v=[Vector3(*v) for v in vertices], color=color)
+    body = polyhedra_utils.polyhedra(
+        material, v=[Vector3(*v) for v in vertices], color=color
+    )
     body.state.refPos, body.state.refOri = body.state.pos, body.state.ori
     body.bounded = False  # no collider runs
     if inPlane:
         # with blocked rotations the integrator takes `inertia` in global axes
         axes = body.state.ori.toRotationMatrix()
         own = body.state.inertia
-        body.state.inertia = Vector3(*(sum(axes[i, k] ** 2 * own[k] for k in range(3)) for i in range(3)))
+        body.state.inertia = Vector3(
+            *(sum(axes[i, k] ** 2 * own[k] for k in range(3)) for i in range(3))
+        )
         body.state.blockedDOFs = "yXZ"
     return O.bodies.append(body)
 
 
-def engines(joints, damping=0.8, gravity=(0, 0, -9.81), subcontacts=4, rows=1, inPlane=False, loads=(), zones=None):
+def engines(
+    joints,
+    damping=0.8,
+    gravity=(0, 0, -9.81),
+    subcontacts=4,
+    rows=1,
+    inPlane=False,
+    loads=(),
+    zones=None,
+):
     """Fill O.engines for a masonry scene: joints, loads, energy balance, integration. No collider.
 
     :param joints: MasonryJoint objects; the first that fits a pair of units is taken
@@ -42,7 +55,10 @@ def engines(joints, damping=0.8, gravity=(0, 0, -9.81), subcontacts=4, rows=1, i
         InteractionLoop(
             [
                 Ig2_Polyhedra_Polyhedra_MasonryJointGeom(
-                    subcontacts=subcontacts, rows=rows, rowDirection=across, **({"zones": zones} if zones else {})
+                    subcontacts=subcontacts,
+                    rows=rows,
+                    rowDirection=across,
+                    **({"zones": zones} if zones else {})
                 )
             ],
             [Ip2_MasonryMat_MasonryMat_MasonryJointPhys(joints=list(joints))],
@@ -51,7 +67,12 @@ def engines(joints, damping=0.8, gravity=(0, 0, -9.81), subcontacts=4, rows=1, i
         ),
         *loads,
         MasonryEnergy(label="energy"),
-        NewtonIntegrator(damping=damping, gravity=Vector3(*gravity), exactAsphericalRot=True, label="integrator"),
+        NewtonIntegrator(
+            damping=damping,
+            gravity=Vector3(*gravity),
+            exactAsphericalRot=True,
+            label="integrator",
+        ),
     ] + ([zones] if zones else [])
 
 
@@ -63,12 +84,18 @@ def connect(rule=None, tolerance=1e-4):
     """
     loop = next((e for e in O.engines if isinstance(e, InteractionLoop)), None)
     if loop is None:
-        raise ValueError("connect() needs an InteractionLoop in O.engines: call masonry.engines() first")
+        raise ValueError(
+            "connect() needs an InteractionLoop in O.engines: call masonry.engines() first"
+        )
     physics = loop.physDispatcher.functors[0]
     made = []
     for id1, id2 in touchingPairs(tolerance):
         interaction = utils.createInteraction(id1, id2)
-        joint = rule(O.bodies[interaction.id1], O.bodies[interaction.id2], interaction.geom) if rule else None
+        joint = (
+            rule(O.bodies[interaction.id1], O.bodies[interaction.id2], interaction.geom)
+            if rule
+            else None
+        )
         if joint is not None:
             physics.assign(interaction, joint)
         made.append(interaction)

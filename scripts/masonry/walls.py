@@ -15,7 +15,14 @@ from .options import Refused, applySettings
 from .results import ENERGIES, Interrupted, Progress, Results, initialStiffness
 from .scene import addBlock, connect, engines
 
-CURVE = ["time_s", "displacement_mm", "base_shear_kN", "top_shear_kN", "vertical_mm", "rotation_mrad"]
+CURVE = [
+    "time_s",
+    "displacement_mm",
+    "base_shear_kN",
+    "top_shear_kN",
+    "vertical_mm",
+    "rotation_mrad",
+]
 CURVE += [name + "_J" for name in ENERGIES] + ["balance_error"]
 
 BLOCK_HEIGHT = 0.2  # [m] of the support, and of the loading block of a clamped wall
@@ -66,16 +73,35 @@ class WallModel:
 
     def _build(self):
         O.reset()
-        wall, brick, rigid = self.wall, materials.calciumSilicateUnit(), materials.loadingBlock()
+        wall, brick, rigid = (
+            self.wall,
+            materials.calciumSilicateUnit(),
+            materials.loadingBlock(),
+        )
         O.materials.append([brick, rigid])
         length, thickness, height = wall.length, wall.unit[1], wall.height
         top = wall.loadHeight or height + BLOCK_HEIGHT
-        self.base = addBlock(brickwork.corners((0, 0, -BLOCK_HEIGHT), (length, thickness, 0)), rigid, inPlane=True)
+        self.base = addBlock(
+            brickwork.corners((0, 0, -BLOCK_HEIGHT), (length, thickness, 0)),
+            rigid,
+            inPlane=True,
+        )
         O.bodies[self.base].state.blockedDOFs = "xyzXYZ"
         self.brickOf = {}
-        for block in brickwork.runningBond(wall.courses, wall.halfUnits, wall.unit, halves=self.args.crack_surfaces == "on"):
-            self.brickOf[addBlock(brickwork.corners(block.low, block.high), brick, inPlane=True)] = block.brick
-        self.top = addBlock(brickwork.corners((0, 0, height), (length, thickness, top)), rigid, inPlane=True)
+        for block in brickwork.runningBond(
+            wall.courses,
+            wall.halfUnits,
+            wall.unit,
+            halves=self.args.crack_surfaces == "on",
+        ):
+            self.brickOf[
+                addBlock(brickwork.corners(block.low, block.high), brick, inPlane=True)
+            ] = block.brick
+        self.top = addBlock(
+            brickwork.corners((0, 0, height), (length, thickness, top)),
+            rigid,
+            inPlane=True,
+        )
         topState = O.bodies[self.top].state
         if wall.loadHeight is None:
             topState.blockedDOFs = "yXYZ"
@@ -108,11 +134,19 @@ class WallModel:
         )
         self.energy = next(e for e in O.engines if e.label == "energy")
         crack = self.joints["crack"]
-        sameBrick = lambda b1, b2: b1.id in self.brickOf and self.brickOf[b1.id] == self.brickOf.get(b2.id)
-        self.interactions = connect(lambda b1, b2, geom: crack if sameBrick(b1, b2) else None)
+        sameBrick = lambda b1, b2: b1.id in self.brickOf and self.brickOf[
+            b1.id
+        ] == self.brickOf.get(b2.id)
+        self.interactions = connect(
+            lambda b1, b2, geom: crack if sameBrick(b1, b2) else None
+        )
         self.limit = criticalTimeStep()[0]
         O.dt = self.args.dt_fraction * self.limit
-        self.vtk = None if self.args.no_vtk else MasonryVtkRecorder(directory=self.results.directory)
+        self.vtk = (
+            None
+            if self.args.no_vtk
+            else MasonryVtkRecorder(directory=self.results.directory)
+        )
         self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)
         kinds = {}
         for i in self.interactions:
@@ -134,8 +168,16 @@ class WallModel:
             option_units={"until": "mm", "rate": "mm/s", "vtk_every": "mm"},
             joints={name: joint.dict() for name, joint in self.joints.items()},
             joint_units=options.units(materials.MasonryJoint),
-            unit_material={"young_Pa": brick.young, "poisson": brick.poisson, "density_kg_per_m3": brick.density},
-            versions={"yade": yade.config.version, "python": sys.version.split()[0], "masonry": commit},
+            unit_material={
+                "young_Pa": brick.young,
+                "poisson": brick.poisson,
+                "density_kg_per_m3": brick.density,
+            },
+            versions={
+                "yade": yade.config.version,
+                "python": sys.version.split()[0],
+                "masonry": commit,
+            },
             commit=commit,
             threads=O.numThreads,
             time_step_s=O.dt,
@@ -168,9 +210,20 @@ class WallModel:
         for done in range(0, mostSteps, 100):
             self._advance(100)
             e = self.energy.balance()
-            elastic = e["elastic_compression"] + e["elastic_shear"] + e["elastic_tension"] + e["elastic_units"]
+            elastic = (
+                e["elastic_compression"]
+                + e["elastic_shear"]
+                + e["elastic_tension"]
+                + e["elastic_units"]
+            )
             quiet = quiet + 1 if abs(e["kinetic"]) < 1e-9 * elastic else 0
-            self.progress.show(stage, done / mostSteps, f"kinetic/elastic {abs(e['kinetic']) / elastic:.1e}", self._rate(), quiet == 3)
+            self.progress.show(
+                stage,
+                done / mostSteps,
+                f"kinetic/elastic {abs(e['kinetic']) / elastic:.1e}",
+                self._rate(),
+                quiet == 3,
+            )
             if quiet == 3:
                 return
         print(f"note: the wall is not quite at rest after {mostSteps} steps of {stage}")
@@ -181,7 +234,10 @@ class WallModel:
 
     def precompress(self):
         """Precompression on the loading block, to rest. It is what the top course feels: the block's weight is part."""
-        force = self.wall.precompression * self.wall.area - O.bodies[self.top].state.mass * 9.81
+        force = (
+            self.wall.precompression * self.wall.area
+            - O.bodies[self.top].state.mass * 9.81
+        )
         pieces = 40
         for piece in range(1, pieces + 1):
             self.load.force = Vector3(0, 0, -force * piece / pieces)
@@ -202,7 +258,9 @@ class WallModel:
             if self.vtk and values["displacement_mm"] >= nextFrame:
                 self.vtk()
                 nextFrame += args.vtk_every
-            self.load.velocity = args.rate * 1e-3 * min(1.0, (O.time - began + every * O.dt) / RAMP)
+            self.load.velocity = (
+                args.rate * 1e-3 * min(1.0, (O.time - began + every * O.dt) / RAMP)
+            )
             self._advance(every)
             values = self._record()
             shear, moved = values["base_shear_kN"], values["displacement_mm"]
@@ -221,7 +279,10 @@ class WallModel:
     def _topDisplacement(self):
         """Displacement of the loading block at the top of the masonry [m]."""
         s = O.bodies[self.top].state
-        arm = Vector3(self.wall.length / 2, self.wall.unit[1] / 2, self.wall.height) - s.refPos
+        arm = (
+            Vector3(self.wall.length / 2, self.wall.unit[1] / 2, self.wall.height)
+            - s.refPos
+        )
         return s.pos + s.ori * (s.refOri.conjugate() * arm) - s.refPos - arm
 
     def _record(self):
@@ -248,7 +309,9 @@ class WallModel:
         if self.vtk and results.rows:
             self.vtk()
         if results.rows:
-            shear, moved = results.column("base_shear_kN"), results.column("displacement_mm")
+            shear, moved = results.column("base_shear_kN"), results.column(
+                "displacement_mm"
+            )
             at = max(range(len(shear)), key=shear.__getitem__)
             run.update(
                 peak_base_shear_kN=shear[at],
@@ -266,12 +329,18 @@ class WallModel:
         )
         if self.steps:
             run["microseconds_per_step"] = 1e6 * self.steppingTime / self.steps
-            run["nanoseconds_per_subcontact_step"] = 1e9 * self.steppingTime / self.steps / self.subcontacts
+            run["nanoseconds_per_subcontact_step"] = (
+                1e9 * self.steppingTime / self.steps / self.subcontacts
+            )
         results.close()
         if results.rows:
-            subprocess.run([sys.executable, "-m", "masonry.figures", results.directory], check=True)
+            subprocess.run(
+                [sys.executable, "-m", "masonry.figures", results.directory], check=True
+            )
         if run.get("energy_balance_error", 0) > 0.01:
-            print(f"warning: the energy balance is off by {100 * run['energy_balance_error']:.1f} % of the work done")
+            print(
+                f"warning: the energy balance is off by {100 * run['energy_balance_error']:.1f} % of the work done"
+            )
         if results.rows:
             print(
                 f"{self.wall.name}: peak {run['peak_base_shear_kN']:.1f} kN at {run['displacement_at_peak_mm']:.2f} mm, "

@@ -4,7 +4,16 @@ import math
 
 import numpy as np
 import pytest
-from masonry import MasonryJoint, MasonryLoad, MasonryMat, MasonryZones, addBlock, connect, criticalTimeStep, engines
+from masonry import (
+    MasonryJoint,
+    MasonryLoad,
+    MasonryMat,
+    MasonryZones,
+    addBlock,
+    connect,
+    criticalTimeStep,
+    engines,
+)
 from masonry.brickwork import corners
 from yade import O, Vector3
 
@@ -13,7 +22,9 @@ BRICK = (0.220, 0.102, 0.081)
 
 
 def stiff(stiffness=1e14, **kw):
-    return MasonryJoint(elastic=True, normalStiffness=stiffness, shearStiffness=stiffness, **kw)
+    return MasonryJoint(
+        elastic=True, normalStiffness=stiffness, shearStiffness=stiffness, **kw
+    )
 
 
 def energy():
@@ -23,10 +34,15 @@ def energy():
 def bar(length, cells, damping, section=0.05, poisson=0.0):
     """A bar along z of one unit, stuck to a fixed rigid block by a very stiff joint."""
     mat = MasonryMat(density=RHO, young=E, poisson=poisson)
-    base = addBlock(corners((0, 0, -section), (section, section, 0)), MasonryMat(density=RHO, young=1e16))
+    base = addBlock(
+        corners((0, 0, -section), (section, section, 0)),
+        MasonryMat(density=RHO, young=1e16),
+    )
     unit = addBlock(corners((0, 0, 0), (section, section, length)), mat)
     O.bodies[base].state.blockedDOFs = "xyzXYZ"
-    zones = MasonryZones(bodies=[unit], divisions=[1, 1, cells], damping=damping, gravity=(0, 0, 0))
+    zones = MasonryZones(
+        bodies=[unit], divisions=[1, 1, cells], damping=damping, gravity=(0, 0, 0)
+    )
     engines([stiff(1e16)], gravity=(0, 0, 0), damping=0, zones=zones)
     connect()
     O.dt = 0.9 * criticalTimeStep()[0]
@@ -40,14 +56,20 @@ def frequency(length, cells):
     assert O.dt < 1e-7  # small enough that the error is the zones'
     for number in range(*zones.nodesOf(unit)):
         z = zones.referencePoint(unit, number)[2]
-        zones.setVelocity(number, Vector3(0, 0, 1e-3 * math.sin(0.5 * math.pi * z / length)))
-    tip = max(range(*zones.nodesOf(unit)), key=lambda n: zones.referencePoint(unit, n)[2])
+        zones.setVelocity(
+            number, Vector3(0, 0, 1e-3 * math.sin(0.5 * math.pi * z / length))
+        )
+    tip = max(
+        range(*zones.nodesOf(unit)), key=lambda n: zones.referencePoint(unit, n)[2]
+    )
     crossings, last = [], 0.0
     while len(crossings) < 5:
         O.step()
         now = zones.displacements[tip][2]
         if last < 0 <= now or last > 0 >= now:
-            crossings.append(O.time - O.dt * now / (now - last) if now != last else O.time)
+            crossings.append(
+                O.time - O.dt * now / (now - last) if now != last else O.time
+            )
         last = now
     return 2 / (crossings[4] - crossings[0])
 
@@ -64,20 +86,35 @@ def deflection(cells, length=0.4, section=0.05):
     """Tip deflection of the bar under its own weight sideways, over that of the beam theory."""
     O.reset()
     mat = MasonryMat(density=RHO, young=E, poisson=0.0)
-    base = addBlock(corners((0, 0, -section), (section, section, 0)), MasonryMat(density=RHO, young=1e16))
+    base = addBlock(
+        corners((0, 0, -section), (section, section, 0)),
+        MasonryMat(density=RHO, young=1e16),
+    )
     unit = addBlock(corners((0, 0, 0), (section, section, length)), mat)
     O.bodies[base].state.blockedDOFs = "xyzXYZ"
-    zones = MasonryZones(bodies=[unit], divisions=[cells, cells, 8 * cells], damping=0.8, dampingKind="local", gravity=(9.81, 0, 0))
+    zones = MasonryZones(
+        bodies=[unit],
+        divisions=[cells, cells, 8 * cells],
+        damping=0.8,
+        dampingKind="local",
+        gravity=(9.81, 0, 0),
+    )
     engines([stiff()], gravity=(0, 0, 0), damping=0, zones=zones)
     connect()
     O.dt = 0.9 * criticalTimeStep()[0]
-    tip = [n for n in range(*zones.nodesOf(unit)) if abs(zones.referencePoint(unit, n)[2] - length) < 1e-9]
+    tip = [
+        n
+        for n in range(*zones.nodesOf(unit))
+        if abs(zones.referencePoint(unit, n)[2] - length) < 1e-9
+    ]
     steps = int(8 * 0.0021 / O.dt)  # eight times the slowest period
     for _ in range(steps):
         O.step()
     moved = np.mean([zones.displacements[n][0] for n in tip])
     load, inertia, area = RHO * 9.81 * section**2, section**4 / 12, section**2
-    beam = load * length**4 / (8 * E * inertia) + 1.2 * load * length**2 / (2 * area * E / 2)
+    beam = load * length**4 / (8 * E * inertia) + 1.2 * load * length**2 / (
+        2 * area * E / 2
+    )
     return moved / beam
 
 
@@ -94,7 +131,13 @@ def test_energy_without_damping_is_kept_over_a_hundred_thousand_steps(scene):
         z = zones.referencePoint(unit, number)[2]
         zones.setVelocity(number, Vector3(2e-3 * z, 1e-3 * z, 5e-3 * z))
     O.step()
-    total = lambda b: b["kinetic"] + b["elastic_units"] + b["elastic_tension"] + b["elastic_shear"] + b["elastic_compression"]
+    total = (
+        lambda b: b["kinetic"]
+        + b["elastic_units"]
+        + b["elastic_tension"]
+        + b["elastic_shear"]
+        + b["elastic_compression"]
+    )
     start = total(energy())
     for _ in range(10):
         for _ in range(10000):
@@ -118,16 +161,33 @@ def test_a_deformable_unit_falls_freely(scene):
 def couplet(deformable, joint, young=E, divisions=(2, 1, 1)):
     """Two bricks between rigid plates, the upper plate driven; returns the load."""
     O.reset()
-    mat, plate = MasonryMat(density=RHO, young=young, poisson=NU), MasonryMat(density=RHO, young=1e16, jointSet="plate")
+    mat, plate = MasonryMat(density=RHO, young=young, poisson=NU), MasonryMat(
+        density=RHO, young=1e16, jointSet="plate"
+    )
     x, y, z = BRICK
     base = addBlock(corners((0, 0, -0.05), (x, y, 0)), plate, inPlane=True)
-    units = [addBlock(corners((0, 0, k * z), (x, y, (k + 1) * z)), mat, inPlane=True) for k in (0, 1)]
+    units = [
+        addBlock(corners((0, 0, k * z), (x, y, (k + 1) * z)), mat, inPlane=True)
+        for k in (0, 1)
+    ]
     top = addBlock(corners((0, 0, 2 * z), (x, y, 2 * z + 0.05)), plate, inPlane=True)
     O.bodies[base].state.blockedDOFs = "xyzXYZ"
     O.bodies[top].state.blockedDOFs = "xyXYZ"
-    load = MasonryLoad(body=top, point=(x / 2, y / 2, 2 * z), direction=(0, 0, 1), driven=True)
-    zones = MasonryZones(bodies=units, divisions=divisions, blocked="y", gravity=(0, 0, 0)) if deformable else None
-    engines([stiff(name="plate", jointSet="plate"), joint], gravity=(0, 0, 0), inPlane=True, loads=[load], zones=zones)
+    load = MasonryLoad(
+        body=top, point=(x / 2, y / 2, 2 * z), direction=(0, 0, 1), driven=True
+    )
+    zones = (
+        MasonryZones(bodies=units, divisions=divisions, blocked="y", gravity=(0, 0, 0))
+        if deformable
+        else None
+    )
+    engines(
+        [stiff(name="plate", jointSet="plate"), joint],
+        gravity=(0, 0, 0),
+        inPlane=True,
+        loads=[load],
+        zones=zones,
+    )
     connect()
     O.dt = 0.8 * criticalTimeStep()[0]
     return load
@@ -143,7 +203,9 @@ def pull(load, distance, duration):
     stress = []
     for _ in range(int(duration / O.dt)):
         O.step()
-        stress.append(np.average([s[0] for s in joint().phys.stress], weights=joint().geom.areas))
+        stress.append(
+            np.average([s[0] for s in joint().phys.stress], weights=joint().geom.areas)
+        )
     return np.array(stress)
 
 
@@ -160,7 +222,9 @@ def test_two_deformable_bricks_pulled_apart_carry_ft_and_take_the_mode_I_energy(
     load = couplet(True, MasonryJoint(name="bed"))
     pull(load, 3e-3, 0.05)
     b = energy()
-    assert b["dissipated_tension"] / (BRICK[0] * BRICK[1]) == pytest.approx(16, rel=0.01)
+    assert b["dissipated_tension"] / (BRICK[0] * BRICK[1]) == pytest.approx(
+        16, rel=0.01
+    )
     assert abs(b["error"]) < 1e-4
 
 
@@ -193,13 +257,20 @@ def test_local_damping_drags_a_moving_unit_and_combined_does_not(scene):
         extra = []
         for _ in range(2000):
             O.step()
-            extra.append(load.reaction / (BRICK[0] * BRICK[1]) - np.average([s[0] for s in joint().phys.stress], weights=joint().geom.areas))
+            extra.append(
+                load.reaction / (BRICK[0] * BRICK[1])
+                - np.average(
+                    [s[0] for s in joint().phys.stress], weights=joint().geom.areas
+                )
+            )
         drag[kind] = abs(np.mean(extra))
     assert drag["combined"] < 0.5 * drag["local"]
 
 
 @pytest.mark.parametrize("extension", [".xml", ".yade.gz"])
-def test_a_deformable_run_saved_in_the_middle_goes_on_the_same(scene, tmp_path, extension):
+def test_a_deformable_run_saved_in_the_middle_goes_on_the_same(
+    scene, tmp_path, extension
+):
     load = couplet(True, MasonryJoint(name="bed"))
     pull(load, 4e-6, 0.005)
     path = str(tmp_path / ("run" + extension))
@@ -217,7 +288,10 @@ def test_a_deformable_run_saved_in_the_middle_goes_on_the_same(scene, tmp_path, 
         (dict(divisions=[1, 1]), "divisions must be three whole numbers"),
         (dict(divisions=[0, 1, 1]), "divisions 0 must be 1 to 100"),
         (dict(damping=1), "damping 1 must be 0 to 0.99"),
-        (dict(dampingKind="viscous"), "dampingKind 'viscous' must be 'combined' or 'local'"),
+        (
+            dict(dampingKind="viscous"),
+            "dampingKind 'viscous' must be 'combined' or 'local'",
+        ),
         (dict(blocked="w"), "blocked 'w' must be made of x, y and z"),
     ],
 )
@@ -228,7 +302,9 @@ def test_wrong_zones_are_refused(keywords, message):
 
 def test_units_that_cannot_be_divided_are_named(scene):
     flat = addBlock(corners((0, 0, 0), (0.2, 0.1, 1e-5)), MasonryMat(density=RHO))
-    with pytest.raises(ValueError, match=f"body {flat} cannot be divided: block has a sliver zone"):
+    with pytest.raises(
+        ValueError, match=f"body {flat} cannot be divided: block has a sliver zone"
+    ):
         MasonryZones(bodies=[flat]).nodesOf(flat)
     with pytest.raises(ValueError, match="body 9 does not exist"):
         MasonryZones(bodies=[9]).nodesOf(9)

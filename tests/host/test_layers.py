@@ -8,7 +8,12 @@ from conftest import ROOT
 
 PLUGIN = os.path.join(ROOT, "yade_plugin")
 STANDARD = {"Eigen"}
-MAY_INCLUDE = {"law": {"law"}, "blocks": {"blocks"}, "host": {"host"}, "adapters": {"law", "blocks", "host", "adapters"}}
+MAY_INCLUDE = {
+    "law": {"law"},
+    "blocks": {"blocks"},
+    "host": {"host"},
+    "adapters": {"law", "blocks", "host", "adapters"},
+}
 
 
 @pytest.mark.parametrize("layer", MAY_INCLUDE)
@@ -23,7 +28,9 @@ def test_a_layer_includes_only_what_it_may_know(layer):
             assert owner in MAY_INCLUDE[layer], f"{layer}/{name} includes {included}"
         if layer in ("law", "blocks"):
             for included in re.findall(r"#include <([^>]+)>", text):
-                assert "/" not in included or included.split("/")[0] in STANDARD, f"{layer}/{name} includes {included}"
+                assert (
+                    "/" not in included or included.split("/")[0] in STANDARD
+                ), f"{layer}/{name} includes {included}"
 
 
 def test_host_classes_are_declared_in_one_file_only():

@@ -27,7 +27,10 @@ BRICK = (0.220, 0.102, 0.081)
 
 
 def box(low, size=BRICK):
-    return [tuple(low[i] + size[i] * c[i] for i in range(3)) for c in [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]]
+    return [
+        tuple(low[i] + size[i] * c[i] for i in range(3))
+        for c in [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    ]
 
 
 def turned(points, turn, shift=(0, 0, 0)):
@@ -50,12 +53,18 @@ def pair(turn=Quaternion.Identity, offset=(0, 0, BRICK[2]), joints=None, **kw):
 
 
 def inFreshYade(code):
-    program = "import sys; sys.path.insert(1, '/usr/lib/x86_64-linux-gnu/yade-double/py')\nimport yade\n" + code
-    return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    program = (
+        "import sys; sys.path.insert(1, '/usr/lib/x86_64-linux-gnu/yade-double/py')\nimport yade\n"
+        + code
+    )
+    return subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True
+    )
 
 
 def test_a_yade_that_does_not_fit_is_refused_with_one_import_error_and_stays_usable():
-    run = inFreshYade(f"""
+    run = inFreshYade(
+        f"""
 from yade import *
 import importlib.util, yade.wrapper
 O.bodies.append(Body())
@@ -74,27 +83,40 @@ O.dt = 0.1
 O.step()
 assert abs(O.bodies[0].state.vel[2] + 1) < 1e-12
 print("USABLE")
-""")
+"""
+    )
     assert run.returncode == 0, run.stdout + run.stderr
     assert "State.mass: expected offset 176, found offset 168" in run.stdout
-    assert "knows YADE 2023.02a" in run.stdout and "nothing was registered" in run.stdout
+    assert (
+        "knows YADE 2023.02a" in run.stdout and "nothing was registered" in run.stdout
+    )
     assert "USABLE" in run.stdout
 
 
 def test_the_fitting_module_leaves_the_users_scene_alone():
-    run = inFreshYade("""
+    run = inFreshYade(
+        """
 from yade import *
 O.bodies.append(utils.sphere((0, 0, 0), 1))
 engines = O.engines
 import masonry
 assert len(O.bodies) == 1 and O.engines == engines and O.thisScene == 0
 print("ALONE")
-""")
+"""
+    )
     assert "ALONE" in run.stdout, run.stdout + run.stderr
 
 
 def test_without_yade_the_package_still_reads_results():
-    run = subprocess.run([sys.executable, "-c", "import masonry.results, masonry; print(hasattr(masonry, 'MasonryMat'))"], capture_output=True, text=True)
+    run = subprocess.run(
+        [
+            sys.executable,
+            "-c",
+            "import masonry.results, masonry; print(hasattr(masonry, 'MasonryMat'))",
+        ],
+        capture_output=True,
+        text=True,
+    )
     assert run.stdout.strip() == "False", run.stderr
 
 
@@ -117,7 +139,9 @@ def test_a_class_stands_in_yade_with_docs_keywords_and_dict(name):
 def test_numbers_say_their_unit_and_default():
     for cls in (MasonryMat, MasonryJoint):
         for attribute, value in cls.__dict__.items():
-            if isinstance(value, property) and isinstance(getattr(cls(), attribute), float):
+            if isinstance(value, property) and isinstance(
+                getattr(cls(), attribute), float
+            ):
                 assert "[" in value.__doc__ and "Default: " in value.__doc__, attribute
 
 
@@ -126,14 +150,22 @@ def test_wrong_attributes_are_refused_and_change_nothing():
     with pytest.raises(ValueError, match='joint "bed": friction -1 must be at least 0'):
         joint.friction = -1
     assert joint.friction == 0.43
-    with pytest.raises(ValueError, match="MasonryJoint.tensileStrength: expected a number, got much"):
+    with pytest.raises(
+        ValueError, match="MasonryJoint.tensileStrength: expected a number, got much"
+    ):
         MasonryJoint(tensileStrength="much")
-    with pytest.raises(ValueError, match=r"MasonryJoint.tensionTable: expected a list of \(ratio, damage\) rows"):
+    with pytest.raises(
+        ValueError,
+        match=r"MasonryJoint.tensionTable: expected a list of \(ratio, damage\) rows",
+    ):
         MasonryJoint(tensionTable=[1, 2])
     with pytest.raises(ValueError) as refused:
         MasonryJoint(name="b", tensileStrength=-1, friction=-1)
     assert str(refused.value).count('joint "b": ') == 2
-    with pytest.raises(ValueError, match="young -1 Pa must be a finite number above 0; poisson 0.5 must be above -1 and below 0.5"):
+    with pytest.raises(
+        ValueError,
+        match="young -1 Pa must be a finite number above 0; poisson 0.5 must be above -1 and below 0.5",
+    ):
         MasonryMat(young=-1, poisson=0.5)
     with pytest.raises(ValueError, match="subcontacts 0 must be 1 to 1000"):
         Ig2_Polyhedra_Polyhedra_MasonryJointGeom(subcontacts=0)
@@ -141,7 +173,9 @@ def test_wrong_attributes_are_refused_and_change_nothing():
 
 def test_tables_of_the_user_are_kept_and_used():
     joint = MasonryJoint(tensionTable=[(1, 0), (3, 0.5), (9, 1)])
-    assert joint.tensionTable == [(1, 0), (3, 0.5), (9, 1)] == joint.softening()["tension"]
+    assert (
+        joint.tensionTable == [(1, 0), (3, 0.5), (9, 1)] == joint.softening()["tension"]
+    )
     assert len(MasonryJoint().softening()["tension"]) == 201
     brittle = joint.brittleCoulomb()
     assert not brittle.cap and len(brittle.softening()["shear"]) == 2 and joint.cap
@@ -181,7 +215,9 @@ def test_blocks_without_a_shared_face_get_no_joint(scene):
 
 
 def test_direction_joint_set_and_the_users_rule_choose_the_joint(scene):
-    unit, support = MasonryMat(density=1800), MasonryMat(density=1800, jointSet="support")
+    unit, support = MasonryMat(density=1800), MasonryMat(
+        density=1800, jointSet="support"
+    )
     addBlock(box((0, 0, -0.081), (0.44, 0.102, 0.081)), support)
     for corner in ((0, 0, 0), (0.22, 0, 0), (0, 0, 0.081), (0.22, 0, 0.081)):
         addBlock(box(corner), unit)
@@ -195,11 +231,21 @@ def test_direction_joint_set_and_the_users_rule_choose_the_joint(scene):
     )
     connect(lambda b1, b2, geom: special if {b1.id, b2.id} == {3, 4} else None)
     kind = lambda a, b: O.interactions[a, b].phys.joint.name
-    assert [kind(0, 1), kind(0, 2), kind(1, 2), kind(1, 3), kind(2, 4), kind(3, 4)] == ["support", "support", "head", "bed", "bed", "special"]
+    assert [kind(0, 1), kind(0, 2), kind(1, 2), kind(1, 3), kind(2, 4), kind(3, 4)] == [
+        "support",
+        "support",
+        "head",
+        "bed",
+        "bed",
+        "special",
+    ]
 
 
 def test_a_pair_that_no_joint_fits_is_named(scene):
-    with pytest.raises(ValueError, match=r'no joint fits bodies 0 and 1: joint sets "brick" and "brick", normal \(0, 0, 1\); offered: head'):
+    with pytest.raises(
+        ValueError,
+        match=r'no joint fits bodies 0 and 1: joint sets "brick" and "brick", normal \(0, 0, 1\); offered: head',
+    ):
         pair(joints=[MasonryJoint(name="head", direction=(1, 0, 0))])
 
 
@@ -217,7 +263,9 @@ def kick(turn=Quaternion.Identity, steps=400, **kw):
     s = O.bodies[1].state
     s.vel = turn * Vector3(0.001, 0.0007, -0.002)
     s.angVel = turn * Vector3(0.01, -0.02, 0.015)
-    s.angMom = s.ori * Vector3(*[i * w for i, w in zip(s.inertia, s.ori.conjugate() * s.angVel)])
+    s.angMom = s.ori * Vector3(
+        *[i * w for i, w in zip(s.inertia, s.ori.conjugate() * s.angVel)]
+    )
     for _ in range(steps):
         O.step()
     return interaction
@@ -233,7 +281,9 @@ def test_a_turned_scene_gives_the_turned_answer(scene):
     assert (O.bodies[1].state.pos - turn * position).norm() < 1e-12
     size = max(s.norm() for s in stresses)
     assert size > 1e3
-    for a, b in zip(sorted(s[0] for s in stresses), sorted(s[0] for s in again.phys.stress)):
+    for a, b in zip(
+        sorted(s[0] for s in stresses), sorted(s[0] for s in again.phys.stress)
+    ):
         assert abs(a - b) < 1e-5 * size
 
 
@@ -246,7 +296,9 @@ def test_forces_and_torques_of_a_joint_balance(scene):
     moved = O.bodies[1].state.vel.norm() * O.dt
     assert f[0].norm() > 10
     assert (f[0] + f[1]).norm() < 1e-9 * f[0].norm()
-    assert (t[0] + t[1] + arm[0].cross(f[0]) + arm[1].cross(f[1])).norm() < 2 * moved * f[0].norm()
+    assert (
+        t[0] + t[1] + arm[0].cross(f[0]) + arm[1].cross(f[1])
+    ).norm() < 2 * moved * f[0].norm()
 
 
 def test_free_vibration_keeps_its_energy(scene):
@@ -261,8 +313,15 @@ def test_free_vibration_keeps_its_energy(scene):
         for _ in range(500):
             O.step()
         b = energy.balance()
-        total = b["kinetic"] + b["elastic_tension"] + b["elastic_compression"] + b["elastic_shear"]
-        assert total == pytest.approx(start, rel=2e-3)  # the first half step is not in the trapezoidal work
+        total = (
+            b["kinetic"]
+            + b["elastic_tension"]
+            + b["elastic_compression"]
+            + b["elastic_shear"]
+        )
+        assert total == pytest.approx(
+            start, rel=2e-3
+        )  # the first half step is not in the trapezoidal work
     assert b["damping"] == b["dissipated_shear"] == 0
 
 
@@ -285,13 +344,17 @@ def test_a_driven_point_keeps_its_velocity_while_the_block_turns(scene):
     pair(inPlane=True, damping=0.8)
     O.bodies[1].state.blockedDOFs = "yXZ"
     top = (0.11, 0.051, 0.162)
-    load = MasonryLoad(body=1, point=top, direction=(1, 0, 0), driven=True, velocity=0.002)
+    load = MasonryLoad(
+        body=1, point=top, direction=(1, 0, 0), driven=True, velocity=0.002
+    )
     O.engines = O.engines[:2] + [load] + O.engines[2:]
     for _ in range(2000):
         O.step()
     assert load.displacement()[0] == pytest.approx(0.002 * O.time, rel=1e-4)
     assert abs(O.bodies[1].state.angVel[1]) > 1e-4
-    assert abs(next(e for e in O.engines if e.label == "energy").balance()["error"]) < 1e-5
+    assert (
+        abs(next(e for e in O.engines if e.label == "energy").balance()["error"]) < 1e-5
+    )
     load.body = 7
     with pytest.raises(ValueError, match="MasonryLoad.body 7 does not exist"):
         O.step()
@@ -316,7 +379,9 @@ def test_the_time_step_bound_is_the_limit_of_a_single_joint(scene):
     O.bodies[1].state.blockedDOFs = "xyXYZ"
     stiffness = O.interactions[0, 1].phys.normalStiffness * 0.22 * 0.102
     dt, one, two = criticalTimeStep()
-    assert dt == pytest.approx(2 * math.sqrt(O.bodies[1].state.mass / stiffness), rel=1e-9)
+    assert dt == pytest.approx(
+        2 * math.sqrt(O.bodies[1].state.mass / stiffness), rel=1e-9
+    )
     assert (one, two) == (0, 1)
     assert swing(0.99) < 50
     assert swing(1.01) > 1e3
@@ -326,15 +391,28 @@ def test_the_time_step_bound_is_the_limit_of_a_single_joint(scene):
 
 
 @pytest.mark.parametrize("extension", [".xml", ".yade.gz"])
-def test_a_run_saved_in_the_middle_goes_on_as_if_nothing_had_happened(scene, tmp_path, extension):
+def test_a_run_saved_in_the_middle_goes_on_as_if_nothing_had_happened(
+    scene, tmp_path, extension
+):
     def shove(steps):
         for _ in range(steps):
             O.step()
 
     table = [(1, 0), (40, 0.6), (400, 1)]
-    pair(joints=[MasonryJoint(name="mine", tensionTable=table)], inPlane=True, damping=0.3)
+    pair(
+        joints=[MasonryJoint(name="mine", tensionTable=table)],
+        inPlane=True,
+        damping=0.3,
+    )
     O.bodies[1].state.blockedDOFs = "yXZ"
-    load = MasonryLoad(body=1, point=(0.11, 0.051, 0.162), direction=(1, 0, 0), driven=True, velocity=0.01, label="load")
+    load = MasonryLoad(
+        body=1,
+        point=(0.11, 0.051, 0.162),
+        direction=(1, 0, 0),
+        driven=True,
+        velocity=0.01,
+        label="load",
+    )
     O.engines = O.engines[:2] + [load] + O.engines[2:]
     shove(2000)
     path = str(tmp_path / ("run" + extension))
@@ -344,13 +422,34 @@ def test_a_run_saved_in_the_middle_goes_on_as_if_nothing_had_happened(scene, tmp
         i = O.interactions[0, 1]
         energy = next(e for e in O.engines if e.label == "energy")
         reaction = next(e for e in O.engines if e.label == "load").reaction
-        return (O.time, O.iter, reaction, i.phys.stress, i.phys.damage, i.phys.slip, i.phys.regime, i.phys.dissipated, i.geom.jumps, energy.balance())
+        return (
+            O.time,
+            O.iter,
+            reaction,
+            i.phys.stress,
+            i.phys.damage,
+            i.phys.slip,
+            i.phys.regime,
+            i.phys.dissipated,
+            i.geom.jumps,
+            energy.balance(),
+        )
 
     shove(2000)
     there = state()
     assert any(d[0] > 0 for d in there[4])
     O.load(path)
     i = O.interactions[0, 1]
-    assert (i.phys.joint.name, i.phys.joint.tensionTable, O.bodies[1].mat.young, O.bodies[1].mat.density) == ("mine", table, 4.8e9, 1800)
+    assert (
+        i.phys.joint.name,
+        i.phys.joint.tensionTable,
+        O.bodies[1].mat.young,
+        O.bodies[1].mat.density,
+    ) == (
+        "mine",
+        table,
+        4.8e9,
+        1800,
+    )
     shove(2000)
     assert state() == there

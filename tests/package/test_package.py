@@ -32,7 +32,11 @@ def test_blocks_fill_the_wall_and_head_joints_never_meet(courses, units, halves)
         mine = [b for b in blocks if b.course == course]
         for number, pieces in itertools.groupby(mine, key=lambda b: b.brick):
             assert len(list(pieces)) <= (2 if halves else 1)
-    heads = lambda c: {round(a.high[0], 6) for a, b in zip(blocks, blocks[1:]) if a.course == b.course == c and a.brick != b.brick}
+    heads = lambda c: {
+        round(a.high[0], 6)
+        for a, b in zip(blocks, blocks[1:])
+        if a.course == b.course == c and a.brick != b.brick
+    }
     for course in range(courses - 1):
         assert not heads(course) & heads(course + 1)
 
@@ -54,7 +58,11 @@ def test_the_published_set_is_the_paper_s_table_2():
     assert bed.normalStiffness == pytest.approx(kn, rel=1e-3)
     assert bed.shearStiffness == pytest.approx(kn / (2 * 1.16), rel=1e-3)
     assert (bed.tensileStrength, bed.cohesion, bed.friction) == (0.1e6, 0.11e6, 0.43)
-    assert (bed.compressiveStrength, bed.compressiveFractureEnergy, bed.peakRatio) == (7.55e6, 15000, 68.5)
+    assert (bed.compressiveStrength, bed.compressiveFractureEnergy, bed.peakRatio) == (
+        7.55e6,
+        15000,
+        68.5,
+    )
     assert (head.compressiveStrength, head.compressiveFractureEnergy) == (5.93e6, 31500)
     assert joints["support"].elastic and not joints["crack"].cap
 
@@ -74,14 +82,34 @@ def parse(*words):
 
 def test_settings_change_the_named_property_only():
     joints = materials.calciumSilicateJoints()
-    options.applySettings(joints, parse("--set", "bed.tensileStrength=5e4", "--set", "head.cap=off", "--set", "bed.tensionTable=1:0,2:1").set)
-    assert joints["bed"].tensileStrength == 5e4 and joints["head"].tensileStrength == 1e5
+    options.applySettings(
+        joints,
+        parse(
+            "--set",
+            "bed.tensileStrength=5e4",
+            "--set",
+            "head.cap=off",
+            "--set",
+            "bed.tensionTable=1:0,2:1",
+        ).set,
+    )
+    assert (
+        joints["bed"].tensileStrength == 5e4 and joints["head"].tensileStrength == 1e5
+    )
     assert not joints["head"].cap and joints["bed"].tensionTable == [(1, 0), (2, 1)]
 
 
 def test_all_wrong_settings_are_told_at_once():
     joints = materials.calciumSilicateJoints()
-    words = ["bad.friction=1", "bed.Friction=1", "bed.cap=maybe", "bed.tensionTable=1", "bed.cohesion=much", "head.friction=-1", "crack.name=x"]
+    words = [
+        "bad.friction=1",
+        "bed.Friction=1",
+        "bed.cap=maybe",
+        "bed.tensionTable=1",
+        "bed.cohesion=much",
+        "head.friction=-1",
+        "crack.name=x",
+    ]
     with pytest.raises(options.Refused) as refused:
         options.applySettings(joints, [options._setting(w) for w in words])
     message = str(refused.value)

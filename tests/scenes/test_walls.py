@@ -23,7 +23,18 @@ ENERGY_IN, ENERGY_OUT = ("external_J", "gravity_J"), ("kinetic_J", "damping_J")
 def squat(tmp_path_factory):
     """COMP-4 pushed past its peak, twice as fast as the default."""
     out = str(tmp_path_factory.mktemp("squat"))
-    command = ["yade", "-n", "-x", os.path.join(ROOT, "scripts", "wall_comp4.py"), "--until", "4", "--rate", "40", "--out", out]
+    command = [
+        "yade",
+        "-n",
+        "-x",
+        os.path.join(ROOT, "scripts", "wall_comp4.py"),
+        "--until",
+        "4",
+        "--rate",
+        "40",
+        "--out",
+        out,
+    ]
     run = subprocess.run(command, capture_output=True, text=True, cwd="/", timeout=300)
     assert run.returncode == 0, run.stdout + run.stderr
     return out
@@ -31,16 +42,34 @@ def squat(tmp_path_factory):
 
 def test_the_squat_wall_peaks_between_friction_and_the_cracked_section(squat):
     run = readRun(squat)
-    assert 92.0 * 0.99 <= run["peak_base_shear_kN"] <= 130.6 * 0.99  # validation.md §1, for 3.96 of 4.00 m
+    assert (
+        92.0 * 0.99 <= run["peak_base_shear_kN"] <= 130.6 * 0.99
+    )  # validation.md §1, for 3.96 of 4.00 m
     assert 1 < run["displacement_at_peak_mm"] < 4
-    assert run["units"] == 1224 and run["joint_count"] == 2450 and run["subcontacts"] == 9800
-    assert run["joints_by_kind"] == {"bed": 1188, "head": 595, "crack": 595, "support": 72}
+    assert (
+        run["units"] == 1224
+        and run["joint_count"] == 2450
+        and run["subcontacts"] == 9800
+    )
+    assert run["joints_by_kind"] == {
+        "bed": 1188,
+        "head": 595,
+        "crack": 595,
+        "support": 72,
+    }
     assert run["energy_balance_error"] < 1e-6
 
 
 def test_the_squat_wall_leaves_what_is_promised(squat):
     names = set(os.listdir(squat))
-    assert {"curve.csv", "run.json", "blocks.pvd", "joints.pvd", "curve.png", "cracks.png"} <= names
+    assert {
+        "curve.csv",
+        "run.json",
+        "blocks.pvd",
+        "joints.pvd",
+        "curve.png",
+        "cracks.png",
+    } <= names
     for picture in ("curve.png", "cracks.png"):
         assert os.path.getsize(os.path.join(squat, picture)) > 10000
     run = readRun(squat)
@@ -59,22 +88,37 @@ def test_the_squat_wall_leaves_what_is_promised(squat):
 
 
 def test_frames_show_units_and_subcontacts_with_their_state(squat):
-    assert len(glob.glob(os.path.join(squat, "blocks_*.vtu"))) == len(glob.glob(os.path.join(squat, "joints_*.vtp"))) == 5
+    assert (
+        len(glob.glob(os.path.join(squat, "blocks_*.vtu")))
+        == len(glob.glob(os.path.join(squat, "joints_*.vtp")))
+        == 5
+    )
     blocks, joints = readFrame(squat, "blocks"), readFrame(squat, "joints")
     assert len(blocks["cells"]) == 1226 and len(joints["cells"]) == 9800
     assert blocks["displacement"][:, 0].max() == pytest.approx(4e-3, rel=0.02)
     assert np.abs(blocks["displacement"][:, 1]).max() < 1e-12  # in its plane
-    assert joints["area"].sum() == pytest.approx(2450 * 0 + 35 * 3.96 * 0.102 + 34 * 35 * 0.081 * 0.102, rel=1e-9)
-    for name in "opening slip normal_stress shear_stress damage_tension damage_shear damage_compression regime kind".split():
+    assert joints["area"].sum() == pytest.approx(
+        2450 * 0 + 35 * 3.96 * 0.102 + 34 * 35 * 0.081 * 0.102, rel=1e-9
+    )
+    for (
+        name
+    ) in "opening slip normal_stress shear_stress damage_tension damage_shear damage_compression regime kind".split():
         assert np.all(np.isfinite(joints[name]))
     assert set(np.unique(joints["regime"])) <= {0, 1, 2, 3}
-    assert readRun(squat)["kinds"][joints["kind"].min()] in ("support", "bed", "head", "crack")
+    assert readRun(squat)["kinds"][joints["kind"].min()] in (
+        "support",
+        "bed",
+        "head",
+        "crack",
+    )
 
 
 def test_the_squat_wall_cracks_along_its_diagonal(squat):
     joints = readFrame(squat, "joints")
     centres = np.array([joints["points"][c].mean(axis=0) for c in joints["cells"]])
-    opened = (np.abs(joints["normal"][:, 0]) > 0.5) & (joints["opening"] > 0.05e-3)  # head joints
+    opened = (np.abs(joints["normal"][:, 0]) > 0.5) & (
+        joints["opening"] > 0.05e-3
+    )  # head joints
     course = np.floor(centres[opened, 2] / 0.081).astype(int)
     steps = sorted(set(course))
     assert len(steps) > 17  # more than half of the courses
@@ -82,23 +126,44 @@ def test_the_squat_wall_cracks_along_its_diagonal(squat):
     assert np.corrcoef(steps, at)[0, 1] < -0.7  # from the top left to the bottom right
 
 
-@pytest.mark.parametrize("name, window", [("wall_comp0a", (25.9, 31.7)), ("wall_comp1", (11.5, 14.1))])
+@pytest.mark.parametrize(
+    "name, window", [("wall_comp0a", (25.9, 31.7)), ("wall_comp1", (11.5, 14.1))]
+)
 def test_a_slender_wall_rocks_at_the_toe_crushing_value(runScene, name, window):
-    _, out = runScene(name, "--until", "18", "--rate", "20" if name == "wall_comp1" else "40", "--no-vtk")
+    _, out = runScene(
+        name,
+        "--until",
+        "18",
+        "--rate",
+        "20" if name == "wall_comp1" else "40",
+        "--no-vtk",
+    )
     run = readRun(out)
-    assert window[0] * 0.995 <= run["peak_base_shear_kN"] <= window[1]  # still rising at 18 mm
+    assert (
+        window[0] * 0.995 <= run["peak_base_shear_kN"] <= window[1]
+    )  # still rising at 18 mm
     assert run["base_shear_end_kN"] > 0.97 * run["peak_base_shear_kN"]
-    assert not os.path.exists(os.path.join(out, "joints.pvd")) and os.path.exists(os.path.join(out, "curve.png"))
+    assert not os.path.exists(os.path.join(out, "joints.pvd")) and os.path.exists(
+        os.path.join(out, "curve.png")
+    )
 
 
 # -- how scenes start and end -----------------------------------------------------------------------------------------
 
 
 def test_help_prints_the_options_without_running(tmp_path):
-    command = ["yade", "-n", "-x", os.path.join(ROOT, "scripts", "wall_comp4.py"), "--help"]
+    command = [
+        "yade",
+        "-n",
+        "-x",
+        os.path.join(ROOT, "scripts", "wall_comp4.py"),
+        "--help",
+    ]
     run = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
     assert run.returncode == 0
-    for option in "--until --rate --blocks --subcontacts --damping --dt-fraction --crack-surfaces --set --out --vtk-every --no-vtk".split():
+    for (
+        option
+    ) in "--until --rate --blocks --subcontacts --damping --dt-fraction --crack-surfaces --set --out --vtk-every --no-vtk".split():
         assert option in run.stdout
     assert not os.listdir(tmp_path)
 
@@ -120,15 +185,32 @@ def test_refused_options_start_nothing(runScene, words, message):
 
 def test_an_unwritable_folder_is_refused(tmp_path):
     (tmp_path / "file").write_text("")
-    command = ["yade", "-n", "-x", os.path.join(ROOT, "scripts", "wall_comp4.py"), "--out", str(tmp_path / "file" / "x")]
+    command = [
+        "yade",
+        "-n",
+        "-x",
+        os.path.join(ROOT, "scripts", "wall_comp4.py"),
+        "--out",
+        str(tmp_path / "file" / "x"),
+    ]
     run = subprocess.run(command, capture_output=True, text=True)
     assert run.returncode == 2 and "cannot write to" in run.stderr
 
 
 def test_ctrl_c_ends_in_order_and_keeps_what_is_there(tmp_path):
     out = tmp_path / "results"
-    command = ["yade", "-n", "-x", os.path.join(ROOT, "scripts", "wall_comp0a.py"), "--no-vtk", "--out", str(out)]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    command = [
+        "yade",
+        "-n",
+        "-x",
+        os.path.join(ROOT, "scripts", "wall_comp0a.py"),
+        "--no-vtk",
+        "--out",
+        str(out),
+    ]
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
     curve = out / "curve.csv"
     for _ in range(600):
         if curve.exists() and len(curve.read_text().splitlines()) > 500:
@@ -144,11 +226,15 @@ def test_ctrl_c_ends_in_order_and_keeps_what_is_there(tmp_path):
 
 # -- a small wall, in this process ------------------------------------------------------------------------------------
 
-SMALL = walls.Wall(name="small", title="a small wall", halfUnits=6, precompression=0.5e6, courses=6)
+SMALL = walls.Wall(
+    name="small", title="a small wall", halfUnits=6, precompression=0.5e6, courses=6
+)
 
 
 def small(tmp_path, *words):
-    arguments = options.parser("", until=1).parse_args(["--no-vtk", "--out", str(tmp_path), *words])
+    arguments = options.parser("", until=1).parse_args(
+        ["--no-vtk", "--out", str(tmp_path), *words]
+    )
     model = walls.WallModel(SMALL, arguments)
     model.settle()
     model.precompress()
@@ -185,7 +271,9 @@ def test_a_wall_saved_in_the_middle_of_its_push_goes_on_the_same(scene, tmp_path
     for _ in range(1500):
         O.step()
     O.save(str(tmp_path / "middle.yade.gz"))
-    curve = lambda: [(O.step(), O.forces.f(model.base, True)[0])[1] for _ in range(1500)]
+    curve = lambda: [
+        (O.step(), O.forces.f(model.base, True)[0])[1] for _ in range(1500)
+    ]
     there = curve()
     assert max(there) > 1e3
     O.load(str(tmp_path / "middle.yade.gz"))
@@ -195,7 +283,15 @@ def test_a_wall_saved_in_the_middle_of_its_push_goes_on_the_same(scene, tmp_path
 def test_stronger_joints_carry_more(scene, tmp_path):
     peaks = []
     for cohesion in ("0.11e6", "0.5e6"):
-        model = small(tmp_path, "--until", "2", "--set", f"bed.cohesion={cohesion}", "--set", f"head.cohesion={cohesion}")
+        model = small(
+            tmp_path,
+            "--until",
+            "2",
+            "--set",
+            f"bed.cohesion={cohesion}",
+            "--set",
+            f"head.cohesion={cohesion}",
+        )
         model.push()
         peaks.append(max(model.results.column("base_shear_kN")))
     assert peaks[1] > 1.1 * peaks[0]
