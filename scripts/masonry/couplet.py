@@ -8,7 +8,7 @@ from yade import O, Vector3
 from yade.wrapper import MasonryLoad, MasonryVtkRecorder
 
 from . import brickwork, commit, criticalTimeStep, materials
-from .options import Refused, applySettings
+from .options import Refused, applySettings, checkBlocks
 from .results import ENERGIES, Interrupted, Progress, Results
 from .scene import addBlock, connect, engines
 
@@ -31,6 +31,7 @@ class Couplet:
     """Two bricks, one bed joint. ``args`` are the options of ``couplet.py``."""
 
     def __init__(self, args):
+        checkBlocks(args, deformable=False)
         joints = materials.calciumSilicateJoints(brittle=args.joints == "brittle")
         applySettings(joints, args.set)
         self.args, self.results = args, Results(

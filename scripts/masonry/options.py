@@ -148,6 +148,21 @@ def parser(description, until, rate=20.0):
     return p
 
 
+def checkBlocks(args, deformable=True):
+    """Refuse options that do not go with the block model; ``deformable`` tells whether the scene has it."""
+    problems = []
+    if args.blocks == "deformable" and not deformable:
+        problems.append("--blocks deformable: this scene has rigid units only")
+    if args.blocks == "rigid" and args.damping_kind == "combined":
+        problems.append(
+            "--damping-kind combined: rigid units have YADE's local damping only"
+        )
+    if args.blocks == "rigid" and args.divisions > 1:
+        problems.append("--divisions: rigid units are not divided")
+    if problems:
+        raise Refused("\n".join(problems))
+
+
 def units(cls):
     """Units of a class's attributes, as their docs give them: dict of attribute -> text between the first brackets."""
     docs = {

@@ -64,6 +64,7 @@ class WallModel:
 
     def __init__(self, wall, args):
         self.wall, self.args = wall, args
+        options.checkBlocks(args)
         self.joints = materials.calciumSilicateJoints(brittle=args.joints == "brittle")
         applySettings(self.joints, args.set)
         self.results = Results(args.out or os.path.join("results", wall.name), CURVE)

@@ -174,6 +174,10 @@ def test_help_prints_the_options_without_running(tmp_path):
         (["--dt-fraction", "2"], "2 must be above 0 and at most 1"),
         (["--set", "bed.compressiveFractureEnergy=12000"], "needs at least 12208 J/m²"),
         (["--set", "glue.cohesion=1"], "no joint 'glue'"),
+        (
+            ["--divisions", "2", "--damping-kind", "combined"],
+            "rigid units are not divided",
+        ),
     ],
 )
 def test_refused_options_start_nothing(runScene, words, message):
@@ -278,6 +282,16 @@ def test_a_wall_saved_in_the_middle_of_its_push_goes_on_the_same(scene, tmp_path
     assert max(there) > 1e3
     O.load(str(tmp_path / "middle.yade.gz"))
     assert curve() == there
+
+
+def test_deformable_units_carry_the_weight_and_keep_the_balance(scene, tmp_path):
+    model = small(tmp_path, "--blocks", "deformable", "--until", "0.3")
+    # at rest is kinetic energy below 1e-9 of the elastic one: forces swing by some sqrt(1e-9) of their size
+    weight = 6 * 3 * 0.22 * 0.102 * 0.081 * 1800 * 9.81
+    assert base(model)[2] == pytest.approx(-(0.5e6 * 0.66 * 0.102 + weight), rel=5e-4)
+    model.push()
+    assert max(model.results.column("base_shear_kN")) > 5
+    assert model.energy.largestError < 1e-3
 
 
 def test_stronger_joints_carry_more(scene, tmp_path):
