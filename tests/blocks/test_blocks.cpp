@@ -149,6 +149,8 @@ TEST_CASE("cells nearest to the subcontacts of a face are the cells of its grid"
     }
 }
 
+std::vector<Point> scratch;
+
 // ---- zones -------------------------------------------------------------------------------------------------------
 
 namespace {
@@ -223,7 +225,7 @@ TEST_CASE("rigid motions of any size give no force and show their rotation") {
             // far turns start Newton's iteration far away, but at a rotation it is already exact
             const Matrix3 r = e.rotation(u.data());
             CHECK((r - motion.rotation()).norm() < 1e-11);
-            const double energy = e.addForces(u.data(), r, f.data());
+            const double energy = e.addForces(u.data(), r, f.data(), scratch);
             for (const auto& force : f)
                 CHECK(force.norm() < 1e-3); // N, of a block whose zones carry 1e8 N at unit strain
             CHECK(energy < 1e-9);
@@ -247,7 +249,7 @@ TEST_CASE("patch test: a linear displacement field is a constant stress on any m
         for (const auto& x : mesh.nodes)
             u.push_back(g * x);
         const Matrix3 r = e.rotation(u.data());
-        e.addForces(u.data(), r, f.data());
+        e.addForces(u.data(), r, f.data(), scratch);
         for (std::size_t z = 0; z < mesh.zones.size(); ++z)
             CHECK((e.stress(int(z), u.data(), r) - exact).norm() < 1e-5 * exact.norm());
         std::vector<char> surface(mesh.nodes.size(), 0);
@@ -269,7 +271,7 @@ TEST_CASE("forces are the gradient of the energy and keep momentum, turned or no
     std::vector<Point> u(n), f(n, Point::Zero());
     for (std::size_t i = 0; i < n; ++i)
         u[i] = turn * e.mesh().nodes[i] - e.mesh().nodes[i] + 1e-6 * Point(u01(dice), u01(dice), u01(dice));
-    e.addForces(u.data(), e.rotation(u.data()), f.data());
+    e.addForces(u.data(), e.rotation(u.data()), f.data(), scratch);
     Point sum = Point::Zero(), moment = Point::Zero();
     double size = 0;
     for (std::size_t i = 0; i < n; ++i)
@@ -278,7 +280,7 @@ TEST_CASE("forces are the gradient of the energy and keep momentum, turned or no
     CHECK(moment.norm() < 1e-4 * size * 0.1);
     const auto energy = [&](const std::vector<Point>& at) {
         std::vector<Point> ignored(n, Point::Zero());
-        return e.addForces(at.data(), e.rotation(at.data()), ignored.data());
+        return e.addForces(at.data(), e.rotation(at.data()), ignored.data(), scratch);
     };
     for (std::size_t i = 0; i < n; ++i)
         for (int d = 0; d < 3; ++d) {

@@ -159,6 +159,10 @@ void MasonryZones::action() {
     }
     std::fill(forces_.begin(), forces_.end(), Vector3r::Zero());
     const auto hang = [&](const Attachment& a, const Vector3r& force) {
+        if (a.weights[0] == 1) { // at a node
+            forces_[a.nodes[0]] += force;
+            return;
+        }
         for (int i = 0; i < 3; ++i)
             forces_[a.nodes[i]] += a.weights[i] * force;
     };
@@ -169,7 +173,7 @@ void MasonryZones::action() {
         }
 
     const double dt = scene->dt;
-    const bool combined = dampingKind == "combined";
+    const bool combined = dampingKind == "combined", held[3] = {holds(0), holds(1), holds(2)};
     dampingWork += pendingDamping;
     pendingDamping = kinetic = elastic = gravityWork = 0;
     for (const auto& unit : units_) {
@@ -177,12 +181,12 @@ void MasonryZones::action() {
         auto *u = &displacements[unit.firstNode], *v = &velocities[unit.firstNode], *f = &forces_[unit.firstNode],
              *last = &lastForces[unit.firstNode];
         const Matrix3 rotation = unit.elasticity->rotation(u);
-        elastic += unit.elasticity->addForces(u, rotation, f);
+        elastic += unit.elasticity->addForces(u, rotation, f, scratch_);
         Vector3r mean = Vector3r::Zero();
         for (std::size_t n = 0; n < masses.size(); ++n) {
             gravityWork += masses[n] * gravity.dot(u[n]);
             for (int d = 0; d < 3; ++d) {
-                if (holds(d)) continue;
+                if (held[d]) continue;
                 const double force = f[n][d] + masses[n] * gravity[d], old = v[n][d];
                 // the velocity in the middle of the step, as the host takes it: with the old one, damping pumps near
                 // the limit

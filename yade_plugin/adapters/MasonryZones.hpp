@@ -89,6 +89,7 @@ public:
     bool holds(int direction) const { return blocked.find("xyz"[direction]) != std::string::npos; }
     Vector3r reference(const Unit&, int node) const;
     Vector3r displacementAt(const Attachment& a) const {
+        if (a.weights[0] == 1) return displacements[a.nodes[0]];
         return a.weights[0] * displacements[a.nodes[0]] + a.weights[1] * displacements[a.nodes[1]] +
                a.weights[2] * displacements[a.nodes[2]];
     }
@@ -105,7 +106,7 @@ private:
 
     std::vector<Unit> units_;
     std::vector<int> unitOfBody_;
-    std::vector<Vector3r> forces_;
+    std::vector<Vector3r> forces_, scratch_;
     std::vector<const MasonryJointGeom*> joints_;
     std::size_t interactionsSeen_ = 0;
 };

@@ -57,34 +57,41 @@ Matrix3 BlockElasticity::rotation(const Point* u) const {
     return r;
 }
 
-// Strain of x = R (X + d): the gradient of R^T x is R^T (I + grad u), so with R^T taken out of the sum
-// d_i = R^T (X_i + u_i) - X_i and its symmetric gradient is the strain.
-Matrix3 BlockElasticity::strain(const Zone& z, const Point* u, const Matrix3& rotation) const {
-    Matrix3 gradient = Matrix3::Identity(); // of X + u
-    for (int i = 0; i < 4; ++i)
-        gradient += u[z.nodes[i]] * z.gradients[i].transpose();
-    const Matrix3 turned = rotation.transpose() * gradient;
-    return 0.5 * (turned + turned.transpose()) - Matrix3::Identity();
-}
-
-Matrix3 BlockElasticity::stressOf(const Matrix3& strain) const {
-    return lambda_ * strain.trace() * Matrix3::Identity() + 2 * shear_ * strain;
-}
-
-double BlockElasticity::addForces(const Point* u, const Matrix3& rotation, Point* forces) const {
+double BlockElasticity::addForces(const Point* u, const Matrix3& rotation, Point* forces,
+                                  std::vector<Point>& scratch) const {
+    const std::size_t count = mesh_.nodes.size();
+    scratch.assign(2 * count, Point::Zero());
+    Point *d = scratch.data(), *f = d + count;
+    for (std::size_t i = 0; i < count; ++i)
+        d[i] = turnedBack(int(i), u, rotation);
+    for (const auto& z : zones_) { // the gradients of the four nodes add up to nothing
+        const Point& d0 = d[z.nodes[0]];
+        const Matrix3 gradient = (d[z.nodes[1]] - d0) * z.gradients[1].transpose() +
+                                 (d[z.nodes[2]] - d0) * z.gradients[2].transpose() +
+                                 (d[z.nodes[3]] - d0) * z.gradients[3].transpose();
+        const Matrix3 pull = z.volume * stressOf(gradient);
+        Point rest = Point::Zero();
+        for (int i = 1; i < 4; ++i) {
+            const Point force = pull * z.gradients[i];
+            f[z.nodes[i]] -= force;
+            rest += force;
+        }
+        f[z.nodes[0]] += rest;
+    }
     double energy = 0;
-    for (const auto& z : zones_) {
-        const Matrix3 e = strain(z, u, rotation), s = stressOf(e);
-        const Matrix3 pull = -z.volume * rotation * s;
-        for (int i = 0; i < 4; ++i)
-            forces[z.nodes[i]] += pull * z.gradients[i];
-        energy += 0.5 * z.volume * s.cwiseProduct(e).sum();
+    for (std::size_t i = 0; i < count; ++i) {
+        energy -= 0.5 * d[i].dot(f[i]);
+        forces[i] += rotation * f[i];
     }
     return energy;
 }
 
 Matrix3 BlockElasticity::stress(int zone, const Point* u, const Matrix3& rotation) const {
-    return stressOf(strain(zones_[zone], u, rotation));
+    const auto& z = zones_[zone];
+    Matrix3 gradient = Matrix3::Zero();
+    for (int i = 0; i < 4; ++i)
+        gradient += turnedBack(z.nodes[i], u, rotation) * z.gradients[i].transpose();
+    return stressOf(gradient);
 }
 
 Eigen::Matrix<double, 12, 12> BlockElasticity::stiffness(int zone) const {

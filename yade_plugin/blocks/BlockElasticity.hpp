@@ -20,8 +20,9 @@ public:
     // Rotation of the block: the polar part of its mean deformation gradient, from displacements of all nodes.
     Matrix3 rotation(const Point* displacements) const;
 
-    // Adds the zones' forces on the nodes [N]; returns the elastic energy [J].
-    double addForces(const Point* displacements, const Matrix3& rotation, Point* forces) const;
+    // Adds the zones' forces on the nodes [N]; returns the elastic energy [J]. `scratch` is reused between calls.
+    double addForces(const Point* displacements, const Matrix3& rotation, Point* forces,
+                     std::vector<Point>& scratch) const;
 
     // Stress of a zone [Pa], in the axes turned back by the rotation.
     Matrix3 stress(int zone, const Point* displacements, const Matrix3& rotation) const;
@@ -35,8 +36,13 @@ private:
         std::array<Point, 4> gradients; // of the shape functions [1/m]
         double volume;
     };
-    Matrix3 strain(const Zone&, const Point* displacements, const Matrix3& rotation) const;
-    Matrix3 stressOf(const Matrix3& strain) const;
+    // Displacement of a node in axes that turn with the block; its symmetric gradient is the strain.
+    Point turnedBack(int node, const Point* displacements, const Matrix3& rotation) const {
+        return rotation.transpose() * (mesh_.nodes[node] + displacements[node]) - mesh_.nodes[node];
+    }
+    Matrix3 stressOf(const Matrix3& gradient) const { // Hooke's law, paper §2
+        return lambda_ * gradient.trace() * Matrix3::Identity() + shear_ * (gradient + gradient.transpose());
+    }
 
     BlockMesh mesh_;
     std::vector<Zone> zones_;
