@@ -49,6 +49,8 @@ def engines(
     :param loads: MasonryLoad engines
     :param zones: MasonryZones of the deformable units, if there are any
     """
+    if zones:
+        zones.gravity = Vector3(*gravity)
     across = Vector3(0, 1, 0) if inPlane else Vector3(0, 0, 0)
     O.engines = [
         ForceResetter(),

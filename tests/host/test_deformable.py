@@ -99,7 +99,7 @@ def deflection(cells, length=0.4, section=0.05):
         dampingKind="local",
         gravity=(9.81, 0, 0),
     )
-    engines([stiff()], gravity=(0, 0, 0), damping=0, zones=zones)
+    engines([stiff()], gravity=(9.81, 0, 0), damping=0, zones=zones)
     connect()
     O.dt = 0.9 * criticalTimeStep()[0]
     tip = [

@@ -375,7 +375,7 @@ def swing(fraction):
 
 
 def test_the_time_step_bound_is_the_limit_of_a_single_joint(scene):
-    pair(joints=[MasonryJoint(elastic=True)])
+    pair(joints=[MasonryJoint(elastic=True)], damping=0)
     O.bodies[1].state.blockedDOFs = "xyXYZ"
     stiffness = O.interactions[0, 1].phys.normalStiffness * 0.22 * 0.102
     dt, one, two = criticalTimeStep()
@@ -385,6 +385,69 @@ def test_the_time_step_bound_is_the_limit_of_a_single_joint(scene):
     assert (one, two) == (0, 1)
     assert swing(0.99) < 50
     assert swing(1.01) > 1e3
+
+
+@pytest.mark.parametrize("damping", [0, 0.3, 0.8, 0.95])
+@pytest.mark.parametrize("fraction", [0.8, 0.95, 0.99])
+def test_the_time_step_bound_holds_with_damping(scene, damping, fraction):
+    pair(joints=[MasonryJoint(elastic=True)], damping=damping)
+    O.engines[-1].gravity = (0, 0, -9.81)
+    O.dt = fraction * criticalTimeStep()[0]
+    weight, phys = O.bodies[1].state.mass * 9.81, O.interactions[0, 1].phys
+    sag = weight / (0.22 * 0.102 * phys.normalStiffness)
+    # leapfrog's swing about the static place has the amplitude sag / sqrt(1 - fraction²); damping takes from it
+    swing = 1.05 * sag / math.sqrt(1 - fraction**2)
+    for _ in range(5000):
+        O.step()
+        assert abs(O.bodies[1].state.pos[2] - 1.5 * BRICK[2] + sag) < swing
+    if damping:
+        assert O.bodies[1].state.pos[2] - 1.5 * BRICK[2] == pytest.approx(
+            -sag, rel=1e-3
+        )
+
+
+def test_the_balance_closes_for_a_block_that_turns_about_axes_of_its_own(scene):
+    turn = Quaternion(0.3, -0.5, 0.7, 0.4)
+    turn.normalize()
+    elastic = [MasonryJoint(elastic=True)]
+    interaction = pair(turn, joints=elastic, damping=0, subcontacts=3, rows=3)
+    s = O.bodies[1].state
+    w = Vector3(0.05, -0.02, 0.08)
+    s.angVel = w
+    s.angMom = s.ori * Vector3(
+        *[i * v for i, v in zip(s.inertia, s.ori.conjugate() * w)]
+    )
+    start = 0.5 * w.dot(s.angMom)
+    energy = next(e for e in O.engines if e.label == "energy")
+    O.dt *= 0.2
+    for _ in range(20):
+        for _ in range(200):
+            O.step()
+        b = energy.balance()
+        total = (
+            b["kinetic"]
+            + b["elastic_tension"]
+            + b["elastic_compression"]
+            + b["elastic_shear"]
+        )
+        assert total == pytest.approx(start, rel=5e-3)
+
+
+def test_a_load_on_a_deformable_unit_is_refused(scene):
+    unit = addBlock(box((0, 0, 0)), MasonryMat(density=1800))
+    zones = MasonryZones(bodies=[unit])
+    engines(
+        [MasonryJoint()],
+        loads=[MasonryLoad(body=unit)],
+        zones=zones,
+        gravity=(0, 0, -5),
+    )
+    assert zones.gravity == Vector3(0, 0, -5)
+    with pytest.raises(ValueError, match="is a deformable unit"):
+        O.step()
+    with pytest.raises(ValueError, match="bodies and divisions cannot change"):
+        zones.divisions = [2, 2, 2]
+        zones.nodesOf(unit)
 
 
 # -- saving -----------------------------------------------------------------------------------------------------------

@@ -364,7 +364,7 @@ struct Dice {
         if (p.cohesion == 0) p.residualFriction = p.friction;
         p.residualCohesion = p.cohesion * (chance(0.5) ? 0 : between(0, 1));
         p.tensileStrength = p.friction > 0 ? std::min(1e9, p.cohesion / p.friction) * between(0, 1) : p.cohesion;
-        p.dilatancy = chance(0.5) ? 0 : p.friction * between(0, 1);
+        p.dilatancy = chance(0.5) ? 0 : p.residualFriction * between(0, 1);
         p.dilatancyDecay = chance(0.5) ? 0 : logarithmic(1, 1e5);
         p.modeIFractureEnergy = logarithmic(0.1, 1e3);
         p.modeIIFractureEnergy = logarithmic(0.1, 1e4);

@@ -58,6 +58,10 @@ template <class F> void eachJoint(const yade::Scene& scene, F&& visit) {
 void MasonryLoad::action() {
     if (body < 0 || std::size_t(body) >= scene->bodies->body.size() || !scene->bodies->body[body])
         throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) + " does not exist");
+    for (const auto& engine : scene->engines)
+        if (auto* zones = dynamic_cast<MasonryZones*>(engine.get()); zones && zones->unitOf(body))
+            throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) +
+                                        " is a deformable unit; load a rigid block joined to it");
     if (!(direction.norm() > 0)) throw std::invalid_argument("MasonryLoad.direction must not be zero");
     auto& state = *scene->bodies->body[body]->state;
     state.isDamped = false;
@@ -103,47 +107,61 @@ void MasonryEnergy::action() {
     auto& forces = scene->forces();
     forces.sync();
     std::map<int, std::vector<MasonryLoad*>> loads;
+    MasonryZones* zones = nullptr;
     for (const auto& engine : scene->engines)
         if (auto* load = dynamic_cast<MasonryLoad*>(engine.get()); load && !load->dead)
             loads[load->body].push_back(load);
+        else if (auto* found = dynamic_cast<MasonryZones*>(engine.get()))
+            zones = found;
 
     external += pendingExternal, damping += pendingDamping;
     pendingExternal = pendingDamping = kinetic = gravity = 0;
     for (const auto& body : scene->bodies->body) {
-        if (!body || !body->state) continue;
+        if (!body || !body->state || (zones && zones->unitOf(body->id))) continue; // zones keep their own
         const State& s = *body->state;
+        gravity += s.mass * g.dot(s.pos - s.refPos);
         const bool moves = (s.blockedDOFs & 63) != 63;
         if (!moves && s.vel.isZero() && s.angVel.isZero()) continue;
         const Vector3r force = forces.getForce(body->id), torque = forces.getTorque(body->id);
-        // (blocked rotations are passed over below, so the restrained case needs no masking)
-        const Vector3r angularAcceleration =
-            rotationRestrained(s) ? Vector3r(torque.cwiseQuotient(s.inertia)) : Vector3r(inverseInertia(s) * torque);
-        Vector3r vel = s.vel, angVel = s.angVel;
-        gravity += s.mass * g.dot(s.pos - s.refPos);
+        const auto sign = [](double x) { return (x > 0) - (x < 0); };
+        const double brake = s.isDamped ? alpha : 0;
+        Vector3r vel = s.vel, angVel = s.angVel, dragTorque;
         for (int i = 0; i < 3; ++i) {
             if (blocked(s, i)) {
                 external -= 0.5 * dt * s.vel[i] * (force[i] + s.mass * g[i]);
                 pendingExternal -= 0.5 * dt * s.vel[i] * (force[i] + s.mass * g[i]);
-            } else {
-                const double free = force[i] / s.mass + g[i], trend = free * (s.vel[i] + 0.5 * dt * free);
-                const double drag = s.isDamped ? alpha * free * ((trend > 0) - (trend < 0)) : 0;
-                vel[i] += dt * (free - drag);
-                damping += 0.5 * dt * s.mass * drag * s.vel[i];
-                pendingDamping += 0.5 * dt * s.mass * drag * vel[i];
-                kinetic += 0.5 * s.mass * s.vel[i] * vel[i];
+                continue;
             }
-            if (blocked(s, 3 + i)) {
-                external -= 0.5 * dt * s.angVel[i] * torque[i];
-                pendingExternal -= 0.5 * dt * s.angVel[i] * torque[i];
-            } else {
-                const double free = angularAcceleration[i], trend = free * (s.angVel[i] + 0.5 * dt * free);
-                const double drag = s.isDamped ? alpha * free * ((trend > 0) - (trend < 0)) : 0;
-                angVel[i] += dt * (free - drag);
-                damping += 0.5 * dt * s.inertia[i] * drag * s.angVel[i];
-                pendingDamping += 0.5 * dt * s.inertia[i] * drag * angVel[i];
-                kinetic += 0.5 * s.inertia[i] * s.angVel[i] * angVel[i];
-            }
+            const double free = force[i] / s.mass + g[i];
+            const double drag = brake * free * sign(free * (s.vel[i] + 0.5 * dt * free));
+            vel[i] += dt * (free - drag);
+            damping += 0.5 * dt * s.mass * drag * s.vel[i];
+            pendingDamping += 0.5 * dt * s.mass * drag * vel[i];
+            kinetic += 0.5 * s.mass * s.vel[i] * vel[i];
         }
+        // With a blocked rotation the integrator damps accelerations about the global axes, without it the torque.
+        const bool restrained = rotationRestrained(s);
+        for (int i = 0; i < 3; ++i) {
+            const double free = torque[i] / s.inertia[i];
+            dragTorque[i] = brake * torque[i] * sign(torque[i] * (s.angVel[i] + (restrained ? 0.5 * dt * free : 0)));
+            if (!blocked(s, 3 + i)) continue;
+            external -= 0.5 * dt * s.angVel[i] * torque[i];
+            pendingExternal -= 0.5 * dt * s.angVel[i] * torque[i];
+            dragTorque[i] = 0;
+        }
+        if (restrained) {
+            for (int i = 0; i < 3; ++i)
+                if (!blocked(s, 3 + i)) {
+                    angVel[i] += dt * (torque[i] - dragTorque[i]) / s.inertia[i];
+                    kinetic += 0.5 * s.inertia[i] * s.angVel[i] * angVel[i];
+                }
+        } else {
+            const Matrix3r axes = s.ori.toRotationMatrix();
+            angVel += dt * (inverseInertia(s) * (torque - dragTorque));
+            kinetic += 0.5 * (axes.transpose() * s.angVel).dot(s.inertia.cwiseProduct(axes.transpose() * angVel));
+        }
+        damping += 0.5 * dt * dragTorque.dot(s.angVel);
+        pendingDamping += 0.5 * dt * dragTorque.dot(angVel);
         if (const auto mine = loads.find(body->id); mine != loads.end())
             for (auto* load : mine->second) {
                 load->work += load->pendingWork + 0.5 * dt * load->total.dot(s.vel + s.angVel.cross(load->arm));
@@ -277,7 +295,9 @@ py::tuple criticalTimeStep() {
         }
         if (!whole.degrees.empty()) add(std::move(whole));
     });
-    double damping = 0; // of nodes: where it brakes it adds up to that share to a force, as a stiffer unit would
+    // Where damping brakes, it adds that share to a force, as stiffer joints and zones would.
+    const auto* integrator = integratorOf(scene);
+    double damping = integrator ? integrator->damping : 0;
     for (const auto& engine : scene.engines)
         if (auto* zones = dynamic_cast<MasonryZones*>(engine.get())) {
             damping = std::max(damping, zones->damping);

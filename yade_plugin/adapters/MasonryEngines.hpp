@@ -12,7 +12,7 @@ public:
         "Loads a rigid block at a point fixed to it: with a constant force, and, when driven, with a velocity of that "
         "point in one direction, while the block stays free to rotate and to move otherwise. Stands after the "
         "interaction loop and before the integrator. The block is taken out of the integrator's damping, so that the "
-        "velocity is met exactly.";
+        "velocity is met exactly; of two driven loads on one block that is true only if it cannot turn.";
 
     int body = 0;
     Vector3r point = Vector3r::Zero(), force = Vector3r::Zero(), direction = Vector3r::UnitX();

@@ -36,7 +36,7 @@ public:
         visit("residualCohesion", &J::residualCohesion, "cr [Pa], 0 to cohesion [decided].");
         visit("friction", &J::friction, "Peak friction coefficient tan(phi) [-], >= 0 (paper table 2).");
         visit("residualFriction", &J::residualFriction, "Residual friction coefficient [-], 0 to friction [decided].");
-        visit("dilatancy", &J::dilatancy, "tan(psi) [-], 0 to friction [decided] (paper eq. (9)).");
+        visit("dilatancy", &J::dilatancy, "tan(psi) [-], 0 to residual friction [decided] (paper eq. (9)).");
         visit("dilatancyDecay", &J::dilatancyDecay,
               "delta [1/m] in tan(psi)·exp(-delta·slip), >= 0; 0: constant dilatancy.");
         visit("modeIIFractureEnergy", &J::modeIIFractureEnergy,

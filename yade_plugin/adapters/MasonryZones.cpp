@@ -69,7 +69,12 @@ const std::vector<MasonryZones::Unit>& MasonryZones::units() {
         state.blockedDOFs = 63; // the host's integrator leaves it alone
         state.vel = state.angVel = Vector3r::Zero();
     }
-    if (displacements.size() != std::size_t(next)) {
+    if (!displacements.empty() && displacements.size() != std::size_t(next)) {
+        units_.clear();
+        throw std::invalid_argument("MasonryZones: bodies and divisions cannot change once joints or a run know the " +
+                                    std::to_string(displacements.size()) + " nodes (now " + std::to_string(next) + ")");
+    }
+    if (displacements.empty()) {
         displacements.assign(next, Vector3r::Zero());
         velocities = lastForces = displacements;
     }
@@ -150,12 +155,17 @@ std::vector<std::pair<int, double>> MasonryZones::nodesOn(const Unit& unit, cons
 
 void MasonryZones::action() {
     units();
-    if (interactionsSeen_ != scene->interactions->currSize) { // joints are made once, before the run
-        joints_.clear();
-        for (std::size_t i = 0; i < scene->interactions->currSize; ++i)
-            if (const auto* geom = dynamic_cast<MasonryJointGeom*>(scene->interactions->linIntrs[i]->geom.get()))
-                if (geom->zones.get() == this) joints_.push_back(geom);
-        interactionsSeen_ = scene->interactions->currSize;
+    const auto& interactions = scene->interactions->linIntrs;
+    bool same = seen_.size() == scene->interactions->currSize;
+    for (std::size_t i = 0; same && i < seen_.size(); ++i)
+        same = seen_[i] == interactions[i]->geom;
+    if (!same) {
+        seen_.clear(), joints_.clear();
+        for (std::size_t i = 0; i < scene->interactions->currSize; ++i) {
+            seen_.push_back(interactions[i]->geom);
+            const auto* geom = dynamic_cast<MasonryJointGeom*>(interactions[i]->geom.get());
+            if (geom && geom->zones.get() == this) joints_.push_back(geom);
+        }
     }
     std::fill(forces_.begin(), forces_.end(), Vector3r::Zero());
     const auto hang = [&](const Attachment& a, const Vector3r& force) {

@@ -107,8 +107,8 @@ private:
     std::vector<Unit> units_;
     std::vector<int> unitOfBody_;
     std::vector<Vector3r> forces_, scratch_;
+    std::vector<shared_ptr<yade::IGeom>> seen_; // of all interactions, to know when joints_ are others
     std::vector<const MasonryJointGeom*> joints_;
-    std::size_t interactionsSeen_ = 0;
 };
 
 } // namespace masonry

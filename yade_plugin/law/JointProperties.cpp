@@ -47,7 +47,7 @@ std::vector<std::string> JointProperties::problems() const {
     const double highest = friction >= 0 ? friction : infinity;
     door.number("friction", friction, "", 0);
     door.number("residual friction", residualFriction, "", 0, highest);
-    door.number("dilatancy", dilatancy, "", 0, highest);
+    door.number("dilatancy", dilatancy, "", 0, residualFriction >= 0 ? residualFriction : infinity);
     door.number("dilatancy decay", dilatancyDecay, "1/m", 0);
     if (cohesion >= 0 && tensileStrength * friction > cohesion * (1 + 1e-12))
         door.found.push_back("tensile strength " + text(tensileStrength) +
