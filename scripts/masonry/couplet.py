@@ -186,5 +186,8 @@ def test(args):
         couplet.run()
     except Interrupted:
         print("interrupted: what was computed is kept")
+    except Exception:
+        couplet.finish()  # keeps what was computed
+        raise
     couplet.finish()
     return 130 if couplet.results.interrupted else 0

@@ -46,6 +46,19 @@ class Wall:
     courses: int = 34
     unit: tuple = (0.220, 0.102, 0.081)
 
+    def __post_init__(self):
+        problems = []
+        if self.loadHeight is not None and not self.loadHeight > self.height:
+            problems.append(
+                f"load height {self.loadHeight:g} m must be above the wall's top at {self.height:g} m"
+            )
+        if not self.precompression > 0:
+            problems.append(
+                f"precompression {self.precompression:g} Pa must be above 0"
+            )
+        if problems:
+            raise ValueError(f"wall {self.name}: " + "; ".join(problems))
+
     @property
     def length(self):
         return self.halfUnits * self.unit[0] / 2
@@ -363,5 +376,8 @@ def test(wall, args):
         model.push()
     except Interrupted:
         print("\ninterrupted: what was computed is kept")
+    except Exception:
+        model.finish()  # keeps what was computed
+        raise
     model.finish()
     return 130 if model.results.interrupted else 0

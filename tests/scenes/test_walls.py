@@ -294,6 +294,38 @@ def test_deformable_units_carry_the_weight_and_keep_the_balance(scene, tmp_path)
     assert model.energy.largestError < 1e-3
 
 
+def test_an_impossible_wall_is_refused_with_all_problems():
+    with pytest.raises(
+        ValueError,
+        match="load height 0.3 m must be above the wall's top at 0.486 m; precompression 0 Pa",
+    ):
+        walls.Wall(
+            name="w", title="", halfUnits=6, courses=6, precompression=0, loadHeight=0.3
+        )
+
+
+def test_a_run_that_breaks_down_keeps_what_was_computed(scene, tmp_path, monkeypatch):
+    rows = []
+
+    def breakDown(self):
+        rows.append(1)
+        if len(rows) > 50:
+            raise FloatingPointError("broken")
+        return record(self)
+
+    record = walls.WallModel._record
+    monkeypatch.setattr(walls.WallModel, "_record", breakDown)
+    with pytest.raises(FloatingPointError, match="broken"):
+        walls.test(
+            SMALL,
+            options.parser("", until=1).parse_args(
+                ["--no-vtk", "--out", str(tmp_path)]
+            ),
+        )
+    assert len(readCurve(str(tmp_path))["time_s"]) == 50
+    assert readRun(str(tmp_path))["steps"] > 0 and (tmp_path / "curve.png").exists()
+
+
 def test_stronger_joints_carry_more(scene, tmp_path):
     peaks = []
     for cohesion in ("0.11e6", "0.5e6"):
