@@ -1,15 +1,14 @@
 """Two bricks and one joint, against the closed forms of law.md §6 through the whole of the host."""
 
 import os
-import sys
 import time
 
 from yade import O, Vector3
 from yade.wrapper import MasonryLoad, MasonryVtkRecorder
 
 from . import brickwork, commit, criticalTimeStep, materials
-from .options import Refused, applySettings, checkBlocks
-from .results import ENERGIES, Interrupted, Progress, Results
+from .options import applySettings, checkBlocks
+from .results import ENERGIES, Progress, Results, conduct
 from .scene import addBlock, connect, engines
 
 PATHS = ["opening", "shear", "closure", "closure-shear"]
@@ -177,17 +176,4 @@ class Couplet:
 
 def test(args):
     """Run the couplet; the exit status of the scene."""
-    try:
-        couplet = Couplet(args)
-    except Refused as refused:
-        print(refused, file=sys.stderr)
-        return 2
-    try:
-        couplet.run()
-    except Interrupted:
-        print("interrupted: what was computed is kept")
-    except Exception:
-        couplet.finish()  # keeps what was computed
-        raise
-    couplet.finish()
-    return 130 if couplet.results.interrupted else 0
+    return conduct(lambda: Couplet(args), "run")

@@ -8,6 +8,8 @@ import signal
 import sys
 import time
 
+from .options import Refused
+
 ENERGIES = [
     "external",
     "gravity",
@@ -35,8 +37,6 @@ class Results:
     """
 
     def __init__(self, directory, columns):
-        from .options import Refused
-
         self.directory = os.path.abspath(directory)
         try:
             os.makedirs(self.directory, exist_ok=True)
@@ -128,6 +128,29 @@ class Progress:
         else:
             self.stream.write(text + "\n")
         self.stream.flush()
+
+
+def conduct(make, *stages):
+    """Make a model, run its stages and finish it in every case; returns the exit status of the scene.
+
+    ``make`` raises Refused for input that cannot be run. The model has ``results``, ``finish()`` and a method of each
+    stage's name.
+    """
+    try:
+        model = make()
+    except Refused as refused:
+        print(refused, file=sys.stderr)
+        return 2
+    try:
+        for stage in stages:
+            getattr(model, stage)()
+    except Interrupted:
+        print("\ninterrupted: what was computed is kept")
+    except Exception:
+        model.finish()  # keeps what was computed
+        raise
+    model.finish()
+    return 130 if model.results.interrupted else 0
 
 
 def readCurve(directory):

@@ -11,8 +11,8 @@ from yade import O, Vector3
 from yade.wrapper import MasonryLoad, MasonryVtkRecorder, MasonryZones
 
 from . import brickwork, commit, criticalTimeStep, materials, options
-from .options import Refused, applySettings
-from .results import ENERGIES, Interrupted, Progress, Results, initialStiffness
+from .options import applySettings
+from .results import ENERGIES, Progress, Results, conduct, initialStiffness
 from .scene import addBlock, connect, engines
 
 CURVE = [
@@ -365,19 +365,4 @@ class WallModel:
 
 def test(wall, args):
     """Gravity, precompression, push and results of a wall; the exit status of the scene."""
-    try:
-        model = WallModel(wall, args)
-    except Refused as refused:
-        print(refused, file=sys.stderr)
-        return 2
-    try:
-        model.settle()
-        model.precompress()
-        model.push()
-    except Interrupted:
-        print("\ninterrupted: what was computed is kept")
-    except Exception:
-        model.finish()  # keeps what was computed
-        raise
-    model.finish()
-    return 130 if model.results.interrupted else 0
+    return conduct(lambda: WallModel(wall, args), "settle", "precompress", "push")

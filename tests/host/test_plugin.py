@@ -49,6 +49,15 @@ def pair(turn=Quaternion.Identity, offset=(0, 0, BRICK[2]), joints=None, **kw):
     return interaction
 
 
+def drive(velocity):
+    """Drive the top of the upper brick sideways; returns the load."""
+    load = MasonryLoad(
+        body=1, point=(0.11, 0.051, 0.162), driven=True, velocity=velocity, label="load"
+    )
+    O.engines = O.engines[:2] + [load] + O.engines[2:]
+    return load
+
+
 # -- self-check and registration --------------------------------------------------------------------------------------
 
 
@@ -343,11 +352,7 @@ def test_damping_takes_what_is_lost(scene):
 def test_a_driven_point_keeps_its_velocity_while_the_block_turns(scene):
     pair(inPlane=True, damping=0.8)
     O.bodies[1].state.blockedDOFs = "yXZ"
-    top = (0.11, 0.051, 0.162)
-    load = MasonryLoad(
-        body=1, point=top, direction=(1, 0, 0), driven=True, velocity=0.002
-    )
-    O.engines = O.engines[:2] + [load] + O.engines[2:]
+    load = drive(0.002)
     for _ in range(2000):
         O.step()
     assert load.displacement()[0] == pytest.approx(0.002 * O.time, rel=1e-4)
@@ -468,15 +473,7 @@ def test_a_run_saved_in_the_middle_goes_on_as_if_nothing_had_happened(
         damping=0.3,
     )
     O.bodies[1].state.blockedDOFs = "yXZ"
-    load = MasonryLoad(
-        body=1,
-        point=(0.11, 0.051, 0.162),
-        direction=(1, 0, 0),
-        driven=True,
-        velocity=0.01,
-        label="load",
-    )
-    O.engines = O.engines[:2] + [load] + O.engines[2:]
+    drive(0.01)
     shove(2000)
     path = str(tmp_path / ("run" + extension))
     O.save(path)
