@@ -261,7 +261,7 @@ class WallModel:
     def push(self):
         """Lateral velocity at the loaded point, to ``--until`` or to collapse."""
         args = self.args
-        every = max(1, int(ROW_EVERY / (args.rate * O.dt * 1e3)))
+        every = max(1, int(ROW_EVERY / (args.rate * O.dt)))
         peak = peakAt = nextFrame = 0.0
         self.origin = self._topDisplacement()
         values = self._record()

@@ -81,7 +81,9 @@ def test_the_squat_wall_leaves_what_is_promised(squat):
         assert key in run
     curve = readCurve(squat)
     assert {"time_s", "displacement_mm", "base_shear_kN", "vertical_mm"} <= set(curve)
-    assert np.max(np.diff(curve["displacement_mm"])) <= 0.02
+    assert (
+        0.005 < np.max(np.diff(curve["displacement_mm"])) <= 0.02
+    )  # at least one row every 0.02 mm
     total = lambda columns: sum(np.array(curve[c]) for c in columns)
     stored = [c for c in curve if c.startswith(("elastic_", "dissipated_"))]
     assert np.allclose(total(ENERGY_IN), total(ENERGY_OUT) + total(stored), rtol=1e-6)
@@ -217,7 +219,7 @@ def test_ctrl_c_ends_in_order_and_keeps_what_is_there(tmp_path):
     )
     curve = out / "curve.csv"
     for _ in range(600):
-        if curve.exists() and len(curve.read_text().splitlines()) > 500:
+        if curve.exists() and len(curve.read_text().splitlines()) > 300:  # some 3 mm
             break
         time.sleep(0.1)
     process.send_signal(signal.SIGINT)
