@@ -4,6 +4,7 @@ yade -n -x [-j THREADS] scripts/benchmark.py [STEPS]
 """
 
 import sys
+import tempfile
 import time
 
 from masonry import brickwork, materials, options, walls
@@ -29,7 +30,7 @@ def plugin(steps):
     model = walls.WallModel(
         wall,
         options.parser("", until=12).parse_args(
-            ["--no-vtk", "--out", "/tmp/masonry-benchmark"]
+            ["--no-vtk", "--out", tempfile.mkdtemp()]
         ),
     )
     model.load.velocity = 0.02
