@@ -12,11 +12,15 @@ parser.add_argument(
 parser.add_argument(
     "--normal-stress",
     metavar="MPA",
-    type=float,
+    type=lambda text: options.number(text, -1000, 0),
     default=-0.5,
     help="constant normal stress in shear [MPa], negative closed",
 )
 parser.add_argument(
-    "--closure", metavar="MM", type=float, default=1.0, help="closure before shear [mm]"
+    "--closure",
+    metavar="MM",
+    type=lambda text: options.number(text, 0, 1000, above=True),
+    default=1.0,
+    help="closure before shear [mm]",
 )
 raise SystemExit(couplet.test(parser.parse_args()))

@@ -100,7 +100,9 @@ static void registerAll() {
             "Pairs (id1, id2) of bodies whose Polyhedra share a face; tolerance as in "
             "Ig2_Polyhedra_Polyhedra_MasonryJointGeom.");
     py::def("criticalTimeStep", &criticalTimeStep,
-            "(dt, id1, id2): a safe bound of the stable time step [s] and the pair of bodies whose joint sets it.");
+            "(dt, id1, id2): a safe bound of the stable time step [s] under the damping of O.engines, and the pair of "
+            "bodies "
+            "whose joint (or the unit whose zone) sets it. Ask again after changing the damping.");
 }
 
 // Written out because BOOST_PYTHON_MODULE hands the module over even when its body failed: an import that refuses must

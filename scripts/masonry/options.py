@@ -10,7 +10,7 @@ class Refused(Exception):
     """Input that cannot be run, with all problems at once."""
 
 
-def _number(text, low=-math.inf, high=math.inf, above=False):
+def number(text, low=-math.inf, high=math.inf, above=False):
     try:
         value = float(text)
     except ValueError:
@@ -58,7 +58,7 @@ def parser(description, until, rate=20.0):
         description=description,
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
     )
-    mm = lambda text: _number(text, 0, 1000, above=True)
+    mm = lambda text: number(text, 0, 1000, above=True)
     p.add_argument(
         "--until",
         metavar="MM",
@@ -95,14 +95,14 @@ def parser(description, until, rate=20.0):
     p.add_argument(
         "--damping",
         metavar="A",
-        type=lambda t: _number(t, 0, 0.99),
+        type=lambda t: number(t, 0, 0.99),
         default=0.8,
         help="damping constant, paper eq. (3) [-]",
     )
     p.add_argument(
         "--dt-fraction",
         metavar="F",
-        type=lambda t: _number(t, 0, 1, above=True),
+        type=lambda t: number(t, 0, 1, above=True),
         default=0.8,
         help="time step over its stable limit [-]",
     )

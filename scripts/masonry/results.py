@@ -4,6 +4,7 @@ import csv
 import json
 import math
 import os
+import re
 import signal
 import sys
 import time
@@ -25,6 +26,11 @@ ENERGIES = [
 ]
 
 
+OURS = re.compile(
+    r"(blocks|joints)(_\d+\.vt[up]|\.pvd)|curve\.(csv|png)|cracks\.png|run\.json"
+)
+
+
 class Interrupted(Exception):
     """Ctrl-C or SIGTERM: the run ends in order and keeps what is there."""
 
@@ -40,15 +46,8 @@ class Results:
         self.directory = os.path.abspath(directory)
         try:
             os.makedirs(self.directory, exist_ok=True)
-            for name in os.listdir(
-                self.directory
-            ):  # frames of an earlier run would be shown with ours
-                if name.startswith(("blocks_", "joints_")) or name in (
-                    "curve.csv",
-                    "run.json",
-                    "curve.png",
-                    "cracks.png",
-                ):
+            for name in os.listdir(self.directory):
+                if OURS.fullmatch(name):  # an earlier run's would be taken for ours
                     os.remove(os.path.join(self.directory, name))
             self._file = open(
                 self.path("curve.csv"), "w", newline="", buffering=1

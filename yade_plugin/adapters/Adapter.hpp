@@ -27,7 +27,7 @@ using boost::shared_ptr;
 using yade::Quaternionr;
 using yade::Vector3r;
 
-enum Flags { Plain = 0, ReadOnly = 1, Unsaved = 2, Hidden = 4 };
+enum Flags { Plain = 0, ReadOnly = 1, Hidden = 2 }; // Hidden: saved, but not shown to Python
 
 template <class T> struct IsNumbers : std::false_type {}; // types of fixed size that are saved as plain numbers
 template <> struct IsNumbers<Vector3r> : std::true_type {};
@@ -157,9 +157,8 @@ public:
 
     template <class Archive> void serialize(Archive& ar, unsigned) {
         ar& boost::serialization::make_nvp(Derived::baseName, boost::serialization::base_object<Base>(self()));
-        Derived::attributes([&](const char* name, auto member, const char*, int flags = Plain) {
-            if (!(flags & Unsaved)) save(ar, name, self().*member);
-        });
+        Derived::attributes(
+            [&](const char* name, auto member, const char*, int = Plain) { save(ar, name, self().*member); });
         if (Archive::is_loading::value) self().postLoad();
     }
 

@@ -80,8 +80,8 @@ public:
     }
 };
 
-// The largest stable time step of the joints between the bodies as they are [s], a bound that is safe, and the ids of
-// the two bodies whose joint sets it: (dt, id1, id2). Without joints (inf, -1, -1).
+// The largest stable time step of joints and zones under the damping of the engines [s], a bound that is safe, and the
+// ids of the two bodies whose joint, or of the unit whose zone, sets it: (dt, id1, id2). Without any (inf, -1, -1).
 py::tuple criticalTimeStep();
 
 } // namespace masonry
