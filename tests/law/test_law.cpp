@@ -1,6 +1,6 @@
 // The law against closed form (law.md §6) and its consequences (law.md §5), at the bed joint of the CS walls.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include "law/JointLaw.hpp"
+#include "law/JointColumns.hpp"
 #include <doctest/doctest.h>
 #include <functional>
 #include <random>
@@ -454,5 +454,59 @@ TEST_CASE("turning the slide turns the shear stress") {
         REQUIRE(std::abs(turned.state.shearStress.a - (c * t.a - s * t.b)) < size);
         REQUIRE(std::abs(turned.state.shearStress.b - (s * t.a + c * t.b)) < size);
         REQUIRE(std::abs(turned.state.normalStress - straight.state.normalStress) < size);
+    }
+}
+
+TEST_CASE("subcontacts in columns follow the law one by one, whatever kind, jump and neighbour") {
+    Dice dice{std::mt19937_64(11)};
+    constexpr int size = 37;
+    for (int set = 0; set < 200; ++set) {
+        auto p = dice.properties();
+        p.elastic = dice.chance(0.05);
+        const double softer = dice.chance(0.5) ? 1 : dice.between(0.05, 1);
+        const ElasticStiffness k{p.normalStiffness * softer, p.shearStiffness * softer};
+        std::vector<Path> paths(size, Path(p, k));
+        const JointLaw& law = paths[0].law;
+        JointColumns columns(law, k, size);
+        const double reach =
+            (std::max(p.tensileStrength, p.cohesion) + (p.cap ? p.compressiveStrength : 0) + 1) / k.normal;
+        std::vector<double> n(size), a(size), b(size), largest(size, 1.0);
+        std::vector<Energies> lost(size);
+        for (int step = 0; step < 300; ++step) {
+            const double common = reach * dice.logarithmic(1e-4, 1);
+            for (int i = 0; i < size; ++i) {
+                n[i] = common * dice.between(-1, 1), a[i] = common * dice.between(-1, 1);
+                b[i] = common * dice.between(-1, 1);
+                paths[i].step({n[i], {a[i], b[i]}});
+                largest[i] = std::max(largest[i], k.normal * (std::abs(paths[i].state.opening) + 3 * common));
+            }
+            const int half = dice.between(0, size); // ranges of any size and place
+            columns.advance(law, 0, half, &n[0], &a[0], &b[0]);
+            columns.advance(law, half, size - half, &n[half], &a[half], &b[half]);
+            for (int i = 0; i < size; ++i) {
+                const auto taken = columns.takeDissipated(i);
+                lost[i].tension += taken.tension, lost[i].shear += taken.shear,
+                    lost[i].compression += taken.compression;
+            }
+        }
+        for (int i = 0; i < size; ++i) {
+            const auto &one = paths[i].state, other = columns.get(i);
+            const double stress = 1e-11 * largest[i], length = stress / k.normal;
+            bool same = std::abs(one.normalStress - other.normalStress) <= stress &&
+                        std::abs(one.shearStress.a - other.shearStress.a) <= stress &&
+                        std::abs(one.shearStress.b - other.shearStress.b) <= stress;
+            same &= std::abs(one.opening - other.opening) <= length &&
+                    std::abs(one.crushing - other.crushing) <= length &&
+                    std::abs(one.dilation - other.dilation) <= length && std::abs(one.slip - other.slip) <= length &&
+                    (p.elastic || std::abs(one.largestOpening - other.largestOpening) <= length) &&
+                    std::abs(one.largestClosure - other.largestClosure) <= length;
+            same &= std::abs(one.tensionDamage - other.tensionDamage) <= 1e-9 &&
+                    std::abs(one.shearDamage - other.shearDamage) <= 1e-9 && one.regime == other.regime;
+            const double energy = 1e-9 * largest[i] * largest[i] / k.normal;
+            same &= std::abs(paths[i].dissipated.tension - lost[i].tension) <= energy &&
+                    std::abs(paths[i].dissipated.shear - lost[i].shear) <= energy &&
+                    std::abs(paths[i].dissipated.compression - lost[i].compression) <= energy;
+            if (!same) FAIL("set " << set << ", subcontact " << i);
+        }
     }
 }

@@ -34,7 +34,7 @@ JointLaw::Yield JointLaw::yield(const ElasticStiffness& k, const JointState& s) 
     const double sigma = s.normalStress, tau2 = s.shearStress.a * s.shearStress.a + s.shearStress.b * s.shearStress.b;
     Yield f{sigma - p_.tensileStrength * (1 - coupled(s)), std::sqrt(tau2) - slipStrength(s), -1};
     if (p_.cap && sigma < 0) {
-        const double fc = curve_.strength(s.largestClosure, 1 / k.normal - 1 / p_.normalStiffness);
+        const double fc = compressiveStrength(k, s.largestClosure);
         f.cap = p_.capNormal * sigma * sigma + p_.capShear * tau2 + p_.capLinear * sigma - fc * fc;
     }
     return f;

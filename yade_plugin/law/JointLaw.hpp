@@ -83,7 +83,7 @@ public:
             const double sigma = s.normalStress, tau2 = trial.a * trial.a + trial.b * trial.b;
             const double quadratic = p_.capNormal * sigma * sigma + p_.capShear * tau2, linear = p_.capLinear * sigma;
             if (quadratic + linear > smallestStrengthSquared_) {
-                const double fc = curve_.strength(s.largestClosure, 1 / k.normal - 1 / p_.normalStiffness);
+                const double fc = compressiveStrength(k, s.largestClosure);
                 if (quadratic + linear > fc * fc) { // F3 > 0, eq. (8c): root of quadratic x² + linear x = fc²
                     const double root = std::sqrt(linear * linear + 4 * quadratic * fc * fc);
                     const double scale = linear > 0 ? 2 * fc * fc / (linear + root) : (root - linear) / (2 * quadratic);
@@ -124,7 +124,15 @@ public:
 
     // Compression damage dc, eq. (21).
     double compressionDamage(const ElasticStiffness& k, const JointState& s) const {
-        return p_.cap ? curve_.damage(s.largestClosure, 1 / k.normal - 1 / p_.normalStiffness) : 0;
+        return p_.cap ? curve_.damage(s.largestClosure, stretch(k)) : 0;
+    }
+
+    // Strength of the cap [Pa] at a largest closure [m], and the closure at which it begins to harden.
+    double compressiveStrength(const ElasticStiffness& k, double largestClosure) const {
+        return curve_.strength(largestClosure, stretch(k));
+    }
+    double limitClosure(const ElasticStiffness& k) const {
+        return curve_.limitClosure + curve_.elasticLimit * stretch(k);
     }
 
     // The yield functions at a state; at most zero after every step. F3 is -1 where the cap does not act.
@@ -133,11 +141,13 @@ public:
     };
     Yield yield(const ElasticStiffness& k, const JointState& s) const;
 
-private:
     static double coupled(const JointState& s) { // d_ts, eq. (10)
         return s.tensionDamage + s.shearDamage - s.tensionDamage * s.shearDamage;
     }
-    double friction(const JointState& s) const { // eq. (17b)
+
+private:
+    double stretch(const ElasticStiffness& k) const { return 1 / k.normal - 1 / p_.normalStiffness; } // law.md §7
+    double friction(const JointState& s) const {                                                      // eq. (17b)
         return p_.residualFriction + (p_.friction - p_.residualFriction) * (1 - coupled(s));
     }
     double slipStrength(const JointState& s) const { // eqs. (16), (17a)
