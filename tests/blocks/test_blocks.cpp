@@ -149,7 +149,29 @@ TEST_CASE("cells nearest to the subcontacts of a face are the cells of its grid"
     }
 }
 
-std::vector<Point> scratch;
+struct Forces {
+    std::vector<Point> forces;
+    Matrix3 rotation;
+    double energy;
+};
+
+// Of one block among others that are at rest or moved otherwise.
+Forces forcesOf(const BlockElasticity& e, const std::vector<Point>& u) {
+    constexpr int mine = 3;
+    std::vector<Row> all(3 * u.size()), f(all.size(), Row{}), scratch;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (int lane = 0; lane < lanes; ++lane)
+            all[i].lane[lane] = lane ? (lane - mine) * 1e-6 * double(i % 7) + u[i / 3][i % 3] : 0;
+    BlockElasticity::Side side;
+    e.addForces(all.data(), f.data(), side, scratch);
+    Forces result{std::vector<Point>(u.size()), {}, side.energy.lane[mine]};
+    for (std::size_t n = 0; n < u.size(); ++n)
+        for (int d = 0; d < 3; ++d)
+            result.forces[n][d] = f[3 * n + d].lane[mine];
+    for (int i = 0; i < 9; ++i)
+        result.rotation(i / 3, i % 3) = side.rotation[i].lane[mine];
+    return result;
+}
 
 // ---- zones -------------------------------------------------------------------------------------------------------
 
@@ -219,16 +241,17 @@ TEST_CASE("rigid motions of any size give no force and show their rotation") {
         const auto n = e.mesh().nodes.size();
         for (int trial = 0; trial < 50; ++trial) {
             const auto motion = randomMotion(dice);
-            std::vector<Point> u(n), f(n, Point::Zero());
+            std::vector<Point> u(n);
             for (std::size_t i = 0; i < n; ++i)
                 u[i] = motion * e.mesh().nodes[i] - e.mesh().nodes[i];
             // far turns start Newton's iteration far away, but at a rotation it is already exact
             const Matrix3 r = e.rotation(u.data());
             CHECK((r - motion.rotation()).norm() < 1e-11);
-            const double energy = e.addForces(u.data(), r, f.data(), scratch);
-            for (const auto& force : f)
+            const auto result = forcesOf(e, u);
+            CHECK((result.rotation - r).norm() < 1e-11);
+            for (const auto& force : result.forces)
                 CHECK(force.norm() < 1e-3); // N, of a block whose zones carry 1e8 N at unit strain
-            CHECK(energy < 1e-9);
+            CHECK(result.energy < 1e-9);
         }
     }
 }
@@ -245,11 +268,11 @@ TEST_CASE("patch test: a linear displacement field is a constant stress on any m
     for (const auto& block : {box(Point::Zero(), brick), prism()}) {
         const auto e = elastic(block, {2, 2, 3});
         const auto& mesh = e.mesh();
-        std::vector<Point> u, f(mesh.nodes.size(), Point::Zero());
+        std::vector<Point> u;
         for (const auto& x : mesh.nodes)
             u.push_back(g * x);
         const Matrix3 r = e.rotation(u.data());
-        e.addForces(u.data(), r, f.data(), scratch);
+        const auto f = forcesOf(e, u).forces;
         for (std::size_t z = 0; z < mesh.zones.size(); ++z)
             CHECK((e.stress(int(z), u.data(), r) - exact).norm() < 1e-5 * exact.norm());
         std::vector<char> surface(mesh.nodes.size(), 0);
@@ -268,26 +291,61 @@ TEST_CASE("forces are the gradient of the energy and keep momentum, turned or no
     const auto n = e.mesh().nodes.size();
     Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
     turn.rotate(Eigen::AngleAxisd(0.02, Point(1, 2, 3).normalized()));
-    std::vector<Point> u(n), f(n, Point::Zero());
+    std::vector<Point> u(n);
     for (std::size_t i = 0; i < n; ++i)
         u[i] = turn * e.mesh().nodes[i] - e.mesh().nodes[i] + 1e-6 * Point(u01(dice), u01(dice), u01(dice));
-    e.addForces(u.data(), e.rotation(u.data()), f.data(), scratch);
+    const auto f = forcesOf(e, u).forces;
     Point sum = Point::Zero(), moment = Point::Zero();
     double size = 0;
     for (std::size_t i = 0; i < n; ++i)
         sum += f[i], moment += (e.mesh().nodes[i] + u[i]).cross(f[i]), size += f[i].norm();
     CHECK(sum.norm() < 1e-9 * size);
     CHECK(moment.norm() < 1e-4 * size * 0.1);
-    const auto energy = [&](const std::vector<Point>& at) {
-        std::vector<Point> ignored(n, Point::Zero());
-        return e.addForces(at.data(), e.rotation(at.data()), ignored.data(), scratch);
-    };
     for (std::size_t i = 0; i < n; ++i)
         for (int d = 0; d < 3; ++d) {
             auto plus = u, minus = u;
             plus[i][d] += 1e-8, minus[i][d] -= 1e-8;
-            CHECK(-(energy(plus) - energy(minus)) / 2e-8 == doctest::Approx(f[i][d]).epsilon(1e-4).scale(size));
+            CHECK(-(forcesOf(e, plus).energy - forcesOf(e, minus).energy) / 2e-8 ==
+                  doctest::Approx(f[i][d]).epsilon(1e-4).scale(size));
         }
+}
+
+TEST_CASE("the forces of a block are those of its zones' stresses on their faces") {
+    std::mt19937 dice(9);
+    std::uniform_real_distribution<> u01(-1, 1);
+    for (int held : {-1, 1}) {
+        const auto block = box(Point::Zero(), brick);
+        const BlockElasticity e(divide(block, {2, 1, 3}), 4.8e9, 0.16, 1800, held);
+        const auto& mesh = e.mesh();
+        std::vector<Point> u, f(mesh.nodes.size(), Point::Zero());
+        for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+            u.push_back(1e-5 * Point(u01(dice), u01(dice), u01(dice)) + Point(0.01, 0.02, -0.03));
+            if (held >= 0) u[i][held] = 0;
+        }
+        const auto result = forcesOf(e, u);
+        double energy = 0;
+        for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
+            const auto& nodes = mesh.zones[z];
+            const Matrix3 stress = e.stress(int(z), u.data(), result.rotation);
+            for (int i = 0; i < 4; ++i) { // a third of the traction on the face opposite to a node
+                const Point a = mesh.nodes[nodes[(i + 1) % 4]], b = mesh.nodes[nodes[(i + 2) % 4]],
+                            c = mesh.nodes[nodes[(i + 3) % 4]];
+                Point face = 0.5 * (b - a).cross(c - a);
+                if (face.dot(mesh.nodes[nodes[i]] - a) > 0) face = -face;
+                const Point force = stress * face / 3;
+                f[nodes[i]] += result.rotation * force;
+                energy -= 0.5 * force.dot(result.rotation.transpose() * (mesh.nodes[nodes[i]] + u[nodes[i]]) -
+                                          mesh.nodes[nodes[i]]);
+            }
+        }
+        double size = 0;
+        for (const auto& force : f)
+            size = std::max(size, force.norm());
+        for (std::size_t i = 0; i < f.size(); ++i)
+            for (int d = 0; d < 3; ++d)
+                if (d != held) CHECK(std::abs(f[i][d] - result.forces[i][d]) < 1e-9 * size);
+        CHECK(result.energy == doctest::Approx(energy).epsilon(1e-6));
+    }
 }
 
 TEST_CASE("a surface point is found with weights that return it") {

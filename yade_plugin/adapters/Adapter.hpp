@@ -3,11 +3,13 @@
 // A class `T : Adapter<T, HostBase>` gives `className`, `baseName`, `doc` and
 //     template <class Visit> static void attributes(Visit&& visit) { visit("young", &T::young, "Young's modulus [Pa]");
 //     }
-// and may define `void postLoad()`, which checks and prepares after any change, and `static void extras(PyClass&)`.
+// and may define `void postLoad()`, which checks and prepares after any change, `void refresh()`, which brings the
+// attributes up to date before they are read, and `static void extras(PyClass&)`.
 #pragma once
 #include "host/Yade.hpp"
 #include "law/JointState.hpp"
 #include "law/SofteningTable.hpp"
+#include <atomic>
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
 #include <boost/archive/xml_iarchive.hpp>
@@ -26,6 +28,9 @@ namespace py = boost::python;
 using boost::shared_ptr;
 using yade::Quaternionr;
 using yade::Vector3r;
+
+// Counts every change of joints and units that arrays kept by engines must follow.
+inline std::atomic<long> changes{0};
 
 enum Flags { Plain = 0, ReadOnly = 1, Hidden = 2 }; // Hidden: saved, but not shown to Python
 
@@ -83,6 +88,7 @@ public:
     int getBaseClassNumber() const override { return 1; }
 
     void postLoad() {}
+    void refresh() {}
     template <class PyClass> static void extras(PyClass&) {}
 
     void callPostLoad() override {
@@ -111,6 +117,7 @@ public:
 
     py::dict pyDict() const override {
         py::dict all;
+        const_cast<Derived&>(static_cast<const Derived&>(*this)).refresh();
         Derived::attributes([&](const char* name, auto member, const char*, int flags = Plain) {
             if (!(flags & Hidden)) all[name] = py::object(static_cast<const Derived&>(*this).*member);
         });
@@ -141,7 +148,12 @@ public:
                 about += flags & ReadOnly ? " Read-only." : " Default: " + value + ".";
             } else if (flags & ReadOnly)
                 about += " Read-only.";
-            const auto get = py::make_getter(own, py::return_value_policy<py::return_by_value>());
+            const auto get = py::make_function(
+                [own](Derived& object) {
+                    object.refresh();
+                    return object.*own;
+                },
+                py::default_call_policies(), boost::mpl::vector<T, Derived&>());
             if (flags & ReadOnly)
                 cls.add_property(name, get, about.c_str());
             else {
@@ -156,6 +168,7 @@ public:
     }
 
     template <class Archive> void serialize(Archive& ar, unsigned) {
+        if (Archive::is_saving::value) self().refresh();
         ar& boost::serialization::make_nvp(Derived::baseName, boost::serialization::base_object<Base>(self()));
         Derived::attributes(
             [&](const char* name, auto member, const char*, int = Plain) { save(ar, name, self().*member); });

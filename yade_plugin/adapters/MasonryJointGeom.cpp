@@ -73,6 +73,7 @@ void MasonryJointGeom::updateDeformable(const yade::State& state1, const yade::S
         return Vector3r(s.pos + s.ori * (orientation.conjugate() * (point - position)) - point);
     };
     const yade::Matrix3r reference = referenceAxes();
+    zones->units();
     for (std::size_t i = 0; i < points.size(); ++i) {
         auto& point = points[i];
         const Vector3r place = position1 + reference * point.offset;

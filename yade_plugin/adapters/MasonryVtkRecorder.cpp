@@ -74,6 +74,7 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
     std::set<int> deformable;
     for (const auto& engine : scene->engines) {
         auto* zones = dynamic_cast<MasonryZones*>(engine.get());
+        if (zones) zones->refresh();
         for (const auto& unit : zones ? zones->units() : std::vector<MasonryZones::Unit>{}) {
             deformable.insert(unit.body);
             const auto& mesh = unit.elasticity->mesh();

@@ -19,7 +19,25 @@ void MasonryZones::postLoad() {
     if (blocked.find_first_not_of("xyz") != std::string::npos)
         wrong.push_back("blocked '" + blocked + "' must be made of x, y and z");
     if (!wrong.empty()) throw std::invalid_argument("MasonryZones: " + joined(wrong, "; "));
+    refresh();
     units_.clear(); // meshed again when needed: after loading, or for other bodies
+    ++changes;
+}
+
+void MasonryZones::refresh() {
+    if (!ahead_) return;
+    ahead_ = false;
+    for (std::size_t node = 0; node < places_.size(); ++node) {
+        displacements[node] = at(displacements_, places_[node]);
+        velocities[node] = at(velocities_, places_[node]);
+        lastForces[node] = at(lastForces_, places_[node]);
+    }
+}
+
+int MasonryZones::addGuest() {
+    const int row = int(displacements_.size()), lane = guests_++ % lanes;
+    if (lane == 0) displacements_.resize(row + 3, Row{}), forces_.resize(row + 3, Row{});
+    return lanes * (int(displacements_.size()) - 3) + lane;
 }
 
 const std::vector<MasonryZones::Unit>& MasonryZones::units() {
@@ -31,6 +49,7 @@ const std::vector<MasonryZones::Unit>& MasonryZones::units() {
         std::shared_ptr<const BlockElasticity> elasticity;
     };
     std::vector<Kind> kinds;
+    const int held = blocked.size() == 1 ? int(blocked[0] - 'x') : -1;
     unitOfBody_.assign(all.size(), -1);
     int next = 0;
     for (int id : bodies) {
@@ -54,10 +73,10 @@ const std::vector<MasonryZones::Unit>& MasonryZones::units() {
         });
         if (kind == kinds.end()) {
             try {
-                kinds.push_back({block.vertices, mat,
-                                 std::make_shared<const BlockElasticity>(
-                                     divide(block, {divisions[0], divisions[1], divisions[2]}), mat->young,
-                                     mat->poisson, mat->density, blocked.size() == 1)});
+                kinds.push_back(
+                    {block.vertices, mat,
+                     std::make_shared<const BlockElasticity>(divide(block, {divisions[0], divisions[1], divisions[2]}),
+                                                             mat->young, mat->poisson, mat->density, held)});
             } catch (const std::invalid_argument& e) {
                 fail(std::string("cannot be divided: ") + e.what());
             }
@@ -78,7 +97,31 @@ const std::vector<MasonryZones::Unit>& MasonryZones::units() {
         displacements.assign(next, Vector3r::Zero());
         velocities = lastForces = displacements;
     }
-    forces_.assign(next, Vector3r::Zero());
+    batches_.clear(), guests_ = 0;
+    int rows = 0;
+    places_.assign(next, 0);
+    for (const auto& kind : kinds) {
+        const int nodes = int(kind.elasticity->masses().size());
+        for (std::size_t u = 0; u < units_.size(); ++u) {
+            if (units_[u].elasticity != kind.elasticity) continue;
+            if (batches_.empty() || batches_.back().elasticity != kind.elasticity.get() ||
+                batches_.back().units.size() == lanes) {
+                batches_.push_back({kind.elasticity.get(), rows, {}});
+                rows += 3 * nodes;
+            }
+            auto& batch = batches_.back();
+            for (int n = 0; n < nodes; ++n)
+                places_[units_[u].firstNode + n] = lanes * (batch.firstRow + 3 * n) + int(batch.units.size());
+            batch.units.push_back(int(u));
+        }
+    }
+    for (auto* all : {&displacements_, &velocities_, &forces_, &lastForces_})
+        all->assign(rows, Row{});
+    for (int node = 0; node < next; ++node) {
+        put(displacements_, places_[node], displacements[node]);
+        put(velocities_, places_[node], velocities[node]);
+        put(lastForces_, places_[node], lastForces[node]);
+    }
     return units_;
 }
 
@@ -103,9 +146,10 @@ Vector3r MasonryZones::referencePoint(int body, int node) {
 
 void MasonryZones::setVelocity(int node, const Vector3r& velocity) {
     units();
-    if (node < 0 || std::size_t(node) >= velocities.size())
+    if (node < 0 || std::size_t(node) >= places_.size())
         throw std::invalid_argument("there is no node " + std::to_string(node));
-    velocities[node] = velocity;
+    put(velocities_, places_[node], velocity);
+    ahead_ = true;
 }
 
 Vector3r MasonryZones::reference(const Unit& unit, int node) const {
@@ -153,8 +197,74 @@ std::vector<std::pair<int, double>> MasonryZones::nodesOn(const Unit& unit, cons
     return found;
 }
 
-void MasonryZones::action() {
-    units();
+namespace {
+
+struct Motion {
+    double dt, damping, gravity[3];
+    bool combined, held[3];
+};
+
+struct Sums { // over the nodes of each unit of a batch
+    Row elastic, kinetic, gravityWork, damping, pending, moved[3];
+};
+
+[[gnu::always_inline]] inline Lanes sign(const Lanes& x) {
+    const Lanes zero = {}, one = zero + 1;
+    return (x > zero ? one : zero) - (x < zero ? one : zero);
+}
+
+// Eqs. (1)-(3) for the nodes of a batch; the forces are used up.
+MASONRY_VECTORISED
+void move(const Motion& m, const std::vector<double>& masses, const Row& present, Row* displacements, Row* velocities,
+          Row* forces, Row* lastForces, Sums& result) {
+    auto *us = reinterpret_cast<Lanes*>(displacements), *vs = reinterpret_cast<Lanes*>(velocities),
+         *fs = reinterpret_cast<Lanes*>(forces), *lasts = reinterpret_cast<Lanes*>(lastForces);
+    const Lanes there = reinterpret_cast<const Lanes&>(present), zero = {};
+    const double halfStep = 0.5 * m.dt, alpha = m.combined ? 0.5 * m.damping : m.damping;
+    Lanes kinetic = zero, gravityWork = zero, damping = zero, pending = zero, moved[3] = {zero, zero, zero};
+    for (std::size_t n = 0; n < masses.size(); ++n) {
+        const double mass = masses[n], perMass = m.dt / mass;
+        for (int d = 0; d < 3; ++d) {
+            const std::size_t i = 3 * n + d;
+            const Lanes weight = mass * m.gravity[d] * there, force = fs[i] + weight, old = vs[i];
+            fs[i] = zero;
+            if (m.held[d]) continue;
+            gravityWork += weight * us[i];
+            // the velocity in the middle of the step, as the host takes it: with the old one, damping pumps near the
+            // limit
+            Lanes way = -sign(old + 0.5 * perMass * force);
+            if (m.combined) way += sign(force - lasts[i]);
+            lasts[i] = force;
+            const Lanes drag = alpha * (force < zero ? -force : force) * way; // paper eq. (3), or Cundall's combined
+            const Lanes now = old + perMass * (force + drag);                 // eq. (2)
+            // trapezoidal work and kinetic energy at the same instant, as in MasonryEnergy
+            damping -= halfStep * drag * old;
+            pending -= halfStep * drag * now;
+            kinetic += 0.5 * mass * old * now;
+            vs[i] = now;
+            us[i] += m.dt * now; // eq. (1)
+            moved[d] += mass * us[i];
+        }
+    }
+    reinterpret_cast<Lanes&>(result.kinetic) = kinetic;
+    reinterpret_cast<Lanes&>(result.gravityWork) = gravityWork;
+    reinterpret_cast<Lanes&>(result.damping) = damping;
+    reinterpret_cast<Lanes&>(result.pending) = pending;
+    for (int d = 0; d < 3; ++d)
+        reinterpret_cast<Lanes&>(result.moved[d]) = moved[d];
+}
+
+double total(const Row& row) {
+    double sum = 0;
+    for (double value : row.lane)
+        sum += value;
+    return sum;
+}
+
+} // namespace
+
+// Forces of the joints that the functors of an InteractionLoop have brought up to date.
+void MasonryZones::gatherFromFunctors() {
     const auto& interactions = scene->interactions->linIntrs;
     bool same = seen_.size() == scene->interactions->currSize;
     for (std::size_t i = 0; same && i < seen_.size(); ++i)
@@ -167,60 +277,61 @@ void MasonryZones::action() {
             if (geom && geom->zones.get() == this) joints_.push_back(geom);
         }
     }
-    std::fill(forces_.begin(), forces_.end(), Vector3r::Zero());
+    std::fill(forces_.begin(), forces_.end(), Row{});
     const auto hang = [&](const Attachment& a, const Vector3r& force) {
-        if (a.weights[0] == 1) { // at a node
-            forces_[a.nodes[0]] += force;
-            return;
-        }
-        for (int i = 0; i < 3; ++i)
-            forces_[a.nodes[i]] += a.weights[i] * force;
+        for (int i = 0; i < 3 && a.weights[i] != 0; ++i)
+            for (int d = 0; d < 3; ++d)
+                (forceRows() + places_[a.nodes[i]])[d * lanes] += a.weights[i] * force[d];
     };
     for (const auto* geom : joints_)
         for (std::size_t i = 0; i < geom->points.size(); ++i) {
             if (!geom->attachments1.empty()) hang(geom->attachments1[i], geom->points[i].force);
             if (!geom->attachments2.empty()) hang(geom->attachments2[i], -geom->points[i].force);
         }
+}
 
-    const double dt = scene->dt;
-    const bool combined = dampingKind == "combined", held[3] = {holds(0), holds(1), holds(2)};
+void MasonryZones::action() {
+    units();
+    if (!looped) gatherFromFunctors();
+    Motion motion{scene->dt,
+                  damping,
+                  {gravity[0], gravity[1], gravity[2]},
+                  dampingKind == "combined",
+                  {holds(0), holds(1), holds(2)}};
+    const int count = int(batches_.size());
+    std::vector<Sums> sums(count);
+#pragma omp parallel for schedule(static)
+    for (int b = 0; b < count; ++b) {
+        thread_local std::vector<Row> scratch;
+        const auto& batch = batches_[b];
+        const auto& elasticity = *batch.elasticity;
+        auto& sum = sums[b];
+        const int row = batch.firstRow;
+        Row present{};
+        std::fill_n(present.lane, batch.units.size(), 1.0);
+        BlockElasticity::Side side;
+        elasticity.addForces(&displacements_[row], &forces_[row], side, scratch);
+        move(motion, elasticity.masses(), present, &displacements_[row], &velocities_[row], &forces_[row],
+             &lastForces_[row], sum);
+        sum.elastic = side.energy;
+        for (std::size_t lane = 0; lane < batch.units.size(); ++lane) {
+            const auto& unit = units_[batch.units[lane]];
+            auto& state = *scene->bodies->body[unit.body]->state;
+            Matrix3 rotation;
+            for (int i = 0; i < 9; ++i)
+                rotation(i / 3, i % 3) = side.rotation[i].lane[lane];
+            for (int d = 0; d < 3; ++d)
+                state.pos[d] = unit.centre[d] + sum.moved[d].lane[lane] / elasticity.mass();
+            state.ori = Quaternionr(rotation) * unit.orientation;
+        }
+    }
     dampingWork += pendingDamping;
     pendingDamping = kinetic = elastic = gravityWork = 0;
-    for (const auto& unit : units_) {
-        const auto& masses = unit.elasticity->masses();
-        auto *u = &displacements[unit.firstNode], *v = &velocities[unit.firstNode], *f = &forces_[unit.firstNode],
-             *last = &lastForces[unit.firstNode];
-        const Matrix3 rotation = unit.elasticity->rotation(u);
-        elastic += unit.elasticity->addForces(u, rotation, f, scratch_);
-        Vector3r mean = Vector3r::Zero();
-        for (std::size_t n = 0; n < masses.size(); ++n) {
-            gravityWork += masses[n] * gravity.dot(u[n]);
-            for (int d = 0; d < 3; ++d) {
-                if (held[d]) continue;
-                const double force = f[n][d] + masses[n] * gravity[d], old = v[n][d];
-                // the velocity in the middle of the step, as the host takes it: with the old one, damping pumps near
-                // the limit
-                const double middle = old + 0.5 * dt * force / masses[n], moving = (middle > 0) - (middle < 0);
-                double drag = -damping * std::abs(force) * moving; // paper eq. (3)
-                if (combined) {
-                    const double change = force - last[n][d];
-                    drag = 0.5 * (drag + damping * std::abs(force) * ((change > 0) - (change < 0)));
-                }
-                last[n][d] = force;
-                const double now = old + dt * (force + drag) / masses[n]; // eq. (2)
-                // trapezoidal work and kinetic energy at the same instant, as in MasonryEnergy
-                dampingWork -= 0.5 * dt * drag * old;
-                pendingDamping -= 0.5 * dt * drag * now;
-                kinetic += 0.5 * masses[n] * old * now;
-                v[n][d] = now;
-                u[n][d] += dt * now; // eq. (1)
-            }
-            mean += masses[n] * u[n];
-        }
-        auto& state = *scene->bodies->body[unit.body]->state;
-        state.pos = unit.centre + mean / unit.elasticity->mass();
-        state.ori = Quaternionr(rotation) * unit.orientation;
+    for (const auto& sum : sums) {
+        elastic += total(sum.elastic), kinetic += total(sum.kinetic), gravityWork += total(sum.gravityWork);
+        dampingWork += total(sum.damping), pendingDamping += total(sum.pending);
     }
+    ahead_ = true;
 }
 
 } // namespace masonry

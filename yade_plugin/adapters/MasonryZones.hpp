@@ -76,6 +76,7 @@ public:
     }
 
     void postLoad();
+    void refresh(); // displacements, velocities and forces from the rows
     void action() override;
 
     struct Unit {
@@ -88,25 +89,51 @@ public:
     const Unit* unitOf(int body);     // null for a rigid body
     bool holds(int direction) const { return blocked.find("xyz"[direction]) != std::string::npos; }
     Vector3r reference(const Unit&, int node) const;
-    Vector3r displacementAt(const Attachment& a) const {
-        if (a.weights[0] == 1) return displacements[a.nodes[0]];
-        return a.weights[0] * displacements[a.nodes[0]] + a.weights[1] * displacements[a.nodes[1]] +
-               a.weights[2] * displacements[a.nodes[2]];
-    }
     Attachment attach(const Unit&, const Vector3r& point) const;
     // Nodes of a unit on a joint polygon with a third of the areas of the surface triangles around them; empty if those
     // triangles do not make up the polygon.
     std::vector<std::pair<int, double>> nodesOn(const Unit&, const std::vector<Vector3r>& polygon,
                                                 const Vector3r& normal) const;
 
+    // The rows of numbers behind the nodes, for engines that work on them directly: a node's three numbers stand at
+    // its place, one row apart. Guests are places at the end for what moves with something else.
+    int placeOf(int node) const { return places_[node]; }
+    int addGuest();
+    bool looped = false; // a MasonryJointLoop brings the joints' forces
+    double* displacementRows() { return displacements_[0].lane; }
+    double* forceRows() { return forces_[0].lane; }
+    Vector3r displacementAt(const Attachment& a) const {
+        Vector3r moved = Vector3r::Zero();
+        for (int i = 0; i < 3 && a.weights[i] != 0; ++i)
+            moved += a.weights[i] * at(displacements_, places_[a.nodes[i]]);
+        return moved;
+    }
+
 private:
+    struct Batch { // of congruent units side by side
+        const BlockElasticity* elasticity;
+        int firstRow;
+        std::vector<int> units;
+    };
+    static Vector3r at(const std::vector<Row>& rows, int place) {
+        const double* v = rows[0].lane + place;
+        return {v[0], v[lanes], v[2 * lanes]};
+    }
+    static void put(std::vector<Row>& rows, int place, const Vector3r& value) {
+        for (int d = 0; d < 3; ++d)
+            (rows[0].lane + place)[d * lanes] = value[d];
+    }
+    void gatherFromFunctors();
     py::tuple nodesOf(int body);
     Vector3r referencePoint(int body, int node);
     void setVelocity(int node, const Vector3r& velocity);
 
     std::vector<Unit> units_;
-    std::vector<int> unitOfBody_;
-    std::vector<Vector3r> forces_, scratch_;
+    std::vector<int> unitOfBody_, places_; // of all nodes
+    std::vector<Batch> batches_;
+    std::vector<Row> displacements_, velocities_, forces_, lastForces_;
+    int guests_ = 0;
+    bool ahead_ = false;                        // whether the rows are ahead of the attributes
     std::vector<shared_ptr<yade::IGeom>> seen_; // of all interactions, to know when joints_ are others
     std::vector<const MasonryJointGeom*> joints_;
 };

@@ -2,11 +2,12 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 
 namespace masonry {
 
-BlockElasticity::BlockElasticity(BlockMesh mesh, double E, double nu, double density, bool planeStress)
+BlockElasticity::BlockElasticity(BlockMesh mesh, double E, double nu, double density, int held)
     : mesh_(std::move(mesh)) {
     if (!(E > 0) || !std::isfinite(E))
         throw std::invalid_argument("Young's modulus must be a finite number above 0 Pa");
@@ -15,7 +16,7 @@ BlockElasticity::BlockElasticity(BlockMesh mesh, double E, double nu, double den
         throw std::invalid_argument("density must be a finite number above 0 kg/m³");
     lambda_ = E * nu / ((1 + nu) * (1 - 2 * nu));
     shear_ = E / (2 * (1 + nu));
-    if (planeStress) lambda_ = 2 * lambda_ * shear_ / (lambda_ + 2 * shear_);
+    if (held >= 0) lambda_ = 2 * lambda_ * shear_ / (lambda_ + 2 * shear_);
     masses_.assign(mesh_.nodes.size(), 0);
     meanGradients_.assign(mesh_.nodes.size(), Point::Zero());
     double whole = 0;
@@ -39,9 +40,31 @@ BlockElasticity::BlockElasticity(BlockMesh mesh, double E, double nu, double den
         whole += z.volume;
         zones_.push_back(z);
     }
-    for (auto& g : meanGradients_)
+    for (auto& g : meanGradients_) {
         g /= whole;
+        if (held >= 0) g[held] = 0; // turns about the held direction only
+    }
     mass_ = density * whole;
+    assemble(held);
+}
+
+// The stiffness matrix of the whole block, row by row; a direction that is held has no rows and no columns.
+void BlockElasticity::assemble(int held) {
+    std::vector<std::map<int, double>> rows(3 * mesh_.nodes.size());
+    for (std::size_t z = 0; z < zones_.size(); ++z) {
+        const auto k = stiffness(int(z));
+        for (int i = 0; i < 12; ++i)
+            for (int j = 0; j < 12; ++j)
+                if (i % 3 != held && j % 3 != held)
+                    rows[3 * zones_[z].nodes[i / 3] + i % 3][3 * zones_[z].nodes[j / 3] + j % 3] += k(i, j);
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (int(i) % 3 == held) continue;
+        const int first = int(columns_.size());
+        for (const auto& [column, value] : rows[i])
+            columns_.push_back(column), values_.push_back(value);
+        rows_.push_back({int(i), first, int(columns_.size())});
+    }
 }
 
 Matrix3 BlockElasticity::rotation(const Point* u) const {
@@ -57,33 +80,76 @@ Matrix3 BlockElasticity::rotation(const Point* u) const {
     return r;
 }
 
-double BlockElasticity::addForces(const Point* u, const Matrix3& rotation, Point* forces,
-                                  std::vector<Point>& scratch) const {
-    const std::size_t count = mesh_.nodes.size();
-    scratch.assign(2 * count, Point::Zero());
-    Point *d = scratch.data(), *f = d + count;
-    for (std::size_t i = 0; i < count; ++i)
-        d[i] = turnedBack(int(i), u, rotation);
-    for (const auto& z : zones_) { // the gradients of the four nodes add up to nothing
-        const Point& d0 = d[z.nodes[0]];
-        const Matrix3 gradient = (d[z.nodes[1]] - d0) * z.gradients[1].transpose() +
-                                 (d[z.nodes[2]] - d0) * z.gradients[2].transpose() +
-                                 (d[z.nodes[3]] - d0) * z.gradients[3].transpose();
-        const Matrix3 pull = z.volume * stressOf(gradient);
-        Point rest = Point::Zero();
-        for (int i = 1; i < 4; ++i) {
-            const Point force = pull * z.gradients[i];
-            f[z.nodes[i]] -= force;
-            rest += force;
-        }
-        f[z.nodes[0]] += rest;
+namespace {
+
+// Newton's iteration for the polar part, F <- (F + F^-T) / 2: three steps are exact at elastic strains.
+inline void polar(Lanes (&f)[9]) {
+    for (int iteration = 0; iteration < 3; ++iteration) {
+        Lanes c[9]; // cofactors: det F times F^-T
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) {
+                const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+                c[3 * i + j] = f[3 * i1 + j1] * f[3 * i2 + j2] - f[3 * i1 + j2] * f[3 * i2 + j1];
+            }
+        const Lanes half = 0.5 / (f[0] * c[0] + f[1] * c[1] + f[2] * c[2]);
+        for (int i = 0; i < 9; ++i)
+            f[i] = 0.5 * f[i] + half * c[i];
     }
-    double energy = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        energy -= 0.5 * d[i].dot(f[i]);
-        forces[i] += rotation * f[i];
+}
+
+struct Matrix { // of a block, as plain arrays
+    const double *nodes, *gradients, *values;
+    const int *rows, *columns;
+    int nodeCount, rowCount;
+};
+
+MASONRY_VECTORISED
+void forcesOf(const Matrix& m, const Row* displacements, Row* forces, Row* rotation, Row* energy, Row* scratch) {
+    const auto* u = reinterpret_cast<const Lanes*>(displacements);
+    auto *f = reinterpret_cast<Lanes*>(forces), *d = reinterpret_cast<Lanes*>(scratch), *local = d + 3 * m.nodeCount;
+    const Lanes zero = {}, one = zero + 1;
+    Lanes r[9] = {one, zero, zero, zero, one, zero, zero, zero, one}; // mean deformation gradient, then its polar part
+    for (int n = 0; n < m.nodeCount; ++n)
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j)
+                r[3 * i + j] += u[3 * n + i] * m.gradients[3 * n + j];
+    polar(r);
+
+    for (int n = 0; n < m.nodeCount; ++n) { // turned back, less the same of the first node: rigid motion is nothing
+        const double *x = m.nodes + 3 * n, *x0 = m.nodes;
+        Lanes place[3];
+        for (int i = 0; i < 3; ++i)
+            place[i] = (x[i] - x0[i]) + (u[3 * n + i] - u[i]);
+        for (int i = 0; i < 3; ++i)
+            d[3 * n + i] = r[i] * place[0] + r[3 + i] * place[1] + r[6 + i] * place[2] - (x[i] - x0[i]);
+        for (int i = 0; i < 3; ++i)
+            local[3 * n + i] = zero;
     }
-    return energy;
+    Lanes stored = zero;
+    for (int row = 0; row < m.rowCount; ++row) {
+        const int degree = m.rows[3 * row], beyond = m.rows[3 * row + 2];
+        Lanes sum = zero;
+        for (int e = m.rows[3 * row + 1]; e < beyond; ++e)
+            sum += m.values[e] * d[m.columns[e]];
+        stored += sum * d[degree];
+        local[degree] = sum;
+    }
+    for (int n = 0; n < m.nodeCount; ++n)
+        for (int i = 0; i < 3; ++i)
+            f[3 * n + i] -= r[3 * i] * local[3 * n] + r[3 * i + 1] * local[3 * n + 1] + r[3 * i + 2] * local[3 * n + 2];
+    for (int i = 0; i < 9; ++i)
+        reinterpret_cast<Lanes*>(rotation)[i] = r[i];
+    *reinterpret_cast<Lanes*>(energy) = 0.5 * stored;
+}
+
+} // namespace
+
+void BlockElasticity::addForces(const Row* displacements, Row* forces, Side& result, std::vector<Row>& scratch) const {
+    const int count = int(mesh_.nodes.size());
+    scratch.resize(std::size_t(6) * count);
+    forcesOf({mesh_.nodes[0].data(), meanGradients_[0].data(), values_.data(), &rows_[0].degree, columns_.data(), count,
+              int(rows_.size())},
+             displacements, forces, result.rotation, &result.energy, scratch.data());
 }
 
 Matrix3 BlockElasticity::stress(int zone, const Point* u, const Matrix3& rotation) const {

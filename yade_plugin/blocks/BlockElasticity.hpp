@@ -1,7 +1,8 @@
 // Linear elasticity of a meshed block, paper §2: constant-strain zones, lumped masses, small strains in axes that turn
-// with the block. Congruent blocks share one.
+// with the block. Congruent blocks share one, and their forces are computed several blocks at a time.
 #pragma once
 #include "BlockMesh.hpp"
+#include "Vectorised.hpp"
 
 namespace masonry {
 
@@ -10,8 +11,9 @@ using Matrix3 = Eigen::Matrix3d;
 class BlockElasticity {
 public:
     // Throws std::invalid_argument with what is wrong with the constants (E > 0, -1 < nu < 0.5, density > 0).
-    // `planeStress` is for nodes held in one direction: it keeps that direction free of stress, not of strain.
-    BlockElasticity(BlockMesh mesh, double youngModulus, double poissonRatio, double density, bool planeStress = false);
+    // `held` is the one direction in which all nodes are held, or -1: it is kept free of stress, not of strain (plane
+    // stress), and the block turns about it only.
+    BlockElasticity(BlockMesh mesh, double youngModulus, double poissonRatio, double density, int held = -1);
 
     const BlockMesh& mesh() const { return mesh_; }
     const std::vector<double>& masses() const { return masses_; } // [kg] of the nodes
@@ -20,15 +22,18 @@ public:
     // Rotation of the block: the polar part of its mean deformation gradient, from displacements of all nodes.
     Matrix3 rotation(const Point* displacements) const;
 
-    // Adds the zones' forces on the nodes [N]; returns the elastic energy [J]. `scratch` is reused between calls.
-    double addForces(const Point* displacements, const Matrix3& rotation, Point* forces,
-                     std::vector<Point>& scratch) const;
-
     // Stress of a zone [Pa], in the axes turned back by the rotation.
     Matrix3 stress(int zone, const Point* displacements, const Matrix3& rotation) const;
 
     // Stiffness matrix of a zone without rotation, nodes x 3 [N/m].
     Eigen::Matrix<double, 12, 12> stiffness(int zone) const;
+
+    // `lanes` congruent blocks side by side, in rows [node][direction]: adds the zones' forces on the nodes
+    // [N], and gives each block's rotation (row by row) and elastic energy [J]. `scratch` is reused between calls.
+    struct Side {
+        Row rotation[9], energy;
+    };
+    void addForces(const Row* displacements, Row* forces, Side& result, std::vector<Row>& scratch) const;
 
 private:
     struct Zone {
@@ -43,12 +48,19 @@ private:
     Matrix3 stressOf(const Matrix3& gradient) const { // Hooke's law, paper §2
         return lambda_ * gradient.trace() * Matrix3::Identity() + shear_ * (gradient + gradient.transpose());
     }
+    struct Entries { // of a row of the block's stiffness matrix
+        int degree, first, beyond;
+    };
+    void assemble(int held);
 
     BlockMesh mesh_;
     std::vector<Zone> zones_;
     std::vector<double> masses_;
     std::vector<Point> meanGradients_; // volume-averaged, per node
     double mass_ = 0, lambda_ = 0, shear_ = 0;
+    std::vector<Entries> rows_; // of the degrees that are not held
+    std::vector<int> columns_;
+    std::vector<double> values_;
 };
 
 } // namespace masonry

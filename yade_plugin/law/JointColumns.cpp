@@ -1,4 +1,5 @@
 #include "JointColumns.hpp"
+#include "Vectorised.hpp"
 
 namespace masonry {
 

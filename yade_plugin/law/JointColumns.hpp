@@ -7,14 +7,6 @@
 
 namespace masonry {
 
-// Compiled for several instruction sets; the one that the processor has is taken when the program starts. All give the
-// same numbers, because the project is built without contraction of products and sums.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define MASONRY_VECTORISED __attribute__((target_clones("default", "avx2", "arch=skylake-avx512")))
-#else
-#define MASONRY_VECTORISED
-#endif
-
 class JointColumns {
 public:
     JointColumns() = default;

@@ -1,0 +1,22 @@
+// How inner loops use the vector units. A marked function is compiled for several instruction sets, and the one that
+// the processor has is taken when the program starts. All give the same numbers, because the project is built without
+// contraction of products and sums.
+#pragma once
+
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define MASONRY_VECTORISED __attribute__((target_clones("default", "avx2", "arch=skylake-avx512")))
+#else
+#define MASONRY_VECTORISED
+#endif
+
+namespace masonry {
+
+constexpr int lanes = 8; // numbers side by side
+
+struct alignas(64) Row { // of numbers side by side, in memory
+    double lane[lanes];
+};
+
+typedef double Lanes __attribute__((vector_size(64), may_alias)); // the same in arithmetic, lane by lane
+
+} // namespace masonry
