@@ -13,10 +13,8 @@ namespace masonry {
 
 constexpr int lanes = 8; // numbers side by side
 
-struct alignas(64) Row { // of numbers side by side, in memory
+struct alignas(64) Row { // of numbers side by side
     double lane[lanes];
 };
-
-typedef double Lanes __attribute__((vector_size(64), may_alias)); // the same in arithmetic, lane by lane
 
 } // namespace masonry

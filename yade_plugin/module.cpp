@@ -1,6 +1,7 @@
 // The Python module masonry._masonry: checks itself against the running YADE, then registers its classes there.
 #include "adapters/MasonryEngines.hpp"
 #include "adapters/MasonryJointGeom.hpp"
+#include "adapters/MasonryJointLoop.hpp"
 #include "adapters/MasonryJointPhys.hpp"
 #include "adapters/MasonryVtkRecorder.hpp"
 #include "adapters/MasonryZones.hpp"
@@ -86,6 +87,7 @@ static void registerAll() {
     enroll<Ip2_MasonryMat_MasonryMat_MasonryJointPhys>(names);
     enroll<Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening>(names);
     enroll<MasonryZones>(names);
+    enroll<MasonryJointLoop>(names);
     enroll<MasonryLoad>(names);
     enroll<MasonryEnergy>(names);
     enroll<MasonryVtkRecorder>(names);

@@ -38,6 +38,7 @@ def engines(
     inPlane=False,
     loads=(),
     zones=None,
+    functors=False,
 ):
     """Fill O.engines for a masonry scene: joints, loads, energy balance, integration. No collider.
 
@@ -48,24 +49,24 @@ def engines(
     :param rows: rows of subcontacts across a joint; 1 is enough in the plane
     :param loads: MasonryLoad engines
     :param zones: MasonryZones of the deformable units, if there are any
+    :param functors: joints through YADE's InteractionLoop, the slow reference, instead of MasonryJointLoop
     """
     if zones:
         zones.gravity = Vector3(*gravity)
     across = Vector3(0, 1, 0) if inPlane else Vector3(0, 0, 0)
+    geometry = Ig2_Polyhedra_Polyhedra_MasonryJointGeom(
+        subcontacts=subcontacts,
+        rows=rows,
+        rowDirection=across,
+        **({"zones": zones} if zones else {}),
+    )
+    physics = Ip2_MasonryMat_MasonryMat_MasonryJointPhys(joints=list(joints))
     O.engines = [
         ForceResetter(),
-        InteractionLoop(
-            [
-                Ig2_Polyhedra_Polyhedra_MasonryJointGeom(
-                    subcontacts=subcontacts,
-                    rows=rows,
-                    rowDirection=across,
-                    **({"zones": zones} if zones else {})
-                )
-            ],
-            [Ip2_MasonryMat_MasonryMat_MasonryJointPhys(joints=list(joints))],
-            [Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening()],
-            label="joints",
+        (
+            _functorLoop(geometry, physics)
+            if functors
+            else MasonryJointLoop(geometry=geometry, physics=physics, label="joints")
         ),
         *loads,
         MasonryEnergy(label="energy"),
@@ -84,12 +85,34 @@ def connect(rule=None, tolerance=1e-4):
     :param rule: function (body1, body2, geom) -> MasonryJoint, or None to leave the choice to direction and joint set
     :param tolerance: largest gap or overlap of coincident faces, relative to the smaller block's size
     """
-    loop = next((e for e in O.engines if isinstance(e, InteractionLoop)), None)
+    engines = list(O.engines)
+    loop = next(
+        (e for e in engines if isinstance(e, (MasonryJointLoop, InteractionLoop))), None
+    )
     if loop is None:
         raise ValueError(
-            "connect() needs an InteractionLoop in O.engines: call masonry.engines() first"
+            "connect() needs the joints' engine in O.engines: call masonry.engines() first"
         )
-    physics = loop.physDispatcher.functors[0]
+    if isinstance(loop, InteractionLoop):
+        return _connect(loop.physDispatcher.functors[0], rule, tolerance)
+    # YADE makes interactions with the functors of an InteractionLoop: one stands in for a moment
+    O.engines = [_functorLoop(loop.geometry, loop.physics)]
+    try:
+        return _connect(loop.physics, rule, tolerance)
+    finally:
+        O.engines = engines
+
+
+def _functorLoop(geometry, physics):
+    return InteractionLoop(
+        [geometry],
+        [physics],
+        [Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening()],
+        label="joints",
+    )
+
+
+def _connect(physics, rule, tolerance):
     made = []
     for id1, id2 in touchingPairs(tolerance):
         interaction = utils.createInteraction(id1, id2)

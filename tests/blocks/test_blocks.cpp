@@ -158,18 +158,18 @@ struct Forces {
 // Of one block among others that are at rest or moved otherwise.
 Forces forcesOf(const BlockElasticity& e, const std::vector<Point>& u) {
     constexpr int mine = 3;
-    std::vector<Row> all(3 * u.size()), f(all.size(), Row{}), scratch;
+    std::vector<Row> all(3 * u.size()), f(all.size(), Row{}), scratch(2 * all.size());
     for (std::size_t i = 0; i < all.size(); ++i)
         for (int lane = 0; lane < lanes; ++lane)
             all[i].lane[lane] = lane ? (lane - mine) * 1e-6 * double(i % 7) + u[i / 3][i % 3] : 0;
-    BlockElasticity::Side side;
-    e.addForces(all.data(), f.data(), side, scratch);
-    Forces result{std::vector<Point>(u.size()), {}, side.energy.lane[mine]};
+    Row rotation[9], energy;
+    addBlockForces(e.matrix(), all.data(), f.data(), rotation, &energy, scratch.data());
+    Forces result{std::vector<Point>(u.size()), {}, energy.lane[mine]};
     for (std::size_t n = 0; n < u.size(); ++n)
         for (int d = 0; d < 3; ++d)
             result.forces[n][d] = f[3 * n + d].lane[mine];
     for (int i = 0; i < 9; ++i)
-        result.rotation(i / 3, i % 3) = side.rotation[i].lane[mine];
+        result.rotation(i / 3, i % 3) = rotation[i].lane[mine];
     return result;
 }
 

@@ -219,6 +219,7 @@ def test_blocks_without_a_shared_face_get_no_joint(scene):
     with pytest.raises(ValueError):
         pair(offset=(0.3, 0, 0.5))
     assert touchingPairs() == []
+    engines([MasonryJoint()], functors=True)
     with pytest.raises(ValueError, match="bodies 0 and 1 share no face"):
         utils.createInteraction(0, 1)
 

@@ -32,6 +32,13 @@ using yade::Vector3r;
 // Counts every change of joints and units that arrays kept by engines must follow.
 inline std::atomic<long> changes{0};
 
+// An engine that keeps the state of joints in arrays of its own: it can bring the joints up to date, and let them go.
+struct Keeper {
+    virtual ~Keeper() = default;
+    virtual void store() = 0;
+    virtual void release() = 0;
+};
+
 enum Flags { Plain = 0, ReadOnly = 1, Hidden = 2 }; // Hidden: saved, but not shown to Python
 
 template <class T> struct IsNumbers : std::false_type {}; // types of fixed size that are saved as plain numbers

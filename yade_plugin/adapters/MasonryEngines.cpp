@@ -174,7 +174,8 @@ py::dict MasonryEnergy::balance() {
     const auto& running = *Singleton<yade::Omega>::instance().getScene();
     Energies stored;
     Vector3r lost = Vector3r::Zero();
-    eachJoint(running, [&](const auto&, const MasonryJointGeom& geom, const MasonryJointPhys& phys) {
+    eachJoint(running, [&](const auto&, const MasonryJointGeom& geom, MasonryJointPhys& phys) {
+        phys.refresh();
         lost += phys.dissipated;
         for (std::size_t i = 0; i < phys.states.size(); ++i) {
             const auto e = JointLaw::stored(phys.stiffness(), phys.states[i]);

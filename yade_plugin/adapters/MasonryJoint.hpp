@@ -63,6 +63,7 @@ public:
         if (!direction.allFinite())
             throw std::invalid_argument("joint \"" + name + "\": direction must be finite numbers");
         law_ = std::make_shared<const JointLaw>(*this);
+        ++changes;
     }
 
     const JointLaw& law() const { return *law_; }

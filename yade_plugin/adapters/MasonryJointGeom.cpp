@@ -84,7 +84,8 @@ void MasonryJointGeom::updateDeformable(const yade::State& state1, const yade::S
         const Vector3r gap = u2 - u1, jump = axes.transpose() * gap, step = jump - point.jump;
         point.jump = jump;
         point.increment = {step[0], {step[1], step[2]}};
-        point.arm = axes.transpose() * (place + u1 + 0.5 * gap - state1.pos);
+        const bool rigid1 = attachments1.empty(); // the arm at the rigid side, if there is one
+        point.arm = axes.transpose() * (rigid1 ? Vector3r(place + u1 - state1.pos) : Vector3r(place + u2 - state2.pos));
     }
 }
 
@@ -178,7 +179,9 @@ bool Ig2_Polyhedra_Polyhedra_MasonryJointGeom::go(const shared_ptr<yade::Shape>&
         if (zones) geom->attach(zones, interaction->id1, interaction->id2);
         interaction->geom = geom;
     }
-    static_cast<MasonryJointGeom&>(*interaction->geom).update(state1, state2);
+    auto& geom = static_cast<MasonryJointGeom&>(*interaction->geom);
+    if (geom.keeper) geom.keeper->release(); // a MasonryJointLoop that no longer runs
+    geom.update(state1, state2);
     return true;
 }
 

@@ -64,7 +64,15 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
     yade::Matrix3r axes; // scratch: columns normal and tangents, turned with the mean rotation of the two blocks
     Vector3r between;    // scratch: from the centre of body 1 to that of body 2
 
-    MasonryJointGeom() { createIndex(); }
+    Keeper* keeper = nullptr; // the engine that has the jumps in its arrays, if one has
+
+    MasonryJointGeom() {
+        createIndex();
+        ++changes;
+    }
+    void refresh() {
+        if (keeper) keeper->store();
+    }
 
     template <class PyClass> static void extras(PyClass& cls) {
         cls.add_property("centres", &MasonryJointGeom::centres,
@@ -107,7 +115,8 @@ private:
     py::list areas() const {
         return perPoint([](const JointPoint& p) { return p.area; });
     }
-    py::list jumps() const {
+    py::list jumps() {
+        refresh();
         return perPoint([](const JointPoint& p) { return p.jump; });
     }
 };

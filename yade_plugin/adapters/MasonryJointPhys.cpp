@@ -96,7 +96,8 @@ bool Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening::go(shared_ptr<ya
     }
     if (geom.attachments2.empty()) {
         forces.addForce(interaction->id2, -force);
-        forces.addTorque(interaction->id2, geom.between.cross(force) - torque); // its arms are shorter by `between`
+        // the arms of body 2 are shorter by `between`; those of a deformable joint are the rigid side's own
+        forces.addTorque(interaction->id2, geom.zones ? Vector3r(-torque) : geom.between.cross(force) - torque);
     }
     return true;
 }

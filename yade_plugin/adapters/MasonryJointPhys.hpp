@@ -29,7 +29,15 @@ class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys> {
         visit("states", &P::states, "", Hidden);
     }
 
-    MasonryJointPhys() { createIndex(); }
+    Keeper* keeper = nullptr; // the engine that has the states in its arrays, if one has
+
+    MasonryJointPhys() {
+        createIndex();
+        ++changes;
+    }
+    void refresh() {
+        if (keeper) keeper->store();
+    }
 
     const JointLaw& law() const { return joint->law(); }
     ElasticStiffness stiffness() const { return {normalStiffness, shearStiffness}; }
@@ -47,28 +55,29 @@ class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys> {
     }
 
 private:
-    template <class F> py::list perSubcontact(F&& value) const {
+    template <class F> py::list perSubcontact(F&& value) {
+        refresh();
         py::list all;
         for (const auto& s : states)
             all.append(value(s));
         return all;
     }
-    py::list stress() const {
+    py::list stress() {
         return perSubcontact(
             [](const JointState& s) { return Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b); });
     }
-    py::list opening() const {
+    py::list opening() {
         return perSubcontact([](const JointState& s) { return s.opening; });
     }
-    py::list slip() const {
+    py::list slip() {
         return perSubcontact([](const JointState& s) { return s.slip; });
     }
-    py::list damage() const {
+    py::list damage() {
         return perSubcontact([&](const JointState& s) {
             return Vector3r(s.tensionDamage, s.shearDamage, law().compressionDamage(stiffness(), s));
         });
     }
-    py::list regime() const {
+    py::list regime() {
         static const char* const names[] = {"elastic", "opening", "slipping", "crushing"};
         return perSubcontact([](const JointState& s) { return py::str(names[int(s.regime)]); });
     }

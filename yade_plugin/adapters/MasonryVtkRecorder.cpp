@@ -155,8 +155,9 @@ void MasonryVtkRecorder::writeJoints(const std::string& path) {
     for (std::size_t n = 0; n < scene->interactions->currSize; ++n) {
         const auto& interaction = *scene->interactions->linIntrs[n];
         const auto* geom = dynamic_cast<MasonryJointGeom*>(interaction.geom.get());
-        const auto* phys = dynamic_cast<MasonryJointPhys*>(interaction.phys.get());
+        auto* phys = dynamic_cast<MasonryJointPhys*>(interaction.phys.get());
         if (!geom || !phys) continue;
+        phys->refresh();
         const auto& s1 = *yade::Body::byId(interaction.id1, scene)->state;
         const auto& s2 = *yade::Body::byId(interaction.id2, scene)->state;
         const auto known = std::find(kinds.begin(), kinds.end(), phys->joint->name);

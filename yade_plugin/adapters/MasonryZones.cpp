@@ -199,61 +199,6 @@ std::vector<std::pair<int, double>> MasonryZones::nodesOn(const Unit& unit, cons
 
 namespace {
 
-struct Motion {
-    double dt, damping, gravity[3];
-    bool combined, held[3];
-};
-
-struct Sums { // over the nodes of each unit of a batch
-    Row elastic, kinetic, gravityWork, damping, pending, moved[3];
-};
-
-[[gnu::always_inline]] inline Lanes sign(const Lanes& x) {
-    const Lanes zero = {}, one = zero + 1;
-    return (x > zero ? one : zero) - (x < zero ? one : zero);
-}
-
-// Eqs. (1)-(3) for the nodes of a batch; the forces are used up.
-MASONRY_VECTORISED
-void move(const Motion& m, const std::vector<double>& masses, const Row& present, Row* displacements, Row* velocities,
-          Row* forces, Row* lastForces, Sums& result) {
-    auto *us = reinterpret_cast<Lanes*>(displacements), *vs = reinterpret_cast<Lanes*>(velocities),
-         *fs = reinterpret_cast<Lanes*>(forces), *lasts = reinterpret_cast<Lanes*>(lastForces);
-    const Lanes there = reinterpret_cast<const Lanes&>(present), zero = {};
-    const double halfStep = 0.5 * m.dt, alpha = m.combined ? 0.5 * m.damping : m.damping;
-    Lanes kinetic = zero, gravityWork = zero, damping = zero, pending = zero, moved[3] = {zero, zero, zero};
-    for (std::size_t n = 0; n < masses.size(); ++n) {
-        const double mass = masses[n], perMass = m.dt / mass;
-        for (int d = 0; d < 3; ++d) {
-            const std::size_t i = 3 * n + d;
-            const Lanes weight = mass * m.gravity[d] * there, force = fs[i] + weight, old = vs[i];
-            fs[i] = zero;
-            if (m.held[d]) continue;
-            gravityWork += weight * us[i];
-            // the velocity in the middle of the step, as the host takes it: with the old one, damping pumps near the
-            // limit
-            Lanes way = -sign(old + 0.5 * perMass * force);
-            if (m.combined) way += sign(force - lasts[i]);
-            lasts[i] = force;
-            const Lanes drag = alpha * (force < zero ? -force : force) * way; // paper eq. (3), or Cundall's combined
-            const Lanes now = old + perMass * (force + drag);                 // eq. (2)
-            // trapezoidal work and kinetic energy at the same instant, as in MasonryEnergy
-            damping -= halfStep * drag * old;
-            pending -= halfStep * drag * now;
-            kinetic += 0.5 * mass * old * now;
-            vs[i] = now;
-            us[i] += m.dt * now; // eq. (1)
-            moved[d] += mass * us[i];
-        }
-    }
-    reinterpret_cast<Lanes&>(result.kinetic) = kinetic;
-    reinterpret_cast<Lanes&>(result.gravityWork) = gravityWork;
-    reinterpret_cast<Lanes&>(result.damping) = damping;
-    reinterpret_cast<Lanes&>(result.pending) = pending;
-    for (int d = 0; d < 3; ++d)
-        reinterpret_cast<Lanes&>(result.moved[d]) = moved[d];
-}
-
 double total(const Row& row) {
     double sum = 0;
     for (double value : row.lane)
@@ -293,42 +238,43 @@ void MasonryZones::gatherFromFunctors() {
 void MasonryZones::action() {
     units();
     if (!looped) gatherFromFunctors();
-    Motion motion{scene->dt,
-                  damping,
-                  {gravity[0], gravity[1], gravity[2]},
-                  dampingKind == "combined",
-                  {holds(0), holds(1), holds(2)}};
+    const NodeMotion motion{scene->dt,
+                            damping,
+                            {gravity[0], gravity[1], gravity[2]},
+                            dampingKind == "combined",
+                            {holds(0), holds(1), holds(2)}};
     const int count = int(batches_.size());
-    std::vector<Sums> sums(count);
+    std::vector<NodeSums> sums(count);
+    std::vector<Row> energies(count);
 #pragma omp parallel for schedule(static)
     for (int b = 0; b < count; ++b) {
         thread_local std::vector<Row> scratch;
         const auto& batch = batches_[b];
-        const auto& elasticity = *batch.elasticity;
-        auto& sum = sums[b];
+        const auto matrix = batch.elasticity->matrix();
         const int row = batch.firstRow;
-        Row present{};
+        Row present{}, turned[9];
         std::fill_n(present.lane, batch.units.size(), 1.0);
-        BlockElasticity::Side side;
-        elasticity.addForces(&displacements_[row], &forces_[row], side, scratch);
-        move(motion, elasticity.masses(), present, &displacements_[row], &velocities_[row], &forces_[row],
-             &lastForces_[row], sum);
-        sum.elastic = side.energy;
+        scratch.resize(std::size_t(6) * matrix.nodeCount);
+        addBlockForces(matrix, &displacements_[row], &forces_[row], turned, &energies[b], scratch.data());
+        moveBlocks(matrix, motion, present, &displacements_[row], &velocities_[row], &forces_[row], &lastForces_[row],
+                   sums[b]);
         for (std::size_t lane = 0; lane < batch.units.size(); ++lane) {
             const auto& unit = units_[batch.units[lane]];
             auto& state = *scene->bodies->body[unit.body]->state;
             Matrix3 rotation;
             for (int i = 0; i < 9; ++i)
-                rotation(i / 3, i % 3) = side.rotation[i].lane[lane];
+                rotation(i / 3, i % 3) = turned[i].lane[lane];
             for (int d = 0; d < 3; ++d)
-                state.pos[d] = unit.centre[d] + sum.moved[d].lane[lane] / elasticity.mass();
+                state.pos[d] = unit.centre[d] + sums[b].moved[d].lane[lane] / batch.elasticity->mass();
             state.ori = Quaternionr(rotation) * unit.orientation;
         }
     }
     dampingWork += pendingDamping;
     pendingDamping = kinetic = elastic = gravityWork = 0;
+    for (const auto& energy : energies)
+        elastic += total(energy);
     for (const auto& sum : sums) {
-        elastic += total(sum.elastic), kinetic += total(sum.kinetic), gravityWork += total(sum.gravityWork);
+        kinetic += total(sum.kinetic), gravityWork += total(sum.gravityWork);
         dampingWork += total(sum.damping), pendingDamping += total(sum.pending);
     }
     ahead_ = true;

@@ -80,76 +80,9 @@ Matrix3 BlockElasticity::rotation(const Point* u) const {
     return r;
 }
 
-namespace {
-
-// Newton's iteration for the polar part, F <- (F + F^-T) / 2: three steps are exact at elastic strains.
-inline void polar(Lanes (&f)[9]) {
-    for (int iteration = 0; iteration < 3; ++iteration) {
-        Lanes c[9]; // cofactors: det F times F^-T
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) {
-                const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-                c[3 * i + j] = f[3 * i1 + j1] * f[3 * i2 + j2] - f[3 * i1 + j2] * f[3 * i2 + j1];
-            }
-        const Lanes half = 0.5 / (f[0] * c[0] + f[1] * c[1] + f[2] * c[2]);
-        for (int i = 0; i < 9; ++i)
-            f[i] = 0.5 * f[i] + half * c[i];
-    }
-}
-
-struct Matrix { // of a block, as plain arrays
-    const double *nodes, *gradients, *values;
-    const int *rows, *columns;
-    int nodeCount, rowCount;
-};
-
-MASONRY_VECTORISED
-void forcesOf(const Matrix& m, const Row* displacements, Row* forces, Row* rotation, Row* energy, Row* scratch) {
-    const auto* u = reinterpret_cast<const Lanes*>(displacements);
-    auto *f = reinterpret_cast<Lanes*>(forces), *d = reinterpret_cast<Lanes*>(scratch), *local = d + 3 * m.nodeCount;
-    const Lanes zero = {}, one = zero + 1;
-    Lanes r[9] = {one, zero, zero, zero, one, zero, zero, zero, one}; // mean deformation gradient, then its polar part
-    for (int n = 0; n < m.nodeCount; ++n)
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j)
-                r[3 * i + j] += u[3 * n + i] * m.gradients[3 * n + j];
-    polar(r);
-
-    for (int n = 0; n < m.nodeCount; ++n) { // turned back, less the same of the first node: rigid motion is nothing
-        const double *x = m.nodes + 3 * n, *x0 = m.nodes;
-        Lanes place[3];
-        for (int i = 0; i < 3; ++i)
-            place[i] = (x[i] - x0[i]) + (u[3 * n + i] - u[i]);
-        for (int i = 0; i < 3; ++i)
-            d[3 * n + i] = r[i] * place[0] + r[3 + i] * place[1] + r[6 + i] * place[2] - (x[i] - x0[i]);
-        for (int i = 0; i < 3; ++i)
-            local[3 * n + i] = zero;
-    }
-    Lanes stored = zero;
-    for (int row = 0; row < m.rowCount; ++row) {
-        const int degree = m.rows[3 * row], beyond = m.rows[3 * row + 2];
-        Lanes sum = zero;
-        for (int e = m.rows[3 * row + 1]; e < beyond; ++e)
-            sum += m.values[e] * d[m.columns[e]];
-        stored += sum * d[degree];
-        local[degree] = sum;
-    }
-    for (int n = 0; n < m.nodeCount; ++n)
-        for (int i = 0; i < 3; ++i)
-            f[3 * n + i] -= r[3 * i] * local[3 * n] + r[3 * i + 1] * local[3 * n + 1] + r[3 * i + 2] * local[3 * n + 2];
-    for (int i = 0; i < 9; ++i)
-        reinterpret_cast<Lanes*>(rotation)[i] = r[i];
-    *reinterpret_cast<Lanes*>(energy) = 0.5 * stored;
-}
-
-} // namespace
-
-void BlockElasticity::addForces(const Row* displacements, Row* forces, Side& result, std::vector<Row>& scratch) const {
-    const int count = int(mesh_.nodes.size());
-    scratch.resize(std::size_t(6) * count);
-    forcesOf({mesh_.nodes[0].data(), meanGradients_[0].data(), values_.data(), &rows_[0].degree, columns_.data(), count,
-              int(rows_.size())},
-             displacements, forces, result.rotation, &result.energy, scratch.data());
+BlockMatrix BlockElasticity::matrix() const {
+    return {mesh_.nodes[0].data(), meanGradients_[0].data(), masses_.data(),      values_.data(),
+            rows_.data(),          columns_.data(),          int(masses_.size()), int(rows_.size())};
 }
 
 Matrix3 BlockElasticity::stress(int zone, const Point* u, const Matrix3& rotation) const {

@@ -1,8 +1,8 @@
 // Linear elasticity of a meshed block, paper §2: constant-strain zones, lumped masses, small strains in axes that turn
 // with the block. Congruent blocks share one, and their forces are computed several blocks at a time.
 #pragma once
+#include "BlockLanes.hpp"
 #include "BlockMesh.hpp"
-#include "Vectorised.hpp"
 
 namespace masonry {
 
@@ -28,12 +28,8 @@ public:
     // Stiffness matrix of a zone without rotation, nodes x 3 [N/m].
     Eigen::Matrix<double, 12, 12> stiffness(int zone) const;
 
-    // `lanes` congruent blocks side by side, in rows [node][direction]: adds the zones' forces on the nodes
-    // [N], and gives each block's rotation (row by row) and elastic energy [J]. `scratch` is reused between calls.
-    struct Side {
-        Row rotation[9], energy;
-    };
-    void addForces(const Row* displacements, Row* forces, Side& result, std::vector<Row>& scratch) const;
+    // For the loops over blocks side by side; lives as long as this.
+    BlockMatrix matrix() const;
 
 private:
     struct Zone {
@@ -48,9 +44,6 @@ private:
     Matrix3 stressOf(const Matrix3& gradient) const { // Hooke's law, paper §2
         return lambda_ * gradient.trace() * Matrix3::Identity() + shear_ * (gradient + gradient.transpose());
     }
-    struct Entries { // of a row of the block's stiffness matrix
-        int degree, first, beyond;
-    };
     void assemble(int held);
 
     BlockMesh mesh_;
@@ -58,7 +51,7 @@ private:
     std::vector<double> masses_;
     std::vector<Point> meanGradients_; // volume-averaged, per node
     double mass_ = 0, lambda_ = 0, shear_ = 0;
-    std::vector<Entries> rows_; // of the degrees that are not held
+    std::vector<BlockMatrix::Entries> rows_; // of the degrees that are not held
     std::vector<int> columns_;
     std::vector<double> values_;
 };

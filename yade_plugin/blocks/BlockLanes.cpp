@@ -1,0 +1,59 @@
+#include "BlockLanes.hpp"
+
+// The loops are written with vectors of a fixed width, which the compiler keeps in registers only if the instruction
+// set is known where they are written: so they are included once for each.
+namespace masonry {
+
+namespace plain {
+#define WIDTH 2
+#include "BlockLanes.inl"
+#undef WIDTH
+} // namespace plain
+
+#if defined(__x86_64__)
+#pragma GCC push_options
+#pragma GCC target("avx2")
+namespace avx2 {
+#define WIDTH 4
+#include "BlockLanes.inl"
+#undef WIDTH
+} // namespace avx2
+#pragma GCC target("arch=skylake-avx512")
+namespace avx512 {
+#define WIDTH 8
+#include "BlockLanes.inl"
+#undef WIDTH
+} // namespace avx512
+#pragma GCC pop_options
+#endif
+
+namespace {
+
+template <class F> F* choose(F* forAll, [[maybe_unused]] F* forAvx2, [[maybe_unused]] F* forAvx512) {
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq")) return forAvx512;
+    if (__builtin_cpu_supports("avx2")) return forAvx2;
+#endif
+    return forAll;
+}
+
+} // namespace
+
+#if !defined(__x86_64__)
+namespace avx2 = plain;
+namespace avx512 = plain;
+#endif
+
+void addBlockForces(const BlockMatrix& m, const Row* displacements, Row* forces, Row* rotation, Row* energy,
+                    Row* scratch) {
+    static const auto best = choose(plain::addForces, avx2::addForces, avx512::addForces);
+    best(m, displacements, forces, rotation, energy, scratch);
+}
+
+void moveBlocks(const BlockMatrix& m, const NodeMotion& motion, const Row& present, Row* displacements, Row* velocities,
+                Row* forces, Row* lastForces, NodeSums& sums) {
+    static const auto best = choose(plain::move, avx2::move, avx512::move);
+    best(m, motion, present, displacements, velocities, forces, lastForces, sums);
+}
+
+} // namespace masonry

@@ -1,0 +1,111 @@
+// The loops of BlockLanes.hpp for vectors of WIDTH numbers; included once for each instruction set.
+
+typedef double Lanes __attribute__((vector_size(8 * WIDTH), may_alias));
+constexpr int parts = lanes / WIDTH; // of a row
+
+inline const Lanes* at(const Row* rows, int part) { return reinterpret_cast<const Lanes*>(rows->lane + part * WIDTH); }
+inline Lanes* at(Row* rows, int part) { return reinterpret_cast<Lanes*>(rows->lane + part * WIDTH); }
+
+inline Lanes sign(Lanes x) {
+    const Lanes zero = {}, one = zero + 1;
+    return (x > zero ? one : zero) - (x < zero ? one : zero);
+}
+
+// Newton's iteration for the polar part, F <- (F + F^-T) / 2: three steps are exact at elastic strains.
+inline void polar(Lanes (&f)[9]) {
+    for (int iteration = 0; iteration < 3; ++iteration) {
+        Lanes c[9]; // cofactors: det F times F^-T
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) {
+                const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+                c[3 * i + j] = f[3 * i1 + j1] * f[3 * i2 + j2] - f[3 * i1 + j2] * f[3 * i2 + j1];
+            }
+        const Lanes half = 0.5 / (f[0] * c[0] + f[1] * c[1] + f[2] * c[2]);
+        for (int i = 0; i < 9; ++i)
+            f[i] = 0.5 * f[i] + half * c[i];
+    }
+}
+
+void addForces(const BlockMatrix& m, const Row* displacements, Row* forces, Row* rotation, Row* energy, Row* scratch) {
+    const int count = m.nodeCount;
+    for (int part = 0; part < parts; ++part) {
+        const Lanes* u = at(displacements, part);
+        Lanes *f = at(forces, part), *d = at(scratch, 0), *local = d + 3 * count;
+        const Lanes zero = {}, one = zero + 1;
+        Lanes r[9] = {one, zero, zero, zero, one, zero, zero, zero, one}; // mean deformation gradient
+        for (int n = 0; n < count; ++n)
+            for (int i = 0; i < 3; ++i)
+                for (int j = 0; j < 3; ++j)
+                    r[3 * i + j] += u[(3 * n + i) * parts] * m.gradients[3 * n + j];
+        polar(r);
+
+        const double* origin = m.nodes; // displacements in axes that turn with the block, less those of the first node
+        for (int n = 0; n < count; ++n) {
+            const double* node = m.nodes + 3 * n;
+            Lanes now[3];
+            for (int i = 0; i < 3; ++i)
+                now[i] = (node[i] - origin[i]) + (u[(3 * n + i) * parts] - u[i * parts]);
+            for (int i = 0; i < 3; ++i) {
+                d[3 * n + i] = r[i] * now[0] + r[3 + i] * now[1] + r[6 + i] * now[2] - (node[i] - origin[i]);
+                local[3 * n + i] = zero;
+            }
+        }
+        Lanes stored = zero;
+        for (int row = 0; row < m.rowCount; ++row) {
+            const auto& entries = m.rows[row];
+            Lanes sum = zero;
+            for (int e = entries.first; e < entries.beyond; ++e)
+                sum += m.values[e] * d[m.columns[e]];
+            stored += sum * d[entries.degree];
+            local[entries.degree] = sum;
+        }
+        for (int n = 0; n < count; ++n)
+            for (int i = 0; i < 3; ++i)
+                f[(3 * n + i) * parts] -=
+                    r[3 * i] * local[3 * n] + r[3 * i + 1] * local[3 * n + 1] + r[3 * i + 2] * local[3 * n + 2];
+        for (int i = 0; i < 9; ++i)
+            *at(rotation + i, part) = r[i];
+        *at(energy, part) = 0.5 * stored;
+    }
+}
+
+void move(const BlockMatrix& matrix, const NodeMotion& m, const Row& present, Row* displacements, Row* velocities,
+          Row* forces, Row* lastForces, NodeSums& sums) {
+    const double halfStep = 0.5 * m.dt, alpha = m.combined ? 0.5 * m.damping : m.damping;
+    for (int part = 0; part < parts; ++part) {
+        Lanes *us = at(displacements, part), *vs = at(velocities, part), *fs = at(forces, part),
+              *lasts = at(lastForces, part);
+        const Lanes there = *at(&present, part), zero = {};
+        Lanes kinetic = zero, gravityWork = zero, damping = zero, pending = zero, moved[3] = {zero, zero, zero};
+        for (int n = 0; n < matrix.nodeCount; ++n) {
+            const double mass = matrix.masses[n], perMass = m.dt / mass;
+            for (int direction = 0; direction < 3; ++direction) {
+                const int i = (3 * n + direction) * parts;
+                const Lanes weight = mass * m.gravity[direction] * there, force = fs[i] + weight, old = vs[i];
+                fs[i] = zero;
+                if (m.held[direction]) continue;
+                gravityWork += weight * us[i];
+                // the velocity in the middle of the step, as the host takes it: with the old one, damping pumps near
+                // the limit
+                Lanes way = -sign(old + 0.5 * perMass * force);
+                if (m.combined) way += sign(force - lasts[i]);
+                lasts[i] = force;
+                const Lanes drag = alpha * (force < zero ? -force : force) * way; // paper eq. (3), or combined
+                const Lanes now = old + perMass * (force + drag);                 // eq. (2)
+                // trapezoidal work and kinetic energy at the same instant, as in MasonryEnergy
+                damping -= halfStep * drag * old;
+                pending -= halfStep * drag * now;
+                kinetic += 0.5 * mass * old * now;
+                vs[i] = now;
+                us[i] += m.dt * now; // eq. (1)
+                moved[direction] += mass * us[i];
+            }
+        }
+        *at(&sums.kinetic, part) = kinetic;
+        *at(&sums.gravityWork, part) = gravityWork;
+        *at(&sums.damping, part) = damping;
+        *at(&sums.pending, part) = pending;
+        for (int direction = 0; direction < 3; ++direction)
+            *at(sums.moved + direction, part) = moved[direction];
+    }
+}
