@@ -25,7 +25,7 @@ parser.add_argument(
     default="fixed",
     help="whether the vertical load stays in place or moves with the wall",
 )
-parser.set_defaults(crack_surfaces="off")
+parser.set_defaults(crack_surfaces="off", subcontacts=16)
 args = parser.parse_args()
 
 wall = walls.Wall(
