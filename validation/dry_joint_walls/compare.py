@@ -19,6 +19,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 REFERENCE = os.path.join(HERE, "reference")
 RESULTS = os.path.join(HERE, "..", "..", "results", "validation", "dry_joint_walls")
 LEVELS = (100, 175, 250)  # [kN]
+START = 6  # [mm] shown of the first displacements
 MODELS = {"rigid": "tab:red", "deformable": "tab:blue"}
 
 
@@ -43,25 +44,29 @@ def peaks(level):
 
 
 def secant(moved, force, share):
-    """Secant stiffness where a curve from the origin first reaches a share of its largest force [force/displacement]."""
-    moved, force = np.append(0, moved), np.append(0, force)
+    """Secant stiffness where a curve first reaches a share of its largest force [force/displacement]."""
     target = share * force.max()
     i = int(np.argmax(force >= target))
     part = (target - force[i - 1]) / (force[i] - force[i - 1])
     return target / (moved[i - 1] + part * (moved[i] - moved[i - 1]))
 
 
+def signed(moved, force, sign):
+    """The branch of an envelope in one direction, from the origin on, as positive numbers: displacements and forces."""
+    branch = sign * moved > 0
+    order = np.argsort(sign * moved[branch])
+    return [np.append(0, sign * values[branch][order]) for values in (moved, force)]
+
+
 def measuredSecants(level, share):
     """Secant stiffness of every branch of every envelope of a level [kN/mm]."""
-    found = []
-    for moved, force in tests("envelope", level):
-        for sign in (1, -1):
-            branch = sign * moved > 0
-            order = np.argsort(sign * moved[branch])
-            found.append(
-                secant(sign * moved[branch][order], sign * force[branch][order], share)
-            )
-    return np.array(found)
+    return np.array(
+        [
+            secant(*signed(moved, force, sign), share)
+            for moved, force in tests("envelope", level)
+            for sign in (1, -1)
+        ]
+    )
 
 
 def computed(name):
@@ -85,34 +90,38 @@ def rocking(run):
 
 
 def draw():
-    figure, panels = plt.subplots(1, len(LEVELS), figsize=(14, 5))
-    for level, axes in zip(LEVELS, panels):
+    """envelopes.png: a column a level; above whole tests, below the first millimetres, both directions folded."""
+    figure, panels = plt.subplots(2, len(LEVELS), figsize=(14, 9))
+    for level, (whole, start) in zip(LEVELS, panels.T):
         for moved, force in tests("FD", level):
-            axes.plot(moved, force, color="0.85", lw=0.5, zorder=0)
+            whole.plot(moved, force, color="0.85", lw=0.5, zorder=0, label="tests")
         for moved, force in tests("envelope", level):
-            axes.plot(
-                moved, force, color="0.35", lw=0.9, label="envelopes of the tests"
-            )
+            whole.plot(moved, force, color="0.35", lw=0.9, label="their envelopes")
+            for sign in (1, -1):
+                start.plot(*signed(moved, force, sign), color="0.35", lw=0.9)
         for model, colour in MODELS.items():
             moved, shear, run = computed(f"{model}-{level}")
+            start.plot(moved, shear, color=colour, lw=1.2)
             for sign in (1, -1):
-                axes.plot(sign * moved, sign * shear, color=colour, lw=1.6, label=model)
+                whole.plot(
+                    sign * moved, sign * shear, color=colour, lw=1.2, label=model
+                )
         for sign in (1, -1):
-            axes.axhline(
-                sign * rocking(run),
-                color="black",
-                lw=0.8,
-                ls="--",
-                label="rigid rocking",
-            )
-        axes.set_title(f"{level} kN, {len(peaks(level))} walls")
-        axes.set_xlabel("displacement 1.325 m above the base [mm]")
-        axes.grid(alpha=0.3)
-    panels[0].set_ylabel("lateral force [kN]")
-    handles = dict(zip(*reversed(axes.get_legend_handles_labels())))
-    axes.legend(handles.values(), handles.keys(), loc="lower right", fontsize=8)
+            line = dict(color="black", lw=0.8, ls="--", label="rigid rocking")
+            whole.axhline(sign * rocking(run), **line)
+        whole.set_title(f"{level} kN, {len(peaks(level))} walls")
+        start.set_xlim(0, START)
+        start.set_ylim(0, None)
+        start.set_xlabel("displacement 1.325 m above the base [mm]")
+        for axes in (whole, start):
+            axes.grid(alpha=0.3)
+    for axes in panels[:, 0]:
+        axes.set_ylabel("lateral force [kN]")
+    handles, labels = whole.get_legend_handles_labels()
+    named = dict(zip(labels, handles))
+    whole.legend(named.values(), named.keys(), loc="lower right", fontsize=8)
     figure.tight_layout()
-    figure.savefig(os.path.join(HERE, "envelopes.png"), dpi=80)
+    figure.savefig(os.path.join(HERE, "envelopes.png"), dpi=75)
 
 
 def table():
