@@ -98,7 +98,9 @@ def curve(directory):
     for name, values in stack:
         bottom.plot(x, values, lw=1, label=name)
     bottom.plot(x, work, color="black", lw=1, ls="--", label="work done")
-    bottom.set_xlabel("displacement at the top of the masonry [mm]")
+    bottom.set_xlabel(
+        f"displacement {run['wall']['measure_height_m']:.3g} m above the base [mm]"
+    )
     bottom.set_ylabel("energy since the push began [J]")
     bottom.legend(fontsize=8)
     bottom.grid(alpha=0.3)

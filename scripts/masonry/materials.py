@@ -57,12 +57,60 @@ def calciumSilicateJoints(brittle=False):
         normalStiffness=bed.normalStiffness,
         shearStiffness=bed.shearStiffness,
     )
-    joints = [support, bed, head, crack]
+    return _byName([support, bed, head, crack], brittle)
+
+
+def _byName(joints, brittle):
+    """Joints as a dict by name; ``brittle``: those that are not elastic as brittle Coulomb slip joints (law.md §9)."""
     if brittle:
         joints = [
             joint if joint.elastic else joint.brittleCoulomb() for joint in joints
         ]
     return {joint.name: joint for joint in joints}
+
+
+#: Young's modulus [Pa] of dry granite masonry at each vertical load [kN] of the tests (Vanin et al. 2017).
+DRY_GRANITE_MASONRY = {100: 3.287e9, 175: 4.068e9, 250: 4.722e9}
+
+
+def graniteUnit():
+    """Sawn granite block of the dry-joint walls of Vasconcelos and Lourenço (2009).
+
+    Young's modulus: the data of Vanin et al. (2017), doi 10.1007/s10518-017-0188-5. Assumed, not in the data: Poisson's
+    ratio 0.2 and density 2600 kg/m³ (granite's usual values).
+    """
+    return MasonryMat(
+        label="granite", young=20.2e9, poisson=0.2, density=2600, jointSet="granite"
+    )
+
+
+def dryGraniteJoints(level, height, brittle=False):
+    """Support, bed and head joints of the dry-joint granite walls, as a dict by name.
+
+    No tension, no cohesion. The normal stiffness is what is missing between block and masonry, one joint a course:
+    1/kn = height (1/Em - 1/E), with Em of the load level and E of the block, both from the data of Vanin et al. (2017).
+    Assumed, not in the data: friction 0.65, shear stiffness 0.4 kn, no dilatancy, head joints and the joints to support
+    and loading block like bed joints. Not modelled: crushing (masonry strength 73 MPa) and cracks in the blocks.
+
+    :param level: vertical load of the test [kN], a key of DRY_GRANITE_MASONRY
+    :param height: of a course [m]
+    :param brittle: brittle Coulomb slip joints instead; the same here, where nothing softens
+    """
+    young = graniteUnit().young
+    stiffness = 1 / (height * (1 / DRY_GRANITE_MASONRY[level] - 1 / young))
+    dry = dict(
+        normalStiffness=stiffness,
+        shearStiffness=0.4 * stiffness,
+        tensileStrength=0,
+        cohesion=0,
+        friction=0.65,
+        residualFriction=0.65,
+        cap=False,
+    )
+    support = MasonryJoint(name="support", jointSet="support", **dry)
+    bed = MasonryJoint(name="bed", direction=BED_DIRECTION, **dry)
+    head = MasonryJoint(name="head", direction=HEAD_DIRECTION, **dry)
+    return _byName([support, bed, head], brittle)
 
 
 def loadingBlock():

@@ -5,13 +5,14 @@ import subprocess
 import sys
 import time
 from dataclasses import dataclass
+from typing import Callable
 
 import yade.config
 from yade import O, Vector3
 from yade.wrapper import MasonryLoad, MasonryVtkRecorder, MasonryZones
 
 from . import brickwork, commit, criticalTimeStep, materials, options
-from .options import applySettings
+from .options import Refused, applySettings
 from .results import ENERGIES, Progress, Results, conduct, initialStiffness
 from .scene import addBlock, connect, engines
 
@@ -35,7 +36,10 @@ class Wall:
     """A running-bond wall and its test, in SI units.
 
     ``loadHeight`` is h0 of a cantilever: the height above the base at which the loading block is pushed and free to
-    turn; None is double clamped. ``halfUnits`` is the length in half units.
+    turn; None is double clamped. ``halfUnits`` is the length in half units. ``measureHeight`` is the height above the
+    base of the displacement in curve.csv; None is the top of the masonry. ``loadLineFixed``: the vertical load
+    keeps its line in space, as over rollers, instead of riding on the loading block. ``unitMaterial`` and ``joints``
+    make the unit's MasonryMat and the dict of MasonryJoint (of whether they are brittle).
     """
 
     name: str
@@ -45,12 +49,22 @@ class Wall:
     loadHeight: float = None
     courses: int = 34
     unit: tuple = (0.220, 0.102, 0.081)
+    measureHeight: float = None
+    loadLineFixed: bool = False
+    unitMaterial: Callable = materials.calciumSilicateUnit
+    joints: Callable = materials.calciumSilicateJoints
 
     def __post_init__(self):
         problems = []
+        if self.measureHeight is None:
+            self.measureHeight = self.height
         if self.loadHeight is not None and not self.loadHeight > self.height:
             problems.append(
                 f"load height {self.loadHeight:g} m must be above the wall's top at {self.height:g} m"
+            )
+        if not self.measureHeight >= self.height:
+            problems.append(
+                f"measure height {self.measureHeight:g} m must be at least the wall's top at {self.height:g} m"
             )
         if not self.precompression > 0:
             problems.append(
@@ -78,7 +92,9 @@ class WallModel:
     def __init__(self, wall, args):
         self.wall, self.args = wall, args
         options.checkBlocks(args)
-        self.joints = materials.calciumSilicateJoints(brittle=args.joints == "brittle")
+        self.joints = wall.joints(brittle=args.joints == "brittle")
+        if args.crack_surfaces == "on" and "crack" not in self.joints:
+            raise Refused("--crack-surfaces on: the units of this wall have none")
         applySettings(self.joints, args.set)
         self.results = Results(args.out or os.path.join("results", wall.name), CURVE)
         self.progress = Progress()
@@ -87,11 +103,8 @@ class WallModel:
 
     def _build(self):
         O.reset()
-        wall, brick, rigid = (
-            self.wall,
-            materials.calciumSilicateUnit(),
-            materials.loadingBlock(),
-        )
+        wall = self.wall
+        brick, rigid = wall.unitMaterial(), materials.loadingBlock()
         O.materials.append([brick, rigid])
         length, thickness, height = wall.length, wall.unit[1], wall.height
         top = wall.loadHeight or height + BLOCK_HEIGHT
@@ -120,12 +133,9 @@ class WallModel:
         if wall.loadHeight is None:
             topState.blockedDOFs = "yXYZ"
 
-        self.load = MasonryLoad(
-            body=self.top,
-            point=(length / 2, thickness / 2, top),
-            driven=True,
-            label="load",
-        )
+        point = (length / 2, thickness / 2, top)
+        self.vertical = MasonryLoad(body=self.top, point=point, label="vertical")
+        self.load = MasonryLoad(body=self.top, point=point, driven=True, label="load")
         found = [joint for name, joint in self.joints.items() if name != "crack"]
         self.zones = None
         if self.args.blocks == "deformable":
@@ -143,11 +153,11 @@ class WallModel:
             damping=self.args.damping,
             subcontacts=self.args.subcontacts,
             inPlane=True,
-            loads=[self.load],
+            loads=[self.vertical, self.load],
             zones=self.zones,
         )
         self.energy = next(e for e in O.engines if e.label == "energy")
-        crack = self.joints["crack"]
+        crack = self.joints.get("crack")
         sameBrick = lambda b1, b2: b1.id in self.brickOf and self.brickOf[
             b1.id
         ] == self.brickOf.get(b2.id)
@@ -177,6 +187,8 @@ class WallModel:
                 "unit_m": wall.unit,
                 "precompression_Pa": wall.precompression,
                 "load_height_m": wall.loadHeight,
+                "measure_height_m": wall.measureHeight,
+                "load_line_fixed": wall.loadLineFixed,
             },
             options=dict(vars(self.args)),
             option_units={"until": "mm", "rate": "mm/s", "vtk_every": "mm"},
@@ -254,7 +266,7 @@ class WallModel:
         )
         pieces = 40
         for piece in range(1, pieces + 1):
-            self.load.force = Vector3(0, 0, -force * piece / pieces)
+            self.vertical.force = Vector3(0, 0, -force * piece / pieces)
             self._advance(int(RAMP / pieces / O.dt) + 1)
         self._rest("precompress")
 
@@ -275,6 +287,9 @@ class WallModel:
             self.load.velocity = (
                 args.rate * 1e-3 * min(1.0, (O.time - began + every * O.dt) / RAMP)
             )
+            if self.wall.loadLineFixed:
+                along = self.load.displacement()[0]
+                self.vertical.point = self.load.point - Vector3(along, 0, 0)
             self._advance(every)
             values = self._record()
             shear, moved = values["base_shear_kN"], values["displacement_mm"]
@@ -291,12 +306,9 @@ class WallModel:
             print(f"the wall has collapsed at {moved:.2f} mm")
 
     def _topDisplacement(self):
-        """Displacement of the loading block at the top of the masonry [m]."""
-        s = O.bodies[self.top].state
-        arm = (
-            Vector3(self.wall.length / 2, self.wall.unit[1] / 2, self.wall.height)
-            - s.refPos
-        )
+        """Displacement of the loading block at the height of measurement [m]."""
+        s, wall = O.bodies[self.top].state, self.wall
+        arm = Vector3(wall.length / 2, wall.unit[1] / 2, wall.measureHeight) - s.refPos
         return s.pos + s.ori * (s.refOri.conjugate() * arm) - s.refPos - arm
 
     def _record(self):

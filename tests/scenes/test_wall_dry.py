@@ -1,0 +1,75 @@
+"""The dry-joint granite walls: their stiffness under load, their load line, and what they refuse."""
+
+from functools import partial
+
+import pytest
+from masonry import materials, options, walls
+from masonry.results import readCurve, readRun
+
+GRANITE = dict(
+    unit=(0.2, 0.2, 0.15),
+    unitMaterial=materials.graniteUnit,
+    joints=partial(materials.dryGraniteJoints, 175, 0.15),
+)
+
+
+def test_the_vertical_load_turns_the_wall_about_its_toe_and_keeps_its_line(runScene):
+    curves = []
+    for line in ("fixed", "riding"):
+        _, out = runScene("wall_dry", "--load-line", line, "--rate", "40", "--no-vtk")
+        assert readRun(out)["energy_balance_error"] < 1e-6
+        curves.append(readCurve(out)["base_shear_kN"])
+    fixed, riding = curves
+    assert max(fixed) < (175 + 6.12) / (2 * 1.325)  # rigid rocking
+    assert fixed[-1] > 0.98 * max(fixed)
+    # 175 kN that move 30 mm towards the toe, over the height of the push
+    assert fixed[-1] - riding[-1] == pytest.approx(175 * 0.030 / 1.325, rel=0.05)
+
+
+@pytest.mark.parametrize("blocks, tolerance", [("rigid", 1e-3), ("deformable", 0.02)])
+def test_joints_and_units_in_series_give_back_the_masonry(
+    scene, tmp_path, blocks, tolerance
+):
+    # plane strain and the stiff platens make deformable units up to 1/(1 - 0.2²) stiffer, a fifth of the whole
+    wall = walls.Wall(
+        name="w", title="", halfUnits=10, courses=8, precompression=0.875e6, **GRANITE
+    )
+    words = ["--no-vtk", "--crack-surfaces", "off", "--blocks", blocks]
+    args = options.parser("", until=1).parse_args([*words, "--out", str(tmp_path)])
+    model = walls.WallModel(wall, args)
+    model.settle()
+    model.precompress()
+    loaded = model._topDisplacement()[2]
+    joint, young = model.joints["bed"].normalStiffness, 20.2e9
+    assert 8 / joint + 1.2 / young == pytest.approx(1.2 / 4.068e9, rel=1e-9)
+    own = 2600 * 9.81 * 1.2 / 2  # mean stress of the wall's weight [Pa]
+    expected = (0.875e6 + own) * (
+        9 / joint + 1.2 / young
+    )  # nine joints, two outer ones
+    assert -loaded == pytest.approx(expected, rel=tolerance)
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        (["--level", "120"], "argument --level: invalid choice: 120"),
+        (["--crack-surfaces", "on"], "the units of this wall have none"),
+        (["--set", "crack.cohesion=1"], "no joint 'crack'"),
+    ],
+)
+def test_what_a_dry_wall_has_not_is_refused(runScene, words, message):
+    process, _ = runScene("wall_dry", *words, check=False)
+    assert process.returncode == 2 and message in process.stderr
+
+
+def test_a_measure_height_inside_the_masonry_is_refused():
+    with pytest.raises(ValueError, match="measure height 1 m must be at least .* 1.2"):
+        walls.Wall(
+            name="w",
+            title="",
+            halfUnits=10,
+            courses=8,
+            precompression=1e6,
+            measureHeight=1.0,
+            **GRANITE
+        )
