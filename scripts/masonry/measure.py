@@ -120,7 +120,10 @@ def diagonal(bed, upright):
       wall sheared alike
     - diagonal_band_courses: height of the narrowest band parallel to the diagonal that holds half of that energy;
       small for one localised crack, large for several or for a crack that follows a bed joint
-    - diagonal_reach [courses, half units]: :func:`diagonalReach` of the joints open or slid more than CRACK
+    - diagonal_reach [courses, half units]: :func:`diagonalReach` of a stepped crack, whose upright joints are open and
+      whose bed joints are open or slid, more than CRACK each
+    - parallel_cracks [-]: upright joints open more than CRACK in an inner course, on average: the diagonal cracks that a
+      horizontal line crosses
     """
     position = np.concatenate(
         [acrossDiagonal(j["shear"].shape, j is upright).ravel() for j in (bed, upright)]
@@ -128,12 +131,14 @@ def diagonal(bed, upright):
     energy = np.concatenate([j["shear"].ravel() for j in (bed, upright)])
     energy, position = (v[np.isfinite(position)] for v in (energy, position))
     near, lost = np.abs(position) < NEAR, energy.sum()
-    cracked = [np.maximum(j["opening"], j["slide"]) > CRACK for j in (bed, upright)]
+    gaping = upright["opening"] > CRACK
+    cracked = np.maximum(bed["opening"], bed["slide"]) > CRACK
     return {
         "diagonal_energy_share": energy[near].sum() / lost if lost > 0 else 0.0,
         "diagonal_joint_share": near.mean(),
         "diagonal_band_courses": narrowestBand(position, energy),
-        "diagonal_reach": diagonalReach(*cracked),
+        "diagonal_reach": diagonalReach(cracked, gaping),
+        "parallel_cracks": gaping[OUTER:-OUTER].sum(axis=1).mean(),
     }
 
 
@@ -214,6 +219,22 @@ def wallNumbers(directory):
     return numbers
 
 
+def coupletNumbers(directory):
+    """Areas under the curves of a couplet's joint, which are its fracture energies.
+
+    - opening_work_J_per_m2, closure_work_J_per_m2: under tension over the opening, and under compression over the closure
+    - softening_work_J_per_m2: under the shear stress over the slide, above the shear stress at the end
+    """
+    curve = {name: np.array(v) for name, v in readCurve(directory).items()}
+    normal, shear = curve["normal_stress_MPa"], curve["shear_stress_MPa"]
+    area = lambda stress, mm: 1e3 * np.trapz(np.maximum(stress, 0), mm)
+    return {
+        "opening_work_J_per_m2": area(normal, curve["opening_mm"]),
+        "closure_work_J_per_m2": area(-normal, -curve["opening_mm"]),
+        "softening_work_J_per_m2": area(shear - shear[-1], curve["slide_mm"]),
+    }
+
+
 def measure(directory):
     """Numbers of a run as a dict by name: those at the top level of run.json, and those measured here.
 
@@ -228,6 +249,8 @@ def measure(directory):
     numbers["balance_error"] = numbers.pop("energy_balance_error")
     if "wall" in run:
         numbers.update(wallNumbers(directory))
+    elif run["scene"] == "couplet":
+        numbers.update(coupletNumbers(directory))
     return numbers
 
 
