@@ -18,7 +18,7 @@ from masonry.measure import measure
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from validate import RESULTS, run
+from validate import RESULTS, readCase, run
 
 #: Walls and their options: the rate moves the peak of COMP-4 by less than 0.5 %; COMP-1 peaks at 19 mm and then holds.
 WALLS = {
@@ -316,6 +316,9 @@ def numbers(wall, row=None, end=None):
     return measure(out) if os.path.exists(os.path.join(out, "run.json")) else None
 
 
+#: From this reach on the crack of COMP-4 goes along its diagonal.
+DIAGONAL = readCase("wall_comp4")["rigid"]["limits"]["diagonal_reach"][0]
+
 #: What is shown: title and name of the number.
 SHOWN = {"peak": "peak_base_shear_kN", "force at the end": "base_shear_end_kN"}
 
@@ -338,7 +341,10 @@ def table(ranges):
 
 
 def draw(ranges):
-    """tornado.png: a bar a value, from low to high, as change from the default in percent; longest on top."""
+    """tornado.png: a bar a value, from low to high, as change from the default in percent; longest on top.
+
+    A bar is hatched where the wall does not crack along its diagonal any more.
+    """
     panels = [(wall, title) for title in SHOWN for wall in WALLS]
     change = lambda wall, row, title: [
         100 * (r[SHOWN[title]] / ranges[wall, row][2][SHOWN[title]] - 1)
@@ -351,18 +357,25 @@ def draw(ranges):
     )
     for axis, (wall, title) in zip(axes, panels):
         for y, row in enumerate(rows):
-            for end, color, value in zip(
-                ("low", "high"), ("tab:blue", "tab:red"), change(wall, row, title)
+            for end, color, value, result in zip(
+                ("low", "high"),
+                ("tab:blue", "tab:red"),
+                change(wall, row, title),
+                ranges[wall, row],
             ):
+                slides = result.get("diagonal_reach", DIAGONAL) < DIAGONAL
+                hatch = "/////" if slides else None
                 if getattr(row, end):
-                    axis.barh(y, value, color=color, height=0.7, alpha=0.75)
+                    axis.barh(y, value, color=color, height=0.7, alpha=0.7, hatch=hatch)
         axis.axvline(0, color="black", lw=0.8)
         base = ranges[wall, rows[0]][2][SHOWN[title]]
         axis.set_title(f"{wall}, {title}\n{base:.1f} kN with defaults", fontsize=10)
         axis.set_xlabel("change [%]")
         axis.grid(axis="x", alpha=0.3)
     axes[0].set_yticks(range(len(rows)), [row.name for row in rows], fontsize=8)
-    figure.suptitle("blue: lower end of the range, red: upper end; rigid units")
+    figure.suptitle(
+        "blue: lower end of the range, red: upper end; hatched: no crack along the diagonal; rigid units"
+    )
     figure.tight_layout()
     figure.savefig(os.path.join(HERE, "tornado.png"), dpi=90)
 
