@@ -14,11 +14,9 @@ import numpy as np
 from .figures import CRACK, readFrame
 from .results import readCurve, readRun
 
-NEAR = (
-    3  # courses to either side of the corner-to-corner diagonal that count as near it
-)
-OUTER = 2  # courses at the base and at the top that are left out of the diagonal: rocking cracks open there
-LOST = 0.05  # share of the peak force whose loss counts as a drop: above the scatter of steps and toe bricks
+NEAR = 3  # courses to either side of the diagonal that count as near it
+OUTER = 2  # courses at base and top that do not count for the diagonal: rocking cracks are there
+LOST = 0.05  # of the peak force: a drop, above the scatter by single bricks at the toe
 
 
 def layOut(frame, wall):
