@@ -6,8 +6,11 @@ import sys
 
 import pytest
 from conftest import ROOT
+from masonry import materials, options
 
 sys.path.insert(0, os.path.join(ROOT, "validation"))
+sys.path.insert(0, os.path.join(ROOT, "validation", "sensitivity"))
+import tornado  # noqa: E402
 import validate  # noqa: E402
 
 CASES = [
@@ -48,3 +51,11 @@ def test_an_unknown_run_is_refused(capsys):
         validate.main(["wall_comp4", "soft"])
     assert refused.value.code == 2
     assert "no run soft; there are rigid, deformable" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("row", tornado.ROWS, ids=lambda row: row.name)
+def test_a_variation_changes_joints_within_their_bounds(row):
+    assert row.low or row.high
+    for text in (row.low, row.high):
+        args = options.parser("a wall", until=1).parse_args(text.split())
+        options.applySettings(materials.calciumSilicateJoints(), args.set)
