@@ -1,13 +1,13 @@
 """Two bricks and one bed joint: opening, shear under constant normal stress, closure, or closure and then shear.
 
-The lower brick is fixed, the upper one moves without turning. Closed forms: law.md §6.
+A fixed block holds the lower brick, a driven one that does not turn the upper. Closed forms: law.md §6.
 """
 
 from masonry import couplet, options
 
 parser = options.parser(__doc__, until=2, rate=2)
 parser.add_argument(
-    "--path", choices=couplet.PATHS, default="shear", help="what the upper brick does"
+    "--path", choices=couplet.PATHS, default="shear", help="what the driven block does"
 )
 parser.add_argument(
     "--normal-stress",

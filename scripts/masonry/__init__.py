@@ -5,7 +5,8 @@ Import it from a YADE script (or after ``import yade``)::
     from masonry import MasonryMat, MasonryJoint, connect
 
 The classes registered in YADE (``masonry.classes``) are also in ``yade.wrapper``, with their manual in ``help()``.
-Without YADE only the modules that read results work: :mod:`masonry.results`, :mod:`masonry.figures`.
+Without YADE only the modules that read results work: :mod:`masonry.results`, :mod:`masonry.figures`,
+:mod:`masonry.measure`.
 """
 
 import sys

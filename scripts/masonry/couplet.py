@@ -1,10 +1,10 @@
-"""Two bricks and one joint, against the closed forms of law.md §6 through the whole of the host."""
+"""Two bricks and one joint between two loading blocks: the closed forms of law.md §6 through the whole of the host."""
 
 import os
 import time
 
 from yade import O, Vector3
-from yade.wrapper import MasonryLoad, MasonryVtkRecorder
+from yade.wrapper import MasonryLoad, MasonryVtkRecorder, MasonryZones
 
 from . import brickwork, commit, criticalTimeStep, materials
 from .options import applySettings, checkBlocks
@@ -27,50 +27,65 @@ ROWS = 2000
 
 
 class Couplet:
-    """Two bricks, one bed joint. ``args`` are the options of ``couplet.py``."""
+    """Two bricks, one bed joint, a fixed block below and a driven one above that does not turn.
+
+    The blocks are rigid and hold the bricks by elastic joints. ``args`` are the options of ``couplet.py``.
+    """
 
     def __init__(self, args):
-        checkBlocks(args, deformable=False)
+        checkBlocks(args)
         joints = materials.calciumSilicateJoints(brittle=args.joints == "brittle")
         applySettings(joints, args.set)
         self.args, self.results = args, Results(
             args.out or os.path.join("results", "couplet"), CURVE
         )
         O.reset()
-        brick = materials.calciumSilicateUnit()
-        O.materials.append(brick)
+        brick, rigid = materials.calciumSilicateUnit(), materials.loadingBlock()
+        O.materials.append([brick, rigid])
         length, thickness, height = UNIT
-        lower = addBlock(brickwork.corners((0, 0, 0), UNIT), brick, inPlane=True)
-        self.upper = addBlock(
-            brickwork.corners((0, 0, height), (length, thickness, 2 * height)),
-            brick,
-            inPlane=True,
-        )
-        O.bodies[lower].state.blockedDOFs = "xyzXYZ"
+        self.base, lower, upper, self.top = [
+            addBlock(
+                brickwork.corners(
+                    (0, 0, level * height), (length, thickness, (level + 1) * height)
+                ),
+                material,
+                inPlane=True,
+            )
+            for level, material in enumerate([rigid, brick, brick, rigid], start=-1)
+        ]
+        O.bodies[self.base].state.blockedDOFs = "xyzXYZ"
+        O.bodies[self.top].state.blockedDOFs = "yXYZ"
         self.area = length * thickness
-        normal, shear = Vector3(0, 0, 1), Vector3(1, 0, 0)
-        middle = Vector3(length / 2, thickness / 2, height)
-        self.vertical = MasonryLoad(
-            body=self.upper,
-            point=middle,
-            direction=normal,
-            label="vertical",
-            driven=True,
-        )
-        self.lateral = MasonryLoad(
-            body=self.upper, point=middle, direction=shear, label="lateral", driven=True
-        )
-        O.bodies[self.upper].state.blockedDOFs = "yXYZ"
+        self.vertical, self.lateral = [
+            MasonryLoad(
+                body=self.top,
+                point=(length / 2, thickness / 2, 2 * height),
+                direction=direction,
+                label=label,
+                driven=True,
+            )
+            for label, direction in (("vertical", (0, 0, 1)), ("lateral", (1, 0, 0)))
+        ]
+        self.zones = None
+        if args.blocks == "deformable":
+            self.zones = MasonryZones(
+                bodies=[lower, upper],
+                divisions=[2 * args.divisions, 1, args.divisions],
+                damping=args.damping,
+                dampingKind=args.damping_kind or "combined",
+                blocked="y",
+            )
         engines(
-            [joints["bed"]],
+            [joints["support"], joints["bed"]],
             damping=args.damping,
             gravity=(0, 0, 0),
             subcontacts=args.subcontacts,
             inPlane=True,
             loads=[self.vertical, self.lateral],
+            zones=self.zones,
         )
         self.energy = next(e for e in O.engines if e.label == "energy")
-        (self.joint,) = connect()
+        self.joint = next(i for i in connect() if {i.id1, i.id2} == {lower, upper})
         O.dt = args.dt_fraction * criticalTimeStep()[0]
         self.steps, self.progress = 0, Progress()
         self.vtk = (
@@ -80,16 +95,19 @@ class Couplet:
         )
 
     def _move(self, load, distance, stage):
-        """Drive ``load`` over a distance [m], rows on the way; the other direction keeps what it does."""
+        """Drive ``load`` over a distance [m]; the other direction keeps what it does. Rows crowd where peaks are: early."""
         speed = self.args.rate * 1e-3
         steps = max(ROWS, int(abs(distance) / (speed * O.dt)))
         load.velocity = distance / (steps * O.dt)
-        every = max(1, steps // ROWS)
-        for done in range(0, steps, every):
+        done = 0
+        for mark in sorted(
+            {round(steps * (i / ROWS) ** 2) for i in range(1, ROWS + 1)}
+        ):
             self.results.checkInterrupt()
-            for _ in range(min(every, steps - done)):
+            for _ in range(mark - done):
                 O.step()
-                self.steps += 1
+            self.steps += mark - done
+            done = mark
             self._record()
             self.progress.show(
                 stage,
@@ -99,22 +117,40 @@ class Couplet:
             )
         load.velocity = 0
 
+    def _mean(self, values):
+        """Mean over the bed joint of a number of every subcontact."""
+        areas = self.joint.geom.areas
+        return sum(a * v for a, v in zip(areas, values)) / self.area
+
+    def _normalStress(self):
+        return self._mean(s[0] for s in self.joint.phys.stress)
+
     def _record(self):
-        phys, geom = self.joint.phys, self.joint.geom
-        mean = lambda values: sum(a * v for a, v in zip(geom.areas, values)) / self.area
+        phys, geom, mean = self.joint.phys, self.joint.geom, self._mean
         e = self.energy.balance()
+        force = O.forces.f(self.base, True)
         values = {
             "time_s": O.time,
             "opening_mm": 1e3 * mean(phys.opening),
             "slide_mm": 1e3 * mean(j[1] for j in geom.jumps),
-            "normal_stress_MPa": 1e-6 * mean(s[0] for s in phys.stress),
+            "normal_stress_MPa": 1e-6 * self._normalStress(),
             "shear_stress_MPa": 1e-6 * mean(s[1] for s in phys.stress),
-            "normal_force_kN": 1e-3 * O.forces.f(0, True)[2],
-            "shear_force_kN": 1e-3 * O.forces.f(0, True)[0],
+            "normal_force_kN": 1e-3 * force[2],
+            "shear_force_kN": 1e-3 * force[0],
             "balance_error": e["error"],
         }
         values.update({name + "_J": e[name] for name in ENERGIES})
         self.results.row(values)
+
+    def _close(self, stress):
+        """Close the joint elastically to a normal stress [Pa], then hold that by the force: nothing swings."""
+        distance = stress / self.joint.phys.normalStiffness
+        self._move(self.vertical, distance, "closure")
+        # the blocks' joints, and units that are deformable, have taken their part
+        distance *= stress / self._normalStress() - 1
+        self._move(self.vertical, distance, "closure")
+        self.vertical.driven = False
+        self.vertical.force = Vector3(0, 0, stress * self.area)
 
     def run(self):
         args, distance = self.args, self.args.until * 1e-3
@@ -126,16 +162,7 @@ class Couplet:
             self._move(self.vertical, -args.closure * 1e-3, "closure")
             self._move(self.lateral, distance, "shear")
         else:
-            # closed by just the elastic amount, then held by the force: nothing swings
-            self._move(
-                self.vertical,
-                args.normal_stress * 1e6 / self.joint.phys.normalStiffness,
-                "closure",
-            )
-            O.step()
-            self.vertical.driven, self.vertical.force = False, Vector3(
-                0, 0, args.normal_stress * 1e6 * self.area
-            )
+            self._close(args.normal_stress * 1e6)
             self._move(self.lateral, distance, "shear")
 
     def finish(self):

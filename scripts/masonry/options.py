@@ -148,11 +148,9 @@ def parser(description, until, rate=20.0):
     return p
 
 
-def checkBlocks(args, deformable=True):
-    """Refuse options that do not go with the block model; ``deformable`` tells whether the scene has it."""
+def checkBlocks(args):
+    """Refuse options that do not go with the block model."""
     problems = []
-    if args.blocks == "deformable" and not deformable:
-        problems.append("--blocks deformable: this scene has rigid units only")
     if args.blocks == "rigid" and args.damping_kind == "combined":
         problems.append(
             "--damping-kind combined: rigid units have YADE's local damping only"

@@ -1,29 +1,35 @@
-"""Two bricks through the whole of the host against the closed forms of law.md §6."""
+"""Two bricks through the whole of the host against the closed forms of law.md §6, with both block models."""
 
 import numpy as np
 import pytest
 from masonry.results import readCurve, readRun
 
 
-def couplet(runScene, path, *options):
-    _, out = runScene("couplet", "--path", path, "--no-vtk", *options)
-    return readCurve(out), readRun(out)
+@pytest.fixture(params=["rigid", "deformable"])
+def couplet(request, runScene):
+    """Runs a path with its options; returns the curve and the run."""
+
+    def run(path, *options):
+        words = ("--path", path, "--blocks", request.param, "--no-vtk", *options)
+        _, out = runScene("couplet", *words)
+        return readCurve(out), readRun(out)
+
+    return run
 
 
-def test_opening_peaks_at_ft_and_takes_the_mode_I_energy(runScene):
-    curve, run = couplet(runScene, "opening", "--until", "3", "--rate", "40")
+def test_opening_peaks_at_ft_and_takes_the_mode_I_energy(couplet):
+    curve, run = couplet("opening", "--until", "3", "--rate", "40")
     assert run["end_normal_stress_MPa"] == pytest.approx(0, abs=1e-6)
     assert run["dissipated_tension_J_per_m2"] == pytest.approx(16, rel=0.006)  # GfI
-    curve, run = couplet(runScene, "opening", "--until", "0.004")
+    curve, run = couplet("opening", "--until", "0.01")
     assert run["peak_normal_stress_MPa"] == pytest.approx(0.1, rel=0.005)
 
 
 @pytest.mark.parametrize("stress", [-0.1, -0.5, -1.0])
 def test_shear_under_constant_stress_peaks_on_the_coulomb_line_and_keeps_friction(
-    runScene, stress
+    couplet, stress
 ):
     curve, run = couplet(
-        runScene,
         "shear",
         "--normal-stress",
         str(stress),
@@ -44,8 +50,8 @@ def test_shear_under_constant_stress_peaks_on_the_coulomb_line_and_keeps_frictio
     assert np.allclose(np.array(curve["normal_stress_MPa"])[-1000:], stress, rtol=1e-3)
 
 
-def test_closure_peaks_at_fc_and_ends_at_the_residual(runScene):
-    curve, run = couplet(runScene, "closure", "--until", "12", "--rate", "40")
+def test_closure_peaks_at_fc_and_ends_at_the_residual(couplet):
+    curve, run = couplet("closure", "--until", "12", "--rate", "40")
     assert run["peak_compressive_stress_MPa"] == pytest.approx(7.55, rel=0.002)
     assert run["end_normal_stress_MPa"] == pytest.approx(-1.51, rel=0.02)
     work = np.trapz(curve["normal_force_kN"], curve["opening_mm"])
@@ -54,8 +60,8 @@ def test_closure_peaks_at_fc_and_ends_at_the_residual(runScene):
     ] == pytest.approx(work, rel=0.01)
 
 
-def test_shear_after_closure_stays_inside_the_cap(runScene):
-    curve, run = couplet(runScene, "closure-shear", "--until", "2", "--rate", "20")
+def test_shear_after_closure_stays_inside_the_cap(couplet):
+    curve, run = couplet("closure-shear", "--until", "2", "--rate", "20")
     sigma, tau = np.array(curve["normal_stress_MPa"]), np.array(
         curve["shear_stress_MPa"]
     )
@@ -64,9 +70,10 @@ def test_shear_after_closure_stays_inside_the_cap(runScene):
 
 
 @pytest.mark.parametrize("path", ["opening", "shear", "closure"])
-def test_the_energy_balance_closes(runScene, path):
-    _, run = couplet(runScene, path, "--until", "0.5")
-    assert run["energy_balance_error"] < 1e-6
+def test_the_energy_balance_closes(couplet, path):
+    _, run = couplet(path, "--until", "0.5")
+    rigid = run["options"]["blocks"] == "rigid"  # zones in turning axes: 1e-3, as walls
+    assert run["energy_balance_error"] < (1e-6 if rigid else 1e-3)
 
 
 @pytest.mark.parametrize(
@@ -78,7 +85,7 @@ def test_impossible_loads_are_refused(runScene, words):
     assert process.returncode == 2 and f"argument {words[0]}" in process.stderr
 
 
-def test_the_brittle_set_drops_at_once(runScene):
-    curve, run = couplet(runScene, "shear", "--joints", "brittle", "--until", "0.1")
+def test_the_brittle_set_drops_at_once(couplet):
+    curve, run = couplet("shear", "--joints", "brittle", "--until", "0.1")
     assert run["end_shear_stress_MPa"] == pytest.approx(0.215, rel=0.002)
     assert run["dissipated_shear_J_per_m2"] < 0.25e6 * 0.1e-3

@@ -128,28 +128,6 @@ def test_the_squat_wall_cracks_along_its_diagonal(squat):
     assert np.corrcoef(steps, at)[0, 1] < -0.7  # from the top left to the bottom right
 
 
-@pytest.mark.parametrize(
-    "name, window", [("wall_comp0a", (25.9, 31.7)), ("wall_comp1", (11.5, 14.1))]
-)
-def test_a_slender_wall_rocks_at_the_toe_crushing_value(runScene, name, window):
-    _, out = runScene(
-        name,
-        "--until",
-        "18",
-        "--rate",
-        "20" if name == "wall_comp1" else "40",
-        "--no-vtk",
-    )
-    run = readRun(out)
-    assert (
-        window[0] * 0.995 <= run["peak_base_shear_kN"] <= window[1]
-    )  # still rising at 18 mm
-    assert run["base_shear_end_kN"] > 0.97 * run["peak_base_shear_kN"]
-    assert not os.path.exists(os.path.join(out, "joints.pvd")) and os.path.exists(
-        os.path.join(out, "curve.png")
-    )
-
-
 # -- how scenes start and end -----------------------------------------------------------------------------------------
 
 
@@ -227,7 +205,7 @@ def test_ctrl_c_ends_in_order_and_keeps_what_is_there(tmp_path):
     assert process.returncode == 130, text
     run = json.loads((out / "run.json").read_text())
     assert run["interrupted"] and run["peak_base_shear_kN"] > 1
-    assert (out / "curve.png").exists()
+    assert (out / "curve.png").exists() and not (out / "joints.pvd").exists()
 
 
 # -- a small wall, in this process ------------------------------------------------------------------------------------

@@ -1,0 +1,257 @@
+"""Numbers of a run, measured from the files in its folder and nothing else.
+
+``/usr/bin/python3 -m masonry.measure results/wall_comp4`` prints them, units in the names. Walls are pushed to the
+right, so that the compressed corners are the toe, bottom right, and top left; a diagonal crack falls to the right.
+"""
+
+import glob
+import os
+import sys
+import xml.etree.ElementTree as ElementTree
+
+import numpy as np
+
+from .figures import CRACK, readFrame
+from .results import readCurve, readRun
+
+NEAR = 3  # courses to either side of the diagonal that count as near it
+OUTER = 2  # courses at base and top that do not count for the diagonal: rocking cracks are there
+LOST = 0.05  # of the peak force: a drop, above the scatter by single bricks at the toe
+
+
+def layOut(frame, wall):
+    """Joints of a frame on the grid of the brickwork, without those to the support and to the loading block.
+
+    :param frame: what :func:`masonry.figures.readFrame` returns for joints
+    :param wall: the entry ``wall`` of run.json
+    :returns: dicts of bed joints, arrays (courses - 1, half units), and of upright ones, head joints and brick cracks,
+        arrays (courses, half units - 1), from the base up and from left to right: ``opening`` and ``slide``, means over
+        a joint [m]; ``shear``, energy dissipated by a joint in shear [J]; ``crushing``, volume of plastic closure [m³];
+        ``past``, area that closed past the peak of its compression curve [m²]
+    """
+    half, height = wall["unit_m"][0] / 2, wall["unit_m"][2]
+    courses, columns = wall["courses"], wall["half_units"]
+    bed = {
+        name: np.zeros((courses - 1, columns))
+        for name in ("opening", "slide", "shear", "crushing", "past")
+    }
+    upright = {name: np.zeros((courses, columns - 1)) for name in bed}
+    _, first, joint = np.unique(
+        frame["bodies"], axis=0, return_index=True, return_inverse=True
+    )
+    area = frame["area"]
+    total = lambda values: np.bincount(joint, area * values)
+    centres = np.array([frame["points"][cell].mean(axis=0) for cell in frame["cells"]])
+    whole = total(1)
+    x, z = total(centres[:, 0]) / whole / half, total(centres[:, 2]) / whole / height
+    values = {
+        "opening": total(frame["opening"]) / whole,
+        "slide": total(np.linalg.norm(frame["slide"], axis=1)) / whole,
+        "shear": frame["joint_dissipated"][first, 1],
+        "crushing": total(frame["crushing"]),
+        "past": total(frame["damage_compression"] > 0),
+    }
+    flat = np.abs(frame["normal"][first, 2]) > 0.5
+    row = np.where(flat, np.rint(z) - 1, np.floor(z)).astype(int)
+    column = np.where(flat, np.floor(x), np.rint(x) - 1).astype(int)
+    inner = flat & (row >= 0) & (row < courses - 1)
+    for name in values:
+        bed[name][row[inner], column[inner]] = values[name][inner]
+        upright[name][row[~flat], column[~flat]] = values[name][~flat]
+    return bed, upright
+
+
+def diagonalReach(bed, upright):
+    """Size of the largest diagonal crack that falls to the right through the brickwork [courses, half units].
+
+    A crack goes from an upright joint of a course to those of the course below, straight down or to either side along
+    cracked bed joints. It crosses so many courses and so many half units; its reach is the smaller number. A bed joint
+    cracked from side to side reaches 0, a vertical split 0, a crack from corner to corner nearly as far as the shorter
+    side of the wall.
+
+    :param bed: which bed joints are cracked, bool (courses - 1, columns)
+    :param upright: which upright joints are cracked, bool (courses, columns - 1)
+    """
+    lines = np.arange(upright.shape[1])
+    starts, reached, reach = np.empty((0, 2), int), np.empty((0, len(lines)), bool), 0
+    for course in reversed(range(len(upright))):
+        if len(starts):
+            run = np.append(0, np.cumsum(~bed[course, 1:-1]))
+            reached = (reached @ (run[:, None] == run)) & upright[course]
+            right = np.where(reached, lines, -1).max(axis=1)
+            size = np.minimum(starts[:, 0] - course, right - starts[:, 1])
+            reach = max(reach, int(size.max()))
+        here = lines[upright[course]]
+        starts = np.vstack([starts, np.column_stack([0 * here + course, here])])
+        reached = np.vstack([reached, here[:, None] == lines])
+    return reach
+
+
+def acrossDiagonal(shape, upright):
+    """Height of joints above the corner-to-corner diagonal [courses], array of ``shape``, NaN in the outer courses."""
+    rows, columns = np.indices(shape)
+    level = rows + (0.5 if upright else 1.0)
+    place = columns + (1.0 if upright else 0.5)
+    courses, length = shape[0] + (not upright), shape[1] + upright
+    inner = (level >= OUTER) & (level <= courses - OUTER)
+    return np.where(inner, level - courses * (1 - place / length), np.nan)
+
+
+def narrowestBand(positions, weights, share=0.5):
+    """Width of the narrowest interval of ``positions`` that holds ``share`` of the sum of ``weights``; NaN of none."""
+    order = np.argsort(positions)
+    positions, held = positions[order], np.append(0, np.cumsum(weights[order]))
+    if not held[-1] > 0:
+        return float("nan")
+    # up to the first position at which enough is held since each start
+    ends = np.searchsorted(held, held[:-1] + share * held[-1] * (1 - 1e-12)) - 1
+    starts = np.flatnonzero(ends < len(positions))
+    return float((positions[ends[starts]] - positions[starts]).min())
+
+
+def diagonal(bed, upright):
+    """Numbers of the diagonal crack; ``bed`` and ``upright`` as of :func:`layOut`.
+
+    - diagonal_energy_share [-]: of the energy lost in shear by inner joints, what joints near the corner-to-corner
+      diagonal lost: within three courses of it; inner are all but those of the two lowest and two highest courses
+    - diagonal_joint_share [-]: of the inner joints, those that are near: what the energy share would be if the whole
+      wall sheared alike
+    - diagonal_band_courses: height of the narrowest band parallel to the diagonal that holds half of that energy;
+      small for one localised crack, large for several or for a crack that follows a bed joint
+    - diagonal_reach [courses, half units]: :func:`diagonalReach` of a stepped crack, whose upright joints are open and
+      whose bed joints are open or slid, more than CRACK each
+    - parallel_cracks [-]: upright joints open more than CRACK in an inner course, on average: the diagonal cracks that a
+      horizontal line crosses
+    """
+    position = np.concatenate(
+        [acrossDiagonal(j["shear"].shape, j is upright).ravel() for j in (bed, upright)]
+    )
+    energy = np.concatenate([j["shear"].ravel() for j in (bed, upright)])
+    energy, position = (v[np.isfinite(position)] for v in (energy, position))
+    near, lost = np.abs(position) < NEAR, energy.sum()
+    gaping = upright["opening"] > CRACK
+    cracked = np.maximum(bed["opening"], bed["slide"]) > CRACK
+    return {
+        "diagonal_energy_share": energy[near].sum() / lost if lost > 0 else 0.0,
+        "diagonal_joint_share": near.mean(),
+        "diagonal_band_courses": narrowestBand(position, energy),
+        "diagonal_reach": diagonalReach(cracked, gaping),
+        "parallel_cracks": gaping[OUTER:-OUTER].sum(axis=1).mean(),
+    }
+
+
+def flexure(bed):
+    """Numbers of the flexural cracks, in the lower half of the wall (base) and in the upper one (top).
+
+    A flexural crack enters a wall at its side, so the bed joints at both ends of a course tell.
+
+    - flexural_cracks_base, _top: bed joints open more than CRACK at a side of the wall
+    - flexural_opening_base_mm, _top_mm: of the widest of them
+    - flexural_course_base, _top: courses between the widest and the base, or the top
+    """
+    side = np.maximum(bed["opening"][:, 0], bed["opening"][:, -1])
+    middle = (len(side) + 1) // 2
+    numbers = {}
+    for name, openings in (("base", side[:middle]), ("top", side[: -middle - 1 : -1])):
+        numbers["flexural_cracks_" + name] = int((openings > CRACK).sum())
+        numbers[f"flexural_opening_{name}_mm"] = 1e3 * max(0, openings.max())
+        numbers["flexural_course_" + name] = int(openings.argmax()) + 1
+    return numbers
+
+
+def crushing(bed):
+    """Numbers of crushing in the bed joints.
+
+    - crushed_volume_cm3: plastic closure integrated over the wall's bed joints
+    - crushed_share_toe, crushed_share_top_left [-]: of it, what lies in the quarter of the length and of the height at
+      the bottom right, and at the top left; 1/16 each if the wall crushed evenly; 0 if nothing crushed
+    - past_peak_area_cm2: bed joints that closed past the peak of their compression curve, whole wall
+    """
+    volume = bed["crushing"]
+    high, long = (n // 4 for n in volume.shape)
+    whole = volume.sum()
+    share = lambda part: part.sum() / whole if whole > 0 else 0.0
+    return {
+        "crushed_volume_cm3": 1e6 * whole,
+        "crushed_share_toe": share(volume[:high, -long:]),
+        "crushed_share_top_left": share(volume[-high:, :long]),
+        "past_peak_area_cm2": 1e4 * bed["past"].sum(),
+    }
+
+
+def force(displacement, shear):
+    """Numbers of a force-displacement curve after its peak, from displacements [mm] and forces.
+
+    - force_drop [-]: share of the peak that is lost at the end
+    - drop_at_mm: first displacement after the peak with less than 0.95 of it; infinite if there is none
+    """
+    at = int(np.argmax(shear))
+    after = np.flatnonzero(np.asarray(shear[at:]) < (1 - LOST) * shear[at])
+    return {
+        "force_drop": 1 - shear[-1] / shear[at],
+        "drop_at_mm": displacement[at + after[0]] if len(after) else float("inf"),
+    }
+
+
+def frameAt(directory, time):
+    """Number of the joints' frame nearest to a time [s]."""
+    sets = ElementTree.parse(os.path.join(directory, "joints.pvd")).iter("DataSet")
+    return int(np.argmin([abs(float(s.get("timestep")) - time) for s in sets]))
+
+
+def wallNumbers(directory):
+    """All numbers of a wall's run; those of the crack pattern only if it left ParaView files."""
+    run, curve = readRun(directory), readCurve(directory)
+    shear, moved = curve["base_shear_kN"], curve["displacement_mm"]
+    at = int(np.argmax(shear))
+    numbers = {"top_less_base_shear_kN": curve["top_shear_kN"][at] - shear[at]}
+    numbers.update(force(moved, shear))
+    if glob.glob(os.path.join(directory, "joints_*.vtp")):
+        grid = lambda number: layOut(
+            readFrame(directory, "joints", number), run["wall"]
+        )
+        bed, upright = grid(-1)
+        numbers.update(diagonal(bed, upright), **flexure(bed), **crushing(bed))
+        atPeak = diagonal(*grid(frameAt(directory, curve["time_s"][at])))
+        numbers["diagonal_reach_at_peak"] = atPeak["diagonal_reach"]
+    return numbers
+
+
+def coupletNumbers(directory):
+    """Areas under the curves of a couplet's joint, which are its fracture energies.
+
+    - opening_work_J_per_m2, closure_work_J_per_m2: under tension over the opening, and under compression over the closure
+    - softening_work_J_per_m2: under the shear stress over the slide, above the shear stress at the end
+    """
+    curve = {name: np.array(v) for name, v in readCurve(directory).items()}
+    normal, shear = curve["normal_stress_MPa"], curve["shear_stress_MPa"]
+    area = lambda stress, mm: 1e3 * np.trapz(np.maximum(stress, 0), mm)
+    return {
+        "opening_work_J_per_m2": area(normal, curve["opening_mm"]),
+        "closure_work_J_per_m2": area(-normal, -curve["opening_mm"]),
+        "softening_work_J_per_m2": area(shear - shear[-1], curve["slide_mm"]),
+    }
+
+
+def measure(directory):
+    """Numbers of a run as a dict by name: those at the top level of run.json, and those measured here.
+
+    ``balance_error`` is run.json's energy_balance_error: the largest of the run, relative to the work done [-].
+    """
+    run = readRun(directory)
+    numbers = {
+        name: value
+        for name, value in run.items()
+        if isinstance(value, (int, float)) and not isinstance(value, bool)
+    }
+    numbers["balance_error"] = numbers.pop("energy_balance_error")
+    if "wall" in run:
+        numbers.update(wallNumbers(directory))
+    elif run["scene"] == "couplet":
+        numbers.update(coupletNumbers(directory))
+    return numbers
+
+
+if __name__ == "__main__":
+    for name, value in measure(sys.argv[1]).items():
+        print(f"{name:34} {value:.6g}")

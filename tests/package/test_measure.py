@@ -1,0 +1,177 @@
+"""Numbers of a crack pattern, on patterns made up so that the numbers are known."""
+
+import math
+
+import numpy as np
+import pytest
+from masonry import measure
+from masonry.figures import CRACK
+
+COURSES, COLUMNS = 12, 12
+WALL = {"unit_m": (0.22, 0.102, 0.08), "courses": COURSES, "half_units": COLUMNS}
+NAMES = ("opening", "slide", "shear", "crushing", "past")
+WIDE = 10 * CRACK
+
+
+def blank():
+    """A wall without a crack: bed and upright joints."""
+    return (
+        {name: np.zeros((COURSES - 1, COLUMNS)) for name in NAMES},
+        {name: np.zeros((COURSES, COLUMNS - 1)) for name in NAMES},
+    )
+
+
+def stair(bed, upright, lines, shift=0):
+    """A stepped crack that falls to the right by a half unit a course, through the upright joints ``lines``."""
+    for line in lines:
+        course = COURSES - 2 - line - shift
+        upright["opening"][course, line] = WIDE
+        if line + 1 in lines:
+            bed["slide"][course - 1, line + 1] = WIDE
+            bed["shear"][course - 1, line + 1] = 1.0
+
+
+def test_an_uncracked_wall_has_no_pattern():
+    bed, upright = blank()
+    numbers = {
+        **measure.diagonal(bed, upright),
+        **measure.flexure(bed),
+        **measure.crushing(bed),
+    }
+    assert math.isnan(numbers.pop("diagonal_band_courses"))
+    assert 0.3 < numbers.pop("diagonal_joint_share") < 0.6
+    assert numbers.pop("flexural_course_base") == 1
+    assert numbers.pop("flexural_course_top") == 1
+    assert set(numbers.values()) == {0}
+
+
+def test_a_stepped_crack_reaches_as_far_as_it_steps():
+    bed, upright = blank()
+    stair(bed, upright, range(0, 11))
+    numbers = measure.diagonal(bed, upright)
+    assert numbers["diagonal_reach"] == 10
+    assert numbers["diagonal_energy_share"] == 1
+    assert numbers["diagonal_band_courses"] == pytest.approx(0, abs=1e-12)
+    assert numbers["parallel_cracks"] == 1
+
+
+def test_a_gap_in_the_crack_ends_its_reach():
+    bed, upright = blank()
+    stair(bed, upright, range(0, 11))
+    bed["slide"][COURSES - 3 - 6, 7] = 0  # between the uprights of lines 6 and 7
+    assert measure.diagonal(bed, upright)["diagonal_reach"] == 6
+
+
+def test_parallel_cracks_are_counted():
+    bed, upright = blank()
+    stair(bed, upright, range(0, 8))
+    stair(bed, upright, range(0, 8), shift=3)
+    numbers = measure.diagonal(bed, upright)
+    assert numbers["diagonal_reach"] == 7
+    inner = upright["opening"][2:-2] > 0
+    assert numbers["parallel_cracks"] == pytest.approx(inner.sum() / len(inner))
+    assert numbers["parallel_cracks"] > 1.4
+
+
+def test_the_narrowest_band_holds_its_share():
+    positions, weights = np.array([6.0, 0, 3, 4, 6]), np.array([1.0, 2, 1, 1, 1])
+    assert measure.narrowestBand(positions, weights, share=1 / 3) == 0
+    assert measure.narrowestBand(positions, weights) == 2  # from 4 to 6
+    assert measure.narrowestBand(positions, weights, share=1) == 6
+
+
+def test_other_cracks_do_not_reach():
+    bed, upright = blank()
+    bed["slide"][5] = WIDE  # a bed joint slid from side to side
+    assert measure.diagonal(bed, upright)["diagonal_reach"] == 0
+    upright["opening"][:, 4] = WIDE  # and a vertical split
+    assert measure.diagonal(bed, upright)["diagonal_reach"] == 0
+    bed, upright = blank()
+    for line in range(11):  # a stair that rises to the right
+        upright["opening"][line, line] = WIDE
+        bed["slide"][line, line] = WIDE
+    assert measure.diagonal(bed, upright)["diagonal_reach"] == 0
+
+
+def test_a_crack_may_follow_a_bed_joint_on_its_way():
+    bed, upright = blank()
+    upright["opening"][7:10, 2] = WIDE
+    upright["opening"][4:7, 8] = WIDE
+    bed["slide"][6, 3:9] = WIDE
+    assert measure.diagonal(bed, upright)["diagonal_reach"] == 5  # of 6 half units
+
+
+def test_flexural_cracks_are_counted_at_the_sides():
+    bed, _ = blank()
+    bed["opening"][0, :8] = 3e-3
+    bed["opening"][3, :2] = WIDE
+    bed["opening"][4, 3:9] = WIDE  # does not come out at a side
+    bed["opening"][-2, -4:] = 1e-3
+    assert measure.flexure(bed) == pytest.approx(
+        {
+            "flexural_cracks_base": 2,
+            "flexural_opening_base_mm": 3,
+            "flexural_course_base": 1,
+            "flexural_cracks_top": 1,
+            "flexural_opening_top_mm": 1,
+            "flexural_course_top": 2,
+        }
+    )
+
+
+def test_crushing_is_shared_by_the_corners():
+    bed, _ = blank()
+    bed["crushing"][0, -1] = 3e-6
+    bed["crushing"][-1, 0] = 1e-6
+    bed["past"][0, -1] = 112e-4
+    numbers = measure.crushing(bed)
+    assert numbers["crushed_volume_cm3"] == pytest.approx(4)
+    assert numbers["crushed_share_toe"] == pytest.approx(0.75)
+    assert numbers["crushed_share_top_left"] == pytest.approx(0.25)
+    assert numbers["past_peak_area_cm2"] == pytest.approx(112)
+
+
+def test_a_drop_of_force_is_after_the_peak():
+    fell = measure.force([0, 1, 2, 3, 4], [0, 5, 10, 9.6, 8])
+    assert fell["force_drop"] == pytest.approx(0.2) and fell["drop_at_mm"] == 4
+    held = measure.force([0, 1, 2], [0, 10, 9.9])
+    assert held["force_drop"] == pytest.approx(0.01)
+    assert held["drop_at_mm"] == math.inf
+
+
+def test_joints_of_a_frame_find_their_place():
+    # two subcontacts of the bed joint above course 2, column 5, and one of the upright joint of course 2 at line 5
+    points, cells = [], []
+    half, height = 0.11, 0.08
+    for x, z in ((5.25, 3.0), (5.75, 3.0), (6.0, 2.5), (5.5, 0.0)):
+        cells.append([len(points)])
+        points.append((x * half, 0.05, z * height))
+    frame = {
+        "points": np.array(points),
+        "cells": cells,
+        "bodies": np.array([[3, 8], [3, 8], [3, 4], [0, 1]]),
+        "area": np.array([2e-3, 6e-3, 4e-3, 1e-2]),
+        "normal": np.array([(0, 0, 1.0), (0, 0, 1.0), (1.0, 0, 0), (0, 0, 1.0)]),
+        "opening": np.array([1e-3, 2e-3, 5e-3, 0]),
+        "slide": np.array([(1e-3, 0, 0)] * 4),
+        "crushing": np.array([1e-3, 0, 0, 0]),
+        "damage_compression": np.array([0, 0.5, 0, 0]),
+        "joint_dissipated": np.array([(0, 7.0, 0)] * 2 + [(0, 9.0, 0), (0, 1.0, 0)]),
+    }
+    bed, upright = measure.layOut(frame, WALL)
+    assert bed["opening"][2, 5] == pytest.approx(1.75e-3)
+    assert bed["slide"][2, 5] == pytest.approx(1e-3)
+    assert bed["shear"].sum() == bed["shear"][2, 5] == 7  # once a joint; no support
+    assert bed["crushing"][2, 5] == pytest.approx(2e-6)
+    assert bed["past"][2, 5] == pytest.approx(6e-3)
+    assert upright["opening"].sum() == upright["opening"][2, 5] == 5e-3
+    assert upright["shear"][2, 5] == 9
+
+
+def test_heights_above_the_diagonal_vanish_on_it():
+    bed = measure.acrossDiagonal((COURSES - 1, COLUMNS), upright=False)
+    for column in range(3, 9):
+        assert bed[COURSES - 2 - column, column] == pytest.approx(-0.5)
+    upright = measure.acrossDiagonal((COURSES, COLUMNS - 1), upright=True)
+    assert upright[5, 5] == pytest.approx(-0.5)
+    assert np.isnan(bed[0]).all() and np.isnan(upright[:2]).all()

@@ -1,0 +1,85 @@
+"""Runs validation cases as a user would, measures the results and holds them against the limits of case.json.
+
+/usr/bin/python3 validation/validate.py CASE [RUN ...] [--measure]
+"""
+
+import argparse
+import json
+import math
+import os
+import subprocess
+import sys
+
+from masonry.measure import measure
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(HERE)
+RESULTS = os.path.join(ROOT, "results", "validation")
+
+
+def readCase(case):
+    """case.json of a case: its runs by name, with ``quick``, the variant for the tests, as one of them if it has one."""
+    with open(os.path.join(HERE, case, "case.json")) as f:
+        content = json.load(f)
+    quick = {"quick": content["quick"]} if "quick" in content else {}
+    return {**content["runs"], **quick}
+
+
+def run(definition, out):
+    """Run a scene of scripts/ with its options, results in the folder ``out``; raises if the scene fails."""
+    scene = os.path.join(ROOT, "scripts", definition["scene"])
+    command = ["yade", "-n", "-x", scene, "--out", out, *definition["options"]]
+    subprocess.run(command, check=True)
+
+
+def bounds(limits, name, other):
+    """The two bounds of a number; one given as the name of a case is that number in the same run of that case."""
+    value = lambda bound: other(bound)[name] if isinstance(bound, str) else bound
+    low, high = (value(bound) for bound in limits)
+    return (-math.inf if low is None else low, math.inf if high is None else high)
+
+
+def check(limits, numbers, other):
+    """Compare numbers with limits; prints a line a limit and returns whether all hold.
+
+    :param limits: dict of name -> [low, high], null for none
+    :param numbers: what :func:`masonry.measure.measure` returns
+    :param other: function of a case's name -> the numbers of its run
+    """
+    fine = True
+    for name, pair in limits.items():
+        low, high = bounds(pair, name, other)
+        holds = low <= numbers[name] <= high
+        fine = fine and holds
+        verdict = "holds" if holds else "MISSED"
+        print(f"  {name:34} {numbers[name]:12.5g}  [{low:.5g}, {high:.5g}]  {verdict}")
+    return fine
+
+
+def main(words=None):
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("case", help="folder in validation/")
+    parser.add_argument("run", nargs="*", help="runs of its case.json (default: all)")
+    parser.add_argument(
+        "--measure", action="store_true", help="measure the results there are"
+    )
+    parser.add_argument("--results", default=RESULTS, help="folder of the results")
+    args = parser.parse_args(words)
+    runs = readCase(args.case)
+    unknown = set(args.run) - set(runs)
+    if unknown:
+        parser.error(f"no run {', '.join(unknown)}; there are {', '.join(runs)}")
+    fine = True
+    for name in args.run or [name for name in runs if name != "quick"]:
+        folder = lambda case: os.path.join(args.results, case, name)
+        if not args.measure:
+            run(runs[name], folder(args.case))
+        print(f"{args.case} {name}", flush=True)
+        numbers = measure(folder(args.case))
+        held = check(runs[name]["limits"], numbers, lambda case: measure(folder(case)))
+        fine = fine and held
+    return 0 if fine else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
