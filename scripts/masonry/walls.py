@@ -242,7 +242,7 @@ class WallModel:
                 + e["elastic_tension"]
                 + e["elastic_units"]
             )
-            quiet = quiet + 1 if abs(e["kinetic"]) < 1e-9 * elastic else 0
+            quiet = quiet + 1 if abs(e["kinetic"]) < 1e-7 * elastic else 0
             self.progress.show(
                 stage,
                 done / mostSteps,

@@ -156,14 +156,16 @@ struct Forces {
 };
 
 // Of one block among others that are at rest or moved otherwise.
-Forces forcesOf(const BlockElasticity& e, const std::vector<Point>& u) {
+Forces forcesOf(const BlockElasticity& e, const std::vector<Point>& u, const Point& moment = Point::Zero()) {
     constexpr int mine = 3;
     std::vector<Row> all(3 * u.size()), f(all.size(), Row{}), scratch(2 * all.size());
     for (std::size_t i = 0; i < all.size(); ++i)
         for (int lane = 0; lane < lanes; ++lane)
             all[i].lane[lane] = lane ? (lane - mine) * 1e-6 * double(i % 7) + u[i / 3][i % 3] : 0;
-    Row rotation[9], energy;
-    addBlockForces(e.matrix(), all.data(), f.data(), rotation, &energy, scratch.data());
+    Row rotation[9], energy, moments[3]{};
+    for (int d = 0; d < 3; ++d)
+        moments[d].lane[mine] = moment[d];
+    addBlockForces(e.matrix(), all.data(), moments, f.data(), rotation, &energy, scratch.data());
     Forces result{std::vector<Point>(u.size()), {}, energy.lane[mine]};
     for (std::size_t n = 0; n < u.size(); ++n)
         for (int d = 0; d < 3; ++d)
@@ -346,6 +348,33 @@ TEST_CASE("the forces of a block are those of its zones' stresses on their faces
                 if (d != held) CHECK(std::abs(f[i][d] - result.forces[i][d]) < 1e-9 * size);
         CHECK(result.energy == doctest::Approx(energy).epsilon(1e-6));
     }
+}
+
+TEST_CASE("a moment on a block is forces without resultant that do its work on the rotation") {
+    std::mt19937 dice(12);
+    std::uniform_real_distribution<> u01(-1, 1);
+    const auto e = elastic(box(Point::Zero(), brick), {2, 1, 1});
+    const auto n = e.mesh().nodes.size();
+    const auto motion = randomMotion(dice);
+    const Point moment(3, -2, 5);
+    std::vector<Point> u(n), du(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        u[i] = motion * e.mesh().nodes[i] - e.mesh().nodes[i];
+        du[i] = 1e-6 * Point(u01(dice), u01(dice), u01(dice));
+    }
+    const auto with = forcesOf(e, u, moment), without = forcesOf(e, u);
+    Point sum = Point::Zero(), about = Point::Zero();
+    double work = 0;
+    auto plus = u, minus = u;
+    for (std::size_t i = 0; i < n; ++i) {
+        const Point force = with.forces[i] - without.forces[i];
+        sum += force, about += (e.mesh().nodes[i] + u[i]).cross(force), work += force.dot(du[i]);
+        plus[i] += 0.5 * du[i], minus[i] -= 0.5 * du[i];
+    }
+    CHECK(sum.norm() < 1e-3); // round-off of forces of 1e8 N a unit of strain
+    CHECK((about - moment).norm() < 1e-3);
+    const Eigen::AngleAxisd turn(Matrix3(e.rotation(plus.data()) * e.rotation(minus.data()).transpose()));
+    CHECK(work == doctest::Approx(moment.dot(turn.angle() * turn.axis())).epsilon(1e-3));
 }
 
 TEST_CASE("a surface point is found with weights that return it") {

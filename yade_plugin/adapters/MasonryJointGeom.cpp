@@ -89,10 +89,10 @@ void MasonryJointGeom::updateDeformable(const yade::State& state1, const yade::S
     }
 }
 
-void MasonryJointGeom::attach(const shared_ptr<MasonryZones>& all, int body1, int body2) {
-    const auto *unit1 = all->unitOf(body1), *unit2 = all->unitOf(body2);
+void MasonryJointGeom::attach(const shared_ptr<MasonryZones>& all, int id1, int id2) {
+    const auto *unit1 = all->unitOf(id1), *unit2 = all->unitOf(id2);
     if (!unit1 && !unit2) return;
-    zones = all;
+    zones = all, body1 = id1, body2 = id2;
     using Nodes = std::vector<std::pair<int, double>>;
     const Nodes nodes1 = unit1 ? all->nodesOn(*unit1, polygon, normal) : Nodes{};
     const Nodes nodes2 = unit2 ? all->nodesOn(*unit2, polygon, normal) : Nodes{};

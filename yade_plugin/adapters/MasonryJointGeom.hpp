@@ -55,6 +55,8 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
         visit("orientation2", &G::orientation2, "", Hidden);
         visit("centreToCentre", &G::centreToCentre, "", Hidden);
         visit("zones", &G::zones, "", Hidden);
+        visit("body1", &G::body1, "", Hidden);
+        visit("body2", &G::body2, "", Hidden);
         visit("attachments1", &G::attachments1, "", Hidden);
         visit("attachments2", &G::attachments2, "", Hidden);
         visit("frame1", &G::frame1, "", Hidden);
@@ -63,6 +65,9 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
 
     yade::Matrix3r axes; // scratch: columns normal and tangents, turned with the mean rotation of the two blocks
     Vector3r between;    // scratch: from the centre of body 1 to that of body 2
+    // Of a joint with a deformable side: its bodies, and as scratch the moment on the rotation of each.
+    int body1 = -1, body2 = -1;
+    Vector3r moment = Vector3r::Zero();
 
     Keeper* keeper = nullptr; // the engine that has the jumps in its arrays, if one has
 

@@ -44,6 +44,8 @@ int MasonryJointLoop::bodyNumber(int id, std::vector<int>& known) {
         known[id] = int(bodies_.ids.size());
         bodies_.ids.push_back(id);
         bodies_.states.push_back(scene->bodies->body[id]->state.get());
+        const auto* unit = zones_ ? zones_->unitOf(id) : nullptr;
+        bodies_.momentPlaces.push_back(unit ? unit->momentPlace : -1);
     }
     return known[id];
 }
@@ -92,8 +94,9 @@ void MasonryJointLoop::build() {
     for (auto& g : groups_) {
         const int count = int(g.geoms.size());
         g.stride = (count + lanes - 1) / lanes * lanes;
-        g.first = g.nodal ? points : joints;
-        (g.nodal ? points : joints) += g.nodal ? g.stride * g.points : g.stride;
+        g.first = joints, g.firstPoint = points;
+        joints += g.stride;
+        if (g.nodal) points += g.stride * g.points;
         for (int from = 0; from < g.stride; from += block)
             blocks_.emplace_back(int(&g - groups_.data()), from);
         for (auto* column : {&g.frame1[0], &g.frame2[0]}) // no turn, where a column ends before whole lanes do
@@ -111,7 +114,7 @@ void MasonryJointLoop::build() {
             for (auto* body : {&g.body1[j], &g.body2[j]}) {
                 *body = bodyNumber(*body, known);
                 atBodies.resize(bodies_.ids.size());
-                if (!g.nodal) atBodies[*body].push_back(2 * (g.first + j) + (body == &g.body2[j]));
+                atBodies[*body].push_back(2 * (g.first + j) + (body == &g.body2[j]));
             }
             const auto put = [j](std::vector<double>* columns, const Quaternionr& q) {
                 columns[0][j] = q.w(), columns[1][j] = q.x(), columns[2][j] = q.y(), columns[3][j] = q.z();
@@ -169,7 +172,7 @@ void MasonryJointLoop::buildPlaces(Group& g, std::vector<std::vector<int>>& atPl
                 const int i = p * g.stride + int(j);
                 (side ? g.place2 : g.place1)[i] = place;
                 if (int(atPlaces.size()) <= place) atPlaces.resize(place + 1);
-                atPlaces[place].push_back(2 * (g.first + i) + side);
+                atPlaces[place].push_back(2 * (g.firstPoint + i) + side);
             }
     }
 }
@@ -249,6 +252,9 @@ MASONRY_VECTORISED void alignRigid(int n, const int* body1, const int* body2, co
 MASONRY_VECTORISED void alignNodal(int n, const int* body1, const int* body2, const double* const* q,
                                    const double* const* f1, const double* const* f2, Frames& __restrict out) {
     align(n, body1, body2, q, f1, f2, out);
+    for (auto& component : out.torque)
+        for (int i = 0; i < n; ++i)
+            component[i] = 0;
 }
 
 MASONRY_VECTORISED void jumpRigid(int n, const double* __restrict ax, const double* __restrict ay,
@@ -316,14 +322,28 @@ MASONRY_VECTORISED void jumpNodal(int n, const int* place1, const int* place2, c
 }
 
 MASONRY_VECTORISED void pullNodal(int n, const double* area, const double* normal, const double* shearA,
-                                  const double* shearB, const Frames& f, double* __restrict onPoints) {
+                                  const double* shearB, const double* jx, const double* jy, const double* jz,
+                                  Frames& __restrict f, double* __restrict onPoints) {
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
         const double x = area[i] * normal[i], y = area[i] * shearA[i], z = area[i] * shearB[i];
         onPoints[3 * i] = f.axes[0][i] * x + f.axes[1][i] * y + f.axes[2][i] * z;
         onPoints[3 * i + 1] = f.axes[3][i] * x + f.axes[4][i] * y + f.axes[5][i] * z;
         onPoints[3 * i + 2] = f.axes[6][i] * x + f.axes[7][i] * y + f.axes[8][i] * z;
+        f.torque[0][i] += jy[i] * z - jz[i] * y;
+        f.torque[1][i] += jz[i] * x - jx[i] * z;
+        f.torque[2][i] += jx[i] * y - jy[i] * x;
     }
+}
+
+// The moment on the rotation of each of the two blocks, as in the Law2 functor.
+MASONRY_VECTORISED void finishNodal(int n, const Frames& f, double* __restrict onJoints) {
+#pragma GCC ivdep
+    for (int i = 0; i < n; ++i)
+        for (int d = 0; d < 3; ++d)
+            onJoints[9 * i + 3 + d] = onJoints[9 * i + 6 + d] =
+                0.5 * (f.axes[3 * d][i] * f.torque[0][i] + f.axes[3 * d + 1][i] * f.torque[1][i] +
+                       f.axes[3 * d + 2][i] * f.torque[2][i]);
 }
 
 } // namespace
@@ -351,11 +371,15 @@ void MasonryJointLoop::advanceBlock(Group& g, int from, int n) {
         const double *normal = g.columns.normalStress() + i, *a = g.columns.shearStressA() + i,
                      *b = g.columns.shearStressB() + i;
         if (g.nodal)
-            pullNodal(n, &g.area[i], normal, a, b, frames, &onPoints_[3 * (g.first + i)]);
+            pullNodal(n, &g.area[i], normal, a, b, jx, jy, jz, frames, &onPoints_[3 * (g.firstPoint + i)]);
         else
             pullRigid(n, &g.area[i], normal, a, b, frames);
     }
-    if (!g.nodal) finishRigid(n, frames, &onJoints_[9 * (g.first + from)]);
+    double* onJoints = &onJoints_[std::size_t(9) * (g.first + from)];
+    if (g.nodal)
+        finishNodal(n, frames, onJoints);
+    else
+        finishRigid(n, frames, onJoints);
 }
 
 void MasonryJointLoop::moveGuests() {
@@ -386,7 +410,11 @@ void MasonryJointLoop::toBodies() {
                 force += Vector3r(on[0], on[1], on[2]), torque += Vector3r(on[3], on[4], on[5]);
         }
         const int body = bodyGather_.receivers[r];
-        onBodies_[2 * body] = force, onBodies_[2 * body + 1] = torque;
+        if (bodies_.momentPlaces[body] >= 0) {
+            for (int d = 0; d < 3; ++d)
+                (zones_->momentRows() + bodies_.momentPlaces[body])[d * lanes] = torque[d];
+        } else
+            onBodies_[2 * body] = force, onBodies_[2 * body + 1] = torque;
     }
 }
 

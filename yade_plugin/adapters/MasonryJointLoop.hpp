@@ -34,8 +34,9 @@ private:
         shared_ptr<MasonryJoint> joint;
         std::vector<shared_ptr<MasonryJointGeom>> geoms;
         std::vector<shared_ptr<MasonryJointPhys>> physics;
-        int points = 0, stride = 0, first = 0; // joints in a column, padded to whole lanes; number of the first joint
-        bool nodal = false;                    // whether a side is deformable
+        int points = 0, stride = 0;    // subcontacts of a joint; joints in a column, padded to whole lanes
+        int first = 0, firstPoint = 0; // numbers of the first joint, and of the first point of a nodal one
+        bool nodal = false;            // whether a side is deformable
         JointColumns columns;
         std::vector<int> body1, body2;
         std::vector<double> frame1[4], frame2[4], span[3];
@@ -43,8 +44,8 @@ private:
         std::vector<double> offset[3];   // between rigid units
         std::vector<int> place1, place2; // of nodal joints, in the rows of MasonryZones
     };
-    struct Bodies { // as columns
-        std::vector<int> ids;
+    struct Bodies {                         // as columns
+        std::vector<int> ids, momentPlaces; // of deformable units in the rows of MasonryZones, else -1
         std::vector<const yade::State*> states;
         std::vector<double> position[3], orientation[4];
     };
@@ -73,8 +74,9 @@ private:
     shared_ptr<MasonryZones> zones_;
     std::vector<Guest> guests_;
     Gather bodyGather_, nodeGather_;
-    std::vector<double> onJoints_, onPoints_; // force, torque about both centres; force on side 1
-    std::vector<Vector3r> onBodies_;          // force and torque of the step
+    std::vector<double> onJoints_;   // force on body 1, torque about both centres; of nodal joints the moment on both
+    std::vector<double> onPoints_;   // force on side 1 of nodal joints
+    std::vector<Vector3r> onBodies_; // force and torque of the step
     long seen_ = -1;
     std::size_t seenInteractions_ = 0;
     bool ahead_ = false; // whether the arrays are ahead of the joints

@@ -75,7 +75,7 @@ bool Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening::go(shared_ptr<ya
     auto& phys = static_cast<MasonryJointPhys&>(*ip);
     const JointLaw& law = phys.law();
     const auto k = phys.stiffness();
-    Vector3r force = Vector3r::Zero(), torque = Vector3r::Zero(), lost = Vector3r::Zero();
+    Vector3r force = Vector3r::Zero(), torque = Vector3r::Zero(), lost = Vector3r::Zero(), moment = Vector3r::Zero();
     for (std::size_t i = 0; i < phys.states.size(); ++i) {
         auto& s = phys.states[i];
         auto& point = geom.points[i];
@@ -83,21 +83,29 @@ bool Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening::go(shared_ptr<ya
         // The one place where stress meets area, and tension meets the host's forces: an open joint pulls body 1 on.
         const Vector3r pull = Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) * point.area;
         force += pull;
-        if (geom.zones) point.force = geom.axes * pull; // MasonryZones takes it to the nodes
+        if (geom.zones) { // MasonryZones takes it to the nodes
+            point.force = geom.axes * pull;
+            moment += point.jump.cross(pull);
+        }
         torque += point.arm.cross(pull);
         lost += point.area * Vector3r(spent.tension, spent.shear, spent.compression);
     }
     phys.dissipated += lost;
     force = geom.axes * force, torque = geom.axes * torque;
+    // The jump between nodes is seen in axes that turn with the mean rotation of the two blocks: so the joint works on
+    // that rotation too, half on each block's. It makes the joint's forces a couple without moment, however far it
+    // slid.
+    geom.moment = 0.5 * (geom.axes * moment);
     auto& forces = scene->forces();
     if (geom.attachments1.empty()) {
         forces.addForce(interaction->id1, force);
-        forces.addTorque(interaction->id1, torque);
+        forces.addTorque(interaction->id1, torque + geom.moment);
     }
     if (geom.attachments2.empty()) {
         forces.addForce(interaction->id2, -force);
         // the arms of body 2 are shorter by `between`; those of a deformable joint are the rigid side's own
-        forces.addTorque(interaction->id2, geom.zones ? Vector3r(-torque) : geom.between.cross(force) - torque);
+        forces.addTorque(interaction->id2,
+                         geom.zones ? Vector3r(geom.moment - torque) : geom.between.cross(force) - torque);
     }
     return true;
 }

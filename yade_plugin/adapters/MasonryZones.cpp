@@ -83,7 +83,7 @@ const std::vector<MasonryZones::Unit>& MasonryZones::units() {
             kind = std::prev(kinds.end());
         }
         unitOfBody_[id] = int(units_.size());
-        units_.push_back({id, next, kind->elasticity, state.refPos, state.refOri});
+        units_.push_back({id, next, 0, kind->elasticity, state.refPos, state.refOri});
         next += int(kind->elasticity->masses().size());
         state.blockedDOFs = 63; // the host's integrator leaves it alone
         state.vel = state.angVel = Vector3r::Zero();
@@ -112,11 +112,13 @@ const std::vector<MasonryZones::Unit>& MasonryZones::units() {
             auto& batch = batches_.back();
             for (int n = 0; n < nodes; ++n)
                 places_[units_[u].firstNode + n] = lanes * (batch.firstRow + 3 * n) + int(batch.units.size());
+            units_[u].momentPlace = lanes * 3 * (int(batches_.size()) - 1) + int(batch.units.size());
             batch.units.push_back(int(u));
         }
     }
     for (auto* all : {&displacements_, &velocities_, &forces_, &lastForces_})
         all->assign(rows, Row{});
+    moments_.assign(3 * batches_.size(), Row{});
     for (int node = 0; node < next; ++node) {
         put(displacements_, places_[node], displacements[node]);
         put(velocities_, places_[node], velocities[node]);
@@ -223,16 +225,22 @@ void MasonryZones::gatherFromFunctors() {
         }
     }
     std::fill(forces_.begin(), forces_.end(), Row{});
+    std::fill(moments_.begin(), moments_.end(), Row{});
     const auto hang = [&](const Attachment& a, const Vector3r& force) {
         for (int i = 0; i < 3 && a.weights[i] != 0; ++i)
             for (int d = 0; d < 3; ++d)
                 (forceRows() + places_[a.nodes[i]])[d * lanes] += a.weights[i] * force[d];
     };
-    for (const auto* geom : joints_)
+    for (const auto* geom : joints_) {
         for (std::size_t i = 0; i < geom->points.size(); ++i) {
             if (!geom->attachments1.empty()) hang(geom->attachments1[i], geom->points[i].force);
             if (!geom->attachments2.empty()) hang(geom->attachments2[i], -geom->points[i].force);
         }
+        for (int body : {geom->body1, geom->body2})
+            if (const auto* unit = unitOf(body))
+                for (int d = 0; d < 3; ++d)
+                    (momentRows() + unit->momentPlace)[d * lanes] += geom->moment[d];
+    }
 }
 
 void MasonryZones::action() {
@@ -255,7 +263,8 @@ void MasonryZones::action() {
         Row present{}, turned[9];
         std::fill_n(present.lane, batch.units.size(), 1.0);
         scratch.resize(std::size_t(6) * matrix.nodeCount);
-        addBlockForces(matrix, &displacements_[row], &forces_[row], turned, &energies[b], scratch.data());
+        addBlockForces(matrix, &displacements_[row], &moments_[3 * b], &forces_[row], turned, &energies[b],
+                       scratch.data());
         moveBlocks(matrix, motion, present, &displacements_[row], &velocities_[row], &forces_[row], &lastForces_[row],
                    sums[b]);
         for (std::size_t lane = 0; lane < batch.units.size(); ++lane) {

@@ -80,7 +80,7 @@ public:
     void action() override;
 
     struct Unit {
-        int body, firstNode;
+        int body, firstNode, momentPlace;
         std::shared_ptr<const BlockElasticity> elasticity;
         Vector3r centre; // reference
         Quaternionr orientation;
@@ -102,6 +102,7 @@ public:
     bool looped = false; // a MasonryJointLoop brings the joints' forces
     double* displacementRows() { return displacements_[0].lane; }
     double* forceRows() { return forces_[0].lane; }
+    double* momentRows() { return moments_[0].lane; } // of joints on the rotation of the units
     Vector3r displacementAt(const Attachment& a) const {
         Vector3r moved = Vector3r::Zero();
         for (int i = 0; i < 3 && a.weights[i] != 0; ++i)
@@ -131,7 +132,7 @@ private:
     std::vector<Unit> units_;
     std::vector<int> unitOfBody_, places_; // of all nodes
     std::vector<Batch> batches_;
-    std::vector<Row> displacements_, velocities_, forces_, lastForces_;
+    std::vector<Row> displacements_, velocities_, forces_, lastForces_, moments_;
     int guests_ = 0;
     bool ahead_ = false;                        // whether the rows are ahead of the attributes
     std::vector<shared_ptr<yade::IGeom>> seen_; // of all interactions, to know when joints_ are others

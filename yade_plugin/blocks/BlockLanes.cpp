@@ -44,10 +44,10 @@ namespace avx2 = plain;
 namespace avx512 = plain;
 #endif
 
-void addBlockForces(const BlockMatrix& m, const Row* displacements, Row* forces, Row* rotation, Row* energy,
-                    Row* scratch) {
+void addBlockForces(const BlockMatrix& m, const Row* displacements, const Row* moments, Row* forces, Row* rotation,
+                    Row* energy, Row* scratch) {
     static const auto best = choose(plain::addForces, avx2::addForces, avx512::addForces);
-    best(m, displacements, forces, rotation, energy, scratch);
+    best(m, displacements, moments, forces, rotation, energy, scratch);
 }
 
 void moveBlocks(const BlockMatrix& m, const NodeMotion& motion, const Row& present, Row* displacements, Row* velocities,

@@ -23,10 +23,10 @@ struct NodeSums { // over the nodes of each block
     Row kinetic, gravityWork, damping, pending, moved[3];
 };
 
-// Adds the zones' forces [N]; gives each block's rotation, row by row, and elastic energy [J]. `scratch` has six rows a
-// node.
-void addBlockForces(const BlockMatrix&, const Row* displacements, Row* forces, Row* rotation, Row* energy,
-                    Row* scratch);
+// Adds the zones' forces [N], and those that do the work of a moment [N m] (three rows) on the block's rotation. Gives
+// each block's rotation, row by row, and elastic energy [J]. `scratch` has six rows a node.
+void addBlockForces(const BlockMatrix&, const Row* displacements, const Row* moments, Row* forces, Row* rotation,
+                    Row* energy, Row* scratch);
 
 // Eqs. (1)-(3): takes velocities and displacements on by a step and uses up the forces. `present` is one for a block
 // and zero for an empty place.

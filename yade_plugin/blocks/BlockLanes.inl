@@ -26,7 +26,8 @@ inline void polar(Lanes (&f)[9]) {
     }
 }
 
-void addForces(const BlockMatrix& m, const Row* displacements, Row* forces, Row* rotation, Row* energy, Row* scratch) {
+void addForces(const BlockMatrix& m, const Row* displacements, const Row* moments, Row* forces, Row* rotation,
+               Row* energy, Row* scratch) {
     const int count = m.nodeCount;
     for (int part = 0; part < parts; ++part) {
         const Lanes* u = at(displacements, part);
@@ -59,10 +60,20 @@ void addForces(const BlockMatrix& m, const Row* displacements, Row* forces, Row*
             stored += sum * d[entries.degree];
             local[entries.degree] = sum;
         }
-        for (int n = 0; n < count; ++n)
+        // The rotation changes by the sum of R g x du / 2 over the nodes, so a moment M is forces M x R g / 2.
+        const Lanes moment[3] = {*at(moments, part), *at(moments + 1, part), *at(moments + 2, part)};
+        for (int n = 0; n < count; ++n) {
+            const double* g = m.gradients + 3 * n;
+            Lanes turned[3];
             for (int i = 0; i < 3; ++i)
-                f[(3 * n + i) * parts] -=
-                    r[3 * i] * local[3 * n] + r[3 * i + 1] * local[3 * n + 1] + r[3 * i + 2] * local[3 * n + 2];
+                turned[i] = 0.5 * (r[3 * i] * g[0] + r[3 * i + 1] * g[1] + r[3 * i + 2] * g[2]);
+            for (int i = 0; i < 3; ++i) {
+                const int j = (i + 1) % 3, k = (i + 2) % 3;
+                f[(3 * n + i) * parts] +=
+                    moment[j] * turned[k] - moment[k] * turned[j] -
+                    (r[3 * i] * local[3 * n] + r[3 * i + 1] * local[3 * n + 1] + r[3 * i + 2] * local[3 * n + 2]);
+            }
+        }
         for (int i = 0; i < 9; ++i)
             *at(rotation + i, part) = r[i];
         *at(energy, part) = 0.5 * stored;

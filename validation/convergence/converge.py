@@ -1,0 +1,128 @@
+"""How far the answer of two walls with deformable units moves with mesh, rate, damping and time step.
+
+/usr/bin/python3 validation/convergence/converge.py [--draw]
+
+Runs what is missing in results/validation/convergence, one run after another, prints the table of all runs and draws
+curves.png beside itself; --draw leaves out what was not run.
+"""
+
+import os
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+from masonry.measure import measure
+from masonry.results import readCurve
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(HERE))
+from validate import RESULTS, run
+
+#: Walls, their options, and how far they must go to show their peak.
+WALLS = {
+    "COMP-4": ("wall_comp4.py", "--until 5"),
+    "COMP-1": ("wall_comp1.py", "--until 25"),
+}
+COMMON = "--blocks deformable --no-vtk"
+
+#: Panels of the figure: what is varied, and the runs by name with their options; "" is the default run.
+SERIES = {
+    "mesh: cells of a half brick along its length and height": {
+        "1": "",
+        "2": "--divisions 2",
+        "3": "--divisions 3",
+    },
+    "rate, mm/s": {
+        "5": "--rate 5",
+        "10": "--rate 10",
+        "20": "",
+        "50": "--rate 50",
+        "100": "--rate 100",
+    },
+    "damping": {
+        "combined 0.8": "",
+        "combined 0.4": "--damping 0.4",
+        "combined 0.95": "--damping 0.95",
+        "local 0.8": "--damping-kind local",
+        "local 0.2": "--damping-kind local --damping 0.2",
+        "local 0.8, 2 mm/s": "--damping-kind local --rate 2",
+    },
+    "time step over its limit": {
+        "0.8": "",
+        "0.4": "--dt-fraction 0.4",
+        "0.95": "--dt-fraction 0.95",
+    },
+}
+
+
+def folder(wall, options):
+    name = options.replace("--", "").replace(" ", "_") or "default"
+    return os.path.join(RESULTS, "convergence", wall, name)
+
+
+def done(wall, options):
+    return os.path.exists(os.path.join(folder(wall, options), "run.json"))
+
+
+def runAll():
+    for series in SERIES.values():
+        for wall, (scene, common) in WALLS.items():
+            for options in series.values():
+                if not done(wall, options):
+                    print(wall, options, flush=True)
+                    words = f"{COMMON} {common} {options}".split()
+                    run({"scene": scene, "options": words}, folder(wall, options))
+
+
+def table():
+    """Print the markdown table: peaks, their distance from the finest run of the same series, and times."""
+    print(
+        "| varied | wall | run | peak kN | at mm | of the finest mesh | top less base kN "
+        "| energy error | steps | µs a step | s |"
+    )
+    print("|---|---|---|---|---|---|---|---|---|---|---|")
+    for title, series in SERIES.items():
+        for wall in WALLS:
+            meshes = list(SERIES.values())[0].values()
+            reference = measure(folder(wall, [m for m in meshes if done(wall, m)][-1]))
+            for name, options in series.items():
+                if not done(wall, options):
+                    continue
+                n = measure(folder(wall, options))
+                ratio = n["peak_base_shear_kN"] / reference["peak_base_shear_kN"]
+                print(
+                    f"| {title} | {wall} | {name} | {n['peak_base_shear_kN']:.1f} "
+                    f"| {n['displacement_at_peak_mm']:.1f} | {ratio:.3f} | {n['top_less_base_shear_kN']:.1f} "
+                    f"| {n['balance_error']:.0e} | {n['steps']} | {n['microseconds_per_step']:.0f} "
+                    f"| {n['wall_clock_s']:.0f} |"
+                )
+
+
+def draw():
+    figure, axes = plt.subplots(
+        len(WALLS), len(SERIES), figsize=(4 * len(SERIES), 3.2 * len(WALLS))
+    )
+    for row, wall in zip(axes, WALLS):
+        for axis, (title, series) in zip(row, SERIES.items()):
+            for name, options in series.items():
+                if done(wall, options):
+                    curve = readCurve(folder(wall, options))
+                    x, y = curve["displacement_mm"], curve["base_shear_kN"]
+                    axis.plot(x, y, lw=1, label=name)
+            axis.set_title(title if row is axes[0] else "", fontsize=9)
+            axis.set_xlabel("displacement [mm]", fontsize=8)
+            axis.set_ylabel(f"{wall}: base shear [kN]", fontsize=8)
+            axis.set_ylim(bottom=0)
+            axis.grid(alpha=0.3)
+            axis.legend(fontsize=7)
+    figure.tight_layout()
+    figure.savefig(os.path.join(HERE, "curves.png"), dpi=70)
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] != ["--draw"]:
+        runAll()
+    table()
+    draw()
