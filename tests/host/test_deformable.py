@@ -237,6 +237,44 @@ def test_rigid_and_stiff_deformable_bricks_agree(scene):
     assert reactions[1] == pytest.approx(reactions[0], rel=0.01)
 
 
+def test_bricks_that_slide_on_each_other_keep_momentum_and_energy(scene):
+    mat = MasonryMat(young=E, poisson=NU, density=RHO)
+    x, y, z = BRICK
+    units = [addBlock(corners((0, 0, k * z), (x, y, (k + 1) * z)), mat) for k in (0, 1)]
+    zones = MasonryZones(bodies=units, divisions=[2, 1, 1], damping=0)
+    engines([MasonryJoint()], gravity=(0, 0, 0), damping=0, zones=zones)
+    connect()
+    O.dt = 0.3 * criticalTimeStep()[0]
+    place = {}
+    for unit, way in zip(units, (1, -1)):
+        for n in range(*zones.nodesOf(unit)):
+            place[n] = zones.referencePoint(unit, n)
+            zones.setVelocity(n, way * Vector3(5, 1, 0.02))
+
+    def momenta():
+        p, spin = Vector3.Zero, Vector3.Zero
+        rows = zip(zones.masses, zones.displacements, zones.velocities)
+        for n, (mass, u, v) in enumerate(rows):
+            p += mass * v
+            spin += mass * (place[n] + u).cross(v)
+        return p, spin
+
+    O.step()
+    p0, spin0 = momenta()
+    start = energy()["kinetic"]
+    moved = lambda: next(iter(O.interactions)).geom.jumps[0][1]
+    while abs(moved()) < 0.01 and O.time < 0.005:
+        O.step()
+    assert abs(moved()) >= 0.01
+    p1, spin1 = momenta()
+    assert (p1 - p0).norm() < 1e-9
+    assert (spin1 - spin0).norm() < 2e-3 * spin0.norm()
+    b = energy()
+    there = sum(b[k] for k in b if k.startswith(("kinetic", "elastic", "dissipated")))
+    assert b["dissipated_shear"] > 0.03 * start
+    assert there == pytest.approx(start, rel=1e-4)
+
+
 def test_the_stiffness_of_a_pair_is_that_of_bricks_and_joint_in_series(scene):
     elastic = MasonryJoint(name="bed", elastic=True)
     load = couplet(True, elastic, divisions=(2, 1, 2))

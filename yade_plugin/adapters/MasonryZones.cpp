@@ -154,6 +154,14 @@ void MasonryZones::setVelocity(int node, const Vector3r& velocity) {
     ahead_ = true;
 }
 
+py::list MasonryZones::masses() {
+    py::list all;
+    for (const auto& unit : units())
+        for (double mass : unit.elasticity->masses())
+            all.append(mass);
+    return all;
+}
+
 Vector3r MasonryZones::reference(const Unit& unit, int node) const {
     return unit.centre + unit.elasticity->mesh().nodes[node - unit.firstNode];
 }

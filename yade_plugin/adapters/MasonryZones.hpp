@@ -72,7 +72,8 @@ public:
             .def("referencePoint", &MasonryZones::referencePoint, py::args("body", "node"),
                  "Place of a node of a unit in the reference state [m].")
             .def("setVelocity", &MasonryZones::setVelocity, py::args("node", "velocity"),
-                 "Give a node a velocity [m/s], as a start.");
+                 "Give a node a velocity [m/s], as a start.")
+            .add_property("masses", &MasonryZones::masses, "Masses of all nodes [kg].");
     }
 
     void postLoad();
@@ -128,6 +129,7 @@ private:
     py::tuple nodesOf(int body);
     Vector3r referencePoint(int body, int node);
     void setVelocity(int node, const Vector3r& velocity);
+    py::list masses();
 
     std::vector<Unit> units_;
     std::vector<int> unitOfBody_, places_; // of all nodes
