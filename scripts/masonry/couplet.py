@@ -41,6 +41,8 @@ class Couplet:
         )
         O.reset()
         brick, rigid = materials.calciumSilicateUnit(), materials.loadingBlock()
+        brick.density *= args.density_scaling
+        rigid.density *= args.density_scaling
         O.materials.append([brick, rigid])
         length, thickness, height = UNIT
         self.base, lower, upper, self.top = [

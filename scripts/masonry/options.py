@@ -77,7 +77,8 @@ def parser(description, until, rate=20.0):
         metavar="N",
         type=lambda t: _count(t, 10),
         default=1,
-        help="cells of a deformable half brick along its length; along its height as many",
+        help="cells of a deformable half brick along its length; along its height as many; its joints have a point at "
+        "every node",
     )
     p.add_argument(
         "--damping-kind",
@@ -90,7 +91,7 @@ def parser(description, until, rate=20.0):
         metavar="N",
         type=lambda t: _count(t, 100),
         default=4,
-        help="points along each joint",
+        help="points along each joint of rigid units",
     )
     p.add_argument(
         "--damping",
@@ -105,6 +106,14 @@ def parser(description, until, rate=20.0):
         type=lambda t: number(t, 0, 1, above=True),
         default=0.8,
         help="time step over its stable limit [-]",
+    )
+    p.add_argument(
+        "--density-scaling",
+        metavar="F",
+        type=lambda t: number(t, 1e-6, 1e6),
+        default=1.0,
+        help="masses over their true values, weights kept [-]: a run as with the rate times sqrt(F), in time steps "
+        "sqrt(F) as long",
     )
     p.add_argument(
         "--crack-surfaces",
