@@ -90,6 +90,7 @@ static void registerAll() {
     enroll<MasonryJointLoop>(names);
     enroll<MasonryLoad>(names);
     enroll<MasonryEnergy>(names);
+    enroll<MasonryIntegrator>(names);
     enroll<MasonryVtkRecorder>(names);
     Singleton<yade::Omega>::instance().buildDynlibDatabase(names);
 

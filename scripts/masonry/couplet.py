@@ -86,7 +86,11 @@ class Couplet:
             loads=[self.vertical, self.lateral],
             zones=self.zones,
         )
-        self.energy = next(e for e in O.engines if e.label == "energy")
+        self.energy, integrator = [
+            e for e in O.engines if e.label in ("energy", "integrator")
+        ]
+        if not self.zones:
+            integrator.dampingKind = args.damping_kind or "local"
         self.joint = next(i for i in connect() if {i.id1, i.id2} == {lower, upper})
         O.dt = args.dt_fraction * criticalTimeStep()[0]
         self.steps, self.progress = 0, Progress()

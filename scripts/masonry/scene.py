@@ -43,13 +43,14 @@ def engines(
     """Fill O.engines for a masonry scene: joints, loads, energy balance, integration. No collider.
 
     :param joints: MasonryJoint objects; the first that fits a pair of units is taken
-    :param damping: Cundall's local damping [-] (paper eq. (3): 0.8)
+    :param damping: Cundall's local damping of rigid units [-] (paper eq. (3): 0.8)
     :param gravity: [m/s²]
     :param subcontacts: per joint, along it
     :param rows: rows of subcontacts across a joint; 1 is enough in the plane
     :param loads: MasonryLoad engines
     :param zones: MasonryZones of the deformable units, if there are any
-    :param functors: joints through YADE's InteractionLoop, the slow reference, instead of MasonryJointLoop
+    :param functors: YADE's InteractionLoop and NewtonIntegrator, the slow reference, instead of MasonryJointLoop and
+        MasonryIntegrator
     """
     if zones:
         zones.gravity = Vector3(*gravity)
@@ -70,11 +71,17 @@ def engines(
         ),
         *loads,
         MasonryEnergy(label="energy"),
-        NewtonIntegrator(
-            damping=damping,
-            gravity=Vector3(*gravity),
-            exactAsphericalRot=True,
-            label="integrator",
+        (
+            NewtonIntegrator(
+                damping=damping,
+                gravity=Vector3(*gravity),
+                exactAsphericalRot=True,
+                label="integrator",
+            )
+            if functors
+            else MasonryIntegrator(
+                damping=damping, gravity=Vector3(*gravity), label="integrator"
+            )
         ),
     ] + ([zones] if zones else [])
 

@@ -164,7 +164,9 @@ class WallModel:
             loads=[self.vertical, self.load],
             zones=self.zones,
         )
-        self.energy = next(e for e in O.engines if e.label == "energy")
+        self.energy, self.integrator = [
+            e for e in O.engines if e.label in ("energy", "integrator")
+        ]
         crack = self.joints.get("crack")
         sameBrick = lambda b1, b2: b1.id in self.brickOf and self.brickOf[
             b1.id
@@ -294,6 +296,8 @@ class WallModel:
         if self.zones:
             self.zones.damping = args.damping
             self.zones.dampingKind = args.damping_kind or "combined"
+        else:
+            self.integrator.dampingKind = args.damping_kind or "local"
         began = O.time
         while values["displacement_mm"] < args.until:
             if self.vtk and values["displacement_mm"] >= nextFrame:

@@ -1,11 +1,13 @@
 #include "MasonryEngines.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
+#include "law/Text.hpp"
 #include <Eigen/Eigenvalues>
 #include <map>
 
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryLoad)
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryEnergy)
+BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryIntegrator)
 
 namespace masonry {
 
@@ -38,11 +40,106 @@ Vector3r inverseMass(const State& s) {
     return inverse;
 }
 
-yade::NewtonIntegrator* integratorOf(const yade::Scene& scene) {
+struct Environment { // of the integrator that runs
+    double damping = 0;
+    Vector3r gravity = Vector3r::Zero();
+};
+
+Environment environmentOf(const yade::Scene& scene) {
     for (const auto& engine : scene.engines)
-        if (engine->getClassName() == "NewtonIntegrator") return static_cast<yade::NewtonIntegrator*>(engine.get());
+        if (const auto* own = dynamic_cast<const MasonryIntegrator*>(engine.get()))
+            return {own->damping, own->gravity};
+        else if (engine->getClassName() == "NewtonIntegrator") {
+            const auto& host = static_cast<const yade::NewtonIntegrator&>(*engine);
+            return {host.damping, host.gravity};
+        }
+    return {};
+}
+
+std::vector<MasonryLoad*> loadsOf(const yade::Scene& scene) {
+    std::vector<MasonryLoad*> all;
+    for (const auto& engine : scene.engines)
+        if (auto* load = dynamic_cast<MasonryLoad*>(engine.get()); load && !load->dead) all.push_back(load);
+    return all;
+}
+
+MasonryZones* zonesOf(const yade::Scene& scene) {
+    for (const auto& engine : scene.engines)
+        if (auto* zones = dynamic_cast<MasonryZones*>(engine.get())) return zones;
     return nullptr;
 }
+
+int sign(double x) { return (x > 0) - (x < 0); }
+
+// A step of a body, in the host's equations. It takes v- to v+ with the forces at x_n. Between x_n and x_n+1 a force
+// does the work of its mean over both ends: half of it with v- at n, half with v+ (pending until n+1). With the kinetic
+// energy m v-·v+ / 2 the balance at x_n is then an identity, and the joints' trapezoidal work is its counterpart.
+struct BodyStep {
+    Vector3r vel, angVel;      // after
+    Vector3r torque;           // less what damping takes
+    double kinetic = 0;        // [J]
+    double work[2] = {0, 0};   // of prescribed motions, at n and pending [J]
+    double damped[2] = {0, 0}; // taken by damping, at n and pending [J]
+};
+
+// `last` are force and torque per mass and inertia of the step before, for combined damping, and are brought up to
+// date; null: local damping.
+BodyStep stepOf(const State& s, const Vector3r& force, const Vector3r& torque, const Environment& around, double dt,
+                Vector3r* last) {
+    BodyStep step{s.vel, s.angVel, torque};
+    const double alpha = s.isDamped ? around.damping : 0;
+    // What damping takes of an acceleration, paper eq. (3) with the velocity in the middle of the step, or combined.
+    const auto drag = [&](double free, double middle, double* before) {
+        const double local = alpha * std::abs(free) * sign(middle);
+        if (!before) return local;
+        const double change = free - *before;
+        *before = free;
+        return 0.5 * (local - alpha * std::abs(free) * sign(change));
+    };
+    for (int i = 0; i < 3; ++i) {
+        const double all = force[i] + s.mass * around.gravity[i];
+        if (blocked(s, i)) {
+            step.work[0] -= 0.5 * dt * s.vel[i] * all;
+            continue;
+        }
+        const double free = force[i] / s.mass + around.gravity[i];
+        const double taken = drag(free, s.vel[i] + 0.5 * dt * free, last ? &last[0][i] : nullptr);
+        step.vel[i] += dt * (free - taken);
+        step.damped[0] += 0.5 * dt * s.mass * taken * s.vel[i];
+        step.damped[1] += 0.5 * dt * s.mass * taken * step.vel[i];
+        step.kinetic += 0.5 * s.mass * s.vel[i] * step.vel[i];
+    }
+    // With a blocked rotation the integrator damps accelerations about the global axes, without it the torque.
+    const bool restrained = rotationRestrained(s);
+    Vector3r taken = Vector3r::Zero();
+    for (int i = 0; i < 3; ++i) {
+        if (blocked(s, 3 + i)) {
+            step.work[0] -= 0.5 * dt * s.angVel[i] * torque[i];
+            continue;
+        }
+        const double free = torque[i] / s.inertia[i];
+        taken[i] =
+            s.inertia[i] * drag(free, s.angVel[i] + (restrained ? 0.5 * dt * free : 0), last ? &last[1][i] : nullptr);
+    }
+    step.torque -= taken;
+    step.work[1] = step.work[0];
+    if (restrained) {
+        for (int i = 0; i < 3; ++i)
+            if (!blocked(s, 3 + i)) {
+                step.angVel[i] += dt * step.torque[i] / s.inertia[i];
+                step.kinetic += 0.5 * s.inertia[i] * s.angVel[i] * step.angVel[i];
+            }
+    } else {
+        const Matrix3r axes = s.ori.toRotationMatrix();
+        step.angVel += dt * (inverseInertia(s) * step.torque);
+        step.kinetic += 0.5 * (axes.transpose() * s.angVel).dot(s.inertia.cwiseProduct(axes.transpose() * step.angVel));
+    }
+    step.damped[0] += 0.5 * dt * taken.dot(s.angVel);
+    step.damped[1] += 0.5 * dt * taken.dot(step.angVel);
+    return step;
+}
+
+bool moves(const State& s) { return (s.blockedDOFs & 63) != 63 || !s.vel.isZero(0) || !s.angVel.isZero(0); }
 
 template <class F> void eachJoint(const yade::Scene& scene, F&& visit) {
     for (std::size_t i = 0; i < scene.interactions->currSize; ++i) {
@@ -58,10 +155,9 @@ template <class F> void eachJoint(const yade::Scene& scene, F&& visit) {
 void MasonryLoad::action() {
     if (body < 0 || std::size_t(body) >= scene->bodies->body.size() || !scene->bodies->body[body])
         throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) + " does not exist");
-    for (const auto& engine : scene->engines)
-        if (auto* zones = dynamic_cast<MasonryZones*>(engine.get()); zones && zones->unitOf(body))
-            throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) +
-                                        " is a deformable unit; load a rigid block joined to it");
+    if (auto* zones = zonesOf(*scene); zones && zones->unitOf(body))
+        throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) +
+                                    " is a deformable unit; load a rigid block joined to it");
     if (!(direction.norm() > 0)) throw std::invalid_argument("MasonryLoad.direction must not be zero");
     auto& state = *scene->bodies->body[body]->state;
     state.isDamped = false;
@@ -72,11 +168,9 @@ void MasonryLoad::action() {
     if (driven) {
         // The force R that gives the point its velocity after this step: d·(v + w x arm) = V with
         // v' = v + dt (F + R d)/m + dt g, w' = w + dt I^-1 (T + arm x R d).
-        const auto* integrator = integratorOf(*scene);
         const Vector3r d = direction.normalized(), lever = arm.cross(d), perMass = inverseMass(state);
         const Matrix3r perInertia = inverseInertia(state);
-        const Vector3r push =
-            forces.getForce(body) + total + state.mass * (integrator ? integrator->gravity : Vector3r::Zero());
+        const Vector3r push = forces.getForce(body) + total + state.mass * environmentOf(*scene).gravity;
         const Vector3r v = state.vel + scene->dt * perMass.cwiseProduct(push);
         const Vector3r w = state.angVel + scene->dt * (perInertia * (forces.getTorque(body) + arm.cross(total)));
         const double mobility = d.dot(perMass.cwiseProduct(d)) + lever.dot(perInertia * lever);
@@ -97,76 +191,144 @@ Vector3r MasonryLoad::displacement() const {
     return state.pos + state.ori * state.refOri.conjugate() * r - point;
 }
 
-// The integrator's step n takes v- to v+ with the forces at x_n. Between x_n and x_n+1 a force does the work of its
-// mean over both ends: half of it with v- at n, half with v+ (kept pending until n+1). With the kinetic energy m v-·v+
-// / 2 the balance at x_n is then an identity, and the joints' trapezoidal work is its counterpart.
+// Half of a load's work is done with the velocity before the step and half with the one after, as in BodyStep.
+void MasonryLoad::workBefore(double dt) {
+    const auto& s = *scene->bodies->body[body]->state;
+    work += pendingWork + 0.5 * dt * total.dot(s.vel + s.angVel.cross(arm));
+}
+
+void MasonryLoad::workAfter(double dt, const Vector3r& vel, const Vector3r& angVel) {
+    pendingWork = 0.5 * dt * total.dot(vel + angVel.cross(arm));
+}
+
+void BodyEnergies::beginStep() {
+    external += pendingExternal, damped += pendingDamped;
+    pendingExternal = pendingDamped = kinetic = fallen = 0;
+}
+
+void BodyEnergies::add(const BodyEnergies& other) {
+    external += other.external, pendingExternal += other.pendingExternal;
+    damped += other.damped, pendingDamped += other.pendingDamped;
+    kinetic += other.kinetic, fallen += other.fallen;
+}
+
+namespace {
+
+BodyEnergies energiesOf(const BodyStep& step) {
+    return {step.work[0], step.damped[0], step.work[1], step.damped[1], step.kinetic, 0};
+}
+
+} // namespace
+
 void MasonryEnergy::action() {
-    const auto* integrator = integratorOf(*scene);
-    const double alpha = integrator ? integrator->damping : 0, dt = scene->dt;
-    const Vector3r g = integrator ? integrator->gravity : Vector3r::Zero();
+    for (const auto& engine : scene->engines)
+        if (dynamic_cast<MasonryIntegrator*>(engine.get())) return; // keeps them itself
+    const auto around = environmentOf(*scene);
     auto& forces = scene->forces();
     forces.sync();
-    std::map<int, std::vector<MasonryLoad*>> loads;
-    MasonryZones* zones = nullptr;
-    for (const auto& engine : scene->engines)
-        if (auto* load = dynamic_cast<MasonryLoad*>(engine.get()); load && !load->dead)
-            loads[load->body].push_back(load);
-        else if (auto* found = dynamic_cast<MasonryZones*>(engine.get()))
-            zones = found;
-
-    external += pendingExternal, damping += pendingDamping;
-    pendingExternal = pendingDamping = kinetic = gravity = 0;
+    auto* zones = zonesOf(*scene);
+    beginStep();
     for (const auto& body : scene->bodies->body) {
         if (!body || !body->state || (zones && zones->unitOf(body->id))) continue; // zones keep their own
         const State& s = *body->state;
-        gravity += s.mass * g.dot(s.pos - s.refPos);
-        const bool moves = (s.blockedDOFs & 63) != 63;
-        if (!moves && s.vel.isZero() && s.angVel.isZero()) continue;
-        const Vector3r force = forces.getForce(body->id), torque = forces.getTorque(body->id);
-        const auto sign = [](double x) { return (x > 0) - (x < 0); };
-        const double brake = s.isDamped ? alpha : 0;
-        Vector3r vel = s.vel, angVel = s.angVel, dragTorque;
-        for (int i = 0; i < 3; ++i) {
-            if (blocked(s, i)) {
-                external -= 0.5 * dt * s.vel[i] * (force[i] + s.mass * g[i]);
-                pendingExternal -= 0.5 * dt * s.vel[i] * (force[i] + s.mass * g[i]);
-                continue;
-            }
-            const double free = force[i] / s.mass + g[i];
-            const double drag = brake * free * sign(free * (s.vel[i] + 0.5 * dt * free));
-            vel[i] += dt * (free - drag);
-            damping += 0.5 * dt * s.mass * drag * s.vel[i];
-            pendingDamping += 0.5 * dt * s.mass * drag * vel[i];
-            kinetic += 0.5 * s.mass * s.vel[i] * vel[i];
+        fallen += s.mass * around.gravity.dot(s.pos - s.refPos);
+        if (!moves(s)) continue;
+        const auto step = stepOf(s, forces.getForce(body->id), forces.getTorque(body->id), around, scene->dt, nullptr);
+        add(energiesOf(step));
+    }
+    for (auto* load : loadsOf(*scene)) {
+        const State& s = *scene->bodies->body[load->body]->state;
+        const auto step =
+            stepOf(s, forces.getForce(load->body), forces.getTorque(load->body), around, scene->dt, nullptr);
+        load->workBefore(scene->dt);
+        load->workAfter(scene->dt, step.vel, step.angVel);
+    }
+}
+
+void MasonryIntegrator::postLoad() {
+    std::vector<std::string> wrong;
+    if (!(damping >= 0 && damping <= 0.99)) wrong.push_back("damping " + text(damping) + " must be 0 to 0.99");
+    if (dampingKind != "combined" && dampingKind != "local")
+        wrong.push_back("dampingKind '" + dampingKind + "' must be 'combined' or 'local'");
+    if (!gravity.allFinite()) wrong.push_back("gravity must be finite numbers");
+    if (!wrong.empty()) throw std::invalid_argument("MasonryIntegrator: " + joined(wrong, "; "));
+}
+
+namespace {
+
+// Rotation of a body by the end of a step.
+void turn(State& s, const BodyStep& step, double dt) {
+    if (rotationRestrained(s)) { // by the rotation vector angVel dt
+        s.angVel = step.angVel;
+        const Vector3r half = 0.5 * dt * s.angVel;
+        const double h2 = half.squaredNorm();
+        if (h2 == 0) return;
+        double cosine, sinc; // series are exact to the last digit up to a thousandth
+        if (h2 < 1e-6)
+            cosine = 1 - h2 * (0.5 - h2 / 24), sinc = 1 - h2 * (1 / 6.0 - h2 / 120);
+        else {
+            const double h = std::sqrt(h2);
+            cosine = std::cos(h), sinc = std::sin(h) / h;
         }
-        // With a blocked rotation the integrator damps accelerations about the global axes, without it the torque.
-        const bool restrained = rotationRestrained(s);
-        for (int i = 0; i < 3; ++i) {
-            const double free = torque[i] / s.inertia[i];
-            dragTorque[i] = brake * torque[i] * sign(torque[i] * (s.angVel[i] + (restrained ? 0.5 * dt * free : 0)));
-            if (!blocked(s, 3 + i)) continue;
-            external -= 0.5 * dt * s.angVel[i] * torque[i];
-            pendingExternal -= 0.5 * dt * s.angVel[i] * torque[i];
-            dragTorque[i] = 0;
+        const Vector3r axis = sinc * half;
+        s.ori = Quaternionr(cosine, axis[0], axis[1], axis[2]) * s.ori;
+        s.ori.normalize();
+        return;
+    }
+    // A free body: leapfrog of the angular momentum, its spin taken in the body's axes, with the orientation at half
+    // step from the momentum at the step; the host's scheme for aspherical bodies.
+    const auto spinOf = [&](const Vector3r& momentum) {
+        return Vector3r((s.ori.conjugate() * momentum).cwiseQuotient(s.inertia));
+    };
+    const auto moved = [](const Quaternionr& from, const Quaternionr& by, const Vector3r& spin, double time) {
+        const Quaternionr change = by * Quaternionr(0, spin[0], spin[1], spin[2]);
+        return Quaternionr((from.coeffs() + 0.5 * time * change.coeffs()).eval());
+    };
+    const Quaternionr middle = moved(s.ori, s.ori, spinOf(s.angMom + 0.5 * dt * step.torque), 0.5 * dt);
+    s.angMom += dt * step.torque;
+    const Vector3r spin = spinOf(s.angMom);
+    s.ori = moved(s.ori, middle, spin, dt);
+    s.angVel = s.ori * spin;
+    s.ori.normalize();
+}
+
+} // namespace
+
+void MasonryIntegrator::action() {
+    auto& forces = scene->forces();
+    forces.sync();
+    const auto& all = scene->bodies->body;
+    auto* zones = zonesOf(*scene);
+    const auto loads = loadsOf(*scene);
+    const Environment around{damping, gravity};
+    const double dt = scene->dt;
+    const bool combined = dampingKind == "combined";
+    if (combined) last.resize(2 * all.size(), Vector3r::Zero());
+    for (auto* load : loads)
+        load->workBefore(dt);
+    constexpr int piece = 64; // bodies that are summed up together, whatever the number of threads
+    const int count = int(all.size()), pieces = (count + piece - 1) / piece;
+    std::vector<BodyEnergies> sums(pieces);
+#pragma omp parallel for schedule(static)
+    for (int n = 0; n < pieces; ++n)
+        for (int id = n * piece; id < std::min(count, (n + 1) * piece); ++id) {
+            if (!all[id] || (zones && zones->unitOf(id))) continue; // zones move their own
+            State& s = *all[id]->state;
+            sums[n].fallen += s.mass * gravity.dot(s.pos - s.refPos);
+            if (!moves(s)) continue;
+            const auto step =
+                stepOf(s, forces.getForce(id), forces.getTorque(id), around, dt, combined ? &last[2 * id] : nullptr);
+            sums[n].add(energiesOf(step));
+            s.vel = step.vel;
+            s.pos += dt * s.vel;
+            turn(s, step, dt);
         }
-        if (restrained) {
-            for (int i = 0; i < 3; ++i)
-                if (!blocked(s, 3 + i)) {
-                    angVel[i] += dt * (torque[i] - dragTorque[i]) / s.inertia[i];
-                    kinetic += 0.5 * s.inertia[i] * s.angVel[i] * angVel[i];
-                }
-        } else {
-            const Matrix3r axes = s.ori.toRotationMatrix();
-            angVel += dt * (inverseInertia(s) * (torque - dragTorque));
-            kinetic += 0.5 * (axes.transpose() * s.angVel).dot(s.inertia.cwiseProduct(axes.transpose() * angVel));
-        }
-        damping += 0.5 * dt * dragTorque.dot(s.angVel);
-        pendingDamping += 0.5 * dt * dragTorque.dot(angVel);
-        if (const auto mine = loads.find(body->id); mine != loads.end())
-            for (auto* load : mine->second) {
-                load->work += load->pendingWork + 0.5 * dt * load->total.dot(s.vel + s.angVel.cross(load->arm));
-                load->pendingWork = 0.5 * dt * load->total.dot(vel + angVel.cross(load->arm));
-            }
+    beginStep();
+    for (const auto& sum : sums)
+        add(sum);
+    for (auto* load : loads) {
+        const State& s = *all[load->body]->state;
+        load->workAfter(dt, s.vel, s.angVel);
     }
 }
 
@@ -184,11 +346,13 @@ py::dict MasonryEnergy::balance() {
             stored.compression += geom.points[i].area * e.compression;
         }
     });
-    double work = external, falls = gravity, moving = kinetic, drag = damping, inUnits = 0;
+    double work = external, falls = fallen, moving = kinetic, drag = damped, inUnits = 0;
     for (const auto& engine : running.engines)
         if (const auto* load = dynamic_cast<MasonryLoad*>(engine.get()))
             work += load->work;
-        else if (const auto* zones = dynamic_cast<MasonryZones*>(engine.get())) {
+        else if (const auto* own = dynamic_cast<MasonryIntegrator*>(engine.get())) {
+            work += own->external, falls += own->fallen, moving += own->kinetic, drag += own->damped;
+        } else if (const auto* zones = dynamic_cast<MasonryZones*>(engine.get())) {
             falls += zones->gravityWork, moving += zones->kinetic, drag += zones->dampingWork;
             inUnits += zones->elastic;
         }
@@ -297,8 +461,7 @@ py::tuple criticalTimeStep() {
         if (!whole.degrees.empty()) add(std::move(whole));
     });
     // Where damping brakes, it adds that share to a force, as stiffer joints and zones would.
-    const auto* integrator = integratorOf(scene);
-    double damping = integrator ? integrator->damping : 0;
+    double damping = environmentOf(scene).damping;
     for (const auto& engine : scene.engines)
         if (auto* zones = dynamic_cast<MasonryZones*>(engine.get())) {
             damping = std::max(damping, zones->damping);

@@ -35,6 +35,8 @@ public:
 
     void action() override;
     Vector3r displacement() const; // of the point, since the reference state
+    void workBefore(double dt);    // of a step, for the energy balance: to be called with the old velocity of the body
+    void workAfter(double dt, const Vector3r& vel, const Vector3r& angVel); // and with the new one
 
     Vector3r total = Vector3r::Zero(), arm = Vector3r::Zero(); // of the current step: force and its arm
 
@@ -44,30 +46,39 @@ public:
     }
 };
 
-class MasonryEnergy : public Adapter<MasonryEnergy, yade::GlobalEngine> {
+struct BodyEnergies {                                                        // of rigid bodies [J]
+    double external = 0, damped = 0, pendingExternal = 0, pendingDamped = 0; // so far; pending is for the next step
+    double kinetic = 0, fallen = 0;
+    void beginStep();
+    void add(const BodyEnergies&);
+
+    template <class Class, class Visit> static void attributes(Visit&& visit) {
+        visit("external", &Class::external,
+              "Work of prescribed motions of bodies so far, without that of MasonryLoad [J].", ReadOnly);
+        visit("damped", &Class::damped, "Energy taken by damping so far [J].", ReadOnly);
+        visit("kinetic", &Class::kinetic, "Kinetic energy [J].", ReadOnly);
+        visit("fallen", &Class::fallen, "Work of gravity since the reference state [J].", ReadOnly);
+        visit("pendingExternal", &Class::pendingExternal, "", Hidden);
+        visit("pendingDamped", &Class::pendingDamped, "", Hidden);
+    }
+};
+
+class MasonryEnergy : public Adapter<MasonryEnergy, yade::GlobalEngine>, public BodyEnergies {
 public:
     static constexpr const char* className = "MasonryEnergy";
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
         "Keeps the energy balance of a run: work of loads, prescribed motions and gravity = kinetic + elastic + "
-        "dissipated in the joints by mode + damping. Stands directly before NewtonIntegrator and follows its "
-        "equations, "
-        "so that the balance closes to round-off and the small terms of finite rotation.";
+        "dissipated in the joints by mode + damping. MasonryIntegrator and MasonryZones keep what is theirs; for "
+        "NewtonIntegrator it stands directly before it and follows its equations. The balance closes to round-off and "
+        "the small terms of finite rotation.";
 
-    double external = 0, damping = 0, pendingExternal = 0, pendingDamping = 0, kinetic = 0, gravity = 0,
-           largestError = 0;
+    double largestError = 0;
 
     template <class Visit> static void attributes(Visit&& visit) {
-        using E = MasonryEnergy;
-        visit("external", &E::external, "Work of prescribed motions of bodies so far, without that of MasonryLoad [J].",
-              ReadOnly);
-        visit("damping", &E::damping, "Energy taken by the integrator's damping so far [J].", ReadOnly);
-        visit("kinetic", &E::kinetic, "Kinetic energy [J].", ReadOnly);
-        visit("gravity", &E::gravity, "Work of gravity since the reference state [J].", ReadOnly);
-        visit("largestError", &E::largestError,
+        BodyEnergies::attributes<MasonryEnergy>(visit);
+        visit("largestError", &MasonryEnergy::largestError,
               "Largest error of the balance seen by balance(), relative to the work done [-].", ReadOnly);
-        visit("pendingExternal", &E::pendingExternal, "", Hidden);
-        visit("pendingDamping", &E::pendingDamping, "", Hidden);
     }
 
     void action() override;
@@ -80,6 +91,35 @@ public:
     }
 };
 
+class MasonryIntegrator : public Adapter<MasonryIntegrator, yade::GlobalEngine>, public BodyEnergies {
+public:
+    static constexpr const char* className = "MasonryIntegrator";
+    static constexpr const char* baseName = "GlobalEngine";
+    static constexpr const char* doc =
+        "Moves the rigid bodies, in the equations of NewtonIntegrator (paper eqs. (1)-(3)) without what masonry does "
+        "not need (periodic cells, clumps, bounds for a collider), and keeps their energies. NewtonIntegrator and "
+        "MasonryEnergy stay as the reference.";
+
+    double damping = 0.8;
+    std::string dampingKind = "local";
+    Vector3r gravity = Vector3r(0, 0, -9.81);
+    std::vector<Vector3r> last; // force per mass and torque per inertia of the step before, for combined damping
+
+    template <class Visit> static void attributes(Visit&& visit) {
+        using I = MasonryIntegrator;
+        visit("damping", &I::damping, "Damping constant alpha [-], 0 to 0.99 (paper eq. (3): 0.8).");
+        visit("dampingKind", &I::dampingKind,
+              "'local': -alpha |F| sgn(v), paper eq. (3); 'combined': alpha |F| (sgn(dF/dt) - sgn(v)) / 2, which "
+              "calms what swings about a steady motion, too.");
+        visit("gravity", &I::gravity, "Gravity [m/s²].");
+        BodyEnergies::attributes<I>(visit);
+        visit("last", &I::last, "", Hidden);
+    }
+
+    void postLoad();
+    void action() override;
+};
+
 // The largest stable time step of joints and zones under the damping of the engines [s], a bound that is safe, and the
 // ids of the two bodies whose joint, or of the unit whose zone, sets it: (dt, id1, id2). Without any (inf, -1, -1).
 py::tuple criticalTimeStep();
@@ -88,3 +128,4 @@ py::tuple criticalTimeStep();
 
 BOOST_CLASS_EXPORT_KEY(masonry::MasonryLoad)
 BOOST_CLASS_EXPORT_KEY(masonry::MasonryEnergy)
+BOOST_CLASS_EXPORT_KEY(masonry::MasonryIntegrator)

@@ -51,8 +51,8 @@ public:
               "Default: 1, 1, 1.");
         visit("damping", &Z::damping, "Damping constant alpha [-], 0 to 0.99 (paper eq. (3): 0.8).");
         visit("dampingKind", &Z::dampingKind,
-              "'combined': alpha |F| (sgn(dF/dt) - sgn(v)) / 2, blind to steady motion; 'local': -alpha |F| sgn(v), "
-              "paper eq. (3), which drags deformable units.");
+              "'combined': alpha |F| (sgn(dF/dt) - sgn(v)) / 2, calms what swings about a steady motion, too; "
+              "'local': -alpha |F| sgn(v), paper eq. (3), lets it swing and turns it into a drag.");
         visit("blocked", &Z::blocked,
               "Directions in which the nodes are held, as 'y': a wall in its plane, in plane stress.");
         visit("gravity", &Z::gravity, "Gravity [m/s²].");
