@@ -84,8 +84,8 @@ struct BodyStep {
 
 // `last` are force and torque per mass and inertia of the step before, for combined damping, and are brought up to
 // date; null: local damping.
-BodyStep stepOf(const State& s, const Vector3r& force, const Vector3r& torque, const Environment& around, double dt,
-                Vector3r* last) {
+[[gnu::always_inline]] inline BodyStep stepOf(const State& s, const Vector3r& force, const Vector3r& torque,
+                                              const Environment& around, double dt, Vector3r* last) {
     BodyStep step{s.vel, s.angVel, torque};
     const double alpha = s.isDamped ? around.damping : 0;
     // What damping takes of an acceleration, paper eq. (3) with the velocity in the middle of the step, or combined.
@@ -312,6 +312,9 @@ void MasonryIntegrator::action() {
 #pragma omp parallel for schedule(static)
     for (int n = 0; n < pieces; ++n)
         for (int id = n * piece; id < std::min(count, (n + 1) * piece); ++id) {
+            if (const auto* later = id + 8 < count ? all[id + 8].get() : nullptr) // states lie all over the memory
+                for (const auto* line : {&later->state->pos[0], &later->state->vel[0], &later->state->refPos[0]})
+                    __builtin_prefetch(line);
             if (!all[id] || (zones && zones->unitOf(id))) continue; // zones move their own
             State& s = *all[id]->state;
             sums[n].fallen += s.mass * gravity.dot(s.pos - s.refPos);

@@ -4,7 +4,7 @@
 namespace masonry {
 
 namespace {
-constexpr std::uint8_t pending = 255; // beside the values of Regime: the full law must see this subcontact
+constexpr std::int64_t pending = -1; // beside the values of Regime: the full law must see this subcontact
 }
 
 JointColumns::JointColumns(const JointLaw& law, const ElasticStiffness& k, std::size_t size) : k_(k) {
@@ -12,22 +12,17 @@ JointColumns::JointColumns(const JointLaw& law, const ElasticStiffness& k, std::
                          &shearDamage_, &normalStress_, &shearStressA_, &shearStressB_, &flow_, &intact_,
                          &capStrength2_, &lostTension_, &lostShear_, &lostCompression_})
         column->assign(size, 0);
-    regime_.assign(size, 0);
+    regime_.assign(size, 0), row_.assign(size, 0);
     const auto& p = law.properties();
     const bool cap = p.cap && !p.elastic;
-    limits_ = {k.normal,
-               k.shear,
-               p.tensileStrength,
-               p.tensileStrength / k.normal,
-               p.residualCohesion,
-               p.cohesion - p.residualCohesion,
-               p.residualFriction,
-               p.friction - p.residualFriction,
-               p.capNormal,
-               p.capShear,
-               p.capLinear,
-               cap ? law.limitClosure(k) : HUGE_VAL,
-               cap};
+    limits_ = {k.normal,           k.shear,
+               p.tensileStrength,  p.tensileStrength / k.normal,
+               p.residualCohesion, p.cohesion - p.residualCohesion,
+               p.residualFriction, p.friction - p.residualFriction,
+               p.capNormal,        p.capShear,
+               p.capLinear,        cap ? law.limitClosure(k) : HUGE_VAL,
+               p.shearStiffness,   cap};
+    slides_ = !p.elastic && p.dilatancy == 0;
     if (p.elastic) { // no strength is ever reached
         limits_.tensileStrength = limits_.onset = limits_.residualCohesion = HUGE_VAL;
         limits_.cohesionLoss = limits_.residualFriction = limits_.frictionLoss = 0;
@@ -48,7 +43,7 @@ void JointColumns::set(const JointLaw& law, std::size_t i, const JointState& s) 
     largestOpening_[i] = s.largestOpening, largestClosure_[i] = s.largestClosure;
     tensionDamage_[i] = s.tensionDamage, shearDamage_[i] = s.shearDamage;
     normalStress_[i] = s.normalStress, shearStressA_[i] = s.shearStress.a, shearStressB_[i] = s.shearStress.b;
-    regime_[i] = std::uint8_t(s.regime);
+    regime_[i] = std::int64_t(s.regime);
     flow_[i] = s.crushing - s.dilation;
     intact_[i] = 1 - JointLaw::coupled(s);
     const double strength = limits_.cap ? law.compressiveStrength(k_, s.largestClosure) : HUGE_VAL;
@@ -70,7 +65,7 @@ void JointColumns::advanceIntact(const Limits& m, std::size_t count, const doubl
                                  double* __restrict largestOpening, double* __restrict largestClosure,
                                  double* __restrict normalStress, double* __restrict shearStressA,
                                  double* __restrict shearStressB, double* __restrict lostTension,
-                                 std::uint8_t* __restrict regime) {
+                                 std::int64_t* __restrict regime) {
     const double kn = m.normalStiffness, ks = m.shearStiffness, ft = m.tensileStrength, onset = m.onset;
     const double cr = m.residualCohesion, dc = m.cohesionLoss, fr = m.residualFriction, df = m.frictionLoss;
     const double cnn = m.capNormal, css = m.capShear, cn = m.capLinear, limit = m.limitClosure;
@@ -96,16 +91,125 @@ void JointColumns::advanceIntact(const Limits& m, std::size_t count, const doubl
         shearStressB[i] = quick ? b : shearStressB[i];
         largestOpening[i] = quick & (elastic > farthest) ? elastic : farthest;
         largestClosure[i] = quick & (closure > closest) ? closure : closest;
-        regime[i] = quick ? std::uint8_t(Regime::Elastic) : pending;
+        regime[i] = quick ? std::int64_t(Regime::Elastic) : pending;
     }
+}
+
+namespace {
+constexpr std::size_t most = 32; // subcontacts whose slide is tried at a time
+}
+
+struct JointColumns::Slide {
+    double total[most], elastic[most], sigma[most], a[most], b[most], size[most], farthest[most], ratio[most],
+        damage[most];
+    std::int64_t slides[most];
+};
+
+// law.md §5, 1 and 2, for subcontacts that do not open beyond what they have seen and have no dilatancy: up to the
+// displacement ratio of eq. (13), which the table of eq. (14) is read at,
+MASONRY_VECTORISED
+void JointColumns::trySlide(const Limits& m, std::size_t count, const double* __restrict jumpN,
+                            const double* __restrict jumpA, const double* __restrict jumpB,
+                            const double* __restrict flow, const double* __restrict intact,
+                            const double* __restrict slip, const double* __restrict opening,
+                            const double* __restrict largestOpening, const double* __restrict shearStressA,
+                            const double* __restrict shearStressB, const std::int64_t* __restrict regime,
+                            Slide& __restrict s) {
+    const double kn = m.normalStiffness, ks = m.shearStiffness, ft = m.tensileStrength, onset = m.onset;
+    const double cr = m.residualCohesion, dc = m.cohesionLoss, fr = m.residualFriction, df = m.frictionLoss;
+    const double own = m.ownShearStiffness;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double total = opening[i] + jumpN[i], elastic = total + flow[i], whole = intact[i];
+        const bool open = elastic > 0;
+        const double farthest = elastic > largestOpening[i] ? elastic : largestOpening[i];
+        const double weakened = ft * whole / farthest, secant = weakened < kn ? weakened : kn;
+        const double sigma = (open ? secant : kn) * elastic;
+        const double a = shearStressA[i] + ks * jumpA[i], b = shearStressB[i] + ks * jumpB[i];
+        const double size = std::sqrt(a * a + b * b), strength = cr + dc * whole - sigma * (fr + df * whole);
+        const double peak = cr + dc - sigma * (fr + df); // eq. (15)
+        const double reach = whole == 1 ? onset : largestOpening[i];
+        s.ratio[i] = peak > 0 ? 1 + (slip[i] + (size - peak) / ks) * own / peak : HUGE_VAL;
+        s.slides[i] = (regime[i] == pending) & (size > (strength > 0 ? strength : 0)) & (elastic <= reach);
+        s.total[i] = total, s.elastic[i] = elastic, s.sigma[i] = sigma, s.farthest[i] = farthest;
+        s.a[i] = a, s.b[i] = b, s.size[i] = size;
+    }
+}
+
+// and from the damage to the returned stress, where it stays within the cap.
+MASONRY_VECTORISED
+void JointColumns::finishSlide(const Limits& m, std::size_t count, const double* __restrict flow,
+                               const double* __restrict capStrength2, const double* __restrict tensionDamage,
+                               double* __restrict shearDamage, double* __restrict intact, double* __restrict slip,
+                               double* __restrict opening, double* __restrict largestOpening,
+                               double* __restrict largestClosure, double* __restrict normalStress,
+                               double* __restrict shearStressA, double* __restrict shearStressB,
+                               double* __restrict lostTension, double* __restrict lostShear,
+                               std::int64_t* __restrict regime, const Slide& __restrict s) {
+    const double kn = m.normalStiffness, ks = m.shearStiffness, ft = m.tensileStrength;
+    const double cr = m.residualCohesion, dc = m.cohesionLoss, fr = m.residualFriction, df = m.frictionLoss;
+    const double cnn = m.capNormal, css = m.capShear, cn = m.capLinear, limit = m.limitClosure;
+    const bool cap = m.cap;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double damage = s.damage[i], elastic = s.elastic[i], size = s.size[i];
+        const bool open = elastic > 0, weaker = damage > shearDamage[i];
+        const double whole = 1 - (tensionDamage[i] + damage - tensionDamage[i] * damage); // eq. (10)
+        const double friction = fr + df * whole, left = cr + dc * whole - s.sigma[i] * friction;
+        const double strength = left > 0 ? left : 0;
+        const double flowed = size > strength ? (size - strength) / ks : 0;
+        const double rest = 1 - ks * flowed / size, share = rest > 0 ? rest : 0;
+        const double a = s.a[i] * share, b = s.b[i] * share;
+        const double weakened = ft * whole / s.farthest[i], secant = weakened < kn ? weakened : kn;
+        const double sigma = open & weaker ? secant * elastic : s.sigma[i];
+        const double crush = sigma < 0 ? cnn * sigma * sigma + css * (a * a + b * b) + cn * sigma : 0;
+        const double closure = sigma < 0 && cap ? -s.total[i] : 0, closest = largestClosure[i];
+        const double hardens = closest > limit ? closest : limit;
+        const bool takes = (s.slides[i] != 0) & (crush <= capStrength2[i]) & (closure <= hardens);
+        const double before = opening[i] + flow[i];
+        const double meanShear = 0.5 * ((shearStressA[i] + a) * s.a[i] + (shearStressB[i] + b) * s.b[i]) / size;
+        const double torn = open | (before > 0) ? 0.5 * (normalStress[i] * elastic - sigma * before) : 0;
+        lostTension[i] += takes ? torn : 0;
+        lostShear[i] += takes ? meanShear * flowed : 0;
+        slip[i] += takes ? flowed : 0;
+        opening[i] = takes ? s.total[i] : opening[i];
+        normalStress[i] = takes ? sigma : normalStress[i];
+        shearStressA[i] = takes ? a : shearStressA[i];
+        shearStressB[i] = takes ? b : shearStressB[i];
+        shearDamage[i] = takes ? damage : shearDamage[i];
+        intact[i] = takes ? whole : intact[i];
+        largestOpening[i] = takes ? s.farthest[i] : largestOpening[i];
+        largestClosure[i] = takes & (closure > closest) ? closure : closest;
+        const std::int64_t now = flowed > 0 ? std::int64_t(Regime::Slipping) : std::int64_t(Regime::Elastic);
+        regime[i] = takes ? now : regime[i];
+    }
+}
+
+void JointColumns::slide(const JointLaw& law, std::size_t i, std::size_t count, const double* jumpN,
+                         const double* jumpA, const double* jumpB) {
+    Slide s;
+    trySlide(limits_, count, jumpN, jumpA, jumpB, &flow_[i], &intact_[i], &slip_[i], &opening_[i], &largestOpening_[i],
+             &shearStressA_[i], &shearStressB_[i], &regime_[i], s);
+    for (std::size_t n = 0; n < count; ++n) {
+        s.damage[n] = shearDamage_[i + n];
+        if (s.slides[n] && s.damage[n] < 1)
+            s.damage[n] = std::max(s.damage[n], law.shear().damage(s.ratio[n], row_[i + n]));
+    }
+    finishSlide(limits_, count, &flow_[i], &capStrength2_[i], &tensionDamage_[i], &shearDamage_[i], &intact_[i],
+                &slip_[i], &opening_[i], &largestOpening_[i], &largestClosure_[i], &normalStress_[i], &shearStressA_[i],
+                &shearStressB_[i], &lostTension_[i], &lostShear_[i], &regime_[i], s);
 }
 
 void JointColumns::advance(const JointLaw& law, std::size_t first, std::size_t count, const double* jumpN,
                            const double* jumpA, const double* jumpB) {
+    for (; count > most; first += most, count -= most, jumpN += most, jumpA += most, jumpB += most)
+        advance(law, first, most, jumpN, jumpA, jumpB);
     advanceIntact(limits_, count, jumpN, jumpA, jumpB, &flow_[first], &intact_[first], &capStrength2_[first],
                   &opening_[first], &largestOpening_[first], &largestClosure_[first], &normalStress_[first],
                   &shearStressA_[first], &shearStressB_[first], &lostTension_[first], &regime_[first]);
-    for (std::size_t n = 0; n < count; ++n) {
+    std::int64_t waiting = 0;
+    for (std::size_t i = first; i < first + count; ++i)
+        waiting += regime_[i]; // pending is -1, and nobody else has been given another regime yet
+    if (waiting < -2 && slides_) slide(law, first, count, jumpN, jumpA, jumpB);
+    for (std::size_t n = 0; waiting && n < count; ++n) {
         const std::size_t i = first + n;
         if (regime_[i] != pending) continue;
         JointState s = get(i);

@@ -1,6 +1,6 @@
 // Many subcontacts of one kind, a column for each quantity, so that the vector units take several at a time. The law is
 // that of JointLaw; a subcontact that neither yields nor opens further nor hardens in a step takes a short way through
-// the same equations, without branches, and every other one goes through JointLaw::advance.
+// the same equations, without branches, one that only slips another, and the rest go through JointLaw::advance.
 #pragma once
 #include "JointLaw.hpp"
 #include <cstdint>
@@ -31,22 +31,37 @@ public:
 private:
     struct Limits { // what the short way must know of the kind
         double normalStiffness, shearStiffness, tensileStrength, onset, residualCohesion, cohesionLoss,
-            residualFriction, frictionLoss, capNormal, capShear, capLinear, limitClosure;
+            residualFriction, frictionLoss, capNormal, capShear, capLinear, limitClosure, ownShearStiffness;
         bool cap;
     };
     static void advanceIntact(const Limits&, std::size_t count, const double* jumpN, const double* jumpA,
                               const double* jumpB, const double* flow, const double* intact, const double* capStrength2,
                               double* opening, double* largestOpening, double* largestClosure, double* normalStress,
-                              double* shearStressA, double* shearStressB, double* lostTension, std::uint8_t* regime);
+                              double* shearStressA, double* shearStressB, double* lostTension, std::int64_t* regime);
+
+    struct Slide; // scratch
+    static void trySlide(const Limits&, std::size_t count, const double* jumpN, const double* jumpA,
+                         const double* jumpB, const double* flow, const double* intact, const double* slip,
+                         const double* opening, const double* largestOpening, const double* shearStressA,
+                         const double* shearStressB, const std::int64_t* regime, Slide&);
+    static void finishSlide(const Limits&, std::size_t count, const double* flow, const double* capStrength2,
+                            const double* tensionDamage, double* shearDamage, double* intact, double* slip,
+                            double* opening, double* largestOpening, double* largestClosure, double* normalStress,
+                            double* shearStressA, double* shearStressB, double* lostTension, double* lostShear,
+                            std::int64_t* regime, const Slide&);
+    void slide(const JointLaw&, std::size_t first, std::size_t count, const double* jumpN, const double* jumpA,
+               const double* jumpB);
 
     ElasticStiffness k_{};
     Limits limits_{};
+    bool slides_ = false; // whether the kind can take the way of those that only slip
     std::vector<double> opening_, crushing_, dilation_, slip_, largestOpening_, largestClosure_, tensionDamage_,
         shearDamage_, normalStress_, shearStressA_, shearStressB_; // as in JointState
     std::vector<double> flow_, intact_, capStrength2_;             // follow from the above: crushing less dilation,
                                                                    // 1 - d_ts, square of the cap's strength
     std::vector<double> lostTension_, lostShear_, lostCompression_;
-    std::vector<std::uint8_t> regime_;
+    std::vector<std::int32_t> row_;    // of the shear table, where it was read last
+    std::vector<std::int64_t> regime_; // as wide as the numbers beside it, for the vector units
 };
 
 } // namespace masonry

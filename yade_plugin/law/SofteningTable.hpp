@@ -1,5 +1,7 @@
 // Damage as a piecewise linear function of the displacement ratio, paper eqs. (12)-(17), law.md §3.
 #pragma once
+#include <algorithm>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -38,6 +40,17 @@ public:
                 span = half;
         }
         return rows_[low].damage + slopes_[low] * (ratio - rows_[low].ratio);
+    }
+
+    // The same for a ratio near the last one: `row` is where that was found, and is brought up to date.
+    double damage(double ratio, std::int32_t& row) const {
+        const std::size_t at = std::size_t(row);
+        if (at + 1 < rows_.size() && ratio > 1 && rows_[at].ratio <= ratio && ratio < rows_[at + 1].ratio)
+            return rows_[at].damage + slopes_[at] * (ratio - rows_[at].ratio);
+        const auto above = std::upper_bound(rows_.begin(), rows_.end(), ratio,
+                                            [](double r, const TableRow& other) { return r < other.ratio; });
+        row = std::int32_t(std::max<std::ptrdiff_t>(0, above - rows_.begin() - 1));
+        return damage(ratio);
     }
 
     const std::vector<TableRow>& rows() const { return rows_; }
