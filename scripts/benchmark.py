@@ -1,15 +1,23 @@
-"""Cost of a step on the wall TUD-COMP-4, side by side in one run: this plugin, and YADE's volumetric polyhedra law.
+"""Cost of a step on the wall TUD-COMP-4, all side by side in one run; one table, and results/benchmark/benchmark.json.
 
 yade -n -x [-j THREADS] scripts/benchmark.py [STEPS]
+
+The plugin with rigid units (as laid, at the peak, and through YADE's own interaction loop and integrator) and with
+deformable ones; YADE's volumetric law on the same half bricks; YADE's one-point mortar law on spheres in their places.
 """
 
+import json
+import os
 import sys
-import tempfile
 import time
 
-from masonry import brickwork, materials, options, walls
-from yade import O, Vector3, polyhedra_utils, timing
+from masonry import brickwork, options, scene, walls
+from yade import O, Vector3, polyhedra_utils, timing, utils
 from yade.wrapper import *
+
+OUT = os.path.join("results", "benchmark")
+STEPS = int(sys.argv[1]) if len(sys.argv) > 1 else 500
+BLOCKS = brickwork.runningBond(34, 36)
 
 
 def cost(steps):
@@ -23,33 +31,39 @@ def cost(steps):
     return best
 
 
-def plugin(steps):
+def plugin(blocks="rigid", until=None, functors=False):
+    """Seconds a step, subcontacts, and microseconds of each engine; pushed to ``until`` [mm] first if that is given."""
+    walls.engines = lambda *a, **k: scene.engines(*a, functors=functors, **k)
     wall = walls.Wall(
         name="benchmark", title="TUD-COMP-4", halfUnits=36, precompression=0.5e6
     )
-    model = walls.WallModel(
-        wall,
-        options.parser("", until=12).parse_args(
-            ["--no-vtk", "--out", tempfile.mkdtemp()]
-        ),
-    )
+    words = ["--no-vtk", "--blocks", blocks, "--out", OUT]
+    words += ["--until", str(until), "--rate", "50"] if until else []
+    model = walls.WallModel(wall, options.parser("", until=12).parse_args(words))
+    if until:
+        model.settle()
+        model.precompress()
+        model.push()
     model.load.velocity = 0.02
+    seconds = cost(STEPS)
     O.timingEnabled = True
-    seconds = cost(steps)
-    print(
-        f"this plugin: {len(model.interactions)} joints, {model.subcontacts} subcontacts"
-    )
-    timing.stats()
+    timing.reset()
+    cost(STEPS)
     O.timingEnabled = False
-    return seconds, model.subcontacts
+    engines = {
+        e.label or type(e).__name__: e.execTime / e.execCount / 1e3
+        for e in O.engines
+        if e.execCount
+    }
+    return seconds, model.subcontacts, engines
 
 
-def stock(steps):
+def volumetric():
     """The same half bricks, laid 0.1 mm into each other so that every bed joint is a contact."""
     O.reset()
     mat = PolyhedraMat(density=1800, young=1e12, poisson=0.2, frictionAngle=0.4)
     O.materials.append(mat)
-    for block in brickwork.runningBond(34, 36):
+    for block in BLOCKS:
         low, high = (
             [v * (0.999 if axis == 2 else 1.001) for axis, v in enumerate(p)]
             for p in (block.low, block.high)
@@ -72,18 +86,74 @@ def stock(steps):
     ]
     O.dt = 1e-7
     O.step()
-    seconds = cost(steps)
-    print(
-        f"YADE's volumetric law: {sum(1 for i in O.interactions if i.isReal)} contacts"
+    return cost(3), sum(1 for i in O.interactions if i.isReal), {}
+
+
+def mortar():
+    """A sphere in the place of every half brick, one contact a joint, without a collider as our walls."""
+    O.reset()
+    O.materials.append(
+        MortarMat(density=1800, young=4.8e9, poisson=0.2, neverDamage=True)
     )
-    return seconds
+    length, height = 0.11, 0.081
+    for block in BLOCKS:
+        centre = [(a + b) / 2 for a, b in zip(block.low, block.high)]
+        O.bodies.append(utils.sphere(Vector3(*centre), 0.055))
+    O.engines = [
+        ForceResetter(),
+        InteractionLoop(
+            [Ig2_Sphere_Sphere_ScGeom(interactionDetectionFactor=2)],
+            [Ip2_MortarMat_MortarMat_MortarPhys(cohesiveThresholdIter=10**6)],
+            [Law2_ScGeom_MortarPhys_Lourenco()],
+        ),
+        NewtonIntegrator(damping=0.8),
+    ]
+    rows = {}
+    for body in O.bodies:
+        rows.setdefault(int(body.state.pos[2] / height), []).append(body)
+    for row, bodies in rows.items():
+        for body in bodies:
+            for other in bodies + rows.get(row + 1, []):
+                along = abs(other.state.pos[0] - body.state.pos[0])
+                beside = other.id > body.id and along < 1.1 * length
+                over = other not in bodies and along < 0.9 * length
+                if (other in bodies and beside) or over:
+                    utils.createInteraction(body.id, other.id)
+    O.dt = 1e-7
+    O.step()
+    return cost(100), sum(1 for i in O.interactions if i.isReal), {}
 
 
-steps = int(sys.argv[1]) if len(sys.argv) > 1 else 500
-mine, subcontacts = plugin(steps)
-theirs = stock(3)
-print(f"threads                              {O.numThreads}")
-print(f"this plugin, a step                  {1e6 * mine:12.0f} µs")
-print(f"this plugin, a subcontact and step   {1e9 * mine / subcontacts:12.1f} ns")
-print(f"YADE's volumetric law, a step        {1e6 * theirs:12.0f} µs")
-print(f"ratio                                {theirs / mine:12.0f}")
+CASES = {
+    "rigid units": lambda: plugin(),
+    "rigid units, at the peak": lambda: plugin(until=2.5),
+    "rigid units, YADE's loop and integrator": lambda: plugin(functors=True),
+    "deformable units": lambda: plugin("deformable"),
+    "YADE's volumetric law, half bricks": volumetric,
+    "YADE's mortar law, spheres": mortar,
+}
+
+results = {}
+for name, case in CASES.items():
+    seconds, contacts, engines = case()
+    results[name] = {
+        "step_us": 1e6 * seconds,
+        "contacts": contacts,
+        "contact_ns": 1e9 * seconds / contacts,
+        "engines_us": engines,
+    }
+base = results["rigid units"]
+print(f"\n{O.numThreads} threads; ratios to rigid units as laid")
+print(
+    f"{'':42}{'µs a step':>12}{'ratio':>8}{'contacts':>10}{'ns each':>10}{'ratio':>8}"
+)
+for name, r in results.items():
+    ratio, each = (r[k] / base[k] for k in ("step_us", "contact_ns"))
+    print(
+        f"{name:42}{r['step_us']:12.1f}{ratio:8.2f}{r['contacts']:10d}{r['contact_ns']:10.1f}{each:8.2f}"
+    )
+    for engine, us in r["engines_us"].items():
+        print(f"    {engine:38}{us:12.1f}")
+os.makedirs(OUT, exist_ok=True)
+with open(os.path.join(OUT, "benchmark.json"), "w") as f:
+    json.dump({"threads": O.numThreads, "cases": results}, f, indent=1)

@@ -312,9 +312,14 @@ void MasonryIntegrator::action() {
 #pragma omp parallel for schedule(static)
     for (int n = 0; n < pieces; ++n)
         for (int id = n * piece; id < std::min(count, (n + 1) * piece); ++id) {
-            if (const auto* later = id + 8 < count ? all[id + 8].get() : nullptr) // states lie all over the memory
-                for (const auto* line : {&later->state->pos[0], &later->state->vel[0], &later->state->refPos[0]})
+            // bodies and states lie all over the memory: ask for them ahead of time
+            if (id + 16 < count && all[id + 16]) __builtin_prefetch(&all[id + 16]->state);
+            if (id + 8 < count && all[id + 8]) {
+                const State& later = *all[id + 8]->state;
+                for (const void* line : {(const void*)&later.pos, (const void*)&later.vel, (const void*)&later.angMom,
+                                         (const void*)&later.refOri})
                     __builtin_prefetch(line);
+            }
             if (!all[id] || (zones && zones->unitOf(id))) continue; // zones move their own
             State& s = *all[id]->state;
             sums[n].fallen += s.mass * gravity.dot(s.pos - s.refPos);

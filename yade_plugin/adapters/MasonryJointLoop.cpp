@@ -450,6 +450,7 @@ void MasonryJointLoop::action() {
     if (stale()) build();
     const int bodyCount = int(bodies_.ids.size());
     for (int b = 0; b < bodyCount; ++b) {
+        if (b + 8 < bodyCount) __builtin_prefetch(&bodies_.states[b + 8]->ori);
         const auto& s = *bodies_.states[b];
         for (int d = 0; d < 3; ++d)
             bodies_.position[d][b] = s.pos[d], bodies_.orientation[d + 1][b] = s.ori.coeffs()[d];
