@@ -111,7 +111,7 @@ def draw():
                     curve = readCurve(folder(wall, options))
                     x, y = curve["displacement_mm"], curve["base_shear_kN"]
                     axis.plot(x, y, lw=1, label=name)
-            axis.set_title(title if row is axes[0] else "", fontsize=9)
+            axis.set_title(title, fontsize=8)
             axis.set_xlabel("displacement [mm]", fontsize=8)
             axis.set_ylabel(f"{wall}: base shear [kN]", fontsize=8)
             axis.set_ylim(bottom=0)
