@@ -43,7 +43,7 @@ int MasonryJointLoop::bodyNumber(int id, std::vector<int>& known) {
     if (known[id] < 0) {
         known[id] = int(bodies_.ids.size());
         bodies_.ids.push_back(id);
-        bodies_.states.push_back(scene->bodies->body[id]->state.get());
+        bodies_.states.push_back(scene->bodies->body[id]->state);
         const auto* unit = zones_ ? zones_->unitOf(id) : nullptr;
         bodies_.momentPlaces.push_back(unit ? unit->momentPlace : -1);
     }
@@ -81,6 +81,8 @@ void MasonryJointLoop::build() {
             group = groups_.insert(groups_.end(), Group());
             group->joint = phys->joint, group->points = points, group->nodal = bool(geom->zones);
         }
+        if (geom->zones && zones_ && zones_ != geom->zones)
+            throw std::invalid_argument("MasonryJointLoop: the joints of a scene can belong to one MasonryZones only");
         if (geom->zones) zones_ = geom->zones;
         group->geoms.push_back(geom), group->physics.push_back(phys);
         group->body1.push_back(interaction.id1), group->body2.push_back(interaction.id2);

@@ -46,7 +46,7 @@ private:
     };
     struct Bodies {                         // as columns
         std::vector<int> ids, momentPlaces; // of deformable units in the rows of MasonryZones, else -1
-        std::vector<const yade::State*> states;
+        std::vector<shared_ptr<yade::State>> states;
         std::vector<double> position[3], orientation[4];
     };
     struct Guest { // a point of a joint that moves with a rigid body, or between the nodes of an unmatched mesh
