@@ -188,6 +188,10 @@ void JointColumns::slide(const JointLaw& law, std::size_t i, std::size_t count, 
     Slide s;
     trySlide(limits_, count, jumpN, jumpA, jumpB, &flow_[i], &intact_[i], &slip_[i], &opening_[i], &largestOpening_[i],
              &shearStressA_[i], &shearStressB_[i], &regime_[i], s);
+    std::int64_t any = 0;
+    for (std::size_t n = 0; n < count; ++n)
+        any |= s.slides[n];
+    if (!any) return;
     for (std::size_t n = 0; n < count; ++n) {
         s.damage[n] = shearDamage_[i + n];
         if (s.slides[n] && s.damage[n] < 1)
