@@ -1,6 +1,7 @@
 // Joint polygons and subcontacts of convex blocks, in any orientation.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "blocks/BlockElasticity.hpp"
+#include "blocks/BlockLanes.cpp" // for its loops of every instruction set, which nobody else sees
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <doctest/doctest.h>
@@ -375,6 +376,49 @@ TEST_CASE("a moment on a block is forces without resultant that do its work on t
     CHECK((about - moment).norm() < 1e-3);
     const Eigen::AngleAxisd turn(Matrix3(e.rotation(plus.data()) * e.rotation(minus.data()).transpose()));
     CHECK(work == doctest::Approx(moment.dot(turn.angle() * turn.axis())).epsilon(1e-3));
+}
+
+TEST_CASE("every instruction set moves blocks to the same bits") {
+    std::mt19937 dice(13);
+    std::uniform_real_distribution<> u01(-1, 1);
+    const auto e = elastic(box(Point::Zero(), brick), {2, 1, 2});
+    const auto matrix = e.matrix();
+    const std::size_t rows = 3 * e.mesh().nodes.size();
+    std::vector<Row> start(3 * rows);
+    for (std::size_t i = 0; i < start.size(); ++i)
+        for (double& value : start[i].lane)
+            value = u01(dice) * (i < rows ? 1e-5 : i < 2 * rows ? 1e-3 : 10);
+    const auto run = [&](auto addForces, auto move, bool combined) {
+        auto u = std::vector<Row>(start.begin(), start.begin() + rows);
+        auto v = std::vector<Row>(start.begin() + rows, start.begin() + 2 * rows);
+        auto last = std::vector<Row>(start.begin() + 2 * rows, start.end());
+        std::vector<Row> f(rows, Row{}), scratch(2 * rows);
+        Row moments[3]{}, rotation[9], energy, present;
+        std::fill_n(present.lane, lanes, 1.0);
+        NodeSums sums;
+        const NodeMotion motion{1e-6, 0.8, {0, 0, -9.81}, combined, {false, false, false}};
+        for (int step = 0; step < 20; ++step) {
+            moments[1].lane[2] = step;
+            addForces(matrix, u.data(), moments, f.data(), rotation, &energy, scratch.data());
+            move(matrix, motion, present, u.data(), v.data(), f.data(), last.data(), sums);
+        }
+        std::vector<double> all;
+        for (const auto* part : {&u, &v, &last})
+            for (const auto& row : *part)
+                all.insert(all.end(), row.lane, row.lane + lanes);
+        for (const Row& row : {energy, sums.kinetic, sums.gravityWork, sums.damping, sums.pending, sums.moved[2]})
+            all.insert(all.end(), row.lane, row.lane + lanes);
+        return all;
+    };
+    for (bool combined : {false, true}) {
+        const auto reference = run(plain::addForces, plain::move, combined);
+        CHECK(std::abs(reference[5] - start[0].lane[5]) > 1e-9); // it moved
+#if defined(__x86_64__)
+        if (__builtin_cpu_supports("avx2")) CHECK(run(avx2::addForces, avx2::move, combined) == reference);
+        if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
+            CHECK(run(avx512::addForces, avx512::move, combined) == reference);
+#endif
+    }
 }
 
 TEST_CASE("a surface point is found with weights that return it") {
