@@ -28,7 +28,9 @@ public:
         visit("driven", &L::driven, "Whether the velocity is prescribed.");
         visit("velocity", &L::velocity, "Velocity of the point along the direction [m/s].");
         visit("reaction", &L::reaction, "Force that the drive applies along the direction [N].", ReadOnly);
-        visit("work", &L::work, "Work done on the block by force and drive so far [J]; kept by MasonryEnergy.",
+        visit("work", &L::work,
+              "Work done on the block by force and drive so far [J]; kept by the engine that keeps the energies of "
+              "rigid bodies.",
               ReadOnly);
         visit("pendingWork", &L::pendingWork, "", Hidden);
     }

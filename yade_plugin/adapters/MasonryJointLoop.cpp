@@ -1,6 +1,6 @@
 #include "MasonryJointLoop.hpp"
 #include "Vectorised.hpp"
-#include <map>
+#include <algorithm>
 
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJointLoop)
 
@@ -34,7 +34,10 @@ void MasonryJointLoop::release() {
         for (std::size_t j = 0; j < g.geoms.size(); ++j)
             g.geoms[j]->keeper = nullptr, g.physics[j]->keeper = nullptr;
     groups_.clear();
-    if (zones_) zones_->looped = false;
+    if (zones_) {
+        zones_->looped = false;
+        zones_->dropGuests();
+    }
     zones_.reset();
     seen_ = -1;
 }

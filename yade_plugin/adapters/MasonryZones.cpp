@@ -207,6 +207,11 @@ std::vector<std::pair<int, double>> MasonryZones::nodesOn(const Unit& unit, cons
     return found;
 }
 
+void MasonryZones::dropGuests() { // guests have no velocities
+    displacements_.resize(velocities_.size()), forces_.resize(velocities_.size());
+    guests_ = 0;
+}
+
 namespace {
 
 double total(const Row& row) {

@@ -100,6 +100,7 @@ public:
     // its place, one row apart. Guests are places at the end for what moves with something else.
     int placeOf(int node) const { return places_[node]; }
     int addGuest();
+    void dropGuests();
     bool looped = false; // a MasonryJointLoop brings the joints' forces
     double* displacementRows() { return displacements_[0].lane; }
     double* forceRows() { return forces_[0].lane; }
