@@ -74,7 +74,7 @@ class Couplet:
                 bodies=[lower, upper],
                 divisions=[2 * args.divisions, 1, args.divisions],
                 damping=args.damping,
-                dampingKind=args.damping_kind or "combined",
+                dampingKind=args.damping_kind,
                 blocked="y",
             )
         engines(
@@ -90,7 +90,7 @@ class Couplet:
             e for e in O.engines if e.label in ("energy", "integrator")
         ]
         if not self.zones:
-            integrator.dampingKind = args.damping_kind or "local"
+            integrator.dampingKind = args.damping_kind
         self.joint = next(i for i in connect() if {i.id1, i.id2} == {lower, upper})
         O.dt = args.dt_fraction * criticalTimeStep()[0]
         self.steps, self.progress = 0, Progress()

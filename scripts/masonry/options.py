@@ -83,8 +83,8 @@ def parser(description, until, rate=20.0):
     p.add_argument(
         "--damping-kind",
         choices=["local", "combined"],
-        default=None,
-        help="local (paper eq. (3)) or combined damping (default: combined for deformable units, local for rigid ones)",
+        default="combined",
+        help="local (paper eq. (3)) or combined damping, which does not brake a steady motion",
     )
     p.add_argument(
         "--subcontacts",

@@ -295,9 +295,9 @@ class WallModel:
         values = self._record()
         if self.zones:
             self.zones.damping = args.damping
-            self.zones.dampingKind = args.damping_kind or "combined"
+            self.zones.dampingKind = args.damping_kind
         else:
-            self.integrator.dampingKind = args.damping_kind or "local"
+            self.integrator.dampingKind = args.damping_kind
         began = O.time
         while values["displacement_mm"] < args.until:
             if self.vtk and values["displacement_mm"] >= nextFrame:
