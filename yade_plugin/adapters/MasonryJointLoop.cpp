@@ -391,13 +391,10 @@ void MasonryJointLoop::action() {
     std::fill(onBodies_.begin(), onBodies_.end(), Vector3r::Zero());
     toBodies();
     if (zones_) toNodes();
-    auto& forces = scene->forces();
-    const int bodyCount = int(bodies_.ids.size());
-    for (int b = 0; b < bodyCount; ++b) {
-        if (onBodies_[2 * b].isZero(0) && onBodies_[2 * b + 1].isZero(0)) continue;
-        forces.addForce(bodies_.ids[b], onBodies_[2 * b]);
-        forces.addTorque(bodies_.ids[b], onBodies_[2 * b + 1]);
-    }
+    auto* forces = scene->forces().forces(int(scene->bodies->body.size()));
+    auto* torques = scene->forces().torques(int(scene->bodies->body.size()));
+    for (std::size_t b = 0; b < bodies_.ids.size(); ++b)
+        forces[bodies_.ids[b]] += onBodies_[2 * b], torques[bodies_.ids[b]] += onBodies_[2 * b + 1];
 }
 
 } // namespace masonry
