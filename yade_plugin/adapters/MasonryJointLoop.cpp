@@ -283,8 +283,9 @@ void MasonryJointLoop::advanceBlock(Group& g, int from, int n) {
                    : jumpNodal(n, place1, place2, u, j0, j1, j2, frames);
         } else
             plane_ ? jumpRigidInPlane(n, a0, a1, j0, j1, frames) : jumpRigid(n, a0, a1, a2, j0, j1, j2, frames);
-        g.columns.advance(law, i, n, frames.step[0], frames.step[1], plane_ ? nullptr : frames.step[2]);
-        const double *normal = g.columns.normalStress() + i, *a = g.columns.shearStressA() + i,
+        g.columns.advance(law, i, n, frames.step[0], frames.step[1], plane_ ? nullptr : frames.step[2],
+                          frames.normalStress);
+        const double *normal = frames.normalStress, *a = g.columns.shearStressA() + i,
                      *b = g.columns.shearStressB() + i;
         if (g.nodal)
             plane_ ? pullNodalInPlane(n, area, normal, a, j0, j1, frames, &onPoints_[2 * (g.firstPoint + i)])

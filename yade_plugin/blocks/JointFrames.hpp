@@ -12,6 +12,7 @@ struct JointFrames { // of some joints, as scratch in the innermost cache
     double between[3][most];    // from centre to centre
     double common[3][most];     // of the jumps of all points
     double step[3][most];       // change of the jump, for the law
+    double normalStress[most];  // from the law
     double arm[3][most];        // of a point's force, from the centre of block 1
     double force[3][most], torque[3][most]; // on block 1, sums over the points
 };
