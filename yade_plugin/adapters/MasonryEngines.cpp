@@ -305,18 +305,34 @@ void turn(State& s, const BodyStep& step, double dt) {
 
 } // namespace
 
+// Whether the places are no longer those of the bodies. States change hands so rarely that a look now and then will do.
+bool MasonryIntegrator::stale() const {
+    const auto& all = scene->bodies->body;
+    bool fits = places_.size() == all.size();
+    for (std::size_t id = 0; fits && id < all.size(); ++id)
+        fits = places_[id].body == all[id].get();
+    return !fits || scene->iter % 100 == 0;
+}
+
 void MasonryIntegrator::action() {
     auto& forces = scene->forces();
     forces.sync();
     const auto& all = scene->bodies->body;
-    auto* zones = zonesOf(*scene);
+    if (stale()) {
+        auto* zones = zonesOf(*scene);
+        places_.clear();
+        for (const auto& body : all)
+            places_.push_back({body.get(), body ? body->state.get() : nullptr,
+                               body && body->state && !(zones && zones->unitOf(body->id))});
+    }
     const auto loads = loadsOf(*scene);
     const Environment around{damping, gravity};
     const RigidMotion::Around rigid{scene->dt, {gravity[0], gravity[1], gravity[2]}, dampingKind == "combined"};
     if (rigid.combined) last.resize(2 * all.size(), Vector3r::Zero());
     for (auto* load : loads)
         load->workBefore(scene->dt);
-    constexpr int piece = RigidMotion::most; // bodies that are summed up together, whatever the number of threads
+    constexpr int piece = RigidMotion::most,
+                  ahead = 8; // bodies that are summed up together, whatever the number of threads
     const int count = int(all.size()), pieces = (count + piece - 1) / piece;
     std::vector<BodyEnergies> sums(pieces);
 #pragma omp parallel for schedule(static)
@@ -326,16 +342,11 @@ void MasonryIntegrator::action() {
         int ids[piece], restrained = 0;
         unsigned axes = 0;
         for (int id = n * piece; id < std::min(count, (n + 1) * piece); ++id) {
-            // bodies and states lie all over the memory: ask for them ahead of time
-            if (id + 16 < count && all[id + 16]) __builtin_prefetch(&all[id + 16]->state);
-            if (id + 8 < count && all[id + 8]) {
-                const State& later = *all[id + 8]->state;
-                for (const void* line : {(const void*)&later.pos, (const void*)&later.vel, (const void*)&later.angMom,
-                                         (const void*)&later.refOri})
-                    __builtin_prefetch(line);
-            }
-            if (!all[id] || (zones && zones->unitOf(id))) continue; // zones move their own
-            State& s = *all[id]->state;
+            if (id + ahead < count)
+                for (int line = 1; line < 5; ++line) // states lie all over the memory
+                    __builtin_prefetch(reinterpret_cast<const char*>(places_[id + ahead].state) + 64 * line);
+            if (!places_[id].rigid) continue;
+            State& s = *places_[id].state;
             sums[n].fallen += s.mass * gravity.dot(s.pos - s.refPos);
             if (!moves(s)) continue;
             const Vector3r &force = forces.getForce(id), &torque = forces.getTorque(id);

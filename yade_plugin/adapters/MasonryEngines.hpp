@@ -120,6 +120,15 @@ public:
 
     void postLoad();
     void action() override;
+
+private:
+    struct Place {
+        const yade::Body* body;
+        yade::State* state;
+        bool rigid; // moved here, not by MasonryZones
+    };
+    std::vector<Place> places_; // bodies lie all over the memory, and cost as much as their motion to look up
+    bool stale() const;
 };
 
 // The largest stable time step of joints and zones under the damping of the engines [s], a bound that is safe, and the
