@@ -13,6 +13,9 @@ namespace {
 constexpr int block = JointFrames::most; // joints that a thread takes at a time
 constexpr double flat = 1e-9;            // what counts as nothing out of the plane [rad, m, -]
 
+// Whether numbers are the same but for round-off: stiffnesses, lengths and areas calculated in many places.
+bool same(double a, double b, double scale) { return std::abs(a - b) <= 1e-12 * scale; }
+
 // Whether y and the rotations about x and z are blocked.
 bool heldInPlane(const yade::State& s) { return (s.blockedDOFs & 0b101010) == 0b101010; }
 
@@ -43,7 +46,8 @@ void MasonryJointLoop::store() {
                 g.geoms[j]->points[p].jump = {g.jump[0][i], g.jump[1][i], g.jump[2][i]};
                 g.physics[j]->states[p] = g.columns.get(i);
                 const auto lost = g.columns.takeDissipated(i);
-                g.physics[j]->dissipated += g.area[i] * Vector3r(lost.tension, lost.shear, lost.compression);
+                g.physics[j]->dissipated +=
+                    g.geoms[j]->points[p].area * Vector3r(lost.tension, lost.shear, lost.compression);
             }
 }
 
@@ -71,6 +75,28 @@ int MasonryJointLoop::bodyNumber(int id, std::vector<int>& known) {
         bodies_.momentPlaces.push_back(unit ? unit->momentPlace : -1);
     }
     return known[id];
+}
+
+// Where all joints are alike, a block of them has the geometry of all, which then stays in the innermost cache.
+void MasonryJointLoop::Group::share() {
+    struct Column {
+        std::vector<double>* values;
+        int rows; // one, or one for each point
+        double scale;
+    };
+    const double length = std::hypot(span[0][0], span[1][0], span[2][0]);
+    std::vector<Column> all{{&area, points, area[0]}};
+    for (int d = 0; d < 4; ++d)
+        all.insert(all.end(), {{&frame1[d], 1, 1}, {&frame2[d], 1, 1}});
+    for (int d = 0; d < 3; ++d)
+        all.insert(all.end(), {{&span[d], 1, length}, {&offset[d], points, length}});
+    alike = stride >= block;
+    for (const auto& c : all)
+        for (int i = 0; alike && i < stride * c.rows; ++i)
+            alike = same((*c.values)[i], (*c.values)[i / stride * stride], c.scale);
+    for (const auto& c : all)
+        for (int p = 0; alike && p < c.rows; ++p)
+            std::copy_n(c.values->begin() + p * stride, block, c.values->begin() + p * block);
 }
 
 void MasonryJointLoop::Gather::fill(const std::vector<std::vector<int>>& lists) {
@@ -123,8 +149,8 @@ void MasonryJointLoop::build(bool mayBePlane) {
         const int points = int(geom->points.size());
         auto group = std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) {
             return g.joint == phys->joint && g.points == points && g.nodal == bool(geom->zones) &&
-                   g.physics[0]->normalStiffness == phys->normalStiffness &&
-                   g.physics[0]->shearStiffness == phys->shearStiffness;
+                   same(g.physics[0]->normalStiffness, phys->normalStiffness, phys->normalStiffness) &&
+                   same(g.physics[0]->shearStiffness, phys->shearStiffness, phys->shearStiffness);
         });
         if (group == groups_.end()) {
             group = groups_.insert(groups_.end(), Group());
@@ -151,22 +177,24 @@ void MasonryJointLoop::build(bool mayBePlane) {
         if (g.nodal) points += g.stride * g.points;
         for (int from = 0; from < g.stride; from += block)
             blocks_.emplace_back(int(&g - groups_.data()), from);
-        for (auto* column : {&g.frame1[0], &g.frame2[0]}) // no turn, where a column ends before whole lanes do
-            column->assign(g.stride, 1);
-        for (int d = 1; d < 4; ++d)
-            for (auto* column : {&g.frame1[d], &g.frame2[d], &g.span[d - 1]})
-                column->assign(g.stride, 0);
+        for (auto* columns : {g.frame1, g.frame2})
+            for (int d = 0; d < 4; ++d)
+                columns[d].resize(g.stride);
+        for (auto& column : g.span)
+            column.resize(g.stride);
         for (auto* column : {&g.area, &g.jump[0], &g.jump[1], &g.jump[2], &g.offset[0], &g.offset[1], &g.offset[2]})
-            column->assign(std::size_t(g.stride) * g.points, 0);
+            column->resize(std::size_t(g.stride) * g.points);
         g.columns = JointColumns(g.joint->law(), g.physics[0]->stiffness(), std::size_t(g.stride) * g.points);
-        for (int j = 0; j < count; ++j) {
-            auto& geom = *g.geoms[j];
-            auto& phys = *g.physics[j];
+        g.body1.resize(g.stride, g.body1.back()), g.body2.resize(g.stride, g.body2.back());
+        for (int j = 0; j < g.stride; ++j) { // the last joint stands for the places up to whole lanes, too
+            const bool real = j < count;
+            auto& geom = *g.geoms[std::min(j, count - 1)];
+            auto& phys = *g.physics[std::min(j, count - 1)];
             geom.keeper = phys.keeper = this;
             for (auto* body : {&g.body1[j], &g.body2[j]}) {
                 *body = bodyNumber(*body, known);
                 atBodies.resize(bodies_.ids.size());
-                atBodies[*body].push_back(2 * (g.first + j) + (body == &g.body2[j]));
+                if (real) atBodies[*body].push_back(2 * (g.first + j) + (body == &g.body2[j]));
             }
             const auto put = [&](std::vector<double>* columns, const Quaternionr& q, int body) {
                 if (plane_)
@@ -185,7 +213,7 @@ void MasonryJointLoop::build(bool mayBePlane) {
                 g.columns.set(g.joint->law(), i, phys.states[p]);
             }
         }
-        g.body1.resize(g.stride, 0), g.body2.resize(g.stride, 0);
+        g.share();
         if (g.nodal) buildPlaces(g, atPlaces);
     }
     for (auto& column : bodies_.position)
@@ -261,11 +289,12 @@ bool MasonryJointLoop::readBodies() {
 
 void MasonryJointLoop::advanceBlock(Group& g, int from, int n) {
     JointFrames frames;
+    const int own = g.alike ? 0 : from;
     const double *position[3], *orientation[4], *frame1[4], *frame2[4], *span[3];
     for (int d = 0; d < 4; ++d)
-        orientation[d] = bodies_.orientation[d].data(), frame1[d] = &g.frame1[d][from], frame2[d] = &g.frame2[d][from];
+        orientation[d] = bodies_.orientation[d].data(), frame1[d] = &g.frame1[d][own], frame2[d] = &g.frame2[d][own];
     for (int d = 0; d < 3; ++d)
-        position[d] = bodies_.position[d].data(), span[d] = &g.span[d][from];
+        position[d] = bodies_.position[d].data(), span[d] = &g.span[d][own];
     const int *body1 = &g.body1[from], *body2 = &g.body2[from];
     if (g.nodal)
         (plane_ ? alignNodalInPlane : alignNodal)(n, body1, body2, orientation, frame1, frame2, frames);
@@ -274,7 +303,8 @@ void MasonryJointLoop::advanceBlock(Group& g, int from, int n) {
     const auto& law = g.joint->law();
     for (int p = 0; p < g.points; ++p) {
         const std::size_t i = std::size_t(p) * g.stride + from;
-        const double *area = &g.area[i], *a0 = &g.offset[0][i], *a1 = &g.offset[1][i], *a2 = &g.offset[2][i];
+        const std::size_t at = g.alike ? p * block : i;
+        const double *area = &g.area[at], *a0 = &g.offset[0][at], *a1 = &g.offset[1][at], *a2 = &g.offset[2][at];
         double *j0 = &g.jump[0][i], *j1 = &g.jump[1][i], *j2 = &g.jump[2][i];
         if (g.nodal) {
             const int *place1 = &g.place1[i], *place2 = &g.place2[i];

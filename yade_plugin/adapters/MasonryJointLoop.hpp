@@ -38,6 +38,8 @@ private:
         int first = 0, firstPoint = 0; // numbers of the first joint, and of the first point of a nodal one
         bool nodal = false;            // whether a side is deformable
         JointColumns columns;
+        bool alike = false; // whether the geometry of the first block of joints is that of all
+        void share();
         std::vector<int> body1, body2;
         std::vector<double> frame1[4], frame2[4], span[3]; // in the plane: two numbers each, as complex numbers
         std::vector<double> area, jump[3];
