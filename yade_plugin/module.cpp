@@ -102,10 +102,11 @@ static void registerAll() {
     py::def("touchingPairs", &touchingPairs, (py::arg("tolerance") = 1e-4),
             "Pairs (id1, id2) of bodies whose Polyhedra share a face; tolerance as in "
             "Ig2_Polyhedra_Polyhedra_MasonryJointGeom.");
-    py::def("criticalTimeStep", &criticalTimeStep,
-            "(dt, id1, id2): a safe bound of the stable time step [s] under the damping of O.engines, and the pair of "
-            "bodies "
-            "whose joint (or the unit whose zone) sets it. Ask again after changing the damping.");
+    py::def(
+        "criticalTimeStep", &criticalTimeStep,
+        "(dt, id1, id2): the stable time step [s] under the damping of O.engines, at most 1.1 % below the limit, and "
+        "the pair of bodies whose joint sets it (twice the same for a deformable unit). Ask again after changing "
+        "joints, masses, blocked motions or damping.");
 }
 
 // Written out because BOOST_PYTHON_MODULE hands the module over even when its body failed: an import that refuses must

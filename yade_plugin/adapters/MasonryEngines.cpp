@@ -1,9 +1,9 @@
 #include "MasonryEngines.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
+#include "blocks/LargestEigenvalue.hpp"
 #include "blocks/RigidMotion.hpp"
 #include "law/Text.hpp"
-#include <Eigen/Eigenvalues>
 #include <map>
 
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryLoad)
@@ -44,6 +44,7 @@ Vector3r inverseMass(const State& s) {
 struct Environment { // of the integrator that runs
     double damping = 0;
     Vector3r gravity = Vector3r::Zero();
+    bool host = false;
 };
 
 Environment environmentOf(const yade::Scene& scene) {
@@ -52,7 +53,7 @@ Environment environmentOf(const yade::Scene& scene) {
             return {own->damping, own->gravity};
         else if (engine->getClassName() == "NewtonIntegrator") {
             const auto& host = static_cast<const yade::NewtonIntegrator&>(*engine);
-            return {host.damping, host.gravity};
+            return {host.damping, host.gravity, true};
         }
     return {};
 }
@@ -89,13 +90,16 @@ struct BodyStep {
                                               const Environment& around, double dt, Vector3r* last) {
     BodyStep step{s.vel, s.angVel, torque};
     const double alpha = s.isDamped ? around.damping : 0;
-    // What damping takes of an acceleration, paper eq. (3) with the velocity in the middle of the step, or combined.
-    const auto drag = [&](double free, double middle, double* before) {
-        const double local = alpha * std::abs(free) * sign(middle);
-        if (!before) return local;
-        const double change = free - *before;
+    const double rate = 2 / dt;
+    // What damping takes of an acceleration, paper eq. (3), or combined: at most `stop`, what stops the motion in the
+    // middle of the step. So it turns no motion round and never adds energy; the host's takes all and may.
+    const auto drag = [&](double free, double stop, double* before) {
+        const double reach = alpha * std::abs(free);
+        if (around.host) return reach * sign(stop);
+        if (!before) return std::clamp(stop, -reach, reach);
+        const int change = sign(free - *before);
         *before = free;
-        return 0.5 * (local - alpha * std::abs(free) * sign(change));
+        return std::clamp(stop, -0.5 * reach * (1 + change), 0.5 * reach * (1 - change));
     };
     for (int i = 0; i < 3; ++i) {
         const double all = force[i] + s.mass * around.gravity[i];
@@ -104,14 +108,17 @@ struct BodyStep {
             continue;
         }
         const double free = force[i] / s.mass + around.gravity[i];
-        const double taken = drag(free, s.vel[i] + 0.5 * dt * free, last ? &last[0][i] : nullptr);
+        const double taken = drag(free, rate * s.vel[i] + free, last ? &last[0][i] : nullptr);
         step.vel[i] += dt * (free - taken);
         step.damped[0] += 0.5 * dt * s.mass * taken * s.vel[i];
         step.damped[1] += 0.5 * dt * s.mass * taken * step.vel[i];
         step.kinetic += 0.5 * s.mass * s.vel[i] * step.vel[i];
     }
-    // With a blocked rotation the integrator damps accelerations about the global axes, without it the torque.
+    // With a blocked rotation the integrator damps accelerations about the global axes, without it the torque, and what
+    // stops the spin about one of them cannot be more than its share of the smallest inertia.
     const bool restrained = rotationRestrained(s);
+    const Vector3r gained = restrained || around.host ? Vector3r::Zero() : Vector3r(inverseInertia(s) * torque);
+    const double least = s.inertia.minCoeff();
     Vector3r taken = Vector3r::Zero();
     for (int i = 0; i < 3; ++i) {
         if (blocked(s, 3 + i)) {
@@ -119,8 +126,9 @@ struct BodyStep {
             continue;
         }
         const double free = torque[i] / s.inertia[i];
-        taken[i] =
-            s.inertia[i] * drag(free, s.angVel[i] + (restrained ? 0.5 * dt * free : 0), last ? &last[1][i] : nullptr);
+        const double stop =
+            restrained ? rate * s.angVel[i] + free : least / s.inertia[i] * (rate * s.angVel[i] + gained[i]);
+        taken[i] = s.inertia[i] * drag(free, stop, last ? &last[1][i] : nullptr);
     }
     step.torque -= taken;
     step.work[1] = step.work[0];
@@ -416,129 +424,147 @@ py::dict MasonryEnergy::balance() {
     return all;
 }
 
-// Bound of Irons and Treharne: the highest frequency of the whole is at most the highest of any element that carries
-// its share of the masses. Elements are the joints between rigid units, the single points of joints at deformable
-// units, and zones. A mass is shared out degree by degree in proportion to the elements' stiffnesses, which makes the
-// bound exact for a regular chain.
-py::tuple criticalTimeStep() {
-    const auto& scene = *Singleton<yade::Omega>::instance().getScene();
-    struct Element {
+namespace {
+
+// Stiffness over masses of a scene, S K S with S = sqrt((1 + alpha) / M), as a sum over its joints and deformable
+// units. The degrees of freedom are the six of every rigid body and the three of every node; those that are blocked
+// have no part in it.
+class Dynamics {
+public:
+    explicit Dynamics(const yade::Scene&);
+
+    std::vector<bool> moves; // whether a degree of freedom can
+    void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
+    // The bodies of the joint, or twice the unit, that has most of a mode's energy.
+    std::pair<int, int> stiffest(const Eigen::VectorXd& mode) const;
+
+private:
+    struct Joint { // between rigid bodies, or a point of one at nodes
         std::vector<int> degrees;
         Eigen::MatrixXd stiffness;
-        int ids[2];
+        int body1, body2;
     };
-    std::vector<Element> elements;
-    std::vector<double> masses, share; // per degree: mass (infinite where blocked), sum of the elements' diagonals
-    std::map<int, int> firstOfBody;
-    std::map<const MasonryZones*, int> firstOfZones;
-    const auto freedom = [&](double mass) {
-        masses.push_back(mass);
-        share.push_back(0);
+    struct Unit {
+        BlockMatrix matrix;
+        int first, body;
     };
-    const auto degreesOfBody = [&](int id) {
-        const auto [at, fresh] = firstOfBody.emplace(id, int(masses.size()));
-        const State& s = *scene.bodies->body[id]->state;
-        for (int i = 0; fresh && i < 6; ++i)
-            freedom(blocked(s, i) ? HUGE_VAL : i < 3 ? s.mass : s.inertia[i - 3]);
-        return at->second;
-    };
-    const auto degreesOfZones = [&](MasonryZones& zones) {
-        const auto [at, fresh] = firstOfZones.emplace(&zones, int(masses.size()));
-        if (fresh)
-            for (const auto& unit : zones.units())
-                for (double mass : unit.elasticity->masses())
-                    for (int d = 0; d < 3; ++d)
-                        freedom(zones.holds(d) ? HUGE_VAL : mass);
-        return at->second;
-    };
-    const auto add = [&](Element e) {
-        for (std::size_t i = 0; i < e.degrees.size(); ++i)
-            share[e.degrees[i]] += e.stiffness(i, i);
-        elements.push_back(std::move(e));
-    };
-
-    eachJoint(scene, [&](const yade::Interaction& interaction, const MasonryJointGeom& geom,
-                         const MasonryJointPhys& phys) {
-        const int ids[2] = {interaction.id1, interaction.id2};
-        const std::vector<Attachment>* attachments[2] = {&geom.attachments1, &geom.attachments2};
-        const Vector3r centres[2] = {geom.position1, geom.position2};
-        const Matrix3r axes = geom.referenceAxes();
-        Element whole; // of a joint between rigid units
-        for (std::size_t p = 0; p < geom.points.size(); ++p) {
-            Element e;
-            std::vector<Vector3r> rows; // of the jump: its derivative by each degree
-            for (int side = 0; side < 2; ++side) {
-                const double sign = side ? 1 : -1;
-                if (!attachments[side]->empty()) {
-                    const auto& a = (*attachments[side])[p];
-                    const int first = degreesOfZones(*geom.zones);
-                    for (int n = 0; n < 3; ++n)
-                        for (int d = 0; a.weights[n] > 0 && d < 3; ++d) {
-                            e.degrees.push_back(first + 3 * a.nodes[n] + d);
-                            rows.push_back(sign * a.weights[n] * axes.row(d).transpose());
-                        }
-                    continue;
-                }
-                const int first = degreesOfBody(ids[side]);
-                const State& s = *scene.bodies->body[ids[side]]->state;
-                const Matrix3r own = rotationRestrained(s) ? Matrix3r(Matrix3r::Identity()) : s.ori.toRotationMatrix();
-                for (int d = 0; d < 6; ++d) {
-                    e.degrees.push_back(first + d);
-                    const Vector3r arm = geom.centre(geom.points[p]) - centres[side];
-                    const Vector3r move = d < 3 ? Vector3r(Vector3r::Unit(d)) : Vector3r(own.col(d - 3).cross(arm));
-                    rows.push_back(sign * (axes.transpose() * move));
-                }
-            }
-            e.ids[0] = ids[0], e.ids[1] = ids[1];
-            e.stiffness.resize(rows.size(), rows.size());
-            const Vector3r k =
-                geom.points[p].area * Vector3r(phys.normalStiffness, phys.shearStiffness, phys.shearStiffness);
-            for (std::size_t i = 0; i < rows.size(); ++i)
-                for (std::size_t j = 0; j < rows.size(); ++j)
-                    e.stiffness(i, j) = rows[i].dot(k.cwiseProduct(rows[j]));
-            if (geom.zones)
-                add(std::move(e));
-            else if (whole.degrees.empty())
-                whole = std::move(e);
-            else
-                whole.stiffness += e.stiffness;
-        }
-        if (!whole.degrees.empty()) add(std::move(whole));
-    });
-    // Where damping brakes, it adds that share to a force, as stiffer joints and zones would.
-    double damping = environmentOf(scene).damping;
-    for (const auto& engine : scene.engines)
-        if (auto* zones = dynamic_cast<MasonryZones*>(engine.get())) {
-            damping = std::max(damping, zones->damping);
-            for (const auto& unit : zones->units()) {
-                const int first = degreesOfZones(*zones) + 3 * unit.firstNode;
-                const auto& mesh = unit.elasticity->mesh();
-                for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
-                    Element e;
-                    for (int node : mesh.zones[z])
-                        for (int d = 0; d < 3; ++d)
-                            e.degrees.push_back(first + 3 * node + d);
-                    e.stiffness = unit.elasticity->stiffness(int(z));
-                    e.ids[0] = e.ids[1] = unit.body;
-                    add(std::move(e));
-                }
-            }
-        }
-
-    double highest = 0;
-    int worst[2] = {-1, -1};
-    for (const auto& e : elements) {
-        Eigen::VectorXd scale(e.degrees.size()); // 1/sqrt of the element's share of the mass; zero where nothing moves
-        for (std::size_t i = 0; i < e.degrees.size(); ++i) {
-            const double part = e.stiffness(i, i) / share[e.degrees[i]];
-            scale[i] = part > 0 ? 1 / std::sqrt(part * masses[e.degrees[i]]) : 0;
-        }
-        const Eigen::MatrixXd dynamic = scale.asDiagonal() * e.stiffness * scale.asDiagonal();
-        const double value =
-            Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dynamic, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
-        if (value > highest) highest = value, worst[0] = e.ids[0], worst[1] = e.ids[1];
+    void addDegree(double mass, double damping, bool blocked) {
+        moves.push_back(!blocked);
+        scale_.push_back(blocked ? 0 : std::sqrt((1 + damping) / mass));
     }
-    return py::make_tuple(2 / std::sqrt((1 + damping) * highest), worst[0], worst[1]);
+    void addJoint(const yade::Scene&, const yade::Interaction&, const MasonryJointGeom&, const MasonryJointPhys&);
+    // Calls `visit(body1, body2, degree, force)` with the force of every part on its degrees under a motion.
+    template <class F> void eachForce(const Eigen::VectorXd& motion, F&& visit) const;
+
+    std::vector<double> scale_; // sqrt((1 + alpha) / mass) of a degree of freedom; 0 where it is blocked
+    std::map<int, int> firstOfBody_;
+    std::vector<Joint> joints_;
+    std::vector<Unit> units_;
+};
+
+Dynamics::Dynamics(const yade::Scene& scene) {
+    if (auto* zones = zonesOf(scene))
+        for (const auto& unit : zones->units()) {
+            units_.push_back({unit.elasticity->matrix(), 3 * unit.firstNode, unit.body});
+            for (double mass : unit.elasticity->masses())
+                for (int d = 0; d < 3; ++d)
+                    addDegree(mass, zones->damping, zones->holds(d));
+        }
+    eachJoint(scene, [&](const yade::Interaction& interaction, const MasonryJointGeom& geom,
+                         const MasonryJointPhys& phys) { addJoint(scene, interaction, geom, phys); });
+}
+
+void Dynamics::addJoint(const yade::Scene& scene, const yade::Interaction& interaction, const MasonryJointGeom& geom,
+                        const MasonryJointPhys& phys) {
+    const int ids[2] = {interaction.id1, interaction.id2};
+    const std::vector<Attachment>* attachments[2] = {&geom.attachments1, &geom.attachments2};
+    const Vector3r centres[2] = {geom.position1, geom.position2};
+    const Matrix3r axes = geom.referenceAxes();
+    const double damping = environmentOf(scene).damping;
+    for (std::size_t p = 0; p < geom.points.size(); ++p) {
+        Joint part{{}, {}, ids[0], ids[1]};
+        std::vector<Vector3r> rows; // of the jump: its derivative by each degree
+        const auto add = [&](int degree, const Vector3r& moved) {
+            if (moves[degree]) part.degrees.push_back(degree), rows.push_back(axes.transpose() * moved);
+        };
+        for (int side = 0; side < 2; ++side) {
+            const double sign = side ? 1 : -1;
+            if (!attachments[side]->empty()) {
+                const auto& a = (*attachments[side])[p];
+                for (int n = 0; n < 3 && a.weights[n] > 0; ++n)
+                    for (int d = 0; d < 3; ++d)
+                        add(3 * a.nodes[n] + d, sign * a.weights[n] * Vector3r::Unit(d));
+                continue;
+            }
+            const State& s = *scene.bodies->body[ids[side]]->state;
+            const auto [first, fresh] = firstOfBody_.emplace(ids[side], int(moves.size()));
+            for (int d = 0; fresh && d < 6; ++d)
+                addDegree(d < 3 ? s.mass : s.inertia[d - 3], s.isDamped ? damping : 0, blocked(s, d));
+            const Matrix3r own = rotationRestrained(s) ? Matrix3r(Matrix3r::Identity()) : s.ori.toRotationMatrix();
+            const Vector3r arm = geom.centre(geom.points[p]) - centres[side];
+            for (int d = 0; d < 6; ++d)
+                add(first->second + d, sign * (d < 3 ? Vector3r(Vector3r::Unit(d)) : own.col(d - 3).cross(arm)));
+        }
+        const Vector3r k =
+            geom.points[p].area * Vector3r(phys.normalStiffness, phys.shearStiffness, phys.shearStiffness);
+        part.stiffness.resize(rows.size(), rows.size());
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            for (std::size_t j = 0; j < rows.size(); ++j)
+                part.stiffness(i, j) = rows[i].dot(k.cwiseProduct(rows[j]));
+        if (geom.zones || p == 0)
+            joints_.push_back(std::move(part));
+        else
+            joints_.back().stiffness += part.stiffness;
+    }
+}
+
+template <class F> void Dynamics::eachForce(const Eigen::VectorXd& motion, F&& visit) const {
+    for (const auto& joint : joints_)
+        for (std::size_t i = 0; i < joint.degrees.size(); ++i) {
+            double force = 0;
+            for (std::size_t j = 0; j < joint.degrees.size(); ++j)
+                force += joint.stiffness(j, i) * motion[joint.degrees[j]];
+            visit(joint.body1, joint.body2, joint.degrees[i], force);
+        }
+    for (const auto& unit : units_)
+        for (int r = 0; r < unit.matrix.rowCount; ++r) {
+            const auto& row = unit.matrix.rows[r];
+            double force = 0;
+            for (int e = row.first; e < row.beyond; ++e)
+                force += unit.matrix.values[e] * motion[unit.first + unit.matrix.columns[e]];
+            visit(unit.body, unit.body, unit.first + row.degree, force);
+        }
+}
+
+void Dynamics::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+    const Eigen::Map<const Eigen::VectorXd> scale(scale_.data(), Eigen::Index(scale_.size()));
+    y.setZero();
+    eachForce(scale.cwiseProduct(x), [&](int, int, int degree, double force) { y[degree] += force; });
+    y.array() *= scale.array();
+}
+
+std::pair<int, int> Dynamics::stiffest(const Eigen::VectorXd& mode) const {
+    const Eigen::VectorXd motion =
+        Eigen::Map<const Eigen::VectorXd>(scale_.data(), Eigen::Index(scale_.size())).cwiseProduct(mode);
+    std::map<std::pair<int, int>, double> energies;
+    eachForce(motion, [&](int body1, int body2, int degree, double force) {
+        energies[{body1, body2}] += motion[degree] * force;
+    });
+    const auto most = std::max_element(energies.begin(), energies.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    return most == energies.end() ? std::pair(-1, -1) : most->first;
+}
+
+} // namespace
+
+py::tuple criticalTimeStep() {
+    const auto& scene = *Singleton<yade::Omega>::instance().getScene();
+    const Dynamics dynamics(scene);
+    const auto highest = largestEigenvalue(
+        dynamics.moves, [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) { dynamics.multiply(x, y); });
+    if (highest.bound == 0) return py::make_tuple(HUGE_VAL, -1, -1);
+    const auto [id1, id2] = dynamics.stiffest(highest.mode);
+    return py::make_tuple(2 / std::sqrt(highest.bound), id1, id2);
 }
 
 } // namespace masonry

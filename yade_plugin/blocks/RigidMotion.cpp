@@ -12,13 +12,15 @@ void RigidMotion::push(int n, const Around& around, double gravity, const double
                        double* __restrict velocity, double* __restrict last, double* __restrict kinetic,
                        double* __restrict work, double* __restrict damped0, double* __restrict damped1) {
     const double half = 0.5 * around.dt, dt = around.dt;
-    const double brakes = around.combined ? 0.5 : 1, calms = around.combined ? 0.5 : 0;
+    const double rate = 2 / dt, share = around.combined ? 0.5 : 1, calms = around.combined ? 1 : 0;
     for (int i = 0; i < n; ++i) {
         const double before = velocity[i], mass = inert[i], undamped = force[i] / mass + gravity, seen = last[i];
-        const double middle = before + half * undamped, change = undamped - seen;
-        const double against = (middle > 0 ? 1.0 : 0.0) - (middle < 0 ? 1.0 : 0.0);
-        const double along = (change > 0 ? 1.0 : 0.0) - (change < 0 ? 1.0 : 0.0);
-        const double taken = alpha[i] * std::abs(undamped) * (brakes * against - calms * along); // paper eq. (3)
+        // paper eq. (3), or combined; at most what stops the motion in the middle of the step
+        const double stop = rate * before + undamped, change = undamped - seen;
+        const double along = calms * ((change > 0 ? 1.0 : 0.0) - (change < 0 ? 1.0 : 0.0));
+        const double reach = share * alpha[i] * std::abs(undamped);
+        const double least = -reach * (1 + along), most = reach * (1 - along);
+        const double below = stop < most ? stop : most, taken = below > least ? below : least;
         const bool moves = free[i] != 0;
         const double end = before + dt * (undamped - taken), after = moves ? end : before;
         const double drag = half * mass * taken, held = half * before * (force[i] + mass * gravity);
