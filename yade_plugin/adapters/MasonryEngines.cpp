@@ -214,12 +214,6 @@ void BodyEnergies::beginStep() {
     pendingExternal = pendingDamped = kinetic = fallen = 0;
 }
 
-void BodyEnergies::add(const BodyEnergies& other) {
-    external += other.external, pendingExternal += other.pendingExternal;
-    damped += other.damped, pendingDamped += other.pendingDamped;
-    kinetic += other.kinetic, fallen += other.fallen;
-}
-
 namespace {
 
 BodyEnergies energiesOf(const BodyStep& step) {

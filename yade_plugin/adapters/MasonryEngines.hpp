@@ -52,7 +52,11 @@ struct BodyEnergies {                                                        // 
     double external = 0, damped = 0, pendingExternal = 0, pendingDamped = 0; // so far; pending is for the next step
     double kinetic = 0, fallen = 0;
     void beginStep();
-    void add(const BodyEnergies&);
+    void add(const BodyEnergies& other) {
+        external += other.external, pendingExternal += other.pendingExternal;
+        damped += other.damped, pendingDamped += other.pendingDamped;
+        kinetic += other.kinetic, fallen += other.fallen;
+    }
 
     template <class Class, class Visit> static void attributes(Visit&& visit) {
         visit("external", &Class::external,

@@ -222,7 +222,6 @@ void MasonryJointLoop::build(bool mayBePlane) {
         bodies_.position[2][b] = bodies_.states[b]->refPos.y();
     for (auto& column : bodies_.orientation)
         column.resize(bodies_.ids.size());
-    onBodies_.assign(2 * bodies_.ids.size(), Vector3r::Zero());
     onJoints_.assign(std::size_t(plane_ ? 4 : 9) * joints, 0);
     onPoints_.assign(std::size_t(plane_ ? 2 : 3) * points, 0);
     bodyGather_.fill(atBodies);
@@ -270,14 +269,15 @@ void MasonryJointLoop::buildPlaces(Group& g, std::vector<std::vector<int>>& atPl
 bool MasonryJointLoop::readBodies() {
     const int count = int(bodies_.ids.size());
     bool fits = true;
+#pragma omp parallel for schedule(static) reduction(&& : fits)
     for (int b = 0; b < count; ++b) {
         if (b + 8 < count) __builtin_prefetch(&bodies_.states[b + 8]->ori);
         const auto& s = *bodies_.states[b];
         if (plane_) {
             bodies_.position[0][b] = s.pos[2], bodies_.position[1][b] = s.pos[0];
-            fits &= aboutY(s.ori * bodies_.reference[b], bodies_.orientation[0][b], bodies_.orientation[1][b]);
-            fits &= std::abs(s.pos[1] - bodies_.position[2][b]) < flat;
-            fits &= bodies_.momentPlaces[b] >= 0 || heldInPlane(s);
+            fits = fits && aboutY(s.ori * bodies_.reference[b], bodies_.orientation[0][b], bodies_.orientation[1][b]);
+            fits = fits && std::abs(s.pos[1] - bodies_.position[2][b]) < flat;
+            fits = fits && (bodies_.momentPlaces[b] >= 0 || heldInPlane(s));
         } else {
             for (int d = 0; d < 3; ++d)
                 bodies_.position[d][b] = s.pos[d], bodies_.orientation[d + 1][b] = s.ori.coeffs()[d];
@@ -366,7 +366,7 @@ void MasonryJointLoop::toBodies() {
             for (int d = 0; d < 3; ++d)
                 (zones_->momentRows() + bodies_.momentPlaces[body])[d * lanes] = torque[d];
         } else
-            onBodies_[2 * body] = force, onBodies_[2 * body + 1] = torque;
+            forces_[bodies_.ids[body]] += force, torques_[bodies_.ids[body]] += torque;
     }
 }
 
@@ -394,8 +394,8 @@ void MasonryJointLoop::toNodes() {
         const double* on = forces + guest.place;
         const Vector3r force(on[0], on[lanes], on[2 * lanes]);
         if (guest.body >= 0) {
-            onBodies_[2 * guest.body] += force;
-            onBodies_[2 * guest.body + 1] += (bodies_.states[guest.body]->ori * guest.local).cross(force);
+            forces_[bodies_.ids[guest.body]] += force;
+            torques_[bodies_.ids[guest.body]] += (bodies_.states[guest.body]->ori * guest.local).cross(force);
         } else
             for (int i = 0; i < 3; ++i)
                 for (int d = 0; d < 3; ++d)
@@ -419,13 +419,10 @@ void MasonryJointLoop::action() {
         advanceBlock(g, from, std::min(block, g.stride - from));
     }
     ahead_ = true;
-    std::fill(onBodies_.begin(), onBodies_.end(), Vector3r::Zero());
+    forces_ = scene->forces().forces(int(scene->bodies->body.size()));
+    torques_ = scene->forces().torques(int(scene->bodies->body.size()));
     toBodies();
     if (zones_) toNodes();
-    auto* forces = scene->forces().forces(int(scene->bodies->body.size()));
-    auto* torques = scene->forces().torques(int(scene->bodies->body.size()));
-    for (std::size_t b = 0; b < bodies_.ids.size(); ++b)
-        forces[bodies_.ids[b]] += onBodies_[2 * b], torques[bodies_.ids[b]] += onBodies_[2 * b + 1];
 }
 
 } // namespace masonry

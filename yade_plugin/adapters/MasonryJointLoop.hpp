@@ -79,10 +79,10 @@ private:
     shared_ptr<MasonryZones> zones_;
     std::vector<Guest> guests_;
     Gather bodyGather_, nodeGather_;
-    std::vector<double> onJoints_;   // force on body 1, torque about both centres; of nodal joints the moment on both
-    std::vector<double> onPoints_;   // force on side 1 of nodal joints
-    std::vector<Vector3r> onBodies_; // force and torque of the step
-    bool plane_ = false;             // whether all joints and motions lie in planes y = constant
+    std::vector<double> onJoints_; // force on body 1, torque about both centres; of nodal joints the moment on both
+    std::vector<double> onPoints_; // force on side 1 of nodal joints
+    Vector3r *forces_ = nullptr, *torques_ = nullptr; // the host's, of the step
+    bool plane_ = false;                              // whether all joints and motions lie in planes y = constant
     long seen_ = -1;
     std::size_t seenInteractions_ = 0;
     bool ahead_ = false; // whether the arrays are ahead of the joints
