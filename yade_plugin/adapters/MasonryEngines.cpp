@@ -182,7 +182,7 @@ void MasonryLoad::action() {
         const Vector3r v = state.vel + scene->dt * perMass.cwiseProduct(push);
         const Vector3r w = state.angVel + scene->dt * (perInertia * (forces.getTorqueSingle(body) + arm.cross(total)));
         const double mobility = d.dot(perMass.cwiseProduct(d)) + lever.dot(perInertia * lever);
-        if (!(mobility > 0))
+        if (mobility <= 0)
             throw std::invalid_argument("MasonryLoad: body " + std::to_string(body) +
                                         " is blocked in the driven direction");
         reaction = (velocity - d.dot(v) - lever.dot(w)) / (mobility * scene->dt);
@@ -222,7 +222,107 @@ BodyEnergies energiesOf(const BodyStep& step) {
 
 } // namespace
 
+namespace {
+
+struct Inventory { // what the engines of a scene keep, without the joints
+    double work = 0, falls = 0, moving = 0, drag = 0, inUnits = 0; // [J]
+};
+
+Inventory inventoryOf(const yade::Scene& scene, const BodyEnergies& energies) {
+    Inventory all{energies.external, energies.fallen, energies.kinetic, energies.damped};
+    for (const auto& engine : scene.engines)
+        if (const auto* load = dynamic_cast<MasonryLoad*>(engine.get()))
+            all.work += load->work;
+        else if (const auto* own = dynamic_cast<MasonryIntegrator*>(engine.get()))
+            all.work += own->external, all.falls += own->fallen, all.moving += own->kinetic, all.drag += own->damped;
+        else if (const auto* zones = dynamic_cast<MasonryZones*>(engine.get())) {
+            all.falls += zones->gravityWork, all.moving += zones->kinetic, all.drag += zones->dampingWork;
+            all.inUnits += zones->elastic;
+        }
+    return all;
+}
+
+struct Limit { // of the time step, and when it was found
+    double dt = 0;
+    int id1 = -1, id2 = -1;
+    const yade::Scene* scene = nullptr;
+    long changes = -1;
+    double damping = 0, zoneDamping = 0;
+};
+
+Limit limitOf(const yade::Scene&, bool anew);
+std::string describe(const yade::Scene&, const Limit&); // its time step, its limit, and what sets that
+
+std::string firstNotFinite(const yade::Scene& scene) {
+    for (const auto& body : scene.bodies->body)
+        if (body && body->state && !(body->state->pos + body->state->vel + body->state->angVel).allFinite())
+            return "of body " + std::to_string(body->id);
+    return "of the joints";
+}
+
+} // namespace
+
+// Looks every tenth step, and when time step or joints are others. The energy of motion m v-·v+ / 2 of a stable motion
+// lies between that of all work done and minus 1/(1 - r²) of it, at a share r of the limit; r is 0.995 for a hundred.
+void MasonryEnergy::check() {
+    const bool tenth = scene->iter % 10 == 0;
+    if (!tenth && scene->dt == lastStep_ && changes == lastChanges_) return;
+    lastStep_ = scene->dt, lastChanges_ = changes;
+    for (bool anew : {false, true}) { // masses may have changed
+        const auto limit = limitOf(*scene, anew);
+        if (scene->dt > 0 && scene->dt <= limit.dt) break;
+        if (anew) throw std::runtime_error("unstable: " + describe(*scene, limit));
+    }
+    if (!tenth) return;
+    const auto all = inventoryOf(*scene, *this);
+    const double motion = std::abs(all.moving);
+    if (!std::isfinite(motion))
+        throw std::runtime_error("numbers " + firstNotFinite(*scene) + " are not finite at step " +
+                                 std::to_string(scene->iter) + "; " + describe(*scene, limitOf(*scene, false)));
+    largestInput = std::max(largestInput, std::abs(all.work + all.falls));
+    if (motion > 100 * largestInput + 1e-12)
+        throw std::runtime_error("unstable: motion out of nothing at step " + std::to_string(scene->iter) + ", " +
+                                 text(motion) + " J where " + text(largestInput) + " J of work were done; " +
+                                 describe(*scene, limitOf(*scene, true)) +
+                                 ". Velocities set by hand must be told at once by MasonryEnergy.given()");
+}
+
+namespace {
+
+double motionOf(const yade::Scene& scene) { // energy of what is free to move [J]
+    double twice = 0;
+    auto* zones = zonesOf(scene);
+    for (const auto& body : scene.bodies->body) {
+        if (!body || !body->state || (zones && zones->unitOf(body->id))) continue;
+        const State& s = *body->state;
+        const Vector3r spin = rotationRestrained(s) ? s.angVel : Vector3r(s.ori.conjugate() * s.angVel);
+        for (int i = 0; i < 3; ++i) {
+            if (!blocked(s, i)) twice += s.mass * s.vel[i] * s.vel[i];
+            if (!blocked(s, 3 + i)) twice += s.inertia[i] * spin[i] * spin[i];
+        }
+    }
+    if (zones) {
+        zones->refresh();
+        for (const auto& unit : zones->units())
+            for (std::size_t n = 0; n < unit.elasticity->masses().size(); ++n)
+                for (int d = 0; d < 3; ++d)
+                    if (!zones->holds(d))
+                        twice += unit.elasticity->masses()[n] * std::pow(zones->velocities[unit.firstNode + n][d], 2);
+    }
+    return 0.5 * twice;
+}
+
+} // namespace
+
+void MasonryEnergy::given() {
+    const auto& running = *Singleton<yade::Omega>::instance().getScene();
+    external += motionOf(running) - inventoryOf(running, *this).moving;
+    begun = true;
+}
+
 void MasonryEnergy::action() {
+    if (!begun) given();
+    if (watch) check();
     for (const auto& engine : scene->engines)
         if (dynamic_cast<MasonryIntegrator*>(engine.get())) return; // keeps them itself
     const auto around = environmentOf(*scene);
@@ -393,16 +493,7 @@ py::dict MasonryEnergy::balance() {
             stored.compression += geom.points[i].area * e.compression;
         }
     });
-    double work = external, falls = fallen, moving = kinetic, drag = damped, inUnits = 0;
-    for (const auto& engine : running.engines)
-        if (const auto* load = dynamic_cast<MasonryLoad*>(engine.get()))
-            work += load->work;
-        else if (const auto* own = dynamic_cast<MasonryIntegrator*>(engine.get())) {
-            work += own->external, falls += own->fallen, moving += own->kinetic, drag += own->damped;
-        } else if (const auto* zones = dynamic_cast<MasonryZones*>(engine.get())) {
-            falls += zones->gravityWork, moving += zones->kinetic, drag += zones->dampingWork;
-            inUnits += zones->elastic;
-        }
+    const auto [work, falls, moving, drag, inUnits] = inventoryOf(running, *this);
     const double in = work + falls;
     const double out = moving + drag + inUnits + stored.tension + stored.shear + stored.compression + lost.sum();
     const double size = std::max(std::abs(work) + std::abs(falls), std::abs(out));
@@ -491,6 +582,8 @@ void Dynamics::addJoint(const yade::Scene& scene, const yade::Interaction& inter
                 continue;
             }
             const State& s = *scene.bodies->body[ids[side]]->state;
+            if (!(s.mass > 0 && s.inertia.minCoeff() > 0))
+                throw std::invalid_argument("body " + std::to_string(ids[side]) + " has no mass");
             const auto [first, fresh] = firstOfBody_.emplace(ids[side], int(moves.size()));
             for (int d = 0; fresh && d < 6; ++d)
                 addDegree(d < 3 ? s.mass : s.inertia[d - 3], s.isDamped ? damping : 0, blocked(s, d));
@@ -551,14 +644,41 @@ std::pair<int, int> Dynamics::stiffest(const Eigen::VectorXd& mode) const {
 
 } // namespace
 
-py::tuple criticalTimeStep() {
-    const auto& scene = *Singleton<yade::Omega>::instance().getScene();
+namespace {
+
+Limit limitOf(const yade::Scene& scene, bool anew) {
+    static Limit last;
+    const auto* zones = zonesOf(scene);
+    Limit limit{HUGE_VAL, -1, -1, &scene, changes, environmentOf(scene).damping, zones ? zones->damping : 0};
+    const auto when = [](const Limit& l) { return std::tie(l.scene, l.changes, l.damping, l.zoneDamping); };
+    if (!anew && when(limit) == when(last)) return last;
     const Dynamics dynamics(scene);
     const auto highest = largestEigenvalue(
         dynamics.moves, [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) { dynamics.multiply(x, y); });
-    if (highest.bound == 0) return py::make_tuple(HUGE_VAL, -1, -1);
-    const auto [id1, id2] = dynamics.stiffest(highest.mode);
-    return py::make_tuple(2 / std::sqrt(highest.bound), id1, id2);
+    if (highest.bound > 0) limit.dt = 2 / std::sqrt(highest.bound);
+    std::tie(limit.id1, limit.id2) = dynamics.stiffest(highest.mode);
+    limit.changes = changes; // units may have been meshed
+    return last = limit;
+}
+
+std::string describe(const yade::Scene& scene, const Limit& limit) {
+    std::string what = "the time step is " + text(scene.dt) + " s";
+    if (limit.id1 < 0) return what;
+    what += ", its limit " + text(limit.dt) + " s, which ";
+    if (limit.id1 == limit.id2) return what + "unit " + std::to_string(limit.id1) + " sets";
+    std::string name;
+    eachJoint(scene, [&](const yade::Interaction& i, const MasonryJointGeom&, const MasonryJointPhys& phys) {
+        if (i.id1 == limit.id1 && i.id2 == limit.id2) name = phys.joint->name;
+    });
+    return what + "joint \"" + name + "\" between bodies " + std::to_string(limit.id1) + " and " +
+           std::to_string(limit.id2) + " sets";
+}
+
+} // namespace
+
+py::tuple criticalTimeStep() {
+    const auto limit = limitOf(*Singleton<yade::Omega>::instance().getScene(), true);
+    return py::make_tuple(limit.dt, limit.id1, limit.id2);
 }
 
 } // namespace masonry

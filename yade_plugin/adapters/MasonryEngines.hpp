@@ -59,8 +59,11 @@ struct BodyEnergies {                                                        // 
     }
 
     template <class Class, class Visit> static void attributes(Visit&& visit) {
-        visit("external", &Class::external,
-              "Work of prescribed motions of bodies so far, without that of MasonryLoad [J].", ReadOnly);
+        visit(
+            "external", &Class::external,
+            "Work of prescribed motions of bodies so far, without that of MasonryLoad [J]; for MasonryEnergy with the "
+            "energy of motion at the first step and at given().",
+            ReadOnly);
         visit("damped", &Class::damped, "Energy taken by damping so far [J].", ReadOnly);
         visit("kinetic", &Class::kinetic, "Kinetic energy [J].", ReadOnly);
         visit("fallen", &Class::fallen, "Work of gravity since the reference state [J].", ReadOnly);
@@ -77,14 +80,21 @@ public:
         "Keeps the energy balance of a run: work of loads, prescribed motions and gravity = kinetic + elastic + "
         "dissipated in the joints by mode + damping. MasonryIntegrator and MasonryZones keep what is theirs; for "
         "NewtonIntegrator it stands directly before it and follows its equations. The balance closes to round-off and "
-        "the small terms of finite rotation.";
+        "the small terms of finite rotation. It also watches over the run: a time step above its limit, motion that "
+        "grows out of nothing and numbers that are not finite stop it with an error.";
 
-    double largestError = 0;
+    bool watch = true, begun = false;
+    double largestError = 0, largestInput = 0;
 
     template <class Visit> static void attributes(Visit&& visit) {
         BodyEnergies::attributes<MasonryEnergy>(visit);
+        visit("watch", &MasonryEnergy::watch,
+              "Whether an unstable run is stopped. Where it is not, a time step above criticalTimeStep() gives answers "
+              "that look sound and are not: damping keeps what should blow up within bounds.");
         visit("largestError", &MasonryEnergy::largestError,
               "Largest error of the balance seen by balance(), relative to the work done [-].", ReadOnly);
+        visit("largestInput", &MasonryEnergy::largestInput, "", Hidden);
+        visit("begun", &MasonryEnergy::begun, "", Hidden);
     }
 
     void action() override;
@@ -93,8 +103,17 @@ public:
     template <class PyClass> static void extras(PyClass& cls) {
         cls.def("balance", &MasonryEnergy::balance,
                 "All energies of the last step [J]: external, gravity, kinetic, damping, elastic_ and dissipated_ "
-                "tension, shear, compression; and error, the balance's error relative to the work done [-].");
+                "tension, shear, compression; and error, the balance's error relative to the work done [-].")
+            .def("given", &MasonryEnergy::given,
+                 "Count the present motion as given from outside: to be called at once when velocities were set by "
+                 "hand after the first step.");
     }
+
+private:
+    void given();
+    void check();
+    double lastStep_ = 0;   // [s] and
+    long lastChanges_ = -1; // count of changes, when the limit was last looked at
 };
 
 class MasonryIntegrator : public Adapter<MasonryIntegrator, yade::GlobalEngine>, public BodyEnergies {
