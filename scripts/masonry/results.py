@@ -27,7 +27,7 @@ ENERGIES = [
 
 
 OURS = re.compile(
-    r"(blocks|joints)(_\d+\.vt[up]|\.pvd)|curve\.(csv|png)|cracks\.png|run\.json"
+    r"(blocks|joints)(_\d+\.vt[up]|\.pvd)|curve\.(csv|png)|cracks\.png|run\.(json|checkpoint(\.new)?)"
 )
 
 
@@ -40,17 +40,18 @@ class Results:
 
     :param directory: folder, made if missing
     :param columns: columns of curve.csv, units in the names
+    :param resumed: leave everything as it is, until :meth:`takeUp`
     """
 
-    def __init__(self, directory, columns):
+    def __init__(self, directory, columns, resumed=False):
         self.directory = os.path.abspath(directory)
         try:
             os.makedirs(self.directory, exist_ok=True)
-            for name in os.listdir(self.directory):
+            for name in [] if resumed else os.listdir(self.directory):
                 if OURS.fullmatch(name):  # an earlier run's would be taken for ours
                     os.remove(os.path.join(self.directory, name))
             self._file = open(
-                self.path("curve.csv"), "w", newline="", buffering=1
+                self.path("curve.csv"), "a", newline="", buffering=1
             )  # a row at a time
         except OSError as error:
             raise Refused(
@@ -58,7 +59,8 @@ class Results:
             ) from None
         self.columns, self.rows, self.run = columns, [], {}
         self._writer = csv.writer(self._file)
-        self._writer.writerow(columns)
+        if not resumed:
+            self._writer.writerow(columns)
         self.started = time.perf_counter()
         self.interrupted = False
         for number in (signal.SIGINT, signal.SIGTERM):
@@ -66,6 +68,20 @@ class Results:
 
     def path(self, name):
         return os.path.join(self.directory, name)
+
+    def takeUp(self, rows, frames, seconds):
+        """Go on after the rows, ParaView frames and wall-clock seconds of a run that is resumed; what came later goes."""
+        if any(len(row) != len(self.columns) for row in rows):
+            raise ValueError(f"its rows are not of {len(self.columns)} columns")
+        for name in os.listdir(self.directory):
+            number = re.fullmatch(r"(?:blocks|joints)_(\d+)\.vt[up]", name)
+            if number and int(number[1]) >= frames:
+                os.remove(self.path(name))
+        self._file.truncate(0)
+        self._writer.writerow(self.columns)
+        for row in rows:
+            self.row(dict(zip(self.columns, row)))
+        self.started -= seconds
 
     def _interrupt(self, number, frame):
         self.interrupted = True
@@ -89,9 +105,13 @@ class Results:
         i = self.columns.index(name)
         return [row[i] for row in self.rows]
 
+    def seconds(self):
+        """Wall-clock time of the run so far [s]."""
+        return time.perf_counter() - self.started
+
     def close(self):
         """Write run.json and close curve.csv."""
-        self.run["wall_clock_s"] = round(time.perf_counter() - self.started, 3)
+        self.run["wall_clock_s"] = round(self.seconds(), 3)
         self._file.close()
         with open(self.path("run.json"), "w") as f:
             json.dump(self.run, f, indent=2)
@@ -132,23 +152,30 @@ class Progress:
 def conduct(make, *stages):
     """Make a model, run its stages and finish it in every case; returns the exit status of the scene.
 
-    ``make`` raises Refused for input that cannot be run. The model has ``results``, ``finish()`` and a method of each
-    stage's name.
+    ``make`` raises Refused for input that cannot be run, and gives a :class:`masonry.checkpoints.Resumable` with
+    ``finish()`` and a method of each stage's name.
     """
     try:
         model = make()
+        at = model.at
+        if at.stage not in ("", *stages):
+            raise Refused(f"--resume: a stage '{at.stage}' is not known")
     except Refused as refused:
         print(refused, file=sys.stderr)
         return 2
     try:
-        for stage in stages:
-            getattr(model, stage)()
+        for at.stage in stages[stages.index(at.stage) if at.stage else 0 :]:
+            getattr(model, at.stage)()
     except Interrupted:
         print("\ninterrupted: what was computed is kept")
     except Exception:
+        model.checkpoint()
         model.finish()  # keeps what was computed
         raise
+    kept = model.checkpoint()
     model.finish()
+    if model.results.interrupted and kept:
+        print(f"--resume {model.results.directory} goes on from here")
     return 130 if model.results.interrupted else 0
 
 
