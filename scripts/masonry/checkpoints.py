@@ -4,12 +4,11 @@ The pair :func:`saveCheckpoint`, :func:`loadCheckpoint` serves any scene; :class
 couplet make of it.
 """
 
-import copy
 import json
 import os
 import sys
 import time
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 
 import yade.config
 from yade import O
@@ -84,11 +83,11 @@ def readRun(directory):
         told = readCheckpoint(path)
     except (OSError, ValueError) as error:
         raise Refused(f"--resume: {error}") from None
-    if not (
-        isinstance(told, dict)
-        and {"scene", "options", "at", "rows", "seconds"} <= told.keys()
+    known = dict(scene=str, options=dict, at=dict, rows=list, seconds=float)
+    if not isinstance(told, dict) or any(
+        not isinstance(told.get(key), kind) for key, kind in known.items()
     ):
-        raise Refused(f"--resume: {path} was not left by a scene of this package")
+        raise Refused(f"--resume: {path} was not left by a wall or couplet")
     return told
 
 
@@ -148,7 +147,7 @@ class Resumable:
             self.results.takeUp(
                 self.told["rows"], len(self.at.frames), self.told["seconds"]
             )
-        except (ValueError, OSError) as error:
+        except (ValueError, TypeError, OSError) as error:
             raise Refused(f"--resume: {error}") from None
         self.at.resumed.append(O.time)
         self.advanced = True
@@ -178,7 +177,7 @@ class Resumable:
                 O.step()
             self.at.steppingTime += time.perf_counter() - began
             self.at.steps += steps
-        self.safe = copy.deepcopy(self.at), len(self.results.rows)
+        self.safe = replace(self.at), len(self.results.rows)
         if time.monotonic() - self.saved > 60 * self.args.checkpoint_every:
             self.checkpoint()
         self.results.checkInterrupt()

@@ -64,7 +64,7 @@ class _Parser(argparse.ArgumentParser):
             known = readRun(given.resume)["options"]
         except Refused as refused:
             self.exit(2, f"{refused}\n")
-        known["set"] = [tuple(setting) for setting in known["set"]]
+        known["set"] = [tuple(setting) for setting in known.get("set", [])]
         known["out"] = given.resume
         given = super().parse_args(words, argparse.Namespace(**{**known, "set": []}))
         given.set = given.set or known["set"]

@@ -125,19 +125,21 @@ class Progress:
         self.stream = stream or sys.stdout
         self.terminal = self.stream.isatty()
         self.last = self.stage = None
-        self.began = self.lastTenth = 0
+        self.began = self.first = self.lastTenth = 0
 
     def show(self, stage, fraction, detail, stepsPerSecond, final=False):
         now = time.perf_counter()
         if stage != self.stage:
-            self.stage, self.began, self.lastTenth, self.last = stage, now, -1, 0
+            self.stage, self.began, self.first = stage, now, fraction
+            self.lastTenth, self.last = -1, 0
         tenth = int(10 * fraction)
         if not final and (
             now - self.last < 0.2 if self.terminal else tenth == self.lastTenth
         ):
             return
         self.last, self.lastTenth = now, tenth
-        left = (now - self.began) * (1 / fraction - 1) if fraction > 0.01 else None
+        done = fraction - self.first
+        left = (now - self.began) * (1 - fraction) / done if done > 0.01 else None
         text = f"{stage:<12} {detail}  {stepsPerSecond:,.0f} steps/s"
         if left is not None and not final:
             text += f"  {int(left) // 60}:{int(left) % 60:02d} left"

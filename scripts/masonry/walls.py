@@ -214,7 +214,12 @@ class WallModel(Resumable):
                 "load_line_fixed": wall.loadLineFixed,
             },
             options=dict(vars(self.args)),
-            option_units={"until": "mm", "rate": "mm/s", "vtk_every": "mm"},
+            option_units={
+                "until": "mm",
+                "rate": "mm/s",
+                "vtk_every": "mm",
+                "checkpoint_every": "min",
+            },
             joints={name: joint.dict() for name, joint in self.joints.items()},
             joint_units=options.units(materials.MasonryJoint),
             unit_material={

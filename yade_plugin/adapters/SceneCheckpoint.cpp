@@ -6,13 +6,13 @@
 
 namespace masonry {
 
-struct BodyRecord { // with what the last step put on it
-    Vector3r position, velocity, spin, momentum, force, torque;
+struct BodyRecord { // with the forces of the last step, so that they can be read, and those that stay
+    Vector3r position, velocity, spin, momentum, force, torque, lasting, lastingTorque;
     Quaternionr orientation;
     double blocked, damped;
 };
 template <class F> void numbers(BodyRecord& b, F&& each) {
-    for (auto* v : {&b.position, &b.velocity, &b.spin, &b.momentum, &b.force, &b.torque})
+    for (auto* v : {&b.position, &b.velocity, &b.spin, &b.momentum, &b.force, &b.torque, &b.lasting, &b.lastingTorque})
         numbers(*v, each);
     numbers(b.orientation, each), each(b.blocked), each(b.damped);
 }
@@ -58,24 +58,32 @@ void transferBodies(yade::Scene& scene, Transfer& to) {
     const auto bodies = bodiesOf(scene);
     auto& forces = scene.forces();
     forces.sync();
-    std::vector<BodyRecord> records, before;
+    const Vector3r none = Vector3r::Zero();
+    std::vector<BodyRecord> records;
     for (const auto* body : bodies) {
         const auto& s = *body->state;
-        records.push_back({s.pos, s.vel, s.angVel, s.angMom, forces.getForce(body->id), forces.getTorque(body->id),
+        const int id = body->id;
+        records.push_back({s.pos, s.vel, s.angVel, s.angMom, forces.getForce(id), forces.getTorque(id), none, none,
                            s.ori, double(s.blockedDOFs), double(s.isDamped)});
+        if (forces.getPermForceUsed())
+            records.back().lasting = forces.getPermForce(id), records.back().lastingTorque = forces.getPermTorque(id);
     }
-    before = records;
     to.several("bodies", records.data(), records.size());
     if (!to.back) return;
+    forces.reset(scene.iter, forces.getPermForceUsed());
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         auto& s = *bodies[i]->state;
+        const int id = bodies[i]->id;
         const auto& r = records[i];
         if (!(r.blocked >= 0 && r.blocked <= 63)) to.damaged("bodies");
         s.pos = r.position, s.vel = r.velocity, s.angVel = r.spin, s.angMom = r.momentum, s.ori = r.orientation;
         s.blockedDOFs = unsigned(r.blocked), s.isDamped = r.damped != 0;
-        forces.addForce(bodies[i]->id, r.force - before[i].force); // so that they read as after the saved step
-        forces.addTorque(bodies[i]->id, r.torque - before[i].torque);
+        forces.addForce(id, r.force - r.lasting);
+        forces.addTorque(id, r.torque - r.lastingTorque);
+        if (!r.lasting.isZero(0)) forces.setPermForce(id, r.lasting);
+        if (!r.lastingTorque.isZero(0)) forces.setPermTorque(id, r.lastingTorque);
     }
+    forces.sync();
 }
 
 void transferJoints(const yade::Scene& scene, Transfer& to) {
@@ -109,6 +117,7 @@ void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
     for (const auto& engine : scene.engines)
         if (auto* own = dynamic_cast<Stateful*>(engine.get())) {
             to.owner = "engine " + std::to_string(++number) + " " + engine->getClassName() + ".";
+            to("dead", engine->dead);
             own->transfer(to);
         }
     for (const auto& engine : scene.engines)
