@@ -105,14 +105,15 @@ class Place:
 class Resumable:
     """A run in stages, in a folder of results, that leaves checkpoints and can be taken up from the last.
 
-    A subclass builds its scene between ``__init__`` and :meth:`_begin` and steps by :meth:`_advance` alone. In a run
-    that is resumed the stage is entered with ``at`` as it was after the steps of an ``_advance``, in the state that
+    A subclass names its methods in ``stages``, builds its scene between ``__init__`` and :meth:`_begin`, and steps by
+    :meth:`_advance` alone. In a run that is resumed the stage is entered with ``at`` as it was after the steps of an ``_advance``, in the state that
     they led to, and the first ``_advance`` does nothing. So a stage counts in ``at`` after it has advanced, and what
     it does before may be done twice.
     """
 
     def __init__(self, name, args, columns, at):
         self.name, self.args, self.at = name, args, at
+        at.stage = self.stages[0]
         self.told = readRun(args.resume) if args.resume else None
         if self.told:
             if self.told["scene"] != name:
@@ -122,7 +123,13 @@ class Resumable:
             try:
                 self.at = type(at)(**self.told["at"])
             except TypeError as error:
-                raise Refused(f"--resume: of another version of the plugin: {error}")
+                raise Refused(
+                    f"--resume: of another version of the plugin: {error}"
+                ) from None
+            if self.at.stage not in self.stages:
+                raise Refused(
+                    f"--resume: of another version of the plugin: stage '{self.at.stage}'"
+                )
         self.results = Results(
             args.out or os.path.join("results", name), columns, bool(args.resume)
         )

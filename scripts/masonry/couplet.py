@@ -41,6 +41,8 @@ class Couplet(Resumable):
     The blocks are rigid and hold the bricks by elastic joints. ``args`` are the options of ``couplet.py``.
     """
 
+    stages = ("run",)
+
     def __init__(self, args):
         checkBlocks(args)
         joints = materials.calciumSilicateJoints(brittle=args.joints == "brittle")
@@ -216,4 +218,4 @@ class Couplet(Resumable):
 
 def test(args):
     """Run the couplet; the exit status of the scene."""
-    return conduct(lambda: Couplet(args), "run")
+    return conduct(lambda: Couplet(args))

@@ -151,23 +151,20 @@ class Progress:
         self.stream.flush()
 
 
-def conduct(make, *stages):
+def conduct(make):
     """Make a model, run its stages and finish it in every case; returns the exit status of the scene.
 
-    ``make`` raises Refused for input that cannot be run, and gives a :class:`masonry.checkpoints.Resumable` with
-    ``finish()`` and a method of each stage's name.
+    ``make`` raises Refused for input that cannot be run, and gives a :class:`masonry.checkpoints.Resumable` with a
+    method ``finish()``.
     """
     try:
         model = make()
-        at = model.at
-        if at.stage not in ("", *stages):
-            raise Refused(f"--resume: a stage '{at.stage}' is not known")
     except Refused as refused:
         print(refused, file=sys.stderr)
         return 2
     try:
-        for at.stage in stages[stages.index(at.stage) if at.stage else 0 :]:
-            getattr(model, at.stage)()
+        for model.at.stage in model.stages[model.stages.index(model.at.stage) :]:
+            getattr(model, model.at.stage)()
     except Interrupted:
         print("\ninterrupted: what was computed is kept")
     except Exception:

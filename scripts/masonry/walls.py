@@ -104,6 +104,8 @@ class WallPlace(Place):
 class WallModel(Resumable):
     """The wall in YADE, and the stages of its test. ``args`` are the options of :func:`masonry.options.parser`."""
 
+    stages = ("settle", "precompress", "push")
+
     def __init__(self, wall, args):
         self.wall = wall
         options.checkBlocks(args)
@@ -410,4 +412,4 @@ class WallModel(Resumable):
 
 def test(wall, args):
     """Gravity, precompression, push and results of a wall; the exit status of the scene."""
-    return conduct(lambda: WallModel(wall, args), "settle", "precompress", "push")
+    return conduct(lambda: WallModel(wall, args))

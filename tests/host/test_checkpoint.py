@@ -59,7 +59,9 @@ def test_a_scene_built_anew_goes_on_bit_for_bit(case, functors, tmp_path):
     assert bits(interactions) == end
     assert state(interactions)["damage"].max(axis=0).min() > 0.01
 
-    loadCheckpoint(path)  # back, in a scene that has run, and on without a look at anything
+    loadCheckpoint(
+        path
+    )  # back, in a scene that has run, and on without a look at anything
     run(200)
     assert bits(interactions) == end
 
