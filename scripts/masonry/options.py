@@ -47,13 +47,44 @@ def _setting(text):
     return joint, attribute, value
 
 
+class _Parser(argparse.ArgumentParser):
+    """Takes the options of a run that is resumed from its checkpoint, and refuses those that would change the run."""
+
+    def __init__(self, **kw):
+        super().__init__(**kw)
+        self.free = {"until", "checkpoint_every", "vtk_every", "no_vtk"}
+
+    def parse_args(self, words=None, namespace=None):
+        given = super().parse_args(words, namespace)
+        if given.resume is None:
+            return given
+        from .checkpoints import readRun
+
+        try:
+            known = readRun(given.resume)["options"]
+        except Refused as refused:
+            self.exit(2, f"{refused}\n")
+        known["set"] = [tuple(setting) for setting in known.get("set", [])]
+        known["out"] = given.resume
+        given = super().parse_args(words, argparse.Namespace(**{**known, "set": []}))
+        given.set = given.set or known["set"]
+        fixed = [
+            f"--{name.replace('_', '-')} is {value}"
+            for name, value in known.items()
+            if name not in self.free and getattr(given, name) != value
+        ]
+        if fixed:
+            self.exit(2, f"--resume: a run goes on as it began: {', '.join(fixed)}\n")
+        return given
+
+
 def parser(description, until, rate=20.0):
     """Parser with the common options; a scene adds its own.
 
     :param until: default displacement to stop at [mm]
     :param rate: default loading rate [mm/s]
     """
-    p = argparse.ArgumentParser(
+    p = _Parser(
         prog="yade " + os.path.basename(sys.argv[0]),
         description=description,
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
@@ -141,6 +172,21 @@ def parser(description, until, rate=20.0):
         metavar="DIR",
         default=None,
         help="folder of the results (default: results/SCENE)",
+    )
+    p.add_argument(
+        "--checkpoint-every",
+        metavar="MINUTES",
+        type=lambda t: number(t, 0, 1e6),
+        default=5.0,
+        help="wall-clock time between checkpoints [min]; there is one at the end, too, on Ctrl-C and on an error; 0: "
+        "none at all",
+    )
+    p.add_argument(
+        "--resume",
+        metavar="DIR",
+        default=None,
+        help="go on from the checkpoint in this folder of results, with the options of its run; only --until, "
+        "--checkpoint-every, --vtk-every and --no-vtk can be changed",
     )
     p.add_argument(
         "--vtk-every",

@@ -27,7 +27,7 @@ ENERGIES = [
 
 
 OURS = re.compile(
-    r"(blocks|joints)(_\d+\.vt[up]|\.pvd)|curve\.(csv|png)|cracks\.png|run\.json"
+    r"(blocks|joints)(_\d+\.vt[up]|\.pvd)|curve\.(csv|png)|cracks\.png|run\.(json|checkpoint(\.new)?)"
 )
 
 
@@ -40,17 +40,18 @@ class Results:
 
     :param directory: folder, made if missing
     :param columns: columns of curve.csv, units in the names
+    :param resumed: leave everything as it is, until :meth:`takeUp`
     """
 
-    def __init__(self, directory, columns):
+    def __init__(self, directory, columns, resumed=False):
         self.directory = os.path.abspath(directory)
         try:
             os.makedirs(self.directory, exist_ok=True)
-            for name in os.listdir(self.directory):
+            for name in [] if resumed else os.listdir(self.directory):
                 if OURS.fullmatch(name):  # an earlier run's would be taken for ours
                     os.remove(os.path.join(self.directory, name))
             self._file = open(
-                self.path("curve.csv"), "w", newline="", buffering=1
+                self.path("curve.csv"), "a", newline="", buffering=1
             )  # a row at a time
         except OSError as error:
             raise Refused(
@@ -58,7 +59,8 @@ class Results:
             ) from None
         self.columns, self.rows, self.run = columns, [], {}
         self._writer = csv.writer(self._file)
-        self._writer.writerow(columns)
+        if not resumed:
+            self._writer.writerow(columns)
         self.started = time.perf_counter()
         self.interrupted = False
         for number in (signal.SIGINT, signal.SIGTERM):
@@ -66,6 +68,20 @@ class Results:
 
     def path(self, name):
         return os.path.join(self.directory, name)
+
+    def takeUp(self, rows, frames, seconds):
+        """Go on after the rows, ParaView frames and wall-clock seconds of a run that is resumed; what came later goes."""
+        if any(len(row) != len(self.columns) for row in rows):
+            raise ValueError(f"its rows are not of {len(self.columns)} columns")
+        for name in os.listdir(self.directory):
+            number = re.fullmatch(r"(?:blocks|joints)_(\d+)\.vt[up]", name)
+            if number and int(number[1]) >= frames:
+                os.remove(self.path(name))
+        self._file.truncate(0)
+        self._writer.writerow(self.columns)
+        for row in rows:
+            self.row(dict(zip(self.columns, row)))
+        self.started -= seconds
 
     def _interrupt(self, number, frame):
         self.interrupted = True
@@ -89,9 +105,13 @@ class Results:
         i = self.columns.index(name)
         return [row[i] for row in self.rows]
 
+    def seconds(self):
+        """Wall-clock time of the run so far [s]."""
+        return time.perf_counter() - self.started
+
     def close(self):
         """Write run.json and close curve.csv."""
-        self.run["wall_clock_s"] = round(time.perf_counter() - self.started, 3)
+        self.run["wall_clock_s"] = round(self.seconds(), 3)
         self._file.close()
         with open(self.path("run.json"), "w") as f:
             json.dump(self.run, f, indent=2)
@@ -105,19 +125,21 @@ class Progress:
         self.stream = stream or sys.stdout
         self.terminal = self.stream.isatty()
         self.last = self.stage = None
-        self.began = self.lastTenth = 0
+        self.began = self.first = self.lastTenth = 0
 
     def show(self, stage, fraction, detail, stepsPerSecond, final=False):
         now = time.perf_counter()
         if stage != self.stage:
-            self.stage, self.began, self.lastTenth, self.last = stage, now, -1, 0
+            self.stage, self.began, self.first = stage, now, fraction
+            self.lastTenth, self.last = -1, 0
         tenth = int(10 * fraction)
         if not final and (
             now - self.last < 0.2 if self.terminal else tenth == self.lastTenth
         ):
             return
         self.last, self.lastTenth = now, tenth
-        left = (now - self.began) * (1 / fraction - 1) if fraction > 0.01 else None
+        done = fraction - self.first
+        left = (now - self.began) * (1 - fraction) / done if done > 0.01 else None
         text = f"{stage:<12} {detail}  {stepsPerSecond:,.0f} steps/s"
         if left is not None and not final:
             text += f"  {int(left) // 60}:{int(left) % 60:02d} left"
@@ -129,11 +151,11 @@ class Progress:
         self.stream.flush()
 
 
-def conduct(make, *stages):
+def conduct(make):
     """Make a model, run its stages and finish it in every case; returns the exit status of the scene.
 
-    ``make`` raises Refused for input that cannot be run. The model has ``results``, ``finish()`` and a method of each
-    stage's name.
+    ``make`` raises Refused for input that cannot be run, and gives a :class:`masonry.checkpoints.Resumable` with a
+    method ``finish()``.
     """
     try:
         model = make()
@@ -141,14 +163,18 @@ def conduct(make, *stages):
         print(refused, file=sys.stderr)
         return 2
     try:
-        for stage in stages:
-            getattr(model, stage)()
+        for model.at.stage in model.stages[model.stages.index(model.at.stage) :]:
+            getattr(model, model.at.stage)()
     except Interrupted:
         print("\ninterrupted: what was computed is kept")
     except Exception:
+        model.checkpoint()
         model.finish()  # keeps what was computed
         raise
+    kept = model.checkpoint()
     model.finish()
+    if model.results.interrupted and kept:
+        print(f"--resume {model.results.directory} goes on from here")
     return 130 if model.results.interrupted else 0
 
 

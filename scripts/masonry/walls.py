@@ -1,19 +1,18 @@
 """Walls under precompression and a lateral push: paper §4, validation.md §1."""
 
-import os
 import subprocess
 import sys
-import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Callable
 
 import yade.config
 from yade import O, Vector3
-from yade.wrapper import MasonryLoad, MasonryVtkRecorder, MasonryZones
+from yade.wrapper import MasonryLoad, MasonryZones
 
 from . import brickwork, commit, criticalTimeStep, materials, options
+from .checkpoints import Place, Resumable
 from .options import Refused, applySettings
-from .results import ENERGIES, Progress, Results, conduct, initialStiffness
+from .results import ENERGIES, conduct, initialStiffness
 from .scene import addBlock, connect, engines
 
 CURVE = [
@@ -87,20 +86,41 @@ class Wall:
         return self.length * self.unit[1]
 
 
-class WallModel:
+@dataclass
+class WallPlace(Place):
+    """How far a wall's test has come."""
+
+    done: int = 0  # steps towards rest
+    quiet: int = 0  # times in a row that it was at rest
+    pieces: int = 0  # of the precompression
+    origin: list = field(default_factory=list)  # of the push: displacement [m]
+    began: float = 0.0  # and time [s]
+    moved: float = 0.0  # [mm]
+    peak: float = 0.0  # [kN]
+    peakAt: float = 0.0  # [mm]
+    nextFrame: float = 0.0  # [mm]
+
+
+class WallModel(Resumable):
     """The wall in YADE, and the stages of its test. ``args`` are the options of :func:`masonry.options.parser`."""
 
+    stages = ("settle", "precompress", "push")
+
     def __init__(self, wall, args):
-        self.wall, self.args = wall, args
+        self.wall = wall
         options.checkBlocks(args)
         self.joints = wall.joints(brittle=args.joints == "brittle")
         if args.crack_surfaces == "on" and "crack" not in self.joints:
             raise Refused("--crack-surfaces on: the units of this wall have none")
         applySettings(self.joints, args.set)
-        self.results = Results(args.out or os.path.join("results", wall.name), CURVE)
-        self.progress = Progress()
-        self.steps, self.steppingTime, self.collapsed = 0, 0.0, False
+        super().__init__(wall.name, args, CURVE, WallPlace())
+        if not args.until > self.at.moved:
+            raise Refused(
+                f"--until {args.until:g}: the run is at {self.at.moved:.2f} mm already"
+            )
+        self.collapsed = False
         self._build()
+        self._begin()
 
     def _build(self):
         O.reset()
@@ -176,11 +196,6 @@ class WallModel:
         )
         self.limit = criticalTimeStep()[0]
         O.dt = self.args.dt_fraction * self.limit
-        self.vtk = (
-            None
-            if self.args.no_vtk
-            else MasonryVtkRecorder(directory=self.results.directory)
-        )
         self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)
         kinds = {}
         for i in self.interactions:
@@ -201,7 +216,12 @@ class WallModel:
                 "load_line_fixed": wall.loadLineFixed,
             },
             options=dict(vars(self.args)),
-            option_units={"until": "mm", "rate": "mm/s", "vtk_every": "mm"},
+            option_units={
+                "until": "mm",
+                "rate": "mm/s",
+                "vtk_every": "mm",
+                "checkpoint_every": "min",
+            },
             joints={name: joint.dict() for name, joint in self.joints.items()},
             joint_units=options.units(materials.MasonryJoint),
             unit_material={
@@ -229,24 +249,14 @@ class WallModel:
 
     # -- stages ---------------------------------------------------------------------------------------------------
 
-    def _advance(self, steps):
-        self.results.checkInterrupt()
-        began = time.perf_counter()
-        for _ in range(steps):
-            O.step()
-        self.steppingTime += time.perf_counter() - began
-        self.steps += steps
-
-    def _rate(self):
-        return self.steps / self.steppingTime if self.steppingTime else 0.0
-
     def _rest(self, stage, unbalanced, mostSteps=20000):
         """Advance until the base carries what is above it but for that share, and hardly anything moves."""
         above = sum(b.state.mass for b in O.bodies if b.id != self.base)
         load = above * self.gravity - self.vertical.force[2]
-        quiet = 0
-        for done in range(0, mostSteps, 100):
+        at = self.at
+        while at.done < mostSteps and at.quiet < 3:
             self._advance(100)
+            at.done += 100
             e = self.energy.balance()
             elastic = (
                 e["elastic_compression"]
@@ -256,17 +266,19 @@ class WallModel:
             )
             missing = 1 + O.forces.f(self.base, True)[2] / load
             rests = abs(missing) < unbalanced and abs(e["kinetic"]) < 1e-6 * elastic
-            quiet = quiet + 1 if rests else 0
+            at.quiet = at.quiet + 1 if rests else 0
             self.progress.show(
                 stage,
-                done / mostSteps,
+                at.done / mostSteps,
                 f"unbalanced {100 * missing:+.2f} %, kinetic/elastic {abs(e['kinetic']) / elastic:.1e}",
                 self._rate(),
-                quiet == 3,
+                at.quiet == 3,
             )
-            if quiet == 3:
-                return
-        print(f"note: the wall is not quite at rest after {mostSteps} steps of {stage}")
+        if at.quiet < 3:
+            print(
+                f"note: the wall is not quite at rest after {mostSteps} steps of {stage}"
+            )
+        at.done = at.quiet = 0
 
     def settle(self):
         """Gravity, to rest."""
@@ -280,49 +292,53 @@ class WallModel:
         )
         if self.zones:
             self.zones.damping = min(SETTLING, self.args.damping)
-        pieces = 40
-        for piece in range(1, pieces + 1):
-            self.vertical.force = Vector3(0, 0, -force * piece / pieces)
+        pieces, at = 40, self.at
+        while at.pieces < pieces:
+            self.vertical.force = Vector3(0, 0, -force * (at.pieces + 1) / pieces)
             self._advance(int(self.ramp / pieces / O.dt) + 1)
+            at.pieces += 1
         self._rest("precompress", 2e-4)
 
     def push(self):
         """Lateral velocity at the loaded point, to ``--until`` or to collapse."""
-        args = self.args
+        args, at = self.args, self.at
         every = max(1, int(ROW_EVERY / (args.rate * O.dt)))
-        peak = peakAt = nextFrame = 0.0
-        self.origin = self._topDisplacement()
-        values = self._record()
+        if not self.advanced:
+            at.origin, at.began = list(self._topDisplacement()), O.time
+            at.moved = self._record()["displacement_mm"]
         if self.zones:
             self.zones.damping = args.damping
             self.zones.dampingKind = args.damping_kind
         else:
             self.integrator.dampingKind = args.damping_kind
-        began = O.time
-        while values["displacement_mm"] < args.until:
-            if self.vtk and values["displacement_mm"] >= nextFrame:
-                self.vtk()
-                nextFrame += args.vtk_every
+        while at.moved < args.until:
+            if at.moved >= at.nextFrame:
+                self._frame()
+                at.nextFrame += args.vtk_every
             self.load.velocity = (
-                args.rate * 1e-3 * min(1.0, (O.time - began + every * O.dt) / self.ramp)
+                args.rate
+                * 1e-3
+                * min(1.0, (O.time - at.began + every * O.dt) / self.ramp)
             )
             if self.wall.loadLineFixed:
                 along = self.load.displacement()[0]
                 self.vertical.point = self.load.point - Vector3(along, 0, 0)
             self._advance(every)
             values = self._record()
-            shear, moved = values["base_shear_kN"], values["displacement_mm"]
-            if shear > peak:
-                peak, peakAt = shear, moved
-            detail = f"{moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
-            self.progress.show("push", max(0, moved / args.until), detail, self._rate())
+            shear, at.moved = values["base_shear_kN"], values["displacement_mm"]
+            if shear > at.peak:
+                at.peak, at.peakAt = shear, at.moved
+            detail = f"{at.moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
+            self.progress.show(
+                "push", max(0, at.moved / args.until), detail, self._rate()
+            )
             sunk = -values["vertical_mm"] > 500 * self.wall.unit[2]
-            if moved > peakAt + 1 and (shear < 0.2 * peak or sunk):
+            if at.moved > at.peakAt + 1 and (shear < 0.2 * at.peak or sunk):
                 self.collapsed = True
                 break
         self.progress.show("push", 1, detail, self._rate(), final=True)
         if self.collapsed:
-            print(f"the wall has collapsed at {moved:.2f} mm")
+            print(f"the wall has collapsed at {at.moved:.2f} mm")
 
     def _topDisplacement(self):
         """Displacement of the loading block at the height of measurement [m]."""
@@ -331,7 +347,7 @@ class WallModel:
         return s.pos + s.ori * (s.refOri.conjugate() * arm) - s.refPos - arm
 
     def _record(self):
-        moved = self._topDisplacement() - self.origin
+        moved = self._topDisplacement() - Vector3(*self.at.origin)
         e = self.energy.balance()
         s = O.bodies[self.top].state
         axis, angle = (s.ori * s.refOri.conjugate()).toAxisAngle()
@@ -350,10 +366,9 @@ class WallModel:
 
     def finish(self):
         """Last frame, run.json and figures, from whatever was computed."""
-        results, run = self.results, self.results.run
-        if self.vtk and results.rows:
-            self.vtk()
+        results, run, done = self.results, self.results.run, self.at
         if results.rows:
+            self._frame()
             shear, moved = results.column("base_shear_kN"), results.column(
                 "displacement_mm"
             )
@@ -369,13 +384,14 @@ class WallModel:
         run.update(
             collapsed=self.collapsed,
             interrupted=results.interrupted,
-            steps=self.steps,
+            resumed_at_s=done.resumed,
+            steps=done.steps,
             kinds=self.vtk.kinds if self.vtk else [],
         )
-        if self.steps:
-            run["microseconds_per_step"] = 1e6 * self.steppingTime / self.steps
+        if done.steps:
+            run["microseconds_per_step"] = 1e6 * done.steppingTime / done.steps
             run["nanoseconds_per_subcontact_step"] = (
-                1e9 * self.steppingTime / self.steps / self.subcontacts
+                1e9 * done.steppingTime / done.steps / self.subcontacts
             )
         results.close()
         if results.rows:
@@ -389,11 +405,11 @@ class WallModel:
         if results.rows:
             print(
                 f"{self.wall.name}: peak {run['peak_base_shear_kN']:.1f} kN at {run['displacement_at_peak_mm']:.2f} mm, "
-                f"{run['base_shear_end_kN']:.1f} kN at {run['displacement_end_mm']:.2f} mm; {self.steps} steps of "
+                f"{run['base_shear_end_kN']:.1f} kN at {run['displacement_end_mm']:.2f} mm; {done.steps} steps of "
                 f"{run['microseconds_per_step']:.0f} µs, {run['wall_clock_s']:.1f} s in all; see {results.directory}"
             )
 
 
 def test(wall, args):
     """Gravity, precompression, push and results of a wall; the exit status of the scene."""
-    return conduct(lambda: WallModel(wall, args), "settle", "precompress", "push")
+    return conduct(lambda: WallModel(wall, args))

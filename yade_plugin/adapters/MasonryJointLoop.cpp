@@ -40,15 +40,18 @@ void MasonryJointLoop::store() {
     if (!ahead_) return;
     ahead_ = false;
     for (auto& g : groups_)
-        for (std::size_t j = 0; j < g.geoms.size(); ++j)
+        for (std::size_t j = 0; j < g.geoms.size(); ++j) {
+            auto& phys = *g.physics[j];
+            phys.dissipated.setZero();
             for (int p = 0; p < g.points; ++p) {
                 const std::size_t i = std::size_t(p) * g.stride + j;
                 g.geoms[j]->points[p].jump = {g.jump[0][i], g.jump[1][i], g.jump[2][i]};
-                g.physics[j]->states[p] = g.columns.get(i);
-                const auto lost = g.columns.takeDissipated(i);
-                g.physics[j]->dissipated +=
-                    g.geoms[j]->points[p].area * Vector3r(lost.tension, lost.shear, lost.compression);
+                phys.states[p] = g.columns.get(i);
+                const auto lost = g.columns.dissipated(i);
+                phys.losses[p] = {lost.tension, lost.shear, lost.compression};
+                phys.dissipated += g.geoms[j]->points[p].area * phys.losses[p];
             }
+        }
 }
 
 void MasonryJointLoop::release() {
@@ -211,6 +214,7 @@ void MasonryJointLoop::build(bool mayBePlane) {
                 for (int d = 0; d < 3; ++d)
                     g.jump[d][i] = geom.points[p].jump[d], g.offset[d][i] = geom.points[p].offset[d];
                 g.columns.set(g.joint->law(), i, phys.states[p]);
+                g.columns.setDissipated(i, {phys.losses[p][0], phys.losses[p][1], phys.losses[p][2]});
             }
         }
         g.share();

@@ -57,6 +57,10 @@ void MasonryVtkRecorder::action() {
     writeBlocks(directory + "/" + frame("blocks", times.size(), ".vtu"));
     writeJoints(directory + "/" + frame("joints", times.size(), ".vtp"));
     times.push_back(scene->time);
+    collect();
+}
+
+void MasonryVtkRecorder::collect() const {
     writeCollection("blocks", ".vtu");
     writeCollection("joints", ".vtp");
 }

@@ -221,6 +221,12 @@ public:
     const Vector3r& getTorque(int id);
     const Vector3r getForceSingle(int id); // summed for one body
     const Vector3r getTorqueSingle(int id);
+    void setPermForce(int id, const Vector3r&);
+    void setPermTorque(int id, const Vector3r&);
+    bool getPermForceUsed() const;
+    const Vector3r& getPermForce(int id); // only if they are used: there is no array before
+    const Vector3r& getPermTorque(int id);
+    void reset(long iter, bool permanentToo); // what was added since the last sync() outlives it
 };
 
 class Engine : public Serializable {

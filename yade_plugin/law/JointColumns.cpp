@@ -59,12 +59,6 @@ void JointColumns::set(const JointLaw& law, std::size_t i, const JointState& s) 
     capStrength2_[i] = strength * strength;
 }
 
-Energies JointColumns::takeDissipated(std::size_t i) {
-    const Energies lost{lostTension_[i], lostShear_[i], lostCompression_[i]};
-    lostTension_[i] = lostShear_[i] = lostCompression_[i] = 0;
-    return lost;
-}
-
 // law.md §5 where no strength is passed: eqs. (6), (7), the secant of eq. (11), and the three conditions of eq. (8).
 // Returns how many subcontacts need more.
 MASONRY_VECTORISED

@@ -25,8 +25,11 @@ public:
     const double* shearStressA() const { return shearStressA_.data(); }
     const double* shearStressB() const { return shearStressB_.data(); }
 
-    // Energy dissipated since this was last asked [J/m²].
-    Energies takeDissipated(std::size_t i);
+    // Energy dissipated so far [J/m²]: kept beside the state.
+    Energies dissipated(std::size_t i) const { return {lostTension_[i], lostShear_[i], lostCompression_[i]}; }
+    void setDissipated(std::size_t i, const Energies& e) {
+        lostTension_[i] = e.tension, lostShear_[i] = e.shear, lostCompression_[i] = e.compression;
+    }
 
 private:
     struct Limits { // what the short way must know of the kind
