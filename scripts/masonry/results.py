@@ -167,6 +167,18 @@ def readRun(directory):
         return json.load(f)
 
 
+def haste(top, base):
+    """How much of the force of a push never reaches the base [-]: 0 at rest, about 1 where nothing arrives.
+
+    Root mean square of top less base shear over the largest of either. Inertia swings about it, damping drags.
+    """
+    largest = max(map(abs, [*top, *base]), default=0)
+    if not largest:
+        return 0.0
+    squares = [(t - b) ** 2 for t, b in zip(top, base)]
+    return math.sqrt(sum(squares) / len(squares)) / largest
+
+
 def initialStiffness(displacement, force):
     """Slope [force/displacement] of the line fitted between 5 % and 25 % of the peak, on the way to it."""
     if not force:

@@ -221,7 +221,6 @@ def small(tmp_path, *words):
     )
     model = walls.WallModel(SMALL, arguments)
     model.settle()
-    model.precompress()
     return model
 
 
