@@ -17,7 +17,38 @@ for _preset in PRESETS.values():
 
 #: Most that a preset's peak and work over the push differ from a fine and slow run [-], and how long it takes with
 #: ``yade -j2`` on two server cores [s], by wall: (pushed to [mm], seconds). Measured in validation/trade.
-PROMISES = {}
+PROMISES = {
+    "fast": {
+        "peak_error": 0.05,
+        "work_error": 0.08,
+        "walls": {
+            "wall_comp0a": (30, 8),
+            "wall_comp1": (30, 8),
+            "wall_comp4": (12, 8),
+            "wall_comp6": (16, 8),
+        },
+    },
+    "balanced": {
+        "peak_error": 0.02,
+        "work_error": 0.04,
+        "walls": {
+            "wall_comp0a": (30, 40),
+            "wall_comp1": (30, 40),
+            "wall_comp4": (12, 40),
+            "wall_comp6": (16, 40),
+        },
+    },
+    "accurate": {
+        "peak_error": 0.01,
+        "work_error": 0.02,
+        "walls": {
+            "wall_comp0a": (30, 240),
+            "wall_comp1": (30, 240),
+            "wall_comp4": (12, 240),
+            "wall_comp6": (16, 240),
+        },
+    },
+}
 
 #: Options that leave a preset's promise alone.
 HARMLESS = {"preset", "until", "out", "vtk_every", "no_vtk"}

@@ -150,6 +150,53 @@ def test_wrong_options_are_refused_with_the_bound(capsys, words, message):
     assert message in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("name", options.PRESETS)
+def test_a_preset_stands_for_its_options_and_keeps_its_promise(name):
+    args = parse("--preset", name, "--until", "3", "--no-vtk", "--out", "x")
+    for option, value in options.PRESETS[name].items():
+        assert getattr(args, option) == value
+    preset = options.presetOf(args, "wall_comp4")
+    promise = options.PROMISES[name]
+    assert preset["promise"]["peak_error"] == promise["peak_error"]
+    assert preset["promise"]["work_error"] == promise["work_error"]
+    assert preset["overrides"] == []
+    assert f"within {100 * promise['work_error']:g} %" in options.presetNote(
+        preset, "wall_comp4"
+    )
+
+
+@pytest.mark.parametrize(
+    "words, dropped",
+    [
+        (["--rate", "7"], ["rate"]),
+        (["--damping", "0.5", "--divisions", "3"], ["divisions", "damping"]),
+        (["--set", "bed.cohesion=1e5"], ["set"]),
+        (["--crack-surfaces", "off"], ["crack_surfaces"]),
+        (["--rate", "50", "--crack-surfaces", "on"], []),  # as it is anyway
+    ],
+)
+def test_an_option_beside_a_preset_wins_and_drops_the_promise(words, dropped):
+    args = parse("--preset", "accurate", *words)
+    preset = options.presetOf(args, "wall_comp4")
+    assert preset["overrides"] == dropped and (preset["promise"] is None) == bool(
+        dropped
+    )
+    assert args.blocks == "deformable" and args.dt_fraction == 0.8
+    if words[0] == "--rate":
+        assert args.rate == float(words[1])
+    note = options.presetNote(preset, "wall_comp4")
+    assert ("without its promise" in note) == bool(dropped)
+    for name in dropped:
+        assert "--" + name.replace("_", "-") in note
+
+
+def test_a_preset_promises_nothing_of_a_wall_it_was_not_measured_on():
+    preset = options.presetOf(parse("--preset", "fast"), "my_wall")
+    assert preset["promise"] is None
+    assert "not measured on my_wall" in options.presetNote(preset, "my_wall")
+    assert options.presetOf(parse(), "wall_comp4") is None
+
+
 def test_every_option_is_explained_with_its_default(capsys):
     parser = options.parser("a wall", until=12)
     for action in parser._actions:
@@ -181,6 +228,15 @@ def test_a_run_that_leaves_finite_numbers_is_stopped(tmp_path):
     r = results.Results(str(tmp_path), ["a_mm", "b_kN"])
     with pytest.raises(FloatingPointError, match="finite numbers in b_kN"):
         r.row({"a_mm": 1, "b_kN": math.nan})
+
+
+def test_haste_is_the_share_of_the_force_that_is_not_at_the_base():
+    base = [math.sin(i / 10) for i in range(100)]
+    assert results.haste(base, base) == 0 and results.haste([], []) == 0
+    top = [b + 0.2 for b in base]  # a steady drag
+    assert results.haste(top, base) == pytest.approx(0.2 / max(top), rel=1e-9)
+    swing = [b + 0.2 * (-1) ** i for i, b in enumerate(base)]
+    assert results.haste(swing, base) == pytest.approx(0.2 / max(swing), rel=1e-9)
 
 
 @given(slope=st.floats(0.1, 1e3))

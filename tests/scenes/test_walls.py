@@ -290,6 +290,60 @@ def test_density_scaling_is_another_rate(scene, tmp_path, blocks):
         assert one(name) == other(name)
 
 
+@pytest.mark.parametrize("name", options.PRESETS)
+def test_a_preset_runs_and_says_what_it_promises(runScene, name):
+    process, out = runScene(
+        "wall_comp1", "--preset", name, "--until", "0.3", "--no-vtk"
+    )
+    run = readRun(out)
+    assert run["preset"]["promise"]["seconds"] > 0 and not run["too_fast"]
+    assert process.stdout.count(f"preset {name}: promises the peak within") == 2
+    assert "warning" not in process.stdout
+    assert {n: run["options"][n] for n in options.PRESETS[name]} == options.PRESETS[
+        name
+    ]
+
+
+def test_a_preset_whose_option_is_overridden_says_so_twice(runScene):
+    words = ["--preset", "fast", "--subcontacts", "2", "--until", "0.3", "--no-vtk"]
+    process, out = runScene("wall_comp4", *words)
+    note = "preset fast without its promise: --subcontacts beside it"
+    assert process.stdout.count(note) == 2
+    preset = {"name": "fast", "overrides": ["subcontacts"], "promise": None}
+    assert readRun(out)["preset"] == preset
+
+
+def test_a_dry_wall_takes_a_preset_without_a_promise(runScene):
+    words = ["--preset", "balanced", "--until", "0.2", "--no-vtk"]
+    process, out = runScene("wall_dry", *words)
+    assert "without its promise: not measured on wall_dry" in process.stdout
+    assert readRun(out)["options"]["blocks"] == "deformable"
+
+
+@pytest.mark.parametrize(
+    "words, cure",
+    [
+        ("--rate 800", "--rate"),
+        ("--damping-kind local --rate 200", "--rate"),
+        (
+            "--blocks deformable --damping-kind local --rate 20",
+            "--damping-kind combined",
+        ),
+    ],
+)
+def test_a_push_that_is_too_fast_says_so_and_what_would_do(runScene, words, cure):
+    run = lambda *more: runScene(
+        "wall_comp1", "--no-vtk", "--until", "10", *words.split(), *more
+    )
+    process, out = run()
+    assert readRun(out)["too_fast"]
+    told = next(t for t in process.stdout.splitlines() if "the push is too fast" in t)
+    assert cure in told
+    slower = told.split("; ")[1].removesuffix(" would do").split()
+    process, out = run(*slower)
+    assert not readRun(out)["too_fast"] and "too fast" not in process.stdout
+
+
 def test_an_impossible_wall_is_refused_with_all_problems():
     with pytest.raises(
         ValueError,

@@ -7,8 +7,10 @@ a figure per wall beside itself. --draw runs nothing; --time-only measures all t
 """
 
 import argparse
+import glob
 import json
 import os
+import resource
 import subprocess
 import sys
 import time
@@ -22,7 +24,7 @@ import numpy as np
 from masonry.figures import CRACK, readFrame
 from masonry.measure import layOut
 from masonry.options import PRESETS, parser
-from masonry.results import readCurve, readRun
+from masonry.results import haste, readCurve, readRun
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
@@ -38,13 +40,11 @@ SOFT = "--blocks deformable"
 
 def asOptions(preset):
     """Options of a preset as words, without those that are defaults."""
-    defaults = vars(parser("", until=1).parse_args([]))
+    usual = vars(parser("", until=1).parse_args([]))
     return " ".join(
-        f"--{name.replace('_', '-')} {value:g}"
-        if isinstance(value, float)
-        else f"--{name.replace('_', '-')} {value}"
+        f"--{name.replace('_', '-')} {str(value).removesuffix('.0')}"
         for name, value in PRESETS[preset].items()
-        if value != defaults[name]
+        if value != usual[name]
     )
 
 
@@ -91,12 +91,8 @@ THREADS = (1, 2)
 
 def folder(wall, options):
     """Folder of a run; the order of its options does not matter."""
-    words = sorted(" ".join(options.split()).split("--")[1:])
-    return os.path.join(
-        RESULTS,
-        wall,
-        "_".join(words).replace(" ", "_").replace("__", "_").strip("_") or "default",
-    )
+    words = sorted("_".join(word.split()) for word in options.split("--")[1:])
+    return os.path.join(RESULTS, wall, "_".join(words) or "default")
 
 
 def done(wall, options):
@@ -158,33 +154,270 @@ def numbers(wall, options):
     lost = [c for name, c in curve.items() if name.startswith("dissipated_")]
     return {
         "peak": entry["peak_base_shear_kN"],
+        "work": float(np.trapz(curve["base_shear_kN"], curve["displacement_mm"])),
         "end": entry["base_shear_end_kN"],
         "stiffness": entry["initial_stiffness_kN_per_mm"],
-        "work": float(np.trapz(curve["base_shear_kN"], curve["displacement_mm"])),
         "dissipated": sum(c[-1] - c[0] for c in lost),
     }
 
 
-def errors(wall, options):
-    """Errors of a run against the mean of the reference runs, signed [-].
+def errors(wall, runs):
+    """Signed errors [-] of runs against the mean of the reference runs, a dict of lists.
 
-    ``pattern`` is the share of the crack volume that lies in other patches than the reference's: 0 the same pattern, 1
-    none in common.
+    ``pattern`` is the share of the crack volume that lies in other patches than those of the first reference run: 0 is
+    the same pattern, 1 has nothing in common. ``haste`` is run.json's.
     """
-    references = [r for r in REFERENCES if done(wall, r)]
-    held = [numbers(wall, r) for r in references]
-    mine = numbers(wall, options)
-    result = {
-        name: value / np.mean([h[name] for h in held]) - 1
-        for name, value in mine.items()
-    }
-    share = lambda o: pattern(folder(wall, o)) / max(
-        pattern(folder(wall, o)).sum(), 1e-30
-    )
-    result["pattern"] = 0.5 * float(np.abs(share(options) - share(references[0])).sum())
+    references = [numbers(wall, r) for r in repeats("reference") if done(wall, r)]
+    mean = {name: np.mean([r[name] for r in references]) for name in references[0]}
+    mine = [numbers(wall, r) for r in runs]
+    result = {name: [m[name] / mean[name] - 1 for m in mine] for name in mean}
+    share = lambda volumes: volumes / max(volumes.sum(), 1e-30)
+    aim = share(pattern(folder(wall, RUNS["reference"][0])))
+    shares = [share(pattern(folder(wall, r))) for r in runs]
+    result["pattern"] = [0.5 * float(np.abs(s - aim).sum()) for s in shares]
+    curves = [readCurve(folder(wall, r)) for r in runs]
+    result["haste"] = [haste(c["top_shear_kN"], c["base_shear_kN"]) for c in curves]
     return result
 
 
+# -- what a run costs ---------------------------------------------------------------------------------------------
+
+
+def kind(wall, options):
+    """What makes the step of a run as dear as it is: options of a scene that has such steps."""
+    chosen = readRun(folder(wall, options))["options"]
+    chosen = {name: chosen[name] for name in KINDS}
+    chosen.pop("divisions" if chosen["blocks"] == "rigid" else "subcontacts")
+    return " ".join(f"--{n.replace('_', '-')} {v}" for n, v in chosen.items())
+
+
+def timeOne(wall, kind, threads):
+    """Run a short stretch; seconds of a step, a row, a frame, and of all that does not grow with the run."""
+    out = os.path.join(RESULTS, "times", wall)
+    command = ["yade", f"-j{threads}", "-n", "-x"]
+    command += [os.path.join(ROOT, "scripts", wall + ".py"), "--out", out]
+    command += STRETCH[kind.split()[1]].split() + kind.split()
+    before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    wallClock = time.perf_counter() - began
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    entry, seconds = readRun(out), readRun(out)["seconds"]
+    parts = {name: seconds[name] for name in ("steps", "rows", "frames")}
+    return {
+        "step": parts["steps"] / entry["steps"],
+        "row": parts["rows"] / len(readCurve(out)["time_s"]),
+        "frame": parts["frames"] / len(glob.glob(os.path.join(out, "joints_*"))),
+        "rest": wallClock - sum(parts.values()),
+        "cpu": cpu / wallClock,
+    }
+
+
+def readTimes():
+    path = os.path.join(RESULTS, "times.json")
+    if not os.path.exists(path):
+        return {}
+    with open(path) as f:
+        return json.load(f)
+
+
+def timeAll(walls, anew):
+    """Time every distinct step, once with one thread and once with two; those that are known only if ``anew``."""
+    times = readTimes()
+    for wall in walls:
+        kinds = [kind(wall, o) for o in allRuns() if done(wall, o)]
+        for one in dict.fromkeys(kinds):
+            for threads in THREADS:
+                key = f"{wall} {one} {threads}"
+                if anew or key not in times:
+                    print("timing", key, flush=True)
+                    times[key] = timeOne(wall, one, threads)
+                    with open(os.path.join(RESULTS, "times.json"), "w") as f:
+                        json.dump(times, f, indent=1)
+
+
+def cost(wall, options, threads):
+    """Wall-clock time [s] and CPU time [s] of a run as a user starts it, with a frame every millimetre."""
+    time = readTimes()[f"{wall} {kind(wall, options)} {threads}"]
+    steps = readRun(folder(wall, options))["steps"]
+    rows = len(readCurve(folder(wall, options))["time_s"])
+    spent = steps * time["step"] + rows * time["row"] + time["rest"]
+    spent += (WALLS[wall] + 2) * time["frame"]
+    return spent, spent * time["cpu"]
+
+
+# -- what comes out -----------------------------------------------------------------------------------------------
+
+ERRORS = ["peak", "work", "end", "stiffness", "dissipated", "pattern", "haste"]
+
+
+def study(walls):
+    """Everything that is known, as trade.json has it: list of runs with options, errors, steps and times.
+
+    A run that was repeated has the error that is largest in magnitude, and in ``spread`` half the range of each.
+    """
+    again = {RUNS[s][0]: repeats(s) for s in REPEATED}
+    found = []
+    for wall in walls:
+        for title, series in RUNS.items():
+            for options in series:
+                runs = [r for r in again.get(options, [options]) if done(wall, r)]
+                if not done(wall, options):
+                    continue
+                values = errors(wall, runs)
+                seconds = {n: cost(wall, options, n) for n in THREADS}
+                found.append(
+                    {
+                        "wall": wall,
+                        "series": title,
+                        "options": options,
+                        **{name: max(v, key=abs) for name, v in values.items()},
+                        "spread": {n: (max(v) - min(v)) / 2 for n, v in values.items()},
+                        "repetitions": len(runs),
+                        "steps": readRun(folder(wall, options))["steps"],
+                        "seconds": {n: round(s[0], 1) for n, s in seconds.items()},
+                        "cpu_seconds": {n: round(s[1], 1) for n, s in seconds.items()},
+                    }
+                )
+    return found
+
+
+def table(found):
+    """Markdown: a row a run of each wall."""
+    percent = lambda entry, name: (
+        f"{100 * entry[name]:.1f}"
+        if name in ("pattern", "haste")
+        else f"{100 * entry[name]:+.1f}"
+    ) + (f" ± {100 * entry['spread'][name]:.1f}" if entry["repetitions"] > 1 else "")
+    heads = ["wall", "series", "options"] + [name + " %" for name in ERRORS]
+    heads += ["steps", "s, one core", "s, two cores", "CPU s, two cores"]
+    lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
+    for e in found:
+        cells = [
+            e["wall"][5:],
+            e["series"],
+            f"`{e['options']}`" if e["options"] else "",
+        ]
+        cells += [percent(e, name) for name in ERRORS]
+        cells += [
+            f"{e['steps'] / 1000:.0f}k",
+            *(f"{e['seconds'][n]:.0f}" for n in THREADS),
+        ]
+        cells.append(f"{e['cpu_seconds'][THREADS[-1]]:.0f}")
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+FLOOR = 2e-4  # errors below are drawn here
+MARKS = {"rigid": ("o", "tab:orange"), "deformable": ("s", "tab:blue")}
+
+
+def front(points):
+    """Of (time, error) points those that no other beats in both, as indices in order of time."""
+    best, kept = np.inf, []
+    for i in sorted(range(len(points)), key=lambda i: points[i]):
+        if points[i][1] < best:
+            best = points[i][1]
+            kept.append(i)
+    return kept
+
+
+def draw(found, wall):
+    """WALL.png: time against the errors of the peak and of the work; the front is numbered, its runs listed below."""
+    entries = [e for e in found if e["wall"] == wall and e["series"] != "reference"]
+    reference = next(
+        e for e in found if e["wall"] == wall and e["series"] == "reference"
+    )
+    named = list(dict.fromkeys(e["options"] for e in entries))
+    entries = [next(e for e in entries if e["options"] == o) for o in named]
+    presets = {asOptions(name): name for name in PRESETS}
+    figure, axes = plt.subplots(1, 2, figsize=(10, 5.6), sharex=True, sharey=True)
+    listed = []
+    for axis, name in zip(axes, ("peak", "work")):
+        points = [
+            (e["seconds"][THREADS[-1]], max(FLOOR, min(1, abs(e[name]))))
+            for e in entries
+        ]
+        for (x, y), e in zip(points, entries):
+            soft = SOFT in e["options"]
+            mark, color = MARKS["deformable" if soft else "rigid"]
+            fine = "--divisions" in e["options"]
+            local = "local" in e["options"]
+            axis.plot(
+                x,
+                100 * y,
+                "^" if fine else mark,
+                color=color,
+                mfc="white" if local else color,
+                ms=6,
+            )
+            if e["options"] in presets:
+                axis.plot(x, 100 * y, "o", ms=14, mfc="none", color="black")
+        best = front(points)
+        axis.step(
+            [points[i][0] for i in best],
+            [100 * points[i][1] for i in best],
+            where="post",
+            color="0.6",
+            lw=1,
+            zorder=0,
+        )
+        for i in best:
+            listed += [] if entries[i]["options"] in listed else [entries[i]["options"]]
+        axis.axvline(reference["seconds"][THREADS[-1]], color="0.8", ls="--", zorder=0)
+        axis.set(xscale="log", yscale="log", xlabel="time on two cores [s]")
+        axis.set_title(f"error of the {name} [%]", fontsize=10)
+        axis.grid(alpha=0.3, which="both", lw=0.4)
+        for i in best:
+            axis.annotate(
+                str(listed.index(entries[i]["options"]) + 1),
+                (points[i][0], 100 * points[i][1]),
+                textcoords="offset points",
+                xytext=(-7, -12),
+                fontsize=8,
+            )
+    lines = []
+    for n, options in enumerate(listed, 1):
+        preset = f" = preset {presets[options]}" if options in presets else ""
+        lines.append(f"{n}: {options.replace('--', '') or 'all defaults'}{preset}")
+    columns = [lines[i::2] for i in range(2)]
+    for i, column in enumerate(columns):
+        figure.text(0.02 + 0.5 * i, 0.01, "\n".join(column), fontsize=7.5, va="bottom")
+    figure.suptitle(
+        f"{wall}: circles rigid, squares deformable, triangles with two by two cells; white with local damping; "
+        "ringed presets; dashed the reference's time",
+        fontsize=9,
+    )
+    figure.tight_layout(rect=(0, 0.03 * len(columns[0]) + 0.02, 1, 1))
+    figure.savefig(os.path.join(HERE, wall + ".png"), dpi=80)
+    plt.close(figure)
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    arguments.add_argument(
+        "--walls", nargs="+", choices=list(WALLS), default=list(WALLS)
+    )
+    arguments.add_argument("--jobs", type=int, default=1, help="runs at a time")
+    arguments.add_argument("--draw", action="store_true", help="run nothing")
+    arguments.add_argument(
+        "--time-only", action="store_true", help="measure times anew"
+    )
+    args = arguments.parse_args()
+    if not args.draw:
+        if not args.time_only:
+            runAll(args.walls, args.jobs)
+        timeAll(args.walls, args.time_only)
+    found = study([w for w in args.walls if done(w, RUNS["reference"][0])])
+    with open(os.path.join(HERE, "trade.json"), "w") as f:
+        json.dump(found, f, indent=1)
+        f.write("\n")
+    with open(os.path.join(HERE, "table.md"), "w") as f:
+        f.write(table(found))
+    print(table(found))
+    for wall in dict.fromkeys(e["wall"] for e in found):
+        draw(found, wall)
+
+
 if __name__ == "__main__":
-    for w in sys.argv[1:]:
-        for o in allRuns(): print(w, repr(o), folder(w,o), done(w,o))
+    main()
