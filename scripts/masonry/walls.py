@@ -32,7 +32,7 @@ RAMP = 0.02  # [s] in which precompression and velocity grow: some ten periods o
 SETTLING = 0.5  # local damping of zones until the push: with more they creep to rest, with less they swing
 REST = 5e-3  # of the vertical load: what may be missing at the base before the push
 ROW_EVERY = 0.01  # [mm] between rows of curve.csv
-HASTE = 0.1  # from here on a push is too fast: validation/trade
+HASTE = 0.1  # a push with more is too fast: its peak is off by 1 to 5 % and more, validation/trade
 
 
 @dataclass

@@ -230,13 +230,19 @@ def test_a_run_that_leaves_finite_numbers_is_stopped(tmp_path):
         r.row({"a_mm": 1, "b_kN": math.nan})
 
 
-def test_haste_is_the_share_of_the_force_that_is_not_at_the_base():
-    base = [math.sin(i / 10) for i in range(100)]
+def test_haste_is_the_share_of_the_force_that_does_not_arrive():
+    base = [min(0.01 * i, 1.0) for i in range(200)]
     assert results.haste(base, base) == 0 and results.haste([], []) == 0
-    top = [b + 0.2 for b in base]  # a steady drag
-    assert results.haste(top, base) == pytest.approx(0.2 / max(top), rel=1e-9)
-    swing = [b + 0.2 * (-1) ** i for i, b in enumerate(base)]
-    assert results.haste(swing, base) == pytest.approx(0.2 / max(swing), rel=1e-9)
+    drag = [b + 0.25 for b in base]
+    assert results.haste(drag, base) == pytest.approx(0.25 / 1.25, rel=1e-9)
+    swing = [b + 0.25 * (-1) ** i for i, b in enumerate(base)]
+    assert results.haste(swing, base) == pytest.approx(0.25 / 1.25, rel=1e-9)
+    start = [b + 0.25 * (b < 0.4) for b in base]  # that it swings at first is no harm
+    assert results.haste(start, base) == 0
+    after = base + [0.2] * 100  # nor what it does when it breaks
+    assert results.haste(base + [0.9] * 100, after) == 0
+    stuck = [0.1 * b for b in base]
+    assert results.haste(base, stuck) == pytest.approx(0.9 * math.sqrt(2 / 3), rel=0.01)
 
 
 @given(slope=st.floats(0.1, 1e3))
