@@ -1,6 +1,7 @@
 #include "MasonryEngines.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
+#include "blocks/RigidMotion.hpp"
 #include "law/Text.hpp"
 #include <Eigen/Eigenvalues>
 #include <map>
@@ -164,15 +165,14 @@ void MasonryLoad::action() {
     arm = state.ori * state.refOri.conjugate() * (point - state.refPos);
     total = force;
     auto& forces = scene->forces();
-    forces.sync();
     if (driven) {
         // The force R that gives the point its velocity after this step: d·(v + w x arm) = V with
         // v' = v + dt (F + R d)/m + dt g, w' = w + dt I^-1 (T + arm x R d).
         const Vector3r d = direction.normalized(), lever = arm.cross(d), perMass = inverseMass(state);
         const Matrix3r perInertia = inverseInertia(state);
-        const Vector3r push = forces.getForce(body) + total + state.mass * environmentOf(*scene).gravity;
+        const Vector3r push = forces.getForceSingle(body) + total + state.mass * environmentOf(*scene).gravity;
         const Vector3r v = state.vel + scene->dt * perMass.cwiseProduct(push);
-        const Vector3r w = state.angVel + scene->dt * (perInertia * (forces.getTorque(body) + arm.cross(total)));
+        const Vector3r w = state.angVel + scene->dt * (perInertia * (forces.getTorqueSingle(body) + arm.cross(total)));
         const double mobility = d.dot(perMass.cwiseProduct(d)) + lever.dot(perInertia * lever);
         if (!(mobility > 0))
             throw std::invalid_argument("MasonryLoad: body " + std::to_string(body) +
@@ -256,26 +256,9 @@ void MasonryIntegrator::postLoad() {
 
 namespace {
 
-// Rotation of a body by the end of a step.
+// Rotation by the end of a step of a body that is free to turn.
 void turn(State& s, const BodyStep& step, double dt) {
-    if (rotationRestrained(s)) { // by the rotation vector angVel dt
-        s.angVel = step.angVel;
-        const Vector3r half = 0.5 * dt * s.angVel;
-        const double h2 = half.squaredNorm();
-        if (h2 == 0) return;
-        double cosine, sinc; // series are exact to the last digit up to a thousandth
-        if (h2 < 1e-6)
-            cosine = 1 - h2 * (0.5 - h2 / 24), sinc = 1 - h2 * (1 / 6.0 - h2 / 120);
-        else {
-            const double h = std::sqrt(h2);
-            cosine = std::cos(h), sinc = std::sin(h) / h;
-        }
-        const Vector3r axis = sinc * half;
-        s.ori = Quaternionr(cosine, axis[0], axis[1], axis[2]) * s.ori;
-        s.ori.normalize();
-        return;
-    }
-    // A free body: leapfrog of the angular momentum, its spin taken in the body's axes, with the orientation at half
+    // Leapfrog of the angular momentum, its spin taken in the body's axes, with the orientation at half
     // step from the momentum at the step; the host's scheme for aspherical bodies.
     const auto spinOf = [&](const Vector3r& momentum) {
         return Vector3r((s.ori.conjugate() * momentum).cwiseQuotient(s.inertia));
@@ -292,6 +275,34 @@ void turn(State& s, const BodyStep& step, double dt) {
     s.ori.normalize();
 }
 
+// A body's place in the columns, and the axes in which it is free or moves.
+[[gnu::always_inline]] inline unsigned gather(const State& s, const Vector3r& force, const Vector3r& torque,
+                                              double damping, const Vector3r* last, RigidMotion& m, int i) {
+    unsigned axes = ~s.blockedDOFs & 63;
+    m.mass[i] = s.mass, m.alpha[i] = s.isDamped ? damping : 0;
+    for (int d = 0; d < 3; ++d) {
+        m.inertia[d][i] = s.inertia[d];
+        m.force[d][i] = force[d], m.force[3 + d][i] = torque[d];
+        m.velocity[d][i] = s.vel[d], m.velocity[3 + d][i] = s.angVel[d];
+        m.last[d][i] = last ? last[0][d] : 0, m.last[3 + d][i] = last ? last[1][d] : 0;
+        m.free[d][i] = !blocked(s, d), m.free[3 + d][i] = !blocked(s, 3 + d);
+        axes |= (s.vel[d] != 0) << d | (s.angVel[d] != 0) << (3 + d);
+        m.orientation[1 + d][i] = s.ori.coeffs()[d];
+    }
+    m.orientation[0][i] = s.ori.w();
+    return axes;
+}
+
+[[gnu::always_inline]] inline void scatter(const RigidMotion& m, int i, double dt, State& s, Vector3r* last) {
+    for (int d = 0; d < 3; ++d) {
+        s.vel[d] = m.velocity[d][i], s.angVel[d] = m.velocity[3 + d][i];
+        s.pos[d] += dt * s.vel[d];
+        s.ori.coeffs()[d] = m.orientation[1 + d][i];
+        if (last) last[0][d] = m.last[d][i], last[1][d] = m.last[3 + d][i];
+    }
+    s.ori.w() = m.orientation[0][i];
+}
+
 } // namespace
 
 void MasonryIntegrator::action() {
@@ -301,16 +312,19 @@ void MasonryIntegrator::action() {
     auto* zones = zonesOf(*scene);
     const auto loads = loadsOf(*scene);
     const Environment around{damping, gravity};
-    const double dt = scene->dt;
-    const bool combined = dampingKind == "combined";
-    if (combined) last.resize(2 * all.size(), Vector3r::Zero());
+    const RigidMotion::Around rigid{scene->dt, {gravity[0], gravity[1], gravity[2]}, dampingKind == "combined"};
+    if (rigid.combined) last.resize(2 * all.size(), Vector3r::Zero());
     for (auto* load : loads)
-        load->workBefore(dt);
-    constexpr int piece = 64; // bodies that are summed up together, whatever the number of threads
+        load->workBefore(scene->dt);
+    constexpr int piece = RigidMotion::most; // bodies that are summed up together, whatever the number of threads
     const int count = int(all.size()), pieces = (count + piece - 1) / piece;
     std::vector<BodyEnergies> sums(pieces);
 #pragma omp parallel for schedule(static)
-    for (int n = 0; n < pieces; ++n)
+    for (int n = 0; n < pieces; ++n) {
+        RigidMotion motion;
+        State* states[piece];
+        int ids[piece], restrained = 0;
+        unsigned axes = 0;
         for (int id = n * piece; id < std::min(count, (n + 1) * piece); ++id) {
             // bodies and states lie all over the memory: ask for them ahead of time
             if (id + 16 < count && all[id + 16]) __builtin_prefetch(&all[id + 16]->state);
@@ -324,19 +338,31 @@ void MasonryIntegrator::action() {
             State& s = *all[id]->state;
             sums[n].fallen += s.mass * gravity.dot(s.pos - s.refPos);
             if (!moves(s)) continue;
-            const auto step =
-                stepOf(s, forces.getForce(id), forces.getTorque(id), around, dt, combined ? &last[2 * id] : nullptr);
+            const Vector3r &force = forces.getForce(id), &torque = forces.getTorque(id);
+            if (rotationRestrained(s)) {
+                axes |= gather(s, force, torque, damping, rigid.combined ? &last[2 * id] : nullptr, motion, restrained);
+                states[restrained] = &s, ids[restrained++] = id;
+                continue;
+            }
+            const auto step = stepOf(s, force, torque, around, scene->dt, rigid.combined ? &last[2 * id] : nullptr);
             sums[n].add(energiesOf(step));
             s.vel = step.vel;
-            s.pos += dt * s.vel;
-            turn(s, step, dt);
+            s.pos += scene->dt * s.vel;
+            turn(s, step, scene->dt);
         }
+        motion.advance(restrained, rigid, axes);
+        for (int i = 0; i < restrained; ++i) {
+            scatter(motion, i, scene->dt, *states[i], rigid.combined ? &last[2 * ids[i]] : nullptr);
+            sums[n].add(
+                {motion.work[i], motion.damped[0][i], motion.work[i], motion.damped[1][i], motion.kinetic[i], 0});
+        }
+    }
     beginStep();
     for (const auto& sum : sums)
         add(sum);
     for (auto* load : loads) {
         const State& s = *all[load->body]->state;
-        load->workAfter(dt, s.vel, s.angVel);
+        load->workAfter(scene->dt, s.vel, s.angVel);
     }
 }
 

@@ -9,8 +9,8 @@ constexpr std::int64_t pending = -1; // beside the values of Regime: the full la
 
 JointColumns::JointColumns(const JointLaw& law, const ElasticStiffness& k, std::size_t size) : k_(k) {
     for (auto* column : {&opening_, &crushing_, &dilation_, &slip_, &largestOpening_, &largestClosure_, &tensionDamage_,
-                         &shearDamage_, &normalStress_, &shearStressA_, &shearStressB_, &flow_, &intact_,
-                         &capStrength2_, &lostTension_, &lostShear_, &lostCompression_})
+                         &shearDamage_, &normalStress_, &shearStressA_, &shearStressB_, &flow_, &intact_, &secant_,
+                         &reach_, &capStrength2_, &lostTension_, &lostShear_, &lostCompression_})
         column->assign(size, 0);
     regime_.assign(size, 0), row_.assign(size, 0);
     const auto& p = law.properties();
@@ -46,6 +46,7 @@ void JointColumns::set(const JointLaw& law, std::size_t i, const JointState& s) 
     regime_[i] = std::int64_t(s.regime);
     flow_[i] = s.crushing - s.dilation;
     intact_[i] = 1 - JointLaw::coupled(s);
+    deriveOpen(i);
     const double strength = limits_.cap ? law.compressiveStrength(k_, s.largestClosure) : HUGE_VAL;
     capStrength2_[i] = strength * strength;
 }
@@ -56,35 +57,41 @@ Energies JointColumns::takeDissipated(std::size_t i) {
     return lost;
 }
 
+// The secant of eq. (11), and the opening up to which it stays.
+void JointColumns::deriveOpen(std::size_t i) {
+    const double weakened = limits_.tensileStrength * intact_[i] / largestOpening_[i];
+    secant_[i] = weakened < k_.normal ? weakened : k_.normal;
+    reach_[i] = intact_[i] == 1 ? limits_.onset : largestOpening_[i];
+}
+
 // law.md §5 where no strength is passed: eqs. (6), (7), the secant of eq. (11), and the three conditions of eq. (8).
+// Returns how many subcontacts need more.
 MASONRY_VECTORISED
-void JointColumns::advanceIntact(const Limits& m, std::size_t count, const double* __restrict jumpN,
-                                 const double* __restrict jumpA, const double* __restrict jumpB,
-                                 const double* __restrict flow, const double* __restrict intact,
-                                 const double* __restrict capStrength2, double* __restrict opening,
-                                 double* __restrict largestOpening, double* __restrict largestClosure,
-                                 double* __restrict normalStress, double* __restrict shearStressA,
-                                 double* __restrict shearStressB, double* __restrict lostTension,
-                                 std::int64_t* __restrict regime) {
-    const double kn = m.normalStiffness, ks = m.shearStiffness, ft = m.tensileStrength, onset = m.onset;
+std::int64_t JointColumns::advanceIntact(const Limits& m, std::size_t count, const double* __restrict jumpN,
+                                         const double* __restrict jumpA, const double* __restrict jumpB,
+                                         const double* __restrict flow, const double* __restrict intact,
+                                         const double* __restrict secant, const double* __restrict reach,
+                                         const double* __restrict capStrength2, double* __restrict opening,
+                                         double* __restrict largestOpening, double* __restrict largestClosure,
+                                         double* __restrict normalStress, double* __restrict shearStressA,
+                                         double* __restrict shearStressB, std::int64_t* __restrict regime) {
+    const double kn = m.normalStiffness, ks = m.shearStiffness;
     const double cr = m.residualCohesion, dc = m.cohesionLoss, fr = m.residualFriction, df = m.frictionLoss;
     const double cnn = m.capNormal, css = m.capShear, cn = m.capLinear, limit = m.limitClosure;
     const bool cap = m.cap;
+    std::int64_t waiting = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const double total = opening[i] + jumpN[i], before = opening[i] + flow[i], elastic = total + flow[i];
-        const double whole = intact[i], farthest = largestOpening[i], closest = largestClosure[i];
-        const double weakened = ft * whole / farthest, secant = weakened < kn ? weakened : kn;
-        const bool open = elastic > 0;
-        const double sigma = (open ? secant : kn) * elastic;
+        const double whole = intact[i], farthest = largestOpening[i], closest = largestClosure[i], weak = secant[i];
+        const double sigma = (elastic > 0 ? weak : kn) * elastic;
         const double a = shearStressA[i] + ks * jumpA[i], b = shearStressB[i] + ks * jumpB[i], tau2 = a * a + b * b;
         const double strength = cr + dc * whole - sigma * (fr + df * whole), slips = strength > 0 ? strength : 0;
-        const double reach = whole == 1 ? onset : farthest, hardens = closest > limit ? closest : limit;
+        const double hardens = closest > limit ? closest : limit;
         const double crush = sigma < 0 ? cnn * sigma * sigma + css * tau2 + cn * sigma : 0;
         const double closure = sigma < 0 && cap ? -total : 0;
-        const bool quick =
-            (elastic <= reach) & (tau2 <= slips * slips) & (crush <= capStrength2[i]) & (closure <= hardens);
-        const double lost = open | (before > 0) ? 0.5 * (normalStress[i] * elastic - sigma * before) : 0;
-        lostTension[i] += quick ? lost : 0;
+        // a joint that opens on one stiffness and closes on another loses energy
+        const bool quick = (elastic <= reach[i]) & (tau2 <= slips * slips) & (crush <= capStrength2[i]) &
+                           (closure <= hardens) & ((kn - weak) * before * elastic >= 0);
         opening[i] = quick ? total : opening[i];
         normalStress[i] = quick ? sigma : normalStress[i];
         shearStressA[i] = quick ? a : shearStressA[i];
@@ -92,7 +99,9 @@ void JointColumns::advanceIntact(const Limits& m, std::size_t count, const doubl
         largestOpening[i] = quick & (elastic > farthest) ? elastic : farthest;
         largestClosure[i] = quick & (closure > closest) ? closure : closest;
         regime[i] = quick ? std::int64_t(Regime::Elastic) : pending;
+        waiting += quick ? 0 : 1;
     }
+    return waiting;
 }
 
 namespace {
@@ -200,24 +209,27 @@ void JointColumns::slide(const JointLaw& law, std::size_t i, std::size_t count, 
     finishSlide(limits_, count, &flow_[i], &capStrength2_[i], &tensionDamage_[i], &shearDamage_[i], &intact_[i],
                 &slip_[i], &opening_[i], &largestOpening_[i], &largestClosure_[i], &normalStress_[i], &shearStressA_[i],
                 &shearStressB_[i], &lostTension_[i], &lostShear_[i], &regime_[i], s);
+    for (std::size_t n = 0; n < count; ++n)
+        if (s.slides[n]) deriveOpen(i + n);
 }
 
 void JointColumns::advance(const JointLaw& law, std::size_t first, std::size_t count, const double* jumpN,
                            const double* jumpA, const double* jumpB) {
-    for (; count > most; first += most, count -= most, jumpN += most, jumpA += most, jumpB += most)
+    for (; count > most; first += most, count -= most, jumpN += most, jumpA += most, jumpB += jumpB ? most : 0)
         advance(law, first, most, jumpN, jumpA, jumpB);
-    advanceIntact(limits_, count, jumpN, jumpA, jumpB, &flow_[first], &intact_[first], &capStrength2_[first],
-                  &opening_[first], &largestOpening_[first], &largestClosure_[first], &normalStress_[first],
-                  &shearStressA_[first], &shearStressB_[first], &lostTension_[first], &regime_[first]);
-    std::int64_t waiting = 0;
-    for (std::size_t i = first; i < first + count; ++i)
-        waiting += regime_[i]; // pending is -1, and nobody else has been given another regime yet
-    if (waiting < -2 && slides_) slide(law, first, count, jumpN, jumpA, jumpB);
-    for (std::size_t n = 0; waiting && n < count; ++n) {
+    double none[most] = {}, stressB[most] = {}; // in the innermost cache, where nothing happens along b
+    const double* slideB = jumpB ? jumpB : none;
+    const auto waiting = advanceIntact(limits_, count, jumpN, jumpA, slideB, &flow_[first], &intact_[first],
+                                       &secant_[first], &reach_[first], &capStrength2_[first], &opening_[first],
+                                       &largestOpening_[first], &largestClosure_[first], &normalStress_[first],
+                                       &shearStressA_[first], jumpB ? &shearStressB_[first] : stressB, &regime_[first]);
+    if (!waiting) return;
+    if (waiting > 2 && slides_) slide(law, first, count, jumpN, jumpA, slideB);
+    for (std::size_t n = 0; n < count; ++n) {
         const std::size_t i = first + n;
         if (regime_[i] != pending) continue;
         JointState s = get(i);
-        const auto lost = law.advance(k_, s, {jumpN[n], {jumpA[n], jumpB[n]}});
+        const auto lost = law.advance(k_, s, {jumpN[n], {jumpA[n], slideB[n]}});
         set(law, i, s);
         lostTension_[i] += lost.tension, lostShear_[i] += lost.shear, lostCompression_[i] += lost.compression;
     }

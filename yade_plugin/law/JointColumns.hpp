@@ -16,8 +16,9 @@ public:
     JointState get(std::size_t i) const;
     void set(const JointLaw& law, std::size_t i, const JointState& state);
 
-    // One step of the subcontacts from `first` on, under `count` jumps given in columns. `law` is the one that the
-    // columns were made with. Different ranges may be advanced at the same time.
+    // One step of the subcontacts from `first` on, under `count` jumps given in columns; without `slideB`, all slides
+    // and shear stresses are along a. `law` is the one that the columns were made with. Different ranges may be
+    // advanced at the same time.
     void advance(const JointLaw& law, std::size_t first, std::size_t count, const double* opening, const double* slideA,
                  const double* slideB);
 
@@ -34,10 +35,12 @@ private:
             residualFriction, frictionLoss, capNormal, capShear, capLinear, limitClosure, ownShearStiffness;
         bool cap;
     };
-    static void advanceIntact(const Limits&, std::size_t count, const double* jumpN, const double* jumpA,
-                              const double* jumpB, const double* flow, const double* intact, const double* capStrength2,
-                              double* opening, double* largestOpening, double* largestClosure, double* normalStress,
-                              double* shearStressA, double* shearStressB, double* lostTension, std::int64_t* regime);
+    static std::int64_t advanceIntact(const Limits&, std::size_t count, const double* jumpN, const double* jumpA,
+                                      const double* jumpB, const double* flow, const double* intact,
+                                      const double* secant, const double* reach, const double* capStrength2,
+                                      double* opening, double* largestOpening, double* largestClosure,
+                                      double* normalStress, double* shearStressA, double* shearStressB,
+                                      std::int64_t* regime);
 
     struct Slide; // scratch
     static void trySlide(const Limits&, std::size_t count, const double* jumpN, const double* jumpA,
@@ -49,6 +52,7 @@ private:
                             double* opening, double* largestOpening, double* largestClosure, double* normalStress,
                             double* shearStressA, double* shearStressB, double* lostTension, double* lostShear,
                             std::int64_t* regime, const Slide&);
+    void deriveOpen(std::size_t i);
     void slide(const JointLaw&, std::size_t first, std::size_t count, const double* jumpN, const double* jumpA,
                const double* jumpB);
 
@@ -56,9 +60,9 @@ private:
     Limits limits_{};
     bool slides_ = false; // whether the kind can take the way of those that only slip
     std::vector<double> opening_, crushing_, dilation_, slip_, largestOpening_, largestClosure_, tensionDamage_,
-        shearDamage_, normalStress_, shearStressA_, shearStressB_; // as in JointState
-    std::vector<double> flow_, intact_, capStrength2_;             // follow from the above: crushing less dilation,
-                                                                   // 1 - d_ts, square of the cap's strength
+        shearDamage_, normalStress_, shearStressA_, shearStressB_;      // as in JointState
+    std::vector<double> flow_, intact_, secant_, reach_, capStrength2_; // follow from the above: crushing less
+    // dilation, 1 - d_ts, stiffness of the open joint, elastic opening before more damage, square of the cap's strength
     std::vector<double> lostTension_, lostShear_, lostCompression_;
     std::vector<std::int32_t> row_;    // of the shear table, where it was read last
     std::vector<std::int64_t> regime_; // as wide as the numbers beside it, for the vector units
