@@ -9,7 +9,7 @@ import sys
 #: Options that trade accuracy for time, the same for all walls; a scene of one's own may take them from here.
 PRESETS = {
     "fast": {"blocks": "rigid", "divisions": 1, "subcontacts": 4, "rate": 100.0},
-    "balanced": {"blocks": "deformable", "divisions": 1, "rate": 100.0},
+    "balanced": {"blocks": "deformable", "divisions": 2, "rate": 100.0},
     "accurate": {"blocks": "deformable", "divisions": 2, "rate": 50.0},
 }
 for _preset in PRESETS.values():

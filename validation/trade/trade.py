@@ -282,16 +282,47 @@ def study(walls):
     return found
 
 
+def percent(entry, name):
+    """An error in percent as text, with half the range of its repetitions."""
+    signed = "" if name in ("pattern", "haste") else "+"
+    text = format(100 * entry[name], signed + ".1f")
+    chance = 100 * entry["spread"][name]
+    return text + (f" ± {chance:.1f}" if entry["repetitions"] > 1 else "")
+
+
+def markdown(heads, rows):
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "".join("| " + " | ".join(cells) + " |\n" for cells in lines)
+
+
+def summary(found):
+    """Markdown: a row a run, its errors of peak and work and its time on two cores for every wall."""
+    walls = list(dict.fromkeys(e["wall"] for e in found))
+    heads = ["series", "options"]
+    heads += [f"{w[5:]}: peak, work %; s" for w in walls]
+    rows = []
+    for series in RUNS:
+        for options in RUNS[series]:
+            cells = [series, f"`{options}`" if options else ""]
+            for wall in walls:
+                mine = [
+                    e
+                    for e in found
+                    if (e["wall"], e["series"], e["options"]) == (wall, series, options)
+                ]
+                cells += [
+                    f"{percent(e, 'peak')}, {percent(e, 'work')}; {e['seconds'][THREADS[-1]]:.0f}"
+                    for e in mine
+                ] or [""]
+            rows.append(cells)
+    return markdown(heads, rows)
+
+
 def table(found):
-    """Markdown: a row a run of each wall."""
-    percent = lambda entry, name: (
-        f"{100 * entry[name]:.1f}"
-        if name in ("pattern", "haste")
-        else f"{100 * entry[name]:+.1f}"
-    ) + (f" ± {100 * entry['spread'][name]:.1f}" if entry["repetitions"] > 1 else "")
+    """Markdown: a row a run of each wall, with everything."""
     heads = ["wall", "series", "options"] + [name + " %" for name in ERRORS]
     heads += ["steps", "s, one core", "s, two cores", "CPU s, two cores"]
-    lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
+    rows = []
     for e in found:
         cells = [
             e["wall"][5:],
@@ -299,13 +330,10 @@ def table(found):
             f"`{e['options']}`" if e["options"] else "",
         ]
         cells += [percent(e, name) for name in ERRORS]
-        cells += [
-            f"{e['steps'] / 1000:.0f}k",
-            *(f"{e['seconds'][n]:.0f}" for n in THREADS),
-        ]
-        cells.append(f"{e['cpu_seconds'][THREADS[-1]]:.0f}")
-        lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines) + "\n"
+        cells += [f"{e['steps'] / 1000:.0f}k"]
+        cells += [f"{e['seconds'][n]:.0f}" for n in THREADS]
+        rows.append(cells + [f"{e['cpu_seconds'][THREADS[-1]]:.0f}"])
+    return markdown(heads, rows)
 
 
 FLOOR = 2e-4  # errors below are drawn here
@@ -413,7 +441,7 @@ def main():
         json.dump(found, f, indent=1)
         f.write("\n")
     with open(os.path.join(HERE, "table.md"), "w") as f:
-        f.write(table(found))
+        f.write(summary(found) + "\n" + table(found))
     print(table(found))
     for wall in dict.fromkeys(e["wall"] for e in found):
         draw(found, wall)
