@@ -168,17 +168,19 @@ def readRun(directory):
 
 
 def haste(top, base):
-    """How much of the force of a push does not arrive at its base [-]: 0 at rest, towards 1 where nothing arrives.
+    """How much of the force of a push does not arrive at its base [-]: 0 if all does, 1 and more if none does.
 
-    Root mean square of top less base shear, over the largest of either, on the way from half of that at the base to the
-    peak there, or all the way if the base never has half. Inertia swings about it, damping drags.
+    Root mean square of top less base shear over the largest of either, from half the peak at the base to that peak; all
+    the way if this peak is less than half of the largest. Inertia swings about it, damping drags.
     """
     forces = [abs(b) for b in base]
     largest = max([*map(abs, top), *forces], default=0)
     if not largest:
         return 0.0
-    start = next((i for i, f in enumerate(forces) if f >= largest / 2), None)
-    rows = slice(start, None if start is None else forces.index(max(forces)) + 1)
+    peak, rows = max(forces), slice(None)
+    if peak >= largest / 2:
+        start = next(i for i, f in enumerate(forces) if f >= peak / 2)
+        rows = slice(start, forces.index(peak) + 1)
     squares = [(t - b) ** 2 for t, b in zip(top[rows], base[rows])]
     return math.sqrt(sum(squares) / len(squares)) / largest
 

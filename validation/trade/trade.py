@@ -3,7 +3,8 @@
 /usr/bin/python3 validation/trade/trade.py [--draw | --time-only] [--jobs N] [--walls WALL ...]
 
 Runs what is missing in results/trade, times what is not timed yet, prints the table and writes table.md, trade.json and
-a figure per wall beside itself. --draw runs nothing; --time-only measures all times anew, for an idle machine.
+figures beside itself: one a wall, and one of the worst wall. --draw runs nothing; --time-only measures all times anew,
+for an idle machine.
 """
 
 import argparse
@@ -290,6 +291,25 @@ def study(walls):
     return found
 
 
+def worst(found):
+    """Runs that all walls have, as if of one wall: errors that are largest in magnitude, times together."""
+    walls = {e["wall"] for e in found}
+    groups = {}
+    for e in found:
+        groups.setdefault((e["series"], e["options"]), []).append(e)
+    return [
+        {
+            "wall": "all_walls",
+            "series": series,
+            "options": options,
+            **{name: max((e[name] for e in group), key=abs) for name in ERRORS},
+            "seconds": {n: sum(e["seconds"][n] for e in group) for n in THREADS},
+        }
+        for (series, options), group in groups.items()
+        if {e["wall"] for e in group} == walls
+    ]
+
+
 def percent(entry, name):
     """An error in percent as text, with half the range of its repetitions."""
     signed = "" if name in ("pattern", "haste") else "+"
@@ -451,6 +471,7 @@ def main():
     with open(os.path.join(HERE, "table.md"), "w") as f:
         f.write(summary(found) + "\n" + table(found))
     print(table(found))
+    found += worst(found)
     for wall in dict.fromkeys(e["wall"] for e in found):
         draw(found, wall)
 
