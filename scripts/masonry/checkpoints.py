@@ -8,6 +8,7 @@ import json
 import os
 import sys
 import time
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
 
 import yade.config
@@ -20,6 +21,7 @@ from .options import Refused
 from .results import Progress, Results
 
 NAME = "run.checkpoint"  # in the folder of a run
+PARTS = "setup", "steps", "rows", "frames"  # of a run's time
 
 
 def saveCheckpoint(path, extra=None):
@@ -97,7 +99,7 @@ class Place:
 
     stage: str = ""
     steps: int = 0
-    steppingTime: float = 0.0  # [s]
+    seconds: dict = field(default_factory=lambda: dict.fromkeys(PARTS, 0.0))
     frames: list = field(default_factory=list)  # times of the ParaView frames [s]
     resumed: list = field(default_factory=list)  # times at which it was taken up [s]
 
@@ -179,22 +181,28 @@ class Resumable:
             self.advanced = False
         else:
             self.safe = None
-            began = time.perf_counter()
-            for _ in range(steps):
-                O.step()
-            self.at.steppingTime += time.perf_counter() - began
+            with self._timed("steps"):
+                for _ in range(steps):
+                    O.step()
             self.at.steps += steps
         self.safe = replace(self.at), len(self.results.rows)
         if time.monotonic() - self.saved > 60 * self.args.checkpoint_every:
             self.checkpoint()
         self.results.checkInterrupt()
 
+    @contextmanager
+    def _timed(self, part):
+        began = time.perf_counter()
+        yield
+        self.at.seconds[part] += time.perf_counter() - began
+
     def _rate(self):
-        return self.at.steps / self.at.steppingTime if self.at.steppingTime else 0.0
+        return self.at.steps / self.at.seconds["steps"] if self.at.steps else 0.0
 
     def _frame(self):
         if self.vtk:
-            self.vtk()
+            with self._timed("frames"):
+                self.vtk()
             self.at.frames = list(self.vtk.times)
 
     def checkpoint(self):

@@ -193,6 +193,24 @@ def readRun(directory):
         return json.load(f)
 
 
+def haste(top, base):
+    """How much of the force of a push does not arrive at its base [-]: 0 if all does, 1 and more if none does.
+
+    Root mean square of top less base shear over the largest of either, from half the peak at the base to that peak; all
+    the way if this peak is less than half of the largest. Inertia swings about it, damping drags.
+    """
+    forces = [abs(b) for b in base]
+    largest = max([*map(abs, top), *forces], default=0)
+    if not largest:
+        return 0.0
+    peak, rows = max(forces), slice(None)
+    if peak >= largest / 2:
+        start = next(i for i, f in enumerate(forces) if f >= peak / 2)
+        rows = slice(start, forces.index(peak) + 1)
+    squares = [(t - b) ** 2 for t, b in zip(top[rows], base[rows])]
+    return math.sqrt(sum(squares) / len(squares)) / largest
+
+
 def initialStiffness(displacement, force):
     """Slope [force/displacement] of the line fitted between 5 % and 25 % of the peak, on the way to it."""
     if not force:

@@ -12,7 +12,7 @@ from yade.wrapper import MasonryLoad, MasonryZones
 from . import brickwork, commit, criticalTimeStep, materials, options
 from .checkpoints import Place, Resumable
 from .options import Refused, applySettings
-from .results import ENERGIES, conduct, initialStiffness
+from .results import ENERGIES, conduct, haste, initialStiffness
 from .scene import addBlock, connect, engines
 
 CURVE = [
@@ -27,8 +27,10 @@ CURVE += [name + "_J" for name in ENERGIES] + ["balance_error"]
 
 BLOCK_HEIGHT = 0.2  # [m] of the support, and of the loading block of a clamped wall
 RAMP = 0.02  # [s] in which precompression and velocity grow: some ten periods of a wave through the height
-SETTLING = 0.3  # local damping of zones under precompression: with more, they creep to rest five times as slowly
+SETTLING = 0.5  # local damping of zones until the push: with more they creep to rest, with less they swing
+REST = 5e-3  # of the vertical load: what may be missing at the base before the push
 ROW_EVERY = 0.01  # [mm] between rows of curve.csv
+HASTE = 0.1  # a push with more is too fast: its peak is off by 1 to 5 % and more, validation/trade
 
 
 @dataclass
@@ -92,7 +94,6 @@ class WallPlace(Place):
 
     done: int = 0  # steps towards rest
     quiet: int = 0  # times in a row that it was at rest
-    pieces: int = 0  # of the precompression
     origin: list = field(default_factory=list)  # of the push: displacement [m]
     began: float = 0.0  # and time [s]
     moved: float = 0.0  # [mm]
@@ -104,7 +105,7 @@ class WallPlace(Place):
 class WallModel(Resumable):
     """The wall in YADE, and the stages of its test. ``args`` are the options of :func:`masonry.options.parser`."""
 
-    stages = ("settle", "precompress", "push")
+    stages = ("settle", "push")
 
     def __init__(self, wall, args):
         self.wall = wall
@@ -118,8 +119,12 @@ class WallModel(Resumable):
             raise Refused(
                 f"--until {args.until:g}: the run is at {self.at.moved:.2f} mm already"
             )
+        self.preset = options.presetOf(args, wall.name)
+        if self.preset:
+            print(options.presetNote(self.preset, wall.name))
         self.collapsed = False
-        self._build()
+        with self._timed("setup"):
+            self._build()
         self._begin()
 
     def _build(self):
@@ -216,6 +221,7 @@ class WallModel(Resumable):
                 "load_line_fixed": wall.loadLineFixed,
             },
             options=dict(vars(self.args)),
+            preset=self.preset,
             option_units={
                 "until": "mm",
                 "rate": "mm/s",
@@ -249,12 +255,23 @@ class WallModel(Resumable):
 
     # -- stages ---------------------------------------------------------------------------------------------------
 
-    def _rest(self, stage, unbalanced, mostSteps=20000):
-        """Advance until the base carries what is above it but for that share, and hardly anything moves."""
-        above = sum(b.state.mass for b in O.bodies if b.id != self.base)
-        load = above * self.gravity - self.vertical.force[2]
-        at = self.at
-        while at.done < mostSteps and at.quiet < 3:
+    def settle(self):
+        """Gravity, and precompression on the loading block that grows smoothly, to rest.
+
+        The precompression is what the top course feels: the block's weight is part of it. At rest the base carries what
+        is above it but for the share REST, and hardly anything moves; the damping of the push takes what is left.
+        """
+        weight = self.gravity * sum(b.state.mass for b in O.bodies if b.id != self.base)
+        force = (
+            self.wall.precompression * self.wall.area
+            - O.bodies[self.top].state.mass * self.gravity
+        )
+        if self.zones:
+            self.zones.damping = min(SETTLING, self.args.damping)
+        at, ramp, most = self.at, int(self.ramp / O.dt), int(10 * self.ramp / O.dt)
+        while at.done < most and at.quiet < 3:
+            x = min(1, (at.done + 100) / ramp)
+            self.vertical.force = Vector3(0, 0, -force * x * x * (3 - 2 * x))
             self._advance(100)
             at.done += 100
             e = self.energy.balance()
@@ -264,40 +281,20 @@ class WallModel(Resumable):
                 + e["elastic_tension"]
                 + e["elastic_units"]
             )
-            missing = 1 + O.forces.f(self.base, True)[2] / load
-            rests = abs(missing) < unbalanced and abs(e["kinetic"]) < 1e-6 * elastic
-            at.quiet = at.quiet + 1 if rests else 0
+            missing = 1 + O.forces.f(self.base, True)[2] / (
+                weight - self.vertical.force[2]
+            )
+            rests = abs(missing) < REST and abs(e["kinetic"]) < 1e-5 * elastic
+            at.quiet = at.quiet + 1 if rests and x == 1 else 0
             self.progress.show(
-                stage,
-                at.done / mostSteps,
+                "settle",
+                at.done / most,
                 f"unbalanced {100 * missing:+.2f} %, kinetic/elastic {abs(e['kinetic']) / elastic:.1e}",
                 self._rate(),
                 at.quiet == 3,
             )
         if at.quiet < 3:
-            print(
-                f"note: the wall is not quite at rest after {mostSteps} steps of {stage}"
-            )
-        at.done = at.quiet = 0
-
-    def settle(self):
-        """Gravity, to rest."""
-        self._rest("gravity", 1e-3)
-
-    def precompress(self):
-        """Precompression on the loading block, to rest. It is what the top course feels: the block's weight is part."""
-        force = (
-            self.wall.precompression * self.wall.area
-            - O.bodies[self.top].state.mass * self.gravity
-        )
-        if self.zones:
-            self.zones.damping = min(SETTLING, self.args.damping)
-        pieces, at = 40, self.at
-        while at.pieces < pieces:
-            self.vertical.force = Vector3(0, 0, -force * (at.pieces + 1) / pieces)
-            self._advance(int(self.ramp / pieces / O.dt) + 1)
-            at.pieces += 1
-        self._rest("precompress", 2e-4)
+            print(f"note: the wall is not quite at rest after {at.steps} steps")
 
     def push(self):
         """Lateral velocity at the loaded point, to ``--until`` or to collapse."""
@@ -324,7 +321,8 @@ class WallModel(Resumable):
                 along = self.load.displacement()[0]
                 self.vertical.point = self.load.point - Vector3(along, 0, 0)
             self._advance(every)
-            values = self._record()
+            with self._timed("rows"):
+                values = self._record()
             shear, at.moved = values["base_shear_kN"], values["displacement_mm"]
             if shear > at.peak:
                 at.peak, at.peakAt = shear, at.moved
@@ -380,19 +378,21 @@ class WallModel(Resumable):
                 displacement_end_mm=moved[-1],
                 initial_stiffness_kN_per_mm=initialStiffness(moved, shear),
                 energy_balance_error=self.energy.largestError,
+                haste=haste(results.column("top_shear_kN"), shear),
             )
         run.update(
             collapsed=self.collapsed,
+            too_fast=run.get("haste", 0) > HASTE,
             interrupted=results.interrupted,
             resumed_at_s=done.resumed,
             steps=done.steps,
             kinds=self.vtk.kinds if self.vtk else [],
+            seconds={part: round(s, 3) for part, s in done.seconds.items()},
         )
         if done.steps:
-            run["microseconds_per_step"] = 1e6 * done.steppingTime / done.steps
-            run["nanoseconds_per_subcontact_step"] = (
-                1e9 * done.steppingTime / done.steps / self.subcontacts
-            )
+            perStep = done.seconds["steps"] / done.steps
+            run["microseconds_per_step"] = 1e6 * perStep
+            run["nanoseconds_per_subcontact_step"] = 1e9 * perStep / self.subcontacts
         results.close()
         if results.rows:
             subprocess.run(
@@ -402,12 +402,27 @@ class WallModel(Resumable):
             print(
                 f"warning: the energy balance is off by {100 * run['energy_balance_error']:.1f} % of the work done"
             )
+        if run.get("haste", 0) > HASTE:
+            print(self._tooFast(run["haste"]))
         if results.rows:
             print(
                 f"{self.wall.name}: peak {run['peak_base_shear_kN']:.1f} kN at {run['displacement_at_peak_mm']:.2f} mm, "
                 f"{run['base_shear_end_kN']:.1f} kN at {run['displacement_end_mm']:.2f} mm; {done.steps} steps of "
                 f"{run['microseconds_per_step']:.0f} µs, {run['wall_clock_s']:.1f} s in all; see {results.directory}"
             )
+        if self.preset:
+            print(options.presetNote(self.preset, self.wall.name))
+
+    def _tooFast(self, haste):
+        """The warning of a push that is too fast, with what would do: what is missing grows with the rate at least."""
+        args = self.args
+        slower = f"--rate {float(f'{args.rate * HASTE / haste:.2g}'):g}"
+        return (
+            f"warning: the push is too fast: {100 * haste:.0f} % of the force does not reach the base, "
+            f"more than {100 * HASTE:.0f} % spoil the peak; "
+            + ("--damping-kind combined" if args.damping_kind == "local" else slower)
+            + " would do"
+        )
 
 
 def test(wall, args):

@@ -24,7 +24,7 @@ def files(folder):
 
 
 def test_a_wall_killed_ten_times_leaves_the_curve_of_a_whole_run(runScene, tmp_path):
-    words = ["--until", "0.3", "--vtk-every", "0.1"]
+    words = ["--until", "1", "--rate", "2", "--vtk-every", "0.3"]
     _, whole = runScene("wall_comp4", *words, "--checkpoint-every", "0")
     steps = readRun(whole)["steps"]
     assert not os.path.exists(os.path.join(whole, "run.checkpoint"))
@@ -32,7 +32,7 @@ def test_a_wall_killed_ten_times_leaves_the_curve_of_a_whole_run(runScene, tmp_p
     out = str(tmp_path / "killed")
     kept = os.path.join(out, "run.checkpoint")
     dice = random.Random()
-    moments = sorted(dice.uniform(0, 0.95 * steps) for _ in range(10))
+    moments = [(n + dice.random()) / 11 * steps for n in range(10)]
 
     def start():
         known = ["--resume", out] if os.path.exists(kept) else [*words, "--out", out]
@@ -126,7 +126,7 @@ def test_a_wall_interrupted_in_every_stage_leaves_the_curve_of_a_whole_run(
         assert status == 130
         stages.append(readCheckpoint(str(out / "run.checkpoint"))["at"]["stage"])
         resume = True
-    assert {"settle", "precompress", "push"} == set(stages)
+    assert {"settle", "push"} == set(stages)
     assert files(out) == files(tmp_path / "whole")
     assert len(readRun(out)["resumed_at_s"]) == len(stages)
 
