@@ -2,16 +2,18 @@
 
 yade -n -x [-j THREADS] scripts/benchmark.py [STEPS]
 
-The plugin with rigid units (as laid, at the peak, and through YADE's own interaction loop and integrator) and with
-deformable ones; YADE's volumetric law on the same half bricks; YADE's one-point mortar law on spheres in their places.
+The plugin with rigid and deformable units from the first push to the end of the test, with features on and off, and
+through YADE's own interaction loop and integrator; walls of 1,000 to 100,000 half bricks and their memory; YADE's
+volumetric law on the half bricks of COMP-4; YADE's one-point mortar law on spheres in their places.
 """
 
 import json
 import os
+import resource
 import sys
 import time
 
-from masonry import brickwork, options, scene, walls
+from masonry import brickwork, materials, options, scene, walls
 from yade import O, Vector3, polyhedra_utils, timing, utils
 from yade.wrapper import *
 
@@ -31,19 +33,16 @@ def cost(steps):
     return best
 
 
-def plugin(blocks="rigid", until=None, functors=False):
-    """Seconds a step, subcontacts, and microseconds of each engine; pushed to ``until`` [mm] first if that is given."""
+def plugin(words="", until=0.2, functors=False):
+    """Seconds a step, subcontacts, and microseconds of each engine, for a wall pushed to ``until`` [mm] with options."""
     walls.engines = lambda *a, **k: scene.engines(*a, functors=functors, **k)
     wall = walls.Wall(
         name="benchmark", title="TUD-COMP-4", halfUnits=36, precompression=0.5e6
     )
-    words = ["--no-vtk", "--blocks", blocks, "--out", OUT]
-    words += ["--until", str(until), "--rate", "50"] if until else []
+    words = f"--no-vtk --checkpoint-every 0 --rate 50 --until {until} --out {OUT} {words}".split()
     model = walls.WallModel(wall, options.parser("", until=12).parse_args(words))
-    if until:
-        model.settle()
-        model.push()
-    model.load.velocity = 0.02
+    model.settle()
+    model.push()
     seconds = cost(STEPS)
     O.timingEnabled = True
     timing.reset()
@@ -54,7 +53,37 @@ def plugin(blocks="rigid", until=None, functors=False):
         for e in O.engines
         if e.execCount
     }
+    engines["a row of curve.csv"] = (
+        1e6 * model.at.seconds["rows"] / len(model.results.rows)
+    )
     return seconds, model.subcontacts, engines
+
+
+def resident():
+    """Memory of this process [B]."""
+    with open("/proc/self/statm") as f:
+        return int(f.read().split()[1]) * resource.getpagesize()
+
+
+def wide(courses, halfUnits):
+    """Seconds a step, subcontacts, and bytes a half brick of YADE's bodies and of our joints, for a wall as laid."""
+    O.reset()
+    unit, joints = materials.calciumSilicateUnit(), materials.calciumSilicateJoints()
+    before = resident()
+    for b in brickwork.runningBond(courses, halfUnits):
+        scene.addBlock(brickwork.corners(b.low, b.high), unit, inPlane=True)
+    bodies = resident()
+    O.bodies[0].state.blockedDOFs = "xyzXYZ"
+    scene.engines(list(joints.values()), inPlane=True)
+    contacts = 4 * len(scene.connect())
+    O.dt = 1e-8
+    O.step()
+    count = len(O.bodies)
+    memory = {
+        "body, B": (bodies - before) / count,
+        "joints, B": (resident() - bodies) / count,
+    }
+    return cost(max(1, STEPS * 1000 // count)), contacts, memory
 
 
 def volumetric():
@@ -126,8 +155,22 @@ def mortar():
 CASES = {
     "rigid units": lambda: plugin(),
     "rigid units, at the peak": lambda: plugin(until=2.5),
-    "rigid units, YADE's loop and integrator": lambda: plugin(functors=True),
-    "deformable units": lambda: plugin("deformable"),
+    "rigid units, at the end": lambda: plugin(until=12),
+    "    local damping": lambda: plugin("--damping-kind local"),
+    "    no crack surfaces": lambda: plugin("--crack-surfaces off"),
+    "    dilatancy": lambda: plugin(
+        "--set bed.dilatancy=0.1 --set bed.dilatancyDecay=100"
+    ),
+    "    two subcontacts": lambda: plugin("--subcontacts 2"),
+    "    eight subcontacts": lambda: plugin("--subcontacts 8"),
+    "    YADE's loop and integrator": lambda: plugin(functors=True),
+    "deformable units": lambda: plugin("--blocks deformable"),
+    "deformable units, at the peak": lambda: plugin("--blocks deformable", until=2.5),
+    "    two by two cells": lambda: plugin("--blocks deformable --divisions 2"),
+    "    three by three cells": lambda: plugin("--blocks deformable --divisions 3"),
+    "1,020 half bricks, as laid": lambda: wide(34, 30),
+    "10,272 half bricks": lambda: wide(107, 96),
+    "100,480 half bricks": lambda: wide(320, 314),
     "YADE's volumetric law, half bricks": volumetric,
     "YADE's mortar law, spheres": mortar,
 }
@@ -142,7 +185,7 @@ for name, case in CASES.items():
         "engines_us": engines,
     }
 base = results["rigid units"]
-print(f"\n{O.numThreads} threads; ratios to rigid units as laid")
+print(f"\n{O.numThreads} threads; ratios to the first")
 print(
     f"{'':42}{'µs a step':>12}{'ratio':>8}{'contacts':>10}{'ns each':>10}{'ratio':>8}"
 )

@@ -97,9 +97,13 @@ void MasonryJointLoop::Group::share() {
     for (const auto& c : all)
         for (int i = 0; alike && i < stride * c.rows; ++i)
             alike = same((*c.values)[i], (*c.values)[i / stride * stride], c.scale);
-    for (const auto& c : all)
-        for (int p = 0; alike && p < c.rows; ++p)
+    if (!alike) return;
+    for (const auto& c : all) {
+        for (int p = 0; p < c.rows; ++p)
             std::copy_n(c.values->begin() + p * stride, block, c.values->begin() + p * block);
+        c.values->resize(c.rows * block);
+        c.values->shrink_to_fit();
+    }
 }
 
 void MasonryJointLoop::Gather::fill(const std::vector<std::vector<int>>& lists) {
