@@ -140,6 +140,11 @@ def test_all_wrong_settings_are_told_at_once():
         (["--blocks", "soft"], "invalid choice: 'soft'"),
         (["--set", "bed"], "'bed' must read JOINT.PROPERTY=VALUE"),
         (["--vtk-every", "nan"], "nan must be above 0"),
+        (["--checkpoint-every", "-1"], "-1 must be at least 0"),
+        (
+            ["--resume", "nowhere"],
+            "No such file or directory: 'nowhere/run.checkpoint'",
+        ),
         (["--nonsense"], "unrecognized arguments: --nonsense"),
     ],
 )
@@ -148,6 +153,21 @@ def test_wrong_options_are_refused_with_the_bound(capsys, words, message):
         parse(*words)
     assert refused.value.code == 2
     assert message in capsys.readouterr().err
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.text("0123456789.:,+-_einfax ", max_size=40))
+def test_any_text_for_a_table_is_refused_in_words_or_makes_a_joint(text):
+    joints = {"bed": materials.MasonryJoint()}
+    try:
+        options.applySettings(joints, [("bed", "shearTable", text)])
+    except options.Refused as refused:
+        assert str(refused).startswith(
+            ("--set bed.shearTable=", 'joint "bed": shear table, ')
+        )
+    else:
+        ratios = [row[0] for row in joints["bed"].softening()["shear"]]
+        assert ratios[0] == 1 and ratios == sorted(set(ratios))
 
 
 def test_every_option_is_explained_with_its_default(capsys):
