@@ -216,12 +216,13 @@ class Resumable:
             **self._host(),
         )
         self.saved = time.monotonic()
+        path = self.results.path(NAME)
         try:
-            saveCheckpoint(self.results.path(NAME), told)
+            saveCheckpoint(path, told)
             return True
         except (OSError, ValueError) as error:
             print(
-                f"warning: no checkpoint could be written: {error}; an earlier one stays",
+                f"warning: no checkpoint could be written to {path}: {error}; an earlier one stays",
                 file=sys.stderr,
             )
             return False

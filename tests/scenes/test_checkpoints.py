@@ -213,9 +213,10 @@ def test_a_full_disk_is_told_and_the_run_goes_on(scene, tmp_path, at, capsys):
 
     at(60, fill)
     assert run(tmp_path / "full", *PUSH) == 0
-    assert "no checkpoint could be written: [Errno 28] No space left on device" in (
-        capsys.readouterr().err
+    said = (
+        f"no checkpoint could be written to {kept}: [Errno 28] No space left on device"
     )
+    assert said in capsys.readouterr().err
     assert seen["before"] == seen["after"]
     assert files(tmp_path / "full") == files(tmp_path / "whole")
     assert readCheckpoint(kept)["at"]["moved"] > 0.25  # the disk has room again
