@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds the plugin and installs it where plain `yade` finds it. Idempotent, quick when done.
+# Installs what is missing (arguments: further packages), builds the plugin and installs it where plain `yade` finds it.
+# Idempotent, quick when done.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 packages=(yade cmake g++ make libboost-python-dev libboost-serialization-dev libeigen3-dev libvtk9-dev libxml2-dev
-          python3-dev python3-matplotlib python3-numpy python3-vtk9 python3-pytest python3-hypothesis doctest-dev git)
+          python3-dev python3-matplotlib python3-numpy python3-vtk9 python3-pytest python3-hypothesis doctest-dev git "$@")
 missing=()
 for package in "${packages[@]}"; do
     dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")

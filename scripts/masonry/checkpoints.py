@@ -28,7 +28,8 @@ def saveCheckpoint(path, extra=None):
     """Save the state of the scene beside the file of that name, and put it in its place when it is safely on the disk.
 
     Kept are time, bodies, joints, and the engines of this plugin; with :func:`loadCheckpoint` the run goes on from
-    there bit for bit. A kill or a full disk at any moment leaves the old file or the new one, whole.
+    there bit for bit. Other engines, as a PyRunner, stay as the script makes them. A kill or a full disk at any moment
+    leaves the old file or the new one, whole.
 
     :param path: file to write; ``path + ".new"`` stands beside it for a moment
     :param extra: what your script must know to go on: anything that JSON can hold
@@ -108,9 +109,9 @@ class Resumable:
     """A run in stages, in a folder of results, that leaves checkpoints and can be taken up from the last.
 
     A subclass names its methods in ``stages``, builds its scene between ``__init__`` and :meth:`_begin`, and steps by
-    :meth:`_advance` alone. In a run that is resumed the stage is entered with ``at`` as it was after the steps of an ``_advance``, in the state that
-    they led to, and the first ``_advance`` does nothing. So a stage counts in ``at`` after it has advanced, and what
-    it does before may be done twice.
+    :meth:`_advance` alone. In a run that is resumed the stage is entered with ``at`` as it was after the steps of an
+    ``_advance``, in the state that they led to, and the first ``_advance`` does nothing. So a stage counts in ``at``
+    after it has advanced, and what it does before may be done twice.
     """
 
     def __init__(self, name, args, columns, at):
@@ -223,12 +224,13 @@ class Resumable:
             **self._host(),
         )
         self.saved = time.monotonic()
+        path = self.results.path(NAME)
         try:
-            saveCheckpoint(self.results.path(NAME), told)
+            saveCheckpoint(path, told)
             return True
         except (OSError, ValueError) as error:
             print(
-                f"warning: no checkpoint could be written: {error}; an earlier one stays",
+                f"warning: no checkpoint could be written to {path}: {error}; an earlier one stays",
                 file=sys.stderr,
             )
             return False

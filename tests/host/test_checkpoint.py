@@ -160,6 +160,7 @@ def sealed(data, name, change):
 @pytest.mark.parametrize(
     "name, message",
     [
+        ("scene.step", "does not fit this scene, at 'scene.step'"),
         ("scene.bodies", "does not fit this scene, at 'scene.bodies'"),
         ("scene.joints", "damaged at the regime of a joint"),
         ("engine 2 MasonryLoad.body", "a whole number in it is too large"),
@@ -171,7 +172,7 @@ def test_hostile_numbers_under_a_right_sum_are_refused_and_change_nothing(
     saved, name, message
 ):
     path, data = saved
-    value = float("nan") if name == "scene.time" else 1e300
+    value = {"scene.time": float("nan"), "scene.step": -7.0}.get(name, 1e300)
     last = lambda old: old[:-8] + struct.pack("<d", value)
     before_last = lambda old: old[:-16] + struct.pack("<d", value) + old[-8:]
     change = before_last if name == "scene.bodies" else last
@@ -183,6 +184,15 @@ def test_hostile_numbers_under_a_right_sum_are_refused_and_change_nothing(
         loadCheckpoint(path)
     assert bits(interactions) == before
     run(5)
+
+
+def test_units_that_are_gone_are_refused(tmp_path):
+    path = str(tmp_path / "c")
+    panel(False, "deformable")
+    run(3)
+    O.engines[5].bodies = []  # what was meshed is not looked at again
+    with pytest.raises(ValueError, match="bodies and divisions cannot change"):
+        saveCheckpoint(path)
 
 
 def test_text_that_is_no_json_is_refused(saved):

@@ -154,6 +154,15 @@ TEST_CASE("a table is linear between its rows and keeps its last damage") {
         CHECK(t.damage(ratio) == within(damage, 1e-15));
 }
 
+TEST_CASE("between two rows a table is never rounded up beyond the second") {
+    const std::vector<TableRow> rows{
+        {1, 0}, {1.1181633515928748, 0.25953858936155921}, {22.452930066744464, 0.66366387932763671}};
+    const double last = std::nextafter(rows[2].ratio, 0);
+    std::int32_t row = 1;
+    CHECK(SofteningTable(rows).damage(last) <= rows[2].damage);
+    CHECK(SofteningTable(rows).damage(last, row) <= rows[2].damage);
+}
+
 TEST_CASE("a crack unloads to the origin, closes without a push and carries compression again") {
     Path p(bed);
     p.move({40e-6, {}}, 100);
@@ -306,6 +315,9 @@ TEST_CASE("refusals name the joint, the value with its unit and the bound, all a
         {[](P& p) { p.dilatancyDecay = -1; }, "dilatancy decay -1 1/m must be at least 0"},
         {[](P& p) { p.modeIFractureEnergy = 0; }, "mode I fracture energy 0 J/m² must be above 0"},
         {[](P& p) { p.modeIIFractureEnergy = -1; }, "mode II fracture energy -1 J/m² must be above 0"},
+        {[](P& p) { p.tensileStrength = 1e-160; }, // its square is no number, and 0/0 in the table was none either
+         "mode I strength 1e-160 Pa, stiffness 3.352e+11 Pa/m and fracture energy 16 J/m² are too far apart for an "
+         "exponential table"},
         {[](P& p) { p.compressiveStrength = 0; }, "compressive strength 0 Pa must be above 0"},
         {[](P& p) { p.elasticLimitRatio = 1; }, "elastic limit ratio 1 must be at most 0.999"},
         {[](P& p) { p.residualStrengthRatio = 1; }, "residual strength ratio 1 must be at most 0.999"},

@@ -140,6 +140,11 @@ def test_all_wrong_settings_are_told_at_once():
         (["--blocks", "soft"], "invalid choice: 'soft'"),
         (["--set", "bed"], "'bed' must read JOINT.PROPERTY=VALUE"),
         (["--vtk-every", "nan"], "nan must be above 0"),
+        (["--checkpoint-every", "-1"], "-1 must be at least 0"),
+        (
+            ["--resume", "nowhere"],
+            "No such file or directory: 'nowhere/run.checkpoint'",
+        ),
         (["--nonsense"], "unrecognized arguments: --nonsense"),
     ],
 )
@@ -195,6 +200,21 @@ def test_a_preset_promises_nothing_of_a_wall_it_was_not_measured_on():
     assert preset["promise"] is None
     assert "not measured on my_wall" in options.presetNote(preset, "my_wall")
     assert options.presetOf(parse(), "wall_comp4") is None
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.text("0123456789.:,+-_einfax ", max_size=40))
+def test_any_text_for_a_table_is_refused_in_words_or_makes_a_joint(text):
+    joints = {"bed": materials.MasonryJoint()}
+    try:
+        options.applySettings(joints, [("bed", "shearTable", text)])
+    except options.Refused as refused:
+        assert str(refused).startswith(
+            ("--set bed.shearTable=", 'joint "bed": shear table, ')
+        )
+    else:
+        ratios = [row[0] for row in joints["bed"].softening()["shear"]]
+        assert ratios[0] == 1 and ratios == sorted(set(ratios))
 
 
 def test_every_option_is_explained_with_its_default(capsys):

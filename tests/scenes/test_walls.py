@@ -143,7 +143,7 @@ def test_help_prints_the_options_without_running(tmp_path):
     assert run.returncode == 0
     for (
         option
-    ) in "--until --rate --blocks --subcontacts --damping --dt-fraction --crack-surfaces --set --out --vtk-every --no-vtk".split():
+    ) in "--until --rate --blocks --subcontacts --damping --dt-fraction --crack-surfaces --set --out --vtk-every --no-vtk --checkpoint-every --resume".split():
         assert option in run.stdout
     assert not os.listdir(tmp_path)
 

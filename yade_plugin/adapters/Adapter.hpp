@@ -42,8 +42,8 @@ struct Keeper {
     virtual void release() = 0;
 };
 
-// Hidden: saved, but not shown to Python. Local: of where a run is, not of how far; checkpoints leave it out.
-enum Flags { Plain = 0, ReadOnly = 1, Hidden = 2, Local = 4 };
+// Hidden: saved, but not shown to Python. Given: by the scene that is built; no state, so checkpoints leave it alone.
+enum Flags { Plain = 0, ReadOnly = 1, Hidden = 2, Given = 4 };
 
 template <class T> struct IsNumbers : std::false_type {}; // types of fixed size that are saved as plain numbers
 template <> struct IsNumbers<Vector3r> : std::true_type {};
@@ -255,7 +255,7 @@ public:
     void transfer(Transfer& to) override {
         self().refresh();
         Derived::attributes([&](const char* name, auto member, const char*, int flags = Plain) {
-            if (!(flags & Local)) to(name, self().*member);
+            if (!(flags & Given)) to(name, self().*member);
         });
         if (to.back) self().postLoad();
     }

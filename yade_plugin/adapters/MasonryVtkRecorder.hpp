@@ -22,7 +22,7 @@ public:
 
     template <class Visit> static void attributes(Visit&& visit) {
         using R = MasonryVtkRecorder;
-        visit("directory", &R::directory, "Existing folder to write to.", Local);
+        visit("directory", &R::directory, "Existing folder to write to.", Given);
         visit("stepPeriod", &R::stepPeriod, "Steps between frames [-]; 0: only when called.");
         visit("kinds", &R::kinds, "Names of the joints' kinds, in the order of their numbers in the files.", ReadOnly);
         visit("times", &R::times, "Simulation times of the frames so far [s]; given, the series goes on after them.");

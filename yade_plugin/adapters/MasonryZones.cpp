@@ -20,7 +20,7 @@ void MasonryZones::postLoad() {
         wrong.push_back("blocked '" + blocked + "' must be made of x, y and z");
     if (!wrong.empty()) throw std::invalid_argument("MasonryZones: " + joined(wrong, "; "));
     refresh();
-    units_.clear(); // meshed again when needed: after loading, or for other bodies
+    units_.clear(), batches_.clear(); // meshed again when needed: after loading, or for other bodies
     ++changes;
 }
 
@@ -41,7 +41,7 @@ int MasonryZones::addGuest() {
 }
 
 const std::vector<MasonryZones::Unit>& MasonryZones::units() {
-    if (!units_.empty() || bodies.empty()) return units_;
+    if (!units_.empty() || (bodies.empty() && displacements.empty())) return units_;
     const auto& all = Singleton<yade::Omega>::instance().getScene()->bodies->body;
     struct Kind {
         std::vector<Vector3r> corners;

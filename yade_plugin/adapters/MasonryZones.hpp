@@ -45,10 +45,11 @@ public:
 
     template <class Visit> static void attributes(Visit&& visit) {
         using Z = MasonryZones;
-        visit("bodies", &Z::bodies, "Ids of the deformable units; their material is MasonryMat.");
+        visit("bodies", &Z::bodies, "Ids of the deformable units; their material is MasonryMat.", Given);
         visit("divisions", &Z::divisions,
               "Cells of a hexahedral unit in the directions nearest to x, y and z [-], 1 to 100; each is twelve zones. "
-              "Default: 1, 1, 1.");
+              "Default: 1, 1, 1.",
+              Given);
         visit("damping", &Z::damping, "Damping constant alpha [-], 0 to 0.99 (paper eq. (3): 0.8).");
         visit("dampingKind", &Z::dampingKind,
               "'combined': alpha |F| (sgn(dF/dt) - sgn(v)) / 2, calms what swings about a steady motion, too; "

@@ -25,6 +25,14 @@ public:
             found.push_back(shown + " must be at most " + text(high));
     }
 
+    // The exponential table needs a decay that numbers can hold: strength² / (stiffness energy), law.md §3.
+    void exponential(const char* mode, double strength, double stiffness, double energy) {
+        if (strength > 0 && stiffness > 0 && energy > 0 && !std::isnormal(strength * strength / (stiffness * energy)))
+            found.push_back(std::string(mode) + " strength " + text(strength) + " Pa, stiffness " + text(stiffness) +
+                            " Pa/m and fracture energy " + text(energy) +
+                            " J/m² are too far apart for an exponential table");
+    }
+
     void table(const char* what, const std::vector<TableRow>& rows) {
         if (rows.empty()) return;
         for (const auto& problem : SofteningTable::problems(rows))
@@ -55,12 +63,18 @@ std::vector<std::string> JointProperties::problems() const {
                              "cohesion/friction = " + text(cohesion / friction) + " Pa");
 
     door.table("tension table", tensionTable);
-    if (tensionTable.empty()) door.number("mode I fracture energy", modeIFractureEnergy, "J/m²", 0, infinity, true);
+    if (tensionTable.empty()) {
+        door.number("mode I fracture energy", modeIFractureEnergy, "J/m²", 0, infinity, true);
+        door.exponential("mode I", tensileStrength, normalStiffness, modeIFractureEnergy);
+    }
     door.table("shear table", shearTable);
     if (shearTable.empty() && cohesion == 0 && friction > residualFriction)
         door.found.push_back("friction softens from " + text(friction) + " to " + text(residualFriction) +
                              " without cohesion: give a shear table, no exponential one follows from zero cohesion");
-    if (shearTable.empty()) door.number("mode II fracture energy", modeIIFractureEnergy, "J/m²", 0, infinity, true);
+    if (shearTable.empty()) {
+        door.number("mode II fracture energy", modeIIFractureEnergy, "J/m²", 0, infinity, true);
+        door.exponential("mode II", cohesion, shearStiffness, modeIIFractureEnergy);
+    }
 
     if (!cap) return door.found;
     const auto before = door.found.size();

@@ -39,14 +39,14 @@ public:
             } else
                 span = half;
         }
-        return rows_[low].damage + slopes_[low] * (ratio - rows_[low].ratio);
+        return within(low, ratio);
     }
 
     // The same for a ratio near the last one: `row` is where that was found, and is brought up to date.
     double damage(double ratio, std::int32_t& row) const {
         const std::size_t at = std::size_t(row);
         if (at + 1 < rows_.size() && ratio > 1 && rows_[at].ratio <= ratio && ratio < rows_[at + 1].ratio)
-            return rows_[at].damage + slopes_[at] * (ratio - rows_[at].ratio);
+            return within(at, ratio);
         const auto above = std::upper_bound(rows_.begin(), rows_.end(), ratio,
                                             [](double r, const TableRow& other) { return r < other.ratio; });
         row = std::int32_t(std::max<std::ptrdiff_t>(0, above - rows_.begin() - 1));
@@ -56,6 +56,10 @@ public:
     const std::vector<TableRow>& rows() const { return rows_; }
 
 private:
+    double within(std::size_t row, double ratio) const { // never rounded up beyond the next row
+        return std::min(rows_[row].damage + slopes_[row] * (ratio - rows_[row].ratio), rows_[row + 1].damage);
+    }
+
     std::vector<TableRow> rows_;
     std::vector<double> slopes_;
 };

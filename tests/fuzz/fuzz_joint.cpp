@@ -1,0 +1,124 @@
+// Any numbers are refused in words or make a joint whose tables and law keep what they promise.
+#include "law/JointLaw.hpp"
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+
+using namespace masonry;
+
+namespace {
+
+#define PROMISE(kept) ((kept) ? void() : broken(#kept))
+[[noreturn]] void broken(const char* promise) {
+    std::fprintf(stderr, "broken: %s\n", promise);
+    std::abort();
+}
+
+class Dice { // takes what it gives from the bytes
+public:
+    Dice(const std::uint8_t* data, std::size_t size) : at_(data), left_(size) {}
+    std::uint8_t byte() { return left_ ? (--left_, *at_++) : 0; }
+    double raw() { // any double there is
+        double value = 0;
+        unsigned char bytes[sizeof value];
+        for (auto& b : bytes)
+            b = byte();
+        std::memcpy(&value, bytes, sizeof value);
+        return value;
+    }
+    double factor() { return std::exp2(std::int8_t(byte()) / 4.0); } // 2^-32 to 2^32
+    bool wild() const { return wild_; }                              // whether any number was beyond that
+
+    double about(double usual) { // often as it is, often another size, seldom anything
+        const int kind = byte() % 8;
+        if (kind == 7) return wild_ = true, raw();
+        return kind < 4 ? usual : usual * factor();
+    }
+    std::vector<TableRow> table() {
+        std::vector<TableRow> rows(byte() % 12);
+        const bool rising = byte() % 4;
+        TableRow last{1, 0};
+        for (auto& row : rows) {
+            row = last;
+            const double ratio = rising ? last.ratio + factor() : raw();
+            const double damage = rising ? last.damage + (1 - last.damage) * byte() / 255.0 : raw();
+            last = {ratio, damage};
+        }
+        return rows;
+    }
+
+private:
+    const std::uint8_t* at_;
+    std::size_t left_;
+    bool wild_ = false;
+};
+
+void check(const SofteningTable& table) {
+    double before = 0, highest = 0;
+    std::int32_t hint = 0;
+    const auto at = [&](double ratio) {
+        if (ratio < highest) return; // rows closer than numbers can tell
+        highest = ratio;
+        const double damage = table.damage(ratio);
+        PROMISE(damage >= before && damage <= 1);
+        PROMISE(table.damage(ratio, hint) == damage);
+        before = damage;
+    };
+    for (std::size_t i = 0; i < table.rows().size(); ++i) {
+        const auto& row = table.rows()[i];
+        at(row.ratio);
+        if (i + 1 == table.rows().size()) continue;
+        const double next = table.rows()[i + 1].ratio;
+        PROMISE(next >= row.ratio); // equal where an exponential is steeper than numbers can tell
+        PROMISE(next == row.ratio || table.damage(row.ratio) == (row.ratio > 1 ? row.damage : 0));
+        for (double part : {0.25, 0.5, 0.75})
+            at(row.ratio + part * (next - row.ratio));
+        at(std::nextafter(next, 0));
+    }
+    at(HUGE_VAL);
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    Dice dice(data, size);
+    JointProperties p;
+    for (double* number :
+         {&p.normalStiffness, &p.shearStiffness, &p.tensileStrength, &p.modeIFractureEnergy, &p.cohesion,
+          &p.residualCohesion, &p.friction, &p.residualFriction, &p.dilatancy, &p.dilatancyDecay,
+          &p.modeIIFractureEnergy, &p.compressiveStrength, &p.elasticLimitRatio, &p.residualStrengthRatio, &p.peakRatio,
+          &p.compressiveFractureEnergy, &p.capNormal, &p.capShear, &p.capLinear})
+        *number = dice.about(*number);
+    p.elastic = dice.byte() % 8 == 7, p.cap = dice.byte() % 2;
+    p.tensionTable = dice.table(), p.shearTable = dice.table();
+    for (const auto* rows : {&p.tensionTable, &p.shearTable})
+        if (SofteningTable::problems(*rows).empty()) check(SofteningTable(*rows));
+
+    const auto problems = p.problems();
+    std::unique_ptr<JointLaw> law;
+    try {
+        law = std::make_unique<JointLaw>(p);
+    } catch (const std::invalid_argument& refusal) {
+        PROMISE(!problems.empty() && *refusal.what());
+        return 0;
+    }
+    PROMISE(problems.empty());
+    check(law->tension()), check(law->shear());
+    const double softer = 1 / (1 + std::abs(dice.factor()));
+    const ElasticStiffness k{p.normalStiffness * softer, p.shearStiffness * softer};
+    JointState state;
+    for (int step = 0; step < 24; ++step) {
+        const auto jump = [&] { return (dice.byte() - 127) * 1e-6 * dice.factor(); };
+        const JointState old = state;
+        law->advance(k, state, {jump(), {jump(), jump()}});
+        if (dice.wild()) continue; // numbers of any size may overflow
+        PROMISE(std::isfinite(state.normalStress) && std::isfinite(state.shearStress.a + state.shearStress.b));
+        PROMISE(state.tensionDamage >= old.tensionDamage && state.tensionDamage <= 1);
+        PROMISE(state.shearDamage >= old.shearDamage && state.shearDamage <= 1);
+        PROMISE(state.slip >= old.slip && state.crushing >= old.crushing && state.dilation >= old.dilation);
+    }
+    return 0;
+}

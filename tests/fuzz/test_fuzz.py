@@ -1,0 +1,46 @@
+"""The readers of checkpoints and of joints' numbers under libFuzzer, AddressSanitizer and UBSan: a few seconds each.
+
+For longer: build/fuzz/fuzz_checkpoint -max_total_time=600
+"""
+
+import os
+import re
+import shutil
+import subprocess
+
+import pytest
+from conftest import BUILD, ROOT
+
+FUZZ = os.path.join(BUILD, "fuzz")
+
+
+@pytest.fixture(scope="module")
+def targets():
+    if not shutil.which("clang++-14"):
+        pytest.skip(
+            "clang++-14 is not installed (apt-get install clang-14 libclang-rt-14-dev)"
+        )
+    compiler = ["-DCMAKE_CXX_COMPILER=clang++-14", "-DCMAKE_C_COMPILER=clang-14"]
+    for command in (
+        ["cmake", "-S", ROOT, "-B", FUZZ, "-DMASONRY_FUZZ=ON", *compiler],
+        ["cmake", "--build", FUZZ],
+    ):
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("target", ["checkpoint", "joint"])
+def test_no_bytes_break_a_reader(targets, target, tmp_path):
+    run = subprocess.run(
+        [
+            os.path.join(FUZZ, "fuzz_" + target),
+            "-max_total_time=4",
+            "-timeout=10",
+            "-max_len=512",
+        ],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+    )
+    assert run.returncode == 0, run.stderr[-4000:]
+    assert int(re.search(r"Done (\d+) runs", run.stderr)[1]) > 1000
