@@ -1,6 +1,7 @@
 #include "MasonryEngines.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
+#include "SceneCheck.hpp"
 #include "law/Text.hpp"
 #include <Eigen/Eigenvalues>
 #include <map>
@@ -146,20 +147,29 @@ template <class F> void eachJoint(const yade::Scene& scene, F&& visit) {
         const auto& interaction = *scene.interactions->linIntrs[i];
         auto* geom = dynamic_cast<MasonryJointGeom*>(interaction.geom.get());
         auto* phys = dynamic_cast<MasonryJointPhys*>(interaction.phys.get());
-        if (geom && phys) visit(interaction, *geom, *phys);
+        if (geom && phys && geom->points.size() == phys->states.size()) visit(interaction, *geom, *phys);
     }
 }
 
 } // namespace
 
+void MasonryLoad::postLoad() {
+    std::vector<std::string> wrong;
+    if (body < 0) wrong.push_back("body " + std::to_string(body) + " must be at least 0");
+    if (!point.allFinite()) wrong.push_back("point must be finite numbers [m]");
+    if (!force.allFinite()) wrong.push_back("force must be finite numbers [N]");
+    if (!(direction.norm() > 0 && std::isfinite(direction.norm())))
+        wrong.push_back("direction must be finite numbers, not all zero");
+    if (!std::isfinite(velocity)) wrong.push_back("velocity " + text(velocity) + " m/s must be a finite number");
+    if (!wrong.empty()) throw std::invalid_argument("MasonryLoad: " + joined(wrong, "; "));
+}
+
 void MasonryLoad::action() {
-    if (body < 0 || std::size_t(body) >= scene->bodies->body.size() || !scene->bodies->body[body])
-        throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) + " does not exist");
+    checkScene(*scene);
     if (auto* zones = zonesOf(*scene); zones && zones->unitOf(body))
         throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) +
                                     " is a deformable unit; load a rigid block joined to it");
-    if (!(direction.norm() > 0)) throw std::invalid_argument("MasonryLoad.direction must not be zero");
-    auto& state = *scene->bodies->body[body]->state;
+    auto& state = *bodyAt(*scene, body, "MasonryLoad.body").state;
     state.isDamped = false;
     arm = state.ori * state.refOri.conjugate() * (point - state.refPos);
     total = force;
@@ -186,7 +196,7 @@ void MasonryLoad::action() {
 }
 
 Vector3r MasonryLoad::displacement() const {
-    const auto& state = *yade::Body::byId(body, Singleton<yade::Omega>::instance().getScene().get())->state;
+    const auto& state = *bodyAt(*Singleton<yade::Omega>::instance().getScene(), body, "MasonryLoad.body").state;
     const Vector3r r = point - state.refPos;
     return state.pos + state.ori * state.refOri.conjugate() * r - point;
 }
@@ -221,6 +231,7 @@ BodyEnergies energiesOf(const BodyStep& step) {
 } // namespace
 
 void MasonryEnergy::action() {
+    checkScene(*scene);
     for (const auto& engine : scene->engines)
         if (dynamic_cast<MasonryIntegrator*>(engine.get())) return; // keeps them itself
     const auto around = environmentOf(*scene);
@@ -295,6 +306,7 @@ void turn(State& s, const BodyStep& step, double dt) {
 } // namespace
 
 void MasonryIntegrator::action() {
+    checkScene(*scene);
     auto& forces = scene->forces();
     forces.sync();
     const auto& all = scene->bodies->body;

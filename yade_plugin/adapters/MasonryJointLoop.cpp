@@ -1,4 +1,5 @@
 #include "MasonryJointLoop.hpp"
+#include "SceneCheck.hpp"
 #include "Vectorised.hpp"
 #include <algorithm>
 
@@ -452,6 +453,7 @@ void MasonryJointLoop::toNodes() {
 }
 
 void MasonryJointLoop::action() {
+    checkScene(*scene);
     if (stale()) build();
     const int bodyCount = int(bodies_.ids.size());
     for (int b = 0; b < bodyCount; ++b) {

@@ -1,5 +1,6 @@
 #include "MasonryJointPhys.hpp"
 #include "MasonryJointGeom.hpp"
+#include "SceneCheck.hpp"
 
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryMat)
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJoint)
@@ -41,9 +42,9 @@ void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::assign(const MasonryMat& mat1, 
 void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::assignTo(const shared_ptr<yade::Interaction>& interaction,
                                                           const shared_ptr<MasonryJoint>& joint) const {
     if (!interaction || !joint) throw std::invalid_argument("assign needs an interaction and a MasonryJoint, got None");
-    auto* scene = Singleton<yade::Omega>::instance().getScene().get();
+    const auto& scene = *Singleton<yade::Omega>::instance().getScene();
     const auto unit = [&](int id) -> const MasonryMat& {
-        const auto* mat = dynamic_cast<MasonryMat*>(yade::Body::byId(id, scene)->material.get());
+        const auto* mat = dynamic_cast<const MasonryMat*>(bodyAt(scene, id, "body").material.get());
         if (!mat) throw std::invalid_argument("body " + std::to_string(id) + " has no MasonryMat");
         return *mat;
     };
@@ -73,6 +74,9 @@ bool Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening::go(shared_ptr<ya
                                                                    yade::Interaction* interaction) {
     auto& geom = static_cast<MasonryJointGeom&>(*ig);
     auto& phys = static_cast<MasonryJointPhys&>(*ip);
+    if (!phys.joint || phys.states.size() != geom.points.size())
+        throw std::invalid_argument("the joint of bodies " + std::to_string(interaction->id1) + " and " +
+                                    std::to_string(interaction->id2) + " is not one that connect() made");
     const JointLaw& law = phys.law();
     const auto k = phys.stiffness();
     Vector3r force = Vector3r::Zero(), torque = Vector3r::Zero(), lost = Vector3r::Zero(), moment = Vector3r::Zero();

@@ -28,6 +28,7 @@ public:
         visit("times", &R::times, "Simulation times of the frames so far [s].", ReadOnly);
     }
 
+    void postLoad();
     bool isActivated() override;
     void action() override;
 
