@@ -413,6 +413,8 @@ py::tuple criticalTimeStep() {
     const auto degreesOfBody = [&](int id) {
         const auto [at, fresh] = firstOfBody.emplace(id, int(masses.size()));
         const State& s = *scene.bodies->body[id]->state;
+        if (const auto wrong = problemsOf(*scene.bodies->body[id]); fresh && !wrong.empty())
+            throw std::invalid_argument(joined(wrong));
         for (int i = 0; fresh && i < 6; ++i)
             freedom(blocked(s, i) ? HUGE_VAL : i < 3 ? s.mass : s.inertia[i - 3]);
         return at->second;
