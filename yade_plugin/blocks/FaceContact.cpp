@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace masonry {
 
@@ -72,8 +73,12 @@ KnownBlock::KnownBlock(ConvexBlock block) : ConvexBlock(std::move(block)), diago
     for (auto& face : faces()) {
         const Point normal = unitNormal(face);
         double deep = 0;
-        for (const auto& v : vertices)
-            deep = std::max(deep, (face[0] - v).dot(normal));
+        for (const auto& v : vertices) {
+            const double below = (face[0] - v).dot(normal);
+            if (below < -0.002 * diagonal) // more than what merged faces may bend
+                throw std::invalid_argument("block is not convex, or the corners of its faces wind the wrong way");
+            deep = std::max(deep, below);
+        }
         thickness = std::min(thickness, deep);
         known.push_back({std::move(face), normal});
     }

@@ -21,7 +21,7 @@ struct ConvexBlock {
 
 // A block with what its neighbours ask of it again and again.
 struct KnownBlock : ConvexBlock {
-    KnownBlock(ConvexBlock block);
+    KnownBlock(ConvexBlock block); // std::invalid_argument if it is not convex, or its triangles wind inward
     struct Face {
         Polygon corners;
         Point normal;
