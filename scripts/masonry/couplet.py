@@ -7,8 +7,8 @@ from yade import O, Vector3
 from yade.wrapper import MasonryLoad, MasonryVtkRecorder, MasonryZones
 
 from . import brickwork, commit, criticalTimeStep, materials
-from .options import applySettings, checkBlocks
-from .results import ENERGIES, Progress, Results, conduct
+from .options import Refused, check
+from .results import ENERGIES, Progress, Results, conduct, say
 from .scene import addBlock, connect, engines
 
 PATHS = ["opening", "shear", "closure", "closure-shear"]
@@ -33,9 +33,15 @@ class Couplet:
     """
 
     def __init__(self, args):
-        checkBlocks(args)
         joints = materials.calciumSilicateJoints(brittle=args.joints == "brittle")
-        applySettings(joints, args.set)
+        check(args, joints)
+        bed, stress = joints["bed"], -1e6 * args.normal_stress
+        crushes = bed.cap and not bed.elastic and stress >= bed.compressiveStrength
+        if args.path == "shear" and crushes:
+            raise Refused(
+                f"--normal-stress {args.normal_stress:g} MPa crushes the bed joint, whose compressive strength is "
+                f"{1e-6 * bed.compressiveStrength:g} MPa"
+            )
         self.args, self.results = args, Results(
             args.out or os.path.join("results", "couplet"), CURVE
         )
@@ -93,6 +99,7 @@ class Couplet:
             integrator.dampingKind = args.damping_kind
         self.joint = next(i for i in connect() if {i.id1, i.id2} == {lower, upper})
         O.dt = args.dt_fraction * criticalTimeStep()[0]
+        self.results.checkRoom(1e6, 1e6)
         self.steps, self.progress = 0, Progress()
         self.vtk = (
             None
@@ -153,8 +160,9 @@ class Couplet:
         distance = stress / self.joint.phys.normalStiffness
         self._move(self.vertical, distance, "closure")
         # the blocks' joints, and units that are deformable, have taken their part
-        distance *= stress / self._normalStress() - 1
-        self._move(self.vertical, distance, "closure")
+        if stress:
+            distance *= stress / self._normalStress() - 1
+            self._move(self.vertical, distance, "closure")
         self.vertical.driven = False
         self.vertical.force = Vector3(0, 0, stress * self.area)
 
@@ -174,8 +182,6 @@ class Couplet:
     def finish(self):
         results = self.results
         if results.rows:
-            if self.vtk:
-                self.vtk()
             results.run.update(
                 scene="couplet",
                 options=dict(vars(self.args)),
@@ -196,7 +202,7 @@ class Couplet:
                     for mode in ("tension", "shear", "compression")
                 },
             )
-        results.close()
+        results.close(self.vtk)
         for key in (
             "peak_normal_stress_MPa",
             "peak_compressive_stress_MPa",
@@ -204,7 +210,7 @@ class Couplet:
             "end_shear_stress_MPa",
         ):
             if key in results.run:
-                print(f"{key:32} {results.run[key]:.4f}")
+                say(f"{key:32} {results.run[key]:.4f}")
 
 
 def test(args):

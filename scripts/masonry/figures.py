@@ -14,7 +14,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 
-from .results import readCurve, readRun
+from .results import filesOf, onFolder, readCurve, readRun
 
 MAGNIFICATION = 30  # of displacements in cracks.png, as in the paper's figure 6
 CRACK = 0.05e-3  # [m] opening or slip from which a joint is drawn as cracked
@@ -43,6 +43,17 @@ def readFrame(directory, kind, number=-1):
     )
     frame["cells"] = np.split(corners, offsets[1:-1])
     return frame
+
+
+def _save(figure, path, dpi):
+    """A picture, whole or not at all."""
+    try:
+        figure.savefig(path, dpi=dpi)
+    except OSError:
+        if os.path.exists(path):
+            os.remove(path)
+        raise
+    plt.close(figure)
 
 
 def curve(directory):
@@ -105,8 +116,7 @@ def curve(directory):
     bottom.legend(fontsize=8)
     bottom.grid(alpha=0.3)
     figure.tight_layout()
-    figure.savefig(os.path.join(directory, "curve.png"), dpi=110)
-    plt.close(figure)
+    _save(figure, os.path.join(directory, "curve.png"), 110)
 
 
 def _faces(blocks, displaced):
@@ -197,16 +207,16 @@ def cracks(directory):
     )
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8)
     figure.tight_layout()
-    figure.savefig(os.path.join(directory, "cracks.png"), dpi=90)
-    plt.close(figure)
+    _save(figure, os.path.join(directory, "cracks.png"), 90)
 
 
 def draw(directory):
     """All figures that the files of a run allow."""
-    curve(directory)
-    if glob.glob(os.path.join(directory, "joints_*.vtp")):
-        cracks(directory)
+    with filesOf(directory):
+        curve(directory)
+        if glob.glob(os.path.join(directory, "joints_*.vtp")):
+            cracks(directory)
 
 
 if __name__ == "__main__":
-    draw(sys.argv[1])
+    sys.exit(onFolder(draw, sys.argv[1:]))

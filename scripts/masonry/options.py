@@ -6,8 +6,33 @@ import os
 import sys
 
 
-class Refused(Exception):
+class Refused(ValueError):
     """Input that cannot be run, with all problems at once."""
+
+
+class Parser(argparse.ArgumentParser):
+    """Tells all wrong options at once, and takes no part of a name for the whole."""
+
+    def __init__(self, **settings):
+        super().__init__(allow_abbrev=False, **settings)
+        self.problems = []
+
+    def parse_known_args(self, args=None, namespace=None):
+        self.problems = []
+        result = super().parse_known_args(args, namespace)
+        if self.problems and not result[1]:
+            self.error(self.problems.pop())
+        return result
+
+    def _get_values(self, action, strings):
+        try:
+            return super()._get_values(action, strings)
+        except argparse.ArgumentError as error:
+            self.problems.append(str(error))
+            return action.default
+
+    def error(self, message):
+        super().error("\n  ".join([*self.problems, message]))
 
 
 def number(text, low=-math.inf, high=math.inf, above=False):
@@ -30,7 +55,7 @@ def number(text, low=-math.inf, high=math.inf, above=False):
 
 
 def _count(text, high):
-    if not text.isdigit() or not 1 <= int(text) <= high:
+    if not text.isdecimal() or not 1 <= int(text) <= high:
         raise argparse.ArgumentTypeError(
             f"'{text}' must be a whole number from 1 to {high}"
         )
@@ -47,13 +72,19 @@ def _setting(text):
     return joint, attribute, value
 
 
+def _folder(text):
+    if not text.strip():
+        raise argparse.ArgumentTypeError("must not be empty")
+    return text
+
+
 def parser(description, until, rate=20.0):
     """Parser with the common options; a scene adds its own.
 
     :param until: default displacement to stop at [mm]
     :param rate: default loading rate [mm/s]
     """
-    p = argparse.ArgumentParser(
+    p = Parser(
         prog="yade " + os.path.basename(sys.argv[0]),
         description=description,
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
@@ -67,7 +98,11 @@ def parser(description, until, rate=20.0):
         help="displacement to stop at [mm]",
     )
     p.add_argument(
-        "--rate", metavar="MM_PER_S", type=mm, default=rate, help="loading rate [mm/s]"
+        "--rate",
+        metavar="MM_PER_S",
+        type=lambda text: number(text, 1e-3, 1000),
+        default=rate,
+        help="loading rate [mm/s]",
     )
     p.add_argument(
         "--blocks", choices=["rigid", "deformable"], default="rigid", help="block model"
@@ -103,7 +138,7 @@ def parser(description, until, rate=20.0):
     p.add_argument(
         "--dt-fraction",
         metavar="F",
-        type=lambda t: number(t, 0, 1, above=True),
+        type=lambda t: number(t, 1e-3, 1),
         default=0.8,
         help="time step over its stable limit [-]",
     )
@@ -139,6 +174,7 @@ def parser(description, until, rate=20.0):
     p.add_argument(
         "--out",
         metavar="DIR",
+        type=_folder,
         default=None,
         help="folder of the results (default: results/SCENE)",
     )
@@ -157,10 +193,20 @@ def parser(description, until, rate=20.0):
     return p
 
 
-def checkBlocks(args):
-    """Refuse options that do not go with the block model."""
+def check(args, joints, more=()):
+    """Apply ``--set`` to a dict of MasonryJoint objects and raise Refused for options that do not go together.
+
+    :param more: problems found by the caller, told with the others
+    """
+    problems = list(more)
     if args.blocks == "rigid" and args.divisions > 1:
-        raise Refused("--divisions: rigid units are not divided")
+        problems.append("--divisions: rigid units are not divided")
+    try:
+        applySettings(joints, args.set)
+    except Refused as refused:
+        problems.append(str(refused))
+    if problems:
+        raise Refused("\n".join(problems))
 
 
 def units(cls):

@@ -5,15 +5,30 @@ import subprocess
 import sys
 import time
 from dataclasses import dataclass
+from math import inf
+from numbers import Real
 from typing import Callable
 
 import yade.config
 from yade import O, Vector3
-from yade.wrapper import MasonryLoad, MasonryVtkRecorder, MasonryZones
+from yade.wrapper import (
+    MasonryJoint,
+    MasonryLoad,
+    MasonryMat,
+    MasonryVtkRecorder,
+    MasonryZones,
+)
 
 from . import brickwork, commit, criticalTimeStep, materials, options
-from .options import Refused, applySettings
-from .results import ENERGIES, Progress, Results, conduct, initialStiffness
+from .results import (
+    ENERGIES,
+    Progress,
+    Results,
+    Unwritable,
+    conduct,
+    initialStiffness,
+    say,
+)
 from .scene import addBlock, connect, engines
 
 CURVE = [
@@ -56,21 +71,32 @@ class Wall:
     joints: Callable = materials.calciumSilicateJoints
 
     def __post_init__(self):
-        problems = []
-        if self.measureHeight is None:
-            self.measureHeight = self.height
-        if self.loadHeight is not None and not self.loadHeight > self.height:
-            problems.append(
-                f"load height {self.loadHeight:g} m must be above the wall's top at {self.height:g} m"
+        problems = brickwork.problems(self.courses, self.halfUnits, self.unit)
+        number = lambda value, least: isinstance(value, Real) and least < value < inf
+        if not problems:
+            top = self.height
+            if self.measureHeight is None:
+                self.measureHeight = top
+            if self.loadHeight is not None and not number(self.loadHeight, top):
+                problems.append(
+                    f"load height {self.loadHeight} m must be above the wall's top at {top:g} m"
+                )
+            if not number(self.measureHeight, top * (1 - 1e-12)):
+                problems.append(
+                    f"measure height {self.measureHeight} m must be at least the wall's top at {top:g} m"
+                )
+        if not number(self.precompression, 0):
+            problems.append(f"precompression {self.precompression} Pa must be above 0")
+        elif self.precompression < 1e3:
+            print(
+                f"warning: wall {self.name}: precompression {self.precompression:g} Pa: is it in Pa, not MPa?"
             )
-        if not self.measureHeight >= self.height:
-            problems.append(
-                f"measure height {self.measureHeight:g} m must be at least the wall's top at {self.height:g} m"
-            )
-        if not self.precompression > 0:
-            problems.append(
-                f"precompression {self.precompression:g} Pa must be above 0"
-            )
+        name = self.name if isinstance(self.name, str) else ""
+        if not name.strip(".") or os.path.basename(name) != name:
+            problems.append("name must be a text that can name a folder")
+        for what in ("unitMaterial", "joints"):
+            if not callable(getattr(self, what)):
+                problems.append(f"{what} must be a function")
         if problems:
             raise ValueError(f"wall {self.name}: " + "; ".join(problems))
 
@@ -92,11 +118,22 @@ class WallModel:
 
     def __init__(self, wall, args):
         self.wall, self.args = wall, args
-        options.checkBlocks(args)
+        self.brick = wall.unitMaterial()
         self.joints = wall.joints(brittle=args.joints == "brittle")
-        if args.crack_surfaces == "on" and "crack" not in self.joints:
-            raise Refused("--crack-surfaces on: the units of this wall have none")
-        applySettings(self.joints, args.set)
+        if not isinstance(self.brick, MasonryMat):
+            raise ValueError(f"wall {wall.name}: unitMaterial() gave {self.brick!r}")
+        if not isinstance(self.joints, dict) or not all(
+            isinstance(joint, MasonryJoint) for joint in self.joints.values()
+        ):
+            raise ValueError(
+                f"wall {wall.name}: joints() must give a dict of MasonryJoint by name, gave {self.joints!r}"
+            )
+        lacking = args.crack_surfaces == "on" and "crack" not in self.joints
+        options.check(
+            args,
+            self.joints,
+            ["--crack-surfaces on: the units of this wall have none"] * lacking,
+        )
         self.results = Results(args.out or os.path.join("results", wall.name), CURVE)
         self.progress = Progress()
         self.steps, self.steppingTime, self.collapsed = 0, 0.0, False
@@ -105,7 +142,7 @@ class WallModel:
     def _build(self):
         O.reset()
         wall = self.wall
-        brick, rigid = wall.unitMaterial(), materials.loadingBlock()
+        brick, rigid = self.brick, materials.loadingBlock()
         # heavier and less attracted: the same weights, slower waves, and a longer time step
         scaling = self.args.density_scaling
         for material in (brick, rigid):
@@ -182,6 +219,8 @@ class WallModel:
             else MasonryVtkRecorder(directory=self.results.directory)
         )
         self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)
+        nodes = len(self.zones.displacements) if self.zones else 0
+        self._checkRoom(50 * self.subcontacts + 150 * len(O.bodies) + 100 * nodes)
         kinds = {}
         for i in self.interactions:
             kinds[i.phys.joint.name] = kinds.get(i.phys.joint.name, 0) + 1
@@ -219,13 +258,20 @@ class WallModel:
             time_step_s=O.dt,
             time_step_limit_s=self.limit,
             units=len(self.brickOf),
-            nodes=len(self.zones.displacements) if self.zones else 0,
+            nodes=nodes,
             joint_count=len(self.interactions),
             joints_by_kind=kinds,
             subcontacts=self.subcontacts,
         )
         for joint in self.results.run["joints"].values():
             joint["direction"] = list(joint["direction"])
+
+    def _checkRoom(self, frame):
+        """Whether the folder has room for the run; ``frame`` is what ParaView's files of a frame take at least [bytes]."""
+        until = self.args.until
+        frames = until / self.args.vtk_every + 2 if self.vtk else 0
+        least = 400e3 + frame * min(frames, 2)  # figures, first and last frame
+        self.results.checkRoom(least, least + frame * frames + 250 * until / ROW_EVERY)
 
     # -- stages ---------------------------------------------------------------------------------------------------
 
@@ -266,7 +312,7 @@ class WallModel:
             )
             if quiet == 3:
                 return
-        print(f"note: the wall is not quite at rest after {mostSteps} steps of {stage}")
+        say(f"note: the wall is not quite at rest after {mostSteps} steps of {stage}")
 
     def settle(self):
         """Gravity, to rest."""
@@ -301,7 +347,7 @@ class WallModel:
         began = O.time
         while values["displacement_mm"] < args.until:
             if self.vtk and values["displacement_mm"] >= nextFrame:
-                self.vtk()
+                self.results.frame(self.vtk)
                 nextFrame += args.vtk_every
             self.load.velocity = (
                 args.rate * 1e-3 * min(1.0, (O.time - began + every * O.dt) / self.ramp)
@@ -322,7 +368,7 @@ class WallModel:
                 break
         self.progress.show("push", 1, detail, self._rate(), final=True)
         if self.collapsed:
-            print(f"the wall has collapsed at {moved:.2f} mm")
+            say(f"the wall has collapsed at {moved:.2f} mm")
 
     def _topDisplacement(self):
         """Displacement of the loading block at the height of measurement [m]."""
@@ -351,8 +397,6 @@ class WallModel:
     def finish(self):
         """Last frame, run.json and figures, from whatever was computed."""
         results, run = self.results, self.results.run
-        if self.vtk and results.rows:
-            self.vtk()
         if results.rows:
             shear, moved = results.column("base_shear_kN"), results.column(
                 "displacement_mm"
@@ -377,17 +421,17 @@ class WallModel:
             run["nanoseconds_per_subcontact_step"] = (
                 1e9 * self.steppingTime / self.steps / self.subcontacts
             )
-        results.close()
+        results.close(self.vtk)
         if results.rows:
-            subprocess.run(
-                [sys.executable, "-m", "masonry.figures", results.directory], check=True
-            )
+            drawing = [sys.executable, "-m", "masonry.figures", results.directory]
+            if subprocess.run(drawing).returncode:
+                raise Unwritable("the figures are not drawn")
         if run.get("energy_balance_error", 0) > 0.01:
-            print(
+            say(
                 f"warning: the energy balance is off by {100 * run['energy_balance_error']:.1f} % of the work done"
             )
         if results.rows:
-            print(
+            say(
                 f"{self.wall.name}: peak {run['peak_base_shear_kN']:.1f} kN at {run['displacement_at_peak_mm']:.2f} mm, "
                 f"{run['base_shear_end_kN']:.1f} kN at {run['displacement_end_mm']:.2f} mm; {self.steps} steps of "
                 f"{run['microseconds_per_step']:.0f} µs, {run['wall_clock_s']:.1f} s in all; see {results.directory}"

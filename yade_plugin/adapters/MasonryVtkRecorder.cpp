@@ -79,8 +79,14 @@ void MasonryVtkRecorder::postLoad() {
 bool MasonryVtkRecorder::isActivated() { return stepPeriod > 0 && scene->iter % stepPeriod == 0; }
 
 void MasonryVtkRecorder::action() {
-    writeBlocks(directory + "/" + frame("blocks", times.size(), ".vtu"));
-    writeJoints(directory + "/" + frame("joints", times.size(), ".vtp"));
+    const auto blocks = directory + "/" + frame("blocks", times.size(), ".vtu");
+    writeBlocks(blocks);
+    try {
+        writeJoints(directory + "/" + frame("joints", times.size(), ".vtp"));
+    } catch (...) {
+        std::remove(blocks.c_str()); // no half of a frame
+        throw;
+    }
     times.push_back(scene->time);
     writeCollection("blocks", ".vtu");
     writeCollection("joints", ".vtp");
