@@ -14,6 +14,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 
+from .options import Refused
 from .results import filesOf, onFolder, readCurve, readRun
 
 MAGNIFICATION = 30  # of displacements in cracks.png, as in the paper's figure 6
@@ -24,15 +25,22 @@ CRUSHED = 0.5e-3  # [m] plastic closure from which a joint is drawn as crushed
 def readFrame(directory, kind, number=-1):
     """A frame of blocks or joints as a dict: 'points' and 'cells' (lists of point numbers), and every data array."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkObject
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
-    path = sorted(glob.glob(os.path.join(directory, kind + "_*.vt?")))[number]
+    paths = sorted(glob.glob(os.path.join(directory, kind + "_*.vt?")))
+    if not paths:
+        raise Refused(f"no file {kind}_*.vt? in {directory}")
+    path = paths[number]
+    vtkObject.GlobalWarningDisplayOff()  # it would tell in many lines
     reader = (
         vtkXMLPolyDataReader() if kind == "joints" else vtkXMLUnstructuredGridReader()
     )
     reader.SetFileName(path)
     reader.Update()
     data = reader.GetOutput()
+    if not data.GetNumberOfPoints() or not data.GetNumberOfCells():
+        raise Refused(f"cannot read {path}: it holds no frame")
     frame = {"points": vtk_to_numpy(data.GetPoints().GetData())}
     for arrays in (data.GetPointData(), data.GetCellData()):
         for i in range(arrays.GetNumberOfArrays()):

@@ -3,6 +3,7 @@
 import argparse
 import math
 import os
+import re
 import sys
 
 
@@ -16,6 +17,10 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, **settings):
         super().__init__(allow_abbrev=False, **settings)
         self.problems = []
+        # argparse knows no exponents: -5e-1 would be an option
+        self._negative_number_matcher = re.compile(
+            r"-(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$|-(inf|nan)$", re.IGNORECASE
+        )
 
     def parse_known_args(self, args=None, namespace=None):
         self.problems = []

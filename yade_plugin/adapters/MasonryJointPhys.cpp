@@ -74,9 +74,8 @@ bool Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening::go(shared_ptr<ya
                                                                    yade::Interaction* interaction) {
     auto& geom = static_cast<MasonryJointGeom&>(*ig);
     auto& phys = static_cast<MasonryJointPhys&>(*ip);
-    if (!phys.joint || phys.states.size() != geom.points.size())
-        throw std::invalid_argument("the joint of bodies " + std::to_string(interaction->id1) + " and " +
-                                    std::to_string(interaction->id2) + " is not one that connect() made");
+    // Not connect()'s. The loop is parallel, where an exception would end the program: MasonryEnergy tells of it.
+    if (!phys.joint || phys.states.size() != geom.points.size()) return true;
     const JointLaw& law = phys.law();
     const auto k = phys.stiffness();
     Vector3r force = Vector3r::Zero(), torque = Vector3r::Zero(), lost = Vector3r::Zero(), moment = Vector3r::Zero();

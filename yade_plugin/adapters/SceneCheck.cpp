@@ -94,15 +94,18 @@ void checkScene(const yade::Scene& scene) {
     if (same) return;
 
     std::vector<std::string> wrong;
-    std::vector<MasonryZones*> zones;
+    std::vector<const MasonryZones*> owner(scene.bodies->body.size(), nullptr), zones;
     for (const auto& engine : scene.engines)
-        if (auto* one = dynamic_cast<MasonryZones*>(engine.get())) try {
-                for (const auto& unit : one->units())
-                    bodyAt(scene, unit.body, "MasonryZones: body");
-                zones.push_back(one);
-            } catch (const std::invalid_argument& error) {
-                wrong.push_back(error.what());
-            }
+        if (const auto* one = dynamic_cast<const MasonryZones*>(engine.get())) {
+            zones.push_back(one);
+            for (int id : one->bodies)
+                try {
+                    bodyAt(scene, id, "MasonryZones: body");
+                    owner[id] = one;
+                } catch (const std::invalid_argument& error) {
+                    wrong.push_back(error.what());
+                }
+        }
     int blocks = 0;
     for (const auto& body : scene.bodies->body)
         if (body && dynamic_cast<const yade::Polyhedra*>(body->shape.get())) add(wrong, problemsOf(*body)), ++blocks;
@@ -123,11 +126,10 @@ void checkScene(const yade::Scene& scene) {
         }
         if (geom->zones && std::find(zones.begin(), zones.end(), geom->zones.get()) == zones.end())
             fail("needs its MasonryZones in O.engines");
-        for (auto* one : zones)
-            for (int id : {interaction.id1, interaction.id2})
-                if (one->unitOf(id) && geom->zones.get() != one)
-                    fail("was made before MasonryZones had body " + std::to_string(id) +
-                         ": give the zones to masonry.engines(), then connect()");
+        for (int id : {interaction.id1, interaction.id2})
+            if (owner[id] && geom->zones.get() != owner[id])
+                fail("was made before MasonryZones had body " + std::to_string(id) +
+                     ": give the zones to masonry.engines(), then connect()");
     }
     if (!jointed && blocks > 1) wrong.push_back("no joints: call masonry.connect() before the first step");
     if (const auto problem = problemOfEngines(scene, jointed); !problem.empty()) wrong.push_back(problem);
