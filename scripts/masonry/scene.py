@@ -206,7 +206,7 @@ def connect(rule=None, tolerance=1e-4, allowGaps=False):
     that look like those of another unit, and blocks without joints, are told as warnings.
 
     :param rule: function (body1, body2, geom) -> MasonryJoint, or None to leave the choice to direction and joint set
-    :param tolerance: largest gap or overlap of coincident faces, relative to the smaller block's size
+    :param tolerance: largest gap or overlap of coincident faces, relative to the smaller block's size, at most 0.01
     :param allowGaps: blocks that nearly share a face stand apart on purpose
     """
     engines = list(O.engines)
@@ -232,15 +232,17 @@ def connect(rule=None, tolerance=1e-4, allowGaps=False):
         raise ValueError(
             f"{type(loop).__name__} has no geometry or no physics: call masonry.engines()"
         )
+    before = geometry.tolerance
     geometry.tolerance = tolerance
-    pairs, sizes = _pairs(tolerance, allowGaps)
-    if not isinstance(loop, InteractionLoop):
-        # YADE makes interactions with the functors of an InteractionLoop: one stands in for a moment
-        O.engines = [_functorLoop(geometry, physics)]
     try:
+        pairs, sizes = _pairs(tolerance, allowGaps)
+        if not isinstance(loop, InteractionLoop):
+            # YADE makes interactions with the functors of an InteractionLoop: one stands in for a moment
+            O.engines = [_functorLoop(geometry, physics)]
         made, joints = _connect(pairs, physics, rule)
     finally:
         O.engines = engines
+        geometry.tolerance = before
     _warn(pairs, joints, sizes, engines)
     return made
 

@@ -72,6 +72,7 @@ class Wall:
 
     def __post_init__(self):
         problems = brickwork.problems(self.courses, self.halfUnits, self.unit)
+        shown = lambda value: f"{value:g}" if isinstance(value, Real) else value
         number = lambda value, least: isinstance(value, Real) and least < value < inf
         if not problems:
             top = self.height
@@ -79,14 +80,16 @@ class Wall:
                 self.measureHeight = top
             if self.loadHeight is not None and not number(self.loadHeight, top):
                 problems.append(
-                    f"load height {self.loadHeight} m must be above the wall's top at {top:g} m"
+                    f"load height {shown(self.loadHeight)} m must be above the wall's top at {top:g} m"
                 )
             if not number(self.measureHeight, top * (1 - 1e-12)):
                 problems.append(
-                    f"measure height {self.measureHeight} m must be at least the wall's top at {top:g} m"
+                    f"measure height {shown(self.measureHeight)} m must be at least the wall's top at {top:g} m"
                 )
         if not number(self.precompression, 0):
-            problems.append(f"precompression {self.precompression} Pa must be above 0")
+            problems.append(
+                f"precompression {shown(self.precompression)} Pa must be above 0"
+            )
         elif self.precompression < 1e3:
             print(
                 f"warning: wall {self.name}: precompression {self.precompression:g} Pa: is it in Pa, not MPa?"
