@@ -42,7 +42,6 @@ def plugin(blocks="rigid", until=None, functors=False):
     model = walls.WallModel(wall, options.parser("", until=12).parse_args(words))
     if until:
         model.settle()
-        model.precompress()
         model.push()
     model.load.velocity = 0.02
     seconds = cost(STEPS)

@@ -23,4 +23,5 @@ parser.add_argument(
     default=1.0,
     help="closure before shear [mm]",
 )
+parser.free.remove("until")  # rows and velocity follow from it
 raise SystemExit(couplet.test(parser.parse_args()))

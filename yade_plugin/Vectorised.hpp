@@ -4,7 +4,7 @@
 #pragma once
 
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define MASONRY_VECTORISED __attribute__((target_clones("default", "avx2", "arch=skylake-avx512")))
+#define MASONRY_VECTORISED __attribute__((target_clones("default", "avx2", "arch=x86-64-v4")))
 #else
 #define MASONRY_VECTORISED
 #endif

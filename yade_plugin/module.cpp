@@ -5,6 +5,7 @@
 #include "adapters/MasonryJointPhys.hpp"
 #include "adapters/MasonryVtkRecorder.hpp"
 #include "adapters/MasonryZones.hpp"
+#include "adapters/SceneCheckpoint.hpp"
 #include "host/SelfCheck.hpp"
 #include "law/Text.hpp"
 
@@ -107,10 +108,14 @@ static void registerAll() {
     py::def("touchingPairs", &touchingPairs, (py::arg("tolerance") = 1e-4),
             "Pairs (id1, id2) of bodies whose Polyhedra share a face; tolerance as in "
             "Ig2_Polyhedra_Polyhedra_MasonryJointGeom.");
-    py::def("criticalTimeStep", &criticalTimeStep,
-            "(dt, id1, id2): a safe bound of the stable time step [s] under the damping of O.engines, and the pair of "
-            "bodies "
-            "whose joint (or the unit whose zone) sets it. Ask again after changing the damping.");
+    py::def(
+        "criticalTimeStep", &criticalTimeStep,
+        "(dt, id1, id2): the stable time step [s] under the damping of O.engines, at most 1.1 % below the limit, and "
+        "the pair of bodies whose joint sets it (twice the same for a deformable unit). Ask again after changing "
+        "joints, masses, blocked motions or damping.");
+    py::def("saveScene", &saveScene, py::args("extra"), "The state of the scene as bytes, with a text of one's own.");
+    py::def("loadScene", &loadScene, py::args("bytes"), "Give the scene a saved state; returns the text.");
+    py::def("savedText", &savedText, py::args("bytes"), "The text alone.");
 }
 
 // Written out because BOOST_PYTHON_MODULE hands the module over even when its body failed: an import that refuses must

@@ -25,4 +25,5 @@ if "yade" in sys.modules:
 
     globals().update({_name: getattr(_wrapper, _name) for _name in classes})
     from . import options
+    from .checkpoints import loadCheckpoint, readCheckpoint, saveCheckpoint
     from .scene import addBlock, connect, engines

@@ -1,14 +1,14 @@
 """Two bricks and one joint between two loading blocks: the closed forms of law.md §6 through the whole of the host."""
 
-import os
-import time
+from dataclasses import dataclass
 
 from yade import O, Vector3
-from yade.wrapper import MasonryLoad, MasonryVtkRecorder, MasonryZones
+from yade.wrapper import MasonryLoad, MasonryZones
 
 from . import brickwork, commit, criticalTimeStep, materials
+from .checkpoints import Place, Resumable
 from .options import Refused, check
-from .results import ENERGIES, Progress, Results, conduct, say
+from .results import ENERGIES, conduct, say
 from .scene import addBlock, connect, engines
 
 PATHS = ["opening", "shear", "closure", "closure-shear"]
@@ -26,11 +26,22 @@ UNIT = (0.220, 0.102, 0.081)
 ROWS = 2000
 
 
-class Couplet:
+@dataclass
+class CoupletPlace(Place):
+    """How far a couplet's test has come."""
+
+    move: int = 0  # number of the present move
+    length: int = 0  # its steps in all
+    done: int = 0  # and so far
+
+
+class Couplet(Resumable):
     """Two bricks, one bed joint, a fixed block below and a driven one above that does not turn.
 
     The blocks are rigid and hold the bricks by elastic joints. ``args`` are the options of ``couplet.py``.
     """
+
+    stages = ("run",)
 
     def __init__(self, args):
         joints = materials.calciumSilicateJoints(brittle=args.joints == "brittle")
@@ -42,9 +53,7 @@ class Couplet:
                 f"--normal-stress {args.normal_stress:g} MPa crushes the bed joint, whose compressive strength is "
                 f"{1e-6 * bed.compressiveStrength:g} MPa"
             )
-        self.args, self.results = args, Results(
-            args.out or os.path.join("results", "couplet"), CURVE
-        )
+        super().__init__("couplet", args, CURVE, CoupletPlace())
         O.reset()
         brick, rigid = materials.calciumSilicateUnit(), materials.loadingBlock()
         brick.density *= args.density_scaling
@@ -100,33 +109,33 @@ class Couplet:
         self.joint = next(i for i in connect() if {i.id1, i.id2} == {lower, upper})
         O.dt = args.dt_fraction * criticalTimeStep()[0]
         self.results.checkRoom(1e6, 1e6)
-        self.steps, self.progress = 0, Progress()
-        self.vtk = (
-            None
-            if args.no_vtk
-            else MasonryVtkRecorder(directory=self.results.directory)
-        )
+        self.moves = 0
+        self._begin()
 
     def _move(self, load, distance, stage):
         """Drive ``load`` over a distance [m]; the other direction keeps what it does. Rows crowd where peaks are: early."""
-        speed = self.args.rate * 1e-3
-        steps = max(ROWS, int(abs(distance) / (speed * O.dt)))
-        load.velocity = distance / (steps * O.dt)
-        done = 0
+        at = self.at
+        self.moves += 1
+        if self.moves < at.move:  # before the run was resumed
+            return
+        if self.moves > at.move:
+            speed = self.args.rate * 1e-3
+            at.length = max(ROWS, int(abs(distance) / (speed * O.dt)))
+            at.move, at.done = self.moves, 0
+            load.velocity = distance / (at.length * O.dt)
         for mark in sorted(
-            {round(steps * (i / ROWS) ** 2) for i in range(1, ROWS + 1)}
+            {round(at.length * (i / ROWS) ** 2) for i in range(1, ROWS + 1)}
         ):
-            self.results.checkInterrupt()
-            for _ in range(mark - done):
-                O.step()
-            self.steps += mark - done
-            done = mark
+            if mark <= at.done:
+                continue
+            self._advance(mark - at.done)
+            at.done = mark
             self._record()
             self.progress.show(
                 stage,
-                done / steps,
+                at.done / at.length,
                 f"{self.results.rows[-1][1]:9.4f} mm {self.results.rows[-1][2]:9.4f} mm",
-                self.steps / (time.perf_counter() - self.results.started),
+                self._rate(),
             )
         load.velocity = 0
 
@@ -179,7 +188,7 @@ class Couplet:
             self._close(args.normal_stress * 1e6)
             self._move(self.lateral, distance, "shear")
 
-    def finish(self):
+    def _describe(self):
         results = self.results
         if results.rows:
             results.run.update(
@@ -187,7 +196,8 @@ class Couplet:
                 options=dict(vars(self.args)),
                 commit=commit,
                 time_step_s=O.dt,
-                steps=self.steps,
+                steps=self.at.steps,
+                resumed_at_s=self.at.resumed,
                 peak_normal_stress_MPa=max(results.column("normal_stress_MPa")),
                 peak_compressive_stress_MPa=-min(results.column("normal_stress_MPa")),
                 peak_shear_stress_MPa=max(results.column("shear_stress_MPa")),
@@ -202,17 +212,18 @@ class Couplet:
                     for mode in ("tension", "shear", "compression")
                 },
             )
-        results.close(self.vtk)
+
+    def _report(self):
         for key in (
             "peak_normal_stress_MPa",
             "peak_compressive_stress_MPa",
             "peak_shear_stress_MPa",
             "end_shear_stress_MPa",
         ):
-            if key in results.run:
-                say(f"{key:32} {results.run[key]:.4f}")
+            if key in self.results.run:
+                say(f"{key:32} {self.results.run[key]:.4f}")
 
 
 def test(args):
     """Run the couplet; the exit status of the scene."""
-    return conduct(lambda: Couplet(args), "run")
+    return conduct(lambda: Couplet(args))

@@ -204,7 +204,10 @@ def wallNumbers(directory):
     run, curve = readRun(directory), readCurve(directory)
     shear, moved = curve["base_shear_kN"], curve["displacement_mm"]
     at = int(np.argmax(shear))
-    numbers = {"top_less_base_shear_kN": curve["top_shear_kN"][at] - shear[at]}
+    numbers = {
+        "top_less_base_shear_kN": curve["top_shear_kN"][at] - shear[at],
+        "push_work_J": float(np.trapz(shear, moved)),
+    }
     numbers.update(force(moved, shear))
     if glob.glob(os.path.join(directory, "joints_*.vtp")):
         grid = lambda number: layOut(

@@ -7,37 +7,56 @@ import re
 import sys
 
 
+#: Options that trade accuracy for time, the same for all walls; a scene of one's own may take them from here.
+PRESETS = {
+    "fast": {"blocks": "rigid", "divisions": 1, "subcontacts": 4, "rate": 100.0},
+    "balanced": {"blocks": "deformable", "divisions": 2, "rate": 100.0},
+    "accurate": {"blocks": "deformable", "divisions": 2, "rate": 50.0},
+}
+for _preset in PRESETS.values():
+    _preset.update(damping=0.8, damping_kind="combined", dt_fraction=0.8)
+
+#: Most that a preset's peak and work over the push differ from a fine and slow run [-], and how far that was pushed
+#: [mm] and takes [s] with ``yade -j2`` on two idle server cores, by wall. Measured in validation/trade.
+PROMISES = {
+    "fast": {
+        "peak_error": 0.03,
+        "work_error": 0.04,
+        "walls": {
+            "wall_comp0a": (30, 8),
+            "wall_comp1": (30, 8),
+            "wall_comp4": (12, 8),
+            "wall_comp6": (16, 9),
+        },
+    },
+    "balanced": {
+        "peak_error": 0.02,
+        "work_error": 0.04,
+        "walls": {
+            "wall_comp0a": (30, 30),
+            "wall_comp1": (30, 30),
+            "wall_comp4": (12, 40),
+            "wall_comp6": (16, 50),
+        },
+    },
+    "accurate": {
+        "peak_error": 0.015,
+        "work_error": 0.02,
+        "walls": {
+            "wall_comp0a": (30, 60),
+            "wall_comp1": (30, 60),
+            "wall_comp4": (12, 90),
+            "wall_comp6": (16, 120),
+        },
+    },
+}
+
+#: Options that leave a preset's promise alone.
+HARMLESS = {"preset", "until", "out", "vtk_every", "no_vtk", "checkpoint_every"}
+
+
 class Refused(ValueError):
     """Input that cannot be run, with all problems at once."""
-
-
-class Parser(argparse.ArgumentParser):
-    """Tells all wrong options at once, and takes no part of a name for the whole."""
-
-    def __init__(self, **settings):
-        super().__init__(allow_abbrev=False, **settings)
-        self.problems = []
-        # argparse knows no exponents: -5e-1 would be an option
-        self._negative_number_matcher = re.compile(
-            r"-(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$|-(inf|nan)$", re.IGNORECASE
-        )
-
-    def parse_known_args(self, args=None, namespace=None):
-        self.problems = []
-        result = super().parse_known_args(args, namespace)
-        if self.problems and not result[1]:
-            self.error(self.problems.pop())
-        return result
-
-    def _get_values(self, action, strings):
-        try:
-            return super()._get_values(action, strings)
-        except argparse.ArgumentError as error:
-            self.problems.append(str(error))
-            return action.default
-
-    def error(self, message):
-        super().error("\n  ".join([*self.problems, message]))
 
 
 def number(text, low=-math.inf, high=math.inf, above=False):
@@ -83,6 +102,109 @@ def _folder(text):
     return text
 
 
+class Parser(argparse.ArgumentParser):
+    """Tells all wrong options at once, and takes no part of a name for the whole.
+
+    Takes the options that ``--preset`` names for those that are not given, or those of a run that is resumed.
+    ``overrides`` of the parsed options lists those that were given and differ from the preset's or from the default.
+    Options that would change a resumed run are refused.
+    """
+
+    def __init__(self, **settings):
+        super().__init__(allow_abbrev=False, **settings)
+        self.problems = []
+        self.free = {"until", "checkpoint_every", "vtk_every", "no_vtk"}  # when resumed
+        # argparse knows no exponents: -5e-1 would be an option
+        self._negative_number_matcher = re.compile(
+            r"-(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$|-(inf|nan)$", re.IGNORECASE
+        )
+
+    def parse_known_args(self, args=None, namespace=None):
+        self.problems = []
+        result = super().parse_known_args(args, namespace)
+        if self.problems and not result[1]:
+            self.error(self.problems.pop())
+        return result
+
+    def _get_values(self, action, strings):
+        try:
+            return super()._get_values(action, strings)
+        except argparse.ArgumentError as error:
+            self.problems.append(str(error))
+            return action.default
+
+    def error(self, message):
+        super().error("\n  ".join([*self.problems, message]))
+
+    def parse_args(self, args=None, namespace=None):
+        found = super().parse_args(args, namespace)
+        if found.resume is not None:
+            return self._resumed(args, found.resume)
+        nothing = argparse.Namespace(**{action.dest: None for action in self._actions})
+        given = vars(super().parse_args(args, nothing))
+        given = {name: value for name, value in given.items() if value is not None}
+        usual = {**vars(super().parse_args([])), **PRESETS.get(found.preset, {})}
+        vars(found).update(usual, **given)
+        found.overrides = [
+            name
+            for name, value in given.items()
+            if name not in HARMLESS and value != usual[name]
+        ]
+        return found
+
+    def _resumed(self, args, folder):
+        from .checkpoints import readRun
+
+        try:
+            known = readRun(folder)["options"]
+        except Refused as refused:
+            self.exit(2, f"{refused}\n")
+        known["set"] = [tuple(setting) for setting in known.get("set", [])]
+        known["out"] = folder
+        start = argparse.Namespace(**{**known, "set": []})
+        given = super().parse_args(args, start)
+        given.set = given.set or known["set"]
+        fixed = [
+            f"--{name.replace('_', '-')} is {value}"
+            for name, value in known.items()
+            if name not in self.free and getattr(given, name) != value
+        ]
+        if fixed:
+            self.exit(2, f"--resume: a run goes on as it began: {', '.join(fixed)}\n")
+        return given
+
+
+def presetOf(args, wall):
+    """What run.json says of ``--preset``, for a wall's name: None without one, or a dict.
+
+    Keys: ``name``; ``overrides``, options given beside it; ``promise``, None if there are any or if the wall is none
+    of those that it was measured on, else ``peak_error`` and ``work_error`` [-], ``until_mm`` and ``seconds``.
+    """
+    if not args.preset:
+        return None
+    entry, promise = {"name": args.preset, "overrides": args.overrides}, None
+    known = PROMISES[args.preset]
+    if not args.overrides and wall in known["walls"]:
+        until, seconds = known["walls"][wall]
+        promise = {name: known[name] for name in ("peak_error", "work_error")}
+        promise.update(until_mm=until, seconds=seconds)
+    return {**entry, "promise": promise}
+
+
+def presetNote(preset, wall):
+    """The same as a line to read."""
+    name, promise = preset["name"], preset["promise"]
+    if promise:
+        return (
+            f"preset {name}: promises the peak within {100 * promise['peak_error']:g} % and the work over "
+            f"{promise['until_mm']:g} mm within {100 * promise['work_error']:g} % of a fine and slow run, "
+            f"in about {promise['seconds']:g} s"
+        )
+    reason = ", ".join("--" + o.replace("_", "-") for o in preset["overrides"])
+    reason = reason and f"{reason} beside it"
+    return f"preset {name} without its promise: {reason or f'not measured on {wall}'}"
+
+
 def parser(description, until, rate=20.0):
     """Parser with the common options; a scene adds its own.
 
@@ -95,6 +217,12 @@ def parser(description, until, rate=20.0):
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
     )
     mm = lambda text: number(text, 0, 1000, above=True)
+    p.add_argument(
+        "--preset",
+        choices=list(PRESETS),
+        help="blocks, divisions, subcontacts, rate and damping with a promise of error and time; "
+        "an option beside it goes before the preset's",
+    )
     p.add_argument(
         "--until",
         metavar="MM",
@@ -182,6 +310,22 @@ def parser(description, until, rate=20.0):
         type=_folder,
         default=None,
         help="folder of the results (default: results/SCENE)",
+    )
+    p.add_argument(
+        "--checkpoint-every",
+        metavar="MINUTES",
+        type=lambda t: number(t, 0, 1e6),
+        default=5.0,
+        help="wall-clock time between checkpoints [min]; there is one at the end, too, on Ctrl-C and on an error; 0: "
+        "none at all",
+    )
+    p.add_argument(
+        "--resume",
+        metavar="DIR",
+        type=_folder,
+        default=None,
+        help="go on from the checkpoint in this folder of results, with the options of its run; only --until, "
+        "--checkpoint-every, --vtk-every and --no-vtk can be changed",
     )
     p.add_argument(
         "--vtk-every",

@@ -29,7 +29,7 @@ ENERGIES = [
 
 
 OURS = re.compile(
-    r"(blocks|joints)(_\d+\.vt[up]|\.pvd)|curve\.(csv|png)|cracks\.png|run\.json"
+    r"((blocks|joints)(_\d+\.vt[up]|\.pvd)|curve\.(csv|png)|cracks\.png|run\.(json|checkpoint))(\.new)?"
 )
 
 
@@ -41,12 +41,10 @@ class Unwritable(Exception):
     """A file of the results cannot be written: the run ends in order and keeps what is there."""
 
 
-def say(text):
+def say(text, stream=None):
     """Print, unless the terminal or the log is gone or full: no reason to stop a run."""
-    try:
-        print(text, flush=True)
-    except OSError:
-        pass
+    with contextlib.suppress(OSError):
+        print(text, file=stream, flush=True)
 
 
 class Results:
@@ -54,18 +52,20 @@ class Results:
 
     :param directory: folder, made if missing
     :param columns: columns of curve.csv, units in the names
+    :param resumed: leave everything as it is, until :meth:`takeUp`
     """
 
-    def __init__(self, directory, columns):
+    def __init__(self, directory, columns, resumed=False):
         self.directory = os.path.abspath(directory)
         try:
             os.makedirs(self.directory, exist_ok=True)
-            for name in os.listdir(self.directory):
+            for name in [] if resumed else os.listdir(self.directory):
                 if OURS.fullmatch(name):  # an earlier run's would be taken for ours
                     os.remove(os.path.join(self.directory, name))
-            self._file = open(self.path("curve.csv"), "wb", buffering=0)
-            self._write(columns)
-            os.fsync(self._file.fileno())
+            self._file = open(self.path("curve.csv"), "ab", buffering=0)
+            if not resumed:
+                self._write(columns)
+                os.fsync(self._file.fileno())
         except OSError as error:
             raise Refused(
                 f"--out: cannot write to {self.directory}: {error.strerror}"
@@ -78,6 +78,20 @@ class Results:
 
     def path(self, name):
         return os.path.join(self.directory, name)
+
+    def takeUp(self, rows, frames, seconds):
+        """Go on after the rows, ParaView frames and wall-clock seconds of a run that is resumed; what came later goes."""
+        if any(len(row) != len(self.columns) for row in rows):
+            raise ValueError(f"its rows are not of {len(self.columns)} columns")
+        for name in os.listdir(self.directory):
+            number = re.fullmatch(r"(?:blocks|joints)_(\d+)\.vt[up]", name)
+            if number and int(number[1]) >= frames:
+                os.remove(self.path(name))
+        self._file.truncate(0)
+        self._write(self.columns)
+        for row in rows:
+            self.row(dict(zip(self.columns, row)))
+        self.started -= seconds
 
     def _interrupt(self, number, frame):
         self.interrupted = True
@@ -104,12 +118,14 @@ class Results:
 
     def _write(self, cells):
         """A line of curve.csv, whole or not at all."""
-        line, start = (",".join(cells) + "\r\n").encode(), self._file.tell()
+        line = (",".join(cells) + "\r\n").encode()
+        start = self._file.seek(0, os.SEEK_END)
         try:
             while line:
                 line = line[self._file.write(line) :]
         except OSError:
-            self._file.truncate(start)
+            with contextlib.suppress(OSError):
+                self._file.truncate(start)
             raise
 
     def checkRoom(self, least, likely):
@@ -121,28 +137,17 @@ class Results:
         if free < likely:
             say(f"warning: {told} some {1e-6 * likely:.1f} MB")
 
-    def frame(self, recorder):
-        """Let a MasonryVtkRecorder write a frame."""
-        try:
-            recorder()
-        except RuntimeError as error:
-            raise Unwritable(str(error)) from None
-
     def column(self, name):
         i = self.columns.index(name)
         return [row[i] for row in self.rows]
 
-    def close(self, recorder=None):
-        """The last frame, by a MasonryVtkRecorder if there is one, and run.json; closes curve.csv."""
-        try:
-            if recorder and self.rows:
-                self.frame(recorder)
-        finally:
-            self._writeRun()
+    def seconds(self):
+        """Wall-clock time of the run so far [s]."""
+        return time.perf_counter() - self.started
 
-    def _writeRun(self):
-        """run.json, whole or not at all."""
-        self.run["wall_clock_s"] = round(time.perf_counter() - self.started, 3)
+    def close(self):
+        """Close curve.csv and write run.json, whole or not at all."""
+        self.run["wall_clock_s"] = round(self.seconds(), 3)
         self._file.close()
         path = self.path("run.json")
         try:
@@ -163,19 +168,21 @@ class Progress:
         self.stream = stream or sys.stdout
         self.terminal = self.stream.isatty()
         self.last = self.stage = None
-        self.began = self.lastTenth = 0
+        self.began = self.first = self.lastTenth = 0
 
     def show(self, stage, fraction, detail, stepsPerSecond, final=False):
         now = time.perf_counter()
         if stage != self.stage:
-            self.stage, self.began, self.lastTenth, self.last = stage, now, -1, 0
+            self.stage, self.began, self.first = stage, now, fraction
+            self.lastTenth, self.last = -1, 0
         tenth = int(10 * fraction)
         if not final and (
             now - self.last < 0.2 if self.terminal else tenth == self.lastTenth
         ):
             return
         self.last, self.lastTenth = now, tenth
-        left = (now - self.began) * (1 / fraction - 1) if fraction > 0.01 else None
+        done = fraction - self.first
+        left = (now - self.began) * (1 - fraction) / done if done > 0.01 else None
         text = f"{stage:<12} {detail}  {stepsPerSecond:,.0f} steps/s"
         if left is not None and not final:
             text += f"  {int(left) // 60}:{int(left) % 60:02d} left"
@@ -189,11 +196,11 @@ class Progress:
             self.stream.flush()
 
 
-def conduct(make, *stages):
+def conduct(make):
     """Make a model, run its stages and finish it in every case; returns the exit status of the scene.
 
-    ``make`` raises Refused for input that cannot be run. The model has ``results``, ``finish()`` and a method of each
-    stage's name.
+    ``make`` raises Refused for input that cannot be run, and gives a :class:`masonry.checkpoints.Resumable` with a
+    method ``finish()``.
     """
     try:
         model = make()
@@ -202,22 +209,25 @@ def conduct(make, *stages):
         return 2
     stopped = []
     try:
-        for stage in stages:
-            getattr(model, stage)()
+        for model.at.stage in model.stages[model.stages.index(model.at.stage) :]:
+            getattr(model, model.at.stage)()
     except Interrupted:
         say("\ninterrupted: what was computed is kept")
     except Unwritable as error:
         stopped.append(error)
     except Exception:
+        model.checkpoint()
         model.finish()  # keeps what was computed
         raise
+    kept = model.checkpoint()
     try:
         model.finish()
     except Unwritable as error:
         stopped.append(error)
     for error in dict.fromkeys(map(str, stopped)):
-        with contextlib.suppress(OSError):
-            print(f"{error}; what was written before is kept", file=sys.stderr)
+        say(f"{error}; what was written before is kept", sys.stderr)
+    if kept and (stopped or model.results.interrupted):
+        say(f"--resume {model.results.directory} goes on from here")
     return 1 if stopped else 130 if model.results.interrupted else 0
 
 
@@ -292,6 +302,24 @@ def onFolder(act, words):
         print(f"cannot write to {words[0]}: {error.strerror}", file=sys.stderr)
         return 2
     return 0
+
+
+def haste(top, base):
+    """How much of the force of a push does not arrive at its base [-]: 0 if all does, 1 and more if none does.
+
+    Root mean square of top less base shear over the largest of either, from half the peak at the base to that peak; all
+    the way if this peak is less than half of the largest. Inertia swings about it, damping drags.
+    """
+    forces = [abs(b) for b in base]
+    largest = max([*map(abs, top), *forces], default=0)
+    if not largest:
+        return 0.0
+    peak, rows = max(forces), slice(None)
+    if peak >= largest / 2:
+        start = next(i for i, f in enumerate(forces) if f >= peak / 2)
+        rows = slice(start, forces.index(peak) + 1)
+    squares = [(t - b) ** 2 for t, b in zip(top[rows], base[rows])]
+    return math.sqrt(sum(squares) / len(squares)) / largest
 
 
 def initialStiffness(displacement, force):

@@ -3,32 +3,19 @@
 import os
 import subprocess
 import sys
-import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf
 from numbers import Real
 from typing import Callable
 
 import yade.config
 from yade import O, Vector3
-from yade.wrapper import (
-    MasonryJoint,
-    MasonryLoad,
-    MasonryMat,
-    MasonryVtkRecorder,
-    MasonryZones,
-)
+from yade.wrapper import MasonryJoint, MasonryLoad, MasonryMat, MasonryZones
 
 from . import brickwork, commit, criticalTimeStep, materials, options
-from .results import (
-    ENERGIES,
-    Progress,
-    Results,
-    Unwritable,
-    conduct,
-    initialStiffness,
-    say,
-)
+from .checkpoints import Place, Resumable
+from .options import Refused
+from .results import ENERGIES, Unwritable, conduct, haste, initialStiffness, say
 from .scene import addBlock, connect, engines
 
 CURVE = [
@@ -43,8 +30,10 @@ CURVE += [name + "_J" for name in ENERGIES] + ["balance_error"]
 
 BLOCK_HEIGHT = 0.2  # [m] of the support, and of the loading block of a clamped wall
 RAMP = 0.02  # [s] in which precompression and velocity grow: some ten periods of a wave through the height
-SETTLING = 0.3  # local damping of zones under precompression: with more, they creep to rest five times as slowly
+SETTLING = 0.5  # local damping of zones until the push: with more they creep to rest, with less they swing
+REST = 5e-3  # of the vertical load: what may be missing at the base before the push
 ROW_EVERY = 0.01  # [mm] between rows of curve.csv
+HASTE = 0.1  # a push with more is too fast: its peak is off by 1 to 5 % and more, validation/trade
 
 
 @dataclass
@@ -116,11 +105,27 @@ class Wall:
         return self.length * self.unit[1]
 
 
-class WallModel:
+@dataclass
+class WallPlace(Place):
+    """How far a wall's test has come."""
+
+    done: int = 0  # steps towards rest
+    quiet: int = 0  # times in a row that it was at rest
+    origin: list = field(default_factory=list)  # of the push: displacement [m]
+    began: float = 0.0  # and time [s]
+    moved: float = 0.0  # [mm]
+    peak: float = 0.0  # [kN]
+    peakAt: float = 0.0  # [mm]
+    nextFrame: float = 0.0  # [mm]
+
+
+class WallModel(Resumable):
     """The wall in YADE, and the stages of its test. ``args`` are the options of :func:`masonry.options.parser`."""
 
+    stages = ("settle", "push")
+
     def __init__(self, wall, args):
-        self.wall, self.args = wall, args
+        self.wall = wall
         self.brick = wall.unitMaterial()
         self.joints = wall.joints(brittle=args.joints == "brittle")
         if not isinstance(self.brick, MasonryMat):
@@ -137,10 +142,18 @@ class WallModel:
             self.joints,
             ["--crack-surfaces on: the units of this wall have none"] * lacking,
         )
-        self.results = Results(args.out or os.path.join("results", wall.name), CURVE)
-        self.progress = Progress()
-        self.steps, self.steppingTime, self.collapsed = 0, 0.0, False
-        self._build()
+        super().__init__(wall.name, args, CURVE, WallPlace())
+        if not args.until > self.at.moved:
+            raise Refused(
+                f"--until {args.until:g}: the run is at {self.at.moved:.2f} mm already"
+            )
+        self.preset = options.presetOf(args, wall.name)
+        if self.preset:
+            say(options.presetNote(self.preset, wall.name))
+        self.collapsed = False
+        with self._timed("setup"):
+            self._build()
+        self._begin()
 
     def _build(self):
         O.reset()
@@ -216,11 +229,6 @@ class WallModel:
         )
         self.limit = criticalTimeStep()[0]
         O.dt = self.args.dt_fraction * self.limit
-        self.vtk = (
-            None
-            if self.args.no_vtk
-            else MasonryVtkRecorder(directory=self.results.directory)
-        )
         self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)
         nodes = len(self.zones.displacements) if self.zones else 0
         self._checkRoom(50 * self.subcontacts + 150 * len(O.bodies) + 100 * nodes)
@@ -243,7 +251,13 @@ class WallModel:
                 "load_line_fixed": wall.loadLineFixed,
             },
             options=dict(vars(self.args)),
-            option_units={"until": "mm", "rate": "mm/s", "vtk_every": "mm"},
+            preset=self.preset,
+            option_units={
+                "until": "mm",
+                "rate": "mm/s",
+                "vtk_every": "mm",
+                "checkpoint_every": "min",
+            },
             joints={name: joint.dict() for name, joint in self.joints.items()},
             joint_units=options.units(materials.MasonryJoint),
             unit_material={
@@ -272,30 +286,31 @@ class WallModel:
     def _checkRoom(self, frame):
         """Whether the folder has room for the run; ``frame`` is what ParaView's files of a frame take at least [bytes]."""
         until = self.args.until
-        frames = until / self.args.vtk_every + 2 if self.vtk else 0
+        frames = 0 if self.args.no_vtk else until / self.args.vtk_every + 2
         least = 400e3 + frame * min(frames, 2)  # figures, first and last frame
         self.results.checkRoom(least, least + frame * frames + 250 * until / ROW_EVERY)
 
     # -- stages ---------------------------------------------------------------------------------------------------
 
-    def _advance(self, steps):
-        self.results.checkInterrupt()
-        began = time.perf_counter()
-        for _ in range(steps):
-            O.step()
-        self.steppingTime += time.perf_counter() - began
-        self.steps += steps
+    def settle(self):
+        """Gravity, and precompression on the loading block that grows smoothly, to rest.
 
-    def _rate(self):
-        return self.steps / self.steppingTime if self.steppingTime else 0.0
-
-    def _rest(self, stage, unbalanced, mostSteps=20000):
-        """Advance until the base carries what is above it but for that share, and hardly anything moves."""
-        above = sum(b.state.mass for b in O.bodies if b.id != self.base)
-        load = above * self.gravity - self.vertical.force[2]
-        quiet = 0
-        for done in range(0, mostSteps, 100):
+        The precompression is what the top course feels: the block's weight is part of it. At rest the base carries what
+        is above it but for the share REST, and hardly anything moves; the damping of the push takes what is left.
+        """
+        weight = self.gravity * sum(b.state.mass for b in O.bodies if b.id != self.base)
+        force = (
+            self.wall.precompression * self.wall.area
+            - O.bodies[self.top].state.mass * self.gravity
+        )
+        if self.zones:
+            self.zones.damping = min(SETTLING, self.args.damping)
+        at, ramp, most = self.at, int(self.ramp / O.dt), int(10 * self.ramp / O.dt)
+        while at.done < most and at.quiet < 3:
+            x = min(1, (at.done + 100) / ramp)
+            self.vertical.force = Vector3(0, 0, -force * x * x * (3 - 2 * x))
             self._advance(100)
+            at.done += 100
             e = self.energy.balance()
             elastic = (
                 e["elastic_compression"]
@@ -303,75 +318,62 @@ class WallModel:
                 + e["elastic_tension"]
                 + e["elastic_units"]
             )
-            missing = 1 + O.forces.f(self.base, True)[2] / load
-            rests = abs(missing) < unbalanced and abs(e["kinetic"]) < 1e-6 * elastic
-            quiet = quiet + 1 if rests else 0
+            missing = 1 + O.forces.f(self.base, True)[2] / (
+                weight - self.vertical.force[2]
+            )
+            rests = abs(missing) < REST and abs(e["kinetic"]) < 1e-5 * elastic
+            at.quiet = at.quiet + 1 if rests and x == 1 else 0
             self.progress.show(
-                stage,
-                done / mostSteps,
+                "settle",
+                at.done / most,
                 f"unbalanced {100 * missing:+.2f} %, kinetic/elastic {abs(e['kinetic']) / elastic:.1e}",
                 self._rate(),
-                quiet == 3,
+                at.quiet == 3,
             )
-            if quiet == 3:
-                return
-        say(f"note: the wall is not quite at rest after {mostSteps} steps of {stage}")
-
-    def settle(self):
-        """Gravity, to rest."""
-        self._rest("gravity", 1e-3)
-
-    def precompress(self):
-        """Precompression on the loading block, to rest. It is what the top course feels: the block's weight is part."""
-        force = (
-            self.wall.precompression * self.wall.area
-            - O.bodies[self.top].state.mass * self.gravity
-        )
-        if self.zones:
-            self.zones.damping = min(SETTLING, self.args.damping)
-        pieces = 40
-        for piece in range(1, pieces + 1):
-            self.vertical.force = Vector3(0, 0, -force * piece / pieces)
-            self._advance(int(self.ramp / pieces / O.dt) + 1)
-        self._rest("precompress", 2e-4)
+        if at.quiet < 3:
+            say(f"note: the wall is not quite at rest after {at.steps} steps")
 
     def push(self):
         """Lateral velocity at the loaded point, to ``--until`` or to collapse."""
-        args = self.args
+        args, at = self.args, self.at
         every = max(1, int(ROW_EVERY / (args.rate * O.dt)))
-        peak = peakAt = nextFrame = 0.0
-        self.origin = self._topDisplacement()
-        values = self._record()
+        if not self.advanced:
+            at.origin, at.began = list(self._topDisplacement()), O.time
+            at.moved = self._record()["displacement_mm"]
         if self.zones:
             self.zones.damping = args.damping
             self.zones.dampingKind = args.damping_kind
         else:
             self.integrator.dampingKind = args.damping_kind
-        began = O.time
-        while values["displacement_mm"] < args.until:
-            if self.vtk and values["displacement_mm"] >= nextFrame:
-                self.results.frame(self.vtk)
-                nextFrame += args.vtk_every
+        while at.moved < args.until:
+            if at.moved >= at.nextFrame:
+                self._frame()
+                at.nextFrame += args.vtk_every
             self.load.velocity = (
-                args.rate * 1e-3 * min(1.0, (O.time - began + every * O.dt) / self.ramp)
+                args.rate
+                * 1e-3
+                * min(1.0, (O.time - at.began + every * O.dt) / self.ramp)
             )
             if self.wall.loadLineFixed:
                 along = self.load.displacement()[0]
                 self.vertical.point = self.load.point - Vector3(along, 0, 0)
             self._advance(every)
-            values = self._record()
-            shear, moved = values["base_shear_kN"], values["displacement_mm"]
-            if shear > peak:
-                peak, peakAt = shear, moved
-            detail = f"{moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
-            self.progress.show("push", max(0, moved / args.until), detail, self._rate())
+            with self._timed("rows"):
+                values = self._record()
+            shear, at.moved = values["base_shear_kN"], values["displacement_mm"]
+            if shear > at.peak:
+                at.peak, at.peakAt = shear, at.moved
+            detail = f"{at.moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
+            self.progress.show(
+                "push", max(0, at.moved / args.until), detail, self._rate()
+            )
             sunk = -values["vertical_mm"] > 500 * self.wall.unit[2]
-            if moved > peakAt + 1 and (shear < 0.2 * peak or sunk):
+            if at.moved > at.peakAt + 1 and (shear < 0.2 * at.peak or sunk):
                 self.collapsed = True
                 break
         self.progress.show("push", 1, detail, self._rate(), final=True)
         if self.collapsed:
-            say(f"the wall has collapsed at {moved:.2f} mm")
+            say(f"the wall has collapsed at {at.moved:.2f} mm")
 
     def _topDisplacement(self):
         """Displacement of the loading block at the height of measurement [m]."""
@@ -380,7 +382,7 @@ class WallModel:
         return s.pos + s.ori * (s.refOri.conjugate() * arm) - s.refPos - arm
 
     def _record(self):
-        moved = self._topDisplacement() - self.origin
+        moved = self._topDisplacement() - Vector3(*self.at.origin)
         e = self.energy.balance()
         s = O.bodies[self.top].state
         axis, angle = (s.ori * s.refOri.conjugate()).toAxisAngle()
@@ -397,9 +399,8 @@ class WallModel:
         self.results.row(values)
         return values
 
-    def finish(self):
-        """Last frame, run.json and figures, from whatever was computed."""
-        results, run = self.results, self.results.run
+    def _describe(self):
+        results, run, done = self.results, self.results.run, self.at
         if results.rows:
             shear, moved = results.column("base_shear_kN"), results.column(
                 "displacement_mm"
@@ -412,19 +413,24 @@ class WallModel:
                 displacement_end_mm=moved[-1],
                 initial_stiffness_kN_per_mm=initialStiffness(moved, shear),
                 energy_balance_error=self.energy.largestError,
+                haste=haste(results.column("top_shear_kN"), shear),
             )
         run.update(
             collapsed=self.collapsed,
+            too_fast=run.get("haste", 0) > HASTE,
             interrupted=results.interrupted,
-            steps=self.steps,
+            resumed_at_s=done.resumed,
+            steps=done.steps,
             kinds=self.vtk.kinds if self.vtk else [],
+            seconds={part: round(s, 3) for part, s in done.seconds.items()},
         )
-        if self.steps:
-            run["microseconds_per_step"] = 1e6 * self.steppingTime / self.steps
-            run["nanoseconds_per_subcontact_step"] = (
-                1e9 * self.steppingTime / self.steps / self.subcontacts
-            )
-        results.close(self.vtk)
+        if done.steps:
+            perStep = done.seconds["steps"] / done.steps
+            run["microseconds_per_step"] = 1e6 * perStep
+            run["nanoseconds_per_subcontact_step"] = 1e9 * perStep / self.subcontacts
+
+    def _report(self):
+        results, run = self.results, self.results.run
         if results.rows:
             drawing = [sys.executable, "-m", "masonry.figures", results.directory]
             if subprocess.run(drawing).returncode:
@@ -433,14 +439,29 @@ class WallModel:
             say(
                 f"warning: the energy balance is off by {100 * run['energy_balance_error']:.1f} % of the work done"
             )
+        if run.get("haste", 0) > HASTE:
+            say(self._tooFast(run["haste"]))
         if results.rows:
             say(
                 f"{self.wall.name}: peak {run['peak_base_shear_kN']:.1f} kN at {run['displacement_at_peak_mm']:.2f} mm, "
-                f"{run['base_shear_end_kN']:.1f} kN at {run['displacement_end_mm']:.2f} mm; {self.steps} steps of "
+                f"{run['base_shear_end_kN']:.1f} kN at {run['displacement_end_mm']:.2f} mm; {run['steps']} steps of "
                 f"{run['microseconds_per_step']:.0f} µs, {run['wall_clock_s']:.1f} s in all; see {results.directory}"
             )
+        if self.preset:
+            say(options.presetNote(self.preset, self.wall.name))
+
+    def _tooFast(self, haste):
+        """The warning of a push that is too fast, with what would do: what is missing grows with the rate at least."""
+        args = self.args
+        slower = f"--rate {float(f'{args.rate * HASTE / haste:.2g}'):g}"
+        return (
+            f"warning: the push is too fast: {100 * haste:.0f} % of the force does not reach the base, "
+            f"more than {100 * HASTE:.0f} % spoil the peak; "
+            + ("--damping-kind combined" if args.damping_kind == "local" else slower)
+            + " would do"
+        )
 
 
 def test(wall, args):
     """Gravity, precompression, push and results of a wall; the exit status of the scene."""
-    return conduct(lambda: WallModel(wall, args), "settle", "precompress", "push")
+    return conduct(lambda: WallModel(wall, args))

@@ -2,6 +2,7 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "blocks/BlockElasticity.hpp"
 #include "blocks/BlockLanes.cpp" // for its loops of every instruction set, which nobody else sees
+#include "blocks/LargestEigenvalue.hpp"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <doctest/doctest.h>
@@ -478,6 +479,66 @@ TEST_CASE("every instruction set moves blocks to the same bits") {
             CHECK(run(avx512::addForces, avx512::move, combined) == reference);
 #endif
     }
+}
+
+TEST_CASE("damping takes energy in every step of every node, whatever the force") {
+    std::mt19937 dice(17);
+    std::normal_distribution<> normal;
+    const auto e = elastic(box(Point::Zero(), brick), {1, 1, 1});
+    const auto matrix = e.matrix();
+    const std::size_t rows = 3 * e.mesh().nodes.size();
+    Row present;
+    std::fill_n(present.lane, lanes, 1.0);
+    for (int n = 0; n < 1000; ++n) {
+        std::vector<Row> u(rows, Row{}), v(rows), f(rows), last(rows);
+        for (auto* part : {&v, &f, &last})
+            for (auto& row : *part)
+                for (double& value : row.lane)
+                    value = normal(dice) * (part == &v ? 1e-5 : 1);
+        NodeSums sums;
+        moveBlocks(matrix, {1e-6, 0.8, {0, 0, 0}, n % 2 == 0, {false, false, false}}, present, u.data(), v.data(),
+                   f.data(), last.data(), sums);
+        for (int lane = 0; lane < lanes; ++lane)
+            CHECK(sums.damping.lane[lane] + sums.pending.lane[lane] > 0);
+    }
+}
+
+TEST_CASE("the bound of the largest eigenvalue lies within 2.1 % above it, for any spectrum and size") {
+    std::mt19937 dice(19);
+    std::normal_distribution<> normal;
+    for (int n : {1, 2, 5, 40, 118, 300}) {
+        for (double power : {0.0, 0.1, 1.0, 8.0, 100.0}) { // from clustered at the top to far apart
+            const double largest = 7 * std::pow(1e3, std::min(power, 5.0));
+            Eigen::MatrixXd random(n, n);
+            for (double& value : random.reshaped())
+                value = normal(dice);
+            const Eigen::MatrixXd q = random.householderQr().householderQ();
+            Eigen::VectorXd values(n);
+            for (int i = 0; i < n; ++i)
+                values[i] = largest * std::pow((i + 1.0) / n, power);
+            const Eigen::MatrixXd matrix = q * values.asDiagonal() * q.transpose();
+            std::vector<bool> moves(n + 3, true); // three that do not
+            moves[0] = moves[n / 2 + 1] = moves[n + 2] = false;
+            const auto multiply = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
+                Eigen::VectorXd inner(n);
+                for (int i = 0, k = 0; i < n + 3; ++i)
+                    if (moves[i]) inner[k++] = x[i];
+                const Eigen::VectorXd image = matrix * inner;
+                y.setZero();
+                for (int i = 0, k = 0; i < n + 3; ++i)
+                    if (moves[i]) y[i] = image[k++];
+            };
+            const auto found = largestEigenvalue(moves, multiply);
+            Eigen::VectorXd image(n + 3);
+            multiply(found.mode, image);
+            CHECK(found.mode.dot(image) >= 0.97 * largest * found.mode.squaredNorm());
+            CHECK(found.bound >= largest * (1 - 1e-12));
+            CHECK(found.bound <= largest * 1.021);
+        }
+    }
+    const auto nothing = [](const Eigen::VectorXd&, Eigen::VectorXd& y) { y.setZero(); };
+    CHECK(largestEigenvalue({false}, nothing).bound == 0);
+    CHECK_THROWS_AS(largestEigenvalue({true}, nothing), std::invalid_argument);
 }
 
 TEST_CASE("a surface point is found with weights that return it") {

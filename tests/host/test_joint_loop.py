@@ -119,10 +119,11 @@ def test_the_loop_gives_the_functors_run(case):
         assert np.abs(one[name] - other[name]).max() < 1e-8 * size, name
 
 
+@pytest.mark.parametrize("damping", [0, 0.3])
 @pytest.mark.parametrize(
     "blocked", ["", "yXZ", "xyzXYZ", "XYZ", "x"], ids=lambda b: b or "free"
 )
-def test_a_body_moves_as_with_the_hosts_integrator(blocked):
+def test_a_body_moves_as_with_the_hosts_integrator(blocked, damping):
     ends = []
     for own in (False, True):
         O.reset()
@@ -134,7 +135,7 @@ def test_a_body_moves_as_with_the_hosts_integrator(blocked):
         if blocked in ("", "x"):  # the host turns a free body by its momentum
             s.angMom = Vector3(0.03, 0.02, -0.01)
         O.dt = 1e-3
-        around = dict(damping=0.3, gravity=(0, 0, -9.81))
+        around = dict(damping=damping, gravity=(0, 0, -9.81))
         O.engines = [ForceResetter()] + (
             [MasonryIntegrator(**around)]
             if own
@@ -146,8 +147,60 @@ def test_a_body_moves_as_with_the_hosts_integrator(blocked):
             O.step()
         s = O.bodies[body].state
         ends.append([*s.pos, *s.vel, *s.angVel, *s.ori])
-    assert ends[0] == pytest.approx(ends[1], rel=1e-9, abs=1e-11)
+    # where a velocity changes its sign, ours stops at zero and the host's damping pushes it past, in one step each
+    tolerance = 2e-3 if damping else 1e-9
+    assert ends[0] == pytest.approx(ends[1], rel=tolerance, abs=tolerance)
     assert np.abs(ends[0]).max() > 0.5
+
+
+@pytest.mark.parametrize("kind", ["local", "combined"])
+@pytest.mark.parametrize("blocked", ["", "yXZ"], ids=lambda b: b or "free")
+def test_damping_takes_energy_in_every_step_whatever_the_force(blocked, kind):
+    O.reset()
+    body = addBlock(corners((0, 0, 0), UNIT), MasonryMat(density=1800))
+    O.bodies[body].state.blockedDOFs = blocked
+    integrator = MasonryIntegrator(damping=0.8, dampingKind=kind, gravity=(0, 0, 0))
+    O.engines = [ForceResetter(), integrator]
+    O.dt = 1e-4
+    dice, taken = np.random.default_rng(1), [0]
+    for _ in range(1000):
+        push = dice.normal(size=6) * 10 ** dice.uniform(-4, 2)
+        O.forces.setPermF(body, Vector3(*push[:3]))
+        O.forces.setPermT(body, Vector3(*0.05 * push[3:]))
+        O.step()
+        O.forces.reset(resetAll=True)
+        O.step()  # the other half of the work is done when the next step begins
+        taken.append(integrator.damped)
+    assert np.all(np.diff(taken) >= 0) and taken[-1] > 0
+
+
+@pytest.mark.parametrize("kind", ["local", "combined"])
+@pytest.mark.parametrize("blocks", ["rigid", "deformable"])
+def test_with_damping_the_limit_of_the_time_step_is_the_undamped_one(blocks, kind):
+    """A chain of bricks on elastic joints, thrown at random a hair below that limit, comes to rest."""
+    O.reset()
+    mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    unit = lambda k: corners((0, 0, k * UNIT[2]), (*UNIT[:2], (k + 1) * UNIT[2]))
+    bricks = [addBlock(unit(k), mat, inPlane=True) for k in range(6)]
+    O.bodies[bricks[0]].state.blockedDOFs = "xyzXYZ"
+    zones = None
+    if blocks == "deformable":
+        zones = MasonryZones(bodies=bricks[1:], blocked="y", dampingKind=kind)
+    around = dict(damping=0.8, gravity=(0, 0, 0), inPlane=True, zones=zones)
+    engines([MasonryJoint(elastic=True)], **around)
+    next(e for e in O.engines if e.label == "integrator").dampingKind = kind
+    connect()
+    O.dt = 0.999 * criticalTimeStep()[0]
+    dice = np.random.default_rng(1)
+    throw = lambda: Vector3(dice.normal(), 0, dice.normal())
+    for b in [] if zones else bricks[1:]:
+        O.bodies[b].state.vel = throw()
+    for n in range(len(zones.masses) if zones else 0):
+        zones.setVelocity(n, throw())
+    O.step()
+    start = energy()["kinetic"]
+    O.run(5000, True)
+    assert abs(energy()["kinetic"]) < 1e-6 * start
 
 
 def test_combined_damping_calms_what_swings_about_a_steady_motion_and_local_does_not():
@@ -232,8 +285,7 @@ def test_arrays_made_anew_in_every_step_change_nothing():
             O.step()
         runs.append(state(interactions))
     for name, values in runs[0].items():
-        assert (values == runs[1][name]).all() or name == "lost", name
-    assert runs[0]["lost"] == pytest.approx(runs[1]["lost"], rel=1e-12)
+        assert (values == runs[1][name]).all(), name
 
 
 @pytest.mark.parametrize("blocks", ["rigid", "deformable"])

@@ -30,17 +30,17 @@ void columns(benchmark::State& state, const Regime& regime) {
     const JointProperties bed;
     const JointLaw law(bed);
     JointColumns all(law, {bed.normalStiffness, bed.shearStiffness}, size);
-    std::vector<double> n(size), a(size), b(size);
+    std::vector<double> n(size), a(size), b(size), sigma(size);
     const auto step = [&](const Jump& jump) {
         std::fill(n.begin(), n.end(), jump.opening), std::fill(a.begin(), a.end(), jump.slide.a);
         for (int i = 0; i < size; i += range)
-            all.advance(law, i, range, &n[i], &a[i], &b[i]);
+            all.advance(law, i, range, &n[i], &a[i], &b[i], &sigma[i]);
     };
     step(regime.jump.opening < 0 ? crush : press);
     double sign = 1;
     for (auto _ : state) {
         for (int i = 0; i < size; i += range)
-            all.advance(law, i, range, &n[i], &a[i], &b[i]);
+            all.advance(law, i, range, &n[i], &a[i], &b[i], &sigma[i]);
         state.PauseTiming();
         if (regime.turns) sign = -sign;
         std::fill(n.begin(), n.end(), sign * regime.jump.opening);

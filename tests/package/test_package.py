@@ -150,6 +150,53 @@ def test_wrong_options_are_refused_with_the_bound(capsys, words, message):
     assert message in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("name", options.PRESETS)
+def test_a_preset_stands_for_its_options_and_keeps_its_promise(name):
+    args = parse("--preset", name, "--until", "3", "--no-vtk", "--out", "x")
+    for option, value in options.PRESETS[name].items():
+        assert getattr(args, option) == value
+    preset = options.presetOf(args, "wall_comp4")
+    promise = options.PROMISES[name]
+    assert preset["promise"]["peak_error"] == promise["peak_error"]
+    assert preset["promise"]["work_error"] == promise["work_error"]
+    assert preset["overrides"] == []
+    assert f"within {100 * promise['work_error']:g} %" in options.presetNote(
+        preset, "wall_comp4"
+    )
+
+
+@pytest.mark.parametrize(
+    "words, dropped",
+    [
+        (["--rate", "7"], ["rate"]),
+        (["--damping", "0.5", "--divisions", "3"], ["divisions", "damping"]),
+        (["--set", "bed.cohesion=1e5"], ["set"]),
+        (["--crack-surfaces", "off"], ["crack_surfaces"]),
+        (["--rate", "50", "--crack-surfaces", "on"], []),  # as it is anyway
+    ],
+)
+def test_an_option_beside_a_preset_wins_and_drops_the_promise(words, dropped):
+    args = parse("--preset", "accurate", *words)
+    preset = options.presetOf(args, "wall_comp4")
+    assert preset["overrides"] == dropped and (preset["promise"] is None) == bool(
+        dropped
+    )
+    assert args.blocks == "deformable" and args.dt_fraction == 0.8
+    if words[0] == "--rate":
+        assert args.rate == float(words[1])
+    note = options.presetNote(preset, "wall_comp4")
+    assert ("without its promise" in note) == bool(dropped)
+    for name in dropped:
+        assert "--" + name.replace("_", "-") in note
+
+
+def test_a_preset_promises_nothing_of_a_wall_it_was_not_measured_on():
+    preset = options.presetOf(parse("--preset", "fast"), "my_wall")
+    assert preset["promise"] is None
+    assert "not measured on my_wall" in options.presetNote(preset, "my_wall")
+    assert options.presetOf(parse(), "wall_comp4") is None
+
+
 def test_every_option_is_explained_with_its_default(capsys):
     parser = options.parser("a wall", until=12)
     for action in parser._actions:
@@ -181,6 +228,21 @@ def test_a_run_that_leaves_finite_numbers_is_stopped(tmp_path):
     r = results.Results(str(tmp_path), ["a_mm", "b_kN"])
     with pytest.raises(FloatingPointError, match="finite numbers in b_kN"):
         r.row({"a_mm": 1, "b_kN": math.nan})
+
+
+def test_haste_is_the_share_of_the_force_that_does_not_arrive():
+    base = [min(0.01 * i, 1.0) for i in range(200)]
+    assert results.haste(base, base) == 0 and results.haste([], []) == 0
+    drag = [b + 0.25 for b in base]
+    assert results.haste(drag, base) == pytest.approx(0.25 / 1.25, rel=1e-9)
+    swing = [b + 0.25 * (-1) ** i for i, b in enumerate(base)]
+    assert results.haste(swing, base) == pytest.approx(0.25 / 1.25, rel=1e-9)
+    start = [b + 0.25 * (b < 0.4) for b in base]  # that it swings at first is no harm
+    assert results.haste(start, base) == 0
+    after = base + [0.2] * 100  # nor what it does when it breaks
+    assert results.haste(base + [0.9] * 100, after) == 0
+    stuck = [0.1 * b for b in base]
+    assert results.haste(base, stuck) == pytest.approx(0.9 * math.sqrt(2 / 3), rel=0.01)
 
 
 @given(slope=st.floats(0.1, 1e3))

@@ -38,7 +38,6 @@ def test_joints_and_units_in_series_give_back_the_masonry(
     args = options.parser("", until=1).parse_args([*words, "--out", str(tmp_path)])
     model = walls.WallModel(wall, args)
     model.settle()
-    model.precompress()
     loaded = model._topDisplacement()[2]
     joint, young = model.joints["bed"].normalStiffness, 20.2e9
     assert 8 / joint + 1.2 / young == pytest.approx(1.2 / 4.068e9, rel=1e-9)

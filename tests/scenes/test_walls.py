@@ -221,7 +221,6 @@ def small(tmp_path, *words):
     )
     model = walls.WallModel(SMALL, arguments)
     model.settle()
-    model.precompress()
     return model
 
 
@@ -267,7 +266,8 @@ def test_a_wall_saved_in_the_middle_of_its_push_goes_on_the_same(scene, tmp_path
 def test_deformable_units_carry_the_weight_and_keep_the_balance(scene, tmp_path):
     model = small(tmp_path, "--blocks", "deformable", "--until", "0.3")
     weight = 6 * 3 * 0.22 * 0.102 * 0.081 * 1800 * 9.81
-    assert base(model)[2] == pytest.approx(-(0.5e6 * 0.66 * 0.102 + weight), rel=3e-4)
+    load = 0.5e6 * 0.66 * 0.102 + weight
+    assert base(model)[2] == pytest.approx(-load, rel=walls.REST)
     model.push()
     assert max(model.results.column("base_shear_kN")) > 5
     assert model.energy.largestError < 1e-3
@@ -289,6 +289,56 @@ def test_density_scaling_is_another_rate(scene, tmp_path, blocks):
     assert other("time_s") == pytest.approx([2 * t for t in one("time_s")], rel=1e-9)
     for name in ("displacement_mm", "base_shear_kN", "dissipated_shear_J"):
         assert one(name) == other(name)
+
+
+@pytest.mark.parametrize("name", options.PRESETS)
+def test_a_preset_runs_and_says_what_it_promises(runScene, name):
+    words = ["--preset", name, "--until", "0.3", "--no-vtk"]
+    process, out = runScene("wall_comp1", *words)
+    run = readRun(out)
+    assert run["preset"]["name"] == name
+    assert run["preset"]["promise"]["seconds"] > 0
+    assert process.stdout.count(f"preset {name}: promises the peak within") == 2
+    chosen = options.PRESETS[name]
+    assert {option: run["options"][option] for option in chosen} == chosen
+
+
+def test_a_preset_whose_option_is_overridden_says_so_twice(runScene):
+    words = ["--preset", "fast", "--subcontacts", "2", "--until", "0.3", "--no-vtk"]
+    process, out = runScene("wall_comp4", *words)
+    note = "preset fast without its promise: --subcontacts beside it"
+    assert process.stdout.count(note) == 2
+    preset = {"name": "fast", "overrides": ["subcontacts"], "promise": None}
+    assert readRun(out)["preset"] == preset
+
+
+def test_a_dry_wall_takes_a_preset_without_a_promise(runScene):
+    words = ["--preset", "balanced", "--until", "0.2", "--no-vtk"]
+    process, out = runScene("wall_dry", *words)
+    assert "without its promise: not measured on wall_dry" in process.stdout
+    assert readRun(out)["options"]["blocks"] == "deformable"
+
+
+@pytest.mark.parametrize(
+    "words, cure",
+    [
+        ("--until 10 --rate 800", "--rate"),
+        ("--until 10 --damping-kind local --rate 100", "--damping-kind combined"),
+        (
+            "--until 3 --blocks deformable --damping-kind local",
+            "--damping-kind combined",
+        ),
+    ],
+)
+def test_a_push_that_is_too_fast_says_so_and_what_would_do(runScene, words, cure):
+    words = ["--no-vtk", *words.split()]
+    process, out = runScene("wall_comp1", *words)
+    assert readRun(out)["too_fast"] and readRun(out)["haste"] > 0.1
+    told = [t for t in process.stdout.splitlines() if "the push is too fast" in t]
+    slower = told[0].split("; ")[1].removesuffix(" would do").split()
+    assert slower[0] == cure.split()[0]
+    process, out = runScene("wall_comp1", *words, *slower)
+    assert not readRun(out)["too_fast"] and "too fast" not in process.stdout
 
 
 def test_an_impossible_wall_is_refused_with_all_problems():

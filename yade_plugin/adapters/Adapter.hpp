@@ -1,4 +1,5 @@
-// What every class that YADE sees has in common: one list of attributes serves Python, dict(), saving and the docs.
+// What every class that YADE sees has in common: one list of attributes serves Python, dict(), saving, checkpoints and
+// the docs.
 //
 // A class `T : Adapter<T, HostBase>` gives `className`, `baseName`, `doc` and
 //     template <class Visit> static void attributes(Visit&& visit) { visit("young", &T::young, "Young's modulus [Pa]");
@@ -6,6 +7,7 @@
 // and may define `void postLoad()`, which checks and prepares after any change, `void refresh()`, which brings the
 // attributes up to date before they are read, and `static void extras(PyClass&)`.
 #pragma once
+#include "files/Checkpoint.hpp"
 #include "host/Yade.hpp"
 #include "law/JointState.hpp"
 #include "law/SofteningTable.hpp"
@@ -21,6 +23,7 @@
 #include <boost/serialization/shared_ptr.hpp>
 #include <boost/serialization/string.hpp>
 #include <boost/serialization/vector.hpp>
+#include <limits>
 #include <type_traits>
 
 namespace masonry {
@@ -40,7 +43,8 @@ struct Keeper {
     virtual void release() = 0;
 };
 
-enum Flags { Plain = 0, ReadOnly = 1, Hidden = 2 }; // Hidden: saved, but not shown to Python
+// Hidden: saved, but not shown to Python. Local: of where a run is, not of how far; checkpoints leave it out.
+enum Flags { Plain = 0, ReadOnly = 1, Hidden = 2, Local = 4 };
 
 template <class T> struct IsNumbers : std::false_type {}; // types of fixed size that are saved as plain numbers
 template <> struct IsNumbers<Vector3r> : std::true_type {};
@@ -57,6 +61,7 @@ template <class F> void numbers(JointState& s, F&& each) {
     each(s.opening), each(s.crushing), each(s.dilation), each(s.slip), each(s.largestOpening), each(s.largestClosure);
     each(s.tensionDamage), each(s.shearDamage), each(s.normalStress), each(s.shearStress.a), each(s.shearStress.b);
     each(regime);
+    if (!(regime >= 0 && regime <= 3)) throw std::invalid_argument("saved file is damaged at the regime of a joint");
     s.regime = Regime(int(regime));
 }
 
@@ -85,11 +90,77 @@ template <class T> struct IsShared<shared_ptr<T>> : std::true_type {};
 template <class T> struct IsList : std::false_type {};
 template <class T> struct IsList<std::vector<T>> : std::true_type {};
 
+// State on its way from a scene to a checkpoint or back, piece by piece in the same order. Objects that are shared stay
+// the scene's own.
+class Transfer {
+public:
+    const bool back;   // to the scene
+    std::string owner; // whose state it is, before the names
+
+    Transfer(Checkpoint& file, bool back) : back(back), file_(file) {}
+
+    template <class T> void operator()(const std::string& name, T& value) {
+        if constexpr (std::is_same<T, std::string>::value) {
+            auto& text = file_.texts[owner + name];
+            back ? value = text : text = value;
+        } else if constexpr (plain<T>())
+            several(name, &value, 1);
+    }
+    template <class T> void operator()(const std::string& name, std::vector<T>& values) {
+        if constexpr (plain<T>()) {
+            if (back) values.resize(file_.numbers[owner + name].size() / width<T>());
+            several(name, values.data(), values.size());
+        }
+    }
+    template <class T> void several(const std::string& name, T* values, std::size_t count) { // as many as the scene has
+        auto& flat = file_.numbers[owner + name];
+        flat.resize(back ? flat.size() : count * width<T>());
+        if (flat.size() != count * width<T>()) damaged(name);
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < count; ++i)
+            each(values[i], [&](double& number) {
+                auto& kept = flat[next++];
+                back ? number = kept : kept = number;
+            });
+    }
+    [[noreturn]] void damaged(const std::string& name) const {
+        throw std::invalid_argument("does not fit this scene, at '" + owner + name + "'");
+    }
+
+private:
+    template <class T> static constexpr bool plain() { return std::is_arithmetic<T>::value || IsNumbers<T>::value; }
+    template <class T, class F> static void each(T& value, F&& visit) {
+        if constexpr (std::is_arithmetic<T>::value) {
+            double number = double(value);
+            visit(number);
+            if (std::is_integral<T>::value && !(std::abs(number) <= double(std::numeric_limits<T>::max())))
+                throw std::invalid_argument("does not fit this scene: a whole number in it is too large");
+            value = T(number);
+        } else
+            numbers(value, visit);
+    }
+    template <class T> static std::size_t width() {
+        std::size_t count = 0;
+        T sample{};
+        each(sample, [&](double&) { ++count; });
+        return count;
+    }
+
+    Checkpoint& file_;
+};
+
+// What has a state of its own for checkpoints.
+struct Stateful {
+    virtual ~Stateful() = default;
+    virtual void transfer(Transfer&) = 0;
+};
+
 template <class T> std::string expectedType() {
     if constexpr (IsList<T>::value) {
         if constexpr (IsShared<typename T::value_type>::value)
             return std::string("a list of ") + T::value_type::element_type::className;
         return std::is_same<T, std::vector<TableRow>>::value ? "a list of (ratio, damage) rows"
+               : std::is_same<T, std::vector<double>>::value ? "a list of numbers"
                                                              : "a list of whole numbers";
     } else if constexpr (IsShared<T>::value)
         return T::element_type::className;
@@ -121,7 +192,7 @@ template <class T> T given(const std::string& name, const py::object& value) {
     throw std::invalid_argument(name + ": expected " + expectedType<T>() + ", got " + shown(value));
 }
 
-template <class Derived, class Base> class Adapter : public Base {
+template <class Derived, class Base> class Adapter : public Base, public Stateful {
 public:
     std::string getClassName() const override { return Derived::className; }
     std::string getBaseClassName(unsigned i = 0) const override { return i == 0 ? Derived::baseName : ""; }
@@ -209,6 +280,14 @@ public:
         Derived::attributes(
             [&](const char* name, auto member, const char*, int = Plain) { save(ar, name, self().*member); });
         if (Archive::is_loading::value) self().postLoad();
+    }
+
+    void transfer(Transfer& to) override {
+        self().refresh();
+        Derived::attributes([&](const char* name, auto member, const char*, int flags = Plain) {
+            if (!(flags & Local)) to(name, self().*member);
+        });
+        if (to.back) self().postLoad();
     }
 
 protected:

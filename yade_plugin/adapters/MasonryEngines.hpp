@@ -53,11 +53,18 @@ struct BodyEnergies {                                                        // 
     double external = 0, damped = 0, pendingExternal = 0, pendingDamped = 0; // so far; pending is for the next step
     double kinetic = 0, fallen = 0;
     void beginStep();
-    void add(const BodyEnergies&);
+    void add(const BodyEnergies& other) {
+        external += other.external, pendingExternal += other.pendingExternal;
+        damped += other.damped, pendingDamped += other.pendingDamped;
+        kinetic += other.kinetic, fallen += other.fallen;
+    }
 
     template <class Class, class Visit> static void attributes(Visit&& visit) {
-        visit("external", &Class::external,
-              "Work of prescribed motions of bodies so far, without that of MasonryLoad [J].", ReadOnly);
+        visit(
+            "external", &Class::external,
+            "Work of prescribed motions of bodies so far, without that of MasonryLoad [J]; for MasonryEnergy with the "
+            "energy of motion at the first step and at given().",
+            ReadOnly);
         visit("damped", &Class::damped, "Energy taken by damping so far [J].", ReadOnly);
         visit("kinetic", &Class::kinetic, "Kinetic energy [J].", ReadOnly);
         visit("fallen", &Class::fallen, "Work of gravity since the reference state [J].", ReadOnly);
@@ -74,14 +81,21 @@ public:
         "Keeps the energy balance of a run: work of loads, prescribed motions and gravity = kinetic + elastic + "
         "dissipated in the joints by mode + damping. MasonryIntegrator and MasonryZones keep what is theirs; for "
         "NewtonIntegrator it stands directly before it and follows its equations. The balance closes to round-off and "
-        "the small terms of finite rotation.";
+        "the small terms of finite rotation. It also watches over the run: a time step above its limit, motion that "
+        "grows out of nothing and numbers that are not finite stop it with an error.";
 
-    double largestError = 0;
+    bool watch = true, begun = false;
+    double largestError = 0, largestInput = 0;
 
     template <class Visit> static void attributes(Visit&& visit) {
         BodyEnergies::attributes<MasonryEnergy>(visit);
+        visit("watch", &MasonryEnergy::watch,
+              "Whether an unstable run is stopped. Where it is not, a time step above criticalTimeStep() gives answers "
+              "that look sound and are not: damping keeps what should blow up within bounds.");
         visit("largestError", &MasonryEnergy::largestError,
               "Largest error of the balance seen by balance(), relative to the work done [-].", ReadOnly);
+        visit("largestInput", &MasonryEnergy::largestInput, "", Hidden);
+        visit("begun", &MasonryEnergy::begun, "", Hidden);
     }
 
     void action() override;
@@ -90,8 +104,17 @@ public:
     template <class PyClass> static void extras(PyClass& cls) {
         cls.def("balance", &MasonryEnergy::balance,
                 "All energies of the last step [J]: external, gravity, kinetic, damping, elastic_ and dissipated_ "
-                "tension, shear, compression; and error, the balance's error relative to the work done [-].");
+                "tension, shear, compression; and error, the balance's error relative to the work done [-].")
+            .def("given", &MasonryEnergy::given,
+                 "Count the present motion as given from outside: to be called at once when velocities were set by "
+                 "hand after the first step.");
     }
+
+private:
+    void given();
+    void check();
+    double lastStep_ = 0;   // [s] and
+    long lastChanges_ = -1; // count of changes, when the limit was last looked at
 };
 
 class MasonryIntegrator : public Adapter<MasonryIntegrator, yade::GlobalEngine>, public BodyEnergies {
@@ -121,10 +144,31 @@ public:
 
     void postLoad();
     void action() override;
+
+private:
+    struct Place {
+        const yade::Body* body;
+        yade::State* state;
+        bool rigid; // moved here, not by MasonryZones
+    };
+    std::vector<Place> places_; // bodies lie all over the memory, and cost as much as their motion to look up
+    bool stale() const;
 };
 
-// The largest stable time step of joints and zones under the damping of the engines [s], a bound that is safe, and the
-// ids of the two bodies whose joint, or of the unit whose zone, sets it: (dt, id1, id2). Without any (inf, -1, -1).
+// The largest stable time step [s] under the damping of the engines and the two bodies whose joint, or twice the unit,
+// sets it: (dt, id1, id2); without any (inf, -1, -1). It is 2/sqrt(w²) with w² the largest eigenvalue of stiffness over
+// mass, damped masses over 1 + alpha, and at most 1.1 % below it (blocks/LargestEigenvalue.hpp).
+//
+// Why it is safe, in scaled degrees of freedom, acceleration a = -A x without damping, D a with it, where each D_i lies
+// between 1 - alpha and 1 + alpha: what damping takes never exceeds what stops the mean velocity u = (v- + v+)/2 of the
+// step (stepOf). So each degree of freedom either drives (D = 1 - alpha, a u > 0), or brakes (D = 1 + alpha, a u < 0),
+// or has u = 0. The energy H = v+²/2 + x_n·A x_n+1 / 2 changes in a step by dt (D - 1) a·u <= 0: damping adds none. As
+// x_n·A x_n+1 >= -dt² v+·A v+ / 4, H is positive and motion bounded while dt² A < 4. A motion that damping cannot take
+// has u = 0 everywhere: it goes to and fro between two states, which needs b·(1/D + 1/D') b = dt² b·A b / 2 for b = D
+// a. That is impossible while dt² (1 + alpha) A < 4: below the bound everything comes to rest. Between both limits such
+// a chatter lives on, and joints that yield feed it. All of this is for elastic joints and small turns; joints that
+// yield, open or crush are softer. The host's damping has no such stop; that it is calm below the same bound is
+// measured (validation/stability).
 py::tuple criticalTimeStep();
 
 } // namespace masonry

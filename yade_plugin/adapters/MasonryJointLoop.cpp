@@ -1,15 +1,37 @@
 #include "MasonryJointLoop.hpp"
 #include "SceneCheck.hpp"
 #include "Vectorised.hpp"
+#include "blocks/JointFrames.hpp"
 #include <algorithm>
+#include <cmath>
 
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJointLoop)
 
 namespace masonry {
 
 namespace {
-constexpr int block = 32; // joints that a thread takes at a time
+
+constexpr int block = JointFrames::most; // joints that a thread takes at a time
+constexpr double flat = 1e-9;            // what counts as nothing out of the plane [rad, m, -]
+
+// Whether numbers are the same but for round-off: stiffnesses, lengths and areas calculated in many places.
+bool same(double a, double b, double scale) { return std::abs(a - b) <= 1e-12 * scale; }
+
+// Whether y and the rotations about x and z are blocked.
+bool heldInPlane(const yade::State& s) { return (s.blockedDOFs & 0b101010) == 0b101010; }
+
+// A turn about y as cosine and sine of its half angle; whether the rotation is one.
+bool aboutY(const Quaternionr& q, double& cosine, double& sine) {
+    cosine = q.w(), sine = q.y();
+    return std::abs(q.x()) + std::abs(q.z()) < flat;
 }
+
+// The turn of a joint's axes in a block from normal z and tangent x.
+Quaternionr fromPlane(const yade::State& s, const Quaternionr& frame) {
+    return s.refOri * frame * Quaternionr(0.5, 0.5, 0.5, 0.5); // e1 to x, e2 to y, e3 to z, and on by what is left
+}
+
+} // namespace
 
 // ---- arrays ------------------------------------------------------------------------------------------------------
 
@@ -19,14 +41,18 @@ void MasonryJointLoop::store() {
     if (!ahead_) return;
     ahead_ = false;
     for (auto& g : groups_)
-        for (std::size_t j = 0; j < g.geoms.size(); ++j)
+        for (std::size_t j = 0; j < g.geoms.size(); ++j) {
+            auto& phys = *g.physics[j];
+            phys.dissipated.setZero();
             for (int p = 0; p < g.points; ++p) {
                 const std::size_t i = std::size_t(p) * g.stride + j;
                 g.geoms[j]->points[p].jump = {g.jump[0][i], g.jump[1][i], g.jump[2][i]};
-                g.physics[j]->states[p] = g.columns.get(i);
-                const auto lost = g.columns.takeDissipated(i);
-                g.physics[j]->dissipated += g.area[i] * Vector3r(lost.tension, lost.shear, lost.compression);
+                phys.states[p] = g.columns.get(i);
+                const auto lost = g.columns.dissipated(i);
+                phys.losses[p] = {lost.tension, lost.shear, lost.compression};
+                phys.dissipated += g.geoms[j]->points[p].area * phys.losses[p];
             }
+        }
 }
 
 void MasonryJointLoop::release() {
@@ -48,10 +74,33 @@ int MasonryJointLoop::bodyNumber(int id, std::vector<int>& known) {
         known[id] = int(bodies_.ids.size());
         bodies_.ids.push_back(id);
         bodies_.states.push_back(scene->bodies->body[id]->state);
+        bodies_.reference.push_back(bodies_.states.back()->refOri.conjugate());
         const auto* unit = zones_ ? zones_->unitOf(id) : nullptr;
         bodies_.momentPlaces.push_back(unit ? unit->momentPlace : -1);
     }
     return known[id];
+}
+
+// Where all joints are alike, a block of them has the geometry of all, which then stays in the innermost cache.
+void MasonryJointLoop::Group::share() {
+    struct Column {
+        std::vector<double>* values;
+        int rows; // one, or one for each point
+        double scale;
+    };
+    const double length = std::hypot(span[0][0], span[1][0], span[2][0]);
+    std::vector<Column> all{{&area, points, area[0]}};
+    for (int d = 0; d < 4; ++d)
+        all.insert(all.end(), {{&frame1[d], 1, 1}, {&frame2[d], 1, 1}});
+    for (int d = 0; d < 3; ++d)
+        all.insert(all.end(), {{&span[d], 1, length}, {&offset[d], points, length}});
+    alike = stride >= block;
+    for (const auto& c : all)
+        for (int i = 0; alike && i < stride * c.rows; ++i)
+            alike = same((*c.values)[i], (*c.values)[i / stride * stride], c.scale);
+    for (const auto& c : all)
+        for (int p = 0; alike && p < c.rows; ++p)
+            std::copy_n(c.values->begin() + p * stride, block, c.values->begin() + p * block);
 }
 
 void MasonryJointLoop::Gather::fill(const std::vector<std::vector<int>>& lists) {
@@ -64,8 +113,34 @@ void MasonryJointLoop::Gather::fill(const std::vector<std::vector<int>>& lists) 
     }
 }
 
+// Whether all joints lie across a plane y = constant, on blocks that can move and turn in it only, and have no stress
+// or jump out of it beyond round-off.
+bool MasonryJointLoop::inPlane() const {
+    double cosine, sine;
+    for (const auto& g : groups_)
+        for (std::size_t j = 0; j < g.geoms.size(); ++j) {
+            const auto& geom = *g.geoms[j];
+            if ((geom.normal.cross(geom.tangent) - Vector3r::UnitY()).norm() > flat) return false;
+            for (int side = 0; side < 2; ++side) {
+                const int id = side ? g.body2[j] : g.body1[j];
+                const auto& s = *scene->bodies->body[id]->state;
+                const bool held = zones_ && zones_->unitOf(id) ? zones_->holds(1) : heldInPlane(s);
+                if (!held || !(std::abs(s.pos.y() - s.refPos.y()) < flat) ||
+                    !aboutY(fromPlane(s, side ? geom.frame2 : geom.frame1), cosine, sine) ||
+                    !aboutY(s.ori * s.refOri.conjugate(), cosine, sine))
+                    return false;
+            }
+            for (int p = 0; p < g.points; ++p) {
+                const auto& phys = *g.physics[j];
+                const double elastic = phys.states[p].shearStress.b / phys.shearStiffness;
+                if (!(std::abs(elastic) + std::abs(geom.points[p].jump[2]) < flat)) return false;
+            }
+        }
+    return true;
+}
+
 // Joints are grouped by what their subcontacts have in common; within a group they keep the order of YADE's container.
-void MasonryJointLoop::build() {
+void MasonryJointLoop::build(bool mayBePlane) {
     release();
     bodies_ = {};
     guests_.clear();
@@ -78,8 +153,8 @@ void MasonryJointLoop::build() {
         const int points = int(geom->points.size());
         auto group = std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) {
             return g.joint == phys->joint && g.points == points && g.nodal == bool(geom->zones) &&
-                   g.physics[0]->normalStiffness == phys->normalStiffness &&
-                   g.physics[0]->shearStiffness == phys->shearStiffness;
+                   same(g.physics[0]->normalStiffness, phys->normalStiffness, phys->normalStiffness) &&
+                   same(g.physics[0]->shearStiffness, phys->shearStiffness, phys->shearStiffness);
         });
         if (group == groups_.end()) {
             group = groups_.insert(groups_.end(), Group());
@@ -92,6 +167,7 @@ void MasonryJointLoop::build() {
         group->body1.push_back(interaction.id1), group->body2.push_back(interaction.id2);
     }
     if (zones_) zones_->units();
+    plane_ = mayBePlane && inPlane();
 
     std::vector<int> known(scene->bodies->body.size(), -1);
     std::vector<std::vector<int>> atBodies, atPlaces;
@@ -105,27 +181,32 @@ void MasonryJointLoop::build() {
         if (g.nodal) points += g.stride * g.points;
         for (int from = 0; from < g.stride; from += block)
             blocks_.emplace_back(int(&g - groups_.data()), from);
-        for (auto* column : {&g.frame1[0], &g.frame2[0]}) // no turn, where a column ends before whole lanes do
-            column->assign(g.stride, 1);
-        for (int d = 1; d < 4; ++d)
-            for (auto* column : {&g.frame1[d], &g.frame2[d], &g.span[d - 1]})
-                column->assign(g.stride, 0);
+        for (auto* columns : {g.frame1, g.frame2})
+            for (int d = 0; d < 4; ++d)
+                columns[d].resize(g.stride);
+        for (auto& column : g.span)
+            column.resize(g.stride);
         for (auto* column : {&g.area, &g.jump[0], &g.jump[1], &g.jump[2], &g.offset[0], &g.offset[1], &g.offset[2]})
-            column->assign(std::size_t(g.stride) * g.points, 0);
+            column->resize(std::size_t(g.stride) * g.points);
         g.columns = JointColumns(g.joint->law(), g.physics[0]->stiffness(), std::size_t(g.stride) * g.points);
-        for (int j = 0; j < count; ++j) {
-            auto& geom = *g.geoms[j];
-            auto& phys = *g.physics[j];
+        g.body1.resize(g.stride, g.body1.back()), g.body2.resize(g.stride, g.body2.back());
+        for (int j = 0; j < g.stride; ++j) { // the last joint stands for the places up to whole lanes, too
+            const bool real = j < count;
+            auto& geom = *g.geoms[std::min(j, count - 1)];
+            auto& phys = *g.physics[std::min(j, count - 1)];
             geom.keeper = phys.keeper = this;
             for (auto* body : {&g.body1[j], &g.body2[j]}) {
                 *body = bodyNumber(*body, known);
                 atBodies.resize(bodies_.ids.size());
-                atBodies[*body].push_back(2 * (g.first + j) + (body == &g.body2[j]));
+                if (real) atBodies[*body].push_back(2 * (g.first + j) + (body == &g.body2[j]));
             }
-            const auto put = [j](std::vector<double>* columns, const Quaternionr& q) {
-                columns[0][j] = q.w(), columns[1][j] = q.x(), columns[2][j] = q.y(), columns[3][j] = q.z();
+            const auto put = [&](std::vector<double>* columns, const Quaternionr& q, int body) {
+                if (plane_)
+                    aboutY(fromPlane(*bodies_.states[body], q), columns[0][j], columns[1][j]);
+                else
+                    columns[0][j] = q.w(), columns[1][j] = q.x(), columns[2][j] = q.y(), columns[3][j] = q.z();
             };
-            put(g.frame1, geom.frame1), put(g.frame2, geom.frame2);
+            put(g.frame1, geom.frame1, g.body1[j]), put(g.frame2, geom.frame2, g.body2[j]);
             for (int d = 0; d < 3; ++d)
                 g.span[d][j] = geom.centreToCentre[d];
             for (int p = 0; p < g.points; ++p) {
@@ -134,18 +215,20 @@ void MasonryJointLoop::build() {
                 for (int d = 0; d < 3; ++d)
                     g.jump[d][i] = geom.points[p].jump[d], g.offset[d][i] = geom.points[p].offset[d];
                 g.columns.set(g.joint->law(), i, phys.states[p]);
+                g.columns.setDissipated(i, {phys.losses[p][0], phys.losses[p][1], phys.losses[p][2]});
             }
         }
-        g.body1.resize(g.stride, 0), g.body2.resize(g.stride, 0);
+        g.share();
         if (g.nodal) buildPlaces(g, atPlaces);
     }
     for (auto& column : bodies_.position)
         column.resize(bodies_.ids.size());
+    for (std::size_t b = 0; plane_ && b < bodies_.ids.size(); ++b)
+        bodies_.position[2][b] = bodies_.states[b]->refPos.y();
     for (auto& column : bodies_.orientation)
         column.resize(bodies_.ids.size());
-    onBodies_.assign(2 * bodies_.ids.size(), Vector3r::Zero());
-    onJoints_.assign(std::size_t(9) * joints, 0);
-    onPoints_.assign(std::size_t(3) * points, 0);
+    onJoints_.assign(std::size_t(plane_ ? 4 : 9) * joints, 0);
+    onPoints_.assign(std::size_t(plane_ ? 2 : 3) * points, 0);
     bodyGather_.fill(atBodies);
     nodeGather_.fill(atPlaces);
     if (zones_) zones_->looped = true;
@@ -185,207 +268,71 @@ void MasonryJointLoop::buildPlaces(Group& g, std::vector<std::vector<int>>& atPl
 
 // ---- a step ------------------------------------------------------------------------------------------------------
 
-namespace {
+// ---- a step ------------------------------------------------------------------------------------------------------
 
-struct Frames { // of a block of joints: scratch in the innermost cache
-    double axes[9][block], v[3][block], w[block], between[3][block], common[3][block];
-    double step[3][block], arm[3][block], force[3][block], torque[3][block];
-};
-
-// The equations of MasonryJointGeom::update, for many joints at a time. Columns of a block never overlap.
-
-[[gnu::always_inline]] inline void align(int n, const int* body1, const int* body2, const double* const* q,
-                                         const double* const* f1, const double* const* f2, Frames& __restrict out) {
-    const double *qw = q[0], *qx = q[1], *qy = q[2], *qz = q[3];
-    const double *aw = f1[0], *ax = f1[1], *ay = f1[2], *az = f1[3];
-    const double *bw = f2[0], *bx = f2[1], *by = f2[2], *bz = f2[3];
-#pragma GCC ivdep
-    for (int i = 0; i < n; ++i) {
-        const int one = body1[i], two = body2[i];
-        const double w1 = qw[one] * aw[i] - qx[one] * ax[i] - qy[one] * ay[i] - qz[one] * az[i];
-        const double x1 = qw[one] * ax[i] + qx[one] * aw[i] + qy[one] * az[i] - qz[one] * ay[i];
-        const double y1 = qw[one] * ay[i] + qy[one] * aw[i] + qz[one] * ax[i] - qx[one] * az[i];
-        const double z1 = qw[one] * az[i] + qz[one] * aw[i] + qx[one] * ay[i] - qy[one] * ax[i];
-        double w2 = qw[two] * bw[i] - qx[two] * bx[i] - qy[two] * by[i] - qz[two] * bz[i];
-        double x2 = qw[two] * bx[i] + qx[two] * bw[i] + qy[two] * bz[i] - qz[two] * by[i];
-        double y2 = qw[two] * by[i] + qy[two] * bw[i] + qz[two] * bx[i] - qx[two] * bz[i];
-        double z2 = qw[two] * bz[i] + qz[two] * bw[i] + qx[two] * by[i] - qy[two] * bx[i];
-        const double same = w1 * w2 + x1 * x2 + y1 * y2 + z1 * z2 < 0 ? -1.0 : 1.0;
-        w2 *= same, x2 *= same, y2 *= same, z2 *= same;
-        double w = w1 + w2, x = x1 + x2, y = y1 + y2, z = z1 + z2;
-        const double size = 1 / std::sqrt(w * w + x * x + y * y + z * z);
-        w *= size, x *= size, y *= size, z *= size;
-        out.w[i] = w * w2 + x * x2 + y * y2 + z * z2; // the half turn from the mean to side 2
-        out.v[0][i] = w * x2 - x * w2 - (y * z2 - z * y2);
-        out.v[1][i] = w * y2 - y * w2 - (z * x2 - x * z2);
-        out.v[2][i] = w * z2 - z * w2 - (x * y2 - y * x2);
-        out.axes[0][i] = 1 - 2 * (y * y + z * z);
-        out.axes[1][i] = 2 * (x * y - w * z);
-        out.axes[2][i] = 2 * (x * z + w * y);
-        out.axes[3][i] = 2 * (x * y + w * z);
-        out.axes[4][i] = 1 - 2 * (x * x + z * z);
-        out.axes[5][i] = 2 * (y * z - w * x);
-        out.axes[6][i] = 2 * (x * z - w * y);
-        out.axes[7][i] = 2 * (y * z + w * x);
-        out.axes[8][i] = 1 - 2 * (x * x + y * y);
+// Whether the bodies are where the arrays can follow them: in the plane, if those are for the plane.
+bool MasonryJointLoop::readBodies() {
+    const int count = int(bodies_.ids.size());
+    bool fits = true;
+#pragma omp parallel for schedule(static) reduction(&& : fits)
+    for (int b = 0; b < count; ++b) {
+        if (b + 8 < count) __builtin_prefetch(&bodies_.states[b + 8]->ori);
+        const auto& s = *bodies_.states[b];
+        if (plane_) {
+            bodies_.position[0][b] = s.pos[2], bodies_.position[1][b] = s.pos[0];
+            fits = fits && aboutY(s.ori * bodies_.reference[b], bodies_.orientation[0][b], bodies_.orientation[1][b]);
+            fits = fits && std::abs(s.pos[1] - bodies_.position[2][b]) < flat;
+            fits = fits && (bodies_.momentPlaces[b] >= 0 || heldInPlane(s));
+        } else {
+            for (int d = 0; d < 3; ++d)
+                bodies_.position[d][b] = s.pos[d], bodies_.orientation[d + 1][b] = s.ori.coeffs()[d];
+            bodies_.orientation[0][b] = s.ori.w();
+        }
     }
+    return fits;
 }
-
-MASONRY_VECTORISED void alignRigid(int n, const int* body1, const int* body2, const double* const* position,
-                                   const double* const* q, const double* const* f1, const double* const* f2,
-                                   const double* const* span, Frames& __restrict out) {
-    align(n, body1, body2, q, f1, f2, out);
-    const double *px = position[0], *py = position[1], *pz = position[2];
-    const double *sx = span[0], *sy = span[1], *sz = span[2];
-#pragma GCC ivdep
-    for (int i = 0; i < n; ++i) {
-        const double x = px[body2[i]] - px[body1[i]], y = py[body2[i]] - py[body1[i]], z = pz[body2[i]] - pz[body1[i]];
-        out.between[0][i] = x, out.between[1][i] = y, out.between[2][i] = z;
-        const double v0 = out.v[0][i], v1 = out.v[1][i], v2 = out.v[2][i], w = out.w[i];
-        const double t0 = 2 * (v1 * sz[i] - v2 * sy[i]), t1 = 2 * (v2 * sx[i] - v0 * sz[i]),
-                     t2 = 2 * (v0 * sy[i] - v1 * sx[i]); // half d = d + w (2v × d) + v × (2v × d)
-        out.common[0][i] =
-            out.axes[0][i] * x + out.axes[3][i] * y + out.axes[6][i] * z - (sx[i] + w * t0 + (v1 * t2 - v2 * t1));
-        out.common[1][i] =
-            out.axes[1][i] * x + out.axes[4][i] * y + out.axes[7][i] * z - (sy[i] + w * t1 + (v2 * t0 - v0 * t2));
-        out.common[2][i] =
-            out.axes[2][i] * x + out.axes[5][i] * y + out.axes[8][i] * z - (sz[i] + w * t2 + (v0 * t1 - v1 * t0));
-        for (int d = 0; d < 3; ++d)
-            out.force[d][i] = out.torque[d][i] = 0;
-    }
-}
-
-MASONRY_VECTORISED void alignNodal(int n, const int* body1, const int* body2, const double* const* q,
-                                   const double* const* f1, const double* const* f2, Frames& __restrict out) {
-    align(n, body1, body2, q, f1, f2, out);
-    for (auto& component : out.torque)
-        for (int i = 0; i < n; ++i)
-            component[i] = 0;
-}
-
-MASONRY_VECTORISED void jumpRigid(int n, const double* __restrict ax, const double* __restrict ay,
-                                  const double* __restrict az, double* __restrict jx, double* __restrict jy,
-                                  double* __restrict jz, Frames& __restrict out) {
-#pragma GCC ivdep
-    for (int i = 0; i < n; ++i) {
-        const double v0 = out.v[0][i], v1 = out.v[1][i], v2 = out.v[2][i], turn = 4 * out.w[i];
-        const double a0 = ax[i], a1 = ay[i], a2 = az[i];
-        const double c0 = out.common[0][i], c1 = out.common[1][i], c2 = out.common[2][i];
-        const double j0 = c0 + turn * (v1 * a2 - v2 * a1), j1 = c1 + turn * (v2 * a0 - v0 * a2),
-                     j2 = c2 + turn * (v0 * a1 - v1 * a0);
-        out.step[0][i] = j0 - jx[i], out.step[1][i] = j1 - jy[i], out.step[2][i] = j2 - jz[i];
-        jx[i] = j0, jy[i] = j1, jz[i] = j2;
-        const double shrink = 1 - 2 * (v0 * v0 + v1 * v1 + v2 * v2), along = 2 * (v0 * a0 + v1 * a1 + v2 * a2);
-        out.arm[0][i] = shrink * a0 + along * v0 + 0.5 * c0; // half^T a + jump / 2
-        out.arm[1][i] = shrink * a1 + along * v1 + 0.5 * c1;
-        out.arm[2][i] = shrink * a2 + along * v2 + 0.5 * c2;
-    }
-}
-
-// The one place where stress meets area, and tension meets the host's forces: an open joint pulls body 1 on.
-MASONRY_VECTORISED void pullRigid(int n, const double* area, const double* normal, const double* shearA,
-                                  const double* shearB, Frames& __restrict out) {
-#pragma GCC ivdep
-    for (int i = 0; i < n; ++i) {
-        const double x = area[i] * normal[i], y = area[i] * shearA[i], z = area[i] * shearB[i];
-        out.force[0][i] += x, out.force[1][i] += y, out.force[2][i] += z;
-        out.torque[0][i] += out.arm[1][i] * z - out.arm[2][i] * y;
-        out.torque[1][i] += out.arm[2][i] * x - out.arm[0][i] * z;
-        out.torque[2][i] += out.arm[0][i] * y - out.arm[1][i] * x;
-    }
-}
-
-MASONRY_VECTORISED void finishRigid(int n, const Frames& f, double* __restrict onJoints) {
-#pragma GCC ivdep
-    for (int i = 0; i < n; ++i) {
-        double* out = onJoints + 9 * i;
-        const auto turned = [&](const double(&c)[3][block], int d) {
-            return f.axes[3 * d][i] * c[0][i] + f.axes[3 * d + 1][i] * c[1][i] + f.axes[3 * d + 2][i] * c[2][i];
-        };
-        const double fx = turned(f.force, 0), fy = turned(f.force, 1), fz = turned(f.force, 2);
-        const double tx = turned(f.torque, 0), ty = turned(f.torque, 1), tz = turned(f.torque, 2);
-        const double bx = f.between[0][i], by = f.between[1][i], bz = f.between[2][i];
-        out[0] = fx, out[1] = fy, out[2] = fz, out[3] = tx, out[4] = ty, out[5] = tz;
-        out[6] = by * fz - bz * fy - tx; // the arms of body 2 are shorter by `between`
-        out[7] = bz * fx - bx * fz - ty;
-        out[8] = bx * fy - by * fx - tz;
-    }
-}
-
-MASONRY_VECTORISED void jumpNodal(int n, const int* place1, const int* place2, const double* u, double* __restrict jx,
-                                  double* __restrict jy, double* __restrict jz, Frames& __restrict out) {
-#pragma GCC ivdep
-    for (int i = 0; i < n; ++i) {
-        const int one = place1[i], two = place2[i];
-        const double x = u[two] - u[one], y = u[two + lanes] - u[one + lanes],
-                     z = u[two + 2 * lanes] - u[one + 2 * lanes];
-        const double j0 = out.axes[0][i] * x + out.axes[3][i] * y + out.axes[6][i] * z;
-        const double j1 = out.axes[1][i] * x + out.axes[4][i] * y + out.axes[7][i] * z;
-        const double j2 = out.axes[2][i] * x + out.axes[5][i] * y + out.axes[8][i] * z;
-        out.step[0][i] = j0 - jx[i], out.step[1][i] = j1 - jy[i], out.step[2][i] = j2 - jz[i];
-        jx[i] = j0, jy[i] = j1, jz[i] = j2;
-    }
-}
-
-MASONRY_VECTORISED void pullNodal(int n, const double* area, const double* normal, const double* shearA,
-                                  const double* shearB, const double* jx, const double* jy, const double* jz,
-                                  Frames& __restrict f, double* __restrict onPoints) {
-#pragma GCC ivdep
-    for (int i = 0; i < n; ++i) {
-        const double x = area[i] * normal[i], y = area[i] * shearA[i], z = area[i] * shearB[i];
-        onPoints[3 * i] = f.axes[0][i] * x + f.axes[1][i] * y + f.axes[2][i] * z;
-        onPoints[3 * i + 1] = f.axes[3][i] * x + f.axes[4][i] * y + f.axes[5][i] * z;
-        onPoints[3 * i + 2] = f.axes[6][i] * x + f.axes[7][i] * y + f.axes[8][i] * z;
-        f.torque[0][i] += jy[i] * z - jz[i] * y;
-        f.torque[1][i] += jz[i] * x - jx[i] * z;
-        f.torque[2][i] += jx[i] * y - jy[i] * x;
-    }
-}
-
-// The moment on the rotation of each of the two blocks, as in the Law2 functor.
-MASONRY_VECTORISED void finishNodal(int n, const Frames& f, double* __restrict onJoints) {
-#pragma GCC ivdep
-    for (int i = 0; i < n; ++i)
-        for (int d = 0; d < 3; ++d)
-            onJoints[9 * i + 3 + d] = onJoints[9 * i + 6 + d] =
-                0.5 * (f.axes[3 * d][i] * f.torque[0][i] + f.axes[3 * d + 1][i] * f.torque[1][i] +
-                       f.axes[3 * d + 2][i] * f.torque[2][i]);
-}
-
-} // namespace
 
 void MasonryJointLoop::advanceBlock(Group& g, int from, int n) {
-    Frames frames;
+    JointFrames frames;
+    const int own = g.alike ? 0 : from;
     const double *position[3], *orientation[4], *frame1[4], *frame2[4], *span[3];
     for (int d = 0; d < 4; ++d)
-        orientation[d] = bodies_.orientation[d].data(), frame1[d] = &g.frame1[d][from], frame2[d] = &g.frame2[d][from];
+        orientation[d] = bodies_.orientation[d].data(), frame1[d] = &g.frame1[d][own], frame2[d] = &g.frame2[d][own];
     for (int d = 0; d < 3; ++d)
-        position[d] = bodies_.position[d].data(), span[d] = &g.span[d][from];
+        position[d] = bodies_.position[d].data(), span[d] = &g.span[d][own];
+    const int *body1 = &g.body1[from], *body2 = &g.body2[from];
     if (g.nodal)
-        alignNodal(n, &g.body1[from], &g.body2[from], orientation, frame1, frame2, frames);
+        (plane_ ? alignNodalInPlane : alignNodal)(n, body1, body2, orientation, frame1, frame2, frames);
     else
-        alignRigid(n, &g.body1[from], &g.body2[from], position, orientation, frame1, frame2, span, frames);
+        (plane_ ? alignRigidInPlane : alignRigid)(n, body1, body2, position, orientation, frame1, frame2, span, frames);
     const auto& law = g.joint->law();
     for (int p = 0; p < g.points; ++p) {
         const std::size_t i = std::size_t(p) * g.stride + from;
-        double *jx = &g.jump[0][i], *jy = &g.jump[1][i], *jz = &g.jump[2][i];
-        if (g.nodal)
-            jumpNodal(n, &g.place1[i], &g.place2[i], zones_->displacementRows(), jx, jy, jz, frames);
-        else
-            jumpRigid(n, &g.offset[0][i], &g.offset[1][i], &g.offset[2][i], jx, jy, jz, frames);
-        g.columns.advance(law, i, n, frames.step[0], frames.step[1], frames.step[2]);
-        const double *normal = g.columns.normalStress() + i, *a = g.columns.shearStressA() + i,
+        const std::size_t at = g.alike ? p * block : i;
+        const double *area = &g.area[at], *a0 = &g.offset[0][at], *a1 = &g.offset[1][at], *a2 = &g.offset[2][at];
+        double *j0 = &g.jump[0][i], *j1 = &g.jump[1][i], *j2 = &g.jump[2][i];
+        if (g.nodal) {
+            const int *place1 = &g.place1[i], *place2 = &g.place2[i];
+            const double* u = zones_->displacementRows();
+            plane_ ? jumpNodalInPlane(n, place1, place2, u, j0, j1, frames)
+                   : jumpNodal(n, place1, place2, u, j0, j1, j2, frames);
+        } else
+            plane_ ? jumpRigidInPlane(n, a0, a1, j0, j1, frames) : jumpRigid(n, a0, a1, a2, j0, j1, j2, frames);
+        g.columns.advance(law, i, n, frames.step[0], frames.step[1], plane_ ? nullptr : frames.step[2],
+                          frames.normalStress);
+        const double *normal = frames.normalStress, *a = g.columns.shearStressA() + i,
                      *b = g.columns.shearStressB() + i;
         if (g.nodal)
-            pullNodal(n, &g.area[i], normal, a, b, jx, jy, jz, frames, &onPoints_[3 * (g.firstPoint + i)]);
+            plane_ ? pullNodalInPlane(n, area, normal, a, j0, j1, frames, &onPoints_[2 * (g.firstPoint + i)])
+                   : pullNodal(n, area, normal, a, b, j0, j1, j2, frames, &onPoints_[3 * (g.firstPoint + i)]);
         else
-            pullRigid(n, &g.area[i], normal, a, b, frames);
+            plane_ ? pullRigidInPlane(n, area, normal, a, a0, a1, frames) : pullRigid(n, area, normal, a, b, frames);
     }
-    double* onJoints = &onJoints_[std::size_t(9) * (g.first + from)];
+    double* onJoints = &onJoints_[std::size_t(plane_ ? 4 : 9) * (g.first + from)];
     if (g.nodal)
-        finishNodal(n, frames, onJoints);
+        (plane_ ? finishNodalInPlane : finishNodal)(n, frames, onJoints);
     else
-        finishRigid(n, frames, onJoints);
+        (plane_ ? finishRigidInPlane : finishRigid)(n, frames, onJoints);
 }
 
 void MasonryJointLoop::moveGuests() {
@@ -408,19 +355,23 @@ void MasonryJointLoop::toBodies() {
     for (int r = 0; r < count; ++r) {
         Vector3r force = Vector3r::Zero(), torque = Vector3r::Zero();
         for (int n = bodyGather_.start[r]; n < bodyGather_.start[r + 1]; ++n) {
-            const int item = bodyGather_.items[n];
-            const double* on = &onJoints_[9 * (item / 2)];
-            if (item % 2)
-                force -= Vector3r(on[0], on[1], on[2]), torque += Vector3r(on[6], on[7], on[8]);
-            else
-                force += Vector3r(on[0], on[1], on[2]), torque += Vector3r(on[3], on[4], on[5]);
+            const int item = bodyGather_.items[n], second = item % 2;
+            const double sign = second ? -1 : 1;
+            if (plane_) {
+                const double* on = &onJoints_[4 * (item / 2)];
+                force[0] += sign * on[0], force[2] += sign * on[1], torque[1] += on[2 + second];
+            } else {
+                const double* on = &onJoints_[9 * (item / 2)];
+                for (int d = 0; d < 3; ++d)
+                    force[d] += sign * on[d], torque[d] += on[3 + 3 * second + d];
+            }
         }
         const int body = bodyGather_.receivers[r];
         if (bodies_.momentPlaces[body] >= 0) {
             for (int d = 0; d < 3; ++d)
                 (zones_->momentRows() + bodies_.momentPlaces[body])[d * lanes] = torque[d];
         } else
-            onBodies_[2 * body] = force, onBodies_[2 * body + 1] = torque;
+            forces_[bodies_.ids[body]] += force, torques_[bodies_.ids[body]] += torque;
     }
 }
 
@@ -432,8 +383,14 @@ void MasonryJointLoop::toNodes() {
         double x = 0, y = 0, z = 0;
         for (int n = nodeGather_.start[r]; n < nodeGather_.start[r + 1]; ++n) {
             const int item = nodeGather_.items[n];
-            const double *on = &onPoints_[3 * (item / 2)], sign = item % 2 ? -1 : 1;
-            x += sign * on[0], y += sign * on[1], z += sign * on[2];
+            const double sign = item % 2 ? -1 : 1;
+            if (plane_) {
+                const double* on = &onPoints_[2 * (item / 2)];
+                x += sign * on[0], z += sign * on[1];
+            } else {
+                const double* on = &onPoints_[3 * (item / 2)];
+                x += sign * on[0], y += sign * on[1], z += sign * on[2];
+            }
         }
         double* at = forces + nodeGather_.receivers[r];
         at[0] = x, at[lanes] = y, at[2 * lanes] = z;
@@ -442,8 +399,8 @@ void MasonryJointLoop::toNodes() {
         const double* on = forces + guest.place;
         const Vector3r force(on[0], on[lanes], on[2 * lanes]);
         if (guest.body >= 0) {
-            onBodies_[2 * guest.body] += force;
-            onBodies_[2 * guest.body + 1] += (bodies_.states[guest.body]->ori * guest.local).cross(force);
+            forces_[bodies_.ids[guest.body]] += force;
+            torques_[bodies_.ids[guest.body]] += (bodies_.states[guest.body]->ori * guest.local).cross(force);
         } else
             for (int i = 0; i < 3; ++i)
                 for (int d = 0; d < 3; ++d)
@@ -454,14 +411,10 @@ void MasonryJointLoop::toNodes() {
 
 void MasonryJointLoop::action() {
     checkScene(*scene);
-    if (stale()) build();
-    const int bodyCount = int(bodies_.ids.size());
-    for (int b = 0; b < bodyCount; ++b) {
-        if (b + 8 < bodyCount) __builtin_prefetch(&bodies_.states[b + 8]->ori);
-        const auto& s = *bodies_.states[b];
-        for (int d = 0; d < 3; ++d)
-            bodies_.position[d][b] = s.pos[d], bodies_.orientation[d + 1][b] = s.ori.coeffs()[d];
-        bodies_.orientation[0][b] = s.ori.w();
+    if (stale()) build(true);
+    if (!readBodies()) {
+        build(false);
+        readBodies();
     }
     if (zones_) moveGuests();
     const int count = int(blocks_.size());
@@ -472,15 +425,10 @@ void MasonryJointLoop::action() {
         advanceBlock(g, from, std::min(block, g.stride - from));
     }
     ahead_ = true;
-    std::fill(onBodies_.begin(), onBodies_.end(), Vector3r::Zero());
+    forces_ = scene->forces().forces(int(scene->bodies->body.size()));
+    torques_ = scene->forces().torques(int(scene->bodies->body.size()));
     toBodies();
     if (zones_) toNodes();
-    auto& forces = scene->forces();
-    for (int b = 0; b < bodyCount; ++b) {
-        if (onBodies_[2 * b].isZero(0) && onBodies_[2 * b + 1].isZero(0)) continue;
-        forces.addForce(bodies_.ids[b], onBodies_[2 * b]);
-        forces.addTorque(bodies_.ids[b], onBodies_[2 * b + 1]);
-    }
 }
 
 } // namespace masonry

@@ -38,8 +38,10 @@ private:
         int first = 0, firstPoint = 0; // numbers of the first joint, and of the first point of a nodal one
         bool nodal = false;            // whether a side is deformable
         JointColumns columns;
+        bool alike = false; // whether the geometry of the first block of joints is that of all
+        void share();
         std::vector<int> body1, body2;
-        std::vector<double> frame1[4], frame2[4], span[3];
+        std::vector<double> frame1[4], frame2[4], span[3]; // in the plane: two numbers each, as complex numbers
         std::vector<double> area, jump[3];
         std::vector<double> offset[3];   // between rigid units
         std::vector<int> place1, place2; // of nodal joints, in the rows of MasonryZones
@@ -47,7 +49,8 @@ private:
     struct Bodies {                         // as columns
         std::vector<int> ids, momentPlaces; // of deformable units in the rows of MasonryZones, else -1
         std::vector<shared_ptr<yade::State>> states;
-        std::vector<double> position[3], orientation[4];
+        std::vector<Quaternionr> reference;              // conjugate of the reference orientation
+        std::vector<double> position[3], orientation[4]; // in the plane z, x, y, and the half angle's cosine and sine
     };
     struct Guest { // a point of a joint that moves with a rigid body, or between the nodes of an unmatched mesh
         int place, body;
@@ -60,7 +63,9 @@ private:
     };
 
     bool stale() const;
-    void build();
+    void build(bool mayBePlane);
+    bool inPlane() const;
+    bool readBodies();
     int bodyNumber(int id, std::vector<int>& known);
     void buildPlaces(Group&, std::vector<std::vector<int>>& atPlaces);
     void advanceBlock(Group&, int from, int count);
@@ -74,9 +79,10 @@ private:
     shared_ptr<MasonryZones> zones_;
     std::vector<Guest> guests_;
     Gather bodyGather_, nodeGather_;
-    std::vector<double> onJoints_;   // force on body 1, torque about both centres; of nodal joints the moment on both
-    std::vector<double> onPoints_;   // force on side 1 of nodal joints
-    std::vector<Vector3r> onBodies_; // force and torque of the step
+    std::vector<double> onJoints_; // force on body 1, torque about both centres; of nodal joints the moment on both
+    std::vector<double> onPoints_; // force on side 1 of nodal joints
+    Vector3r *forces_ = nullptr, *torques_ = nullptr; // the host's, of the step
+    bool plane_ = false;                              // whether all joints and motions lie in planes y = constant
     long seen_ = -1;
     std::size_t seenInteractions_ = 0;
     bool ahead_ = false; // whether the arrays are ahead of the joints

@@ -36,6 +36,7 @@ void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::assign(const MasonryMat& mat1, 
     phys->joint = joint;
     phys->normalStiffness = k.normal, phys->shearStiffness = k.shear;
     phys->states.resize(geom.points.size());
+    phys->losses.assign(geom.points.size(), Vector3r::Zero());
     interaction.phys = phys;
 }
 
@@ -91,9 +92,10 @@ bool Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening::go(shared_ptr<ya
             moment += point.jump.cross(pull);
         }
         torque += point.arm.cross(pull);
-        lost += point.area * Vector3r(spent.tension, spent.shear, spent.compression);
+        phys.losses[i] += Vector3r(spent.tension, spent.shear, spent.compression);
+        lost += point.area * phys.losses[i];
     }
-    phys.dissipated += lost;
+    phys.dissipated = lost;
     force = geom.axes * force, torque = geom.axes * torque;
     // The jump between nodes is seen in axes that turn with the mean rotation of the two blocks: so the joint works on
     // that rotation too, half on each block's. It makes the joint's forces a couple without moment, however far it

@@ -15,6 +15,7 @@ class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys> {
     shared_ptr<MasonryJoint> joint;
     double normalStiffness = 0, shearStiffness = 0;
     std::vector<JointState> states;
+    std::vector<Vector3r> losses; // per subcontact: energy dissipated so far by mode [J/m²]
     Vector3r dissipated = Vector3r::Zero();
 
     template <class Visit> static void attributes(Visit&& visit) {
@@ -27,6 +28,7 @@ class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys> {
         visit("dissipated", &P::dissipated, "Energy dissipated so far in tension, shear and compression [J].",
               ReadOnly);
         visit("states", &P::states, "", Hidden);
+        visit("losses", &P::losses, "", Hidden);
     }
 
     Keeper* keeper = nullptr; // the engine that has the states in its arrays, if one has

@@ -72,6 +72,8 @@ std::string frame(const std::string& name, std::size_t number, const std::string
 void MasonryVtkRecorder::postLoad() {
     std::vector<std::string> wrong;
     if (directory.empty()) wrong.push_back("directory must not be empty");
+    if (!std::all_of(times.begin(), times.end(), [](double time) { return std::isfinite(time); }))
+        wrong.push_back("times must be finite numbers [s]");
     if (stepPeriod < 0) wrong.push_back("stepPeriod " + std::to_string(stepPeriod) + " must be at least 0");
     if (!wrong.empty()) throw std::invalid_argument("MasonryVtkRecorder: " + joined(wrong, "; "));
 }
@@ -88,6 +90,10 @@ void MasonryVtkRecorder::action() {
         throw;
     }
     times.push_back(scene->time);
+    collect();
+}
+
+void MasonryVtkRecorder::collect() const {
     writeCollection("blocks", ".vtu");
     writeCollection("joints", ".vtp");
 }

@@ -22,15 +22,21 @@ public:
 
     template <class Visit> static void attributes(Visit&& visit) {
         using R = MasonryVtkRecorder;
-        visit("directory", &R::directory, "Existing folder to write to.");
+        visit("directory", &R::directory, "Existing folder to write to.", Local);
         visit("stepPeriod", &R::stepPeriod, "Steps between frames [-]; 0: only when called.");
         visit("kinds", &R::kinds, "Names of the joints' kinds, in the order of their numbers in the files.", ReadOnly);
-        visit("times", &R::times, "Simulation times of the frames so far [s].", ReadOnly);
+        visit("times", &R::times, "Simulation times of the frames so far [s]; given, the series goes on after them.");
     }
 
     void postLoad();
     bool isActivated() override;
     void action() override;
+    void collect() const;
+
+    template <class PyClass> static void extras(PyClass& cls) {
+        cls.def("collect", &MasonryVtkRecorder::collect,
+                "Write blocks.pvd and joints.pvd alone, for the frames of `times`.");
+    }
 
 private:
     void writeBlocks(const std::string& path) const;

@@ -82,7 +82,7 @@ void addForces(const BlockMatrix& m, const Row* displacements, const Row* moment
 
 void move(const BlockMatrix& matrix, const NodeMotion& m, const Row& present, Row* displacements, Row* velocities,
           Row* forces, Row* lastForces, NodeSums& sums) {
-    const double halfStep = 0.5 * m.dt, alpha = m.combined ? 0.5 * m.damping : m.damping;
+    const double alpha = m.combined ? 0.5 * m.damping : m.damping;
     for (int part = 0; part < parts; ++part) {
         Lanes *us = at(displacements, part), *vs = at(velocities, part), *fs = at(forces, part),
               *lasts = at(lastForces, part);
@@ -96,16 +96,18 @@ void move(const BlockMatrix& matrix, const NodeMotion& m, const Row& present, Ro
                 fs[i] = zero;
                 if (m.held[direction]) continue;
                 gravityWork += weight * us[i];
-                // the velocity in the middle of the step, as the host takes it: with the old one, damping pumps near
-                // the limit
-                Lanes way = -sign(old + 0.5 * perMass * force);
-                if (m.combined) way += sign(force - lasts[i]);
+                // Half the step's impulse per mass. Damping takes its share against the velocity in the middle of the
+                // step, at most what stops it there: it never turns a motion round, so it never adds energy.
+                const Lanes half = 0.5 * perMass * force, middle = old + half;
+                const Lanes reach = alpha * (half < zero ? -half : half);
+                const Lanes change = m.combined ? sign(force - lasts[i]) : zero;
+                const Lanes least = -reach - reach * change, most = reach - reach * change;
+                const Lanes taken = middle > most ? most : middle < least ? least : middle; // paper eq. (3)
                 lasts[i] = force;
-                const Lanes drag = alpha * (force < zero ? -force : force) * way; // paper eq. (3), or combined
-                const Lanes now = old + perMass * (force + drag);                 // eq. (2)
+                const Lanes now = old + 2 * (half - taken); // eq. (2)
                 // trapezoidal work and kinetic energy at the same instant, as in MasonryEnergy
-                damping -= halfStep * drag * old;
-                pending -= halfStep * drag * now;
+                damping += mass * taken * old;
+                pending += mass * taken * now;
                 kinetic += 0.5 * mass * old * now;
                 vs[i] = now;
                 us[i] += m.dt * now; // eq. (1)

@@ -175,6 +175,9 @@ void probe(std::vector<std::string>& wrong, const py::object& wrapper) {
     expect(scene->engines.size() == 1 && isReally(scene->engines[0].get(), "ForceResetter"),
            "engines: expected the one ForceResetter of the probe at offset 552");
     scene->forces().addForce(0, Vector3r(1, 2, 4));
+    scene->forces().addTorque(0, Vector3r(3, 5, 7));
+    expect(scene->forces().forces(1)[0] == Vector3r(1, 2, 4) && scene->forces().torques(1)[0] == Vector3r(3, 5, 7),
+           "forces: expected those of the first thread at its beginning");
     const Vector3r seen = py::extract<Vector3r>(omega.attr("forces").attr("f")(0, true));
     expect(seen == Vector3r(1, 2, 4), "forces: expected a force added at offset 32 to be seen by O.forces");
 

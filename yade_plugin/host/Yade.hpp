@@ -201,12 +201,31 @@ class InteractionContainer : public Serializable {
 };
 
 class ForceContainer { // only ever reached by reference
+    std::vector<std::vector<Vector3r>> forcesOfThreads_, torquesOfThreads_;
+
 public:
+    // Where the first thread adds up forces and torques, for bodies below `count`, until they are next summed.
+    Vector3r* forces(int count) {
+        addForce(count - 1, Vector3r::Zero()); // makes room, and says that there is something to sum
+        return forcesOfThreads_[0].data();
+    }
+    Vector3r* torques(int count) {
+        addTorque(count - 1, Vector3r::Zero());
+        return torquesOfThreads_[0].data();
+    }
     void addForce(int id, const Vector3r&);
     void addTorque(int id, const Vector3r&);
     void sync();
     const Vector3r& getForce(int id);
     const Vector3r& getTorque(int id);
+    const Vector3r getForceSingle(int id); // summed for one body
+    const Vector3r getTorqueSingle(int id);
+    void setPermForce(int id, const Vector3r&);
+    void setPermTorque(int id, const Vector3r&);
+    bool getPermForceUsed() const;
+    const Vector3r& getPermForce(int id); // only if they are used: there is no array before
+    const Vector3r& getPermTorque(int id);
+    void reset(long iter, bool permanentToo); // what was added since the last sync() outlives it
 };
 
 class Engine : public Serializable {

@@ -4,15 +4,21 @@
 namespace masonry {
 
 namespace {
-constexpr std::int64_t pending = -1; // beside the values of Regime: the full law must see this subcontact
-}
+
+constexpr std::size_t most = 32; // subcontacts that are taken at a time
+
+// What subcontacts did in a step, as wide as the numbers beside it, for the vector units.
+constexpr std::int64_t did(Regime regime) { return std::int64_t(regime); }
+constexpr std::int64_t waiting = -1; // for the full law
+
+} // namespace
 
 JointColumns::JointColumns(const JointLaw& law, const ElasticStiffness& k, std::size_t size) : k_(k) {
     for (auto* column : {&opening_, &crushing_, &dilation_, &slip_, &largestOpening_, &largestClosure_, &tensionDamage_,
-                         &shearDamage_, &normalStress_, &shearStressA_, &shearStressB_, &flow_, &intact_,
+                         &shearDamage_, &shearStressA_, &shearStressB_, &flow_, &intact_, &secant_, &reach_,
                          &capStrength2_, &lostTension_, &lostShear_, &lostCompression_})
         column->assign(size, 0);
-    regime_.assign(size, 0), row_.assign(size, 0);
+    regime_.assign(size, Regime::Elastic), row_.assign(size, 0);
     const auto& p = law.properties();
     const bool cap = p.cap && !p.elastic;
     limits_ = {k.normal,           k.shear,
@@ -32,71 +38,65 @@ JointColumns::JointColumns(const JointLaw& law, const ElasticStiffness& k, std::
 }
 
 JointState JointColumns::get(std::size_t i) const {
-    return {
-        opening_[i],        crushing_[i],      dilation_[i],    slip_[i],         largestOpening_[i],
-        largestClosure_[i], tensionDamage_[i], shearDamage_[i], normalStress_[i], {shearStressA_[i], shearStressB_[i]},
-        Regime(regime_[i])};
+    const double elastic = opening_[i] + flow_[i], normalStress = (elastic > 0 ? secant_[i] : k_.normal) * elastic;
+    return {opening_[i],        crushing_[i],      dilation_[i],    slip_[i],     largestOpening_[i],
+            largestClosure_[i], tensionDamage_[i], shearDamage_[i], normalStress, {shearStressA_[i], shearStressB_[i]},
+            regime_[i]};
 }
 
 void JointColumns::set(const JointLaw& law, std::size_t i, const JointState& s) {
     opening_[i] = s.opening, crushing_[i] = s.crushing, dilation_[i] = s.dilation, slip_[i] = s.slip;
     largestOpening_[i] = s.largestOpening, largestClosure_[i] = s.largestClosure;
     tensionDamage_[i] = s.tensionDamage, shearDamage_[i] = s.shearDamage;
-    normalStress_[i] = s.normalStress, shearStressA_[i] = s.shearStress.a, shearStressB_[i] = s.shearStress.b;
-    regime_[i] = std::int64_t(s.regime);
+    shearStressA_[i] = s.shearStress.a, shearStressB_[i] = s.shearStress.b;
+    regime_[i] = s.regime;
     flow_[i] = s.crushing - s.dilation;
     intact_[i] = 1 - JointLaw::coupled(s);
+    const double weakened = limits_.tensileStrength * intact_[i] / s.largestOpening; // eq. (11)
+    secant_[i] = weakened < k_.normal ? weakened : k_.normal;
+    reach_[i] = intact_[i] == 1 ? limits_.onset : s.largestOpening;
     const double strength = limits_.cap ? law.compressiveStrength(k_, s.largestClosure) : HUGE_VAL;
     capStrength2_[i] = strength * strength;
 }
 
-Energies JointColumns::takeDissipated(std::size_t i) {
-    const Energies lost{lostTension_[i], lostShear_[i], lostCompression_[i]};
-    lostTension_[i] = lostShear_[i] = lostCompression_[i] = 0;
-    return lost;
-}
-
 // law.md §5 where no strength is passed: eqs. (6), (7), the secant of eq. (11), and the three conditions of eq. (8).
+// Returns how many subcontacts need more.
 MASONRY_VECTORISED
-void JointColumns::advanceIntact(const Limits& m, std::size_t count, const double* __restrict jumpN,
-                                 const double* __restrict jumpA, const double* __restrict jumpB,
-                                 const double* __restrict flow, const double* __restrict intact,
-                                 const double* __restrict capStrength2, double* __restrict opening,
-                                 double* __restrict largestOpening, double* __restrict largestClosure,
-                                 double* __restrict normalStress, double* __restrict shearStressA,
-                                 double* __restrict shearStressB, double* __restrict lostTension,
-                                 std::int64_t* __restrict regime) {
-    const double kn = m.normalStiffness, ks = m.shearStiffness, ft = m.tensileStrength, onset = m.onset;
+std::int64_t JointColumns::advanceIntact(const Limits& m, std::size_t count, const double* __restrict jumpN,
+                                         const double* __restrict jumpA, const double* __restrict jumpB,
+                                         const double* __restrict flow, const double* __restrict intact,
+                                         const double* __restrict secant, const double* __restrict reach,
+                                         const double* __restrict capStrength2, double* __restrict opening,
+                                         double* __restrict largestOpening, double* __restrict largestClosure,
+                                         double* __restrict shearStressA, double* __restrict shearStressB,
+                                         double* __restrict normalStress, std::int64_t* __restrict now) {
+    const double kn = m.normalStiffness, ks = m.shearStiffness;
     const double cr = m.residualCohesion, dc = m.cohesionLoss, fr = m.residualFriction, df = m.frictionLoss;
     const double cnn = m.capNormal, css = m.capShear, cn = m.capLinear, limit = m.limitClosure;
     const bool cap = m.cap;
+    std::int64_t left = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const double total = opening[i] + jumpN[i], before = opening[i] + flow[i], elastic = total + flow[i];
-        const double whole = intact[i], farthest = largestOpening[i], closest = largestClosure[i];
-        const double weakened = ft * whole / farthest, secant = weakened < kn ? weakened : kn;
-        const bool open = elastic > 0;
-        const double sigma = (open ? secant : kn) * elastic;
+        const double whole = intact[i], farthest = largestOpening[i], closest = largestClosure[i], weak = secant[i];
+        const double sigma = (elastic > 0 ? weak : kn) * elastic;
         const double a = shearStressA[i] + ks * jumpA[i], b = shearStressB[i] + ks * jumpB[i], tau2 = a * a + b * b;
         const double strength = cr + dc * whole - sigma * (fr + df * whole), slips = strength > 0 ? strength : 0;
-        const double reach = whole == 1 ? onset : farthest, hardens = closest > limit ? closest : limit;
+        const double hardens = closest > limit ? closest : limit;
         const double crush = sigma < 0 ? cnn * sigma * sigma + css * tau2 + cn * sigma : 0;
         const double closure = sigma < 0 && cap ? -total : 0;
-        const bool quick =
-            (elastic <= reach) & (tau2 <= slips * slips) & (crush <= capStrength2[i]) & (closure <= hardens);
-        const double lost = open | (before > 0) ? 0.5 * (normalStress[i] * elastic - sigma * before) : 0;
-        lostTension[i] += quick ? lost : 0;
+        // a joint that opens on one stiffness and closes on another loses energy
+        const bool quick = (elastic <= reach[i]) & (tau2 <= slips * slips) & (crush <= capStrength2[i]) &
+                           (closure <= hardens) & ((kn - weak) * before * elastic >= 0);
         opening[i] = quick ? total : opening[i];
-        normalStress[i] = quick ? sigma : normalStress[i];
+        normalStress[i] = sigma;
         shearStressA[i] = quick ? a : shearStressA[i];
         shearStressB[i] = quick ? b : shearStressB[i];
         largestOpening[i] = quick & (elastic > farthest) ? elastic : farthest;
         largestClosure[i] = quick & (closure > closest) ? closure : closest;
-        regime[i] = quick ? std::int64_t(Regime::Elastic) : pending;
+        now[i] = quick ? did(Regime::Elastic) : waiting;
+        left += quick ? 0 : 1;
     }
-}
-
-namespace {
-constexpr std::size_t most = 32; // subcontacts whose slide is tried at a time
+    return left;
 }
 
 struct JointColumns::Slide {
@@ -111,27 +111,23 @@ MASONRY_VECTORISED
 void JointColumns::trySlide(const Limits& m, std::size_t count, const double* __restrict jumpN,
                             const double* __restrict jumpA, const double* __restrict jumpB,
                             const double* __restrict flow, const double* __restrict intact,
+                            const double* __restrict secant, const double* __restrict reach,
                             const double* __restrict slip, const double* __restrict opening,
                             const double* __restrict largestOpening, const double* __restrict shearStressA,
-                            const double* __restrict shearStressB, const std::int64_t* __restrict regime,
+                            const double* __restrict shearStressB, const std::int64_t* __restrict now,
                             Slide& __restrict s) {
-    const double kn = m.normalStiffness, ks = m.shearStiffness, ft = m.tensileStrength, onset = m.onset;
+    const double kn = m.normalStiffness, ks = m.shearStiffness, own = m.ownShearStiffness;
     const double cr = m.residualCohesion, dc = m.cohesionLoss, fr = m.residualFriction, df = m.frictionLoss;
-    const double own = m.ownShearStiffness;
     for (std::size_t i = 0; i < count; ++i) {
         const double total = opening[i] + jumpN[i], elastic = total + flow[i], whole = intact[i];
-        const bool open = elastic > 0;
-        const double farthest = elastic > largestOpening[i] ? elastic : largestOpening[i];
-        const double weakened = ft * whole / farthest, secant = weakened < kn ? weakened : kn;
-        const double sigma = (open ? secant : kn) * elastic;
+        const double sigma = (elastic > 0 ? secant[i] : kn) * elastic;
         const double a = shearStressA[i] + ks * jumpA[i], b = shearStressB[i] + ks * jumpB[i];
         const double size = std::sqrt(a * a + b * b), strength = cr + dc * whole - sigma * (fr + df * whole);
         const double peak = cr + dc - sigma * (fr + df); // eq. (15)
-        const double reach = whole == 1 ? onset : largestOpening[i];
         s.ratio[i] = peak > 0 ? 1 + (slip[i] + (size - peak) / ks) * own / peak : HUGE_VAL;
-        s.slides[i] = (regime[i] == pending) & (size > (strength > 0 ? strength : 0)) & (elastic <= reach);
-        s.total[i] = total, s.elastic[i] = elastic, s.sigma[i] = sigma, s.farthest[i] = farthest;
-        s.a[i] = a, s.b[i] = b, s.size[i] = size;
+        s.slides[i] = (now[i] == waiting) & (size > (strength > 0 ? strength : 0)) & (elastic <= reach[i]);
+        s.total[i] = total, s.elastic[i] = elastic, s.sigma[i] = sigma, s.a[i] = a, s.b[i] = b, s.size[i] = size;
+        s.farthest[i] = elastic > largestOpening[i] ? elastic : largestOpening[i];
     }
 }
 
@@ -139,13 +135,14 @@ void JointColumns::trySlide(const Limits& m, std::size_t count, const double* __
 MASONRY_VECTORISED
 void JointColumns::finishSlide(const Limits& m, std::size_t count, const double* __restrict flow,
                                const double* __restrict capStrength2, const double* __restrict tensionDamage,
-                               double* __restrict shearDamage, double* __restrict intact, double* __restrict slip,
-                               double* __restrict opening, double* __restrict largestOpening,
-                               double* __restrict largestClosure, double* __restrict normalStress,
+                               double* __restrict shearDamage, double* __restrict intact, double* __restrict secant,
+                               double* __restrict reach, double* __restrict slip, double* __restrict opening,
+                               double* __restrict largestOpening, double* __restrict largestClosure,
                                double* __restrict shearStressA, double* __restrict shearStressB,
                                double* __restrict lostTension, double* __restrict lostShear,
-                               std::int64_t* __restrict regime, const Slide& __restrict s) {
-    const double kn = m.normalStiffness, ks = m.shearStiffness, ft = m.tensileStrength;
+                               double* __restrict normalStress, std::int64_t* __restrict now,
+                               const Slide& __restrict s) {
+    const double kn = m.normalStiffness, ks = m.shearStiffness, ft = m.tensileStrength, onset = m.onset;
     const double cr = m.residualCohesion, dc = m.cohesionLoss, fr = m.residualFriction, df = m.frictionLoss;
     const double cnn = m.capNormal, css = m.capShear, cn = m.capLinear, limit = m.limitClosure;
     const bool cap = m.cap;
@@ -158,15 +155,15 @@ void JointColumns::finishSlide(const Limits& m, std::size_t count, const double*
         const double flowed = size > strength ? (size - strength) / ks : 0;
         const double rest = 1 - ks * flowed / size, share = rest > 0 ? rest : 0;
         const double a = s.a[i] * share, b = s.b[i] * share;
-        const double weakened = ft * whole / s.farthest[i], secant = weakened < kn ? weakened : kn;
-        const double sigma = open & weaker ? secant * elastic : s.sigma[i];
+        const double weakened = ft * whole / s.farthest[i], weak = weakened < kn ? weakened : kn;
+        const double sigma = open & weaker ? weak * elastic : s.sigma[i];
         const double crush = sigma < 0 ? cnn * sigma * sigma + css * (a * a + b * b) + cn * sigma : 0;
         const double closure = sigma < 0 && cap ? -s.total[i] : 0, closest = largestClosure[i];
         const double hardens = closest > limit ? closest : limit;
         const bool takes = (s.slides[i] != 0) & (crush <= capStrength2[i]) & (closure <= hardens);
-        const double before = opening[i] + flow[i];
+        const double before = opening[i] + flow[i], sigmaBefore = (before > 0 ? secant[i] : kn) * before;
         const double meanShear = 0.5 * ((shearStressA[i] + a) * s.a[i] + (shearStressB[i] + b) * s.b[i]) / size;
-        const double torn = open | (before > 0) ? 0.5 * (normalStress[i] * elastic - sigma * before) : 0;
+        const double torn = open | (before > 0) ? 0.5 * (sigmaBefore * elastic - sigma * before) : 0;
         lostTension[i] += takes ? torn : 0;
         lostShear[i] += takes ? meanShear * flowed : 0;
         slip[i] += takes ? flowed : 0;
@@ -176,18 +173,20 @@ void JointColumns::finishSlide(const Limits& m, std::size_t count, const double*
         shearStressB[i] = takes ? b : shearStressB[i];
         shearDamage[i] = takes ? damage : shearDamage[i];
         intact[i] = takes ? whole : intact[i];
+        secant[i] = takes ? weak : secant[i];
+        reach[i] = takes ? (whole == 1 ? onset : s.farthest[i]) : reach[i];
         largestOpening[i] = takes ? s.farthest[i] : largestOpening[i];
         largestClosure[i] = takes & (closure > closest) ? closure : closest;
-        const std::int64_t now = flowed > 0 ? std::int64_t(Regime::Slipping) : std::int64_t(Regime::Elastic);
-        regime[i] = takes ? now : regime[i];
+        now[i] = takes ? (flowed > 0 ? did(Regime::Slipping) : did(Regime::Elastic)) : now[i];
     }
 }
 
 void JointColumns::slide(const JointLaw& law, std::size_t i, std::size_t count, const double* jumpN,
-                         const double* jumpA, const double* jumpB) {
+                         const double* jumpA, const double* jumpB, double* shearStressB, double* normalStress,
+                         std::int64_t* now) {
     Slide s;
-    trySlide(limits_, count, jumpN, jumpA, jumpB, &flow_[i], &intact_[i], &slip_[i], &opening_[i], &largestOpening_[i],
-             &shearStressA_[i], &shearStressB_[i], &regime_[i], s);
+    trySlide(limits_, count, jumpN, jumpA, jumpB, &flow_[i], &intact_[i], &secant_[i], &reach_[i], &slip_[i],
+             &opening_[i], &largestOpening_[i], &shearStressA_[i], shearStressB, now, s);
     std::int64_t any = 0;
     for (std::size_t n = 0; n < count; ++n)
         any |= s.slides[n];
@@ -198,27 +197,34 @@ void JointColumns::slide(const JointLaw& law, std::size_t i, std::size_t count, 
             s.damage[n] = std::max(s.damage[n], law.shear().damage(s.ratio[n], row_[i + n]));
     }
     finishSlide(limits_, count, &flow_[i], &capStrength2_[i], &tensionDamage_[i], &shearDamage_[i], &intact_[i],
-                &slip_[i], &opening_[i], &largestOpening_[i], &largestClosure_[i], &normalStress_[i], &shearStressA_[i],
-                &shearStressB_[i], &lostTension_[i], &lostShear_[i], &regime_[i], s);
+                &secant_[i], &reach_[i], &slip_[i], &opening_[i], &largestOpening_[i], &largestClosure_[i],
+                &shearStressA_[i], shearStressB, &lostTension_[i], &lostShear_[i], normalStress, now, s);
 }
 
 void JointColumns::advance(const JointLaw& law, std::size_t first, std::size_t count, const double* jumpN,
-                           const double* jumpA, const double* jumpB) {
-    for (; count > most; first += most, count -= most, jumpN += most, jumpA += most, jumpB += most)
-        advance(law, first, most, jumpN, jumpA, jumpB);
-    advanceIntact(limits_, count, jumpN, jumpA, jumpB, &flow_[first], &intact_[first], &capStrength2_[first],
-                  &opening_[first], &largestOpening_[first], &largestClosure_[first], &normalStress_[first],
-                  &shearStressA_[first], &shearStressB_[first], &lostTension_[first], &regime_[first]);
-    std::int64_t waiting = 0;
-    for (std::size_t i = first; i < first + count; ++i)
-        waiting += regime_[i]; // pending is -1, and nobody else has been given another regime yet
-    if (waiting < -2 && slides_) slide(law, first, count, jumpN, jumpA, jumpB);
-    for (std::size_t n = 0; waiting && n < count; ++n) {
+                           const double* jumpA, const double* jumpB, double* normalStress) {
+    for (; count > most; first += most, count -= most, normalStress += most) {
+        advance(law, first, most, jumpN, jumpA, jumpB, normalStress);
+        jumpN += most, jumpA += most, jumpB += jumpB ? most : 0;
+    }
+    double none[most] = {}, noStress[most] = {}; // in the innermost cache, where nothing happens along b
+    const double* slideB = jumpB ? jumpB : none;
+    double* shearStressB = jumpB ? &shearStressB_[first] : noStress;
+    std::int64_t now[most];
+    const auto left =
+        advanceIntact(limits_, count, jumpN, jumpA, slideB, &flow_[first], &intact_[first], &secant_[first],
+                      &reach_[first], &capStrength2_[first], &opening_[first], &largestOpening_[first],
+                      &largestClosure_[first], &shearStressA_[first], shearStressB, normalStress, now);
+    if (left > 2 && slides_) slide(law, first, count, jumpN, jumpA, slideB, shearStressB, normalStress, now);
+    for (std::size_t n = 0; n < count; ++n)
+        regime_[first + n] = Regime(now[n]);
+    for (std::size_t n = 0; left && n < count; ++n) {
+        if (now[n] != waiting) continue;
         const std::size_t i = first + n;
-        if (regime_[i] != pending) continue;
         JointState s = get(i);
-        const auto lost = law.advance(k_, s, {jumpN[n], {jumpA[n], jumpB[n]}});
+        const auto lost = law.advance(k_, s, {jumpN[n], {jumpA[n], slideB[n]}});
         set(law, i, s);
+        normalStress[n] = s.normalStress;
         lostTension_[i] += lost.tension, lostShear_[i] += lost.shear, lostCompression_[i] += lost.compression;
     }
 }

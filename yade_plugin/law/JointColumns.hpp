@@ -16,17 +16,20 @@ public:
     JointState get(std::size_t i) const;
     void set(const JointLaw& law, std::size_t i, const JointState& state);
 
-    // One step of the subcontacts from `first` on, under `count` jumps given in columns. `law` is the one that the
-    // columns were made with. Different ranges may be advanced at the same time.
+    // One step of the subcontacts from `first` on, under `count` jumps given in columns; without `slideB`, all slides
+    // and shear stresses are along a. Gives their normal stresses; the shear stresses stand below. `law` is the one
+    // that the columns were made with. Different ranges may be advanced at the same time.
     void advance(const JointLaw& law, std::size_t first, std::size_t count, const double* opening, const double* slideA,
-                 const double* slideB);
+                 const double* slideB, double* normalStress);
 
-    const double* normalStress() const { return normalStress_.data(); }
     const double* shearStressA() const { return shearStressA_.data(); }
     const double* shearStressB() const { return shearStressB_.data(); }
 
-    // Energy dissipated since this was last asked [J/m²].
-    Energies takeDissipated(std::size_t i);
+    // Energy dissipated so far [J/m²]: kept beside the state.
+    Energies dissipated(std::size_t i) const { return {lostTension_[i], lostShear_[i], lostCompression_[i]}; }
+    void setDissipated(std::size_t i, const Energies& e) {
+        lostTension_[i] = e.tension, lostShear_[i] = e.shear, lostCompression_[i] = e.compression;
+    }
 
 private:
     struct Limits { // what the short way must know of the kind
@@ -34,34 +37,36 @@ private:
             residualFriction, frictionLoss, capNormal, capShear, capLinear, limitClosure, ownShearStiffness;
         bool cap;
     };
-    static void advanceIntact(const Limits&, std::size_t count, const double* jumpN, const double* jumpA,
-                              const double* jumpB, const double* flow, const double* intact, const double* capStrength2,
-                              double* opening, double* largestOpening, double* largestClosure, double* normalStress,
-                              double* shearStressA, double* shearStressB, double* lostTension, std::int64_t* regime);
+    static std::int64_t advanceIntact(const Limits&, std::size_t count, const double* jumpN, const double* jumpA,
+                                      const double* jumpB, const double* flow, const double* intact,
+                                      const double* secant, const double* reach, const double* capStrength2,
+                                      double* opening, double* largestOpening, double* largestClosure,
+                                      double* shearStressA, double* shearStressB, double* normalStress,
+                                      std::int64_t* now);
 
     struct Slide; // scratch
     static void trySlide(const Limits&, std::size_t count, const double* jumpN, const double* jumpA,
-                         const double* jumpB, const double* flow, const double* intact, const double* slip,
-                         const double* opening, const double* largestOpening, const double* shearStressA,
-                         const double* shearStressB, const std::int64_t* regime, Slide&);
+                         const double* jumpB, const double* flow, const double* intact, const double* secant,
+                         const double* reach, const double* slip, const double* opening, const double* largestOpening,
+                         const double* shearStressA, const double* shearStressB, const std::int64_t* now, Slide&);
     static void finishSlide(const Limits&, std::size_t count, const double* flow, const double* capStrength2,
-                            const double* tensionDamage, double* shearDamage, double* intact, double* slip,
-                            double* opening, double* largestOpening, double* largestClosure, double* normalStress,
-                            double* shearStressA, double* shearStressB, double* lostTension, double* lostShear,
-                            std::int64_t* regime, const Slide&);
+                            const double* tensionDamage, double* shearDamage, double* intact, double* secant,
+                            double* reach, double* slip, double* opening, double* largestOpening,
+                            double* largestClosure, double* shearStressA, double* shearStressB, double* lostTension,
+                            double* lostShear, double* normalStress, std::int64_t* now, const Slide&);
     void slide(const JointLaw&, std::size_t first, std::size_t count, const double* jumpN, const double* jumpA,
-               const double* jumpB);
+               const double* jumpB, double* shearStressB, double* normalStress, std::int64_t* now);
 
     ElasticStiffness k_{};
     Limits limits_{};
     bool slides_ = false; // whether the kind can take the way of those that only slip
     std::vector<double> opening_, crushing_, dilation_, slip_, largestOpening_, largestClosure_, tensionDamage_,
-        shearDamage_, normalStress_, shearStressA_, shearStressB_; // as in JointState
-    std::vector<double> flow_, intact_, capStrength2_;             // follow from the above: crushing less dilation,
-                                                                   // 1 - d_ts, square of the cap's strength
+        shearDamage_, normalStress_, shearStressA_, shearStressB_;      // as in JointState
+    std::vector<double> flow_, intact_, secant_, reach_, capStrength2_; // follow from the above: crushing less
+    // dilation, 1 - d_ts, stiffness of the open joint, elastic opening before more damage, square of the cap's strength
     std::vector<double> lostTension_, lostShear_, lostCompression_;
-    std::vector<std::int32_t> row_;    // of the shear table, where it was read last
-    std::vector<std::int64_t> regime_; // as wide as the numbers beside it, for the vector units
+    std::vector<std::int32_t> row_; // of the shear table, where it was read last
+    std::vector<Regime> regime_;
 };
 
 } // namespace masonry

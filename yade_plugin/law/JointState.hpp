@@ -1,5 +1,6 @@
 // What one subcontact remembers, and what it is told and answers in a step. Opening and tension are positive.
 #pragma once
+#include <cstdint>
 
 namespace masonry {
 
@@ -12,7 +13,7 @@ struct Jump { // increment of the displacement jump in a step [m]
     Shear slide;
 };
 
-enum class Regime : int { Elastic, Opening, Slipping, Crushing }; // what acted in the last step
+enum class Regime : std::int8_t { Elastic, Opening, Slipping, Crushing }; // what acted in the last step
 
 struct JointState {
     double opening = 0;        // [m] un, total, positive open

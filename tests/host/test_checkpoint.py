@@ -1,0 +1,241 @@
+"""A scene's state on disk and back: to the last bit, whole or not at all, and never into another scene."""
+
+import json
+import os
+import struct
+
+import numpy as np
+import pytest
+from masonry import loadCheckpoint, readCheckpoint, saveCheckpoint
+from test_joint_loop import CASES, energy, panel, state
+from yade import O, Vector3
+from yade.wrapper import *
+
+
+def run(steps):
+    for _ in range(steps):
+        O.step()
+
+
+def bits(interactions):
+    """All that a run can be told by, as bytes."""
+    values = [O.iter, O.time, O.dt, *energy().values()]
+    for b in O.bodies:
+        values += [*O.forces.f(b.id, True), *O.forces.t(b.id, True), *b.state.vel]
+        values += [*b.state.angVel, *b.state.angMom]
+    parts = [np.array(values)] + list(state(interactions).values())
+    return b"".join(p.tobytes() for p in parts)
+
+
+def damped(case, functors=False):
+    """A panel with combined damping, which remembers the forces of the step before."""
+    interactions = panel(functors, damping=0.3, **CASES[case])
+    if not functors:
+        O.engines[4].dampingKind = "combined"
+    return interactions
+
+
+@pytest.mark.parametrize(
+    "case, functors",
+    [(case, False) for case in CASES] + [("rigid", True), ("deformable", True)],
+)
+def test_a_scene_built_anew_goes_on_bit_for_bit(case, functors, tmp_path):
+    path = str(tmp_path / "c")
+    interactions = damped(case, functors)
+    run(400)
+    end = bits(interactions)
+
+    interactions = damped(case, functors)
+    run(200)
+    saveCheckpoint(path, {"stage": "push", "at": [1 / 3, None]})
+    there = bits(interactions)
+    run(200)
+    assert bits(interactions) == end  # saving changes nothing
+
+    interactions = damped(case, functors)
+    assert loadCheckpoint(path) == {"stage": "push", "at": [1 / 3, None]}
+    assert bits(interactions) == there
+    run(200)
+    assert bits(interactions) == end
+    assert state(interactions)["damage"].max(axis=0).min() > 0.01
+
+    loadCheckpoint(
+        path
+    )  # back, in a scene that has run, and on without a look at anything
+    run(200)
+    assert bits(interactions) == end
+
+
+def test_what_a_script_changes_in_engines_is_kept(tmp_path):
+    path = str(tmp_path / "c")
+    panel(False, "deformable")
+    load, zones = O.engines[2], O.engines[5]
+    load.velocity, load.driven, load.dead = 0.125, False, True
+    zones.damping, zones.dampingKind = 0.4, "local"
+    O.forces.setPermF(1, Vector3(1, 2, 3))
+    O.dt *= 0.5
+    dt = O.dt
+    run(3)
+    force = Vector3(O.forces.f(1, True))
+    saveCheckpoint(path)
+    panel(False, "deformable")
+    assert loadCheckpoint(path) is None
+    load, zones = O.engines[2], O.engines[5]
+    assert (load.velocity, load.driven, load.dead) == (0.125, False, True)
+    assert (zones.damping, zones.dampingKind) == (0.4, "local")
+    assert (O.iter, O.dt) == (3, dt)
+    assert O.forces.permF(1) == Vector3(1, 2, 3)
+    assert (O.forces.f(1, True) - force).norm() < 1e-12 * force.norm()
+
+
+def test_a_checkpoint_of_another_scene_is_refused_and_changes_nothing(tmp_path):
+    path = str(tmp_path / "c")
+    panel(False)
+    run(50)
+    saveCheckpoint(path)
+
+    def refused(message):
+        before = bits(interactions)
+        with pytest.raises(ValueError, match=f"{path} is of another scene: {message}"):
+            loadCheckpoint(path)
+        assert bits(interactions) == before
+
+    interactions = panel(False, size=6)
+    run(20)
+    refused("its blocks are others")
+    interactions = panel(False, "deformable")
+    run(20)
+    refused("its engines are MasonryJointLoop, .*, here .*, MasonryZones")
+    interactions = panel(False)
+    run(20)
+    joint = next(i.phys.joint for i in interactions if i.phys.joint.name == "weak")
+    joint.cohesion *= 1.0000001
+    refused("its joints are others, or have other properties")
+
+
+@pytest.fixture
+def saved(tmp_path):
+    path = str(tmp_path / "c")
+    panel(False)
+    run(10)
+    saveCheckpoint(path, "text")
+    return path, open(path, "rb").read()
+
+
+def test_a_damaged_file_is_refused_in_words(saved):
+    path, data = saved
+    half = len(data) // 2
+    flipped = data[:half] + bytes([data[half] ^ 4]) + data[half + 1 :]
+    for wrong, message in (
+        (data[:half], "is cut short: "),
+        (data[:-1], "is cut short: "),
+        (b"", "is cut short: 0 bytes"),
+        (flipped, "is damaged: its bytes do not give the sum"),
+        (data + b"\0", "is damaged: its size"),
+        (b"time_s\n", "is no masonry checkpoint"),
+        (data.replace(b"format 1", b"format 2"), "is of another version of the plugin"),
+    ):
+        open(path, "wb").write(wrong)
+        for read in (loadCheckpoint, readCheckpoint):
+            with pytest.raises(ValueError, match=f"{path} {message}"):
+                read(path)
+    with pytest.raises(FileNotFoundError):
+        loadCheckpoint(path + "x")
+
+
+def sealed(data, name, change):
+    """A checkpoint with one of its arrays or texts changed, and the right sum."""
+    at = data.index(name.encode())
+    size = struct.unpack("<Q", data[at - 8 : at])[0]
+    at += len(name)
+    value = change(data[at : at + size])
+    assert len(value) == size
+    data = data[:at] + value + data[at + size : -8]
+    sum = 0xCBF29CE484222325
+    for byte in data:
+        sum = (sum ^ byte) * 0x100000001B3 % 2**64
+    return data + struct.pack("<Q", sum)
+
+
+@pytest.mark.parametrize(
+    "name, message",
+    [
+        ("scene.bodies", "does not fit this scene, at 'scene.bodies'"),
+        ("scene.joints", "damaged at the regime of a joint"),
+        ("engine 2 MasonryLoad.body", "a whole number in it is too large"),
+        ("scene.time", "is damaged: no finite number at 'scene.time'"),
+        ("engine 4 MasonryIntegrator.damping", "damping 1e\\+300 must be 0 to 0.99"),
+    ],
+)
+def test_hostile_numbers_under_a_right_sum_are_refused_and_change_nothing(
+    saved, name, message
+):
+    path, data = saved
+    value = float("nan") if name == "scene.time" else 1e300
+    last = lambda old: old[:-8] + struct.pack("<d", value)
+    before_last = lambda old: old[:-16] + struct.pack("<d", value) + old[-8:]
+    change = before_last if name == "scene.bodies" else last
+    open(path, "wb").write(sealed(data, name, change))
+    interactions = panel(False)
+    run(30)
+    before = bits(interactions)
+    with pytest.raises(ValueError, match=message):
+        loadCheckpoint(path)
+    assert bits(interactions) == before
+    run(5)
+
+
+def test_text_that_is_no_json_is_refused(saved):
+    path, data = saved
+    open(path, "wb").write(sealed(data, "extra", lambda old: b"{" * len(old)))
+    with pytest.raises(ValueError, match=f"{path} "):
+        readCheckpoint(path)
+
+
+def test_a_disk_that_is_full_leaves_the_old_checkpoint(saved):
+    path, data = saved
+    os.symlink("/dev/full", path + ".new")
+    run(10)
+    with pytest.raises(OSError, match="No space left on device"):
+        saveCheckpoint(path)
+    assert open(path, "rb").read() == data and not os.path.lexists(path + ".new")
+    saveCheckpoint(path)
+    assert readCheckpoint(path) is None
+
+
+def test_a_state_that_has_left_finite_numbers_is_not_saved(saved):
+    path, data = saved
+    O.bodies[1].state.vel = Vector3(0, float("nan"), 0)
+    with pytest.raises(ValueError, match="left finite numbers, at 'scene.bodies'"):
+        saveCheckpoint(path)
+    with pytest.raises(ValueError):
+        saveCheckpoint(path, float("nan"))
+    with pytest.raises(TypeError):
+        saveCheckpoint(path, {1, 2})
+    assert open(path, "rb").read() == data and os.listdir(os.path.dirname(path)) == [
+        "c"
+    ]
+    loadCheckpoint(path)  # and the good one takes the scene back
+    run(5)
+
+
+def test_a_recorder_goes_on_with_its_series(tmp_path):
+    def recorded():
+        panel(False)
+        O.engines = O.engines + [
+            MasonryVtkRecorder(directory=str(tmp_path), stepPeriod=10)
+        ]
+
+    path = str(tmp_path / "c")
+    recorded()
+    run(25)
+    saveCheckpoint(path)
+    run(20)
+    series = (tmp_path / "joints.pvd").read_text()
+    last = (tmp_path / "joints_0004.vtp").read_bytes()
+    os.remove(tmp_path / "joints_0004.vtp")
+    recorded()
+    loadCheckpoint(path)
+    run(20)
+    assert (tmp_path / "joints.pvd").read_text() == series
+    assert (tmp_path / "joints_0004.vtp").read_bytes() == last

@@ -1,0 +1,350 @@
+"""Runs that are killed, interrupted or refused by the disk, and taken up again: the curve is that of a whole run."""
+
+import os
+import random
+import signal
+import subprocess
+import time
+
+import pytest
+from conftest import ROOT
+from masonry import couplet, options, readCheckpoint, saveCheckpoint, walls
+from masonry.checkpoints import Resumable
+from masonry.results import readRun
+
+
+def files(folder):
+    """What a resumed run must leave as a whole one does, to the byte."""
+    wanted = (".csv", ".vtu", ".vtp", ".pvd")
+    names = sorted(n for n in os.listdir(folder) if n.endswith(wanted))
+    return {n: open(os.path.join(folder, n), "rb").read() for n in names}
+
+
+# -- a wall as a user runs it ------------------------------------------------------------------------------------------
+
+
+def test_a_wall_killed_ten_times_leaves_the_curve_of_a_whole_run(runScene, tmp_path):
+    words = ["--until", "1", "--rate", "2", "--vtk-every", "0.3"]
+    _, whole = runScene("wall_comp4", *words, "--checkpoint-every", "0")
+    steps = readRun(whole)["steps"]
+    assert not os.path.exists(os.path.join(whole, "run.checkpoint"))
+
+    out = str(tmp_path / "killed")
+    kept = os.path.join(out, "run.checkpoint")
+    dice = random.Random()
+    moments = [(n + dice.random()) / 11 * steps for n in range(10)]
+
+    def start():
+        known = ["--resume", out] if os.path.exists(kept) else [*words, "--out", out]
+        scene = os.path.join(ROOT, "scripts", "wall_comp4.py")
+        return subprocess.Popen(
+            ["yade", "-n", "-x", scene, *known, "--checkpoint-every", "0.002"],
+            stdout=subprocess.DEVNULL,
+        )
+
+    for moment in moments:
+        process = start()
+        while not os.path.exists(kept) or readCheckpoint(kept)["at"]["steps"] < moment:
+            assert process.poll() is None
+            time.sleep(0.005)
+        time.sleep(dice.uniform(0, 0.05))  # within a write, or between two
+        process.kill()
+        assert process.wait() == -signal.SIGKILL
+    assert start().wait() == 0
+    assert files(out) == files(whole)
+    one, other = readRun(whole), readRun(out)
+    assert len(other["resumed_at_s"]) >= 9 and one["resumed_at_s"] == []
+    for name in ("steps", "peak_base_shear_kN", "energy_balance_error", "kinds"):
+        assert one[name] == other[name]
+
+
+# -- a small wall, in this process -------------------------------------------------------------------------------------
+
+SMALL = walls.Wall(
+    name="small", title="a small wall", halfUnits=6, precompression=0.5e6, courses=6
+)
+PUSH = ["--until", "0.3", "--vtk-every", "0.1", "--rate", "40"]
+
+
+def run(out, *words, wall=SMALL, resume=False):
+    where = ["--resume" if resume else "--out", str(out)]
+    args = options.parser("", until=1).parse_args([*where, *words])
+    return walls.test(wall, args)
+
+
+@pytest.fixture
+def at(monkeypatch):
+    """Do something just before the n-th ``_advance`` from now on."""
+
+    def plan(n, act):
+        count = [n]
+
+        def advance(self, steps):
+            count[0] -= 1
+            if count[0] == 0:
+                act(self)
+            original(self, steps)
+
+        original = at.original
+        monkeypatch.setattr(Resumable, "_advance", advance)
+
+    at.original = Resumable._advance
+    return plan
+
+
+def interrupt(model):
+    os.kill(os.getpid(), signal.SIGINT if model.at.steps % 2 else signal.SIGTERM)
+
+
+CANTILEVER = walls.Wall(
+    name="small",
+    title="a small cantilever under rollers",
+    halfUnits=6,
+    precompression=0.5e6,
+    courses=6,
+    loadHeight=0.6,
+    loadLineFixed=True,
+)
+
+
+@pytest.mark.parametrize(
+    "wall, blocks",
+    [(SMALL, "rigid"), (SMALL, "deformable"), (CANTILEVER, "rigid")],
+    ids=["rigid", "deformable", "cantilever"],
+)
+def test_a_wall_interrupted_in_every_stage_leaves_the_curve_of_a_whole_run(
+    scene, tmp_path, at, wall, blocks
+):
+    words = [*PUSH, "--blocks", blocks]
+    assert run(tmp_path / "whole", *words, wall=wall) == 0
+    out, stages, resume = tmp_path / "broken", [], False
+    while True:
+        at(35 if stages else 3, interrupt)
+        status = run(out, *([] if resume else words), wall=wall, resume=resume)
+        if status == 0:
+            break
+        assert status == 130
+        stages.append(readCheckpoint(str(out / "run.checkpoint"))["at"]["stage"])
+        resume = True
+    assert {"settle", "push"} == set(stages)
+    assert files(out) == files(tmp_path / "whole")
+    assert len(readRun(out)["resumed_at_s"]) == len(stages)
+
+
+@pytest.mark.parametrize("blocks", ["rigid", "deformable"])
+@pytest.mark.parametrize("path", ["shear", "closure-shear"])
+def test_a_couplet_interrupted_in_every_move_leaves_the_curve_of_a_whole_run(
+    scene, tmp_path, at, blocks, path
+):
+    def run(*words):
+        parser = options.parser("", until=0.05, rate=20)
+        args = parser.parse_args(list(words))
+        args.path, args.normal_stress, args.closure = path, -0.5, 0.02
+        return couplet.test(args)
+
+    words = ["--blocks", blocks]
+    assert run("--out", str(tmp_path / "whole"), *words) == 0
+    words += ["--out", str(tmp_path / "broken")]
+    moves = []
+    while True:
+        at(700, interrupt)
+        if run(*words) == 0:
+            break
+        told = readCheckpoint(str(tmp_path / "broken" / "run.checkpoint"))
+        moves.append(told["at"]["move"])
+        words = ["--resume", str(tmp_path / "broken")]
+    assert set(moves) == ({1, 2, 3} if path == "shear" else {1, 2})
+    assert files(tmp_path / "broken") == files(tmp_path / "whole")
+
+
+def test_a_finished_run_can_be_pushed_on(scene, tmp_path):
+    assert run(tmp_path / "whole", *PUSH) == 0
+    assert run(tmp_path / "parts", *PUSH, "--until", "0.15") == 0
+    assert run(tmp_path / "parts", "--until", "0.3", resume=True) == 0
+    assert files(tmp_path / "parts") == files(tmp_path / "whole")
+    assert readRun(tmp_path / "parts")["options"]["rate"] == 40
+
+
+def test_frames_can_begin_and_end_with_a_resumed_run(scene, tmp_path):
+    assert run(tmp_path / "whole", *PUSH) == 0
+    assert run(tmp_path / "parts", *PUSH, "--no-vtk", "--until", "0.15") == 0
+    told = str(tmp_path / "parts")
+    args = options.parser("", until=1).parse_args(["--resume", told, "--until", "0.3"])
+    args.no_vtk = False
+    assert walls.test(SMALL, args) == 0
+    frames = [n for n in files(told) if n.endswith("vtu")]
+    assert frames == ["blocks_0000.vtu", "blocks_0001.vtu"]  # at 0.2 mm and the end
+    assert files(told)["curve.csv"] == files(tmp_path / "whole")["curve.csv"]
+
+
+def test_a_run_that_fails_can_be_taken_up_where_it_failed(scene, tmp_path, monkeypatch):
+    assert run(tmp_path / "whole", *PUSH) == 0
+    record, count = walls.WallModel._record, [30]
+
+    def fail(self):
+        values = record(self)
+        count[0] -= 1
+        if count[0] == 0:
+            raise OSError("a pipe that broke")
+        return values
+
+    monkeypatch.setattr(walls.WallModel, "_record", fail)
+    with pytest.raises(OSError, match="a pipe that broke"):
+        run(tmp_path / "failed", *PUSH)
+    assert run(tmp_path / "failed", resume=True) == 0
+    assert files(tmp_path / "failed") == files(tmp_path / "whole")
+
+
+def test_a_full_disk_is_told_and_the_run_goes_on(scene, tmp_path, at, capsys):
+    assert run(tmp_path / "whole", *PUSH) == 0
+    kept = str(tmp_path / "full" / "run.checkpoint")
+    seen = {}
+
+    def fill(model):
+        model.checkpoint()
+        seen["before"] = open(kept, "rb").read()
+        os.symlink("/dev/full", kept + ".new")
+        model.checkpoint()
+        seen["after"] = open(kept, "rb").read()
+
+    at(60, fill)
+    assert run(tmp_path / "full", *PUSH) == 0
+    assert "no checkpoint could be written: [Errno 28] No space left on device" in (
+        capsys.readouterr().err
+    )
+    assert seen["before"] == seen["after"]
+    assert files(tmp_path / "full") == files(tmp_path / "whole")
+    assert readCheckpoint(kept)["at"]["moved"] > 0.25  # the disk has room again
+
+
+@pytest.mark.parametrize("lost", ["curve.csv", "joints_0001.vtp", "run.json.new"])
+def test_a_run_whose_results_cannot_be_written_goes_on_when_there_is_room(
+    scene, tmp_path, at, capsys, lost
+):
+    assert run(tmp_path / "whole", *PUSH) == 0
+    out = tmp_path / "full"
+
+    def fill(model):
+        if lost == "curve.csv":
+            full = os.open("/dev/full", os.O_WRONLY)
+            os.dup2(full, model.results._file.fileno())
+            os.close(full)
+        else:
+            os.symlink("/dev/full", out / lost)
+
+    at(32 if lost == "joints_0001.vtp" else 60, fill)
+    assert run(out, *PUSH) == 1
+    said = capsys.readouterr()
+    lost = lost.removesuffix(".new")
+    assert f"{lost}: No space left on device; what was written before" in said.err
+    assert f"--resume {out} goes on from here" in said.out
+    assert run(out, resume=True) == 0
+    assert files(out) == files(tmp_path / "whole")
+
+
+# -- what is refused ---------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def broken(scene, tmp_path, at):
+    out = tmp_path / "broken"
+    at(70, interrupt)
+    assert run(out, *PUSH, "--set", "bed.cohesion=2e5") == 130
+    return out
+
+
+def refused(out, *words, wall=SMALL):
+    """The status of a refusal, which must leave the folder as it is."""
+    everything = {n: open(out / n, "rb").read() for n in os.listdir(out)}
+    try:
+        status = run(out, *words, wall=wall, resume=True)
+    except SystemExit as end:
+        status = end.code
+    assert {n: open(out / n, "rb").read() for n in os.listdir(out)} == everything
+    return status
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        (["--rate", "10"], "a run goes on as it began: --rate is 40.0"),
+        (
+            ["--blocks", "deformable", "--divisions", "2"],
+            "--blocks is rigid, --divisions is 1",
+        ),
+        (["--set", "bed.cohesion=1e5"], r"--set is \[('bed', 'cohesion', '2e5')\]"),
+        (["--out", "elsewhere"], "--out is "),
+        (["--until", "0.001"], "--until 0.001: the run is at 0."),
+    ],
+)
+def test_options_that_would_change_the_run_are_refused(broken, capsys, words, message):
+    assert refused(broken, *words) == 2
+    assert message.replace("\\", "") in capsys.readouterr().err
+
+
+def test_options_that_say_the_same_are_welcome(broken):
+    words = ["--rate", "40", "--set", "bed.cohesion=2e5", "--checkpoint-every", "1"]
+    assert run(broken, *words, resume=True) == 0
+
+
+def test_what_cannot_be_taken_up_is_refused(broken, tmp_path, capsys):
+    def says(message):
+        error = capsys.readouterr().err
+        assert message in error and len(error.splitlines()) == 1
+
+    other = walls.Wall(
+        name="other", title="", halfUnits=6, precompression=0.5e6, courses=6
+    )
+    assert refused(broken, wall=other) == 2
+    says("holds a run of small, this is other")
+    higher = walls.Wall(
+        name="small", title="", halfUnits=6, precompression=0.5e6, courses=7
+    )
+    assert refused(broken, wall=higher) == 2
+    says("run.checkpoint is of another scene: its blocks are others")
+
+    kept = broken / "run.checkpoint"
+    data = kept.read_bytes()
+    middle = len(data) // 2
+    flip = data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :]
+    for wrong, message in (
+        (data[:middle], "run.checkpoint is cut short: "),
+        (flip, "run.checkpoint is damaged: "),
+        (data.replace(b"format 1", b"format 9"), "of another version of the plugin"),
+        (b"", "run.checkpoint is cut short: 0 bytes"),
+    ):
+        kept.write_bytes(wrong)
+        assert refused(broken) == 2
+        says(message)
+    saveCheckpoint(str(kept), "a user's own")
+    assert refused(broken) == 2
+    says("was not left by a wall or couplet")
+    os.remove(kept)
+    assert refused(broken) == 2
+    says("No such file or directory")
+    assert not (tmp_path / "none").exists()
+
+
+def test_another_build_or_number_of_threads_is_told(broken, capsys):
+    kept = str(broken / "run.checkpoint")
+    told = readCheckpoint(kept)
+    told.update(threads=7, build="v0")
+    saveCheckpoint(kept, told)
+    capsys.readouterr()
+    assert run(broken, resume=True) == 0
+    out = capsys.readouterr().out
+    assert "note: the checkpoint was made with threads 7, this run has 1" in out
+    assert "note: the checkpoint was made with build v0, this run has " in out
+
+
+def test_a_stage_or_counter_that_is_not_known_is_refused(broken, capsys):
+    kept = str(broken / "run.checkpoint")
+    told = readCheckpoint(kept)
+    for key, value, message in (
+        ("stage", "dance", "of another version of the plugin: stage 'dance'"),
+        ("luck", 1, "of another version of the plugin"),
+    ):
+        changed = dict(told, at=dict(told["at"], **{key: value}))
+        saveCheckpoint(kept, changed)
+        assert refused(broken) == 2
+        assert message in capsys.readouterr().err

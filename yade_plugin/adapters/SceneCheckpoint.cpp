@@ -1,0 +1,236 @@
+#include "SceneCheckpoint.hpp"
+#include "MasonryJointGeom.hpp"
+#include "MasonryJointPhys.hpp"
+#include "law/Text.hpp"
+#include <map>
+
+namespace masonry {
+
+struct BodyRecord { // with the forces of the last step, so that they can be read, and those that stay
+    Vector3r position, velocity, spin, momentum, force, torque, lasting, lastingTorque;
+    Quaternionr orientation;
+    double blocked, damped;
+};
+template <class F> void numbers(BodyRecord& b, F&& each) {
+    for (auto* v : {&b.position, &b.velocity, &b.spin, &b.momentum, &b.force, &b.torque, &b.lasting, &b.lastingTorque})
+        numbers(*v, each);
+    numbers(b.orientation, each), each(b.blocked), each(b.damped);
+}
+
+struct PointRecord { // of a joint
+    Vector3r jump, losses;
+    JointState state;
+};
+template <class F> void numbers(PointRecord& p, F&& each) {
+    numbers(p.jump, each), numbers(p.losses, each), numbers(p.state, each);
+}
+
+template <> struct IsNumbers<BodyRecord> : std::true_type {};
+template <> struct IsNumbers<PointRecord> : std::true_type {};
+
+namespace {
+
+struct Joint {
+    const yade::Interaction* interaction;
+    MasonryJointGeom* geom;
+    MasonryJointPhys* phys;
+};
+
+std::vector<Joint> jointsOf(const yade::Scene& scene) {
+    std::vector<Joint> all;
+    for (std::size_t i = 0; i < scene.interactions->currSize; ++i) {
+        const auto& interaction = *scene.interactions->linIntrs[i];
+        auto* geom = dynamic_cast<MasonryJointGeom*>(interaction.geom.get());
+        auto* phys = dynamic_cast<MasonryJointPhys*>(interaction.phys.get());
+        if (geom && phys) all.push_back({&interaction, geom, phys});
+    }
+    return all;
+}
+
+std::vector<yade::Body*> bodiesOf(const yade::Scene& scene) {
+    std::vector<yade::Body*> all;
+    for (const auto& body : scene.bodies->body)
+        if (body && body->state) all.push_back(body.get());
+    return all;
+}
+
+void transferBodies(yade::Scene& scene, Transfer& to) {
+    const auto bodies = bodiesOf(scene);
+    auto& forces = scene.forces();
+    forces.sync();
+    const Vector3r none = Vector3r::Zero();
+    std::vector<BodyRecord> records;
+    for (const auto* body : bodies) {
+        const auto& s = *body->state;
+        const int id = body->id;
+        records.push_back({s.pos, s.vel, s.angVel, s.angMom, forces.getForce(id), forces.getTorque(id), none, none,
+                           s.ori, double(s.blockedDOFs), double(s.isDamped)});
+        if (forces.getPermForceUsed())
+            records.back().lasting = forces.getPermForce(id), records.back().lastingTorque = forces.getPermTorque(id);
+    }
+    to.several("bodies", records.data(), records.size());
+    if (!to.back) return;
+    forces.reset(scene.iter, forces.getPermForceUsed());
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        auto& s = *bodies[i]->state;
+        const int id = bodies[i]->id;
+        const auto& r = records[i];
+        if (!(r.blocked >= 0 && r.blocked <= 63)) to.damaged("bodies");
+        s.pos = r.position, s.vel = r.velocity, s.angVel = r.spin, s.angMom = r.momentum, s.ori = r.orientation;
+        s.blockedDOFs = unsigned(r.blocked), s.isDamped = r.damped != 0;
+        forces.addForce(id, r.force - r.lasting);
+        forces.addTorque(id, r.torque - r.lastingTorque);
+        if (!r.lasting.isZero(0)) forces.setPermForce(id, r.lasting);
+        if (!r.lastingTorque.isZero(0)) forces.setPermTorque(id, r.lastingTorque);
+    }
+    forces.sync();
+}
+
+void transferJoints(const yade::Scene& scene, Transfer& to) {
+    const auto joints = jointsOf(scene);
+    std::vector<PointRecord> records;
+    for (const auto& joint : joints) {
+        joint.phys->refresh();
+        for (std::size_t p = 0; p < joint.geom->points.size(); ++p)
+            records.push_back({joint.geom->points[p].jump, joint.phys->losses[p], joint.phys->states[p]});
+    }
+    to.several("joints", records.data(), records.size());
+    if (!to.back) return;
+    auto next = records.begin();
+    for (const auto& [interaction, geom, phys] : joints) {
+        if (phys->keeper) phys->keeper->release();
+        phys->dissipated.setZero();
+        for (std::size_t p = 0; p < geom->points.size(); ++p, ++next) {
+            geom->points[p].jump = next->jump, phys->losses[p] = next->losses, phys->states[p] = next->state;
+            phys->dissipated += geom->points[p].area * phys->losses[p];
+        }
+    }
+}
+
+void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
+    Transfer to(file, back);
+    to.owner = "scene.";
+    to("step", scene.iter), to("time", scene.time), to("dt", scene.dt);
+    transferBodies(scene, to);
+    transferJoints(scene, to);
+    int number = 0;
+    for (const auto& engine : scene.engines)
+        if (auto* own = dynamic_cast<Stateful*>(engine.get())) {
+            to.owner = "engine " + std::to_string(++number) + " " + engine->getClassName() + ".";
+            to("dead", engine->dead);
+            own->transfer(to);
+        }
+    for (const auto& engine : scene.engines)
+        if (auto* zones = dynamic_cast<MasonryZones*>(engine.get())) zones->units(); // refuses other numbers of nodes
+}
+
+// By what a scene is known again: a sum over what does not change in a run.
+class Print {
+public:
+    template <class... T> void operator()(const T&... values) { (add(values), ...); }
+    std::string text() const { return std::to_string(sumOf(bytes_)); }
+
+private:
+    void add(double value) { bytes_.append(reinterpret_cast<const char*>(&value), sizeof value); }
+    void add(const std::string& text) { bytes_ += text; }
+    template <class T> std::enable_if_t<IsNumbers<T>::value> add(T value) {
+        numbers(value, [&](double& number) { add(number); });
+    }
+    void add(Stateful* own) {
+        Checkpoint all;
+        Transfer to(all, false);
+        if (own) own->transfer(to);
+        bytes_ += all.bytes();
+    }
+    std::string bytes_;
+};
+
+Checkpoint captured(yade::Scene& scene) {
+    Checkpoint made;
+    transfer(scene, made, false);
+    Print blocks, joints;
+    for (const auto* body : bodiesOf(scene)) {
+        const auto& s = *body->state;
+        blocks(double(body->id), s.refPos, s.refOri, s.mass, s.inertia);
+        if (auto* shape = dynamic_cast<yade::Polyhedra*>(body->shape.get()))
+            for (const auto& corner : shape->v)
+                blocks(corner);
+        blocks(dynamic_cast<Stateful*>(body->material.get()));
+    }
+    std::map<const MasonryJoint*, double> kinds;
+    for (const auto& [interaction, geom, phys] : jointsOf(scene)) {
+        const auto [kind, fresh] = kinds.emplace(phys->joint.get(), double(kinds.size()));
+        if (fresh) joints(static_cast<Stateful*>(phys->joint.get()));
+        joints(kind->second, double(interaction->id1), double(interaction->id2), geom->normal, geom->tangent,
+               phys->normalStiffness, phys->shearStiffness);
+        for (const auto& point : geom->points)
+            joints(point.offset, point.area);
+        for (const auto* attachments : {&geom->attachments1, &geom->attachments2})
+            for (const auto& attachment : *attachments)
+                joints(attachment);
+    }
+    made.texts["blocks"] = blocks.text(), made.texts["joints"] = joints.text();
+    std::vector<std::string> engines;
+    for (const auto& engine : scene.engines)
+        if (dynamic_cast<Stateful*>(engine.get())) engines.push_back(engine->getClassName());
+    made.texts["engines"] = joined(engines, ", ");
+    made.texts["extra"];
+    return made;
+}
+
+void compare(Checkpoint& saved, Checkpoint& here) {
+    const auto refuse = [](const std::string& what) { throw std::invalid_argument("is of another scene: " + what); };
+    if (saved.texts["engines"] != here.texts["engines"])
+        refuse("its engines are " + saved.texts["engines"] + ", here " + here.texts["engines"]);
+    if (saved.texts["blocks"] != here.texts["blocks"]) refuse("its blocks are others");
+    if (saved.texts["joints"] != here.texts["joints"]) refuse("its joints are others, or have other properties");
+    const auto namesOf = [](const auto& map) {
+        std::string all;
+        for (const auto& entry : map)
+            all += entry.first + "\n";
+        return all;
+    };
+    if (namesOf(saved.texts) != namesOf(here.texts) || namesOf(saved.numbers) != namesOf(here.numbers))
+        throw std::invalid_argument("is of another version of the plugin: it holds other attributes");
+}
+
+Checkpoint read(const py::object& bytes) {
+    char* data;
+    Py_ssize_t size;
+    if (PyBytes_AsStringAndSize(bytes.ptr(), &data, &size)) py::throw_error_already_set();
+    return Checkpoint::read({data, std::size_t(size)});
+}
+
+yade::Scene& present() { return *Singleton<yade::Omega>::instance().getScene(); }
+
+} // namespace
+
+py::object saveScene(const std::string& extra) {
+    auto made = captured(present());
+    for (const auto& [name, values] : made.numbers)
+        for (double value : values)
+            if (!std::isfinite(value))
+                throw std::invalid_argument("the run has left finite numbers, at '" + name + "'");
+    made.texts["extra"] = extra;
+    const auto bytes = made.bytes();
+    return py::object(py::handle<>(PyBytes_FromStringAndSize(bytes.data(), Py_ssize_t(bytes.size()))));
+}
+
+std::string loadScene(const py::object& bytes) {
+    auto saved = read(bytes), here = captured(present());
+    for (const auto& [name, values] : saved.numbers)
+        for (double value : values)
+            if (!std::isfinite(value)) throw std::invalid_argument("is damaged: no finite number at '" + name + "'");
+    compare(saved, here);
+    try {
+        transfer(present(), saved, true);
+    } catch (...) {
+        transfer(present(), here, true);
+        throw;
+    }
+    return saved.texts["extra"];
+}
+
+std::string savedText(const py::object& bytes) { return read(bytes).texts["extra"]; }
+
+} // namespace masonry
