@@ -4,6 +4,7 @@
 """
 
 import argparse
+import glob
 import json
 import math
 import os
@@ -58,7 +59,9 @@ def check(limits, numbers, other):
 
 def main(words=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("case", help="folder in validation/")
+    cases = glob.glob(os.path.join(HERE, "*", "case.json"))
+    names = sorted(os.path.basename(os.path.dirname(case)) for case in cases)
+    parser.add_argument("case", choices=names, help="folder in validation/")
     parser.add_argument("run", nargs="*", help="runs of its case.json (default: all)")
     parser.add_argument(
         "--measure", action="store_true", help="measure the results there are"

@@ -100,6 +100,11 @@ static void registerAll() {
         classes.append(name);
     py::scope().attr("classes") = classes;
     py::scope().attr("commit") = MASONRY_COMMIT;
+    py::def(
+        "neighbours", &neighbours, (py::arg("tolerance") = 1e-4),
+        "(pairs that share a face, pairs (id1, id2, gap, bound) that nearly do or overlap, (thinnest, largest)) of the "
+        "blocks; "
+        "for masonry.connect(). Gaps and sizes in m.");
     py::def("touchingPairs", &touchingPairs, (py::arg("tolerance") = 1e-4),
             "Pairs (id1, id2) of bodies whose Polyhedra share a face; tolerance as in "
             "Ig2_Polyhedra_Polyhedra_MasonryJointGeom.");

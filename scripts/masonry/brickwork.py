@@ -1,9 +1,31 @@
 """Bricks of a wall as plain records, before anything is made in YADE."""
 
+import math
+import numbers
 from collections import namedtuple
 
 #: One block of a wall: ``brick`` numbers the unit it belongs to, ``low`` and ``high`` are opposite corners [m].
 Block = namedtuple("Block", "brick course column low high")
+
+
+def problems(courses, halfUnits, unit):
+    """What is wrong with the measures of :func:`runningBond`: a list of sentences."""
+    found = []
+    whole = all(isinstance(n, numbers.Integral) for n in (courses, halfUnits))
+    if not whole or courses < 1 or halfUnits < 2 or halfUnits % 2:
+        found.append(
+            "running bond needs at least 1 course and an even number of half units >= 2, "
+            f"got {courses} and {halfUnits}"
+        )
+    try:
+        fine = len(unit) == 3 and all(0 < side < math.inf for side in unit)
+    except TypeError:
+        fine = False
+    if not fine:
+        found.append(
+            f"unit must be a length, thickness and height above 0 m, got {unit}"
+        )
+    return found
 
 
 def runningBond(courses, halfUnits, unit=(0.220, 0.102, 0.081), halves=True):
@@ -16,11 +38,9 @@ def runningBond(courses, halfUnits, unit=(0.220, 0.102, 0.081), halves=True):
     :param unit: length, thickness and height of a unit, joints included [m]
     :param halves: every unit as two half bricks that may crack apart; else whole units
     """
-    if courses < 1 or halfUnits < 2 or halfUnits % 2:
-        raise ValueError(
-            "running bond needs at least 1 course and an even number of half units >= 2, "
-            f"got {courses} and {halfUnits}"
-        )
+    wrong = problems(courses, halfUnits, unit)
+    if wrong:
+        raise ValueError("; ".join(wrong))
     half, thickness, height = unit[0] / 2, unit[1], unit[2]
     blocks, brick = [], -1
     for course in range(courses):

@@ -18,7 +18,7 @@ from yade.wrapper import MasonryVtkRecorder
 from . import commit
 from ._masonry import loadScene, savedText, saveScene
 from .options import Refused
-from .results import Progress, Results
+from .results import Progress, Results, Unwritable, say
 
 NAME = "run.checkpoint"  # in the folder of a run
 PARTS = "setup", "steps", "rows", "frames"  # of a run's time
@@ -108,10 +108,11 @@ class Place:
 class Resumable:
     """A run in stages, in a folder of results, that leaves checkpoints and can be taken up from the last.
 
-    A subclass names its methods in ``stages``, builds its scene between ``__init__`` and :meth:`_begin`, and steps by
-    :meth:`_advance` alone. In a run that is resumed the stage is entered with ``at`` as it was after the steps of an
-    ``_advance``, in the state that they led to, and the first ``_advance`` does nothing. So a stage counts in ``at``
-    after it has advanced, and what it does before may be done twice.
+    A subclass names its methods in ``stages``, builds its scene between ``__init__`` and :meth:`_begin`, steps by
+    :meth:`_advance` alone, fills ``results.run`` in ``_describe()`` and tells in ``_report()``. In a run that is
+    resumed the stage is entered with ``at`` as it was after the steps of an ``_advance``, in the state that they led
+    to, and the first ``_advance`` does nothing. So a stage counts in ``at`` after it has advanced, and what it does
+    before may be done twice.
     """
 
     def __init__(self, name, args, columns, at):
@@ -147,8 +148,11 @@ class Resumable:
         recorder = MasonryVtkRecorder(
             directory=self.results.directory, times=self.at.frames
         )
-        if self.at.frames:
-            recorder.collect()
+        try:
+            if self.at.frames:
+                recorder.collect()
+        except RuntimeError as error:
+            raise Refused(f"--resume: {error}") from None
         self.vtk = None if self.args.no_vtk else recorder
 
     def _takeUp(self):
@@ -157,13 +161,13 @@ class Resumable:
             self.results.takeUp(
                 self.told["rows"], len(self.at.frames), self.told["seconds"]
             )
-        except (ValueError, TypeError, OSError) as error:
+        except (ValueError, TypeError, OSError, Unwritable) as error:
             raise Refused(f"--resume: {error}") from None
         self.at.resumed.append(O.time)
         self.advanced = True
         for what, now in self._host().items():
             if self.told.get(what) != now:
-                print(
+                say(
                     f"note: the checkpoint was made with {what} {self.told.get(what)}, this run has {now}: "
                     "it may differ in last digits from one without a break"
                 )
@@ -203,7 +207,10 @@ class Resumable:
     def _frame(self):
         if self.vtk:
             with self._timed("frames"):
-                self.vtk()
+                try:
+                    self.vtk()
+                except RuntimeError as error:
+                    raise Unwritable(str(error)) from None
             self.at.frames = list(self.vtk.times)
 
     def checkpoint(self):
@@ -229,8 +236,18 @@ class Resumable:
             saveCheckpoint(path, told)
             return True
         except (OSError, ValueError) as error:
-            print(
+            say(
                 f"warning: no checkpoint could be written to {path}: {error}; an earlier one stays",
-                file=sys.stderr,
+                sys.stderr,
             )
             return False
+
+    def finish(self):
+        """Last frame, run.json, even if there was no room for the frame, and report, from whatever was computed."""
+        try:
+            if self.results.rows:
+                self._frame()
+        finally:
+            self._describe()
+            self.results.close()
+        self._report()

@@ -7,8 +7,8 @@ from yade.wrapper import MasonryLoad, MasonryZones
 
 from . import brickwork, commit, criticalTimeStep, materials
 from .checkpoints import Place, Resumable
-from .options import applySettings, checkBlocks
-from .results import ENERGIES, conduct
+from .options import Refused, check
+from .results import ENERGIES, conduct, say
 from .scene import addBlock, connect, engines
 
 PATHS = ["opening", "shear", "closure", "closure-shear"]
@@ -44,9 +44,15 @@ class Couplet(Resumable):
     stages = ("run",)
 
     def __init__(self, args):
-        checkBlocks(args)
         joints = materials.calciumSilicateJoints(brittle=args.joints == "brittle")
-        applySettings(joints, args.set)
+        check(args, joints)
+        bed, stress = joints["bed"], -1e6 * args.normal_stress
+        crushes = bed.cap and not bed.elastic and stress >= bed.compressiveStrength
+        if args.path == "shear" and crushes:
+            raise Refused(
+                f"--normal-stress {args.normal_stress:g} MPa crushes the bed joint, whose compressive strength is "
+                f"{1e-6 * bed.compressiveStrength:g} MPa"
+            )
         super().__init__("couplet", args, CURVE, CoupletPlace())
         O.reset()
         brick, rigid = materials.calciumSilicateUnit(), materials.loadingBlock()
@@ -102,6 +108,7 @@ class Couplet(Resumable):
             integrator.dampingKind = args.damping_kind
         self.joint = next(i for i in connect() if {i.id1, i.id2} == {lower, upper})
         O.dt = args.dt_fraction * criticalTimeStep()[0]
+        self.results.checkRoom(1e6, 1e6)
         self.moves = 0
         self._begin()
 
@@ -162,8 +169,9 @@ class Couplet(Resumable):
         distance = stress / self.joint.phys.normalStiffness
         self._move(self.vertical, distance, "closure")
         # the blocks' joints, and units that are deformable, have taken their part
-        distance *= stress / self._normalStress() - 1
-        self._move(self.vertical, distance, "closure")
+        if stress:
+            distance *= stress / self._normalStress() - 1
+            self._move(self.vertical, distance, "closure")
         self.vertical.driven = False
         self.vertical.force = Vector3(0, 0, stress * self.area)
 
@@ -180,10 +188,9 @@ class Couplet(Resumable):
             self._close(args.normal_stress * 1e6)
             self._move(self.lateral, distance, "shear")
 
-    def finish(self):
+    def _describe(self):
         results = self.results
         if results.rows:
-            self._frame()
             results.run.update(
                 scene="couplet",
                 options=dict(vars(self.args)),
@@ -205,15 +212,16 @@ class Couplet(Resumable):
                     for mode in ("tension", "shear", "compression")
                 },
             )
-        results.close()
+
+    def _report(self):
         for key in (
             "peak_normal_stress_MPa",
             "peak_compressive_stress_MPa",
             "peak_shear_stress_MPa",
             "end_shear_stress_MPa",
         ):
-            if key in results.run:
-                print(f"{key:32} {results.run[key]:.4f}")
+            if key in self.results.run:
+                say(f"{key:32} {self.results.run[key]:.4f}")
 
 
 def test(args):

@@ -14,7 +14,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 
-from .results import readCurve, readRun
+from .options import Refused
+from .results import filesOf, onFolder, readCurve, readRun
 
 MAGNIFICATION = 30  # of displacements in cracks.png, as in the paper's figure 6
 CRACK = 0.05e-3  # [m] opening or slip from which a joint is drawn as cracked
@@ -24,15 +25,22 @@ CRUSHED = 0.5e-3  # [m] plastic closure from which a joint is drawn as crushed
 def readFrame(directory, kind, number=-1):
     """A frame of blocks or joints as a dict: 'points' and 'cells' (lists of point numbers), and every data array."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkObject
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
-    path = sorted(glob.glob(os.path.join(directory, kind + "_*.vt?")))[number]
+    paths = sorted(glob.glob(os.path.join(directory, kind + "_*.vt?")))
+    if not paths:
+        raise Refused(f"no file {kind}_*.vt? in {directory}")
+    path = paths[number]
+    vtkObject.GlobalWarningDisplayOff()  # it would tell in many lines
     reader = (
         vtkXMLPolyDataReader() if kind == "joints" else vtkXMLUnstructuredGridReader()
     )
     reader.SetFileName(path)
     reader.Update()
     data = reader.GetOutput()
+    if not data.GetNumberOfPoints() or not data.GetNumberOfCells():
+        raise Refused(f"cannot read {path}: it holds no frame")
     frame = {"points": vtk_to_numpy(data.GetPoints().GetData())}
     for arrays in (data.GetPointData(), data.GetCellData()):
         for i in range(arrays.GetNumberOfArrays()):
@@ -43,6 +51,17 @@ def readFrame(directory, kind, number=-1):
     )
     frame["cells"] = np.split(corners, offsets[1:-1])
     return frame
+
+
+def _save(figure, path, dpi):
+    """A picture, whole or not at all."""
+    try:
+        figure.savefig(path, dpi=dpi)
+    except OSError:
+        if os.path.exists(path):
+            os.remove(path)
+        raise
+    plt.close(figure)
 
 
 def curve(directory):
@@ -105,8 +124,7 @@ def curve(directory):
     bottom.legend(fontsize=8)
     bottom.grid(alpha=0.3)
     figure.tight_layout()
-    figure.savefig(os.path.join(directory, "curve.png"), dpi=110)
-    plt.close(figure)
+    _save(figure, os.path.join(directory, "curve.png"), 110)
 
 
 def _faces(blocks, displaced):
@@ -197,16 +215,16 @@ def cracks(directory):
     )
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8)
     figure.tight_layout()
-    figure.savefig(os.path.join(directory, "cracks.png"), dpi=90)
-    plt.close(figure)
+    _save(figure, os.path.join(directory, "cracks.png"), 90)
 
 
 def draw(directory):
     """All figures that the files of a run allow."""
-    curve(directory)
-    if glob.glob(os.path.join(directory, "joints_*.vtp")):
-        cracks(directory)
+    with filesOf(directory):
+        curve(directory)
+        if glob.glob(os.path.join(directory, "joints_*.vtp")):
+            cracks(directory)
 
 
 if __name__ == "__main__":
-    draw(sys.argv[1])
+    sys.exit(onFolder(draw, sys.argv[1:]))

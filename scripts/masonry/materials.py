@@ -1,5 +1,7 @@
 """Published parameter sets. Each function names its source, and what is assumed."""
 
+import math
+
 from yade import Vector3
 
 from . import MasonryJoint, MasonryMat
@@ -96,6 +98,15 @@ def dryGraniteJoints(level, height, brittle=False):
     :param height: of a course [m]
     :param brittle: brittle Coulomb slip joints instead; the same here, where nothing softens
     """
+    problems = []
+    if level not in DRY_GRANITE_MASONRY:
+        problems.append(
+            f"level {level} kN was not tested, there are {', '.join(map(str, DRY_GRANITE_MASONRY))}"
+        )
+    if not 0 < height < math.inf:
+        problems.append(f"height of a course {height} m must be above 0")
+    if problems:
+        raise ValueError("dry granite joints: " + "; ".join(problems))
     young = graniteUnit().young
     stiffness = 1 / (height * (1 / DRY_GRANITE_MASONRY[level] - 1 / young))
     dry = dict(

@@ -12,7 +12,7 @@ import xml.etree.ElementTree as ElementTree
 import numpy as np
 
 from .figures import CRACK, readFrame
-from .results import readCurve, readRun
+from .results import filesOf, onFolder, readCurve, readRun
 
 NEAR = 3  # courses to either side of the diagonal that count as near it
 OUTER = 2  # courses at base and top that do not count for the diagonal: rocking cracks are there
@@ -247,14 +247,20 @@ def measure(directory):
         for name, value in run.items()
         if isinstance(value, (int, float)) and not isinstance(value, bool)
     }
-    numbers["balance_error"] = numbers.pop("energy_balance_error")
-    if "wall" in run:
-        numbers.update(wallNumbers(directory))
-    elif run["scene"] == "couplet":
-        numbers.update(coupletNumbers(directory))
+    with filesOf(directory):
+        numbers["balance_error"] = numbers.pop("energy_balance_error")
+        if "wall" in run:
+            numbers.update(wallNumbers(directory))
+        elif run["scene"] == "couplet":
+            numbers.update(coupletNumbers(directory))
     return numbers
 
 
-if __name__ == "__main__":
-    for name, value in measure(sys.argv[1]).items():
+def show(directory):
+    """Print all numbers of a run."""
+    for name, value in measure(directory).items():
         print(f"{name:34} {value:.6g}")
+
+
+if __name__ == "__main__":
+    sys.exit(onFolder(show, sys.argv[1:]))

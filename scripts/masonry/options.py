@@ -3,6 +3,7 @@
 import argparse
 import math
 import os
+import re
 import sys
 
 
@@ -54,7 +55,7 @@ PROMISES = {
 HARMLESS = {"preset", "until", "out", "vtk_every", "no_vtk", "checkpoint_every"}
 
 
-class Refused(Exception):
+class Refused(ValueError):
     """Input that cannot be run, with all problems at once."""
 
 
@@ -78,7 +79,7 @@ def number(text, low=-math.inf, high=math.inf, above=False):
 
 
 def _count(text, high):
-    if not text.isdigit() or not 1 <= int(text) <= high:
+    if not text.isdecimal() or not 1 <= int(text) <= high:
         raise argparse.ArgumentTypeError(
             f"'{text}' must be a whole number from 1 to {high}"
         )
@@ -95,14 +96,45 @@ def _setting(text):
     return joint, attribute, value
 
 
-class Parser(argparse.ArgumentParser):
-    """Takes the options that ``--preset`` names for those that are not given, or those of a run that is resumed.
+def _folder(text):
+    if not text.strip():
+        raise argparse.ArgumentTypeError("must not be empty")
+    return text
 
+
+class Parser(argparse.ArgumentParser):
+    """Tells all wrong options at once, and takes no part of a name for the whole.
+
+    Takes the options that ``--preset`` names for those that are not given, or those of a run that is resumed.
     ``overrides`` of the parsed options lists those that were given and differ from the preset's or from the default.
     Options that would change a resumed run are refused.
     """
 
-    free = {"until", "checkpoint_every", "vtk_every", "no_vtk"}  # of a resumed run
+    def __init__(self, **settings):
+        super().__init__(allow_abbrev=False, **settings)
+        self.problems = []
+        self.free = {"until", "checkpoint_every", "vtk_every", "no_vtk"}  # when resumed
+        # argparse knows no exponents: -5e-1 would be an option
+        self._negative_number_matcher = re.compile(
+            r"-(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$|-(inf|nan)$", re.IGNORECASE
+        )
+
+    def parse_known_args(self, args=None, namespace=None):
+        self.problems = []
+        result = super().parse_known_args(args, namespace)
+        if self.problems and not result[1]:
+            self.error(self.problems.pop())
+        return result
+
+    def _get_values(self, action, strings):
+        try:
+            return super()._get_values(action, strings)
+        except argparse.ArgumentError as error:
+            self.problems.append(str(error))
+            return action.default
+
+    def error(self, message):
+        super().error("\n  ".join([*self.problems, message]))
 
     def parse_args(self, args=None, namespace=None):
         found = super().parse_args(args, namespace)
@@ -199,7 +231,11 @@ def parser(description, until, rate=20.0):
         help="displacement to stop at [mm]",
     )
     p.add_argument(
-        "--rate", metavar="MM_PER_S", type=mm, default=rate, help="loading rate [mm/s]"
+        "--rate",
+        metavar="MM_PER_S",
+        type=lambda text: number(text, 1e-3, 1000),
+        default=rate,
+        help="loading rate [mm/s]",
     )
     p.add_argument(
         "--blocks", choices=["rigid", "deformable"], default="rigid", help="block model"
@@ -235,7 +271,7 @@ def parser(description, until, rate=20.0):
     p.add_argument(
         "--dt-fraction",
         metavar="F",
-        type=lambda t: number(t, 0, 1, above=True),
+        type=lambda t: number(t, 1e-3, 1),
         default=0.8,
         help="time step over its stable limit [-]",
     )
@@ -271,6 +307,7 @@ def parser(description, until, rate=20.0):
     p.add_argument(
         "--out",
         metavar="DIR",
+        type=_folder,
         default=None,
         help="folder of the results (default: results/SCENE)",
     )
@@ -285,6 +322,7 @@ def parser(description, until, rate=20.0):
     p.add_argument(
         "--resume",
         metavar="DIR",
+        type=_folder,
         default=None,
         help="go on from the checkpoint in this folder of results, with the options of its run; only --until, "
         "--checkpoint-every, --vtk-every and --no-vtk can be changed",
@@ -304,10 +342,20 @@ def parser(description, until, rate=20.0):
     return p
 
 
-def checkBlocks(args):
-    """Refuse options that do not go with the block model."""
+def check(args, joints, more=()):
+    """Apply ``--set`` to a dict of MasonryJoint objects and raise Refused for options that do not go together.
+
+    :param more: problems found by the caller, told with the others
+    """
+    problems = list(more)
     if args.blocks == "rigid" and args.divisions > 1:
-        raise Refused("--divisions: rigid units are not divided")
+        problems.append("--divisions: rigid units are not divided")
+    try:
+        applySettings(joints, args.set)
+    except Refused as refused:
+        problems.append(str(refused))
+    if problems:
+        raise Refused("\n".join(problems))
 
 
 def units(cls):

@@ -1,10 +1,12 @@
 """What a run leaves behind: curve.csv, run.json, progress on the terminal; and how to read it again."""
 
+import contextlib
 import csv
 import json
 import math
 import os
 import re
+import shutil
 import signal
 import sys
 import time
@@ -27,12 +29,22 @@ ENERGIES = [
 
 
 OURS = re.compile(
-    r"(blocks|joints)(_\d+\.vt[up]|\.pvd)|curve\.(csv|png)|cracks\.png|run\.(json|checkpoint(\.new)?)"
+    r"((blocks|joints)(_\d+\.vt[up]|\.pvd)|curve\.(csv|png)|cracks\.png|run\.(json|checkpoint))(\.new)?"
 )
 
 
 class Interrupted(Exception):
     """Ctrl-C or SIGTERM: the run ends in order and keeps what is there."""
+
+
+class Unwritable(Exception):
+    """A file of the results cannot be written: the run ends in order and keeps what is there."""
+
+
+def say(text, stream=None):
+    """Print, unless the terminal or the log is gone or full: no reason to stop a run."""
+    with contextlib.suppress(OSError):
+        print(text, file=stream, flush=True)
 
 
 class Results:
@@ -50,17 +62,15 @@ class Results:
             for name in [] if resumed else os.listdir(self.directory):
                 if OURS.fullmatch(name):  # an earlier run's would be taken for ours
                     os.remove(os.path.join(self.directory, name))
-            self._file = open(
-                self.path("curve.csv"), "a", newline="", buffering=1
-            )  # a row at a time
+            self._file = open(self.path("curve.csv"), "ab", buffering=0)
+            if not resumed:
+                self._write(columns)
+                os.fsync(self._file.fileno())
         except OSError as error:
             raise Refused(
                 f"--out: cannot write to {self.directory}: {error.strerror}"
             ) from None
         self.columns, self.rows, self.run = columns, [], {}
-        self._writer = csv.writer(self._file)
-        if not resumed:
-            self._writer.writerow(columns)
         self.started = time.perf_counter()
         self.interrupted = False
         for number in (signal.SIGINT, signal.SIGTERM):
@@ -78,7 +88,7 @@ class Results:
             if number and int(number[1]) >= frames:
                 os.remove(self.path(name))
         self._file.truncate(0)
-        self._writer.writerow(self.columns)
+        self._write(self.columns)
         for row in rows:
             self.row(dict(zip(self.columns, row)))
         self.started -= seconds
@@ -98,8 +108,34 @@ class Results:
             raise FloatingPointError(
                 f"the run has left finite numbers in {', '.join(broken)}; see curve.csv up to here"
             )
+        try:
+            self._write([f"{v:.9g}" for v in row])
+        except OSError as error:
+            raise Unwritable(
+                f"cannot write {self.path('curve.csv')}: {error.strerror}"
+            ) from None
         self.rows.append(row)
-        self._writer.writerow([f"{v:.9g}" for v in row])
+
+    def _write(self, cells):
+        """A line of curve.csv, whole or not at all."""
+        line = (",".join(cells) + "\r\n").encode()
+        start = self._file.seek(0, os.SEEK_END)
+        try:
+            while line:
+                line = line[self._file.write(line) :]
+        except OSError:
+            with contextlib.suppress(OSError):
+                self._file.truncate(start)
+            raise
+
+    def checkRoom(self, least, likely):
+        """Refuse a folder without room for ``least`` bytes, and warn of one without room for ``likely`` bytes."""
+        free = shutil.disk_usage(self.directory).free
+        told = f"{self.directory} has {1e-6 * free:.1f} MB free, this run writes"
+        if free < least:
+            raise Refused(f"--out: {told} at least {1e-6 * least:.1f} MB")
+        if free < likely:
+            say(f"warning: {told} some {1e-6 * likely:.1f} MB")
 
     def column(self, name):
         i = self.columns.index(name)
@@ -110,12 +146,19 @@ class Results:
         return time.perf_counter() - self.started
 
     def close(self):
-        """Write run.json and close curve.csv."""
+        """Close curve.csv and write run.json, whole or not at all."""
         self.run["wall_clock_s"] = round(self.seconds(), 3)
         self._file.close()
-        with open(self.path("run.json"), "w") as f:
-            json.dump(self.run, f, indent=2)
-            f.write("\n")
+        path = self.path("run.json")
+        try:
+            with open(path + ".new", "w") as f:
+                json.dump(self.run, f, indent=2)
+                f.write("\n")
+            os.replace(path + ".new", path)
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                os.remove(path + ".new")
+            raise Unwritable(f"cannot write {path}: {error.strerror}") from None
 
 
 class Progress:
@@ -145,10 +188,12 @@ class Progress:
             text += f"  {int(left) // 60}:{int(left) % 60:02d} left"
         if self.terminal:
             bar = "#" * int(24 * fraction)
-            self.stream.write(f"\r[{bar:<24}] {text}\x1b[K" + ("\n" if final else ""))
+            text = f"\r[{bar:<24}] {text}\x1b[K" + ("\n" if final else "")
         else:
-            self.stream.write(text + "\n")
-        self.stream.flush()
+            text += "\n"
+        with contextlib.suppress(OSError):  # as in say()
+            self.stream.write(text)
+            self.stream.flush()
 
 
 def conduct(make):
@@ -162,35 +207,101 @@ def conduct(make):
     except Refused as refused:
         print(refused, file=sys.stderr)
         return 2
+    stopped = []
     try:
         for model.at.stage in model.stages[model.stages.index(model.at.stage) :]:
             getattr(model, model.at.stage)()
     except Interrupted:
-        print("\ninterrupted: what was computed is kept")
+        say("\ninterrupted: what was computed is kept")
+    except Unwritable as error:
+        stopped.append(error)
     except Exception:
         model.checkpoint()
         model.finish()  # keeps what was computed
         raise
     kept = model.checkpoint()
-    model.finish()
-    if model.results.interrupted and kept:
-        print(f"--resume {model.results.directory} goes on from here")
-    return 130 if model.results.interrupted else 0
+    try:
+        model.finish()
+    except Unwritable as error:
+        stopped.append(error)
+    for error in dict.fromkeys(map(str, stopped)):
+        say(f"{error}; what was written before is kept", sys.stderr)
+    if kept and (stopped or model.results.interrupted):
+        say(f"--resume {model.results.directory} goes on from here")
+    return 1 if stopped else 130 if model.results.interrupted else 0
+
+
+def _read(path):
+    """Text of a file of a run."""
+    try:
+        with open(path, newline="") as f:
+            return f.read()
+    except OSError as error:
+        raise Refused(f"cannot read {path}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise Refused(f"cannot read {path}: it is no text") from None
 
 
 def readCurve(directory):
-    """curve.csv of a run as a dict of column name -> list of numbers."""
-    with open(os.path.join(directory, "curve.csv"), newline="") as f:
-        reader = csv.reader(f)
-        columns = next(reader)
-        rows = [[float(v) for v in row] for row in reader]
+    """curve.csv of a run as a dict of column name -> list of numbers; Refused if it is none."""
+    path = os.path.join(directory, "curve.csv")
+    lines = list(csv.reader(_read(path).splitlines()))
+    if len(lines) < 2:
+        raise Refused(f"{path}: there is no row of numbers")
+    columns, rows, problems = lines[0], [], []
+    for number, line in enumerate(lines[1:], start=2):
+        try:
+            rows.append([float(v) for v in line])
+        except ValueError as error:
+            problems.append(f"{path}, line {number}: {error}")
+        else:
+            if len(line) != len(columns):
+                problems.append(
+                    f"{path}, line {number}: {len(line)} numbers in {len(columns)} columns"
+                )
+            elif not all(map(math.isfinite, rows[-1])):
+                problems.append(f"{path}, line {number}: a number is not finite")
+    if problems:
+        raise Refused("\n".join(problems[:10]))
     return {c: [row[i] for row in rows] for i, c in enumerate(columns)}
 
 
 def readRun(directory):
-    """run.json of a run as a dict."""
-    with open(os.path.join(directory, "run.json")) as f:
-        return json.load(f)
+    """run.json of a run as a dict; Refused if it is none."""
+    path = os.path.join(directory, "run.json")
+    try:
+        run = json.loads(_read(path))
+    except json.JSONDecodeError as error:
+        raise Refused(f"{path}: {error}") from None
+    if not isinstance(run, dict):
+        raise Refused(f"{path}: is no record of a run")
+    return run
+
+
+@contextlib.contextmanager
+def filesOf(directory):
+    """Where files of a run are used: what they lack, since they are damaged or another's, becomes Refused."""
+    try:
+        yield
+    except (KeyError, IndexError, AttributeError, TypeError, SyntaxError) as problem:
+        raise Refused(
+            f"{directory}: these are not the files of a finished run ({type(problem).__name__}: {problem})"
+        ) from problem
+
+
+def onFolder(act, words):
+    """Main program of what reads a run: calls ``act`` with the folder that is the only word; the exit status."""
+    try:
+        if len(words) != 1:
+            raise Refused("name one folder of results, for example results/wall_comp4")
+        act(words[0])
+    except Refused as problem:
+        print(problem, file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"cannot write to {words[0]}: {error.strerror}", file=sys.stderr)
+        return 2
+    return 0
 
 
 def haste(top, base):

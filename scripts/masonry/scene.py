@@ -1,21 +1,107 @@
-"""Bodies, joints and engines: what any scene of masonry blocks needs."""
+"""Bodies, joints and engines: what any scene of masonry blocks needs. Bad input raises ValueError, all problems at once."""
+
+import math
 
 from yade import O, Vector3, polyhedra_utils, utils
 from yade.wrapper import *
 
-from ._masonry import touchingPairs
+from ._masonry import neighbours
+
+#: What is thinner than this share of its length is no block.
+THINNEST = 1e-6
+
+#: Values that a wrong unit gives: attribute, unit, bounds of what is usual, the unit it may be in instead.
+USUAL = {
+    MasonryMat: [("young", "Pa", 1e6, math.inf, "MPa")],
+    MasonryJoint: [
+        ("normalStiffness", "Pa/m", 1e7, math.inf, "N/mm³"),
+        ("shearStiffness", "Pa/m", 1e7, math.inf, "N/mm³"),
+        ("tensileStrength", "Pa", 1e3, 1e9, "MPa"),
+        ("cohesion", "Pa", 1e3, 1e9, "MPa"),
+        ("compressiveStrength", "Pa", 1e3, 1e9, "MPa"),
+        ("modeIFractureEnergy", "J/m²", 0.1, 1e6, "N/mm"),
+        ("modeIIFractureEnergy", "J/m²", 0.1, 1e6, "N/mm"),
+    ],
+}
+
+
+def _refuse(problems, hint=None, most=10):
+    """Raise ValueError with the first problems of a list, if there are any, and what helps against them."""
+    if problems:
+        more = [f"and {len(problems) - most} more"] if len(problems) > most else []
+        raise ValueError(
+            "\n".join([*problems[:most], *more, *([hint] if hint else [])])
+        )
+
+
+def _vector(value, what, problems):
+    """Three finite numbers as a Vector3; else None, and a line in ``problems``."""
+    try:
+        vector = Vector3(*value)
+        if len(value) == 3 and math.isfinite(vector.norm()):
+            return vector
+    except Exception:  # Boost.Python's ArgumentError has no name in Python
+        pass
+    problems.append(f"{what} must be three finite numbers, got {value}")
+
+
+def _extent(points):
+    """Longest extent of some points, and how far they reach out of a plane through three of them [m]."""
+    first = points[0]
+    away = max((p - first for p in points), key=Vector3.norm)
+    side = max((away.cross(p - first) for p in points), key=Vector3.norm)
+    height = max(abs(side.dot(p - first)) for p in points)
+    return away.norm(), height / side.norm() if side.norm() > 0 else 0.0
 
 
 def addBlock(vertices, material, inPlane=False, color=(0.75, 0.7, 0.65)):
     """Append a convex block to the scene and return its body id.
 
-    :param vertices: corners [m], at least four, in global axes
+    :param vertices: corners [m], at least four, in global axes; every one a corner of the convex block
     :param material: MasonryMat
     :param inPlane: only x, z and the rotation about y stay free: a wall in the x-z plane
     """
-    body = polyhedra_utils.polyhedra(
-        material, v=[Vector3(*v) for v in vertices], color=color
-    )
+    problems = []
+    if not isinstance(material, MasonryMat):
+        problems.append(f"block: material must be a MasonryMat, got {material}")
+    color = _vector(color, "block: color", problems)
+    try:
+        vertices = list(vertices)
+    except TypeError:
+        problems.append(f"block: corners must be a list of points, got {vertices}")
+        vertices = []
+    else:
+        if len(vertices) < 4:
+            problems.append(f"block: needs at least 4 corners, got {len(vertices)}")
+    points = [
+        _vector(v, f"block: corner {n} [m]", problems) for n, v in enumerate(vertices)
+    ]
+    if not problems:
+        length, thickness = _extent(points)
+        if not thickness > THINNEST * length:
+            problems.append(
+                f"block: its {len(points)} corners span {length:g} m but only {thickness:g} m out of a plane: no volume"
+            )
+        elif length < 1e-8 * max(map(Vector3.norm, points)):
+            problems.append(
+                f"block: {length:g} m is too small to be told so far from the origin, corner 0 at {vertices[0]} m"
+            )
+    _refuse(problems)
+    body = polyhedra_utils.polyhedra(material, v=points, color=color)
+    state = body.state
+    hull = body.shape.v
+    for n, p in enumerate(points if len(hull) < len(points) else []):
+        if p in points[:n]:
+            problems.append(f"block: corner {n} {vertices[n]} m is given twice")
+        elif all((state.pos + state.ori * v - p).norm() > 1e-6 * length for v in hull):
+            problems.append(
+                f"block: corner {n} {vertices[n]} m is no corner of the convex block around all of them"
+            )
+    if not all(0 < v < math.inf for v in (state.mass, *state.inertia)):
+        problems.append(
+            f"block: {length:g} m long, its mass of {state.mass:g} kg and inertia are no numbers above 0"
+        )
+    _refuse(problems)
     body.state.refPos, body.state.refOri = body.state.pos, body.state.ori
     body.bounded = False  # no collider runs
     if inPlane:
@@ -52,45 +138,76 @@ def engines(
     :param functors: YADE's InteractionLoop and NewtonIntegrator, the slow reference, instead of MasonryJointLoop and
         MasonryIntegrator
     """
-    if zones:
-        zones.gravity = Vector3(*gravity)
-    across = Vector3(0, 1, 0) if inPlane else Vector3(0, 0, 0)
-    geometry = Ig2_Polyhedra_Polyhedra_MasonryJointGeom(
-        subcontacts=subcontacts,
-        rows=rows,
-        rowDirection=across,
-        **({"zones": zones} if zones else {}),
+    problems = []
+
+    def made(make):
+        try:
+            return make()
+        except ValueError as error:
+            problems.append(str(error))
+
+    def listed(values, what, kind):
+        try:
+            values = list(values)
+            wrong = [v for v in values if not isinstance(v, kind)]
+        except TypeError:
+            wrong = [values]
+        if wrong:
+            problems.append(
+                f"engines: {what} must be a list of {kind.__name__}, got {wrong[0]!r}"
+            )
+        return values
+
+    joints = listed(joints, "joints", MasonryJoint)
+    loads = listed(loads, "loads", MasonryLoad)
+    if not joints:
+        problems.append("engines: joints must not be empty")
+    if zones is not None and not isinstance(zones, MasonryZones):
+        problems.append(f"engines: zones must be a MasonryZones or None, got {zones!r}")
+    integrator = made(
+        lambda: MasonryIntegrator(damping=damping, gravity=gravity, label="integrator")
     )
-    physics = Ip2_MasonryMat_MasonryMat_MasonryJointPhys(joints=list(joints))
+    geometry = made(
+        lambda: Ig2_Polyhedra_Polyhedra_MasonryJointGeom(
+            subcontacts=subcontacts,
+            rows=rows,
+            rowDirection=(0, 1, 0) if inPlane else (0, 0, 0),
+        )
+    )
+    _refuse(problems)
+    physics = Ip2_MasonryMat_MasonryMat_MasonryJointPhys(joints=joints)
+    if zones:
+        zones.gravity = integrator.gravity
+        geometry.zones = zones
+    if functors:
+        loop = _functorLoop(geometry, physics)
+        integrator = NewtonIntegrator(
+            damping=damping,
+            gravity=integrator.gravity,
+            exactAsphericalRot=True,
+            label="integrator",
+        )
+    else:
+        loop = MasonryJointLoop(geometry=geometry, physics=physics, label="joints")
     O.engines = [
         ForceResetter(),
-        (
-            _functorLoop(geometry, physics)
-            if functors
-            else MasonryJointLoop(geometry=geometry, physics=physics, label="joints")
-        ),
+        loop,
         *loads,
         MasonryEnergy(label="energy"),
-        (
-            NewtonIntegrator(
-                damping=damping,
-                gravity=Vector3(*gravity),
-                exactAsphericalRot=True,
-                label="integrator",
-            )
-            if functors
-            else MasonryIntegrator(
-                damping=damping, gravity=Vector3(*gravity), label="integrator"
-            )
-        ),
+        integrator,
     ] + ([zones] if zones else [])
 
 
-def connect(rule=None, tolerance=1e-4):
+def connect(rule=None, tolerance=1e-4, allowGaps=False):
     """Make the joints between all blocks that share a face in the present, reference state. Returns the interactions.
 
+    Blocks that lie in each other, and those that miss a shared face by less than a quarter of their thickness, are
+    refused with the gap; so is a scene without any joint, and one that has its joints. Nothing changes then. Values
+    that look like those of another unit, and blocks without joints, are told as warnings.
+
     :param rule: function (body1, body2, geom) -> MasonryJoint, or None to leave the choice to direction and joint set
-    :param tolerance: largest gap or overlap of coincident faces, relative to the smaller block's size
+    :param tolerance: largest gap or overlap of coincident faces, relative to the smaller block's size, at most 0.01
+    :param allowGaps: blocks that nearly share a face stand apart on purpose
     """
     engines = list(O.engines)
     loop = next(
@@ -100,14 +217,34 @@ def connect(rule=None, tolerance=1e-4):
         raise ValueError(
             "connect() needs the joints' engine in O.engines: call masonry.engines() first"
         )
+    if rule is not None and not callable(rule):
+        raise ValueError(
+            f"rule must be a function (body1, body2, geom) or None, got {rule!r}"
+        )
     if isinstance(loop, InteractionLoop):
-        return _connect(loop.physDispatcher.functors[0], rule, tolerance)
-    # YADE makes interactions with the functors of an InteractionLoop: one stands in for a moment
-    O.engines = [_functorLoop(loop.geometry, loop.physics)]
+        geometry, physics = (
+            d.functors[0] if d.functors else None
+            for d in (loop.geomDispatcher, loop.physDispatcher)
+        )
+    else:
+        geometry, physics = loop.geometry, loop.physics
+    if geometry is None or physics is None:
+        raise ValueError(
+            f"{type(loop).__name__} has no geometry or no physics: call masonry.engines()"
+        )
+    before = geometry.tolerance
+    geometry.tolerance = tolerance
     try:
-        return _connect(loop.physics, rule, tolerance)
+        pairs, sizes = _pairs(tolerance, allowGaps)
+        if not isinstance(loop, InteractionLoop):
+            # YADE makes interactions with the functors of an InteractionLoop: one stands in for a moment
+            O.engines = [_functorLoop(geometry, physics)]
+        made, joints = _connect(pairs, physics, rule)
     finally:
         O.engines = engines
+        geometry.tolerance = before
+    _warn(pairs, joints, sizes, engines)
+    return made
 
 
 def _functorLoop(geometry, physics):
@@ -119,16 +256,120 @@ def _functorLoop(geometry, physics):
     )
 
 
-def _connect(physics, rule, tolerance):
-    made = []
-    for id1, id2 in touchingPairs(tolerance):
-        interaction = utils.createInteraction(id1, id2)
-        joint = (
-            rule(O.bodies[interaction.id1], O.bodies[interaction.id2], interaction.geom)
-            if rule
-            else None
+def _pairs(tolerance, allowGaps):
+    """Pairs of blocks to join, and the thinnest and the largest block."""
+    pairs, misfits, sizes = neighbours(tolerance)
+    known = next(
+        (i for i in O.interactions.all() if isinstance(i.geom, MasonryJointGeom)), None
+    )
+    if known:
+        raise ValueError(
+            f"bodies {known.id1} and {known.id2} have a joint: connect() is called once, when all blocks are there"
         )
-        if joint is not None:
-            physics.assign(interaction, joint)
-        made.append(interaction)
-    return made
+    problems = []
+    for one, two, gap, bound in misfits:
+        if gap < 0:
+            problems.append(
+                f"bodies {one} and {two} lie {-1e3 * gap:g} mm deep in each other"
+            )
+        elif not allowGaps:
+            problems.append(
+                f"bodies {one} and {two} nearly share a face, with a gap of {1e3 * gap:g} mm"
+            )
+        else:
+            continue
+        problems[-1] += f"; the tolerance is {1e3 * bound:.3g} mm"
+    _refuse(
+        problems,
+        "move them, or see help(masonry.connect) for its tolerance and allowGaps",
+    )
+    if not pairs:
+        raise ValueError(
+            f"no joint can be made: none of {len(O.bodies)} bodies shares a face with another (tolerance "
+            f"{tolerance:g} of the smaller block's size)"
+        )
+    return pairs, sizes
+
+
+def _connect(pairs, physics, rule):
+    """Make the joints of all pairs, or none. Returns the interactions and the MasonryJoint objects."""
+    made, problems, joints = [], [], {id(j): j for j in physics.joints}
+    try:
+        for id1, id2 in pairs:
+            try:
+                interaction = utils.createInteraction(id1, id2)
+            except ValueError as error:
+                problems.append(str(error))
+                continue
+            made.append(interaction)
+            if rule:
+                bodies = O.bodies[interaction.id1], O.bodies[interaction.id2]
+                joint = rule(*bodies, interaction.geom)
+                if isinstance(joint, MasonryJoint):
+                    physics.assign(interaction, joint)
+                    joints[id(joint)] = joint
+                elif joint is not None:
+                    problems.append(
+                        f"rule must return a MasonryJoint or None, got {joint!r} for bodies {id1} and {id2}"
+                    )
+        _refuse(problems)
+    except BaseException:
+        for interaction in made:
+            O.interactions.erase(interaction.id1, interaction.id2)
+        O.interactions.eraseNonReal()
+        raise
+    return made, list(joints.values())
+
+
+def _warn(pairs, joints, sizes, engines):
+    """Print what looks like a slip: units, blocks without joints, divisions that do not apply."""
+    (thin, thickness), (large, size) = sizes
+    hints = []
+    if thickness < 1e-3:
+        hints.append(f"body {thin} is {thickness:g} m thick: are corners in m?")
+    if size > 50:
+        hints.append(f"body {large} is {size:g} m long: are corners in m, not mm?")
+    bodies = {b.id: b for b in O.bodies if isinstance(b.shape, Polyhedra)}
+    mats = {(b.mat.label, b.mat.young, b.mat.density): b.mat for b in bodies.values()}
+    for thing in (*mats.values(), *joints):
+        name = thing.name if isinstance(thing, MasonryJoint) else thing.label
+        for attribute, unit, low, high, other in USUAL[type(thing)]:
+            value = getattr(thing, attribute)
+            if value > 0 and not low <= value <= high:
+                hints.append(
+                    f'{type(thing).__name__} "{name}": {attribute} {value:g} {unit}: is it in {unit}, not {other}?'
+                )
+    integrator = next(
+        (e for e in engines if isinstance(e, (MasonryIntegrator, NewtonIntegrator))),
+        None,
+    )
+    gravity = integrator.gravity.norm() if integrator else 0
+    for label, _, density in mats:  # density scaling keeps the weight
+        if gravity and not 1e3 <= density * gravity <= 1e5:
+            hints.append(
+                f'MasonryMat "{label}": density {density:g} kg/m³ weighs {density * gravity:g} N/m³: is it in kg/m³?'
+            )
+    alone = sorted(set(bodies).difference(*zip(*pairs)))
+    if alone:
+        hints.append(
+            f"no joint holds bodies {alone[:10]}" + (" and more" * (len(alone) > 10))
+        )
+    for engine in engines:
+        if isinstance(engine, MasonryLoad) and engine.body in bodies:
+            body = bodies[engine.body]
+            away = (engine.point - body.state.refPos).norm()
+            if away > 20 * max(v.norm() for v in body.shape.v):
+                hints.append(
+                    f"MasonryLoad: its point lies {away:g} m from body {body.id}: is it in m?"
+                )
+        if isinstance(engine, MasonryZones):
+            count = {i: len(range(*engine.nodesOf(i))) for i in engine.bodies}
+            stars = [i for i in count if count[i] == len(bodies[i].shape.v) + 1]
+            if not count:
+                hints.append("MasonryZones has no bodies")
+            if stars and engine.divisions != [1, 1, 1]:
+                hints.append(
+                    f"MasonryZones: divisions do not apply to bodies {stars[:10]}, which are no hexahedra"
+                )
+    for hint in hints:
+        print("warning: " + hint)

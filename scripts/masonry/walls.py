@@ -1,18 +1,21 @@
 """Walls under precompression and a lateral push: paper §4, validation.md §1."""
 
+import os
 import subprocess
 import sys
 from dataclasses import dataclass, field
+from math import inf
+from numbers import Real
 from typing import Callable
 
 import yade.config
 from yade import O, Vector3
-from yade.wrapper import MasonryLoad, MasonryZones
+from yade.wrapper import MasonryJoint, MasonryLoad, MasonryMat, MasonryZones
 
 from . import brickwork, commit, criticalTimeStep, materials, options
 from .checkpoints import Place, Resumable
-from .options import Refused, applySettings
-from .results import ENERGIES, conduct, haste, initialStiffness
+from .options import Refused
+from .results import ENERGIES, Unwritable, conduct, haste, initialStiffness, say
 from .scene import addBlock, connect, engines
 
 CURVE = [
@@ -57,21 +60,35 @@ class Wall:
     joints: Callable = materials.calciumSilicateJoints
 
     def __post_init__(self):
-        problems = []
-        if self.measureHeight is None:
-            self.measureHeight = self.height
-        if self.loadHeight is not None and not self.loadHeight > self.height:
+        problems = brickwork.problems(self.courses, self.halfUnits, self.unit)
+        shown = lambda value: f"{value:g}" if isinstance(value, Real) else value
+        number = lambda value, least: isinstance(value, Real) and least < value < inf
+        if not problems:
+            top = self.height
+            if self.measureHeight is None:
+                self.measureHeight = top
+            if self.loadHeight is not None and not number(self.loadHeight, top):
+                problems.append(
+                    f"load height {shown(self.loadHeight)} m must be above the wall's top at {top:g} m"
+                )
+            if not number(self.measureHeight, top * (1 - 1e-12)):
+                problems.append(
+                    f"measure height {shown(self.measureHeight)} m must be at least the wall's top at {top:g} m"
+                )
+        if not number(self.precompression, 0):
             problems.append(
-                f"load height {self.loadHeight:g} m must be above the wall's top at {self.height:g} m"
+                f"precompression {shown(self.precompression)} Pa must be above 0"
             )
-        if not self.measureHeight >= self.height:
-            problems.append(
-                f"measure height {self.measureHeight:g} m must be at least the wall's top at {self.height:g} m"
+        elif self.precompression < 1e3:
+            print(
+                f"warning: wall {self.name}: precompression {self.precompression:g} Pa: is it in Pa, not MPa?"
             )
-        if not self.precompression > 0:
-            problems.append(
-                f"precompression {self.precompression:g} Pa must be above 0"
-            )
+        name = self.name if isinstance(self.name, str) else ""
+        if not name.strip(".") or os.path.basename(name) != name:
+            problems.append("name must be a text that can name a folder")
+        for what in ("unitMaterial", "joints"):
+            if not callable(getattr(self, what)):
+                problems.append(f"{what} must be a function")
         if problems:
             raise ValueError(f"wall {self.name}: " + "; ".join(problems))
 
@@ -109,11 +126,22 @@ class WallModel(Resumable):
 
     def __init__(self, wall, args):
         self.wall = wall
-        options.checkBlocks(args)
+        self.brick = wall.unitMaterial()
         self.joints = wall.joints(brittle=args.joints == "brittle")
-        if args.crack_surfaces == "on" and "crack" not in self.joints:
-            raise Refused("--crack-surfaces on: the units of this wall have none")
-        applySettings(self.joints, args.set)
+        if not isinstance(self.brick, MasonryMat):
+            raise ValueError(f"wall {wall.name}: unitMaterial() gave {self.brick!r}")
+        if not isinstance(self.joints, dict) or not all(
+            isinstance(joint, MasonryJoint) for joint in self.joints.values()
+        ):
+            raise ValueError(
+                f"wall {wall.name}: joints() must give a dict of MasonryJoint by name, gave {self.joints!r}"
+            )
+        lacking = args.crack_surfaces == "on" and "crack" not in self.joints
+        options.check(
+            args,
+            self.joints,
+            ["--crack-surfaces on: the units of this wall have none"] * lacking,
+        )
         super().__init__(wall.name, args, CURVE, WallPlace())
         if not args.until > self.at.moved:
             raise Refused(
@@ -121,7 +149,7 @@ class WallModel(Resumable):
             )
         self.preset = options.presetOf(args, wall.name)
         if self.preset:
-            print(options.presetNote(self.preset, wall.name))
+            say(options.presetNote(self.preset, wall.name))
         self.collapsed = False
         with self._timed("setup"):
             self._build()
@@ -130,7 +158,7 @@ class WallModel(Resumable):
     def _build(self):
         O.reset()
         wall = self.wall
-        brick, rigid = wall.unitMaterial(), materials.loadingBlock()
+        brick, rigid = self.brick, materials.loadingBlock()
         # heavier and less attracted: the same weights, slower waves, and a longer time step
         scaling = self.args.density_scaling
         for material in (brick, rigid):
@@ -202,6 +230,8 @@ class WallModel(Resumable):
         self.limit = criticalTimeStep()[0]
         O.dt = self.args.dt_fraction * self.limit
         self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)
+        nodes = len(self.zones.displacements) if self.zones else 0
+        self._checkRoom(50 * self.subcontacts + 150 * len(O.bodies) + 100 * nodes)
         kinds = {}
         for i in self.interactions:
             kinds[i.phys.joint.name] = kinds.get(i.phys.joint.name, 0) + 1
@@ -245,13 +275,20 @@ class WallModel(Resumable):
             time_step_s=O.dt,
             time_step_limit_s=self.limit,
             units=len(self.brickOf),
-            nodes=len(self.zones.displacements) if self.zones else 0,
+            nodes=nodes,
             joint_count=len(self.interactions),
             joints_by_kind=kinds,
             subcontacts=self.subcontacts,
         )
         for joint in self.results.run["joints"].values():
             joint["direction"] = list(joint["direction"])
+
+    def _checkRoom(self, frame):
+        """Whether the folder has room for the run; ``frame`` is what ParaView's files of a frame take at least [bytes]."""
+        until = self.args.until
+        frames = 0 if self.args.no_vtk else until / self.args.vtk_every + 2
+        least = 400e3 + frame * min(frames, 2)  # figures, first and last frame
+        self.results.checkRoom(least, least + frame * frames + 250 * until / ROW_EVERY)
 
     # -- stages ---------------------------------------------------------------------------------------------------
 
@@ -294,7 +331,7 @@ class WallModel(Resumable):
                 at.quiet == 3,
             )
         if at.quiet < 3:
-            print(f"note: the wall is not quite at rest after {at.steps} steps")
+            say(f"note: the wall is not quite at rest after {at.steps} steps")
 
     def push(self):
         """Lateral velocity at the loaded point, to ``--until`` or to collapse."""
@@ -336,7 +373,7 @@ class WallModel(Resumable):
                 break
         self.progress.show("push", 1, detail, self._rate(), final=True)
         if self.collapsed:
-            print(f"the wall has collapsed at {at.moved:.2f} mm")
+            say(f"the wall has collapsed at {at.moved:.2f} mm")
 
     def _topDisplacement(self):
         """Displacement of the loading block at the height of measurement [m]."""
@@ -362,11 +399,9 @@ class WallModel(Resumable):
         self.results.row(values)
         return values
 
-    def finish(self):
-        """Last frame, run.json and figures, from whatever was computed."""
+    def _describe(self):
         results, run, done = self.results, self.results.run, self.at
         if results.rows:
-            self._frame()
             shear, moved = results.column("base_shear_kN"), results.column(
                 "displacement_mm"
             )
@@ -393,25 +428,27 @@ class WallModel(Resumable):
             perStep = done.seconds["steps"] / done.steps
             run["microseconds_per_step"] = 1e6 * perStep
             run["nanoseconds_per_subcontact_step"] = 1e9 * perStep / self.subcontacts
-        results.close()
+
+    def _report(self):
+        results, run = self.results, self.results.run
         if results.rows:
-            subprocess.run(
-                [sys.executable, "-m", "masonry.figures", results.directory], check=True
-            )
+            drawing = [sys.executable, "-m", "masonry.figures", results.directory]
+            if subprocess.run(drawing).returncode:
+                raise Unwritable("the figures are not drawn")
         if run.get("energy_balance_error", 0) > 0.01:
-            print(
+            say(
                 f"warning: the energy balance is off by {100 * run['energy_balance_error']:.1f} % of the work done"
             )
         if run.get("haste", 0) > HASTE:
-            print(self._tooFast(run["haste"]))
+            say(self._tooFast(run["haste"]))
         if results.rows:
-            print(
+            say(
                 f"{self.wall.name}: peak {run['peak_base_shear_kN']:.1f} kN at {run['displacement_at_peak_mm']:.2f} mm, "
-                f"{run['base_shear_end_kN']:.1f} kN at {run['displacement_end_mm']:.2f} mm; {done.steps} steps of "
+                f"{run['base_shear_end_kN']:.1f} kN at {run['displacement_end_mm']:.2f} mm; {run['steps']} steps of "
                 f"{run['microseconds_per_step']:.0f} µs, {run['wall_clock_s']:.1f} s in all; see {results.directory}"
             )
         if self.preset:
-            print(options.presetNote(self.preset, self.wall.name))
+            say(options.presetNote(self.preset, self.wall.name))
 
     def _tooFast(self, haste):
         """The warning of a push that is too fast, with what would do: what is missing grows with the rate at least."""

@@ -103,6 +103,65 @@ TEST_CASE("blocks that touch along an edge, at a corner or not at all share noth
     CHECK(!coincidentFaces(one, one));
 }
 
+TEST_CASE("blocks that overlap or nearly share a face are told by how much, in any orientation") {
+    std::mt19937 dice(7);
+    const auto lower = box(Point::Zero(), brick);
+    const auto bar = box({-0.05, -0.05, -0.5}, {0.1, 0.1, 1}); // two of these cross, edge over edge
+    const Eigen::Isometry3d cross(Eigen::AngleAxisd(0.5 * M_PI, Point::UnitX()));
+    const Eigen::Isometry3d onEdge(Eigen::AngleAxisd(0.25 * M_PI, Point::UnitZ()));
+    const double edge = 0.05 * std::sqrt(2.0); // from the axis of a bar to its edge
+    const auto crossed = [&](double apart) {
+        return moved(moved(bar, onEdge), Eigen::Translation3d(2 * edge + apart, 0, 0) * cross);
+    };
+    Eigen::Isometry3d tilt = Eigen::Isometry3d::Identity();
+    tilt.translate(Point(0, 0, 0.081)).rotate(Eigen::AngleAxisd(-0.02, Point::UnitY()));
+    const struct {
+        ConvexBlock one, two;
+        double gap;
+    } cases[] = {
+        {lower, box({0, 0, 0.082}, brick), 1e-3},
+        {lower, box({0.2, 0, 0.1}, brick), 0.019}, // a tenth of the face, a quarter of the thickness
+        {lower, box({0, 0, 0.080}, brick), -1e-3},
+        {lower, lower, -0.081}, // at the same place: out along the shortest way
+        {lower, box({0.05, 0.02, 0.02}, {0.02, 0.02, 0.02}), -0.04},
+        {lower, moved(lower, tilt), 0.22 * std::sin(0.02)}, // opens from an edge to the other
+        {moved(bar, onEdge), crossed(-2e-3), -2e-3},
+    };
+    for (const auto& c : cases) {
+        CAPTURE(c.gap);
+        for (int i = 0; i < 20; ++i) {
+            const auto motion = randomMotion(dice);
+            const auto one = moved(c.one, motion), two = moved(c.two, motion);
+            CHECK_FALSE(coincidentFaces(one, two));
+            for (const auto& found : {misfit(one, two), misfit(two, one)}) {
+                REQUIRE(found);
+                CHECK(found->gap == doctest::Approx(c.gap).epsilon(1e-3));
+            }
+        }
+    }
+    // what stands far apart, or meets along an edge or at a corner is none
+    for (const Point& corner :
+         {Point(0, 0, 0.103), Point(0.22, 0, 0.081), Point(0.22, 0.102, 0.081), Point(0.221, 0, 0.082)})
+        CHECK_FALSE(misfit(lower, box(corner, brick)));
+    CHECK_FALSE(misfit(moved(bar, onEdge), crossed(1e-3)));
+}
+
+TEST_CASE("blocks that are not convex, or wind the wrong way, are refused") {
+    auto inward = box(Point::Zero(), brick);
+    for (auto& t : inward.triangles)
+        std::swap(t[1], t[2]);
+    auto dented = box(Point::Zero(), brick);
+    dented.vertices[7] = Point(0.05, 0.03, 0.02);
+    for (const auto& wrong : {inward, dented}) {
+        CHECK_THROWS_WITH(coincidentFaces(box({0, 0, 0.081}, brick), wrong),
+                          "block is not convex, or the corners of its faces wind the wrong way");
+        CHECK_THROWS_AS(misfit(wrong, wrong), std::invalid_argument);
+    }
+    ConvexBlock tetrahedron{{Point::Zero(), Point::UnitX(), Point::UnitY(), Point::UnitZ()},
+                            {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}};
+    CHECK_THROWS_WITH(divide(tetrahedron, {1, 1, 1}), "block has an inverted zone: not convex, or without volume");
+}
+
 TEST_CASE("subcontact areas add up and their first moment is the polygon's, for any polygon and division") {
     std::mt19937 dice(2);
     std::uniform_real_distribution<> u(0, 1);

@@ -222,6 +222,31 @@ def test_a_full_disk_is_told_and_the_run_goes_on(scene, tmp_path, at, capsys):
     assert readCheckpoint(kept)["at"]["moved"] > 0.25  # the disk has room again
 
 
+@pytest.mark.parametrize("lost", ["curve.csv", "joints_0001.vtp", "run.json.new"])
+def test_a_run_whose_results_cannot_be_written_goes_on_when_there_is_room(
+    scene, tmp_path, at, capsys, lost
+):
+    assert run(tmp_path / "whole", *PUSH) == 0
+    out = tmp_path / "full"
+
+    def fill(model):
+        if lost == "curve.csv":
+            full = os.open("/dev/full", os.O_WRONLY)
+            os.dup2(full, model.results._file.fileno())
+            os.close(full)
+        else:
+            os.symlink("/dev/full", out / lost)
+
+    at(32 if lost == "joints_0001.vtp" else 60, fill)
+    assert run(out, *PUSH) == 1
+    said = capsys.readouterr()
+    lost = lost.removesuffix(".new")
+    assert f"{lost}: No space left on device; what was written before" in said.err
+    assert f"--resume {out} goes on from here" in said.out
+    assert run(out, resume=True) == 0
+    assert files(out) == files(tmp_path / "whole")
+
+
 # -- what is refused ---------------------------------------------------------------------------------------------------
 
 

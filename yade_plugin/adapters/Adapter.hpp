@@ -11,6 +11,7 @@
 #include "host/Yade.hpp"
 #include "law/JointState.hpp"
 #include "law/SofteningTable.hpp"
+#include "law/Text.hpp"
 #include <atomic>
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
@@ -84,6 +85,11 @@ template <class Archive, class T> void archiveNumbers(Archive& ar, const char* n
         numbers(value, [&](double& number) { number = flat[next++]; });
 }
 
+template <class T> struct IsShared : std::false_type {};
+template <class T> struct IsShared<shared_ptr<T>> : std::true_type {};
+template <class T> struct IsList : std::false_type {};
+template <class T> struct IsList<std::vector<T>> : std::true_type {};
+
 // State on its way from a scene to a checkpoint or back, piece by piece in the same order. Objects that are shared stay
 // the scene's own.
 class Transfer {
@@ -150,12 +156,40 @@ struct Stateful {
 };
 
 template <class T> std::string expectedType() {
-    if (std::is_same<T, bool>::value) return "True or False";
-    if (std::is_arithmetic<T>::value) return "a number";
-    if (std::is_same<T, std::string>::value) return "a text";
-    if (std::is_same<T, Vector3r>::value) return "a Vector3";
-    if (std::is_same<T, std::vector<TableRow>>::value) return "a list of (ratio, damage) rows";
-    return "another type";
+    if constexpr (IsList<T>::value) {
+        if constexpr (IsShared<typename T::value_type>::value)
+            return std::string("a list of ") + T::value_type::element_type::className;
+        return std::is_same<T, std::vector<TableRow>>::value ? "a list of (ratio, damage) rows"
+               : std::is_same<T, std::vector<double>>::value ? "a list of numbers"
+                                                             : "a list of whole numbers";
+    } else if constexpr (IsShared<T>::value)
+        return T::element_type::className;
+    else if (std::is_same<T, bool>::value)
+        return "True or False";
+    else if (std::is_integral<T>::value)
+        return "a whole number";
+    else if (std::is_arithmetic<T>::value)
+        return "a number";
+    else
+        return std::is_same<T, std::string>::value ? "a text" : "a Vector3";
+}
+
+inline std::string shown(const py::object& value) {
+    const std::string text = py::extract<std::string>(py::str(value));
+    return text.size() > 80 ? text.substr(0, 80) + "..." : text;
+}
+
+// What Python gives for an attribute, as the attribute's type; std::invalid_argument that names both if it is another.
+template <class T> T given(const std::string& name, const py::object& value) {
+    py::extract<T> extracted(value);
+    const bool sort = !std::is_arithmetic<T>::value || PyBool_Check(value.ptr()) == std::is_same<T, bool>::value;
+    try {
+        if (sort && extracted.check()) return extracted();
+    } catch (const py::error_already_set&) { // a list of other things
+        PyErr_Clear();
+    } catch (const std::bad_cast&) { // a whole number out of range
+    }
+    throw std::invalid_argument(name + ": expected " + expectedType<T>() + ", got " + shown(value));
 }
 
 template <class Derived, class Base> class Adapter : public Base, public Stateful {
@@ -176,18 +210,12 @@ public:
     void pySetAttr(const std::string& key, const py::object& value) override {
         bool known = false;
         Derived::attributes([&](const char* name, auto member, const char*, int flags = Plain) {
-            if (key != name) return;
+            if (key != name || flags & Hidden) return;
             known = true;
             if (flags & ReadOnly)
                 throw std::invalid_argument(std::string(Derived::className) + "." + key + " is read-only");
             using T = std::decay_t<decltype(self().*member)>;
-            py::extract<T> extracted(value);
-            if (!extracted.check()) {
-                const std::string given = py::extract<std::string>(py::str(value));
-                throw std::invalid_argument(std::string(Derived::className) + "." + key + ": expected " +
-                                            expectedType<T>() + ", got " + given);
-            }
-            self().*member = extracted();
+            self().*member = given<T>(std::string(Derived::className) + "." + key, value);
         });
         if (!known) Base::pySetAttr(key, value);
     }
@@ -234,13 +262,15 @@ public:
             if (flags & ReadOnly)
                 cls.add_property(name, get, about.c_str());
             else {
-                const auto set = [own](Derived& object, const T& value) { object.change(own, value); };
-                cls.add_property(
-                    name, get,
-                    py::make_function(set, py::default_call_policies(), boost::mpl::vector<void, Derived&, const T&>()),
-                    about.c_str());
+                const auto set = [name](Derived& object, const py::object& value) { object.set(name, value); };
+                cls.add_property(name, get,
+                                 py::make_function(set, py::default_call_policies(),
+                                                   boost::mpl::vector<void, Derived&, const py::object&>()),
+                                 about.c_str());
             }
         });
+        cls.def("updateAttrs", &Adapter::updateAll, py::args("values"),
+                "Set several attributes from a dict, all or, with an error that tells all problems, none.");
         Derived::extras(cls);
     }
 
@@ -260,16 +290,48 @@ public:
         if (to.back) self().postLoad();
     }
 
+protected:
+    void set(const char* name, const py::object& value) {
+        py::dict one;
+        one[name] = value;
+        set(one);
+    }
+
 private:
     Derived& self() { return static_cast<Derived&>(*this); }
 
-    template <class T> void change(T Derived::*member, const T& value) { // a refused value leaves the old one
-        const T old = self().*member;
-        self().*member = value;
+    static void updateAll(Derived& object, const py::dict& values) { object.set(values); }
+
+    void set(const py::dict& values) { // all of them or, where one is refused, none
+        py::dict before = Base::pyDict();
+        Derived::attributes([&](const char* name, auto member, const char*, int flags = Plain) {
+            if (!(flags & Hidden) && values.has_key(name)) before[name] = py::object(self().*member);
+        });
+        const py::list keys = values.keys();
+        std::vector<std::string> wrong;
+        const auto put = [&](const py::object& key, const py::object& value) {
+            const std::string name = py::extract<std::string>(key);
+            try {
+                self().pySetAttr(name, value);
+            } catch (const std::invalid_argument& error) {
+                wrong.push_back(error.what());
+            } catch (const py::error_already_set&) { // the host's, of its own attributes
+                if (!PyErr_ExceptionMatches(PyExc_TypeError)) throw;
+                PyErr_Clear();
+                wrong.push_back(std::string(Derived::className) + "." + name + ": cannot be " + shown(value));
+            }
+        };
         try {
-            self().postLoad();
+            for (py::ssize_t i = 0; i < py::len(keys); ++i)
+                put(keys[i], values[keys[i]]);
+            if (!wrong.empty()) throw std::invalid_argument(joined(wrong));
+            self().callPostLoad();
         } catch (...) {
-            self().*member = old;
+            PyObject *type, *value, *trace; // an error of Python's own must not be met by what sets back
+            PyErr_Fetch(&type, &value, &trace);
+            for (py::ssize_t i = 0; i < py::len(keys); ++i)
+                if (before.has_key(keys[i])) put(keys[i], before[keys[i]]);
+            PyErr_Restore(type, value, trace);
             throw;
         }
     }
@@ -279,7 +341,7 @@ private:
         made->pyHandleCustomCtorArgs(args, keywords);
         if (py::len(args) > 0)
             throw std::invalid_argument(std::string(Derived::className) + " takes keyword arguments only");
-        if (py::len(keywords) > 0) made->pyUpdateAttrs(keywords);
+        if (py::len(keywords) > 0) made->set(keywords);
         return made;
     }
 

@@ -1,6 +1,7 @@
 #include "MasonryEngines.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
+#include "SceneCheck.hpp"
 #include "blocks/LargestEigenvalue.hpp"
 #include "blocks/RigidMotion.hpp"
 #include "law/Text.hpp"
@@ -155,20 +156,29 @@ template <class F> void eachJoint(const yade::Scene& scene, F&& visit) {
         const auto& interaction = *scene.interactions->linIntrs[i];
         auto* geom = dynamic_cast<MasonryJointGeom*>(interaction.geom.get());
         auto* phys = dynamic_cast<MasonryJointPhys*>(interaction.phys.get());
-        if (geom && phys) visit(interaction, *geom, *phys);
+        if (geom && phys && geom->points.size() == phys->states.size()) visit(interaction, *geom, *phys);
     }
 }
 
 } // namespace
 
+void MasonryLoad::postLoad() {
+    std::vector<std::string> wrong;
+    if (body < 0) wrong.push_back("body " + std::to_string(body) + " must be at least 0");
+    if (!point.allFinite()) wrong.push_back("point must be finite numbers [m]");
+    if (!force.allFinite()) wrong.push_back("force must be finite numbers [N]");
+    if (!(direction.norm() > 0 && std::isfinite(direction.norm())))
+        wrong.push_back("direction must be finite numbers, not all zero");
+    if (!std::isfinite(velocity)) wrong.push_back("velocity " + text(velocity) + " m/s must be a finite number");
+    if (!wrong.empty()) throw std::invalid_argument("MasonryLoad: " + joined(wrong, "; "));
+}
+
 void MasonryLoad::action() {
-    if (body < 0 || std::size_t(body) >= scene->bodies->body.size() || !scene->bodies->body[body])
-        throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) + " does not exist");
+    checkScene(*scene);
     if (auto* zones = zonesOf(*scene); zones && zones->unitOf(body))
         throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) +
                                     " is a deformable unit; load a rigid block joined to it");
-    if (!(direction.norm() > 0)) throw std::invalid_argument("MasonryLoad.direction must not be zero");
-    auto& state = *scene->bodies->body[body]->state;
+    auto& state = *bodyAt(*scene, body, "MasonryLoad.body").state;
     state.isDamped = false;
     arm = state.ori * state.refOri.conjugate() * (point - state.refPos);
     total = force;
@@ -194,7 +204,7 @@ void MasonryLoad::action() {
 }
 
 Vector3r MasonryLoad::displacement() const {
-    const auto& state = *yade::Body::byId(body, Singleton<yade::Omega>::instance().getScene().get())->state;
+    const auto& state = *bodyAt(*Singleton<yade::Omega>::instance().getScene(), body, "MasonryLoad.body").state;
     const Vector3r r = point - state.refPos;
     return state.pos + state.ori * state.refOri.conjugate() * r - point;
 }
@@ -270,7 +280,7 @@ void MasonryEnergy::check() {
     lastStep_ = scene->dt, lastChanges_ = changes;
     for (bool anew : {false, true}) { // masses may have changed
         const auto limit = limitOf(*scene, anew);
-        if (scene->dt > 0 && scene->dt <= limit.dt) break;
+        if (scene->dt <= limit.dt) break;
         if (anew) throw std::runtime_error("unstable: " + describe(*scene, limit));
     }
     if (!tenth) return;
@@ -321,6 +331,7 @@ void MasonryEnergy::given() {
 }
 
 void MasonryEnergy::action() {
+    checkScene(*scene);
     if (!begun) given();
     if (watch) check();
     for (const auto& engine : scene->engines)
@@ -417,6 +428,7 @@ bool MasonryIntegrator::stale() const {
 }
 
 void MasonryIntegrator::action() {
+    checkScene(*scene);
     auto& forces = scene->forces();
     forces.sync();
     const auto& all = scene->bodies->body;
@@ -582,9 +594,10 @@ void Dynamics::addJoint(const yade::Scene& scene, const yade::Interaction& inter
                 continue;
             }
             const State& s = *scene.bodies->body[ids[side]]->state;
-            if (!(s.mass > 0 && s.inertia.minCoeff() > 0))
-                throw std::invalid_argument("body " + std::to_string(ids[side]) + " has no mass");
             const auto [first, fresh] = firstOfBody_.emplace(ids[side], int(moves.size()));
+            if (fresh)
+                if (const auto wrong = problemsOf(*scene.bodies->body[ids[side]]); !wrong.empty())
+                    throw std::invalid_argument(joined(wrong));
             for (int d = 0; fresh && d < 6; ++d)
                 addDegree(d < 3 ? s.mass : s.inertia[d - 3], s.isDamped ? damping : 0, blocked(s, d));
             const Matrix3r own = rotationRestrained(s) ? Matrix3r(Matrix3r::Identity()) : s.ori.toRotationMatrix();

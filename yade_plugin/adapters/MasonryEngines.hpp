@@ -35,6 +35,7 @@ public:
         visit("pendingWork", &L::pendingWork, "", Hidden);
     }
 
+    void postLoad();
     void action() override;
     Vector3r displacement() const; // of the point, since the reference state
     void workBefore(double dt);    // of a step, for the energy balance: to be called with the old velocity of the body

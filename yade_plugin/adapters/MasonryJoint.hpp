@@ -86,8 +86,10 @@ public:
 private:
     py::list compressionCurve(const std::vector<double>& closures) const {
         py::list strengths;
-        for (double u : closures)
+        for (double u : closures) {
+            if (!std::isfinite(u)) throw std::invalid_argument("closure " + text(u) + " m must be a finite number");
             strengths.append(law_->compression().strength(u));
+        }
         return strengths;
     }
     py::dict softening() const {

@@ -170,8 +170,11 @@ public:
 // The block that a body's Polyhedra stands for at a place, in global axes.
 ConvexBlock blockOf(yade::Polyhedra&, const Vector3r& position, const Quaternionr& orientation);
 
-// Pairs of bodies whose Polyhedra share a face, each with the lower id first.
-py::list touchingPairs(double tolerance);
+// Of the blocks of the scene: pairs (id1, id2) that share a face, the lower id first; pairs (id1, id2, gap, bound)
+// that nearly do, or overlap (gap below 0), and the gap that would be accepted [m]; the thinnest (id, thickness) and
+// the largest (id, diagonal) [m].
+py::tuple neighbours(double tolerance);
+py::list touchingPairs(double tolerance); // the first of these
 
 } // namespace masonry
 

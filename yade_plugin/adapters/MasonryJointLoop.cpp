@@ -1,4 +1,5 @@
 #include "MasonryJointLoop.hpp"
+#include "SceneCheck.hpp"
 #include "Vectorised.hpp"
 #include "blocks/JointFrames.hpp"
 #include <algorithm>
@@ -413,6 +414,7 @@ void MasonryJointLoop::toNodes() {
 }
 
 void MasonryJointLoop::action() {
+    checkScene(*scene);
     if (stale()) build(true);
     if (!readBodies()) {
         build(false);

@@ -1,5 +1,6 @@
 #include "MasonryJointPhys.hpp"
 #include "MasonryJointGeom.hpp"
+#include "SceneCheck.hpp"
 
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryMat)
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJoint)
@@ -42,9 +43,9 @@ void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::assign(const MasonryMat& mat1, 
 void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::assignTo(const shared_ptr<yade::Interaction>& interaction,
                                                           const shared_ptr<MasonryJoint>& joint) const {
     if (!interaction || !joint) throw std::invalid_argument("assign needs an interaction and a MasonryJoint, got None");
-    auto* scene = Singleton<yade::Omega>::instance().getScene().get();
+    const auto& scene = *Singleton<yade::Omega>::instance().getScene();
     const auto unit = [&](int id) -> const MasonryMat& {
-        const auto* mat = dynamic_cast<MasonryMat*>(yade::Body::byId(id, scene)->material.get());
+        const auto* mat = dynamic_cast<const MasonryMat*>(bodyAt(scene, id, "body").material.get());
         if (!mat) throw std::invalid_argument("body " + std::to_string(id) + " has no MasonryMat");
         return *mat;
     };
@@ -74,6 +75,8 @@ bool Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening::go(shared_ptr<ya
                                                                    yade::Interaction* interaction) {
     auto& geom = static_cast<MasonryJointGeom&>(*ig);
     auto& phys = static_cast<MasonryJointPhys&>(*ip);
+    // Not connect()'s. The loop is parallel, where an exception would end the program: MasonryEnergy tells of it.
+    if (!phys.joint || phys.states.size() != geom.points.size()) return true;
     const JointLaw& law = phys.law();
     const auto k = phys.stiffness();
     Vector3r force = Vector3r::Zero(), torque = Vector3r::Zero(), lost = Vector3r::Zero(), moment = Vector3r::Zero();

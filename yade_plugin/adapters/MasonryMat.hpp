@@ -23,6 +23,13 @@ class MasonryMat : public Adapter<MasonryMat, yade::Material> {
         visit("jointSet", &MasonryMat::jointSet, "Name by which MasonryJoint.jointSet picks the joints of this unit.");
     }
 
+    template <class PyClass> static void extras(PyClass& cls) { // over the host's, which would not be checked
+        cls.add_property(
+            "density", +[](const MasonryMat& mat) { return mat.density; },
+            +[](MasonryMat& mat, const py::object& value) { mat.set("density", value); },
+            "Density [kg/m³], > 0. Default: 1000.");
+    }
+
     MasonryMat() { createIndex(); }
 
     void postLoad() {

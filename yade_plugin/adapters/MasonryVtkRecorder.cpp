@@ -3,6 +3,9 @@
 #include "MasonryJointPhys.hpp"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <set>
 #include <vtkCellArray.h>
@@ -37,11 +40,26 @@ Vector3r moved(const yade::State& s, const Vector3r& position, const Quaternionr
     return s.pos + s.ori * orientation.conjugate() * (point - position) - point;
 }
 
+// Throws for a file that cannot be written, and leaves no part of it, so that there is room for what follows.
+[[noreturn]] void failed(const std::string& path, int reason) {
+    std::remove(path.c_str());
+    throw std::runtime_error("cannot write " + path + ": " + (reason ? std::strerror(reason) : "no reason known"));
+}
+
 template <class Writer, class Data> void write(const std::string& path, Data* data) {
+    errno = 0;
+    if (std::FILE* file = std::fopen(path.c_str(), "w")) // VTK would tell in many lines, and not the reason
+        std::fclose(file);
+    else
+        failed(path, errno);
     vtkNew<Writer> writer;
     writer->SetFileName(path.c_str());
     writer->SetInputData(data);
-    if (!writer->Write()) throw std::runtime_error("cannot write " + path);
+    const int shown = vtkObject::GetGlobalWarningDisplay();
+    vtkObject::GlobalWarningDisplayOff();
+    const bool written = writer->Write() && !writer->GetErrorCode();
+    vtkObject::SetGlobalWarningDisplay(shown);
+    if (!written) failed(path, errno);
 }
 
 std::string frame(const std::string& name, std::size_t number, const std::string& extension) {
@@ -51,11 +69,26 @@ std::string frame(const std::string& name, std::size_t number, const std::string
 
 } // namespace
 
+void MasonryVtkRecorder::postLoad() {
+    std::vector<std::string> wrong;
+    if (directory.empty()) wrong.push_back("directory must not be empty");
+    if (!std::all_of(times.begin(), times.end(), [](double time) { return std::isfinite(time); }))
+        wrong.push_back("times must be finite numbers [s]");
+    if (stepPeriod < 0) wrong.push_back("stepPeriod " + std::to_string(stepPeriod) + " must be at least 0");
+    if (!wrong.empty()) throw std::invalid_argument("MasonryVtkRecorder: " + joined(wrong, "; "));
+}
+
 bool MasonryVtkRecorder::isActivated() { return stepPeriod > 0 && scene->iter % stepPeriod == 0; }
 
 void MasonryVtkRecorder::action() {
-    writeBlocks(directory + "/" + frame("blocks", times.size(), ".vtu"));
-    writeJoints(directory + "/" + frame("joints", times.size(), ".vtp"));
+    const auto blocks = directory + "/" + frame("blocks", times.size(), ".vtu");
+    writeBlocks(blocks);
+    try {
+        writeJoints(directory + "/" + frame("joints", times.size(), ".vtp"));
+    } catch (...) {
+        std::remove(blocks.c_str()); // no half of a frame
+        throw;
+    }
     times.push_back(scene->time);
     collect();
 }
@@ -160,7 +193,7 @@ void MasonryVtkRecorder::writeJoints(const std::string& path) {
         const auto& interaction = *scene->interactions->linIntrs[n];
         const auto* geom = dynamic_cast<MasonryJointGeom*>(interaction.geom.get());
         auto* phys = dynamic_cast<MasonryJointPhys*>(interaction.phys.get());
-        if (!geom || !phys) continue;
+        if (!geom || !phys || !phys->joint || geom->points.size() != phys->states.size()) continue;
         phys->refresh();
         const auto& s1 = *yade::Body::byId(interaction.id1, scene)->state;
         const auto& s2 = *yade::Body::byId(interaction.id2, scene)->state;
@@ -203,14 +236,15 @@ void MasonryVtkRecorder::writeJoints(const std::string& path) {
 }
 
 void MasonryVtkRecorder::writeCollection(const std::string& name, const std::string& extension) const {
-    const auto path = directory + "/" + name + ".pvd";
-    std::ofstream out(path);
+    const auto path = directory + "/" + name + ".pvd", fresh = path + ".new"; // so that a full disk leaves the old one
+    std::ofstream out(fresh);
     out.precision(12);
     out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
     for (std::size_t i = 0; i < times.size(); ++i)
         out << "<DataSet timestep=\"" << times[i] << "\" file=\"" << frame(name, i, extension) << "\"/>\n";
     out << "</Collection>\n</VTKFile>\n";
-    if (!out.flush()) throw std::runtime_error("cannot write " + path);
+    if (!out.flush()) failed(fresh, errno);
+    if (std::rename(fresh.c_str(), path.c_str())) failed(fresh, errno);
 }
 
 } // namespace masonry

@@ -28,6 +28,7 @@ public:
         visit("times", &R::times, "Simulation times of the frames so far [s]; given, the series goes on after them.");
     }
 
+    void postLoad();
     bool isActivated() override;
     void action() override;
     void collect() const;

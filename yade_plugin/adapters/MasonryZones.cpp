@@ -1,6 +1,7 @@
 #include "MasonryZones.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryMat.hpp"
+#include "SceneCheck.hpp"
 #include "law/Text.hpp"
 #include <algorithm>
 
@@ -18,6 +19,14 @@ void MasonryZones::postLoad() {
         wrong.push_back("dampingKind '" + dampingKind + "' must be 'combined' or 'local'");
     if (blocked.find_first_not_of("xyz") != std::string::npos)
         wrong.push_back("blocked '" + blocked + "' must be made of x, y and z");
+    if (!gravity.allFinite()) wrong.push_back("gravity must be finite numbers [m/s²]");
+    auto sorted = bodies;
+    std::sort(sorted.begin(), sorted.end());
+    if (!sorted.empty() && sorted[0] < 0) wrong.push_back("body " + std::to_string(sorted[0]) + " does not exist");
+    if (const auto twin = std::adjacent_find(sorted.begin(), sorted.end()); twin != sorted.end())
+        wrong.push_back("body " + std::to_string(*twin) + " stands twice in bodies");
+    if (!laidOut.empty() && laidOut != layout())
+        wrong.push_back("bodies and divisions cannot change once joints or a run know their nodes");
     if (!wrong.empty()) throw std::invalid_argument("MasonryZones: " + joined(wrong, "; "));
     refresh();
     units_.clear(), batches_.clear(); // meshed again when needed: after loading, or for other bodies
@@ -51,17 +60,23 @@ const std::vector<MasonryZones::Unit>& MasonryZones::units() {
     std::vector<Kind> kinds;
     const int held = blocked.size() == 1 ? int(blocked[0] - 'x') : -1;
     unitOfBody_.assign(all.size(), -1);
+    std::vector<std::string> wrong;
     int next = 0;
     for (int id : bodies) {
         const auto fail = [&](const std::string& what) {
-            units_.clear();
-            throw std::invalid_argument("MasonryZones: body " + std::to_string(id) + " " + what);
+            wrong.push_back("MasonryZones: body " + std::to_string(id) + " " + what);
         };
-        if (id < 0 || std::size_t(id) >= all.size() || !all[id]) fail("does not exist");
+        if (id < 0 || std::size_t(id) >= all.size() || !all[id]) {
+            fail("does not exist");
+            continue;
+        }
         auto* shape = dynamic_cast<yade::Polyhedra*>(all[id]->shape.get());
         const auto* mat = dynamic_cast<const MasonryMat*>(all[id]->material.get());
-        if (!shape || !mat) fail("is no Polyhedra of MasonryMat");
-        auto& state = *all[id]->state;
+        if (!shape || !mat) {
+            fail("is no Polyhedra of MasonryMat");
+            continue;
+        }
+        const auto& state = *all[id]->state;
         ConvexBlock block = blockOf(*shape, state.refPos, state.refOri);
         for (auto& v : block.vertices)
             v -= state.refPos;
@@ -79,21 +94,28 @@ const std::vector<MasonryZones::Unit>& MasonryZones::units() {
                                                              mat->young, mat->poisson, mat->density, held)});
             } catch (const std::invalid_argument& e) {
                 fail(std::string("cannot be divided: ") + e.what());
+                continue;
             }
             kind = std::prev(kinds.end());
         }
         unitOfBody_[id] = int(units_.size());
         units_.push_back({id, next, 0, kind->elasticity, state.refPos, state.refOri});
         next += int(kind->elasticity->masses().size());
+    }
+    if (!displacements.empty() && displacements.size() != std::size_t(next))
+        wrong.push_back("MasonryZones: bodies of " + std::to_string(next) + " nodes do not fit the state of " +
+                        std::to_string(displacements.size()) + " nodes");
+    if (!wrong.empty()) {
+        units_.clear();
+        throw std::invalid_argument(firstOf(wrong));
+    }
+    for (int id : bodies) {
+        auto& state = *all[id]->state;
         state.blockedDOFs = 63; // the host's integrator leaves it alone
         state.vel = state.angVel = Vector3r::Zero();
     }
-    if (!displacements.empty() && displacements.size() != std::size_t(next)) {
-        units_.clear();
-        throw std::invalid_argument("MasonryZones: bodies and divisions cannot change once joints or a run know the " +
-                                    std::to_string(displacements.size()) + " nodes (now " + std::to_string(next) + ")");
-    }
     if (displacements.empty()) {
+        laidOut = layout();
         displacements.assign(next, Vector3r::Zero());
         velocities = lastForces = displacements;
     }
@@ -148,6 +170,7 @@ Vector3r MasonryZones::referencePoint(int body, int node) {
 
 void MasonryZones::setVelocity(int node, const Vector3r& velocity) {
     units();
+    if (!velocity.allFinite()) throw std::invalid_argument("velocity of a node must be finite numbers [m/s]");
     if (node < 0 || std::size_t(node) >= places_.size())
         throw std::invalid_argument("there is no node " + std::to_string(node));
     put(velocities_, places_[node], velocity);
@@ -257,6 +280,7 @@ void MasonryZones::gatherFromFunctors() {
 }
 
 void MasonryZones::action() {
+    checkScene(*scene);
     units();
     if (!looped) gatherFromFunctors();
     const NodeMotion motion{scene->dt,

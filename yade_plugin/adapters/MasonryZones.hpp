@@ -36,7 +36,7 @@ public:
         "Stands after the interaction loop; the host's integrator leaves these bodies alone. Give it to "
         "Ig2_Polyhedra_Polyhedra_MasonryJointGeom.zones before joints are made.";
 
-    std::vector<int> bodies, divisions{1, 1, 1};
+    std::vector<int> bodies, divisions{1, 1, 1}, laidOut; // the last: what the nodes were numbered for
     double damping = 0.8;
     std::string dampingKind = "combined", blocked;
     Vector3r gravity = Vector3r(0, 0, -9.81);
@@ -66,6 +66,7 @@ public:
         visit("velocities", &Z::velocities, "Velocities of all nodes [m/s].", ReadOnly);
         visit("lastForces", &Z::lastForces, "", Hidden);
         visit("pendingDamping", &Z::pendingDamping, "", Hidden);
+        visit("laidOut", &Z::laidOut, "", Hidden);
     }
 
     template <class PyClass> static void extras(PyClass& cls) {
@@ -114,6 +115,11 @@ public:
     }
 
 private:
+    std::vector<int> layout() const { // all that the numbers of the nodes hang on
+        std::vector<int> all = divisions;
+        all.insert(all.end(), bodies.begin(), bodies.end());
+        return all;
+    }
     struct Batch { // of congruent units side by side
         const BlockElasticity* elasticity;
         int firstRow;

@@ -2,12 +2,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace masonry {
 
 namespace {
 
-constexpr double parallel = 1 - 1e-6; // cosine between normals of faces that count as parallel (1.4 mrad)
+constexpr double parallel = 1 - 1e-6;     // cosine between normals of faces that count as parallel (1.4 mrad)
+constexpr double nearlyParallel = 0.9945; // 6°
 
 Point unitNormal(const Polygon& p) { // Newell's sum: twice the vector area
     Point sum = Point::Zero();
@@ -67,32 +69,110 @@ std::vector<Polygon> ConvexBlock::faces() const {
     return faces;
 }
 
-std::optional<FaceContact> coincidentFaces(const ConvexBlock& one, const ConvexBlock& two, double tolerance) {
-    const double width = tolerance * std::min(one.size(), two.size());
-    const auto facesOfTwo = two.faces();
-    for (const auto& mine : one.faces()) {
-        const Point normal = unitNormal(mine);
-        for (const auto& theirs : facesOfTwo) {
-            if (normal.dot(unitNormal(theirs)) > -parallel) continue;
-            if (std::abs((theirs[0] - mine[0]).dot(normal)) > 100 * width) continue; // far; the exact test comes below
-            Polygon overlap = mine;
-            for (std::size_t i = 0; i < theirs.size() && overlap.size() > 2; ++i) {
-                const Point edge = theirs[(i + 1) % theirs.size()] - theirs[i];
-                overlap = cut(overlap, theirs[i], edge.cross(normal)); // their edges run clockwise about our normal
-            }
-            if (overlap.size() < 3) continue;
-            double perimeter = 0, gap = 0;
-            const Point theirNormal = unitNormal(theirs);
-            for (std::size_t i = 0; i < overlap.size(); ++i) {
-                perimeter += (overlap[(i + 1) % overlap.size()] - overlap[i]).norm();
-                gap = std::max(gap, std::abs((overlap[i] - theirs[0]).dot(theirNormal)));
-            }
-            if (gap > width || area(overlap, normal) < 0.5 * perimeter * width) continue;
-            for (auto& corner : overlap)
-                corner += 0.5 * (theirs[0] - corner).dot(theirNormal) * theirNormal;
-            return FaceContact{normal, overlap};
+KnownBlock::KnownBlock(ConvexBlock block) : ConvexBlock(std::move(block)), diagonal(size()), thickness(HUGE_VAL) {
+    for (auto& face : faces()) {
+        const Point normal = unitNormal(face);
+        double deep = 0;
+        for (const auto& v : vertices) {
+            const double below = (face[0] - v).dot(normal);
+            if (below < -0.002 * diagonal) // more than what merged faces may bend
+                throw std::invalid_argument("block is not convex, or the corners of its faces wind the wrong way");
+            deep = std::max(deep, below);
         }
+        thickness = std::min(thickness, deep);
+        known.push_back({std::move(face), normal});
     }
+}
+
+bool KnownBlock::holds(const Point& p, double margin) const {
+    return std::all_of(known.begin(), known.end(),
+                       [&](const Face& face) { return (p - face.corners[0]).dot(face.normal) <= margin; });
+}
+
+namespace {
+
+struct Meeting {
+    Polygon shared; // of a face with one opposite, seen along its normal
+    double gap = 0, area = 0, perimeter = 0;
+};
+
+Meeting meet(const KnownBlock::Face& mine, const KnownBlock::Face& theirs) {
+    Meeting m{mine.corners};
+    const auto& corners = theirs.corners;
+    for (std::size_t i = 0; i < corners.size() && m.shared.size() > 2; ++i) {
+        const Point edge = corners[(i + 1) % corners.size()] - corners[i];
+        m.shared = cut(m.shared, corners[i], edge.cross(mine.normal)); // their edges run clockwise about our normal
+    }
+    if (m.shared.size() < 3) return m;
+    m.area = area(m.shared, mine.normal);
+    for (std::size_t i = 0; i < m.shared.size(); ++i) {
+        m.perimeter += (m.shared[(i + 1) % m.shared.size()] - m.shared[i]).norm();
+        m.gap = std::max(m.gap, std::abs((m.shared[i] - corners[0]).dot(theirs.normal)));
+    }
+    return m;
+}
+
+// The largest distance of two convex blocks between planes across an axis, below 0 the least overlap: over the normals
+// of their faces and, where those part them by less than `enough`, the directions across an edge of each.
+double separation(const KnownBlock& one, const KnownBlock& two, double enough) {
+    double most = -HUGE_VAL;
+    const auto across = [&](const Point& axis) {
+        double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+        for (int side = 0; side < 2; ++side)
+            for (const auto& v : (side ? two : one).vertices)
+                low[side] = std::min(low[side], v.dot(axis)), high[side] = std::max(high[side], v.dot(axis));
+        most = std::max({most, low[1] - high[0], low[0] - high[1]});
+    };
+    for (const auto* block : {&one, &two})
+        for (const auto& face : block->known)
+            across(face.normal);
+    if (most >= enough) return most;
+    for (const auto& t : one.triangles)
+        for (const auto& s : two.triangles)
+            for (int i = 0; i < 3; ++i)
+                for (int j = 0; j < 3; ++j) {
+                    const Point e = (one.vertices[t[(i + 1) % 3]] - one.vertices[t[i]]).normalized(),
+                                f = (two.vertices[s[(j + 1) % 3]] - two.vertices[s[j]]).normalized();
+                    if (e.cross(f).norm() > 1e-6) across(e.cross(f).normalized());
+                }
+    return most;
+}
+
+} // namespace
+
+std::optional<FaceContact> coincidentFaces(const KnownBlock& one, const KnownBlock& two, double tolerance) {
+    const double width = tolerance * std::min(one.diagonal, two.diagonal);
+    for (const auto& mine : one.known)
+        for (const auto& theirs : two.known) {
+            if (mine.normal.dot(theirs.normal) > -parallel) continue;
+            const Point& origin = theirs.corners[0];
+            if (std::abs((origin - mine.corners[0]).dot(mine.normal)) > 100 * width)
+                continue; // far; the exact test comes below
+            auto m = meet(mine, theirs);
+            if (m.shared.size() < 3 || m.gap > width || m.area < 0.5 * m.perimeter * width) continue;
+            for (auto& corner : m.shared)
+                corner += 0.5 * (origin - corner).dot(theirs.normal) * theirs.normal;
+            return FaceContact{mine.normal, m.shared};
+        }
+    return std::nullopt;
+}
+
+std::optional<Misfit> misfit(const KnownBlock& one, const KnownBlock& two, double tolerance) {
+    const double width = tolerance * std::min(one.diagonal, two.diagonal);
+    const double reach = 0.25 * std::min(one.thickness, two.thickness);
+    const double apart = separation(one, two, -width);
+    if (apart < -width) return Misfit{apart, Point::Zero()};
+    if (apart > reach) return std::nullopt;
+    for (const auto& mine : one.known)
+        for (const auto& theirs : two.known) {
+            if (mine.normal.dot(theirs.normal) > -nearlyParallel) continue;
+            const auto m = meet(mine, theirs);
+            const double smaller = std::min(area(mine.corners, mine.normal), area(theirs.corners, theirs.normal));
+            if (m.shared.size() < 3 || m.gap > reach || m.area < std::max(0.5 * m.perimeter * width, 0.01 * smaller))
+                continue;
+            const Point centre = centroid(m.shared, mine.normal);
+            return Misfit{m.gap, centre + 0.5 * (theirs.corners[0] - centre).dot(theirs.normal) * theirs.normal};
+        }
     return std::nullopt;
 }
 

@@ -19,6 +19,18 @@ struct ConvexBlock {
     std::vector<Polygon> faces() const; // coplanar triangles merged
 };
 
+// A block with what its neighbours ask of it again and again.
+struct KnownBlock : ConvexBlock {
+    KnownBlock(ConvexBlock block); // std::invalid_argument if it is not convex, or its triangles wind inward
+    struct Face {
+        Polygon corners;
+        Point normal;
+    };
+    std::vector<Face> known;
+    double diagonal, thickness; // [m] of the bounding box; smallest extent along the normal of a face
+    bool holds(const Point&, double margin) const; // whether a point lies inside, or outside by no more than that
+};
+
 struct FaceContact {
     Point normal;    // from block 1 to block 2
     Polygon polygon; // counter-clockwise about the normal, midway between the two faces
@@ -26,7 +38,17 @@ struct FaceContact {
 
 // The face that two blocks share: opposite normals and a gap or overlap within `tolerance` times the size of the
 // smaller block. Faces that touch along less than that width share nothing.
-std::optional<FaceContact> coincidentFaces(const ConvexBlock& one, const ConvexBlock& two, double tolerance = 1e-4);
+std::optional<FaceContact> coincidentFaces(const KnownBlock& one, const KnownBlock& two, double tolerance = 1e-4);
+
+// How two blocks without a coincident face miss each other by little.
+struct Misfit {
+    double gap;   // [m] above 0: largest gap between two faces that nearly coincide; below 0: depth of the overlap
+    Point middle; // of the gap
+};
+
+// The misfit of two blocks that overlap by more than the width of `coincidentFaces`, or have faces opposite each other
+// (within 6° and over a hundredth of the smaller face) that are no further apart than a quarter of the thinner block.
+std::optional<Misfit> misfit(const KnownBlock& one, const KnownBlock& two, double tolerance = 1e-4);
 
 struct Subcontact {
     Point centre;

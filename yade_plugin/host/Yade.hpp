@@ -57,7 +57,6 @@ public:
     virtual void checkPyClassRegistersItself(const std::string& name) const;
     virtual void pyRegisterClass(py::object scope);
     virtual void pyHandleCustomCtorArgs(py::tuple& args, py::dict& keywords);
-    void pyUpdateAttrs(const py::dict&);
     template <class Archive> void serialize(Archive&, unsigned) {}
 };
 

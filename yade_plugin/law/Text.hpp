@@ -19,4 +19,10 @@ inline std::string joined(const std::vector<std::string>& parts, const char* sep
     return all;
 }
 
+inline std::string firstOf(std::vector<std::string> parts, std::size_t most = 10) {
+    const std::size_t more = parts.size() > most ? parts.size() - most : 0;
+    parts.resize(parts.size() - more);
+    return joined(parts, "\n") + (more ? "\nand " + std::to_string(more) + " more" : "");
+}
+
 } // namespace masonry

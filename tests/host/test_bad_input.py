@@ -1,0 +1,908 @@
+"""Bad input of every sort: one clear error each, nothing runs, and what was there stays as it was.
+
+A case is what the scene is, what is done to it, and what the message must say.
+"""
+
+import contextlib
+import io
+import json
+import math
+import os
+import resource
+import runpy
+import subprocess
+import sys
+
+import pytest
+from conftest import ROOT
+from masonry import (
+    addBlock,
+    brickwork,
+    connect,
+    criticalTimeStep,
+    engines,
+    materials,
+    touchingPairs,
+)
+from masonry import figures, measure, options, results, walls
+from yade import O, Quaternion, Vector3, polyhedra_utils, utils
+from yade.wrapper import *
+
+nan, inf = math.nan, math.inf
+BRICK = (0.220, 0.102, 0.081)
+
+
+# -- scenes -----------------------------------------------------------------------------------------------------------
+
+
+def box(x=0, y=0, z=0, size=BRICK):
+    return brickwork.corners((x, y, z), [a + b for a, b in zip((x, y, z), size)])
+
+
+def mat(**changes):
+    return MasonryMat(**{"density": 1800, **changes})
+
+
+def blocks(*places, size=BRICK):
+    """Bricks with their lower corners at these places, the first fixed; two on each other if no place is given."""
+    unit = mat()
+    for place in places or ((0, 0, 0), (0, 0, BRICK[2])):
+        addBlock(box(*place, size=size), unit)
+    O.bodies[0].state.blockedDOFs = "xyzXYZ"
+
+
+def laid(*places, size=BRICK, **settings):
+    """Those bricks and the engines, without joints."""
+    blocks(*places, size=size)
+    engines([MasonryJoint()], **settings)
+
+
+def joined(steps=3, **settings):
+    """Two bricks with their joint, some steps on their way."""
+    laid(**settings)
+    connect()
+    O.dt = 0.5 * criticalTimeStep()[0]
+    for _ in range(steps):
+        O.step()
+
+
+def deformable(steps=3, bodies=(1,)):
+    """Those bricks, the upper one deformable."""
+    joined(steps, zones=MasonryZones(bodies=list(bodies)))
+
+
+def zones():
+    return O.engines[-1]
+
+
+def reorder(change):
+    """The engines of two bricks, changed."""
+    joined()
+    O.engines = change(O.engines)
+
+
+def loaded(**settings):
+    """Two joined bricks and a load, which is only looked at in a step."""
+    joined(0, loads=[MasonryLoad(body=1, point=(0.11, 0.051, 0.162))])
+    for name, value in settings.items():
+        setattr(O.engines[2], name, value)
+
+
+def state(body, **settings):
+    """Two bricks, laid, one with another state."""
+    laid()
+    for name, value in settings.items():
+        setattr(O.bodies[body].state, name, value)
+
+
+def foreign(material):
+    """A brick of ours, and on it one that YADE's own function made."""
+    addBlock(box(), mat())
+    corners = [Vector3(*c) for c in box(z=BRICK[2])]
+    O.bodies.append(polyhedra_utils.polyhedra(material, v=corners))
+    engines([MasonryJoint()])
+
+
+def turned(degrees):
+    """A brick on an edge of another."""
+    addBlock(box(), mat())
+    turn = Quaternion(Vector3(0, 1, 0), math.radians(-degrees))
+    addBlock([turn * Vector3(*c) + Vector3(0, 0, BRICK[2]) for c in box()], mat())
+    engines([MasonryJoint()])
+
+
+# -- acts -------------------------------------------------------------------------------------------------------------
+
+
+def assign(thing, name, value):
+    """Give an attribute a value; where that is refused, the old one stays."""
+    before = repr(getattr(thing, name))
+    try:
+        setattr(thing, name, value)
+    finally:
+        assert repr(getattr(thing, name)) == before
+
+
+def update(thing, **values):
+    before = repr(thing.dict())
+    try:
+        thing.updateAttrs(values)
+    finally:
+        assert repr(thing.dict()) == before
+
+
+def script(name, *words):
+    """A scene of scripts/ with its options, in this process; what it says, if it ends with status 2, is the error."""
+    said, argv = io.StringIO(), sys.argv
+    sys.argv = [os.path.join(ROOT, "scripts", name + ".py"), *words]
+    try:
+        with contextlib.redirect_stderr(said):
+            runpy.run_path(sys.argv[0])
+    except SystemExit as end:
+        assert end.code == 2, said.getvalue()
+        raise ValueError(said.getvalue()) from None
+    finally:
+        sys.argv = argv
+
+
+def wall(**changes):
+    usual = dict(name="w", title="", halfUnits=4, courses=2, precompression=1e5)
+    return walls.Wall(**{**usual, **changes})
+
+
+def wallModel(**changes):
+    words = ["--no-vtk", "--out", "results"]
+    return walls.WallModel(
+        wall(**changes), options.parser("", until=1).parse_args(words)
+    )
+
+
+def files(run="{}", curve="time_s,base_shear_kN\r\n0,1\r\n1,2\r\n", **others):
+    """A folder with the files of a run; None leaves one out."""
+    for name, text in {"run.json": run, "curve.csv": curve, **others}.items():
+        if text is not None:
+            with open(name, "wb") as f:
+                f.write(text if isinstance(text, bytes) else text.encode())
+
+
+def read(act, *words, **content):
+    """What reads a run, on a folder with these files; its error is what it says at the end with status 2."""
+    if content:
+        files(**content)
+    said = io.StringIO()
+    with contextlib.redirect_stderr(said):
+        status = results.onFolder(act, words or (".",))
+    assert status == 2
+    raise ValueError(said.getvalue())
+
+
+def recorder(directory):
+    MasonryVtkRecorder(directory=directory)()
+
+
+def brokenRule(*_):
+    raise ValueError("my rule is broken")
+
+
+cube = box()
+tetrahedron = [(0, 0, 0), (0.2, 0, 0), (0, 0.2, 0), (0, 0, 0.2)]
+nothing = lambda: None
+step = lambda: O.step()
+
+#: (scene, act, message), by subject.
+
+# fmt: off
+CASES = {
+    "block": [
+        (nothing, lambda: addBlock([], mat()), "needs at least 4 corners, got 0"),
+        (nothing, lambda: addBlock(cube[:3], mat()), "at least 4 corners, got 3"),
+        (nothing, lambda: addBlock(cube[:4], mat()), "4 corners span 0.13025 m but only 0 m out of a plane: no volume"),
+        (nothing, lambda: addBlock([(i, 0, 0) for i in range(5)], mat()), "5 corners span 4 m but only 0 m out of"),
+        (nothing, lambda: addBlock([(1, 1, 1)] * 8, mat()), "8 corners span 0 m but only 0 m out of a plane"),
+        (nothing, lambda: addBlock(box(size=(0.2, 0.1, 1e-12)), mat()), "only 1e-12 m out of a plane: no volume"),
+        (nothing, lambda: addBlock(cube[:7] + [(nan, 0, 0)], mat()), "corner 7 [m] must be three finite numbers, got (nan"),
+        (nothing, lambda: addBlock(cube[:7] + [(inf, 0, 0)], mat()), "corner 7 [m] must be three finite numbers, got (inf"),
+        (nothing, lambda: addBlock([(0, 0), (1, 0), (1, 1), (0, 1)], mat()), "corner 3 [m] must be three finite numbers, got (0, 1)"),
+        (nothing, lambda: addBlock([(0, 0, 0, 0)] * 8, mat()), "corner 0 [m] must be three finite numbers, got (0, 0, 0, 0)"),
+        (nothing, lambda: addBlock([("a", "b", "c")] * 8, mat()), "corner 0 [m] must be three finite numbers, got ('a', 'b'"),
+        (nothing, lambda: addBlock("brick", mat()), "corner 4 [m] must be three finite numbers, got k"),
+        (nothing, lambda: addBlock(None, mat()), "corners must be a list of points, got None"),
+        (nothing, lambda: addBlock(5, None), ["corners must be a list of points, got 5", "material must be a MasonryMat, got None"]),
+        (nothing, lambda: addBlock(cube, FrictMat()), "material must be a MasonryMat, got <FrictMat"),
+        (nothing, lambda: addBlock(cube, PolyhedraMat()), "material must be a MasonryMat, got <PolyhedraMat"),
+        (nothing, lambda: addBlock(cube, "brick"), "material must be a MasonryMat, got brick"),
+        (nothing, lambda: addBlock(cube, MasonryJoint()), "material must be a MasonryMat, got <MasonryJoint"),
+        (nothing, lambda: addBlock(cube[:7] + cube[:1], mat()), "corner 7 (0, 0, 0) m is given twice"),
+        (nothing, lambda: addBlock(cube + [(0.1, 0.05, 0.04)], mat()), "corner 8 (0.1, 0.05, 0.04) m is no corner of the convex block"),
+        (nothing, lambda: addBlock(cube + [(0.11, 0, 0)], mat()), "corner 8 (0.11, 0, 0) m is no corner of the convex block"),
+        (nothing, lambda: addBlock(cube[:7] + [(0.05, 0.05, 0.04)], mat()), "corner 7 (0.05, 0.05, 0.04) m is no corner"),
+        (nothing, lambda: addBlock(box(x=1e12), mat()), "0.255641 m is too small to be told so far from the origin"),
+        (nothing, lambda: addBlock(cube, mat(density=5e-324)), "its mass of 0 kg and inertia are no numbers above 0"),
+        (nothing, lambda: addBlock(box(size=(1e200,) * 3), mat()), "must be three finite numbers"),
+        (nothing, lambda: addBlock(cube, mat(), color="red"), "color must be three finite numbers, got red"),
+    ],
+    "material": [
+        (nothing, lambda: MasonryMat(young=-4.8e9), "young -4.8e+09 Pa must be a finite number above 0"),
+        (nothing, lambda: MasonryMat(young=0), "young 0 Pa must be a finite number above 0"),
+        (nothing, lambda: MasonryMat(young=nan), "young nan Pa must be a finite number above 0"),
+        (nothing, lambda: MasonryMat(young=inf), "young inf Pa must be a finite number above 0"),
+        (nothing, lambda: MasonryMat(poisson=0.5), "poisson 0.5 must be above -1 and below 0.5"),
+        (nothing, lambda: MasonryMat(poisson=-1), "poisson -1 must be above -1 and below 0.5"),
+        (nothing, lambda: MasonryMat(poisson=nan), "poisson nan must be above -1 and below 0.5"),
+        (nothing, lambda: MasonryMat(density=0), "density 0 kg/m³ must be a finite number above 0"),
+        (nothing, lambda: MasonryMat(density=-1800), "density -1800 kg/m³ must be a finite number above 0"),
+        (nothing, lambda: MasonryMat(label="b", young=0, poisson=1, density=nan), ['MasonryMat "b": young 0', "poisson 1 must", "density nan"]),
+        (nothing, lambda: MasonryMat(young="stiff", jointSet=5), ["young: expected a number, got stiff", "jointSet: expected a text, got 5"]),
+        (nothing, lambda: MasonryMat(young=True), "young: expected a number, got True"),
+        (nothing, lambda: MasonryMat(density="heavy"), "MasonryMat.density: cannot be heavy"),
+        (nothing, lambda: MasonryMat(label=5), "MasonryMat.label: cannot be 5"),
+        (nothing, lambda: MasonryMat("brick"), "takes keyword arguments only"),
+        (nothing, lambda: assign(mat(), "young", None), "young: expected a number, got None"),
+        (nothing, lambda: assign(mat(), "young", [4.8e9]), "young: expected a number, got [4800000000.0]"),
+        (nothing, lambda: assign(mat(), "poisson", 0.6), "poisson 0.6 must be above -1 and below 0.5"),
+        (nothing, lambda: assign(mat(), "density", 0), "density 0 kg/m³ must be a finite number above 0"),
+        (nothing, lambda: assign(mat(), "density", nan), "density nan kg/m³ must be a finite number above 0"),
+        (nothing, lambda: assign(mat(), "density", "x"), "MasonryMat.density: cannot be x"),
+        (nothing, lambda: update(mat(), poisson=0.3, young=-1), "young -1 Pa must be a finite number above 0"),
+        (nothing, lambda: update(mat(), poisson=0.3, jointSet=None), "jointSet: expected a text, got None"),
+        (nothing, lambda: materials.dryGraniteJoints(120, 0), ["level 120 kN was not tested, there are 100, 175, 250", "course 0 m must be above 0"]),
+        (nothing, lambda: materials.dryGraniteJoints(175, nan), "height of a course nan m must be above 0"),
+    ],
+    "joint": [
+        (nothing, lambda: MasonryJoint(name=""), "name must not be empty"),
+        (nothing, lambda: MasonryJoint(name=3), "name: expected a text, got 3"),
+        (nothing, lambda: MasonryJoint(elastic=None), "elastic: expected True or False, got None"),
+        (nothing, lambda: MasonryJoint(elastic=2), "elastic: expected True or False, got 2"),
+        (nothing, lambda: MasonryJoint(cap="no"), "cap: expected True or False, got no"),
+        (nothing, lambda: MasonryJoint(direction=(0, 1)), "direction: expected a Vector3, got (0, 1)"),
+        (nothing, lambda: MasonryJoint(direction=(nan, 0, 0)), "direction must be finite numbers"),
+        (nothing, lambda: MasonryJoint(direction="z"), "direction: expected a Vector3, got z"),
+        (nothing, lambda: MasonryJoint(normalStiffness=0), "normal stiffness 0 Pa/m must be above 0"),
+        (nothing, lambda: MasonryJoint(shearStiffness=-1, elastic=True), "shear stiffness -1 Pa/m must be above 0"),
+        (nothing, lambda: MasonryJoint(normalStiffness=inf), "normal stiffness inf Pa/m must be a finite number"),
+        (nothing, lambda: MasonryJoint(tensileStrength=-1), "tensile strength -1 Pa must be at least 0"),
+        (nothing, lambda: MasonryJoint(tensileStrength=nan), "tensile strength nan Pa must be a finite number"),
+        (nothing, lambda: MasonryJoint(tensileStrength=0.3e6), "300000 Pa is above the apex of the Coulomb cone, cohesion/friction = 255814 Pa"),
+        (nothing, lambda: MasonryJoint(cohesion=-1), "cohesion -1 Pa must be at least 0"),
+        (nothing, lambda: MasonryJoint(residualCohesion=1e6), "residual cohesion 1e+06 Pa must be at most 110000"),
+        (nothing, lambda: MasonryJoint(friction=-0.4), "friction -0.4 must be at least 0"),
+        (nothing, lambda: MasonryJoint(residualFriction=0.5), "residual friction 0.5 must be at most 0.43"),
+        (nothing, lambda: MasonryJoint(dilatancy=1), "dilatancy 1 must be at most 0.43"),
+        (nothing, lambda: MasonryJoint(dilatancyDecay=-1), "dilatancy decay -1 1/m must be at least 0"),
+        (nothing, lambda: MasonryJoint(modeIFractureEnergy=0), "mode I fracture energy 0 J/m² must be above 0"),
+        (nothing, lambda: MasonryJoint(modeIIFractureEnergy=nan), "mode II fracture energy nan J/m² must be a finite number"),
+        (nothing, lambda: MasonryJoint(compressiveStrength=0), "compressive strength 0 Pa must be above 0"),
+        (nothing, lambda: MasonryJoint(elasticLimitRatio=1), "elastic limit ratio 1 must be at most 0.999"),
+        (nothing, lambda: MasonryJoint(residualStrengthRatio=-1), "residual strength ratio -1 must be at least 0"),
+        (nothing, lambda: MasonryJoint(peakRatio=0.5), "peak ratio 0.5 must be at least 1"),
+        (nothing, lambda: MasonryJoint(compressiveFractureEnergy=15), "15 J/m² is too small for peak ratio 68.5 (needs at least 12208 J/m²)"),
+        (nothing, lambda: MasonryJoint(capNormal=0), "cap constant Cnn 0 must be above 0"),
+        (nothing, lambda: MasonryJoint(capShear=-9), "cap constant Css -9 must be at least 0"),
+        (nothing, lambda: MasonryJoint(capLinear=inf), "cap constant Cn inf Pa must be a finite number"),
+        (nothing, lambda: MasonryJoint(name="b", cohesion=-1, friction=nan, peakRatio=0), ["cohesion -1", "friction nan", "peak ratio 0"]),
+        (nothing, lambda: MasonryJoint(friction="x", cohesion="y"), ["friction: expected a number, got x", "cohesion: expected a number, got y"]),
+        (
+            nothing,
+            lambda: MasonryJoint(cohesion=0, tensileStrength=0, residualFriction=0.3),
+            "friction softens from 0.43 to 0.3 without cohesion: give a shear table",
+        ),
+        (nothing, lambda: assign(MasonryJoint(), "friction", -1), "friction -1 must be at least 0"),
+        (nothing, lambda: assign(MasonryJoint(), "cap", None), "cap: expected True or False, got None"),
+        (nothing, lambda: update(MasonryJoint(), cohesion=2e5, friction=-1), "friction -1 must be at least 0"),
+        (nothing, lambda: MasonryJoint().compressionCurve([0, nan]), "closure nan m must be a finite number"),
+    ],
+    "table": [
+        (nothing, lambda: MasonryJoint(tensionTable=[(1, 0)]), "tension table, needs at least two rows, has 1"),
+        (nothing, lambda: MasonryJoint(tensionTable=[(0, 0), (2, 1)]), "tension table, row 1: must be ratio 1, damage 0 (the peak), is 0, 0"),
+        (nothing, lambda: MasonryJoint(tensionTable=[(1, 0.1), (2, 1)]), "row 1: must be ratio 1, damage 0 (the peak), is 1, 0.1"),
+        (nothing, lambda: MasonryJoint(shearTable=[(1, 0), (1, 1)]), "shear table, row 2: ratio 1 must be above 1 of the row before"),
+        (nothing, lambda: MasonryJoint(shearTable=[(1, 0), (3, 0.5), (2, 1)]), "row 3: ratio 2 must be above 3 of the row before"),
+        (nothing, lambda: MasonryJoint(shearTable=[(1, 0), (2, 0.5), (3, 0.4)]), "row 3: damage 0.4 falls below 0.5 of the row before"),
+        (nothing, lambda: MasonryJoint(tensionTable=[(1, 0), (2, 1.5)]), "row 2: damage 1.5 is outside 0 to 1"),
+        (nothing, lambda: MasonryJoint(tensionTable=[(1, 0), (2, -1)]), "row 2: damage -1 is outside 0 to 1"),
+        (nothing, lambda: MasonryJoint(tensionTable=[(1, 0), (nan, 1)]), "row 2: ratio and damage must be finite numbers"),
+        (nothing, lambda: MasonryJoint(tensionTable=[(1, 0), (2, inf)]), "row 2: ratio and damage must be finite numbers"),
+        (nothing, lambda: MasonryJoint(tensionTable=[(1, 0), (2,)]), "tensionTable: expected a list of (ratio, damage) rows, got [(1, 0), (2,)]"),
+        (nothing, lambda: MasonryJoint(tensionTable=[1, 2]), "expected a list of (ratio, damage) rows, got [1, 2]"),
+        (nothing, lambda: MasonryJoint(tensionTable=[(1, 0), ("a", "b")]), "expected a list of (ratio, damage) rows"),
+        (nothing, lambda: MasonryJoint(shearTable="1:0,2:1"), "shearTable: expected a list of (ratio, damage) rows, got 1:0,2:1"),
+        (nothing, lambda: MasonryJoint(shearTable={1: 0}), "shearTable: expected a list of (ratio, damage) rows, got {1: 0}"),
+        (nothing, lambda: assign(MasonryJoint(), "tensionTable", None), "expected a list of (ratio, damage) rows, got None"),
+        (nothing, lambda: MasonryJoint(tensionTable=[(2, 0), (1, 2), (0, 1)]), ["row 1: must be", "row 2: damage 2", "row 2: ratio 1", "row 3: ratio 0"]),
+    ],
+    "engines": [
+        (blocks, lambda: engines([]), "joints must not be empty"),
+        (blocks, lambda: engines(None), "joints must be a list of MasonryJoint, got None"),
+        (blocks, lambda: engines(MasonryJoint()), "joints must be a list of MasonryJoint, got <MasonryJoint"),
+        (blocks, lambda: engines([None]), "joints must be a list of MasonryJoint, got None"),
+        (blocks, lambda: engines(["bed"]), "joints must be a list of MasonryJoint, got 'bed'"),
+        (blocks, lambda: engines([mat()]), "joints must be a list of MasonryJoint, got <MasonryMat"),
+        (blocks, lambda: engines([MasonryJoint()], damping=1), "damping 1 must be 0 to 0.99"),
+        (blocks, lambda: engines([MasonryJoint()], damping=-0.1, functors=True), "damping -0.1 must be 0 to 0.99"),
+        (blocks, lambda: engines([MasonryJoint()], damping=nan), "damping nan must be 0 to 0.99"),
+        (blocks, lambda: engines([MasonryJoint()], damping="much"), "damping: expected a number, got much"),
+        (blocks, lambda: engines([MasonryJoint()], gravity=9.81), "gravity: expected a Vector3, got 9.81"),
+        (blocks, lambda: engines([MasonryJoint()], gravity=(0, -9.81)), "gravity: expected a Vector3, got (0, -9.81)"),
+        (blocks, lambda: engines([MasonryJoint()], gravity=(0, 0, nan), functors=True), "gravity must be finite numbers"),
+        (blocks, lambda: engines([MasonryJoint()], subcontacts=0), "subcontacts 0 must be 1 to 1000"),
+        (blocks, lambda: engines([MasonryJoint()], subcontacts=2.5), "subcontacts: expected a whole number, got 2.5"),
+        (blocks, lambda: engines([MasonryJoint()], subcontacts="4"), "subcontacts: expected a whole number, got 4"),
+        (blocks, lambda: engines([MasonryJoint()], subcontacts=10**12), "subcontacts: expected a whole number, got 1000000000000"),
+        (blocks, lambda: engines([MasonryJoint()], rows=-1), "rows -1 must be 1 to 1000"),
+        (blocks, lambda: engines([MasonryJoint()], loads=MasonryLoad()), "loads must be a list of MasonryLoad, got <MasonryLoad"),
+        (blocks, lambda: engines([MasonryJoint()], loads=[None]), "loads must be a list of MasonryLoad, got None"),
+        (blocks, lambda: engines([MasonryJoint()], loads=["top"]), "loads must be a list of MasonryLoad, got 'top'"),
+        (blocks, lambda: engines([MasonryJoint()], zones=[1]), "zones must be a MasonryZones or None, got [1]"),
+        (
+            joined,
+            lambda: engines([], loads=5, zones="x", damping=2, subcontacts=0),
+            ["joints must not be empty", "loads must be", "zones must be", "damping 2", "subcontacts 0"],
+        ),
+        (lambda: reorder(lambda e: e[:3]), step, "O.engines: there is no MasonryIntegrator (masonry.engines() puts them in order)"),
+        (lambda: (joined(), setattr(O.engines[-1], "dead", True)), step, "O.engines: there is no MasonryIntegrator"),
+        (
+            lambda: reorder(lambda e: e[-1:] + e[:-1]),
+            step,
+            "MasonryIntegrator must stand after the joints' loop; MasonryEnergy must stand before MasonryIntegrator",
+        ),
+        (lambda: reorder(lambda e: e[1:]), step, "MasonryJointLoop must stand after a ForceResetter"),
+        (lambda: reorder(lambda e: e[:1] + e[2:]), step, "O.engines: there is no MasonryJointLoop"),
+        (lambda: reorder(lambda e: e + e[-1:]), step, 'MasonryIntegrator "integrator" stands there twice'),
+        (lambda: reorder(lambda e: e + [NewtonIntegrator()]), step, "NewtonIntegrator stands beside MasonryIntegrator"),
+        (lambda: reorder(lambda e: e[:2] + [MasonryJointLoop()] + e[2:]), step, "MasonryJointLoop stands beside MasonryJointLoop"),
+        (lambda: reorder(lambda e: [MasonryLoad(body=1)] + e), step, "MasonryLoad must stand after the joints' loop"),
+        (lambda: reorder(lambda e: e + [MasonryLoad(body=1)]), step, "MasonryLoad must stand before MasonryIntegrator"),
+        (lambda: reorder(lambda e: e[:2] + e[:1:-1]), step, "MasonryEnergy must stand before MasonryIntegrator"),
+        (lambda: (deformable(), setattr(O, "engines", O.engines[:-1])), step, "bodies 0 and 1 needs its MasonryZones in O.engines"),
+        (lambda: (deformable(), setattr(O, "engines", O.engines[:1] + O.engines[2:])), step, "O.engines: there is no MasonryJointLoop"),
+        (lambda: (deformable(), setattr(O, "engines", O.engines[-1:] + O.engines[:-1])), step, "MasonryZones must stand after the joints' loop"),
+        (lambda: reorder(lambda e: e + [MasonryZones(bodies=[1])]), step, "was made before MasonryZones had body 1: give the zones to masonry.engines()"),
+        (lambda: (joined(), setattr(O, "dt", 0)), step, "O.dt 0 s must be a finite number above 0"),
+        (lambda: (joined(), setattr(O, "dt", nan)), step, "O.dt nan s must be a finite number above 0"),
+        (lambda: (joined(0, functors=True), setattr(O, "dt", inf)), step, "O.dt inf s must be a finite number above 0"),
+        (lambda: (deformable(), setattr(O, "dt", nan)), step, "O.dt nan s must be a finite number above 0"),
+        (laid, step, "no joints: call masonry.connect() before the first step"),
+        (lambda: laid(functors=True), step, "no joints: call masonry.connect() before the first step"),
+        (lambda: (joined(), setattr(O.interactions[0, 1], "phys", MasonryJointPhys())), step, "bodies 0 and 1 is not one that connect() made"),
+        (lambda: (joined(0, functors=True), setattr(O.interactions[0, 1], "phys", MasonryJointPhys())), step, "is not one that connect() made"),
+        (lambda: (joined(), setattr(O.interactions[0, 1], "geom", MasonryJointGeom())), step, "is not one that connect() made"),
+        (
+            nothing,
+            lambda: MasonryIntegrator(damping=1, dampingKind="viscous", gravity=(0, nan, 0)),
+            ["damping 1 must be 0 to 0.99", "dampingKind 'viscous' must be 'combined' or 'local'", "gravity must be finite numbers"],
+        ),
+        (joined, lambda: assign(O.engines[-1], "damping", nan), "damping nan must be 0 to 0.99"),
+        (joined, lambda: assign(O.engines[-1], "gravity", 9.81), "gravity: expected a Vector3, got 9.81"),
+        (nothing, lambda: MasonryJointLoop(geometry=5), "geometry: expected Ig2_Polyhedra_Polyhedra_MasonryJointGeom, got 5"),
+        (nothing, lambda: MasonryEnergy(kinetic=1), "MasonryEnergy.kinetic is read-only"),
+    ],
+    "connect": [
+        (blocks, lambda: connect(), "needs the joints' engine in O.engines: call masonry.engines() first"),
+        (lambda: engines([MasonryJoint()]), lambda: connect(), "none of 0 bodies shares a face"),
+        (lambda: laid((0, 0, 0)), lambda: connect(), "none of 1 bodies shares a face"),
+        (lambda: (blocks(), setattr(O, "engines", [MasonryJointLoop()])), lambda: connect(), "MasonryJointLoop has no geometry or no physics"),
+        (lambda: (blocks(), setattr(O, "engines", [InteractionLoop()])), lambda: connect(), "InteractionLoop has no geometry or no physics"),
+        (laid, lambda: connect(tolerance=0), "tolerance 0 must be above 0 and at most 0.01"),
+        (laid, lambda: connect(tolerance=-1), "tolerance -1 must be above 0 and at most 0.01"),
+        (laid, lambda: connect(tolerance=nan), "tolerance nan must be above 0 and at most 0.01"),
+        (laid, lambda: connect(tolerance=1), "tolerance 1 must be above 0 and at most 0.01"),
+        (laid, lambda: connect(tolerance="x"), "tolerance: expected a number, got x"),
+        (laid, lambda: touchingPairs(inf), "tolerance inf must be above 0 and at most 0.01"),
+        (laid, lambda: connect(5), "rule must be a function (body1, body2, geom) or None, got 5"),
+        (laid, lambda: connect(lambda *_: "bed"), "rule must return a MasonryJoint or None, got 'bed' for bodies 0 and 1"),
+        (laid, lambda: connect(brokenRule), "my rule is broken"),
+        (joined, lambda: connect(), "bodies 0 and 1 have a joint: connect() is called once"),
+        (
+            lambda: (blocks(), engines([MasonryJoint(name="head", direction=(1, 0, 0))])),
+            lambda: connect(),
+            'no joint fits bodies 0 and 1: joint sets "brick" and "brick", normal (0, 0, 1); offered: head',
+        ),
+        (lambda: (blocks(), engines([MasonryJoint(name="steel", jointSet="plate")], functors=True)), lambda: connect(), "offered: steel"),
+        (laid, lambda: Ip2_MasonryMat_MasonryMat_MasonryJointPhys().assign(None, None), "needs an interaction and a MasonryJoint, got None"),
+        (nothing, lambda: Ip2_MasonryMat_MasonryMat_MasonryJointPhys().assign(Interaction(), MasonryJoint()), "body 0 does not exist"),
+        (nothing, lambda: Ip2_MasonryMat_MasonryMat_MasonryJointPhys(joints=["bed"]), "joints: expected a list of MasonryJoint, got ['bed']"),
+        (nothing, lambda: Ip2_MasonryMat_MasonryMat_MasonryJointPhys(joints=MasonryJoint()), "joints: expected a list of MasonryJoint"),
+        (
+            nothing,
+            lambda: Ig2_Polyhedra_Polyhedra_MasonryJointGeom(subcontacts=0, rows=1001, tolerance=0, rowDirection=(nan, 0, 0)),
+            ["subcontacts 0 must be 1 to 1000", "rows 1001 must be", "tolerance 0 must be", "rowDirection must be finite numbers"],
+        ),
+        (nothing, lambda: Ig2_Polyhedra_Polyhedra_MasonryJointGeom(zones=5), "zones: expected MasonryZones, got 5"),
+        (lambda: laid((0, 0, 0), (0, 0, 5), functors=True), lambda: utils.createInteraction(0, 1), "bodies 0 and 1 share no face: no joint can be made"),
+    ],
+    "geometry": [
+        (lambda: laid((0, 0, 0), (0, 0, 0.082)), lambda: connect(), "bodies 0 and 1 nearly share a face, with a gap of 1 mm; the tolerance is 0.0256 mm"),
+        (lambda: laid((0, 0, 0), (0.23, 0, 0)), lambda: connect(), "bodies 0 and 1 nearly share a face, with a gap of 10 mm"),
+        (lambda: laid((0, 0, 0), (0, 0, 0.0811)), lambda: connect(tolerance=2e-4), "a gap of 0.1 mm; the tolerance is 0.0511 mm"),
+        (lambda: laid((0, 0, 0), (0, 0, 0.081), (0, 0, 0.1621)), lambda: connect(), "bodies 1 and 2 nearly share a face, with a gap of 0.1 mm"),
+        (lambda: laid((0, 0, 0), (0, 0, 0.080)), lambda: connect(), "bodies 0 and 1 lie 1 mm deep in each other; the tolerance is 0.0256 mm"),
+        (lambda: laid((0, 0, 0), (0, 0, 0.080)), lambda: connect(allowGaps=True), "bodies 0 and 1 lie 1 mm deep in each other"),
+        (lambda: laid((0, 0, 0), (0, 0, 0)), lambda: connect(), "bodies 0 and 1 lie 81 mm deep in each other"),
+        (lambda: laid((0, 0, 0), (0.01, 0, 0.0405)), lambda: connect(), "bodies 0 and 1 lie 40.5 mm deep in each other"),
+        (lambda: laid(*[(0, 0, 0.082 * i) for i in range(15)]), lambda: connect(), ["bodies 9 and 10 nearly share", "and 4 more", "help(masonry.connect)"]),
+        (lambda: laid((0, 0, 0), (0, 0, 0.080), (0.221, 0, 0)), lambda: connect(), ["bodies 0 and 1 lie 1 mm deep", "bodies 0 and 2 nearly share"]),
+        (lambda: turned(1), lambda: connect(), "bodies 0 and 1 nearly share a face, with a gap of 3.83894 mm"),
+        (lambda: turned(30), lambda: connect(), "none of 2 bodies shares a face with another"),
+        (lambda: laid((0, 0, 0), (0.22, 0, 0.081)), lambda: connect(), "none of 2 bodies shares a face with another (tolerance 0.0001"),
+        (lambda: laid((0, 0, 0), (0.22, 0.102, 0.081)), lambda: connect(), "none of 2 bodies shares a face with another"),
+        (lambda: laid((0, 0, 0), (0, 0, 0.5)), lambda: connect(), "none of 2 bodies shares a face with another"),
+        (lambda: laid((0, 0, 0), (0, 0, 0.082)), lambda: connect(allowGaps=True), "none of 2 bodies shares a face with another"),
+        (lambda: foreign(FrictMat(density=1000)), lambda: connect(), "body 1 has FrictMat, must have a MasonryMat"),
+        (lambda: foreign(mat()), lambda: connect(), "body 1 lies 171.649 mm from its reference place state.refPos, which addBlock() sets"),
+        (lambda: (laid(), setattr(O.bodies[1], "material", None)), lambda: connect(), "body 1 has no material, must have a MasonryMat"),
+        (lambda: state(1, pos=Vector3(nan, 0, 0)), lambda: connect(), "body 1 has a place or velocity that is no finite number"),
+        (lambda: state(1, vel=Vector3(0, inf, 0)), lambda: connect(), "body 1 has a place or velocity that is no finite number"),
+        (lambda: state(1, mass=0), lambda: connect(), "body 1 has a mass of 0 kg, must be a finite number above 0"),
+        (lambda: state(1, mass=-3.2), lambda: connect(), "body 1 has a mass of -3.2 kg, must be a finite number above 0"),
+        (lambda: state(1, inertia=Vector3(0, 1, 1)), lambda: connect(), "body 1 has an inertia of 0 kg m²"),
+        (lambda: state(1, mass=nan, inertia=Vector3(nan, 1, 1)), lambda: connect(), ["mass of nan kg", "inertia of nan kg m²"]),
+        (lambda: (joined(), setattr(O.bodies[1].state, "mass", 0)), lambda: criticalTimeStep(), "body 1 has a mass of 0 kg"),
+    ],
+    "load": [
+        (nothing, lambda: MasonryLoad(body=-1), "body -1 must be at least 0"),
+        (nothing, lambda: MasonryLoad(body="top"), "body: expected a whole number, got top"),
+        (nothing, lambda: MasonryLoad(body=1.5), "body: expected a whole number, got 1.5"),
+        (
+            nothing,
+            lambda: MasonryLoad(point=(nan, 0, 0), force=(inf, 0, 0), velocity=nan, direction=(0, 0, 0)),
+            ["point must be finite numbers [m]", "force must be finite numbers [N]", "velocity nan m/s", "direction must be finite numbers, not all zero"],
+        ),
+        (nothing, lambda: MasonryLoad(point=(1, 2)), "point: expected a Vector3, got (1, 2)"),
+        (nothing, lambda: MasonryLoad(force=5e3), "force: expected a Vector3, got 5000.0"),
+        (nothing, lambda: MasonryLoad(direction=(nan, 0, 0)), "direction must be finite numbers, not all zero"),
+        (nothing, lambda: MasonryLoad(velocity="fast"), "velocity: expected a number, got fast"),
+        (nothing, lambda: MasonryLoad(driven="yes"), "driven: expected True or False, got yes"),
+        (nothing, lambda: MasonryLoad(reaction=5), "MasonryLoad.reaction is read-only"),
+        (loaded, lambda: assign(O.engines[2], "force", (0, 0, nan)), "force must be finite numbers [N]"),
+        (loaded, lambda: assign(O.engines[2], "velocity", inf), "velocity inf m/s must be a finite number"),
+        (lambda: loaded(body=77), step, "MasonryLoad.body 77 does not exist"),
+        (lambda: loaded(body=0, driven=True), step, "body 0 is blocked in the driven direction"),
+        (lambda: (loaded(), O.bodies.erase(1)), step, "MasonryLoad.body 1 does not exist"),
+        (
+            lambda: (deformable(0), setattr(O, "engines", O.engines[:2] + [MasonryLoad(body=1)] + O.engines[2:])),
+            step,
+            "MasonryLoad.body 1 is a deformable unit",
+        ),
+        (nothing, lambda: MasonryLoad(body=99).displacement(), "MasonryLoad.body 99 does not exist"),
+    ],
+    "zones": [
+        (blocks, lambda: MasonryZones(bodies=5), "bodies: expected a list of whole numbers, got 5"),
+        (blocks, lambda: MasonryZones(bodies=["a"]), "bodies: expected a list of whole numbers, got ['a']"),
+        (blocks, lambda: MasonryZones(bodies=[0.5]), "bodies: expected a list of whole numbers, got [0.5]"),
+        (blocks, lambda: MasonryZones(bodies=[1, 1]), "body 1 stands twice in bodies"),
+        (blocks, lambda: MasonryZones(bodies=[-1]), "body -1 does not exist"),
+        (blocks, lambda: MasonryZones(bodies=[1, 8, 9]).nodesOf(1), ["body 8 does not exist", "body 9 does not exist"]),
+        (lambda: O.bodies.append(utils.sphere((0, 0, 0), 1)), lambda: MasonryZones(bodies=[0]).nodesOf(0), "body 0 is no Polyhedra of MasonryMat"),
+        (nothing, lambda: MasonryZones(divisions=[1, 1]), "divisions must be three whole numbers"),
+        (nothing, lambda: MasonryZones(divisions=3), "divisions: expected a list of whole numbers, got 3"),
+        (nothing, lambda: MasonryZones(divisions="111"), "divisions: expected a list of whole numbers, got 111"),
+        (nothing, lambda: MasonryZones(divisions=[1.5, 1, 1]), "divisions: expected a list of whole numbers, got [1.5, 1, 1]"),
+        (nothing, lambda: MasonryZones(divisions=[0, 1, 101]), ["divisions 0 must be 1 to 100", "divisions 101 must be 1 to 100"]),
+        (
+            nothing,
+            lambda: MasonryZones(damping=nan, dampingKind="x", blocked="q", gravity=(0, 0, nan)),
+            ["damping nan must be 0 to 0.99", "dampingKind 'x' must be", "blocked 'q' must be made of x, y and z", "gravity must be finite numbers"],
+        ),
+        (lambda: addBlock(box(size=(1, 1, 1e-4)), mat()), lambda: MasonryZones(bodies=[0]).nodesOf(0), "cannot be divided: block has a sliver zone"),
+        (deformable, lambda: zones().nodesOf(0), "body 0 is no deformable unit"),
+        (deformable, lambda: zones().nodesOf(-1), "body -1 is no deformable unit"),
+        (deformable, lambda: zones().referencePoint(1, 99), "body 1 has no node 99"),
+        (deformable, lambda: zones().setVelocity(99, (0, 0, 0)), "there is no node 99"),
+        (deformable, lambda: zones().setVelocity(0, (nan, 0, 0)), "velocity of a node must be finite numbers [m/s]"),
+        (deformable, lambda: assign(zones(), "bodies", [0]), "bodies and divisions cannot change once joints or a run know their nodes"),
+        (deformable, lambda: assign(zones(), "divisions", [2, 1, 1]), "bodies and divisions cannot change"),
+        (deformable, lambda: assign(zones(), "damping", 1), "damping 1 must be 0 to 0.99"),
+        (lambda: laid(zones=MasonryZones(bodies=[1, 8])), lambda: connect(), "MasonryZones: body 8 does not exist"),
+        (lambda: (deformable(), O.bodies.erase(1)), step, "MasonryZones: body 1 does not exist"),
+    ],
+    "recorder": [
+        (nothing, lambda: MasonryVtkRecorder(directory="", stepPeriod=-1), ["directory must not be empty", "stepPeriod -1 must be at least 0"]),
+        (nothing, lambda: MasonryVtkRecorder(directory=5), "directory: expected a text, got 5"),
+        (nothing, lambda: MasonryVtkRecorder(stepPeriod="x"), "stepPeriod: expected a whole number, got x"),
+        (nothing, lambda: MasonryVtkRecorder(kinds=["bed"]), "MasonryVtkRecorder.kinds is read-only"),
+        (nothing, lambda: MasonryVtkRecorder(times=[0, nan]), "times must be finite numbers [s]"),
+        (nothing, lambda: MasonryVtkRecorder(times="0"), "times: expected a list of numbers, got 0"),
+        (joined, lambda: recorder("nowhere"), "cannot write nowhere/blocks_0000.vtu: No such file or directory"),
+        (joined, lambda: recorder("/dev/full"), "cannot write /dev/full/blocks_0000.vtu: Not a directory"),
+        (joined, lambda: recorder("/proc"), "cannot write /proc/blocks_0000.vtu: No such file or directory"),
+        (lambda: (joined(), os.symlink("/dev/full", "blocks_0000.vtu")), lambda: recorder("."), "cannot write ./blocks_0000.vtu: No space left on device"),
+        (lambda: (joined(), os.symlink("/dev/full", "joints_0000.vtp")), lambda: recorder("."), "cannot write ./joints_0000.vtp: No space left on device"),
+        (lambda: (joined(), os.symlink("/dev/full", "blocks.pvd.new")), lambda: recorder("."), "cannot write ./blocks.pvd.new: No space left on device"),
+    ],
+    "wall": [
+        (nothing, lambda: wall(halfUnits=3), "an even number of half units >= 2, got 2 and 3"),
+        (nothing, lambda: wall(halfUnits=0, courses=0), "got 0 and 0"),
+        (nothing, lambda: wall(halfUnits=4.0), "got 2 and 4.0"),
+        (nothing, lambda: wall(halfUnits="4"), "got 2 and 4"),
+        (nothing, lambda: wall(courses=nan), "got nan and 4"),
+        (nothing, lambda: wall(unit=(0.2, 0.1)), "unit must be a length, thickness and height above 0 m, got (0.2, 0.1)"),
+        (nothing, lambda: wall(unit=(0.2, 0.1, -0.1)), "unit must be a length, thickness and height above 0 m"),
+        (nothing, lambda: wall(unit=(nan, 0.1, 0.1)), "unit must be a length, thickness and height above 0 m"),
+        (nothing, lambda: wall(unit="abc"), "unit must be a length, thickness and height above 0 m, got abc"),
+        (nothing, lambda: wall(unit=5), "unit must be a length, thickness and height above 0 m, got 5"),
+        (nothing, lambda: wall(precompression=0), "wall w: precompression 0 Pa must be above 0"),
+        (nothing, lambda: wall(precompression=inf), "precompression inf Pa must be above 0"),
+        (nothing, lambda: wall(precompression="0.5 MPa"), "precompression 0.5 MPa Pa must be above 0"),
+        (nothing, lambda: wall(loadHeight=0.1), "load height 0.1 m must be above the wall's top at 0.162 m"),
+        (nothing, lambda: wall(loadHeight=nan, measureHeight=inf), ["load height nan m", "measure height inf m must be at least the wall's top"]),
+        (nothing, lambda: wall(measureHeight=0.1), "measure height 0.1 m must be at least the wall's top at 0.162 m"),
+        (nothing, lambda: wall(name=""), "name must be a text that can name a folder"),
+        (nothing, lambda: wall(name="a/b"), "name must be a text that can name a folder"),
+        (
+            nothing,
+            lambda: wall(name=None, unitMaterial=mat(), joints=[], courses=0, precompression=-1),
+            ["name must be", "unitMaterial must be a function", "joints must be a function", "got 0 and 4", "precompression -1 Pa"],
+        ),
+        (joined, lambda: wallModel(unitMaterial=lambda: FrictMat()), "wall w: unitMaterial() gave <FrictMat"),
+        (joined, lambda: wallModel(joints=lambda brittle: [MasonryJoint()]), "joints() must give a dict of MasonryJoint by name"),
+        (joined, lambda: wallModel(joints=lambda brittle: {"bed": 5}), "joints() must give a dict of MasonryJoint by name"),
+        (nothing, lambda: brickwork.runningBond(2.5, 4), "got 2.5 and 4"),
+        (nothing, lambda: brickwork.runningBond(2, 4, None), "unit must be a length, thickness and height above 0 m, got None"),
+    ],
+    "option": [
+        (joined, lambda: script("wall_comp4", "--until", "-1"), "argument --until: -1 must be above 0 and at most 1000"),
+        (joined, lambda: script("wall_comp0a", "--until", "12mm"), "argument --until: '12mm' is not a number"),
+        (joined, lambda: script("wall_comp1", "--until", "nan"), "argument --until: nan must be above 0"),
+        (joined, lambda: script("wall_comp6", "--rate", "1e-300"), "argument --rate: 1e-300 must be at least 0.001 and at most 1000"),
+        (joined, lambda: script("wall_comp4", "--dt-fraction", "1e-9"), "argument --dt-fraction: 1e-9 must be at least 0.001 and at most 1"),
+        (joined, lambda: script("wall_comp4", "--dt-fraction", "0"), "argument --dt-fraction: 0 must be at least 0.001"),
+        (joined, lambda: script("wall_comp4", "--damping", "1"), "argument --damping: 1 must be at least 0 and at most 0.99"),
+        (joined, lambda: script("wall_comp4", "--damping", "inf"), "argument --damping: inf must be at least 0"),
+        (joined, lambda: script("wall_comp4", "--density-scaling", "0"), "argument --density-scaling: 0 must be at least 1e-06"),
+        (joined, lambda: script("wall_comp4", "--subcontacts", "²"), "argument --subcontacts: '²' must be a whole number from 1 to 100"),
+        (joined, lambda: script("wall_comp4", "--subcontacts", "4.0"), "'4.0' must be a whole number from 1 to 100"),
+        (joined, lambda: script("wall_comp4", "--subcontacts", "1000"), "'1000' must be a whole number from 1 to 100"),
+        (joined, lambda: script("wall_comp4", "--divisions", "0"), "argument --divisions: '0' must be a whole number from 1 to 10"),
+        (joined, lambda: script("wall_comp4", "--divisions", "2"), "--divisions: rigid units are not divided"),
+        (joined, lambda: script("wall_comp4", "--blocks", "soft"), "argument --blocks: invalid choice: 'soft' (choose from 'rigid', 'deformable')"),
+        (joined, lambda: script("wall_comp4", "--joints", "dry"), "argument --joints: invalid choice: 'dry'"),
+        (joined, lambda: script("wall_comp4", "--damping-kind", "viscous"), "argument --damping-kind: invalid choice: 'viscous'"),
+        (joined, lambda: script("wall_comp4", "--crack-surfaces", "no"), "argument --crack-surfaces: invalid choice: 'no'"),
+        (joined, lambda: script("wall_comp4", "--vtk-every", "0"), "argument --vtk-every: 0 must be above 0"),
+        (joined, lambda: script("wall_comp4", "--unti", "5"), "unrecognized arguments: --unti 5"),
+        (joined, lambda: script("wall_comp4", "12"), "unrecognized arguments: 12"),
+        (joined, lambda: script("wall_comp4", "--until"), "argument --until: expected one argument"),
+        (
+            joined,
+            lambda: script("wall_comp4", "--until", "x", "--rate", "0", "--blocks", "soft", "--nonsense"),
+            ["--until: 'x' is not", "--rate: 0 must", "--blocks: invalid choice", "unrecognized arguments: --nonsense"],
+        ),
+        (joined, lambda: script("wall_comp4", "--rate", "-5", "--until"), ["--rate: -5 must be at least 0.001", "--until: expected one argument"]),
+        (joined, lambda: script("wall_comp4", "--preset", "slow"), "argument --preset: invalid choice: 'slow'"),
+        (joined, lambda: script("wall_comp4", "--checkpoint-every", "-1"), "argument --checkpoint-every: -1 must be at least 0"),
+        (joined, lambda: script("wall_comp4", "--resume", ""), "argument --resume: must not be empty"),
+        (joined, lambda: script("wall_comp4", "--resume", "nowhere", "--rate", "0"), "argument --rate: 0 must be at least 0.001"),
+        (joined, lambda: script("wall_comp4", "--resume", "nowhere"), "--resume: [Errno 2] No such file or directory: 'nowhere/run.checkpoint'"),
+        (joined, lambda: script("wall_comp4", "--set", "bed"), "'bed' must read JOINT.PROPERTY=VALUE"),
+        (joined, lambda: script("wall_comp4", "--set", "glue.friction=1"), "no joint 'glue', there are support, bed, head, crack"),
+        (joined, lambda: script("wall_comp4", "--set", "bed.Friction=1"), "no such property, did you mean friction?"),
+        (joined, lambda: script("wall_comp4", "--set", "bed.name=x"), "--set bed.name: a MasonryJoint has no such property"),
+        (joined, lambda: script("wall_comp4", "--set", "bed.cohesion=much"), "--set bed.cohesion=much: must be a number"),
+        (joined, lambda: script("wall_comp4", "--set", "bed.cohesion=nan"), 'joint "bed": cohesion nan Pa must be a finite number'),
+        (joined, lambda: script("wall_comp4", "--set", "bed.cap=2"), "--set bed.cap=2: must be on or off"),
+        (joined, lambda: script("wall_comp4", "--set", "bed.shearTable=1:0"), "shear table, needs at least two rows, has 1"),
+        (joined, lambda: script("wall_comp4", "--set", "bed.shearTable="), "must be rows as ratio:damage,ratio:damage,..."),
+        (joined, lambda: script("wall_comp4", "--set", "bed.shearTable=1:0,2:0.5:3"), "must be rows as ratio:damage,ratio:damage,..."),
+        (joined, lambda: script("wall_comp4", "--set", "bed.tensionTable=1:0,1:1"), "row 2: ratio 1 must be above 1 of the row before"),
+        (
+            joined,
+            lambda: script("wall_comp4", "--divisions", "3", "--set", "bed.friction=-1", "--set", "x.y=1"),
+            ["rigid units are not divided", "friction -1 must be at least 0", "no joint 'x'"],
+        ),
+        (
+            joined,
+            lambda: script("wall_dry", "--crack-surfaces", "on", "--set", "bed.cohesion=-1"),
+            ["--crack-surfaces on: the units of this wall have none", "cohesion -1 Pa must be at least 0"],
+        ),
+        (joined, lambda: script("wall_dry", "--level", "120"), "argument --level: invalid choice: 120 (choose from 100, 175, 250)"),
+        (joined, lambda: script("wall_dry", "--level", "much"), "argument --level: invalid int value: 'much'"),
+        (joined, lambda: script("wall_dry", "--load-line", "loose"), "argument --load-line: invalid choice: 'loose'"),
+        (joined, lambda: script("couplet", "--path", "torsion"), "argument --path: invalid choice: 'torsion'"),
+        (joined, lambda: script("couplet", "--normal-stress", "0.5"), "argument --normal-stress: 0.5 must be at least -1000 and at most 0"),
+        (joined, lambda: script("couplet", "--normal-stress", "-0.5e6"), "argument --normal-stress: -0.5e6 must be at least -1000"),
+        (joined, lambda: script("couplet", "--normal-stress", "-inf"), "argument --normal-stress: -inf must be at least -1000"),
+        (joined, lambda: script("couplet", "--normal-stress", "-8"), "--normal-stress -8 MPa crushes the bed joint, whose compressive strength is 7.55 MPa"),
+        (joined, lambda: script("couplet", "--closure", "0"), "argument --closure: 0 must be above 0"),
+    ],
+    "output": [
+        (joined, lambda: script("wall_comp4", "--out", ""), "argument --out: must not be empty"),
+        (lambda: (joined(), open("file", "w").close()), lambda: script("wall_comp4", "--out", "file"), "/file: File exists"),
+        (lambda: (joined(), open("file", "w").close()), lambda: script("couplet", "--out", "file/below"), "/file/below: Not a directory"),
+        (joined, lambda: script("wall_comp0a", "--out", "/dev/full"), "--out: cannot write to /dev/full: File exists"),
+        (joined, lambda: script("wall_comp1", "--out", "/proc"), "--out: cannot write to /proc: No such file or directory"),
+        (joined, lambda: script("wall_comp6", "--out", "/proc/nowhere"), "--out: cannot write to /proc/nowhere: No such file"),
+        (joined, lambda: script("wall_dry", "--out", "x" * 300), "File name too long"),
+        (lambda: (joined(), os.makedirs("r/curve.csv")), lambda: script("couplet", "--out", "r"), "--out: cannot write to"),
+        (nothing, lambda: results.Results("r", ["a"]).checkRoom(1e18, 1e18), "free, this run writes at least 1000000000000.0 MB"),
+    ],
+    "files": [
+        (nothing, lambda: read(measure.show, "a", "b"), "name one folder of results, for example results/wall_comp4"),
+        (nothing, lambda: read(measure.show, "nowhere"), "cannot read nowhere/run.json: No such file or directory"),
+        (nothing, lambda: read(measure.show, "/dev/full"), "cannot read /dev/full/run.json: Not a directory"),
+        (nothing, lambda: read(measure.show, run=""), "run.json: Expecting value: line 1 column 1"),
+        (nothing, lambda: read(measure.show, run='{"scene": '), "run.json: Expecting value: line 1 column 11"),
+        (nothing, lambda: read(measure.show, run="[]"), "run.json: is no record of a run"),
+        (nothing, lambda: read(measure.show, run=b"\xff\xfe"), "cannot read ./run.json: it is no text"),
+        (nothing, lambda: read(measure.show, run="{}"), "not the files of a finished run (KeyError: 'energy_balance_error')"),
+        (nothing, lambda: read(measure.show, run=WALL, curve=None), "cannot read ./curve.csv: No such file or directory"),
+        (nothing, lambda: read(measure.show, run=WALL, curve=""), "curve.csv: there is no row of numbers"),
+        (nothing, lambda: read(measure.show, run=WALL, curve="time_s\r\n"), "curve.csv: there is no row of numbers"),
+        (nothing, lambda: read(measure.show, run=WALL, curve="a,b\r\n1,2\r\n3\r\n"), "curve.csv, line 3: 1 numbers in 2 columns"),
+        (nothing, lambda: read(measure.show, run=WALL, curve="a,b\r\n1,x\r\n3,\r\n"), ["line 2: could not convert string to float: 'x'", "line 3: could not"]),
+        (nothing, lambda: read(measure.show, run=WALL, curve="a,b\r\n1,nan\r\n"), "curve.csv, line 2: a number is not finite"),
+        (nothing, lambda: read(measure.show, run=WALL, curve=b"\xff\xfe\x00"), "cannot read ./curve.csv: it is no text"),
+        (nothing, lambda: read(measure.show, run=WALL, curve="a,b\r\n1,2\r\n"), "not the files of a finished run (KeyError: 'base_shear_kN')"),
+        (nothing, lambda: read(measure.show, run=WALL, curve=CURVE, **{"joints_0000.vtp": "<VTKFile"}), "cannot read ./joints_0000.vtp: it holds no frame"),
+        (nothing, lambda: read(measure.show, run=WALL, curve=CURVE, **{"joints_0000.vtp": b"\x00" * 4096}), "cannot read ./joints_0000.vtp: it holds no frame"),
+        (nothing, lambda: read(figures.draw, "nowhere"), "cannot read nowhere/run.json: No such file or directory"),
+        (nothing, lambda: read(figures.draw, run=WALL, curve=CURVE), "not the files of a finished run (KeyError"),
+        (nothing, lambda: figures.readFrame(".", "joints"), "no file joints_*.vt? in ."),
+        (nothing, lambda: read(lambda d: results.readCurve(d), run=WALL, curve=None), "cannot read ./curve.csv"),
+    ],
+}
+# fmt: on
+WALL = json.dumps({"energy_balance_error": 0, "wall": {"courses": 2}})
+CURVE = "time_s,displacement_mm,base_shear_kN,top_shear_kN\r\n0,0,1,1\r\n1,1,2,2\r\n"
+
+
+def snapshot():
+    """All that a refused input must leave as it was."""
+    return repr(
+        (
+            O.iter,
+            O.time,
+            O.dt,
+            [(type(e).__name__, e.label) for e in O.engines],
+            [
+                (
+                    b.state.pos,
+                    b.state.ori,
+                    b.state.vel,
+                    b.state.mass,
+                    b.state.blockedDOFs,
+                )
+                for b in O.bodies
+            ],
+            [
+                (i.id1, i.id2, i.geom.jumps, i.phys.stress, i.phys.dissipated)
+                for i in O.interactions
+            ],
+        )
+    )
+
+
+@pytest.mark.parametrize(
+    "given, act, message",
+    [
+        pytest.param(*case, id=f"{subject}-{number}")
+        for subject, cases in CASES.items()
+        for number, case in enumerate(cases)
+    ],
+)
+def test_bad_input_is_refused_and_nothing_is_lost(
+    scene, given, act, message, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    given()
+    before = snapshot()
+    with pytest.raises((ValueError, RuntimeError)) as refused:
+        act()
+    said = str(refused.value)
+    for part in [message] if isinstance(message, str) else message:
+        assert part in said
+    assert snapshot() == before
+
+
+def test_at_least_a_hundred_and_fifty_inputs_are_tried():
+    assert sum(map(len, CASES.values())) >= 150
+
+
+# -- what may be meant, and what is fine ------------------------------------------------------------------------------
+
+
+def joint(**changes):
+    """Two bricks with a joint of these properties."""
+    blocks()
+    engines([MasonryJoint(**changes)])
+    connect()
+
+
+def unit(**changes):
+    """Two bricks of this material."""
+    for z in (0, BRICK[2]):
+        addBlock(box(z=z), mat(**changes))
+    engines([MasonryJoint()])
+    connect()
+
+
+def bricks(size, *more):
+    """A brick on another of this size, and others."""
+    laid((0, 0, 0), (0, 0, size[2]), *more, size=size)
+    connect()
+
+
+def wedge():
+    """A brick, and on it a deformable block that is no hexahedron."""
+    addBlock(box(), mat())
+    addBlock([(x, y, z + BRICK[2]) for x, y, z in tetrahedron], mat())
+    zones = MasonryZones(bodies=[1], divisions=[2, 1, 2])
+    engines([MasonryJoint()], zones=zones)
+    connect()
+
+
+def loads(**settings):
+    laid(loads=[MasonryLoad(body=1, **settings)])
+    connect()
+
+
+# fmt: off
+HINTS = [
+    (lambda: bricks((220, 102, 81)), "body 0 is 255.666 m long: are corners in m, not mm?"),
+    (lambda: bricks((2.2e-4, 1.02e-4, 8.1e-5)), "body 0 is 8.1e-05 m thick: are corners in m?"),
+    (lambda: bricks(BRICK, (5, 0, 0), (6, 0, 0)), "no joint holds bodies [2, 3]"),
+    (lambda: unit(young=4800, label="brick"), 'MasonryMat "brick": young 4800 Pa: is it in Pa, not MPa?'),
+    (lambda: unit(density=1.8), "density 1.8 kg/m³ weighs 17.658 N/m³: is it in kg/m³?"),
+    (lambda: unit(density=1.8e6), "density 1.8e+06 kg/m³ weighs 1.7658e+07 N/m³: is it in kg/m³?"),
+    (lambda: joint(tensileStrength=0.1, cohesion=0.11), ["tensileStrength 0.1 Pa: is it in Pa, not MPa?", "cohesion 0.11 Pa: is it"]),
+    (lambda: joint(compressiveStrength=7.55), 'MasonryJoint "bed": compressiveStrength 7.55 Pa: is it in Pa, not MPa?'),
+    (lambda: joint(cohesion=1e12, tensileStrength=1e12), "cohesion 1e+12 Pa: is it in Pa, not MPa?"),
+    (lambda: joint(normalStiffness=335, shearStiffness=144, cap=False), ["normalStiffness 335 Pa/m: is it in Pa/m, not N/mm³?", "shearStiffness 144"]),
+    (lambda: joint(modeIFractureEnergy=0.016), "modeIFractureEnergy 0.016 J/m²: is it in J/m², not N/mm?"),
+    (lambda: joint(modeIIFractureEnergy=1.6e8), "modeIIFractureEnergy 1.6e+08 J/m²: is it in J/m²"),
+    (lambda: loads(point=(110, 51, 162)), "MasonryLoad: its point lies 202.179 m from body 1: is it in m?"),
+    (lambda: (laid(zones=MasonryZones()), connect()), "MasonryZones has no bodies"),
+    (wedge, "MasonryZones: divisions do not apply to bodies [1], which are no hexahedra"),
+    (lambda: wall(precompression=0.5), "precompression 0.5 Pa: is it in Pa, not MPa?"),
+    (lambda: results.Results("r", ["a"]).checkRoom(1, 1e18), "free, this run writes some 1000000000000.0 MB"),
+]
+# fmt: on
+
+
+@pytest.mark.parametrize("act, hints", HINTS)
+def test_what_may_be_a_slip_is_told_and_done(
+    scene, act, hints, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    act()
+    said = capsys.readouterr().out
+    for hint in [hints] if isinstance(hints, str) else hints:
+        assert any(
+            line.startswith("warning: ") and hint in line for line in said.splitlines()
+        ), said
+
+
+def arch(count):
+    """Stones of half a ring, thin ones where there are many."""
+    for i in range(count):
+        ends = [math.pi * (i + side) / count for side in (0, 1)]
+        corners = [
+            (r * math.cos(a), y, r * math.sin(a))
+            for r in (1.0, 1.4)
+            for a in ends
+            for y in (0, 0.3)
+        ]
+        addBlock(corners, mat())
+    return count - 1
+
+
+def tiles():
+    for i in range(10):
+        addBlock(box(z=0.03 * i, size=(0.3, 0.3, 0.03)), mat())
+    return 9
+
+
+def mortar():
+    """Bricks with layers of mortar of 5 mm, which are blocks of their own."""
+    for column in range(4):
+        for course in range(6):
+            x, z = 0.22 * column, 0.086 * course
+            addBlock(box(x, 0, z), mat())
+            addBlock(box(x, 0, z + 0.081, (0.22, 0.102, 0.005)), mat())
+    return 4 * 11 + 3 * 12
+
+
+def wythes():
+    """Two wythes in running bond, turned and far from the origin."""
+    turn = Quaternion(0.3, -0.5, 0.7, 0.4)
+    turn.normalize()
+    for course in range(4):
+        for row in range(2):
+            for column in range(3):
+                x = 0.22 * column + 0.11 * (course % 2)
+                low = box(x, 0.102 * row, 0.081 * course)
+                addBlock(
+                    [turn * Vector3(*c) + Vector3(5e3, 2e3, 90) for c in low], mat()
+                )
+    return 4 * (2 * 2 + 3) + 3 * 2 * 5
+
+
+@pytest.mark.parametrize(
+    "build", [lambda: arch(12), lambda: arch(150), tiles, mortar, wythes]
+)
+def test_scenes_that_fit_are_joined_without_a_word(scene, build, capsys):
+    joints = build()
+    engines([MasonryJoint()])
+    assert len(connect()) == joints
+    assert "warning" not in capsys.readouterr().out
+
+
+def test_gaps_that_are_meant_are_left(scene):
+    laid((0, 0, 0), (0, 0, 0.081), (0.222, 0, 0))
+    assert len(connect(allowGaps=True)) == 1
+
+
+def test_a_tolerance_of_the_users_makes_the_joint(scene):
+    laid((0, 0, 0), (0, 0, 0.082))
+    assert len(connect(tolerance=0.005)) == 1
+
+
+# -- as a user meets it -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "name, words, message",
+    [
+        ("wall_comp4", ["--rate", "0", "--until", "x"], "--rate: 0 must be at least"),
+        ("wall_dry", ["--crack-surfaces", "on"], "the units of this wall have none"),
+        ("couplet", ["--normal-stress", "-8"], "crushes the bed joint"),
+        ("couplet", ["--out", "/dev/full"], "--out: cannot write to /dev/full"),
+    ],
+)
+def test_the_command_line_ends_with_status_2_and_leaves_what_is_there(
+    tmp_path, name, words, message
+):
+    before = tmp_path / "results" / name / "curve.csv"
+    before.parent.mkdir(parents=True)
+    before.write_text("of another run")
+    program = os.path.join(ROOT, "scripts", name + ".py")
+    run = subprocess.run(
+        ["yade", "-n", "-x", program, *words],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+    )
+    assert run.returncode == 2
+    assert message in run.stderr and "Traceback" not in run.stderr
+    assert before.read_text() == "of another run"
+
+
+@pytest.mark.parametrize(
+    "name, words, most, lost",
+    [
+        ("couplet", ["--no-vtk"], 100e3, "curve.csv"),  # in the middle of the run
+        ("wall_comp0a", ["--until", "0.1"], 186e3, "joints_0001.vtp"),
+        ("wall_comp0a", ["--until", "0.05", "--no-vtk"], 60e3, "curve.png"),
+    ],
+)
+def test_a_disk_that_fills_ends_the_run_in_order(tmp_path, name, words, most, lost):
+    program = os.path.join(ROOT, "scripts", name + ".py")
+    run = subprocess.run(
+        ["yade", "-n", "-x", program, *words, "--out", "results"],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        env={**os.environ, "IPYTHONDIR": str(tmp_path)},  # YADE's shell keeps a history
+        # files that may not grow fail as on a full disk do, with another reason
+        preexec_fn=lambda: resource.setrlimit(
+            resource.RLIMIT_FSIZE, (int(most), int(most))
+        ),
+    )
+    assert run.returncode == 1, run.stdout + run.stderr
+    assert "Traceback" not in run.stderr
+    if lost == "curve.png":
+        assert "the figures are not drawn; what was written before is" in run.stderr
+    else:
+        assert f"{lost}: File too large; what was written before is kept" in run.stderr
+    curve = results.readCurve(str(tmp_path / "results"))  # whole lines only
+    assert all(len(column) == len(curve["time_s"]) for column in curve.values())
+    assert results.readRun(str(tmp_path / "results"))["steps"] > 0
+    assert not (tmp_path / "results" / lost).exists() or lost == "curve.csv"
+    if "--no-vtk" not in words:
+        frames = [
+            len(list((tmp_path / "results").glob(f"{kind}_*")))
+            for kind in ("blocks", "joints")
+        ]
+        assert frames == [1, 1]
+        assert (
+            len(figures.readFrame(str(tmp_path / "results"), "joints")["cells"]) > 100
+        )
