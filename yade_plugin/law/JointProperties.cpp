@@ -25,9 +25,10 @@ public:
             found.push_back(shown + " must be at most " + text(high));
     }
 
-    // The exponential table needs a decay that numbers can hold: strength² / (stiffness energy), law.md §3.
+    // The ratios of an exponential table reach 1 + 12/decay, law.md §3: numbers must hold them.
     void exponential(const char* mode, double strength, double stiffness, double energy) {
-        if (strength > 0 && stiffness > 0 && energy > 0 && !std::isnormal(strength * strength / (stiffness * energy)))
+        const double decay = strength * strength / (stiffness * energy);
+        if (strength > 0 && stiffness > 0 && energy > 0 && !(decay > 1e-300 && decay < 1e300))
             found.push_back(std::string(mode) + " strength " + text(strength) + " Pa, stiffness " + text(stiffness) +
                             " Pa/m and fracture energy " + text(energy) +
                             " J/m² are too far apart for an exponential table");
