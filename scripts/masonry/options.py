@@ -40,7 +40,7 @@ PROMISES = {
         },
     },
     "accurate": {
-        "peak_error": 0.015,
+        "peak_error": 0.02,
         "work_error": 0.02,
         "walls": {
             "wall_comp0a": (30, 60),
