@@ -215,7 +215,8 @@ def conduct(make):
         say("\ninterrupted: what was computed is kept")
     except Unwritable as error:
         stopped.append(error)
-    except Exception:
+    except Exception as error:
+        model.results.run["error"] = str(error)
         model.checkpoint()
         model.finish()  # keeps what was computed
         raise

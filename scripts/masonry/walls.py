@@ -75,11 +75,11 @@ class Wall:
                 problems.append(
                     f"measure height {shown(self.measureHeight)} m must be at least the wall's top at {top:g} m"
                 )
-        if not number(self.precompression, 0):
+        if self.precompression != 0 and not number(self.precompression, 0):
             problems.append(
-                f"precompression {shown(self.precompression)} Pa must be above 0"
+                f"precompression {shown(self.precompression)} Pa must be at least 0"
             )
-        elif self.precompression < 1e3:
+        elif 0 < self.precompression < 1e3:
             print(
                 f"warning: wall {self.name}: precompression {self.precompression:g} Pa: is it in Pa, not MPa?"
             )
@@ -330,12 +330,18 @@ class WallModel(Resumable):
                 self._rate(),
                 at.quiet == 3,
             )
+            if self._sunk():
+                self.collapsed = True
+                say("the wall has collapsed before the push")
+                return
         if at.quiet < 3:
             say(f"note: the wall is not quite at rest after {at.steps} steps")
 
     def push(self):
         """Lateral velocity at the loaded point, to ``--until`` or to collapse."""
         args, at = self.args, self.at
+        if self.collapsed:
+            return
         every = max(1, int(ROW_EVERY / (args.rate * O.dt)))
         if not self.advanced:
             at.origin, at.began = list(self._topDisplacement()), O.time
@@ -367,13 +373,16 @@ class WallModel(Resumable):
             self.progress.show(
                 "push", max(0, at.moved / args.until), detail, self._rate()
             )
-            sunk = -values["vertical_mm"] > 500 * self.wall.unit[2]
-            if at.moved > at.peakAt + 1 and (shear < 0.2 * at.peak or sunk):
+            if self._sunk() or (at.moved > at.peakAt + 1 and shear < 0.2 * at.peak):
                 self.collapsed = True
                 break
         self.progress.show("push", 1, detail, self._rate(), final=True)
         if self.collapsed:
             say(f"the wall has collapsed at {at.moved:.2f} mm")
+
+    def _sunk(self):
+        """Whether the loading block has come down by half a course."""
+        return self._topDisplacement()[2] < -0.5 * self.wall.unit[2]
 
     def _topDisplacement(self):
         """Displacement of the loading block at the height of measurement [m]."""

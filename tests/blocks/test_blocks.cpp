@@ -64,6 +64,8 @@ TEST_CASE("two bricks half over each other share half a bed face, in any orienta
         const auto upper = moved(box({0.11, 0, 0.081}, brick), motion);
         const auto contact = coincidentFaces(lower, upper);
         REQUIRE(contact);
+        CHECK(contact->polygon.size() == 4); // round-off adds no corners
+        CHECK(std::abs(std::abs(longestEdge(contact->polygon).dot(motion.rotation().col(0))) - 1) < 1e-9);
         CHECK((contact->normal - motion.rotation().col(2)).norm() < 1e-9);
         CHECK(area(contact->polygon, contact->normal) == doctest::Approx(0.11 * 0.102).epsilon(1e-9));
         CHECK((centroid(contact->polygon, contact->normal) - motion * Point(0.165, 0.051, 0.081)).norm() < 1e-9);

@@ -51,6 +51,14 @@ class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys> {
             .add_property("slip", &MasonryJointPhys::slip, "Per subcontact: accumulated plastic slip [m].")
             .add_property("damage", &MasonryJointPhys::damage,
                           "Per subcontact: damage in tension, shear and compression [-], 0 to 1.")
+            .add_property("largest", &MasonryJointPhys::largest,
+                          "Per subcontact: largest opening, measured from the crushed and dilated place, and largest "
+                          "closure so far [m].")
+            .add_property(
+                "yielding", &MasonryJointPhys::yielding,
+                "Per subcontact: F1, F2 and F3 of the paper's eqs. (8) and (9), each over the sum of the sizes "
+                "of its terms and of the elastic stress of all jumps so far, whose round-off they carry [-]: at "
+                "most that above zero, -1 where it does not act.")
             .add_property(
                 "regime", &MasonryJointPhys::regime,
                 "Per subcontact: what acted in the last step: 'elastic', 'opening', 'slipping' or 'crushing'.");
@@ -77,6 +85,23 @@ private:
     py::list damage() {
         return perSubcontact([&](const JointState& s) {
             return Vector3r(s.tensionDamage, s.shearDamage, law().compressionDamage(stiffness(), s));
+        });
+    }
+    py::list largest() {
+        return perSubcontact([](const JointState& s) { return py::make_tuple(s.largestOpening, s.largestClosure); });
+    }
+    py::list yielding() {
+        const auto& p = law().properties();
+        return perSubcontact([&](const JointState& s) {
+            const auto f = law().yield(stiffness(), s);
+            const double sigma = std::abs(s.normalStress), tau = std::hypot(s.shearStress.a, s.shearStress.b);
+            const double elastic = normalStiffness * (s.largestOpening + s.largestClosure) + shearStiffness * s.slip;
+            const double quadratic =
+                p.capNormal * sigma * (sigma + elastic) + p.capShear * tau * (tau + elastic) + std::abs(f.cap);
+            const auto share = [](double value, double size) { return value == -1 ? -1 : size > 0 ? value / size : 0; };
+            return Vector3r(share(f.tension, sigma + p.tensileStrength + elastic),
+                            share(f.slip, tau + sigma * p.friction + p.cohesion + elastic),
+                            share(f.cap, quadratic + std::abs(p.capLinear) * sigma));
         });
     }
     py::list regime() {

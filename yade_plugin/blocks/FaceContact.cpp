@@ -30,6 +30,18 @@ Polygon cut(const Polygon& polygon, const Point& origin, const Point& inward) {
     return kept;
 }
 
+// Without corners that lie on the line between their neighbours, as round-off leaves them.
+Polygon withoutFlatCorners(Polygon p, double width) {
+    for (std::size_t i = 0; i < p.size() && p.size() > 2;) {
+        const Point &before = p[(i + p.size() - 1) % p.size()], chord = p[(i + 1) % p.size()] - before;
+        if ((p[i] - before).cross(chord).norm() <= width * chord.norm())
+            p.erase(p.begin() + std::ptrdiff_t(i));
+        else
+            ++i;
+    }
+    return p;
+}
+
 } // namespace
 
 double ConvexBlock::size() const {
@@ -150,6 +162,7 @@ std::optional<FaceContact> coincidentFaces(const KnownBlock& one, const KnownBlo
                 continue; // far; the exact test comes below
             auto m = meet(mine, theirs);
             if (m.shared.size() < 3 || m.gap > width || m.area < 0.5 * m.perimeter * width) continue;
+            m.shared = withoutFlatCorners(std::move(m.shared), 0.01 * width);
             for (auto& corner : m.shared)
                 corner += 0.5 * (origin - corner).dot(theirs.normal) * theirs.normal;
             return FaceContact{mine.normal, m.shared};

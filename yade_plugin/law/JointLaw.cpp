@@ -31,6 +31,7 @@ JointLaw::JointLaw(const JointProperties& properties) : p_(properties) {
 }
 
 JointLaw::Yield JointLaw::yield(const ElasticStiffness& k, const JointState& s) const {
+    if (p_.elastic) return {-1, -1, -1};
     const double sigma = s.normalStress, tau2 = s.shearStress.a * s.shearStress.a + s.shearStress.b * s.shearStress.b;
     Yield f{sigma - p_.tensileStrength * (1 - coupled(s)), std::sqrt(tau2) - slipStrength(s), -1};
     if (p_.cap && sigma < 0) {

@@ -135,7 +135,8 @@ public:
         return curve_.limitClosure + curve_.elasticLimit * stretch(k);
     }
 
-    // The yield functions at a state; at most zero after every step. F3 is -1 where the cap does not act.
+    // The yield functions at a state; at most zero after every step. F3 is -1 where the cap does not act, all are where
+    // no strength is ever reached.
     struct Yield {
         double tension, slip, cap; // [Pa], [Pa], [Pa²]
     };

@@ -1,0 +1,428 @@
+"""Walls at the extremes: one axis of the input at a time, from a small wall of calcium silicate.
+
+yade -n -x validation/stability/stability.py [AXIS ...]
+
+Runs every point of every axis with rigid and with deformable units, draws map.png beside itself, and
+prints the table. At every point, every hundred steps and at every row of the curve: all numbers are finite, no yield
+surface is passed, nothing heals, the energy balance closes, and no dissipated energy falls.
+"""
+
+import os
+import sys
+import tempfile
+import time
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+from masonry import criticalTimeStep, materials, options, walls
+from masonry.options import Refused
+from yade import O, Vector3
+
+BLOCKS = ["rigid", "deformable"]
+UNIT = (0.220, 0.102, 0.081)
+STEPS = 4000  # of the push, where an axis does not ask for another rate
+ROUND_OFF = 1e-12  # of yield functions over the size of what they carry
+SHARE = 0.01  # of the work done: largest error of the balance, largest energy made
+
+
+@dataclass
+class Point:
+    """A run: ``value`` on its axis, options, keywords of :class:`masonry.walls.Wall`, and what else is different."""
+
+    value: object
+    words: str = ""
+    wall: dict = field(default_factory=dict)
+    joints: dict = field(
+        default_factory=dict
+    )  # by name, properties in SI units; "all": bed, head and crack
+    until: float = 1.0  # [mm]
+    rate: float = None  # [mm/s]; None: STEPS steps
+    dt: float = None  # of the push, over the limit
+    gravity: bool = True
+    whole: bool = False  # COMP-4 instead of the small wall
+
+
+class Observed(walls.WallModel):
+    """A wall whose state is looked at all the time."""
+
+    def __init__(self, wall, args, point):
+        self.worst = dict.fromkeys(["yield", "healed", "made"], 0.0)
+        self.before, self.point, self.looked = None, point, 0
+        super().__init__(wall, args)
+        self.progress.show = lambda *a, **kw: None
+        if not point.gravity:
+            self.gravity = 0
+            for engine in O.engines:
+                if hasattr(engine, "gravity"):
+                    engine.gravity = Vector3.Zero
+
+    def _advance(self, steps):
+        super()._advance(steps)
+        self.looked += 1
+        if len(self.interactions) < 500 or self.looked % 20 == 0:
+            self.look()
+
+    def look(self):
+        all = lambda what: np.array([[*v] for i in self.interactions for v in what(i)])
+        memory = np.hstack(
+            [
+                all(lambda i: i.phys.damage),
+                all(lambda i: i.phys.largest),
+                all(lambda i: [[s] for s in i.phys.slip]),
+            ]
+        )
+        energies = self.energy.balance()
+        bodies = np.array(
+            [[*b.state.pos, *b.state.vel, *b.state.ori] for b in O.bodies]
+        )
+        stresses, jumps = all(lambda i: i.phys.stress), all(lambda i: i.geom.jumps)
+        yields = all(lambda i: i.phys.yielding)
+        for what in (memory, list(energies.values()), bodies, stresses, jumps, yields):
+            if not np.isfinite(what).all():
+                raise AssertionError(f"numbers are not finite after {O.iter} steps")
+        self.note("yield", yields.max())
+        work = max(abs(energies["external"]) + abs(energies["gravity"]), 1e-12)
+        lost = np.array(
+            [energies[k] for k in energies if k.startswith(("dissipated", "damping"))]
+        )
+        if self.before:
+            self.note("healed", (self.before[0] - memory).max())
+            self.note("made", (self.before[1] - lost).max() / work)
+        self.before = memory, lost
+
+    def note(self, what, value):
+        self.worst[what] = max(self.worst[what], float(value))
+
+    def push(self):
+        point, args = self.point, self.args
+        if point.dt:
+            O.dt = point.dt * self.limit
+        if point.rate is None:
+            args.rate = args.until / (STEPS * O.dt)
+        self.pushed = O.iter
+        super().push()
+
+
+def model(point, blocks, folder):
+    joints = lambda brittle: changed(
+        materials.calciumSilicateJoints(brittle), point.joints
+    )
+    small = dict(halfUnits=4, courses=4, precompression=0.5e6, unit=UNIT)
+    if point.whole:
+        small.update(halfUnits=36, courses=34)
+    wall = walls.Wall(name="w", title="", **{**small, **point.wall}, joints=joints)
+    words = f"--no-vtk --out {folder} --blocks {blocks} --until {point.until!r} {point.words}"
+    if point.rate:
+        words += f" --rate {point.rate!r}"
+    args = options.parser("", until=1).parse_args(words.split())
+    return Observed(wall, args, point)
+
+
+def changed(joints, changes):
+    for name, values in changes.items():
+        for joint in ["bed", "head", "crack"] if name == "all" else [name]:
+            joints[joint].updateAttrs(values)
+    return joints
+
+
+def run(point, blocks):
+    """Run a point; a dict of its verdict, 'green', 'warned' or 'failed', why, and its numbers."""
+    began, found, m = time.perf_counter(), {}, None
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            m = model(point, blocks, folder)
+            m.settle()
+            m.push()
+            found.update(verdict="green", why="collapsed" if m.collapsed else "")
+        except (Refused, ValueError) as refused:
+            found.update(verdict="warned", why="refused: " + str(refused))
+        except (
+            RuntimeError
+        ) as stopped:  # an engine's: all but a time step over the limit is our failure
+            said = "the time step is" in str(stopped) and " sets" in str(stopped)
+            took = O.iter - m.pushed
+            fine = said and point.dt and point.dt > 1 and took <= 100
+            found.update(verdict="warned" if fine else "failed")
+            found.update(why=f"after {took} steps: {stopped}")
+        except AssertionError as broken:
+            found.update(verdict="failed", why=str(broken))
+    if m:
+        found.update(m.worst, balance=m.energy.largestError, steps=O.iter)
+        if m.results.rows:
+            found["peak_kN"] = max(m.results.column("base_shear_kN"))
+        problems = [
+            f"{what} {found[what]:.1e}"
+            for what, bound in (("yield", ROUND_OFF), ("healed", 0), ("made", SHARE))
+            if found[what] > bound
+        ]
+        if problems and found["verdict"] != "warned":
+            found.update(verdict="failed", why="; ".join(problems))
+        elif found["balance"] > SHARE and found["verdict"] == "green":
+            why = f"balance off by {100 * found['balance']:.1f} %, and the run says so"
+            found.update(verdict="warned", why=why)
+    found["seconds"] = time.perf_counter() - began
+    return found
+
+
+def exponential(decay, rows):
+    """An exponential softening table of so many segments, which ends in damage 1."""
+    x = np.linspace(0, 11.5, rows + 1)
+    damage = np.append(1 - np.exp(-x[:-1]), 1)
+    return [(1 + a / decay, d) for a, d in zip(x.tolist(), damage.tolist())]
+
+
+def softening(rows):
+    """Tables of the calcium-silicate bed joint (law.md §3) with so many rows, for all joints."""
+    kn, ks, ft, cp, GfI, GfII = 3.352e11, 1.445e11, 0.1e6, 0.11e6, 16, 160
+    tables = dict(
+        tensionTable=exponential(ft**2 / (kn * GfI), rows),
+        shearTable=exponential(cp**2 / (ks * GfII), rows),
+    )
+    return dict(joints={"all": tables})
+
+
+def crushing(strength, **more):
+    """Compressive strength [Pa] of bed and head joints, their energies so that the curves keep their shapes."""
+    energy = lambda gc, fc: dict(
+        compressiveStrength=strength,
+        compressiveFractureEnergy=gc * (strength / fc) ** 2,
+    )
+    joints = {"bed": energy(15000, 7.55e6), "head": energy(31500, 5.93e6)}
+    for values in joints.values():
+        values.update(more)
+    return dict(joints=joints)
+
+
+def strengths(value):
+    """All strengths [Pa] at once; a cap without strength is none."""
+    bond = dict(tensileStrength=value, cohesion=value)
+    if value == 0:
+        return dict(joints={"all": dict(bond, cap=False)})
+    return dict(joints={**crushing(value, **bond)["joints"], "crack": bond})
+
+
+def size(scale):
+    """Bricks `scale` times as large, pushed as far over their size."""
+    return dict(wall=dict(unit=tuple(scale * u for u in UNIT)), until=scale)
+
+
+def shape(aspect):
+    """Half bricks of the same area, `aspect` times as long as high."""
+    area = UNIT[0] / 2 * UNIT[2]
+    long, high = (area * aspect) ** 0.5, (area / aspect) ** 0.5
+    return dict(wall=dict(unit=(2 * long, UNIT[1], high)))
+
+
+def friction(value):
+    """Friction of all joints; tensile strength goes along with the apex of the cone."""
+    bond = dict(friction=value, residualFriction=value)
+    if value > 1:
+        bond["tensileStrength"] = 0.1e6 / value
+    return dict(joints={"all": bond})
+
+
+def stiffness(contrast):
+    """Crack surfaces `contrast` times as stiff as bed joints; masses go along, so that the steps are as many."""
+    k = dict(normalStiffness=contrast * 3.352e11, shearStiffness=contrast * 1.445e11)
+    return dict(
+        joints={"crack": k}, words=f"--density-scaling {max(1, contrast / 10)!r}"
+    )
+
+
+def drawn(seed):
+    """Values drawn from all over the axes at once."""
+    dice = np.random.default_rng(seed)
+    power = lambda low, high: float(10 ** dice.uniform(low, high))
+    mu, shape = power(-2, 0), power(-1, 1) ** 0.5
+    joint = dict(
+        tensileStrength=power(0, 6),
+        modeIFractureEnergy=power(-3, 3),
+        cohesion=power(6, 8),
+        modeIIFractureEnergy=power(0, 4),
+        friction=mu,
+        residualFriction=mu * dice.uniform(),
+    )
+    joint["dilatancy"] = joint["residualFriction"] * dice.uniform()
+    joints = crushing(power(5, 8), capShear=power(-1, 2))["joints"]
+    joints = {
+        "all": joint,
+        **joints,
+        "crack": stiffness(power(0, 3))["joints"]["crack"],
+    }
+    kind = dice.choice(["local", "combined"])
+    return dict(
+        joints=joints,
+        words=f"--damping {dice.uniform(0, 0.95)!r} --damping-kind {kind} --density-scaling {power(0, 4)!r}",
+        wall=dict(
+            precompression=power(3, 5.5),
+            courses=int(dice.integers(1, 8)),
+            unit=(UNIT[0] * shape, UNIT[1], UNIT[2] / shape),
+        ),
+    )
+
+
+def points(values, make):
+    return [Point(value, **make(value)) for value in values]
+
+
+DT = [0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.99, 1.01, 1.05, 1.1, 1.2, 1.5]
+AXES = {
+    "time step / limit": points(DT, lambda v: dict(dt=v)),
+    "time step / limit, COMP-4": points(
+        [0.5, 0.95, 0.99, 1.02, 1.5], lambda v: dict(dt=v, whole=True, until=0.2)
+    ),
+    "stiffness of crack / bed joint": points(
+        [1, 10, 1e2, 1e3, 1e4, 1e5, 1e6], stiffness
+    ),
+    "density scaling": points(
+        [1, 10, 1e2, 1e3, 1e4, 1e5, 1e6], lambda v: dict(words=f"--density-scaling {v}")
+    ),
+    "combined damping": points(
+        [0, 0.1, 0.3, 0.5, 0.8, 0.95, 0.99], lambda v: dict(words=f"--damping {v}")
+    ),
+    "local damping": points(
+        [0, 0.1, 0.3, 0.5, 0.8, 0.95, 0.99],
+        lambda v: dict(words=f"--damping {v} --damping-kind local"),
+    ),
+    "rate, mm/s": points(
+        [0.1, 1, 10, 100, 1000], lambda v: dict(rate=v, until=0.05 * v**0.5)
+    ),
+    "rate, mm/s, COMP-4": points(
+        [10, 100, 1000], lambda v: dict(rate=v, until=0.02 * v**0.5, whole=True)
+    ),
+    "all strengths, Pa": points([0, 1, 1e3, 1e6, 1e9, 1e12], strengths),
+    "fracture energies / usual": points(
+        [1e-6, 1e-3, 1, 1e3, 1e6],
+        lambda v: dict(
+            joints={
+                "all": dict(modeIFractureEnergy=16 * v, modeIIFractureEnergy=160 * v)
+            }
+        ),
+    ),
+    "friction": points([0, 0.1, 0.43, 1, 2], friction),
+    "dilatancy / friction": points(
+        [0, 0.1, 0.25, 0.5, 1], lambda v: dict(joints={"all": dict(dilatancy=0.43 * v)})
+    ),
+    "rows of the softening tables": [
+        Point("brittle", "--joints brittle"),
+        *points([1, 10, 100, 1000, 10000], softening),
+    ],
+    "cap, Css": points(
+        [0, 1, 9, 100, 1000],
+        lambda v: dict(joints={"bed": dict(capShear=v), "head": dict(capShear=v)}),
+    ),
+    "compressive strength, MPa": points(
+        [0.1, 0.3, 1, 10, 100, 1000], lambda v: crushing(v * 1e6)
+    ),
+    "precompression / fc": points(
+        [0, 0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99],
+        lambda v: dict(wall=dict(precompression=v * 7.55e6)),
+    ),
+    "half brick, length / height": points([0.02, 0.1, 0.3, 1, 3, 10, 50], shape),
+    "courses": points(
+        [1, 2, 10, 50, 200], lambda v: dict(wall=dict(courses=v), until=0.2)
+    ),
+    "size / usual": points([1 / 220, 0.01, 0.1, 1, 10 / 0.22], size),
+    "gravity": [Point("off", gravity=False), Point("on")],
+    "drawn from all axes": points(range(20), drawn),
+}
+
+
+def runAll(axes):
+    """Run axes by name; everything found, by axis and block model, as lists of dicts."""
+    found = {}
+    for axis in axes:
+        for blocks in BLOCKS:
+            for point in AXES[axis]:
+                result = {"value": point.value, **run(point, blocks)}
+                found.setdefault(axis, {}).setdefault(blocks, []).append(result)
+                print(
+                    f"{axis:32} {blocks:10} {shown(point.value):8} {result['verdict']:7} {result['seconds']:6.1f} s "
+                    f"{result['why']}",
+                    flush=True,
+                )
+    return found
+
+
+def shown(value):
+    return value if isinstance(value, str) else f"{value:.3g}"
+
+
+def table(found):
+    print(
+        "| axis | range | points | green | warned | failed | balance | F over size | made / work |"
+    )
+    print("|---|---|---|---|---|---|---|---|---|")
+    for axis, models in found.items():
+        all = [p for results in models.values() for p in results]
+        verdicts = [p["verdict"] for p in all]
+        worst = lambda name: max(p.get(name, 0) for p in all)
+        values = [shown(p["value"]) for p in models[BLOCKS[0]]]
+        print(
+            f"| {axis} | {values[0]}–{values[-1]} | {len(all)} | {verdicts.count('green')} "
+            f"| {verdicts.count('warned')} | {verdicts.count('failed')} | {worst('balance'):.0e} "
+            f"| {worst('yield'):.0e} | {worst('made'):.0e} |"
+        )
+
+
+def draw(found, path):
+    """The map: a row an axis, above rigid and below deformable units, a square a point."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    colors = {"green": "tab:green", "warned": "gold", "failed": "tab:red"}
+    figure, axes = plt.subplots(figsize=(9, 0.42 * len(found) + 0.8))
+    for row, (axis, models) in enumerate(found.items()):
+        for half, blocks in enumerate(BLOCKS):
+            for column, p in enumerate(models[blocks]):
+                axes.barh(
+                    row + 0.36 * half,
+                    0.9,
+                    0.34,
+                    left=column,
+                    color=colors[p["verdict"]],
+                )
+                if half == 0:
+                    axes.text(
+                        column + 0.45,
+                        row,
+                        shown(p["value"]),
+                        ha="center",
+                        va="center",
+                        size=6,
+                    )
+    axes.set_yticks([row + 0.18 for row in range(len(found))], list(found), size=7)
+    axes.invert_yaxis()
+    axes.set_xticks([])
+    for side in axes.spines.values():
+        side.set_visible(False)
+    handles = [plt.Rectangle((0, 0), 1, 1, color=c) for c in colors.values()]
+    names = ["stable", "refused or stopped with a reason", "failed"]
+    axes.legend(
+        handles,
+        names,
+        ncol=3,
+        loc="lower right",
+        bbox_to_anchor=(1, 1),
+        fontsize=7,
+        frameon=False,
+    )
+    axes.set_title("above rigid, below deformable units", size=7, loc="left")
+    figure.tight_layout()
+    figure.savefig(path, dpi=100)
+
+
+def main(names):
+    found = runAll(names or list(AXES))
+    table(found)
+    if not names:
+        draw(found, os.path.join(os.path.dirname(sys.argv[0]), "map.png"))
+    results = [p for models in found.values() for r in models.values() for p in r]
+    return not any(p["verdict"] == "failed" for p in results)
+
+
+if __name__ == "__main__":
+    raise SystemExit(not main(sys.argv[1:]))
