@@ -1,4 +1,4 @@
-"""Rings: law, blocks and files (C++, doctest), fuzz, host, package, scenes. The host is the installed YADE, in this process."""
+"""Rings: law, blocks and files (C++, doctest), fuzz, sanitizers, host, package, scenes. The host is the installed YADE, in this process."""
 
 import os
 import re
@@ -9,7 +9,7 @@ import pytest
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 BUILD = os.path.join(ROOT, "build")
-RINGS = ["law", "blocks", "files", "fuzz", "host", "package", "scenes"]
+RINGS = ["law", "blocks", "files", "fuzz", "sanitizers", "host", "package", "scenes"]
 
 sys.path.insert(1, "/usr/lib/x86_64-linux-gnu/yade-double/py")  # as /usr/bin/yade does
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # as /usr/bin/yade does
