@@ -422,6 +422,7 @@ class WallModel(Resumable):
                 displacement_end_mm=moved[-1],
                 initial_stiffness_kN_per_mm=initialStiffness(moved, shear),
                 energy_balance_error=self.energy.largestError,
+                energy_made=self.energy.largestMade,
                 haste=haste(results.column("top_shear_kN"), shear),
             )
         run.update(
@@ -444,9 +445,11 @@ class WallModel(Resumable):
             drawing = [sys.executable, "-m", "masonry.figures", results.directory]
             if subprocess.run(drawing).returncode:
                 raise Unwritable("the figures are not drawn")
-        if run.get("energy_balance_error", 0) > 0.01:
+        off, made = run.get("energy_balance_error", 0), run.get("energy_made", 0)
+        if max(off, made) > 0.01:
             say(
-                f"warning: the energy balance is off by {100 * run['energy_balance_error']:.1f} % of the work done"
+                f"warning: the energy balance is off by {100 * off:.1f} % of the work done, and joints that open or close "
+                f"within a step made {100 * made:.1f} % of it: a smaller --dt-fraction or --rate or more --damping helps"
             )
         if run.get("haste", 0) > HASTE:
             say(self._tooFast(run["haste"]))

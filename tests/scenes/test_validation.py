@@ -10,6 +10,9 @@ from masonry import materials, options
 
 sys.path.insert(0, os.path.join(ROOT, "validation"))
 sys.path.insert(0, os.path.join(ROOT, "validation", "sensitivity"))
+sys.path.insert(0, os.path.join(ROOT, "validation", "stability"))
+import invariance  # noqa: E402
+import stability  # noqa: E402
 import tornado  # noqa: E402
 import validate  # noqa: E402
 
@@ -59,3 +62,39 @@ def test_a_variation_changes_joints_within_their_bounds(row):
     for text in (row.low, row.high):
         args = options.parser("a wall", until=1).parse_args(text.split())
         options.applySettings(materials.calciumSilicateJoints(), args.set)
+
+
+AXES = [axis for axis in stability.AXES if "COMP-4" not in axis]
+
+
+@pytest.mark.parametrize("axis", AXES)
+def test_walls_at_the_extremes_are_stable_or_stopped_with_a_reason(axis):
+    """Of the stability map: rigid units at both ends of each axis, deformable ones in its middle."""
+    points = stability.AXES[axis]
+    ends = (0, -2) if axis == "size / usual" else (0, -1)
+    runs = [(points[end], "rigid") for end in ends]
+    for point, blocks in [*runs, (points[len(points) // 2], "deformable")]:
+        found = stability.run(point, blocks)
+        assert found["verdict"] != "failed", (point, blocks, found)
+        unstable = point.dt is not None and point.dt > 1
+        assert (found["verdict"] == "warned") >= unstable, (point, blocks, found)
+
+
+def test_energy_that_joints_make_is_an_error_of_the_balance():
+    """Undamped nodes that open and close their joints within a step, far from a slow test."""
+    found = stability.run(stability.AXES["drawn from all axes"][9], "deformable")
+    assert found["made"] > 0.01 and found["verdict"] == "warned"
+    assert "the run says so" in found["why"]
+
+
+@pytest.mark.parametrize("blocks", stability.BLOCKS)
+def test_a_panel_told_in_other_units_turned_and_renumbered_gives_the_same_curve(blocks):
+    telling = dict(
+        length=1e-3,
+        stress=1e6,
+        turn=invariance.TURN,
+        shuffle=True,
+        mirror=blocks == "rigid",
+    )
+    early, late = invariance.difference(blocks, telling)
+    assert early < 1e-9 and late < 1e-7

@@ -344,10 +344,15 @@ def test_a_push_that_is_too_fast_says_so_and_what_would_do(runScene, words, cure
 def test_an_impossible_wall_is_refused_with_all_problems():
     with pytest.raises(
         ValueError,
-        match="load height 0.3 m must be above the wall's top at 0.486 m; precompression 0 Pa",
+        match="load height 0.3 m must be above the wall's top at 0.486 m; precompression -1 Pa",
     ):
         walls.Wall(
-            name="w", title="", halfUnits=6, courses=6, precompression=0, loadHeight=0.3
+            name="w",
+            title="",
+            halfUnits=6,
+            courses=6,
+            precompression=-1,
+            loadHeight=0.3,
         )
 
 

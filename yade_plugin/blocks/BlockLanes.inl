@@ -98,7 +98,7 @@ void move(const BlockMatrix& matrix, const NodeMotion& m, const Row& present, Ro
                 gravityWork += weight * us[i];
                 // Half the step's impulse per mass. Damping takes its share against the velocity in the middle of the
                 // step, at most what stops it there: it never turns a motion round, so it never adds energy.
-                const Lanes half = 0.5 * perMass * force, middle = old + half;
+                const Lanes half = 0.5 * perMass * force, middle = 0.5 * (old + half);
                 const Lanes reach = alpha * (half < zero ? -half : half);
                 const Lanes change = m.combined ? sign(force - lasts[i]) : zero;
                 const Lanes least = -reach - reach * change, most = reach - reach * change;

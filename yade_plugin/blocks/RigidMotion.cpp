@@ -12,11 +12,11 @@ void RigidMotion::push(int n, const Around& around, double gravity, const double
                        double* __restrict velocity, double* __restrict last, double* __restrict kinetic,
                        double* __restrict work, double* __restrict damped0, double* __restrict damped1) {
     const double half = 0.5 * around.dt, dt = around.dt;
-    const double rate = 2 / dt, share = around.combined ? 0.5 : 1, calms = around.combined ? 1 : 0;
+    const double rate = 1 / dt, share = around.combined ? 0.5 : 1, calms = around.combined ? 1 : 0;
     for (int i = 0; i < n; ++i) {
         const double before = velocity[i], mass = inert[i], undamped = force[i] / mass + gravity, seen = last[i];
         // paper eq. (3), or combined; at most what stops the motion in the middle of the step
-        const double stop = rate * before + undamped, change = undamped - seen;
+        const double stop = rate * before + 0.5 * undamped, change = undamped - seen;
         const double along = calms * ((change > 0 ? 1.0 : 0.0) - (change < 0 ? 1.0 : 0.0));
         const double reach = share * alpha[i] * std::abs(undamped);
         const double least = -reach * (1 + along), most = reach * (1 - along);
