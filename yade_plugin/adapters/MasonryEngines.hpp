@@ -171,7 +171,7 @@ private:
 // motion is bounded. Damping draws each w by dt alpha |a| towards zero, at most to zero (stepOf): E falls with every
 // such impulse, whatever alpha, local or combined. So dt² A < 4 is enough for stability, and 1 + alpha a margin: close
 // to that limit the highest motions go to and fro with w near zero, unseen by damping, and joints that yield let them
-// drift; COMP-4 loses 1 % of its peak at 0.95 of it, and 12 % at 0.99, nothing at 0.99 of the bound.
+// drift.
 // All this is for elastic joints and small turns; joints that yield, open or crush are softer. The host's damping may
 // draw w past zero; that it is calm below the bound is measured (validation/stability).
 py::tuple criticalTimeStep();
