@@ -7,7 +7,7 @@
 #include "adapters/MasonryZones.hpp"
 #include "adapters/SceneCheckpoint.hpp"
 #include "host/SelfCheck.hpp"
-#include "law/Text.hpp"
+#include "common/Text.hpp"
 
 namespace {
 

@@ -2,7 +2,7 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "blocks/BlockElasticity.hpp"
 #include "blocks/BlockLanes.cpp" // for its loops of every instruction set, which nobody else sees
-#include "blocks/LargestEigenvalue.hpp"
+#include "motion/LargestEigenvalue.hpp"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <doctest/doctest.h>

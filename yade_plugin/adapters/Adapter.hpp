@@ -11,7 +11,7 @@
 #include "host/Yade.hpp"
 #include "law/JointState.hpp"
 #include "law/SofteningTable.hpp"
-#include "law/Text.hpp"
+#include "common/Text.hpp"
 #include <atomic>
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>

@@ -2,9 +2,9 @@
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
 #include "SceneCheck.hpp"
-#include "blocks/LargestEigenvalue.hpp"
-#include "blocks/RigidMotion.hpp"
-#include "law/Text.hpp"
+#include "motion/LargestEigenvalue.hpp"
+#include "motion/RigidMotion.hpp"
+#include "common/Text.hpp"
 #include <map>
 
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryLoad)

@@ -163,7 +163,7 @@ private:
 
 // The largest time step [s] that is safe under the damping of the engines, and the two bodies whose joint, or twice the
 // unit, sets it: (dt, id1, id2); without any (inf, -1, -1). It is 2/sqrt(w²) with w² the largest eigenvalue of
-// stiffness over mass, damped masses over 1 + alpha, and at most 1.1 % below it (blocks/LargestEigenvalue.hpp).
+// stiffness over mass, damped masses over 1 + alpha, and at most 1.1 % below it (motion/LargestEigenvalue.hpp).
 //
 // Why it is safe, in degrees of freedom scaled by sqrt(mass), a = -A x the acceleration without damping: a step of
 // leapfrog is half a kick dt a/2, in whose middle the velocity is w, damping's impulse, the other half kick, and the

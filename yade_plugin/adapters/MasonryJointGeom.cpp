@@ -1,6 +1,6 @@
 #include "MasonryJointGeom.hpp"
 #include "SceneCheck.hpp"
-#include "law/Text.hpp"
+#include "common/Text.hpp"
 #include <algorithm>
 
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJointGeom)

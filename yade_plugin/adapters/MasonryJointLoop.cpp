@@ -1,7 +1,7 @@
 #include "MasonryJointLoop.hpp"
 #include "SceneCheck.hpp"
-#include "Vectorised.hpp"
-#include "blocks/JointFrames.hpp"
+#include "common/Vectorised.hpp"
+#include "motion/JointFrames.hpp"
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #pragma once
 #include "Adapter.hpp"
-#include "law/Text.hpp"
+#include "common/Text.hpp"
 
 namespace masonry {
 

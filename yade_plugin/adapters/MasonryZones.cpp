@@ -2,7 +2,7 @@
 #include "MasonryJointGeom.hpp"
 #include "MasonryMat.hpp"
 #include "SceneCheck.hpp"
-#include "law/Text.hpp"
+#include "common/Text.hpp"
 #include <algorithm>
 
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryZones)

@@ -1,7 +1,7 @@
 #include "SceneCheckpoint.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
-#include "law/Text.hpp"
+#include "common/Text.hpp"
 #include <map>
 
 namespace masonry {

@@ -1,6 +1,6 @@
 // Inner loops over congruent blocks that stand side by side in rows [node][direction], paper §2.
 #pragma once
-#include "Vectorised.hpp"
+#include "common/Vectorised.hpp"
 
 namespace masonry {
 

@@ -1,5 +1,5 @@
 #include "JointColumns.hpp"
-#include "Vectorised.hpp"
+#include "common/Vectorised.hpp"
 
 namespace masonry {
 

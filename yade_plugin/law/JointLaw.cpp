@@ -1,5 +1,5 @@
 #include "JointLaw.hpp"
-#include "Text.hpp"
+#include "common/Text.hpp"
 #include <stdexcept>
 
 namespace masonry {

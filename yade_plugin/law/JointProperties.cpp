@@ -1,6 +1,6 @@
 #include "JointProperties.hpp"
 #include "CompressionCurve.hpp"
-#include "Text.hpp"
+#include "common/Text.hpp"
 #include <cmath>
 
 namespace masonry {

@@ -1,5 +1,5 @@
 #include "SofteningTable.hpp"
-#include "Text.hpp"
+#include "common/Text.hpp"
 #include <cmath>
 
 namespace masonry {

@@ -1,5 +1,5 @@
 #include "JointFrames.hpp"
-#include "Vectorised.hpp"
+#include "common/Vectorised.hpp"
 #include <cmath>
 
 namespace masonry {

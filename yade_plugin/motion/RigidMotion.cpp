@@ -1,5 +1,5 @@
 #include "RigidMotion.hpp"
-#include "Vectorised.hpp"
+#include "common/Vectorised.hpp"
 #include <algorithm>
 #include <cmath>
 

@@ -1,0 +1,127 @@
+// The one description of a property: unit, bounds, meaning, source. The check of a value, Python's docs, the hints
+// about units, files and run.json all read it.
+#pragma once
+#include "common/Text.hpp"
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <vector>
+
+namespace masonry {
+
+struct Property {
+    static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+    const char* meaning = "";
+    const char* unit = nullptr; // null: no number; "-": a number without a unit
+    const char* from = "";      // where the default or the equation comes from
+    double low = -infinity, high = infinity;
+    bool lowExcluded = false, highExcluded = false;
+    double usualLow = -infinity, usualHigh = infinity; // beyond these a value is probably given in `otherUnit`
+    const char* otherUnit = "";
+
+    constexpr Property above(double bound) const {
+        return changed([&](Property& p) { p.low = bound, p.lowExcluded = true; });
+    }
+    constexpr Property atLeast(double bound) const {
+        return changed([&](Property& p) { p.low = bound; });
+    }
+    constexpr Property below(double bound) const {
+        return changed([&](Property& p) { p.high = bound, p.highExcluded = true; });
+    }
+    constexpr Property atMost(double bound) const {
+        return changed([&](Property& p) { p.high = bound; });
+    }
+    constexpr Property source(const char* where) const {
+        return changed([&](Property& p) { p.from = where; });
+    }
+    constexpr Property usually(double lowest, double highest, const char* unitOtherwise) const {
+        return changed([&](Property& p) { p.usualLow = lowest, p.usualHigh = highest, p.otherUnit = unitOtherwise; });
+    }
+
+    bool isNumber() const { return unit != nullptr; }
+
+    // The bounds in words: "above 0 and at most 1"; empty without bounds.
+    std::string bounds() const {
+        std::vector<std::string> parts;
+        if (low > -infinity) parts.push_back((lowExcluded ? "above " : "at least ") + text(low));
+        if (high < infinity) parts.push_back((highExcluded ? "below " : "at most ") + text(high));
+        return joined(parts, " and ");
+    }
+
+    // One sentence for the manual: "Young's modulus of the unit [Pa], above 0 (paper table 2)."
+    std::string documentation() const {
+        std::string all = meaning;
+        if (isNumber()) all += std::string(" [") + unit + "]";
+        if (const auto within = bounds(); !within.empty()) all += ", " + within;
+        if (*from) all += std::string(" (") + from + ")";
+        return all + ".";
+    }
+
+    // What is wrong with a value of the property called `name`; empty if nothing is.
+    std::string problem(const std::string& name, double value) const {
+        const bool bare = !unit || !*unit || std::string(unit) == "-";
+        const auto shown = name + " " + text(value) + (bare ? "" : std::string(" ") + unit) + " must be ";
+        if (!std::isfinite(value)) return shown + "a finite number" + (bounds().empty() ? "" : " " + bounds());
+        const bool tooLow = value < low || (lowExcluded && value == low);
+        const bool tooHigh = value > high || (highExcluded && value == high);
+        return tooLow || tooHigh ? shown + bounds() : "";
+    }
+
+private:
+    template <class Change> constexpr Property changed(Change&& change) const {
+        Property copy = *this;
+        change(copy);
+        return copy;
+    }
+};
+
+constexpr Property number(const char* unit, const char* meaning) {
+    Property p;
+    p.unit = unit, p.meaning = meaning;
+    return p;
+}
+
+constexpr Property described(const char* meaning) { // a text, a switch, a list or an object
+    Property p;
+    p.meaning = meaning;
+    return p;
+}
+
+// A name of the code as words: "modeIFractureEnergy" is "mode I fracture energy".
+inline std::string inWords(const std::string& name) {
+    std::string words;
+    for (std::size_t i = 0; i < name.size(); ++i) {
+        const bool capital = std::isupper(static_cast<unsigned char>(name[i])) != 0;
+        const bool numeral = name[i] == 'I'; // mode I, mode II
+        if (capital && !(numeral && i > 0 && name[i - 1] == 'I')) words += ' ';
+        words += capital && !numeral ? char(std::tolower(static_cast<unsigned char>(name[i]))) : name[i];
+    }
+    return words;
+}
+
+// The name nearest to a misspelt one by the number of letters that differ; empty if none is near.
+inline std::string nearestName(const std::string& wrong, const std::vector<std::string>& names) {
+    std::string best;
+    std::size_t least = std::max<std::size_t>(2, wrong.size() / 3) + 1;
+    for (const auto& name : names) {
+        std::vector<std::size_t> row(name.size() + 1); // Levenshtein's distance, row by row
+        std::iota(row.begin(), row.end(), std::size_t(0));
+        for (std::size_t i = 0; i < wrong.size(); ++i) {
+            std::size_t diagonal = row[0]++;
+            for (std::size_t j = 0; j < name.size(); ++j) {
+                const bool same = std::tolower(static_cast<unsigned char>(wrong[i])) ==
+                                  std::tolower(static_cast<unsigned char>(name[j]));
+                const std::size_t next = std::min({row[j + 1] + 1, row[j] + 1, diagonal + (same ? 0 : 1)});
+                diagonal = row[j + 1], row[j + 1] = next;
+            }
+        }
+        if (row.back() < least) least = row.back(), best = name;
+    }
+    return best;
+}
+
+} // namespace masonry
