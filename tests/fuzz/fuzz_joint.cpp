@@ -1,5 +1,5 @@
 // Any numbers are refused in words or make a joint whose tables and law keep what they promise.
-#include "law/JointLaw.hpp"
+#include "law/piecewise_softening/JointLaw.hpp"
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

@@ -1,25 +1,50 @@
 // Cost of the law a subcontact and step, in columns and one by one: a build of its own, not a test.
 //   cmake -S . -B build -DMASONRY_BENCHMARKS=ON && make -C build benchmark_law && build/benchmark_law
-#include "law/JointColumns.hpp"
+#include "law/piecewise_softening/JointColumns.hpp"
+#include <algorithm>
 #include <benchmark/benchmark.h>
 
 using namespace masonry;
 
 namespace {
 
-constexpr int size = 9792, range = 32; // as many as COMP-4 has, and as many as MasonryJointLoop takes at a time
+constexpr int joints = 816, points = 12; // as many subcontacts as COMP-4 has
+constexpr int size = joints * points;
+constexpr int most = JointColumns::most;
 
-// Jumps that keep all subcontacts in one regime, after a closure that presses them to 0.34 MPa.
+// Jumps that keep subcontacts in one regime, after a jump that brings them there.
 struct Regime {
     const char* name;
-    Jump jump;
-    bool turns; // whether the jump changes its sign with every step
+    Jump before, jump;
+    bool turns;           // whether the jump changes its sign with every step
+    int every = 1;        // which joints move: all, or every so many; the others rest
+    double dilatancy = 0; // [-]
 };
-const Regime regimes[] = {{"elastic", {1e-10, {1e-11, 0}}, true},
-                          {"slipping", {0, {1e-7, 0}}, false},
-                          {"opening", {1e-7, {0, 0}}, false},
-                          {"crushing", {-1e-7, {0, 0}}, false}};
-const Jump press{-1e-6, {}}, crush{-1e-4, {}};
+const Jump press{-1e-6, {}}; // to 0.34 MPa
+const Jump crush{-1e-4, {}}; // beyond the elastic limit
+const Jump crack{2e-6, {}};  // beyond the tensile strength
+const Jump slipped{-1e-6, {1e-5, 0}};
+const Jump rest{1e-10, {1e-11, 0}};
+const Regime regimes[] = {{"elastic", press, rest, true},
+                          {"cracked and elastic", crack, {-1e-10, {}}, true},
+                          {"slipping", press, {0, {1e-7, 0}}, false},
+                          {"dilating", press, {0, {1e-7, 0}}, false, 1, 0.1},
+                          {"opening", press, {1e-7, {0, 0}}, false},
+                          {"crushing", crush, {-1e-7, {0, 0}}, false},
+                          {"one in eight slipping", press, {0, {1e-7, 0}}, false, 8},
+                          {"one in eight opening", crack, {1e-7, {}}, false, 8},
+                          {"one in eight crushing", crush, {-1e-7, {}}, false, 8}};
+
+JointProperties kind(const Regime& regime) {
+    JointProperties bed;
+    bed.dilatancy = regime.dilatancy;
+    return bed;
+}
+
+Jump jumpOf(const Regime& regime, int joint, double sign) {
+    const Jump& jump = joint % regime.every == 0 ? regime.jump : rest;
+    return {sign * jump.opening, {sign * jump.slide.a, 0}};
+}
 
 void report(benchmark::State& state) {
     state.counters["ns a subcontact"] =
@@ -27,43 +52,63 @@ void report(benchmark::State& state) {
 }
 
 void columns(benchmark::State& state, const Regime& regime) {
-    const JointProperties bed;
-    const JointLaw law(bed);
-    JointColumns all(law, {bed.normalStiffness, bed.shearStiffness}, size);
-    std::vector<double> n(size), a(size), b(size), sigma(size);
-    const auto step = [&](const Jump& jump) {
-        std::fill(n.begin(), n.end(), jump.opening), std::fill(a.begin(), a.end(), jump.slide.a);
-        for (int i = 0; i < size; i += range)
-            all.advance(law, i, range, &n[i], &a[i], &b[i], &sigma[i]);
+    const auto law = std::make_shared<const JointLaw>(kind(regime));
+    const auto& bed = law->properties();
+    JointColumns all(law, {bed.normalStiffness, bed.shearStiffness}, joints, points);
+    std::vector<double> n(joints), a(joints), sigma(joints);
+    const auto jump = [&](double sign) {
+        for (int j = 0; j < joints; ++j) {
+            n[j] = jumpOf(regime, j, sign).opening;
+            a[j] = jumpOf(regime, j, sign).slide.a;
+        }
     };
-    step(regime.jump.opening < 0 ? crush : press);
+    const auto step = [&] {
+        for (int from = 0; from < joints; from += most)
+            for (int point = 0; point < points; ++point)
+                all.advance(point, from, std::min(most, joints - from), &n[from], &a[from], nullptr, &sigma[from]);
+    };
+    std::fill(n.begin(), n.end(), regime.before.opening);
+    std::fill(a.begin(), a.end(), regime.before.slide.a);
+    step();
     double sign = 1;
+    jump(sign);
     for (auto _ : state) {
-        for (int i = 0; i < size; i += range)
-            all.advance(law, i, range, &n[i], &a[i], &b[i], &sigma[i]);
+        step();
+        if (!regime.turns) continue;
         state.PauseTiming();
-        if (regime.turns) sign = -sign;
-        std::fill(n.begin(), n.end(), sign * regime.jump.opening);
-        std::fill(a.begin(), a.end(), sign * regime.jump.slide.a);
+        sign = -sign;
+        jump(sign);
         state.ResumeTiming();
     }
     report(state);
 }
 
 void oneByOne(benchmark::State& state, const Regime& regime) {
-    const JointProperties bed;
-    const JointLaw law(bed);
+    const JointLaw law(kind(regime));
+    const auto& bed = law.properties();
     const ElasticStiffness k{bed.normalStiffness, bed.shearStiffness};
     std::vector<JointState> all(size);
     for (auto& s : all)
-        law.advance(k, s, regime.jump.opening < 0 ? crush : press);
+        law.advance(k, s, regime.before);
     double sign = 1;
     for (auto _ : state) {
-        const Jump jump{sign * regime.jump.opening, {sign * regime.jump.slide.a, 0}};
-        for (auto& s : all)
-            benchmark::DoNotOptimize(law.advance(k, s, jump));
+        for (int i = 0; i < size; ++i)
+            benchmark::DoNotOptimize(law.advance(k, all[i], jumpOf(regime, i % joints, sign)));
         if (regime.turns) sign = -sign;
     }
+    report(state);
+}
+
+void energies(benchmark::State& state, const Regime& regime) {
+    const auto law = std::make_shared<const JointLaw>(kind(regime));
+    const auto& bed = law->properties();
+    JointColumns all(law, {bed.normalStiffness, bed.shearStiffness}, joints, points);
+    for (int point = 0; point < points; ++point)
+        for (int j = 0; j < joints; ++j)
+            all.advanceOne(point, j, regime.before);
+    const std::vector<double> area(std::size_t(points) * most, 1e-3);
+    for (auto _ : state)
+        benchmark::DoNotOptimize(all.energies(area.data(), true));
     report(state);
 }
 
@@ -71,10 +116,12 @@ void oneByOne(benchmark::State& state, const Regime& regime) {
 
 int main(int count, char** words) {
     for (const auto& regime : regimes) {
-        benchmark::RegisterBenchmark((std::string("columns/") + regime.name).c_str(), columns, regime)->Iterations(300);
-        benchmark::RegisterBenchmark((std::string("one by one/") + regime.name).c_str(), oneByOne, regime)
-            ->Iterations(300);
+        const auto named = [&](const char* way) { return std::string(way) + "/" + regime.name; };
+        benchmark::RegisterBenchmark(named("columns").c_str(), columns, regime)->Iterations(300);
+        benchmark::RegisterBenchmark(named("one by one").c_str(), oneByOne, regime)->Iterations(300);
     }
+    benchmark::RegisterBenchmark("energies/elastic", energies, regimes[0])->Iterations(300);
+    benchmark::RegisterBenchmark("energies/crushing", energies, regimes[5])->Iterations(300);
     benchmark::Initialize(&count, words);
     benchmark::RunSpecifiedBenchmarks();
 }

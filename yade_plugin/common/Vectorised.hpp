@@ -9,6 +9,16 @@
 #define MASONRY_VECTORISED
 #endif
 
+// A function that is compiled into its callers, so that it uses the instruction set of a vectorised one.
+#define MASONRY_INLINED [[gnu::always_inline]] inline
+
+// Stands before a loop whose turns do not depend on each other, which the compiler cannot know of several pointers.
+#if defined(__GNUC__) && !defined(__clang__)
+#define MASONRY_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define MASONRY_INDEPENDENT
+#endif
+
 namespace masonry {
 
 constexpr int lanes = 8; // numbers side by side

@@ -1,52 +1,144 @@
-// The parameters of one kind of joint: constant, shared by all joints of that kind. Checked once, at the door.
-// Defaults: bed joint of the calcium-silicate walls, paper table 2, with the values law.md §1 decided.
+// The parameters of one kind of joint: constant, shared by all joints of that kind.
+// Defaults: bed joint of the calcium-silicate walls (paper table 2, and law/README.md where the paper gives no value).
 #pragma once
 #include "SofteningTable.hpp"
+#include "common/Property.hpp"
 #include <string>
 #include <vector>
 
 namespace masonry {
 
+// A property is a member here, with its default, and one call in describe() below, with all that is said about it.
 struct JointProperties {
     std::string name = "bed";
-    bool elastic = false; // linear elastic: no strength is ever reached (supports, paper §4.1)
+    double normalStiffness = 3.352e11;
+    double shearStiffness = 1.445e11;
 
-    double normalStiffness = 3.352e11; // [Pa/m] kn, eq. (26), > 0
-    double shearStiffness = 1.445e11;  // [Pa/m] ks, eq. (26), > 0
+    bool elastic = false;
+    double tensileStrength = 0.10e6;
+    double modeIFractureEnergy = 16;
+    std::vector<TableRow> tensionTable;
+    double cohesion = 0.11e6;
+    double residualCohesion = 0;
+    double friction = 0.43;
+    double residualFriction = 0.43;
+    double dilatancy = 0;
+    double dilatancyDecay = 0;
+    double modeIIFractureEnergy = 160;
+    std::vector<TableRow> shearTable;
 
-    double tensileStrength = 0.10e6;    // [Pa] ft, >= 0, at most the apex cp/tan(phi_p)
-    double modeIFractureEnergy = 16;    // [J/m²] GfI, > 0 [decided]; unused with a tension table
-    std::vector<TableRow> tensionTable; // (ratio, damage); empty: exponential from GfI
+    bool cap = true;
+    double compressiveStrength = 7.55e6;
+    double elasticLimitRatio = 0.30;
+    double residualStrengthRatio = 0.20;
+    double peakRatio = 68.5;
+    double compressiveFractureEnergy = 15000;
+    double capNormal = 1;
+    double capShear = 9;
+    double capLinear = 0;
 
-    double cohesion = 0.11e6;          // [Pa] cp, >= 0
-    double residualCohesion = 0;       // [Pa] cr, 0 to cp [decided]
-    double friction = 0.43;            // [-] tan(phi_p), >= 0
-    double residualFriction = 0.43;    // [-] tan(phi_r), 0 to tan(phi_p) [decided]
-    double dilatancy = 0;              // [-] tan(psi), 0 to tan(phi_r) [decided]
-    double dilatancyDecay = 0;         // [1/m] delta in tan(psi) exp(-delta s), >= 0
-    double modeIIFractureEnergy = 160; // [J/m²] GfII at zero normal stress, > 0 [decided]; unused with a shear table
-    std::vector<TableRow> shearTable;  // (ratio, damage); empty: exponential from GfII
+    // Calls visit(name, member, description) for every property. A switch stands before the properties that it
+    // switches: those after `elastic` do not act if it is on, those after `cap` do not act if it is off.
+    template <class Visit> static void describe(Visit&& visit);
 
-    bool cap = true;                          // whether the joint can crush
-    double compressiveStrength = 7.55e6;      // [Pa] fcp, > 0
-    double elasticLimitRatio = 0.30;          // [-] fel/fcp, 0 to 1
-    double residualStrengthRatio = 0.20;      // [-] fcr/fcp, 0 to 1 [decided]
-    double peakRatio = 68.5;                  // [-] n, eq. (19), >= 1
-    double compressiveFractureEnergy = 15000; // [J/m²] Gc, eq. (24)
-    double capNormal = 1;                     // [-] Cnn, > 0 [decided]
-    double capShear = 9;                      // [-] Css, >= 0 [decided]
-    double capLinear = 0;                     // [Pa] Cn [decided]
-
-    // Everything that is wrong, one sentence each, in the user's words; empty if all is well.
+    // Everything that is wrong, one sentence each, in the user's words; empty if all is well. Properties that do not
+    // act are not looked at.
     std::vector<std::string> problems() const;
 };
 
-// Stiffness that a joint shows: its own, or in series with the rigid units at both sides (law.md §7).
+template <class Visit> void JointProperties::describe(Visit&& visit) {
+    using P = JointProperties;
+    constexpr double infinity = Property::infinity;
+    visit("name", &P::name, described("Name of this kind of joint, as files and messages show it"));
+    visit("normalStiffness", &P::normalStiffness,
+          number("Pa/m", "Normal stiffness kn").above(0).usually(1e7, infinity, "N/mm³").source("paper eq. (26)"));
+    visit("shearStiffness", &P::shearStiffness,
+          number("Pa/m", "Shear stiffness ks").above(0).usually(1e7, infinity, "N/mm³").source("paper eq. (26)"));
+
+    visit("elastic", &P::elastic,
+          described("Whether the joint is linear elastic: no strength is ever reached").source("paper section 4.1"));
+    visit("tensileStrength", &P::tensileStrength,
+          number("Pa", "Tensile strength ft, at most the apex of the Coulomb cone cohesion/friction")
+              .atLeast(0)
+              .usually(1e3, 1e9, "MPa")
+              .source("paper table 2"));
+    visit("modeIFractureEnergy", &P::modeIFractureEnergy,
+          number("J/m²", "Mode I fracture energy GfI, of which the exponential tension table is made")
+              .above(0)
+              .usually(0.1, 1e6, "N/mm")
+              .source("[decided]: law/README.md, Parameters"));
+    visit("tensionTable", &P::tensionTable,
+          described("Softening in tension as rows (displacement ratio, damage) from (1, 0) on, in place of the "
+                    "exponential table; none by default")
+              .source("paper eq. (12)"));
+    visit("cohesion", &P::cohesion,
+          number("Pa", "Peak cohesion cp").atLeast(0).usually(1e3, 1e9, "MPa").source("paper table 2"));
+    visit("residualCohesion", &P::residualCohesion,
+          number("Pa", "Residual cohesion cr, at most the peak cohesion")
+              .atLeast(0)
+              .source("paper eq. (17a); value [decided]: law/README.md, Parameters"));
+    visit("friction", &P::friction,
+          number("-", "Peak friction coefficient tan(phi_p)").atLeast(0).source("paper table 2"));
+    visit("residualFriction", &P::residualFriction,
+          number("-", "Residual friction coefficient tan(phi_r), at most the peak one")
+              .atLeast(0)
+              .source("paper eq. (17b); value [decided]: law/README.md, Parameters"));
+    visit("dilatancy", &P::dilatancy,
+          number("-", "Dilatancy tan(psi), at most the residual friction coefficient")
+              .atLeast(0)
+              .source("paper eq. (9); value [decided]: law/README.md, Parameters"));
+    visit("dilatancyDecay", &P::dilatancyDecay,
+          number("1/m", "Decay delta of the dilatancy with slip s, tan(psi)·exp(-delta·s); 0 keeps it constant")
+              .atLeast(0)
+              .source("[decided]: law/README.md, Slip"));
+    visit("modeIIFractureEnergy", &P::modeIIFractureEnergy,
+          number("J/m²", "Mode II fracture energy GfII without normal stress, of which the exponential shear table is "
+                         "made")
+              .above(0)
+              .usually(0.1, 1e6, "N/mm")
+              .source("[decided]: law/README.md, Parameters"));
+    visit("shearTable", &P::shearTable,
+          described("Softening in shear as rows (displacement ratio, damage) from (1, 0) on, in place of the "
+                    "exponential table; none by default")
+              .source("paper eq. (13)"));
+
+    visit("cap", &P::cap, described("Whether the joint can crush").source("paper eq. (8c)"));
+    visit("compressiveStrength", &P::compressiveStrength,
+          number("Pa", "Compressive strength fcp").above(0).usually(1e3, 1e9, "MPa").source("paper table 2"));
+    visit("elasticLimitRatio", &P::elasticLimitRatio,
+          number("-", "Elastic limit over compressive strength").above(0).atMost(0.999).source("paper eq. (18)"));
+    visit("residualStrengthRatio", &P::residualStrengthRatio,
+          number("-", "Residual over peak compressive strength")
+              .atLeast(0)
+              .atMost(0.999)
+              .source("paper eq. (21); value [decided]: law/README.md, Parameters"));
+    visit("peakRatio", &P::peakRatio,
+          number("-", "Peak ratio n: the closure at the compressive strength is n·fcp/kn")
+              .atLeast(1)
+              .source("paper eq. (19)"));
+    visit("compressiveFractureEnergy", &P::compressiveFractureEnergy,
+          number("J/m²", "Compressive fracture energy Gc; one that is too small for the peak ratio is refused")
+              .above(0)
+              .source("paper eq. (24)"));
+    visit("capNormal", &P::capNormal,
+          number("-", "Constant Cnn of the cap")
+              .above(0)
+              .source("paper eq. (8c); value [decided]: law/README.md, Parameters"));
+    visit("capShear", &P::capShear,
+          number("-", "Constant Css of the cap")
+              .atLeast(0)
+              .source("paper eq. (8c); value [decided]: law/README.md, Parameters"));
+    visit("capLinear", &P::capLinear,
+          number("Pa", "Constant Cn of the cap").source("paper eq. (8c); value [decided]: law/README.md, Parameters"));
+}
+
+// Stiffness that a joint shows: its own, or in series with the rigid units at both sides.
 struct ElasticStiffness {
     double normal, shear; // [Pa/m] kn*, ks*
 };
 
-// 1/kn* = 1/kn + L/E, 1/ks* = 1/ks + L/G, with the units' part (sum of L/E and L/G over both sides) given in m/Pa.
+// 1/kn* = 1/kn + L/E and 1/ks* = 1/ks + L/G: law/README.md, Rigid units. The units' part, the sum of L/E and of L/G
+// over both sides, is given in m/Pa.
 ElasticStiffness inSeriesWithUnits(const JointProperties&, double normalCompliance, double shearCompliance);
 
 } // namespace masonry

@@ -1,6 +1,8 @@
-// Damage as a piecewise linear function of the displacement ratio, paper eqs. (12)-(17), law.md §3.
+// Damage as a piecewise linear function of the displacement ratio, paper eqs. (12)-(17); law/README.md,
+// Softening.
 #pragma once
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,14 +25,33 @@ public:
     // exp(-decay (ratio - 1)) of the strength is left; 200 segments as in the paper §4.1, the last row at damage 1.
     static std::vector<TableRow> exponential(double decay, int segments = 200);
 
-    // Strength is lost at the first yield: the usual Coulomb slip law, law.md §9.
+    // Strength is lost at the first yield: the usual Coulomb slip law.
     static std::vector<TableRow> brittle() { return {{1, 0}, {1 + 1e-6, 1}}; }
 
-    // Linear between rows; past the last one its damage stays (law.md §3 [decided]).
+    // Linear between rows; past the last one its damage stays [decided].
     double damage(double ratio) const {
         if (rows_.empty() || !(ratio > 1)) return 0;
         if (ratio >= rows_.back().ratio) return rows_.back().damage;
-        std::size_t low = 0, span = rows_.size() - 1; // rows_[low].ratio <= ratio < rows_[low + span].ratio
+        return within(rowOf(ratio), ratio);
+    }
+
+    // The same for a ratio near the last one: `row` is where that was found, and is brought up to date.
+    double damage(double ratio, std::int32_t& row) const {
+        if (rows_.empty() || !(ratio > 1)) return 0;
+        if (ratio >= rows_.back().ratio) return rows_.back().damage;
+        std::size_t at = std::size_t(row);
+        if (at + 1 < rows_.size() && rows_[at].ratio <= ratio && rows_[at + 1].ratio <= ratio) ++at; // often the next
+        if (at + 1 >= rows_.size() || ratio < rows_[at].ratio || rows_[at + 1].ratio <= ratio) at = rowOf(ratio);
+        row = std::int32_t(at);
+        return within(at, ratio);
+    }
+
+    const std::vector<TableRow>& rows() const { return rows_; }
+
+private:
+    std::size_t rowOf(double ratio) const { // the row at or before a ratio between 1 and the last row
+        std::size_t low = 0;
+        std::size_t span = rows_.size() - 1; // rows_[low].ratio <= ratio < rows_[low + span].ratio
         while (span > 1) {
             const std::size_t half = span / 2;
             if (rows_[low + half].ratio <= ratio) {
@@ -39,23 +60,8 @@ public:
             } else
                 span = half;
         }
-        return within(low, ratio);
+        return low;
     }
-
-    // The same for a ratio near the last one: `row` is where that was found, and is brought up to date.
-    double damage(double ratio, std::int32_t& row) const {
-        const std::size_t at = std::size_t(row);
-        if (at + 1 < rows_.size() && ratio > 1 && rows_[at].ratio <= ratio && ratio < rows_[at + 1].ratio)
-            return within(at, ratio);
-        const auto above = std::upper_bound(rows_.begin(), rows_.end(), ratio,
-                                            [](double r, const TableRow& other) { return r < other.ratio; });
-        row = std::int32_t(std::max<std::ptrdiff_t>(0, above - rows_.begin() - 1));
-        return damage(ratio);
-    }
-
-    const std::vector<TableRow>& rows() const { return rows_; }
-
-private:
     double within(std::size_t row, double ratio) const { // never rounded up beyond the next row
         return std::min(rows_[row].damage + slopes_[row] * (ratio - rows_[row].ratio), rows_[row + 1].damage);
     }

@@ -1,0 +1,167 @@
+// The equations of the paper's law at one subcontact, each written once. JointLaw takes them for one subcontact,
+// JointColumns for several side by side: therefore they choose between values and have no branches. They are numbered
+// as in the paper; law/README.md says them in words.
+#pragma once
+#include "common/Vectorised.hpp"
+#include "law/CompressionCurve.hpp"
+#include "law/JointState.hpp"
+#include <cmath>
+
+namespace masonry {
+
+struct Equations {                               // with the numbers of a kind of joint, in the paper's symbols
+    double kn = 0, ks = 0;                       // [Pa/m] stiffnesses that the joint shows
+    double ownKn = 0, ownKs = 0;                 // [Pa/m] stiffnesses of the joint without lumped units
+    double ft = 0;                               // [Pa] tensile strength
+    double onset = 0;                            // [m] elastic opening at the tensile strength, ft/kn
+    double cp = 0, cr = 0;                       // [Pa] peak and residual cohesion
+    double tanPhiP = 0, tanPhiR = 0, tanPsi = 0; // [-]
+    double delta = 0;                            // [1/m] decay of the dilatancy with slip
+    double Cnn = 0, Css = 0;                     // [-]
+    double Cn = 0;                               // [Pa]
+    CompressionCurve curve;
+    double stretch = 0;           // [m/Pa] 1/kn - 1/ownKn
+    double smallestFcSquared = 0; // [Pa²] below this the cap cannot act
+    bool cap = false;             // whether the joint can crush
+    bool elastic = false;         // whether no strength is ever reached
+
+    // ---- softening -----------------------------------------------------------------------------------------------
+
+    // Damage of the bond d_ts, eq. (10), and what the bond has left.
+    MASONRY_INLINED static double coupled(double tensionDamage, double shearDamage) {
+        return tensionDamage + shearDamage - tensionDamage * shearDamage;
+    }
+    MASONRY_INLINED static double intact(double tensionDamage, double shearDamage) {
+        return 1 - coupled(tensionDamage, shearDamage);
+    }
+
+    // Displacement ratio in tension, eq. (12), beyond the peak with the joint's own stiffness.
+    MASONRY_INLINED double tensionRatio(double elasticOpening) const {
+        return 1 + (elasticOpening - onset) * ownKn / ft;
+    }
+
+    // Displacement ratio in shear, eqs. (13)-(15), with u = s + |tau|/ks [decided], under the trial stress `size`.
+    MASONRY_INLINED double shearRatio(double size, double sigma, double slip) const {
+        const double peak = cp - sigma * tanPhiP;
+        const double ratio = 1 + (slip + (size - peak) / ks) * ownKs / peak;
+        return peak > 0 ? ratio : HUGE_VAL;
+    }
+
+    // ---- 1, opening ----------------------------------------------------------------------------------------------
+
+    struct Opened {
+        double total;    // [m] opening
+        double before;   // [m] elastic opening before the step
+        double elastic;  // [m] elastic opening
+        double farthest; // [m] largest elastic opening
+        bool open;       // whether the subcontact is open
+        bool tears;      // whether it has never been open as far
+    };
+    // `irreversible` is the plastic closure less the dilatant opening.
+    MASONRY_INLINED static Opened open(double opening, double irreversible, double largestOpening, double jump) {
+        const double total = opening + jump;
+        const double before = opening + irreversible;
+        const double elastic = total + irreversible;
+        const bool tears = elastic > largestOpening;
+        return {total, before, elastic, tears ? elastic : largestOpening, elastic > 0, tears};
+    }
+
+    // Stiffness of an open subcontact, eq. (11): the secant to the softened strength at the largest opening, which
+    // closes at the origin and never pushes [decided].
+    MASONRY_INLINED double secant(double intact, double largestOpening) const {
+        const double weakened = ft * intact / largestOpening;
+        return weakened < kn ? weakened : kn;
+    }
+    MASONRY_INLINED double stiffness(double elasticOpening, double secant) const {
+        return elasticOpening > 0 ? secant : kn;
+    }
+
+    // Elastic opening up to which no damage grows and the secant stays what it is; a little below the softened
+    // strength, so that rounding cannot tell.
+    MASONRY_INLINED double reach(double intact, double largestOpening) const {
+        const double whole = onset * intact * (1 - 1e-15);
+        return whole > largestOpening ? whole : largestOpening;
+    }
+
+    // ---- 2, Coulomb slip -----------------------------------------------------------------------------------------
+
+    MASONRY_INLINED double friction(double intact) const { return tanPhiR + (tanPhiP - tanPhiR) * intact; } // eq. (17b)
+
+    // Strength of slip, eqs. (16), (17a), never below zero.
+    MASONRY_INLINED double slipStrength(double intact, double sigma) const {
+        const double cohesion = cr + (cp - cr) * intact;
+        const double strength = cohesion - sigma * friction(intact);
+        return strength > 0 ? strength : 0;
+    }
+
+    MASONRY_INLINED double dilatancy(double slip) const { return tanPsi * std::exp(-delta * slip); }
+
+    struct Slid {
+        bool slides;
+        double slip;     // [m] plastic slip of the step
+        double dilation; // [m] dilatant opening of the step
+        double sigma;    // [Pa] normal stress after it
+        double share;    // [-] of the trial shear stress that is left
+    };
+    // Return from the trial shear stress `size` to the strength, eqs. (8b), (9).
+    MASONRY_INLINED Slid slide(double size, double sigma, double intact, double dilatancy) const {
+        const double strength = slipStrength(intact, sigma);
+        const bool slides = size > strength;
+        const double excess = (size - strength) / (ks + kn * friction(intact) * dilatancy);
+        const double slip = slides ? excess : 0;
+        const double left = 1 - ks * slip / size;
+        const double share = left > 0 ? left : 0;
+        return {slides, slip, dilatancy * slip, sigma - kn * dilatancy * slip, slides ? share : 1};
+    }
+
+    // ---- 3, cap --------------------------------------------------------------------------------------------------
+
+    // The side of eq. (8c) that stresses make.
+    MASONRY_INLINED double capStress(double sigma, double tauSquared) const {
+        return Cnn * sigma * sigma + Css * tauSquared + Cn * sigma;
+    }
+
+    struct Crushed {
+        bool crushes;
+        double share;   // [-] of the stresses that is left
+        double closure; // [m] plastic closure of the step
+        double slip;    // [m] plastic slip of the step
+    };
+    // Radial return to eq. (8c) with the strength fc.
+    MASONRY_INLINED Crushed crush(double sigma, double tauSquared, double fc) const {
+        const double quadratic = Cnn * sigma * sigma + Css * tauSquared;
+        const double linear = Cn * sigma;
+        const bool crushes = (sigma < 0) & (quadratic + linear > fc * fc);
+        const double root = std::sqrt(linear * linear + 4 * quadratic * fc * fc);
+        const double positive = 2 * fc * fc / (linear + root);     // the same root of quadratic x² + linear x = fc²,
+        const double negative = (root - linear) / (2 * quadratic); // each where it does not cancel
+        const double scale = linear > 0 ? positive : negative;
+        const double closure = (sigma * scale - sigma) / kn;
+        const double slip = (1 - scale) * std::sqrt(tauSquared) / ks;
+        return {crushes, crushes ? scale : 1, crushes ? closure : 0, crushes ? slip : 0};
+    }
+
+    // ---- energy --------------------------------------------------------------------------------------------------
+
+    // Elastic energy [J/m²] of a normal stress at an elastic opening, and of a shear stress.
+    MASONRY_INLINED static double storedNormal(double sigma, double elasticOpening) {
+        return 0.5 * sigma * elasticOpening;
+    }
+    MASONRY_INLINED static double storedShear(double tauSquared, double ks) { return 0.5 * tauSquared / ks; }
+
+    // The trapezoidal work of a step is mean stress times jump, and the jump is the change of the elastic displacements
+    // plus the plastic ones. The mean stress on the plastic ones is dissipated, in shear along the trial stress; the
+    // elastic parts of shear and of closed joints are stored exactly; what remains of the elastic opening is the damage
+    // in tension, and that is nothing where the stiffness stays.
+    MASONRY_INLINED static double meanShear(double oldA, double oldB, double newA, double newB, double trialA,
+                                            double trialB, double trialSize) {
+        return 0.5 * ((oldA + newA) * trialA + (oldB + newB) * trialB) / trialSize;
+    }
+    MASONRY_INLINED static double lostInTension(double oldStiffness, double newStiffness, double oldSigma,
+                                                double newSigma, double oldElasticOpening, double newElasticOpening) {
+        const double lost = 0.5 * (oldSigma * newElasticOpening - newSigma * oldElasticOpening);
+        return newStiffness != oldStiffness ? lost : 0;
+    }
+};
+
+} // namespace masonry

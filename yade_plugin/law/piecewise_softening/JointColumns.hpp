@@ -1,0 +1,106 @@
+// The states of the subcontacts of joints of one kind, a column for each quantity, so that the vector units take
+// several subcontacts at a time. The law is that of JointLaw, by the same equations and to the last bit.
+#pragma once
+#include "JointLaw.hpp"
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+namespace masonry {
+
+class JointColumns { // in columns [point][joint]
+public:
+    static constexpr int most = 32; // joints that are advanced at a time
+
+    JointColumns(std::shared_ptr<const JointLaw> law, const ElasticStiffness& k, int joints, int points);
+
+    int joints() const { return joints_; }
+    int points() const { return points_; }
+    int stride() const { return stride_; } // joints padded to whole lanes; a lone joint is not padded
+    const JointLaw& law() const { return *law_; }
+    const ElasticStiffness& stiffness() const { return k_; }
+
+    // Other properties: what follows from them is found anew, the state stays.
+    void setLaw(std::shared_ptr<const JointLaw> law);
+
+    JointState get(int point, int joint) const;
+    void set(int point, int joint, const JointState& state);
+    Energies dissipated(int point, int joint) const; // [J/m²] so far
+    void setDissipated(int point, int joint, const Energies& energies);
+
+    // One step of one subcontact with the law for one, losses included. Gives its normal stress.
+    double advanceOne(int point, int joint, const Jump& jump);
+
+    // One step of joints from..from+count (count <= most, from a multiple of 8) at a point, under jumps in columns that
+    // begin at `from`; slideB null: in the plane. Gives normal stresses. Different ranges may be advanced at the same
+    // time by threads.
+    void advance(int point, int from, int count, const double* opening, const double* slideA, const double* slideB,
+                 double* normalStress);
+
+    const double* shearStressA(int point, int from) const { return columns_[ShearStressA] + at(point, from); }
+    const double* shearStressB(int point, int from) const { return columns_[ShearStressB] + at(point, from); }
+
+    // Area-weighted sums over all joints [J], in an order that does not depend on threads. `area` holds [point][stride]
+    // numbers, or [point][most] numbers repeated for all blocks of `most` joints if `alike`.
+    struct Sums {
+        Energies stored, dissipated;
+    };
+    Sums energies(const double* area, bool alike) const;
+
+    enum Column { // what is kept of a subcontact
+        Opening,
+        ShearStressA,
+        ShearStressB,
+        LargestOpening,
+        LargestClosure,
+        Crushing, // from here on zero, or as for any subcontact that never yielded, until the subcontact yields
+        Dilation,
+        Slip,
+        TensionDamage,
+        ShearDamage,
+        LostTension,
+        LostShear,
+        LostCompression,
+        Irreversible, // the rest follows from the above: crushing less dilation
+        Intact,       // 1 - d_ts
+        Secant,       // stiffness of the open subcontact
+        Reach,        // elastic opening up to which no damage grows and the secant stays
+        CapSquared,   // square of the cap's strength
+        columnCount
+    };
+    struct Columns { // side by side in memory
+        double* first = nullptr;
+        std::size_t pitch = 0; // from one to the next
+        double* operator[](int column) const { return first + column * pitch; }
+    };
+
+private:
+    struct Release {
+        void operator()(void* memory) const { std::free(memory); }
+    };
+    struct Rows { // of the tables, where they were read last
+        std::int32_t tension, shear;
+    };
+
+    std::size_t at(int point, int joint) const { return std::size_t(point) * stride_ + joint; }
+    std::size_t group(int point, int joint) const { return std::size_t(point) * groups_ + joint / lanes; }
+    bool neverYielded(const JointState& s) const;
+    void yieldFrom(int point, int joint); // the group of this joint now has what yielded subcontacts have
+    void derive(std::size_t i);
+
+    std::shared_ptr<const JointLaw> law_;
+    ElasticStiffness k_;
+    Equations equations_;
+    int joints_, points_, stride_, groups_;
+    // Zeroed memory that takes no room in the machine before it is written to: columns of what yielded subcontacts
+    // have cost nothing where none has.
+    std::unique_ptr<void, Release> memory_;
+    Columns columns_;
+    std::vector<Rows> rows_;
+    std::vector<Regime> regime_;
+    std::vector<std::uint8_t> yielded_; // of groups of eight joints at a point, whether one has yielded
+};
+
+} // namespace masonry

@@ -1,0 +1,174 @@
+// The joint law of the paper on one subcontact: tension cut-off F1, Coulomb slip F2, elliptical cap F3 (eqs. (8), (9)),
+// coupled softening (eqs. (10)-(17)), hardening and softening in compression (eqs. (18)-(25)). law/README.md states it.
+#pragma once
+#include "Equations.hpp"
+#include "law/JointProperties.hpp"
+#include "law/JointState.hpp"
+#include "law/SofteningTable.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace masonry {
+
+class JointLaw {
+public:
+    // Throws std::invalid_argument with all problems of the properties at once.
+    explicit JointLaw(const JointProperties& properties);
+
+    const JointProperties& properties() const { return p_; }
+    const CompressionCurve& compression() const { return own_.curve; }
+    const SofteningTable& tension() const { return tension_; }
+    const SofteningTable& shear() const { return shear_; }
+
+    // The equations for a joint that shows the stiffness k, its own or lumped with rigid units. Softening and crushing
+    // displacements stay those of the joint itself (law/README.md, Rigid units).
+    Equations equations(const ElasticStiffness& k) const {
+        Equations e = own_;
+        e.kn = k.normal;
+        e.ks = k.shear;
+        e.onset = e.elastic ? HUGE_VAL : e.ft / k.normal;
+        e.stretch = stretch(k);
+        return e;
+    }
+
+    // One step: takes the state on by the jump and returns the energy dissipated in the step. In place and inlined,
+    // because copies of the state cost as much as the law.
+    MASONRY_INLINED Energies advance(const ElasticStiffness& k, JointState& s, const Jump& jump) const {
+        return advance(equations(k), s, jump);
+    }
+    MASONRY_INLINED Energies advance(const Equations& e, JointState& s, const Jump& jump) const {
+        // 1, opening
+        const auto moved = e.open(s.opening, s.crushing - s.dilation, s.largestOpening, jump.opening);
+        double intact = Equations::intact(s.tensionDamage, s.shearDamage);
+        const double oldStiffness = moved.before > 0 ? e.secant(intact, s.largestOpening) : e.kn;
+        const double oldNormal = s.normalStress;
+        s.opening = moved.total;
+        s.regime = Regime::Elastic;
+        const Shear old = s.shearStress;
+        const Shear trial{old.a + e.ks * jump.slide.a, old.b + e.ks * jump.slide.b}; // eq. (7)
+        if (e.elastic) {
+            s.normalStress = e.kn * moved.elastic; // eq. (6)
+            s.shearStress = trial;
+            return {};
+        }
+        if (moved.tears) {
+            s.largestOpening = moved.farthest;
+            const double damage = tension_.damage(e.tensionRatio(moved.elastic));
+            if (damage > s.tensionDamage) {
+                s.tensionDamage = damage;
+                s.regime = Regime::Opening;
+                intact = Equations::intact(s.tensionDamage, s.shearDamage);
+            }
+        }
+        double newStiffness = moved.open ? e.secant(intact, s.largestOpening) : e.kn;
+        s.normalStress = newStiffness * moved.elastic;
+
+        // 2, Coulomb slip
+        const double tauSquared = trial.a * trial.a + trial.b * trial.b;
+        const double size = std::sqrt(tauSquared);
+        Energies dissipated;
+        double slip = 0;
+        double dilation = 0;
+        s.shearStress = trial;
+        if (size > e.slipStrength(intact, s.normalStress)) {
+            const double damage = shear_.damage(e.shearRatio(size, s.normalStress, s.slip));
+            const bool weaker = damage > s.shearDamage;
+            if (weaker) {
+                s.shearDamage = damage;
+                intact = Equations::intact(s.tensionDamage, s.shearDamage);
+            }
+            const bool dilates = !moved.open && e.tanPsi > 0;
+            const auto slid = e.slide(size, s.normalStress, intact, dilates ? e.dilatancy(s.slip) : 0);
+            if (slid.slides) {
+                const double before = s.dilation;
+                slip = slid.slip;
+                s.slip += slip;
+                s.dilation += slid.dilation;
+                dilation = s.dilation - before;
+                s.normalStress = slid.sigma;
+                s.shearStress = {slid.share * trial.a, slid.share * trial.b};
+                s.regime = Regime::Slipping;
+            }
+            if (moved.open && weaker) {
+                newStiffness = e.secant(intact, s.largestOpening);
+                s.normalStress = newStiffness * moved.elastic;
+            }
+        }
+
+        // 3, cap
+        double crushingSlip = 0;
+        double closure = 0;
+        if (e.cap && s.normalStress < 0) {
+            s.largestClosure = std::max(s.largestClosure, -s.opening);
+            const double tau2 = s.shearStress.a * s.shearStress.a + s.shearStress.b * s.shearStress.b;
+            if (e.capStress(s.normalStress, tau2) > e.smallestFcSquared) {
+                const double fc = e.curve.strength(s.largestClosure, e.stretch);
+                const auto crushed = e.crush(s.normalStress, tau2, fc);
+                if (crushed.crushes) {
+                    const double before = s.crushing;
+                    s.normalStress *= crushed.share;
+                    s.crushing += crushed.closure;
+                    closure = s.crushing - before;
+                    crushingSlip = crushed.slip;
+                    s.slip += crushingSlip;
+                    s.shearStress = {crushed.share * s.shearStress.a, crushed.share * s.shearStress.b};
+                    s.regime = Regime::Crushing;
+                }
+            }
+        }
+
+        const double meanNormal = 0.5 * (oldNormal + s.normalStress);
+        if (slip + crushingSlip > 0) {
+            const double meanShear =
+                Equations::meanShear(old.a, old.b, s.shearStress.a, s.shearStress.b, trial.a, trial.b, size);
+            dissipated.shear = meanShear * slip + meanNormal * dilation;
+            dissipated.compression = meanShear * crushingSlip;
+        }
+        dissipated.compression -= meanNormal * closure;
+        dissipated.tension = Equations::lostInTension(oldStiffness, newStiffness, oldNormal, s.normalStress,
+                                                      moved.before, s.opening + (s.crushing - s.dilation));
+        return dissipated;
+    }
+
+    // Elastic energy by mode [J/m²].
+    static Energies stored(const ElasticStiffness& k, const JointState& s) {
+        const double tauSquared = s.shearStress.a * s.shearStress.a + s.shearStress.b * s.shearStress.b;
+        const double shear = Equations::storedShear(tauSquared, k.shear);
+        const double normal = Equations::storedNormal(s.normalStress, s.opening + s.crushing - s.dilation);
+        return s.normalStress > 0 ? Energies{normal, shear, 0} : Energies{0, shear, normal};
+    }
+
+    // Compression damage dc, eq. (21).
+    double compressionDamage(const ElasticStiffness& k, const JointState& s) const {
+        return own_.cap ? own_.curve.damage(s.largestClosure, stretch(k)) : 0;
+    }
+
+    // Strength of the cap [Pa] at a largest closure [m], and the closure at which it begins to harden.
+    double compressiveStrength(const ElasticStiffness& k, double largestClosure) const {
+        return own_.curve.strength(largestClosure, stretch(k));
+    }
+    double limitClosure(const ElasticStiffness& k) const { return own_.curve.limit(stretch(k)); }
+
+    // The yield functions at a state; at most zero after every step. F3 is -1 where the cap does not act, all are where
+    // no strength is ever reached.
+    struct Yield {
+        double tension, slip, cap; // [Pa], [Pa], [Pa²]
+    };
+    Yield yield(const ElasticStiffness& k, const JointState& s) const;
+
+    static double coupled(const JointState& s) { // d_ts, eq. (10)
+        return Equations::coupled(s.tensionDamage, s.shearDamage);
+    }
+
+private:
+    double stretch(const ElasticStiffness& k) const { return 1 / k.normal - 1 / p_.normalStiffness; }
+
+    JointProperties p_;
+    SofteningTable tension_, shear_;
+    Equations own_; // with the joint's own stiffness
+};
+
+// The brittle Coulomb slip set: tension to zero and cohesion to its residual at the first yield, no cap.
+JointProperties brittleCoulomb(JointProperties properties);
+
+} // namespace masonry
