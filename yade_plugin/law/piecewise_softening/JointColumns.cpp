@@ -13,17 +13,11 @@ struct Jumps {
     const double *opening, *slideA, *slideB;
 };
 
-// What follows from a state, as the columns Irreversible to CapSquared have it.
-struct Consequences {
-    double irreversible, intact, secant, reach, capSquared;
-};
 
 double squareOfCap(const Equations& e, double largestClosure) {
     const double fc = e.cap ? e.curve.strength(largestClosure, e.stretch) : HUGE_VAL;
     return fc * fc;
 }
-
-Consequences ofNeverYielded(const Equations& e) { return {0, 1, e.kn, e.reach(1, 0), squareOfCap(e, 0)}; }
 
 // ---- joints without strength ---------------------------------------------------------------------------------------
 
@@ -51,11 +45,12 @@ void advanceElastic(double kn, double ks, const J::Columns& columns, std::size_t
 // The law where no strength is passed: eqs. (6), (7), the secant of eq. (11), and the three conditions of eq. (8).
 // Tells which subcontacts need more, which then are as before, and how many they are.
 template <bool spatial, bool yielded>
-MASONRY_INLINED Mask stayElastic(const Equations& given, const Consequences& ofAll, const J::Columns& columns,
+MASONRY_INLINED Mask stayElastic(const Equations& given, const J::Consequences& ofAll, const J::Columns& columns,
                                  std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* waits) {
     const Equations e = given;
-    const Consequences same = ofAll;
+    const J::Consequences same = ofAll;
     const double limit = e.curve.limit(e.stretch);
+    const double closing = e.cap ? -1 : 0; // how closure counts
     double* opening = columns[J::Opening] + at;
     double* shearStressA = columns[J::ShearStressA] + at;
     double* shearStressB = columns[J::ShearStressB] + at;
@@ -86,7 +81,7 @@ MASONRY_INLINED Mask stayElastic(const Equations& given, const Consequences& ofA
         const double tauSquared = a * a + b * b;
         const double strength = e.slipStrength(bond, sigma);
         const double crushing = sigma < 0 ? e.capStress(sigma, tauSquared) : 0;
-        const double closure = e.cap & (sigma < 0) ? -moved.total : 0;
+        const double closure = sigma < 0 ? closing * moved.total : 0;
         const double hardens = closest > limit ? closest : limit;
         // a subcontact that opens with one stiffness and closes with another loses energy
         const bool keeps = !yielded | ((e.kn - weak) * moved.before * moved.elastic >= 0);
@@ -105,7 +100,7 @@ MASONRY_INLINED Mask stayElastic(const Equations& given, const Consequences& ofA
 }
 
 MASONRY_VECTORISED
-Mask stayElasticOfMany(const Equations& e, const Consequences& ofAll, bool yielded, const J::Columns& columns,
+Mask stayElasticOfMany(const Equations& e, const J::Consequences& ofAll, bool yielded, const J::Columns& columns,
                        std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* waits) {
     if (jumps.slideB)
         return yielded ? stayElastic<true, true>(e, ofAll, columns, at, count, jumps, normalStress, waits)
@@ -293,6 +288,47 @@ void advanceSideBySide(const Equations& given, const SofteningTable& tension, co
     }
 }
 
+// All subcontacts of a range into the scratch, in their places, and back those that waited.
+MASONRY_VECTORISED
+void take(const J::Columns& columns, std::size_t at, int count, const Jumps& jumps, const Mask* waits, Scratch& s) {
+    for (int c = 0; c < J::columnCount; ++c) {
+        const double* column = columns[c] + at;
+        MASONRY_INDEPENDENT
+        for (int i = 0; i < count; ++i)
+            s.column[c][i] = column[i];
+    }
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        s.jump[i] = jumps.opening[i];
+        s.slideA[i] = jumps.slideA[i];
+        s.slideB[i] = 0;
+        s.waits[i] = waits[i];
+    }
+    if (!jumps.slideB) return;
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i)
+        s.slideB[i] = jumps.slideB[i];
+}
+
+MASONRY_VECTORISED
+void giveBack(const J::Columns& columns, std::size_t at, int count, double* normalStress, const Scratch& s) {
+    for (int c = 0; c < J::columnCount; ++c) {
+        double* column = columns[c] + at;
+        MASONRY_INDEPENDENT
+        for (int i = 0; i < count; ++i) {
+            const double old = column[i];
+            const double now = s.column[c][i];
+            column[i] = s.waits[i] ? now : old;
+        }
+    }
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        const double old = normalStress[i];
+        const double now = s.sigma[i];
+        normalStress[i] = s.waits[i] ? now : old;
+    }
+}
+
 // ---- energies ------------------------------------------------------------------------------------------------------
 
 struct LaneSums { // of lanes, so that the order of adding is the same with any vector unit
@@ -352,11 +388,11 @@ void addEnergiesOfMany(double kn, double ks, const J::Columns& columns, const st
 JointColumns::JointColumns(std::shared_ptr<const JointLaw> law, const ElasticStiffness& k, int joints, int points)
     : law_(std::move(law)),
       k_(k),
-      equations_(law_->equations(k)),
       joints_(joints),
       points_(points),
       stride_(joints == 1 ? 1 : (joints + lanes - 1) / lanes * lanes),
       groups_((stride_ + lanes - 1) / lanes) {
+    find();
     const std::size_t size = std::size_t(stride_) * points_;
     columns_.pitch = size % 512 == 0 ? size + lanes : size; // columns whole pages apart would compete for the cache
     const std::size_t numbers = columns_.pitch * columnCount + lanes;
@@ -368,6 +404,11 @@ JointColumns::JointColumns(std::shared_ptr<const JointLaw> law, const ElasticSti
     rows_.assign(size, Rows{0, 0});
     regime_.assign(size, Regime::Elastic);
     yielded_.assign(std::size_t(groups_) * points_, 0);
+}
+
+void JointColumns::find() {
+    equations_ = law_->equations(k_);
+    neverYielded_ = {0, 1, equations_.kn, equations_.reach(1, 0), squareOfCap(equations_, 0)};
 }
 
 bool JointColumns::neverYielded(const JointState& s) const {
@@ -397,7 +438,7 @@ void JointColumns::yieldFrom(int point, int joint) {
 
 void JointColumns::setLaw(std::shared_ptr<const JointLaw> law) {
     law_ = std::move(law);
-    equations_ = law_->equations(k_);
+    find();
     for (int point = 0; point < points_; ++point)
         for (int joint = 0; joint < stride_; ++joint) {
             if (!yielded_[group(point, joint)] && !neverYielded(get(point, joint))) yieldFrom(point, joint);
@@ -501,7 +542,7 @@ void JointColumns::advance(int point, int from, int count, const double* opening
         for (int n = 0; n < count; n += lanes)
             yieldFrom(point, from + n);
     Mask waits[most];
-    const Mask left = stayElasticOfMany(equations_, ofNeverYielded(equations_), yielded, columns_, first, count, jumps,
+    const Mask left = stayElasticOfMany(equations_, neverYielded_, yielded, columns_, first, count, jumps,
                                         normalStress, waits);
     if (left == 0) return;
 
@@ -521,27 +562,13 @@ void JointColumns::advance(int point, int from, int count, const double* opening
         yieldFrom(point, from + n);
     Scratch s;
     if (2 * many >= count && count % lanes == 0) { // all, in their places
-        for (int c = 0; c < columnCount; ++c)
-            std::copy_n(columns_[c] + first, count, s.column[c]);
-        std::copy_n(opening, count, s.jump);
-        std::copy_n(slideA, count, s.slideA);
-        if (slideB)
-            std::copy_n(slideB, count, s.slideB);
-        else
-            std::fill_n(s.slideB, count, 0);
+        take(columns_, first, count, jumps, waits, s);
         for (int n = 0; n < count; ++n) {
-            s.waits[n] = waits[n];
             s.tensionRow[n] = rows_[first + n].tension;
             s.shearRow[n] = rows_[first + n].shear;
         }
         advanceSideBySide(equations_, law_->tension(), law_->shear(), s, count);
-        for (int c = 0; c < columnCount; ++c) {
-            double* column = columns_[c] + first;
-            for (int n = 0; n < count; ++n)
-                column[n] = waits[n] ? s.column[c][n] : column[n];
-        }
-        for (int n = 0; n < count; ++n)
-            normalStress[n] = waits[n] ? s.sigma[n] : normalStress[n];
+        giveBack(columns_, first, count, normalStress, s);
         for (int n = 0; n < many; ++n) {
             const int i = waiting[n];
             rows_[first + i] = {s.tensionRow[i], s.shearRow[i]};

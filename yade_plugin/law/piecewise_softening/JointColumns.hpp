@@ -76,6 +76,10 @@ public:
         double* operator[](int column) const { return first + column * pitch; }
     };
 
+    struct Consequences { // the last five of these
+        double irreversible, intact, secant, reach, capSquared;
+    };
+
 private:
     struct Release {
         void operator()(void* memory) const { std::free(memory); }
@@ -86,6 +90,7 @@ private:
 
     std::size_t at(int point, int joint) const { return std::size_t(point) * stride_ + joint; }
     std::size_t group(int point, int joint) const { return std::size_t(point) * groups_ + joint / lanes; }
+    void find(); // what follows from law and stiffness
     bool neverYielded(const JointState& s) const;
     void yieldFrom(int point, int joint); // the group of this joint now has what yielded subcontacts have
     void derive(std::size_t i);
@@ -93,6 +98,7 @@ private:
     std::shared_ptr<const JointLaw> law_;
     ElasticStiffness k_;
     Equations equations_;
+    Consequences neverYielded_; // of subcontacts that never yielded
     int joints_, points_, stride_, groups_;
     // Zeroed memory that takes no room in the machine before it is written to: columns of what yielded subcontacts
     // have cost nothing where none has.
