@@ -37,13 +37,12 @@ public:
 
     // The same for a ratio near the last one: `row` is where that was found, and is brought up to date.
     double damage(double ratio, std::int32_t& row) const {
+        if (ratio > 1 && isWithin(std::size_t(row), ratio)) return within(std::size_t(row), ratio);
         if (rows_.empty() || !(ratio > 1)) return 0;
         if (ratio >= rows_.back().ratio) return rows_.back().damage;
-        std::size_t at = std::size_t(row);
-        if (at + 1 < rows_.size() && rows_[at].ratio <= ratio && rows_[at + 1].ratio <= ratio) ++at; // often the next
-        if (at + 1 >= rows_.size() || ratio < rows_[at].ratio || rows_[at + 1].ratio <= ratio) at = rowOf(ratio);
-        row = std::int32_t(at);
-        return within(at, ratio);
+        const std::size_t next = std::size_t(row) + 1;
+        row = std::int32_t(isWithin(next, ratio) ? next : rowOf(ratio));
+        return within(std::size_t(row), ratio);
     }
 
     const std::vector<TableRow>& rows() const { return rows_; }
@@ -61,6 +60,9 @@ private:
                 span = half;
         }
         return low;
+    }
+    bool isWithin(std::size_t row, double ratio) const {
+        return row < slopes_.size() && rows_[row].ratio <= ratio && ratio < rows_[row + 1].ratio;
     }
     double within(std::size_t row, double ratio) const { // never rounded up beyond the next row
         return std::min(rows_[row].damage + slopes_[row] * (ratio - rows_[row].ratio), rows_[row + 1].damage);

@@ -7,17 +7,16 @@ namespace masonry {
 namespace {
 
 using J = JointColumns;
+using Jumps = J::Jumps;
+constexpr int most = J::most;
 using Mask = std::int64_t; // a switch as wide as the numbers beside it, for the vector units
-
-struct Jumps {
-    const double *opening, *slideA, *slideB;
-};
-
 
 double squareOfCap(const Equations& e, double largestClosure) {
     const double fc = e.cap ? e.curve.strength(largestClosure, e.stretch) : HUGE_VAL;
     return fc * fc;
 }
+
+constexpr double none[most] = {}; // no slides
 
 // ---- joints without strength ---------------------------------------------------------------------------------------
 
@@ -34,7 +33,7 @@ void advanceElastic(double kn, double ks, const J::Columns& columns, std::size_t
         normalStress[i] = kn * (opening[i] + irreversible[i]);
         shearStressA[i] += ks * jumps.slideA[i];
     }
-    if (!jumps.slideB) return;
+    if (jumps.plane) return;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i)
         shearStressB[i] += ks * jumps.slideB[i];
@@ -102,65 +101,80 @@ MASONRY_INLINED Mask stayElastic(const Equations& given, const J::Consequences& 
 MASONRY_VECTORISED
 Mask stayElasticOfMany(const Equations& e, const J::Consequences& ofAll, bool yielded, const J::Columns& columns,
                        std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* waits) {
-    if (jumps.slideB)
-        return yielded ? stayElastic<true, true>(e, ofAll, columns, at, count, jumps, normalStress, waits)
-                       : stayElastic<true, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
-    return yielded ? stayElastic<false, true>(e, ofAll, columns, at, count, jumps, normalStress, waits)
-                   : stayElastic<false, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
+    if (jumps.plane)
+        return yielded ? stayElastic<false, true>(e, ofAll, columns, at, count, jumps, normalStress, waits)
+                       : stayElastic<false, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
+    return yielded ? stayElastic<true, true>(e, ofAll, columns, at, count, jumps, normalStress, waits)
+                   : stayElastic<true, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
 }
 
 // ---- subcontacts that may yield ------------------------------------------------------------------------------------
 
-struct Scratch { // subcontacts side by side
-    alignas(64) double column[J::columnCount][J::most];
-    double jump[J::most], slideA[J::most], slideB[J::most];
-    double total[J::most], before[J::most], elastic[J::most], farthest[J::most], oldStiffness[J::most];
-    double trialA[J::most], trialB[J::most], size[J::most]; // trial shear stress
-    double ratio[J::most], tensionDamage[J::most], shearDamage[J::most], dilatancy[J::most];
-    double intact[J::most], secant[J::most], sigma[J::most], share[J::most], slip[J::most], dilation[J::most];
-    double closest[J::most], fc[J::most], crushed[J::most], closure[J::most], crushingSlip[J::most];
-    Mask open[J::most], asks[J::most], regime[J::most];
-    Mask waits[J::most]; // 0 of subcontacts that only fill the lanes
-    std::int32_t tensionRow[J::most], shearRow[J::most];
+struct Scratch { // of subcontacts side by side, for one step
+    alignas(64) double total[most];
+    double before[most], elastic[most], farthest[most]; // [m] see Equations::Opened
+    double oldStiffness[most], newStiffness[most];      // [Pa/m] of the elastic opening
+    double trialA[most], trialB[most], size[most];      // [Pa] trial shear stress
+    double ratio[most], tensionDamage[most], shearDamage[most], intact[most], secant[most], dilatancy[most];
+    double sigma[most];                                   // [Pa]
+    double share[most], slip[most], dilation[most];       // see Equations::Slid
+    double closest[most], fc[most];                       // [m], [Pa]
+    double left[most], closure[most], crushingSlip[most]; // see Equations::Crushed
+    double torn[most];                                    // [J/m²] lost in tension
+    Mask open[most], asks[most], regime[most];
 };
 
-// One step of `count` subcontacts, a multiple of the lanes: what JointLaw::advance does for one. Tables and
-// exponentials are looked up one by one, for those that need them.
+// One step of the subcontacts that wait: what JointLaw::advance does for one. What has happened to none is not
+// calculated. Tables and exponentials are looked up one by one, for those that need them.
 MASONRY_VECTORISED
-void advanceSideBySide(const Equations& given, const SofteningTable& tension, const SofteningTable& shear, Scratch& s,
-                       int count) {
+void advanceSideBySide(const Equations& given, const SofteningTable& tension, const SofteningTable& shear,
+                       const J::Columns& columns, J::Rows* rows, Regime* regime, const Jumps& jumps, const Mask* waits,
+                       int count, double* normalStress) {
     const Equations e = given;
-    auto& was = s.column;
+    Scratch s;
+    double* opening = columns[J::Opening];
+    double* shearStressA = columns[J::ShearStressA];
+    double* shearStressB = columns[J::ShearStressB];
+    double* largestOpening = columns[J::LargestOpening];
+    double* largestClosure = columns[J::LargestClosure];
+    double* irreversible = columns[J::Irreversible];
+    double* tensionDamage = columns[J::TensionDamage];
+    double* shearDamage = columns[J::ShearDamage];
+    double* slip = columns[J::Slip];
+    double* intact = columns[J::Intact];
+    double* secant = columns[J::Secant];
 
     // 1, opening
-    Mask any = 0;
+    Mask tears = 0;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
-        const auto moved = e.open(was[J::Opening][i], was[J::Irreversible][i], was[J::LargestOpening][i], s.jump[i]);
+        const auto moved = e.open(opening[i], irreversible[i], largestOpening[i], jumps.opening[i]);
+        const double a = shearStressA[i] + e.ks * jumps.slideA[i]; // eq. (7)
+        const double b = shearStressB[i] + e.ks * jumps.slideB[i];
         s.total[i] = moved.total;
         s.before[i] = moved.before;
         s.elastic[i] = moved.elastic;
         s.farthest[i] = moved.farthest;
         s.open[i] = moved.open;
-        s.asks[i] = moved.tears ? s.waits[i] : 0;
+        s.asks[i] = moved.tears ? waits[i] : 0;
         s.regime[i] = Mask(Regime::Elastic);
-        s.oldStiffness[i] = e.stiffness(moved.before, was[J::Secant][i]);
-        s.trialA[i] = was[J::ShearStressA][i] + e.ks * s.slideA[i]; // eq. (7)
-        s.trialB[i] = was[J::ShearStressB][i] + e.ks * s.slideB[i];
-        s.size[i] = std::sqrt(s.trialA[i] * s.trialA[i] + s.trialB[i] * s.trialB[i]);
-        s.tensionDamage[i] = was[J::TensionDamage][i];
-        s.shearDamage[i] = was[J::ShearDamage][i];
-        s.intact[i] = was[J::Intact][i];
-        s.secant[i] = was[J::Secant][i];
-        any |= s.asks[i];
+        s.oldStiffness[i] = e.stiffness(moved.before, secant[i]);
+        s.trialA[i] = a;
+        s.trialB[i] = b;
+        s.size[i] = std::sqrt(a * a + b * b);
+        s.intact[i] = intact[i];
+        s.secant[i] = secant[i];
+        s.tensionDamage[i] = tensionDamage[i];
+        s.shearDamage[i] = shearDamage[i];
+        tears |= s.asks[i];
     }
-    if (any) {
+    if (tears) {
         MASONRY_INDEPENDENT
         for (int i = 0; i < count; ++i)
             s.ratio[i] = e.tensionRatio(s.elastic[i]);
         for (int i = 0; i < count; ++i) {
             if (!s.asks[i]) continue;
-            const double damage = tension.damage(s.ratio[i], s.tensionRow[i]);
+            const double damage = tension.damage(s.ratio[i], rows[i].tension);
             if (!(damage > s.tensionDamage[i])) continue;
             s.tensionDamage[i] = damage;
             s.regime[i] = Mask(Regime::Opening);
@@ -173,37 +187,38 @@ void advanceSideBySide(const Equations& given, const SofteningTable& tension, co
     }
 
     // 2, Coulomb slip
-    any = 0;
+    Mask slides = 0;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
-        s.sigma[i] = e.stiffness(s.elastic[i], s.secant[i]) * s.elastic[i];
-        s.asks[i] = s.size[i] > e.slipStrength(s.intact[i], s.sigma[i]) ? s.waits[i] : 0;
+        s.newStiffness[i] = e.stiffness(s.elastic[i], s.secant[i]);
+        s.sigma[i] = s.newStiffness[i] * s.elastic[i];
+        s.asks[i] = s.size[i] > e.slipStrength(s.intact[i], s.sigma[i]) ? waits[i] : 0;
         s.share[i] = 1;
         s.slip[i] = 0;
         s.dilation[i] = 0;
-        any |= s.asks[i];
+        slides |= s.asks[i];
     }
-    if (any) {
+    if (slides) {
         MASONRY_INDEPENDENT
         for (int i = 0; i < count; ++i) {
-            s.ratio[i] = e.shearRatio(s.size[i], s.sigma[i], was[J::Slip][i]);
+            s.ratio[i] = e.shearRatio(s.size[i], s.sigma[i], slip[i]);
             s.dilatancy[i] = s.open[i] ? 0 : e.tanPsi;
         }
         for (int i = 0; i < count; ++i) {
-            if (!s.asks[i]) continue;
-            if (s.shearDamage[i] < 1) {
-                const double damage = shear.damage(s.ratio[i], s.shearRow[i]);
-                if (damage > s.shearDamage[i]) s.shearDamage[i] = damage;
-            }
-            if (e.tanPsi > 0 && !s.open[i]) s.dilatancy[i] = e.dilatancy(was[J::Slip][i]);
+            if (!s.asks[i] || !(s.shearDamage[i] < 1)) continue;
+            const double damage = shear.damage(s.ratio[i], rows[i].shear);
+            if (damage > s.shearDamage[i]) s.shearDamage[i] = damage;
         }
+        for (int i = 0; e.tanPsi > 0 && e.delta > 0 && i < count; ++i)
+            if (s.asks[i] && !s.open[i]) s.dilatancy[i] = e.dilatancy(slip[i]);
         MASONRY_INDEPENDENT
         for (int i = 0; i < count; ++i) {
-            const bool weaker = s.shearDamage[i] > was[J::ShearDamage][i];
+            const bool weaker = s.shearDamage[i] > shearDamage[i];
             s.intact[i] = Equations::intact(s.tensionDamage[i], s.shearDamage[i]);
             s.secant[i] = e.secant(s.intact[i], s.farthest[i]);
+            s.newStiffness[i] = e.stiffness(s.elastic[i], s.secant[i]);
             const auto slid = e.slide(s.size[i], s.sigma[i], s.intact[i], s.dilatancy[i]);
-            s.sigma[i] = (s.open[i] != 0) & weaker ? s.secant[i] * s.elastic[i] : slid.sigma;
+            s.sigma[i] = (s.open[i] != 0) & weaker ? s.newStiffness[i] * s.elastic[i] : slid.sigma;
             s.share[i] = slid.share;
             s.slip[i] = slid.slip;
             s.dilation[i] = slid.dilation;
@@ -212,120 +227,139 @@ void advanceSideBySide(const Equations& given, const SofteningTable& tension, co
     }
 
     // 3, cap
-    any = 0;
+    Mask crushes = 0;
     const double limit = e.curve.limit(e.stretch);
+    const double closing = e.cap ? -1 : 0; // how closure counts
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
         const double a = s.share[i] * s.trialA[i];
         const double b = s.share[i] * s.trialB[i];
-        const double closest = was[J::LargestClosure][i];
-        const bool squeezed = e.cap & (s.sigma[i] < 0);
-        s.closest[i] = squeezed & (-s.total[i] > closest) ? -s.total[i] : closest;
-        s.crushed[i] = 1;
+        const double closest = largestClosure[i];
+        const double closure = s.sigma[i] < 0 ? closing * s.total[i] : 0;
+        const bool passes = (s.sigma[i] < 0) & (e.capStress(s.sigma[i], a * a + b * b) > e.smallestFcSquared);
+        s.closest[i] = closure > closest ? closure : closest;
+        s.left[i] = 1;
         s.closure[i] = 0;
         s.crushingSlip[i] = 0;
-        const bool passes = e.capStress(s.sigma[i], a * a + b * b) > e.smallestFcSquared;
-        any |= squeezed & (passes | (s.closest[i] > limit)) ? s.waits[i] : 0;
+        crushes |= passes | ((closure > closest) & (closure > limit)) ? waits[i] : 0;
     }
-    if (any) {
-        Mask anyBeyond = 0;
+    if (crushes && e.cap) {
+        double* capSquared = columns[J::CapSquared];
+        Mask beyond = 0;
         MASONRY_INDEPENDENT
         for (int i = 0; i < count; ++i) {
             s.fc[i] = e.curve.upToMiddle(s.closest[i], e.stretch);
-            s.asks[i] = e.curve.isBeyondMiddle(s.closest[i], e.stretch) ? s.waits[i] : 0;
-            anyBeyond |= s.asks[i];
+            s.asks[i] = e.curve.isBeyondMiddle(s.closest[i], e.stretch) ? waits[i] : 0;
+            beyond |= s.asks[i];
         }
-        for (int i = 0; anyBeyond && i < count; ++i)
+        for (int i = 0; beyond && i < count; ++i)
             if (s.asks[i]) s.fc[i] = e.curve.beyondMiddle(s.closest[i], e.stretch);
         MASONRY_INDEPENDENT
         for (int i = 0; i < count; ++i) {
             const double a = s.share[i] * s.trialA[i];
             const double b = s.share[i] * s.trialB[i];
+            const double old = capSquared[i];
             const auto crushed = e.crush(s.sigma[i], a * a + b * b, s.fc[i]);
             s.sigma[i] *= crushed.share;
-            s.crushed[i] = crushed.share;
+            s.left[i] = crushed.share;
             s.closure[i] = crushed.closure;
             s.crushingSlip[i] = crushed.slip;
             s.regime[i] = crushed.crushes ? Mask(Regime::Crushing) : s.regime[i];
-            was[J::CapSquared][i] = s.fc[i] * s.fc[i];
+            capSquared[i] = waits[i] ? s.fc[i] * s.fc[i] : old;
         }
-    }
+    } else
+        crushes = 0;
 
-    // the new state and what was lost
-    MASONRY_INDEPENDENT
-    for (int i = 0; i < count; ++i) {
-        const double a = s.crushed[i] * (s.share[i] * s.trialA[i]);
-        const double b = s.crushed[i] * (s.share[i] * s.trialB[i]);
-        const double crushing = was[J::Crushing][i] + s.closure[i];
-        const double dilation = was[J::Dilation][i] + s.dilation[i];
-        const double irreversible = crushing - dilation;
-        const double oldNormal = s.oldStiffness[i] * s.before[i];
-        const double newStiffness = e.stiffness(s.elastic[i], s.secant[i]);
-        const double meanNormal = 0.5 * (oldNormal + s.sigma[i]);
-        const double meanShear = Equations::meanShear(was[J::ShearStressA][i], was[J::ShearStressB][i], a, b,
-                                                      s.trialA[i], s.trialB[i], s.size[i]);
-        const bool slips = s.slip[i] + s.crushingSlip[i] > 0;
-        const double inShear = meanShear * s.slip[i] + meanNormal * (dilation - was[J::Dilation][i]);
-        const double inCrushing = meanShear * s.crushingSlip[i];
-        was[J::LostTension][i] += Equations::lostInTension(s.oldStiffness[i], newStiffness, oldNormal, s.sigma[i],
-                                                           s.before[i], s.total[i] + irreversible);
-        was[J::LostShear][i] += slips ? inShear : 0;
-        was[J::LostCompression][i] += (slips ? inCrushing : 0) - meanNormal * (crushing - was[J::Crushing][i]);
-        was[J::Opening][i] = s.total[i];
-        was[J::ShearStressA][i] = a;
-        was[J::ShearStressB][i] = b;
-        was[J::LargestOpening][i] = s.farthest[i];
-        was[J::LargestClosure][i] = s.closest[i];
-        was[J::Crushing][i] = crushing;
-        was[J::Dilation][i] = dilation;
-        was[J::Slip][i] = was[J::Slip][i] + s.slip[i] + s.crushingSlip[i];
-        was[J::TensionDamage][i] = s.tensionDamage[i];
-        was[J::ShearDamage][i] = s.shearDamage[i];
-        was[J::Irreversible][i] = irreversible;
-        was[J::Intact][i] = s.intact[i];
-        was[J::Secant][i] = s.secant[i];
-        was[J::Reach][i] = e.reach(s.intact[i], s.farthest[i]);
-    }
-}
-
-// All subcontacts of a range into the scratch, in their places, and back those that waited.
-MASONRY_VECTORISED
-void take(const J::Columns& columns, std::size_t at, int count, const Jumps& jumps, const Mask* waits, Scratch& s) {
-    for (int c = 0; c < J::columnCount; ++c) {
-        const double* column = columns[c] + at;
-        MASONRY_INDEPENDENT
-        for (int i = 0; i < count; ++i)
-            s.column[c][i] = column[i];
-    }
-    MASONRY_INDEPENDENT
-    for (int i = 0; i < count; ++i) {
-        s.jump[i] = jumps.opening[i];
-        s.slideA[i] = jumps.slideA[i];
-        s.slideB[i] = 0;
-        s.waits[i] = waits[i];
-    }
-    if (!jumps.slideB) return;
-    MASONRY_INDEPENDENT
-    for (int i = 0; i < count; ++i)
-        s.slideB[i] = jumps.slideB[i];
-}
-
-MASONRY_VECTORISED
-void giveBack(const J::Columns& columns, std::size_t at, int count, double* normalStress, const Scratch& s) {
-    for (int c = 0; c < J::columnCount; ++c) {
-        double* column = columns[c] + at;
+    // the new state and what was lost; s.closure and s.dilation become what the state has grown by
+    if (crushes || (slides && e.tanPsi > 0)) {
+        double* crushing = columns[J::Crushing];
+        double* dilation = columns[J::Dilation];
         MASONRY_INDEPENDENT
         for (int i = 0; i < count; ++i) {
-            const double old = column[i];
-            const double now = s.column[c][i];
-            column[i] = s.waits[i] ? now : old;
+            const double oldCrushing = crushing[i];
+            const double oldDilation = dilation[i];
+            const double old = irreversible[i];
+            const double newCrushing = oldCrushing + s.closure[i];
+            const double newDilation = oldDilation + s.dilation[i];
+            const double now = newCrushing - newDilation;
+            s.closure[i] = newCrushing - oldCrushing;
+            s.dilation[i] = newDilation - oldDilation;
+            s.elastic[i] = s.total[i] + now;
+            crushing[i] = waits[i] ? newCrushing : oldCrushing;
+            dilation[i] = waits[i] ? newDilation : oldDilation;
+            irreversible[i] = waits[i] ? now : old;
         }
     }
+    if (crushes || slides) {
+        double* lostShear = columns[J::LostShear];
+        double* lostCompression = columns[J::LostCompression];
+        MASONRY_INDEPENDENT
+        for (int i = 0; i < count; ++i) {
+            const double a = s.left[i] * (s.share[i] * s.trialA[i]);
+            const double b = s.left[i] * (s.share[i] * s.trialB[i]);
+            const double meanNormal = 0.5 * (s.oldStiffness[i] * s.before[i] + s.sigma[i]);
+            const double meanShear =
+                Equations::meanShear(shearStressA[i], shearStressB[i], a, b, s.trialA[i], s.trialB[i], s.size[i]);
+            const bool slips = s.slip[i] + s.crushingSlip[i] > 0;
+            const double inShear = meanShear * s.slip[i] + meanNormal * s.dilation[i];
+            const double inCrushing = meanShear * s.crushingSlip[i];
+            const double oldSlip = slip[i];
+            const double oldShear = lostShear[i];
+            const double oldCompression = lostCompression[i];
+            const double newSlip = oldSlip + s.slip[i] + s.crushingSlip[i];
+            const double newShear = oldShear + (slips ? inShear : 0);
+            const double newCompression = oldCompression + ((slips ? inCrushing : 0) - meanNormal * s.closure[i]);
+            slip[i] = waits[i] ? newSlip : oldSlip;
+            lostShear[i] = waits[i] ? newShear : oldShear;
+            lostCompression[i] = waits[i] ? newCompression : oldCompression;
+        }
+    }
+    Mask tore = 0;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
-        const double old = normalStress[i];
-        const double now = s.sigma[i];
-        normalStress[i] = s.waits[i] ? now : old;
+        const double oldOpening = opening[i];
+        const double oldA = shearStressA[i];
+        const double oldB = shearStressB[i];
+        const double oldFarthest = largestOpening[i];
+        const double oldClosest = largestClosure[i];
+        const double oldStress = normalStress[i];
+        const double a = s.left[i] * (s.share[i] * s.trialA[i]);
+        const double b = s.left[i] * (s.share[i] * s.trialB[i]);
+        s.torn[i] = Equations::lostInTension(s.oldStiffness[i], s.newStiffness[i], s.oldStiffness[i] * s.before[i],
+                                             s.sigma[i], s.before[i], s.elastic[i]);
+        tore |= s.oldStiffness[i] != s.newStiffness[i] ? waits[i] : 0;
+        opening[i] = waits[i] ? s.total[i] : oldOpening;
+        shearStressA[i] = waits[i] ? a : oldA;
+        shearStressB[i] = waits[i] ? b : oldB;
+        largestOpening[i] = waits[i] ? s.farthest[i] : oldFarthest;
+        largestClosure[i] = waits[i] ? s.closest[i] : oldClosest;
+        normalStress[i] = waits[i] ? s.sigma[i] : oldStress;
+    }
+    if (tore) {
+        double* lostTension = columns[J::LostTension];
+        MASONRY_INDEPENDENT
+        for (int i = 0; i < count; ++i)
+            lostTension[i] += waits[i] ? s.torn[i] : 0;
+    }
+    if (tears || slides) {
+        double* reach = columns[J::Reach];
+        MASONRY_INDEPENDENT
+        for (int i = 0; i < count; ++i) {
+            const double oldTension = tensionDamage[i];
+            const double oldShear = shearDamage[i];
+            const double oldIntact = intact[i];
+            const double oldSecant = secant[i];
+            const double oldReach = reach[i];
+            tensionDamage[i] = waits[i] ? s.tensionDamage[i] : oldTension;
+            shearDamage[i] = waits[i] ? s.shearDamage[i] : oldShear;
+            intact[i] = waits[i] ? s.intact[i] : oldIntact;
+            secant[i] = waits[i] ? s.secant[i] : oldSecant;
+            reach[i] = waits[i] ? e.reach(s.intact[i], s.farthest[i]) : oldReach;
+        }
+    }
+    for (int i = 0; i < count; ++i) {
+        const Regime old = regime[i];
+        regime[i] = waits[i] ? Regime(s.regime[i]) : old;
     }
 }
 
@@ -529,21 +563,33 @@ double JointColumns::advanceOne(int point, int joint, const Jump& jump) {
 void JointColumns::advance(int point, int from, int count, const double* opening, const double* slideA,
                            const double* slideB, double* normalStress) {
     const std::size_t first = at(point, from);
-    const Jumps jumps{opening, slideA, slideB};
-    std::fill_n(&regime_[first], count, Regime::Elastic);
+    const Jumps jumps{opening, slideA, slideB ? slideB : none, slideB == nullptr};
+    Regime* regime = &regime_[first];
     if (equations_.elastic) {
+        std::fill_n(regime, count, Regime::Elastic);
         advanceElastic(k_.normal, k_.shear, columns_, first, count, jumps, normalStress);
         return;
     }
     bool yielded = false;
     for (int n = 0; n < count; n += lanes)
         yielded |= yielded_[group(point, from + n)] != 0;
-    if (yielded)
+    Mask waits[most];
+    if (yielded) {
+        int busy = 0; // how many yielded in the last step
+        for (int n = 0; n < count; ++n)
+            busy += regime[n] != Regime::Elastic;
         for (int n = 0; n < count; n += lanes)
             yieldFrom(point, from + n);
-    Mask waits[most];
-    const Mask left = stayElasticOfMany(equations_, neverYielded_, yielded, columns_, first, count, jumps,
-                                        normalStress, waits);
+        if (4 * busy > 3 * count) { // nearly all need the whole law again
+            std::fill_n(waits, count, 1);
+            advanceSideBySide(equations_, law_->tension(), law_->shear(), columns_.from(first), &rows_[first], regime,
+                              jumps, waits, count, normalStress);
+            return;
+        }
+    }
+    std::fill_n(regime, count, Regime::Elastic);
+    const Mask left =
+        stayElasticOfMany(equations_, neverYielded_, yielded, columns_, first, count, jumps, normalStress, waits);
     if (left == 0) return;
 
     int waiting[most]; // the subcontacts that need the whole law
@@ -553,50 +599,50 @@ void JointColumns::advance(int point, int from, int count, const double* opening
     if (many < 3) {
         for (int n = 0; n < many; ++n) {
             const int i = waiting[n];
-            normalStress[i] = advanceOne(point, from + i, {opening[i], {slideA[i], slideB ? slideB[i] : 0}});
+            normalStress[i] = advanceOne(point, from + i, {opening[i], {slideA[i], jumps.slideB[i]}});
         }
         return;
     }
-
     for (int n = 0; n < count; n += lanes)
         yieldFrom(point, from + n);
-    Scratch s;
-    if (2 * many >= count && count % lanes == 0) { // all, in their places
-        take(columns_, first, count, jumps, waits, s);
-        for (int n = 0; n < count; ++n) {
-            s.tensionRow[n] = rows_[first + n].tension;
-            s.shearRow[n] = rows_[first + n].shear;
-        }
-        advanceSideBySide(equations_, law_->tension(), law_->shear(), s, count);
-        giveBack(columns_, first, count, normalStress, s);
-        for (int n = 0; n < many; ++n) {
-            const int i = waiting[n];
-            rows_[first + i] = {s.tensionRow[i], s.shearRow[i]};
-            regime_[first + i] = Regime(s.regime[i]);
-        }
-        return;
-    }
+    if (3 * many >= count)
+        advanceSideBySide(equations_, law_->tension(), law_->shear(), columns_.from(first), &rows_[first], regime,
+                          jumps, waits, count, normalStress);
+    else
+        advanceGathered(first, waiting, many, jumps, normalStress);
+}
 
-    const int padded = (many + lanes - 1) / lanes * lanes; // the last one fills the lanes
+// Few subcontacts are brought together for a step, so that all lanes have something to do.
+void JointColumns::advanceGathered(std::size_t first, const int* waiting, int many, const Jumps& jumps,
+                                   double* normalStress) {
+    constexpr int room = most / 2;
+    alignas(64) double column[columnCount][room];
+    double opening[room], slideA[room], slideB[room], stress[room];
+    Mask waits[room];
+    Rows rows[room];
+    Regime regime[room];
+    const int padded = (many + lanes - 1) / lanes * lanes;
     for (int n = 0; n < padded; ++n) {
-        const int i = waiting[std::min(n, many - 1)];
+        const int i = waiting[std::min(n, many - 1)]; // the last one fills the lanes
         for (int c = 0; c < columnCount; ++c)
-            s.column[c][n] = columns_[c][first + i];
-        s.jump[n] = opening[i];
-        s.slideA[n] = slideA[i];
-        s.slideB[n] = slideB ? slideB[i] : 0;
-        s.waits[n] = n < many;
-        s.tensionRow[n] = rows_[first + i].tension;
-        s.shearRow[n] = rows_[first + i].shear;
+            column[c][n] = columns_[c][first + i];
+        opening[n] = jumps.opening[i];
+        slideA[n] = jumps.slideA[i];
+        slideB[n] = jumps.slideB[i];
+        waits[n] = n < many;
+        rows[n] = rows_[first + i];
+        regime[n] = Regime::Elastic;
+        stress[n] = 0;
     }
-    advanceSideBySide(equations_, law_->tension(), law_->shear(), s, padded);
+    advanceSideBySide(equations_, law_->tension(), law_->shear(), Columns{column[0], room}, rows, regime,
+                      {opening, slideA, slideB, false}, waits, padded, stress);
     for (int n = 0; n < many; ++n) {
         const int i = waiting[n];
         for (int c = 0; c < columnCount; ++c)
-            columns_[c][first + i] = s.column[c][n];
-        rows_[first + i] = {s.tensionRow[n], s.shearRow[n]};
-        regime_[first + i] = Regime(s.regime[n]);
-        normalStress[i] = s.sigma[n];
+            columns_[c][first + i] = column[c][n];
+        rows_[first + i] = rows[n];
+        regime_[first + i] = regime[n];
+        normalStress[i] = stress[n];
     }
 }
 

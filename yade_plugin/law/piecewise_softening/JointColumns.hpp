@@ -74,6 +74,14 @@ public:
         double* first = nullptr;
         std::size_t pitch = 0; // from one to the next
         double* operator[](int column) const { return first + column * pitch; }
+        Columns from(std::size_t at) const { return {first + at, pitch}; }
+    };
+    struct Rows { // of the tables, where they were read last
+        std::int32_t tension, shear;
+    };
+    struct Jumps {
+        const double *opening, *slideA, *slideB;
+        bool plane; // whether all slideB are zero and stay so
     };
 
     struct Consequences { // the last five of these
@@ -84,16 +92,13 @@ private:
     struct Release {
         void operator()(void* memory) const { std::free(memory); }
     };
-    struct Rows { // of the tables, where they were read last
-        std::int32_t tension, shear;
-    };
-
     std::size_t at(int point, int joint) const { return std::size_t(point) * stride_ + joint; }
     std::size_t group(int point, int joint) const { return std::size_t(point) * groups_ + joint / lanes; }
     void find(); // what follows from law and stiffness
     bool neverYielded(const JointState& s) const;
     void yieldFrom(int point, int joint); // the group of this joint now has what yielded subcontacts have
     void derive(std::size_t i);
+    void advanceGathered(std::size_t first, const int* waiting, int many, const Jumps&, double* normalStress);
 
     std::shared_ptr<const JointLaw> law_;
     ElasticStiffness k_;
