@@ -86,14 +86,14 @@ void columns(benchmark::State& state, const Regime& regime) {
 void oneByOne(benchmark::State& state, const Regime& regime) {
     const JointLaw law(kind(regime));
     const auto& bed = law.properties();
-    const ElasticStiffness k{bed.normalStiffness, bed.shearStiffness};
+    const Equations equations = law.equations({bed.normalStiffness, bed.shearStiffness});
     std::vector<JointState> all(size);
     for (auto& s : all)
-        law.advance(k, s, regime.before);
+        law.advance(equations, s, regime.before);
     double sign = 1;
     for (auto _ : state) {
         for (int i = 0; i < size; ++i)
-            benchmark::DoNotOptimize(law.advance(k, all[i], jumpOf(regime, i % joints, sign)));
+            benchmark::DoNotOptimize(law.advance(equations, all[i], jumpOf(regime, i % joints, sign)));
         if (regime.turns) sign = -sign;
     }
     report(state);

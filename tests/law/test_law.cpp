@@ -1,10 +1,13 @@
-// The law against closed form (law.md §6) and its consequences (law.md §5), at the bed joint of the CS walls.
+// The law against closed form and its consequences (yade_plugin/law/README.md), at the bed joint of the CS walls.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "law/piecewise_softening/JointColumns.hpp"
 #include <doctest/doctest.h>
 #include <functional>
 #include <random>
+#include <set>
 #include <stdexcept>
+#include <thread>
+#include <type_traits>
 
 using namespace masonry;
 
@@ -469,59 +472,332 @@ TEST_CASE("turning the slide turns the shear stress") {
     }
 }
 
+TEST_CASE("crushing under shear adds the lost shear over ks to the slip") {
+    JointProperties p;
+    p.cohesion = 100e6; // so that nothing but the cap acts
+    Path path(p);
+    const Jump jump{-1e-3, {2e-5, 0}};
+    path.step(jump);
+    CHECK(path.state.regime == Regime::Crushing);
+    const double trial = path.k.shear * jump.slide.a;
+    CHECK(path.state.shearStress.a < 0.9 * trial);
+    CHECK(path.state.slip == within((trial - path.state.shearStress.a) / path.k.shear, 1e-12));
+    CHECK(path.state.crushing == within(1e-3 + path.state.normalStress / path.k.normal, 1e-12));
+}
+
+// ---- columns -----------------------------------------------------------------------------------------------------
+
+namespace {
+
+std::shared_ptr<const JointLaw> lawOf(const JointProperties& p) { return std::make_shared<const JointLaw>(p); }
+
+// What differs between a subcontact that the law for one has moved and the same in columns; empty if nothing does.
+std::string difference(const Path& path, double normalStress, const JointState& s, const Energies& lost) {
+    const auto& one = path.state;
+    std::string all;
+    const auto compare = [&](const char* what, double a, double b) {
+        if (a != b) all += std::string(what) + " " + std::to_string(a) + " " + std::to_string(b) + "; ";
+    };
+    compare("normal stress", one.normalStress, normalStress);
+    compare("shear stress a", one.shearStress.a, s.shearStress.a);
+    compare("shear stress b", one.shearStress.b, s.shearStress.b);
+    compare("opening", one.opening, s.opening);
+    compare("crushing", one.crushing, s.crushing);
+    compare("dilation", one.dilation, s.dilation);
+    compare("slip", one.slip, s.slip);
+    compare("largest opening", one.largestOpening, s.largestOpening);
+    compare("largest closure", one.largestClosure, s.largestClosure);
+    compare("tension damage", one.tensionDamage, s.tensionDamage);
+    compare("shear damage", one.shearDamage, s.shearDamage);
+    compare("regime", int(one.regime), int(s.regime));
+    compare("lost in tension", path.dissipated.tension, lost.tension);
+    compare("lost in shear", path.dissipated.shear, lost.shear);
+    compare("lost in compression", path.dissipated.compression, lost.compression);
+    return all;
+}
+
+// Subcontacts in columns beside the same ones, each moved by the law for one.
+struct Twins {
+    JointColumns columns;
+    std::vector<Path> paths;
+    std::vector<double> opening, slideA, slideB, stress; // of the joints at a point
+    int seen[4] = {};                                    // how often a regime has acted
+
+    Twins(const JointProperties& p, const ElasticStiffness& k, int joints, int points)
+        : columns(lawOf(p), k, joints, points),
+          paths(joints * points, Path(p, k)),
+          opening(joints),
+          slideA(joints),
+          slideB(joints),
+          stress(joints) {}
+
+    // The normal stress of a state in columns is found from its opening, which rounds differently.
+    void stepOfPaths(int point) {
+        for (int j = 0; j < columns.joints(); ++j) {
+            auto& path = paths[point * columns.joints() + j];
+            path.state.normalStress = columns.get(point, j).normalStress;
+            path.step({opening[j], {slideA[j], slideB[j]}});
+            ++seen[int(path.state.regime)];
+        }
+    }
+    void stepOfColumns(int point, bool plane, const std::function<int()>& groups) {
+        for (int from = 0; from < columns.joints();) {
+            const int count = std::min(columns.joints() - from, 8 * groups());
+            columns.advance(point, from, count, &opening[from], &slideA[from], plane ? nullptr : &slideB[from],
+                            &stress[from]);
+            from += count;
+        }
+    }
+    std::string difference(int point) const {
+        for (int j = 0; j < columns.joints(); ++j) {
+            const auto& path = paths[point * columns.joints() + j];
+            const auto found = ::difference(path, stress[j], columns.get(point, j), columns.dissipated(point, j));
+            if (!found.empty()) return "point " + std::to_string(point) + ", joint " + std::to_string(j) + ": " + found;
+        }
+        return "";
+    }
+    void setProperties(const JointProperties& p) {
+        columns.setLaw(lawOf(p));
+        for (auto& path : paths)
+            path.law = JointLaw(p);
+    }
+};
+
+} // namespace
+
 TEST_CASE("subcontacts in columns follow the law for one to the last bit, whatever kind, jump and neighbour") {
     Dice dice{std::mt19937_64(11)};
+    int seen[4] = {};
     for (int set = 0; set < 400; ++set) {
         auto p = dice.properties();
         p.elastic = dice.chance(0.05);
         const double softer = dice.chance(0.5) ? 1 : dice.between(0.05, 1);
         const ElasticStiffness k{p.normalStiffness * softer, p.shearStiffness * softer};
-        const auto law = std::make_shared<const JointLaw>(p);
-        const int joints = dice.chance(0.1) ? 1 : int(dice.between(2, 75)), points = int(dice.between(1, 4));
-        JointColumns columns(law, k, joints, points);
-        std::vector<Path> paths(joints * points, Path(p, k));
+        const int joints = dice.chance(0.1) ? 1 : int(dice.between(2, 75));
+        const int points = int(dice.between(1, 4));
+        Twins twins(p, k, joints, points);
         const bool plane = set % 3 == 0;
         const double reach =
             (std::max(p.tensileStrength, p.cohesion) + (p.cap ? p.compressiveStrength : 0) + 1) / k.normal;
         const double usual = reach * dice.logarithmic(1e-3, 1);
-        std::vector<double> n(joints), a(joints), b(joints), sigma(joints);
+        Jump drift;
         for (int step = 0; step < 300; ++step) {
-            const bool few = step < 100 && dice.chance(0.8);
+            if (step == 150) { // other properties in mid-run
+                auto other = dice.properties();
+                other.elastic = dice.chance(0.1);
+                twins.setProperties(other);
+            }
+            if (step % 20 == 0) // towards opening, closing or sliding, so that a regime stays for some steps
+                drift = {dice.between(-1, 1), {dice.between(-1, 1), dice.between(-1, 1)}};
+            const double share = dice.chance(0.3) ? 1 : dice.between(0, 0.5); // of the joints that move at all
+            const bool oneByOne = dice.chance(0.05);
             for (int point = 0; point < points; ++point) {
                 const double common = usual * dice.logarithmic(1e-4, 1);
                 for (int j = 0; j < joints; ++j) {
-                    const double size = common * (few && !dice.chance(0.1) ? 1e-6 : 1);
-                    n[j] = size * dice.between(-1, 1);
-                    a[j] = size * dice.between(-1, 1);
-                    b[j] = plane ? 0 : size * dice.between(-1, 1);
-                    auto& path = paths[point * joints + j];
-                    path.state.normalStress = columns.get(point, j).normalStress;
-                    path.step({n[j], {a[j], b[j]}});
+                    const double size = common * (step < 200 && !dice.chance(share) ? 1e-6 : 1);
+                    twins.opening[j] = size * (drift.opening + dice.between(-0.5, 0.5));
+                    twins.slideA[j] = size * (drift.slide.a + dice.between(-0.5, 0.5));
+                    twins.slideB[j] = plane ? 0 : size * (drift.slide.b + dice.between(-0.5, 0.5));
                 }
-                for (int from = 0; from < joints;) {
-                    const int count = std::min(joints - from, 8 * int(dice.between(1, 4.99)));
-                    columns.advance(point, from, count, &n[from], &a[from], plane ? nullptr : &b[from], &sigma[from]);
-                    from += count;
-                }
-                for (int j = 0; j < joints; ++j) {
-                    const auto& path = paths[point * joints + j];
-                    const auto &one = path.state, other = columns.get(point, j);
-                    const auto lost = columns.dissipated(point, j);
-                    bool same = one.normalStress == sigma[j] && one.shearStress.a == other.shearStress.a &&
-                                one.shearStress.b == other.shearStress.b && one.opening == other.opening &&
-                                one.crushing == other.crushing && one.dilation == other.dilation &&
-                                one.slip == other.slip && one.largestOpening == other.largestOpening &&
-                                one.largestClosure == other.largestClosure &&
-                                one.tensionDamage == other.tensionDamage && one.shearDamage == other.shearDamage &&
-                                one.regime == other.regime;
-                    same &= path.dissipated.tension == lost.tension && path.dissipated.shear == lost.shear &&
-                            path.dissipated.compression == lost.compression;
-                    if (!same)
-                        FAIL("set " << set << ", step " << step << ", point " << point << ", joint " << j << " regimes "
-                                    << int(one.regime) << " " << int(other.regime) << " "
-                                    << one.normalStress - sigma[j]);
-                }
+                twins.stepOfPaths(point);
+                if (oneByOne)
+                    for (int j = 0; j < joints; ++j)
+                        twins.stress[j] =
+                            twins.columns.advanceOne(point, j, {twins.opening[j], {twins.slideA[j], twins.slideB[j]}});
+                else
+                    twins.stepOfColumns(point, plane, [&] { return int(dice.between(1, 4.99)); });
+                const auto found = twins.difference(point);
+                if (!found.empty()) FAIL("set " << set << ", step " << step << ", " << found);
             }
         }
+        for (int regime = 0; regime < 4; ++regime)
+            seen[regime] += twins.seen[regime];
     }
+    for (int count : seen)
+        CHECK(count > 100000); // all regimes have been met
+}
+
+TEST_CASE("in columns whole blocks open, slip, dilate and crush as the law for one does, at the bed joint") {
+    const struct {
+        const char* what;
+        Jump before, jump;
+        double dilatancy, decay;
+        Regime regime;
+    } cases[] = {{"opening", {}, {1e-7, {}}, 0, 0, Regime::Opening},
+                 {"slipping", {-1e-6, {}}, {0, {1e-7, 2e-8}}, 0, 0, Regime::Slipping},
+                 {"dilating", {-1e-6, {}}, {0, {1e-7, 2e-8}}, 0.2, 0, Regime::Slipping},
+                 {"dilating less and less", {-1e-6, {}}, {0, {1e-7, 2e-8}}, 0.2, 3e3, Regime::Slipping},
+                 {"crushing", {-1e-5, {}}, {-1e-5, {1e-7, 0}}, 0, 0, Regime::Crushing}};
+    for (const auto& c : cases)
+        for (int every : {1, 4}) { // all joints of a block, or so many of them
+            JointProperties p;
+            p.dilatancy = c.dilatancy;
+            p.dilatancyDecay = c.decay;
+            Twins twins(p, own(p), 32, 1);
+            for (int step = 0; step < 500; ++step) { // the crushing ends far beyond ucm
+                for (int j = 0; j < 32; ++j) {
+                    const Jump& jump = step == 0 ? c.before : c.jump;
+                    const double size = j % every == 0 ? 1 + 0.01 * j : 0;
+                    twins.opening[j] = size * jump.opening;
+                    twins.slideA[j] = size * jump.slide.a;
+                    twins.slideB[j] = size * jump.slide.b;
+                }
+                twins.stepOfPaths(0);
+                twins.stepOfColumns(0, false, [] { return 4; });
+                const auto found = twins.difference(0);
+                if (!found.empty()) FAIL(c.what << ", step " << step << ", " << found);
+            }
+            CHECK(twins.seen[int(c.regime)] > 100 * 32 / every); // dilatancy presses until the joint crushes
+        }
+}
+
+TEST_CASE("ranges of joints can be advanced by threads at the same time") {
+    JointProperties p;
+    p.dilatancy = 0.1;
+    const auto law = lawOf(p);
+    constexpr int joints = 64, steps = 2000;
+    JointColumns one(law, own(p), joints, 1), two(law, own(p), joints, 1);
+    const auto run = [&](JointColumns& columns, int from, int beyond) {
+        std::vector<double> n(joints), a(joints), stress(joints);
+        Dice dice{std::mt19937_64(std::size_t(5 + from))};
+        for (int step = 0; step < steps; ++step) {
+            for (int j = from; j < beyond; ++j) {
+                n[j] = 1e-7 * dice.between(-1, 1);
+                a[j] = 1e-7 * dice.between(-1, 2);
+            }
+            columns.advance(0, from, beyond - from, &n[from], &a[from], nullptr, &stress[from]);
+        }
+    };
+    run(one, 0, 8), run(one, 8, 40), run(one, 40, 64);
+    std::thread first(run, std::ref(two), 0, 8), second(run, std::ref(two), 8, 40), third(run, std::ref(two), 40, 64);
+    first.join(), second.join(), third.join();
+    for (int j = 0; j < joints; ++j) {
+        CHECK(one.get(0, j).slip == two.get(0, j).slip);
+        CHECK(one.shearStressA(0, 0)[j] == two.shearStressA(0, 0)[j]);
+        CHECK(one.dissipated(0, j).shear == two.dissipated(0, j).shear);
+    }
+}
+
+TEST_CASE("energies of columns are those of the subcontacts times their areas, without the padding") {
+    Dice dice{std::mt19937_64(23)};
+    for (int joints : {1, 7, 8, 37, 64, 70}) {
+        const int points = 3;
+        JointProperties p;
+        p.dilatancy = 0.1;
+        JointColumns columns(lawOf(p), own(p), joints, points);
+        for (int point = 0; point < points; ++point)
+            for (int j = 0; j < joints; ++j)
+                for (int step = 0; step < 20; ++step) // the first joints stay elastic
+                    columns.advanceOne(point, j, {(j < 16 ? 1e-9 : 1e-6) * dice.between(-2, 1), {j * 1e-9, -j * 1e-9}});
+        for (bool alike : {false, true}) {
+            const int row = alike ? JointColumns::most : columns.stride();
+            std::vector<double> area(std::size_t(points) * row, 1e300); // in the padding, too
+            for (int point = 0; point < points; ++point)
+                for (int j = 0; j < joints; ++j)
+                    area[point * row + j % row] = 1e-3 * (1 + point) * (1 + (alike ? j % row : j));
+            double expected[6] = {}, size = 0;
+            for (int point = 0; point < points; ++point)
+                for (int j = 0; j < joints; ++j) {
+                    const double a = area[point * row + j % row];
+                    const auto stored = JointLaw::stored(own(p), columns.get(point, j));
+                    const auto lost = columns.dissipated(point, j);
+                    const double each[6] = {stored.tension, stored.shear, stored.compression,
+                                            lost.tension,   lost.shear,   lost.compression};
+                    for (int e = 0; e < 6; ++e) {
+                        expected[e] += a * each[e];
+                        size += std::abs(a * each[e]);
+                    }
+                }
+            const auto sums = columns.energies(area.data(), alike);
+            const double found[6] = {sums.stored.tension,     sums.stored.shear,     sums.stored.compression,
+                                     sums.dissipated.tension, sums.dissipated.shear, sums.dissipated.compression};
+            for (int e = 0; e < 6; ++e)
+                CHECK(std::abs(found[e] - expected[e]) <= 1e-13 * size);
+            CHECK(size > 0);
+        }
+    }
+}
+
+TEST_CASE("what is written into columns is read from them, and a padded joint touches no other") {
+    JointProperties p;
+    for (int joints : {1, 5, 40}) {
+        JointColumns columns(lawOf(p), own(p), joints, 2);
+        CHECK(columns.stride() == (joints == 1 ? 1 : joints == 5 ? 8 : 40));
+        const JointState fresh = columns.get(1, joints - 1);
+        CHECK(fresh.slip + fresh.opening + fresh.shearStress.a + fresh.largestClosure == 0);
+        JointState s;
+        s.opening = -2e-3;
+        s.crushing = 1.9e-3;
+        s.dilation = 1e-5;
+        s.slip = 3e-4;
+        s.largestOpening = 1e-6;
+        s.largestClosure = 2.5e-3;
+        s.tensionDamage = 0.25;
+        s.shearDamage = 0.5;
+        s.shearStress = {1e4, -2e4};
+        s.regime = Regime::Crushing;
+        columns.set(1, joints - 1, s);
+        columns.setDissipated(1, joints - 1, {1, 2, 3});
+        const JointState back = columns.get(1, joints - 1);
+        CHECK(back.opening == s.opening);
+        CHECK(back.crushing == s.crushing);
+        CHECK(back.dilation == s.dilation);
+        CHECK(back.slip == s.slip);
+        CHECK(back.largestOpening == s.largestOpening);
+        CHECK(back.largestClosure == s.largestClosure);
+        CHECK(back.tensionDamage == s.tensionDamage);
+        CHECK(back.shearDamage == s.shearDamage);
+        CHECK(back.shearStress.a == s.shearStress.a);
+        CHECK(back.shearStress.b == s.shearStress.b);
+        CHECK(back.regime == s.regime);
+        CHECK(back.normalStress == within(p.normalStiffness * (-2e-3 + 1.9e-3 - 1e-5), 1e-12));
+        const auto lost = columns.dissipated(1, joints - 1);
+        CHECK(lost.tension == 1);
+        CHECK(lost.shear == 2);
+        CHECK(lost.compression == 3);
+        CHECK(columns.get(0, joints - 1).slip == 0);
+        if (joints > 1) CHECK(columns.get(1, joints - 2).crushing == 0);
+    }
+    CHECK(JointColumns::columnCount * sizeof(double) + sizeof(JointColumns::Rows) + sizeof(Regime) <= 160);
+}
+
+// ---- the description of the properties -----------------------------------------------------------------------------
+
+TEST_CASE("every property is described once, with a meaning, a unit and a source, and its default is within bounds") {
+    std::set<std::string> names;
+    std::size_t bytes = 0;
+    JointProperties::describe([&](const char* name, auto member, const Property& description) {
+        const JointProperties p;
+        using Value = std::decay_t<decltype(p.*member)>;
+        bytes += sizeof(Value);
+        CHECK(names.insert(name).second);
+        CHECK(*description.meaning);
+        CHECK((*description.from || std::string(name) == "name"));
+        CHECK(description.isNumber() == std::is_same_v<Value, double>);
+        if constexpr (std::is_same_v<Value, double>) {
+            CHECK(description.problem(name, p.*member) == "");
+            CHECK(p.*member <= description.usualHigh);
+            CHECK(p.*member >= description.usualLow);
+        }
+    });
+    CHECK(names.size() == 24);
+    CHECK(bytes + 16 >= sizeof(JointProperties)); // no member is left out; what else there is, is the switches' padding
+    CHECK(names.count("compressiveFractureEnergy") == 1);
+}
+
+TEST_CASE("properties that do not act are not checked") {
+    JointProperties p;
+    p.elastic = true;
+    p.cohesion = -1;
+    CHECK(p.problems().empty());
+    p = {};
+    p.cap = false;
+    p.peakRatio = -1;
+    CHECK(p.problems().empty());
+    p = {};
+    p.tensionTable = p.shearTable = SofteningTable::brittle();
+    p.modeIFractureEnergy = p.modeIIFractureEnergy = -1;
+    CHECK(p.problems().empty());
+    p.tensionTable.clear();
+    CHECK(p.problems() == std::vector<std::string>{"mode I fracture energy -1 J/m² must be above 0"});
 }
