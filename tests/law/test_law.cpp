@@ -758,7 +758,7 @@ TEST_CASE("what is written into columns is read from them, and a padded joint to
         CHECK(columns.get(0, joints - 1).slip == 0);
         if (joints > 1) CHECK(columns.get(1, joints - 2).crushing == 0);
     }
-    CHECK(JointColumns::columnCount * sizeof(double) + sizeof(JointColumns::Rows) + sizeof(Regime) <= 160);
+    CHECK(Columns::count * sizeof(double) + sizeof(TableRows) + sizeof(Regime) <= 160);
 }
 
 // ---- the description of the properties -----------------------------------------------------------------------------

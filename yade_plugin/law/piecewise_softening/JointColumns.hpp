@@ -2,6 +2,7 @@
 // several subcontacts at a time. The law is that of JointLaw, by the same equations and to the last bit.
 #pragma once
 #include "JointLaw.hpp"
+#include "SideBySide.hpp"
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -12,7 +13,7 @@ namespace masonry {
 
 class JointColumns { // in columns [point][joint]
 public:
-    static constexpr int most = 32; // joints that are advanced at a time
+    static constexpr int most = Columns::most; // joints that are advanced at a time
 
     JointColumns(std::shared_ptr<const JointLaw> law, const ElasticStiffness& k, int joints, int points);
 
@@ -34,13 +35,13 @@ public:
     double advanceOne(int point, int joint, const Jump& jump);
 
     // One step of joints from..from+count (count <= most, from a multiple of 8) at a point, under jumps in columns that
-    // begin at `from`; slideB null: in the plane. Gives normal stresses. Different ranges may be advanced at the same
-    // time by threads.
+    // begin at `from`. Without slideB all is in the plane: the shear stresses along b are zero and stay so. Gives
+    // normal stresses. Different ranges may be advanced at the same time by threads.
     void advance(int point, int from, int count, const double* opening, const double* slideA, const double* slideB,
                  double* normalStress);
 
-    const double* shearStressA(int point, int from) const { return columns_[ShearStressA] + at(point, from); }
-    const double* shearStressB(int point, int from) const { return columns_[ShearStressB] + at(point, from); }
+    const double* shearStressA(int point, int from) const { return columns_[Columns::ShearStressA] + at(point, from); }
+    const double* shearStressB(int point, int from) const { return columns_[Columns::ShearStressB] + at(point, from); }
 
     // Area-weighted sums over all joints [J], in an order that does not depend on threads. `area` holds [point][stride]
     // numbers, or [point][most] numbers repeated for all blocks of `most` joints if `alike`.
@@ -49,56 +50,18 @@ public:
     };
     Sums energies(const double* area, bool alike) const;
 
-    enum Column { // what is kept of a subcontact
-        Opening,
-        ShearStressA,
-        ShearStressB,
-        LargestOpening,
-        LargestClosure,
-        Crushing, // from here on zero, or as for any subcontact that never yielded, until the subcontact yields
-        Dilation,
-        Slip,
-        TensionDamage,
-        ShearDamage,
-        LostTension,
-        LostShear,
-        LostCompression,
-        Irreversible, // the rest follows from the above: crushing less dilation
-        Intact,       // 1 - d_ts
-        Secant,       // stiffness of the open subcontact
-        Reach,        // elastic opening up to which no damage grows and the secant stays
-        CapSquared,   // square of the cap's strength
-        columnCount
-    };
-    struct Columns { // side by side in memory
-        double* first = nullptr;
-        std::size_t pitch = 0; // from one to the next
-        double* operator[](int column) const { return first + column * pitch; }
-        Columns from(std::size_t at) const { return {first + at, pitch}; }
-    };
-    struct Rows { // of the tables, where they were read last
-        std::int32_t tension, shear;
-    };
-    struct Jumps {
-        const double *opening, *slideA, *slideB;
-        bool plane; // whether all slideB are zero and stay so
-    };
-
-    struct Consequences { // the last five of these
-        double irreversible, intact, secant, reach, capSquared;
-    };
-
 private:
     struct Release {
         void operator()(void* memory) const { std::free(memory); }
     };
+
     std::size_t at(int point, int joint) const { return std::size_t(point) * stride_ + joint; }
     std::size_t group(int point, int joint) const { return std::size_t(point) * groups_ + joint / lanes; }
-    void find(); // what follows from law and stiffness
+    void prepare(); // what follows from law and stiffness
     bool neverYielded(const JointState& s) const;
     void yieldFrom(int point, int joint); // the group of this joint now has what yielded subcontacts have
     void derive(std::size_t i);
-    void advanceGathered(std::size_t first, const int* waiting, int many, const Jumps&, double* normalStress);
+    void advanceGathered(std::size_t first, const int* waiting, int many, const Jumps& jumps, double* normalStress);
 
     std::shared_ptr<const JointLaw> law_;
     ElasticStiffness k_;
@@ -109,7 +72,7 @@ private:
     // have cost nothing where none has.
     std::unique_ptr<void, Release> memory_;
     Columns columns_;
-    std::vector<Rows> rows_;
+    std::vector<TableRows> rows_;
     std::vector<Regime> regime_;
     std::vector<std::uint8_t> yielded_; // of groups of eight joints at a point, whether one has yielded
 };

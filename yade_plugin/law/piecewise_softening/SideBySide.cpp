@@ -1,0 +1,411 @@
+#include "SideBySide.hpp"
+#include <cmath>
+
+namespace masonry {
+
+namespace {
+
+constexpr int most = Columns::most;
+
+} // namespace
+
+// ---- joints without strength ---------------------------------------------------------------------------------------
+
+MASONRY_VECTORISED
+void advanceElastic(double kn, double ks, const Columns& columns, std::size_t at, int count, const Jumps& jumps,
+                    double* normalStress) {
+    double* opening = columns[Columns::Opening] + at;
+    double* shearStressA = columns[Columns::ShearStressA] + at;
+    double* shearStressB = columns[Columns::ShearStressB] + at;
+    const double* irreversible = columns[Columns::Irreversible] + at;
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        opening[i] += jumps.opening[i];
+        normalStress[i] = kn * (opening[i] + irreversible[i]);
+        shearStressA[i] += ks * jumps.slideA[i];
+    }
+    if (jumps.plane) return;
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i)
+        shearStressB[i] += ks * jumps.slideB[i];
+}
+
+// ---- subcontacts that stay elastic ---------------------------------------------------------------------------------
+
+namespace {
+
+// The law where no strength is passed: eqs. (6), (7), the secant of eq. (11), and the three conditions of eq. (8).
+// Tells which subcontacts need more, which then are as before, and how many they are.
+template <bool spatial, bool yielded>
+MASONRY_INLINED Mask stayElasticAs(const Equations& given, const Consequences& ofAll, const Columns& columns,
+                                   std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* waits) {
+    const Equations e = given;
+    const Consequences same = ofAll;
+    const double limit = e.curve.limit(e.stretch);
+    const double closing = e.cap ? -1 : 0; // how closure counts
+    double* opening = columns[Columns::Opening] + at;
+    double* shearStressA = columns[Columns::ShearStressA] + at;
+    double* shearStressB = columns[Columns::ShearStressB] + at;
+    double* largestOpening = columns[Columns::LargestOpening] + at;
+    double* largestClosure = columns[Columns::LargestClosure] + at;
+    const double* irreversible = columns[Columns::Irreversible] + at;
+    const double* intact = columns[Columns::Intact] + at;
+    const double* secant = columns[Columns::Secant] + at;
+    const double* reach = columns[Columns::Reach] + at;
+    const double* capSquared = columns[Columns::CapSquared] + at;
+    Mask waiting = 0;
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        const double bond = yielded ? intact[i] : same.intact;
+        const double weak = yielded ? secant[i] : same.secant;
+        const double within = yielded ? reach[i] : same.reach;
+        const double capable = yielded ? capSquared[i] : same.capSquared;
+        const double plastic = yielded ? irreversible[i] : same.irreversible;
+        const double oldOpening = opening[i];
+        const double oldA = shearStressA[i];
+        const double oldB = spatial ? shearStressB[i] : 0;
+        const double farthest = largestOpening[i];
+        const double closest = largestClosure[i];
+        const auto moved = e.open(oldOpening, plastic, farthest, jumps.opening[i]);
+        const double sigma = e.stiffness(moved.elastic, weak) * moved.elastic;
+        const double a = oldA + e.ks * jumps.slideA[i];
+        const double b = spatial ? oldB + e.ks * jumps.slideB[i] : 0;
+        const double tauSquared = a * a + b * b;
+        const double strength = e.slipStrength(bond, sigma);
+        const double crushing = sigma < 0 ? e.capStress(sigma, tauSquared) : 0;
+        const double closure = sigma < 0 ? closing * moved.total : 0;
+        const double hardens = closest > limit ? closest : limit;
+        // a subcontact that opens with one stiffness and closes with another loses energy
+        const bool keeps = !yielded | ((e.kn - weak) * moved.before * moved.elastic >= 0);
+        const bool elastic = (moved.elastic <= within) & (tauSquared <= strength * strength) & (crushing <= capable) &
+                             (closure <= hardens) & keeps;
+        normalStress[i] = sigma;
+        opening[i] = elastic ? moved.total : oldOpening;
+        shearStressA[i] = elastic ? a : oldA;
+        if (spatial) shearStressB[i] = elastic ? b : oldB;
+        largestOpening[i] = elastic ? moved.farthest : farthest;
+        largestClosure[i] = elastic & (closure > closest) ? closure : closest;
+        waits[i] = elastic ? 0 : 1;
+        waiting += elastic ? 0 : 1;
+    }
+    return waiting;
+}
+
+} // namespace
+
+MASONRY_VECTORISED
+Mask stayElastic(const Equations& e, const Consequences* neverYielded, const Columns& columns, std::size_t at,
+                 int count, const Jumps& jumps, double* normalStress, Mask* waits) {
+    const bool yielded = neverYielded == nullptr;
+    const Consequences ofAll = yielded ? Consequences{} : *neverYielded;
+    if (jumps.plane)
+        return yielded ? stayElasticAs<false, true>(e, ofAll, columns, at, count, jumps, normalStress, waits)
+                       : stayElasticAs<false, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
+    return yielded ? stayElasticAs<true, true>(e, ofAll, columns, at, count, jumps, normalStress, waits)
+                   : stayElasticAs<true, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
+}
+
+// ---- subcontacts that may yield ------------------------------------------------------------------------------------
+
+namespace {
+
+struct Scratch { // of subcontacts side by side, for one step
+    alignas(64) double total[most];
+    double before[most], elastic[most], farthest[most]; // [m] see Equations::Opened
+    double oldStiffness[most], newStiffness[most];      // [Pa/m] of the elastic opening
+    double trialA[most], trialB[most], size[most];      // [Pa] trial shear stress
+    double ratio[most], tensionDamage[most], shearDamage[most], intact[most], secant[most], dilatancy[most];
+    double sigma[most];                                   // [Pa]
+    double share[most], slip[most], dilation[most];       // see Equations::Slid
+    double closest[most], fc[most];                       // [m], [Pa]
+    double left[most], closure[most], crushingSlip[most]; // see Equations::Crushed
+    double torn[most];                                    // [J/m²] lost in tension
+    Mask open[most], asks[most], regime[most];
+};
+
+} // namespace
+
+// One step of the subcontacts that wait: what JointLaw::advance does for one. What has happened to none is not
+// calculated. Tables and exponentials are looked up one by one, for those that need them.
+MASONRY_VECTORISED
+void advanceSideBySide(const Equations& given, const SofteningTable& tension, const SofteningTable& shear,
+                       const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* waits,
+                       int count, double* normalStress) {
+    const Equations e = given;
+    Scratch s;
+    double* opening = columns[Columns::Opening];
+    double* shearStressA = columns[Columns::ShearStressA];
+    double* shearStressB = columns[Columns::ShearStressB];
+    double* largestOpening = columns[Columns::LargestOpening];
+    double* largestClosure = columns[Columns::LargestClosure];
+    double* irreversible = columns[Columns::Irreversible];
+    double* tensionDamage = columns[Columns::TensionDamage];
+    double* shearDamage = columns[Columns::ShearDamage];
+    double* slip = columns[Columns::Slip];
+    double* intact = columns[Columns::Intact];
+    double* secant = columns[Columns::Secant];
+
+    // 1, opening
+    Mask tears = 0;
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        const auto moved = e.open(opening[i], irreversible[i], largestOpening[i], jumps.opening[i]);
+        const double a = shearStressA[i] + e.ks * jumps.slideA[i]; // eq. (7)
+        const double b = shearStressB[i] + e.ks * jumps.slideB[i];
+        s.total[i] = moved.total;
+        s.before[i] = moved.before;
+        s.elastic[i] = moved.elastic;
+        s.farthest[i] = moved.farthest;
+        s.open[i] = moved.open;
+        s.asks[i] = moved.tears ? waits[i] : 0;
+        s.regime[i] = Mask(Regime::Elastic);
+        s.oldStiffness[i] = e.stiffness(moved.before, secant[i]);
+        s.trialA[i] = a;
+        s.trialB[i] = b;
+        s.size[i] = std::sqrt(a * a + b * b);
+        s.intact[i] = intact[i];
+        s.secant[i] = secant[i];
+        s.tensionDamage[i] = tensionDamage[i];
+        s.shearDamage[i] = shearDamage[i];
+        tears |= s.asks[i];
+    }
+    if (tears) {
+        MASONRY_INDEPENDENT
+        for (int i = 0; i < count; ++i)
+            s.ratio[i] = e.tensionRatio(s.elastic[i]);
+        for (int i = 0; i < count; ++i) {
+            if (!s.asks[i]) continue;
+            const double damage = tension.damage(s.ratio[i], rows[i].tension);
+            if (!(damage > s.tensionDamage[i])) continue;
+            s.tensionDamage[i] = damage;
+            s.regime[i] = Mask(Regime::Opening);
+        }
+        MASONRY_INDEPENDENT
+        for (int i = 0; i < count; ++i) {
+            s.intact[i] = Equations::intact(s.tensionDamage[i], s.shearDamage[i]);
+            s.secant[i] = e.secant(s.intact[i], s.farthest[i]);
+        }
+    }
+
+    // 2, Coulomb slip
+    Mask slides = 0;
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        s.newStiffness[i] = e.stiffness(s.elastic[i], s.secant[i]);
+        s.sigma[i] = s.newStiffness[i] * s.elastic[i];
+        s.asks[i] = s.size[i] > e.slipStrength(s.intact[i], s.sigma[i]) ? waits[i] : 0;
+        s.share[i] = 1;
+        s.slip[i] = 0;
+        s.dilation[i] = 0;
+        slides |= s.asks[i];
+    }
+    if (slides) {
+        MASONRY_INDEPENDENT
+        for (int i = 0; i < count; ++i) {
+            s.ratio[i] = e.shearRatio(s.size[i], s.sigma[i], slip[i]);
+            s.dilatancy[i] = s.open[i] ? 0 : e.tanPsi;
+        }
+        for (int i = 0; i < count; ++i) {
+            if (!s.asks[i] || !(s.shearDamage[i] < 1)) continue;
+            const double damage = shear.damage(s.ratio[i], rows[i].shear);
+            if (damage > s.shearDamage[i]) s.shearDamage[i] = damage;
+        }
+        for (int i = 0; e.tanPsi > 0 && e.delta > 0 && i < count; ++i)
+            if (s.asks[i] && !s.open[i]) s.dilatancy[i] = e.dilatancy(slip[i]);
+        MASONRY_INDEPENDENT
+        for (int i = 0; i < count; ++i) {
+            const bool weaker = s.shearDamage[i] > shearDamage[i];
+            s.intact[i] = Equations::intact(s.tensionDamage[i], s.shearDamage[i]);
+            s.secant[i] = e.secant(s.intact[i], s.farthest[i]);
+            s.newStiffness[i] = e.stiffness(s.elastic[i], s.secant[i]);
+            const auto slid = e.slide(s.size[i], s.sigma[i], s.intact[i], s.dilatancy[i]);
+            s.sigma[i] = (s.open[i] != 0) & weaker ? s.newStiffness[i] * s.elastic[i] : slid.sigma;
+            s.share[i] = slid.share;
+            s.slip[i] = slid.slip;
+            s.dilation[i] = slid.dilation;
+            s.regime[i] = slid.slides ? Mask(Regime::Slipping) : s.regime[i];
+        }
+    }
+
+    // 3, cap
+    Mask crushes = 0;
+    const double limit = e.curve.limit(e.stretch);
+    const double closing = e.cap ? -1 : 0; // how closure counts
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        const double a = s.share[i] * s.trialA[i];
+        const double b = s.share[i] * s.trialB[i];
+        const double closest = largestClosure[i];
+        const double closure = s.sigma[i] < 0 ? closing * s.total[i] : 0;
+        const bool passes = (s.sigma[i] < 0) & (e.capStress(s.sigma[i], a * a + b * b) > e.smallestFcSquared);
+        s.closest[i] = closure > closest ? closure : closest;
+        s.left[i] = 1;
+        s.closure[i] = 0;
+        s.crushingSlip[i] = 0;
+        crushes |= passes | ((closure > closest) & (closure > limit)) ? waits[i] : 0;
+    }
+    if (crushes && e.cap) {
+        double* capSquared = columns[Columns::CapSquared];
+        Mask beyond = 0;
+        MASONRY_INDEPENDENT
+        for (int i = 0; i < count; ++i) {
+            s.fc[i] = e.curve.upToMiddle(s.closest[i], e.stretch);
+            s.asks[i] = e.curve.isBeyondMiddle(s.closest[i], e.stretch) ? waits[i] : 0;
+            beyond |= s.asks[i];
+        }
+        for (int i = 0; beyond && i < count; ++i)
+            if (s.asks[i]) s.fc[i] = e.curve.beyondMiddle(s.closest[i], e.stretch);
+        MASONRY_INDEPENDENT
+        for (int i = 0; i < count; ++i) {
+            const double a = s.share[i] * s.trialA[i];
+            const double b = s.share[i] * s.trialB[i];
+            const double old = capSquared[i];
+            const auto crushed = e.crush(s.sigma[i], a * a + b * b, s.fc[i]);
+            s.sigma[i] *= crushed.share;
+            s.left[i] = crushed.share;
+            s.closure[i] = crushed.closure;
+            s.crushingSlip[i] = crushed.slip;
+            s.regime[i] = crushed.crushes ? Mask(Regime::Crushing) : s.regime[i];
+            capSquared[i] = waits[i] ? s.fc[i] * s.fc[i] : old;
+        }
+    } else
+        crushes = 0;
+
+    // the new state and what was lost; s.closure and s.dilation become what the state has grown by
+    if (crushes || (slides && e.tanPsi > 0)) {
+        double* crushing = columns[Columns::Crushing];
+        double* dilation = columns[Columns::Dilation];
+        MASONRY_INDEPENDENT
+        for (int i = 0; i < count; ++i) {
+            const double oldCrushing = crushing[i];
+            const double oldDilation = dilation[i];
+            const double old = irreversible[i];
+            const double newCrushing = oldCrushing + s.closure[i];
+            const double newDilation = oldDilation + s.dilation[i];
+            const double now = newCrushing - newDilation;
+            s.closure[i] = newCrushing - oldCrushing;
+            s.dilation[i] = newDilation - oldDilation;
+            s.elastic[i] = s.total[i] + now;
+            crushing[i] = waits[i] ? newCrushing : oldCrushing;
+            dilation[i] = waits[i] ? newDilation : oldDilation;
+            irreversible[i] = waits[i] ? now : old;
+        }
+    }
+    if (crushes || slides) {
+        double* lostShear = columns[Columns::LostShear];
+        double* lostCompression = columns[Columns::LostCompression];
+        MASONRY_INDEPENDENT
+        for (int i = 0; i < count; ++i) {
+            const double a = s.left[i] * (s.share[i] * s.trialA[i]);
+            const double b = s.left[i] * (s.share[i] * s.trialB[i]);
+            const double meanNormal = 0.5 * (s.oldStiffness[i] * s.before[i] + s.sigma[i]);
+            const double meanShear =
+                Equations::meanShear(shearStressA[i], shearStressB[i], a, b, s.trialA[i], s.trialB[i], s.size[i]);
+            const bool slips = s.slip[i] + s.crushingSlip[i] > 0;
+            const double inShear = meanShear * s.slip[i] + meanNormal * s.dilation[i];
+            const double inCrushing = meanShear * s.crushingSlip[i];
+            const double oldSlip = slip[i];
+            const double oldShear = lostShear[i];
+            const double oldCompression = lostCompression[i];
+            const double newSlip = oldSlip + s.slip[i] + s.crushingSlip[i];
+            const double newShear = oldShear + (slips ? inShear : 0);
+            const double newCompression = oldCompression + ((slips ? inCrushing : 0) - meanNormal * s.closure[i]);
+            slip[i] = waits[i] ? newSlip : oldSlip;
+            lostShear[i] = waits[i] ? newShear : oldShear;
+            lostCompression[i] = waits[i] ? newCompression : oldCompression;
+        }
+    }
+    Mask tore = 0;
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        const double oldOpening = opening[i];
+        const double oldA = shearStressA[i];
+        const double oldB = shearStressB[i];
+        const double oldFarthest = largestOpening[i];
+        const double oldClosest = largestClosure[i];
+        const double oldStress = normalStress[i];
+        const double a = s.left[i] * (s.share[i] * s.trialA[i]);
+        const double b = s.left[i] * (s.share[i] * s.trialB[i]);
+        s.torn[i] = Equations::lostInTension(s.oldStiffness[i], s.newStiffness[i], s.oldStiffness[i] * s.before[i],
+                                             s.sigma[i], s.before[i], s.elastic[i]);
+        tore |= s.oldStiffness[i] != s.newStiffness[i] ? waits[i] : 0;
+        opening[i] = waits[i] ? s.total[i] : oldOpening;
+        shearStressA[i] = waits[i] ? a : oldA;
+        shearStressB[i] = waits[i] ? b : oldB;
+        largestOpening[i] = waits[i] ? s.farthest[i] : oldFarthest;
+        largestClosure[i] = waits[i] ? s.closest[i] : oldClosest;
+        normalStress[i] = waits[i] ? s.sigma[i] : oldStress;
+    }
+    if (tore) {
+        double* lostTension = columns[Columns::LostTension];
+        MASONRY_INDEPENDENT
+        for (int i = 0; i < count; ++i)
+            lostTension[i] += waits[i] ? s.torn[i] : 0;
+    }
+    if (tears || slides) {
+        double* reach = columns[Columns::Reach];
+        MASONRY_INDEPENDENT
+        for (int i = 0; i < count; ++i) {
+            const double oldTension = tensionDamage[i];
+            const double oldShear = shearDamage[i];
+            const double oldIntact = intact[i];
+            const double oldSecant = secant[i];
+            const double oldReach = reach[i];
+            tensionDamage[i] = waits[i] ? s.tensionDamage[i] : oldTension;
+            shearDamage[i] = waits[i] ? s.shearDamage[i] : oldShear;
+            intact[i] = waits[i] ? s.intact[i] : oldIntact;
+            secant[i] = waits[i] ? s.secant[i] : oldSecant;
+            reach[i] = waits[i] ? e.reach(s.intact[i], s.farthest[i]) : oldReach;
+        }
+    }
+    for (int i = 0; i < count; ++i) {
+        const Regime old = regime[i];
+        regime[i] = waits[i] ? Regime(s.regime[i]) : old;
+    }
+}
+
+// ---- energies ------------------------------------------------------------------------------------------------------
+
+namespace {
+
+template <bool yielded>
+MASONRY_INLINED void addEnergiesAs(double kn, double ks, const Columns& columns, std::size_t at, int count,
+                                   const double* area, LaneSums& sums) {
+    const double* opening = columns[Columns::Opening] + at;
+    const double* shearStressA = columns[Columns::ShearStressA] + at;
+    const double* shearStressB = columns[Columns::ShearStressB] + at;
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        const double elastic = yielded ? opening[i] + columns[Columns::Irreversible][at + i] : opening[i];
+        const double stiffness = yielded && elastic > 0 ? columns[Columns::Secant][at + i] : kn;
+        const double tauSquared = shearStressA[i] * shearStressA[i] + shearStressB[i] * shearStressB[i];
+        const double normal = area[i] * Equations::storedNormal(stiffness * elastic, elastic);
+        sums.storedTension[i] += elastic > 0 ? normal : 0;
+        sums.storedCompression[i] += elastic > 0 ? 0 : normal;
+        sums.storedShear[i] += area[i] * Equations::storedShear(tauSquared, ks);
+        if (!yielded) continue;
+        sums.lostTension[i] += area[i] * columns[Columns::LostTension][at + i];
+        sums.lostShear[i] += area[i] * columns[Columns::LostShear][at + i];
+        sums.lostCompression[i] += area[i] * columns[Columns::LostCompression][at + i];
+    }
+}
+
+} // namespace
+
+MASONRY_VECTORISED
+void addEnergies(double kn, double ks, const Columns& columns, const std::uint8_t* yielded, int joints, int stride,
+                 const double* area, bool alike, int point, LaneSums& sums) {
+    for (int from = 0; from < joints; from += lanes) {
+        const std::size_t at = std::size_t(point) * stride + from;
+        const double* of = alike ? area + point * most + from % most : area + at;
+        const int count = joints - from < lanes ? joints - from : lanes; // padding does not count
+        if (yielded[from / lanes])
+            count == lanes ? addEnergiesAs<true>(kn, ks, columns, at, lanes, of, sums)
+                           : addEnergiesAs<true>(kn, ks, columns, at, count, of, sums);
+        else
+            count == lanes ? addEnergiesAs<false>(kn, ks, columns, at, lanes, of, sums)
+                           : addEnergiesAs<false>(kn, ks, columns, at, count, of, sums);
+    }
+}
+
+} // namespace masonry
