@@ -1,13 +1,17 @@
 // The Python module masonry._masonry: checks itself against the running YADE, then registers its classes there.
-#include "adapters/MasonryEngines.hpp"
-#include "adapters/MasonryJointGeom.hpp"
+#include "adapters/CriticalTimeStep.hpp"
+#include "adapters/Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening.hpp"
+#include "adapters/MasonryEnergy.hpp"
+#include "adapters/MasonryIntegrator.hpp"
 #include "adapters/MasonryJointLoop.hpp"
-#include "adapters/MasonryJointPhys.hpp"
+#include "adapters/MasonryLoad.hpp"
 #include "adapters/MasonryVtkRecorder.hpp"
 #include "adapters/MasonryZones.hpp"
+#include "adapters/Neighbours.hpp"
 #include "adapters/SceneCheckpoint.hpp"
-#include "host/SelfCheck.hpp"
+#include "adapters/SceneStore.hpp"
 #include "common/Text.hpp"
+#include "host/SelfCheck.hpp"
 
 namespace {
 
@@ -73,6 +77,21 @@ struct JointFromPython {
     }
 };
 
+py::tuple criticalTimeStep() {
+    const BetweenSteps still;
+    auto& store = SceneStore::present();
+    store.update();
+    const auto limit = timeStepLimit(store, true);
+    return py::make_tuple(limit.dt, limit.id1, limit.id2);
+}
+
+void connected() {
+    const BetweenSteps still;
+    auto& store = SceneStore::present();
+    store.update();
+    store.connected();
+}
+
 } // namespace
 
 static void registerAll() {
@@ -113,6 +132,7 @@ static void registerAll() {
         "(dt, id1, id2): the stable time step [s] under the damping of O.engines, at most 1.1 % below the limit, and "
         "the pair of bodies whose joint sets it (twice the same for a deformable unit). Ask again after changing "
         "joints, masses, blocked motions or damping.");
+    py::def("connected", &connected, "All blocks have their joints: what is added later is told. For connect().");
     py::def("saveScene", &saveScene, py::args("extra"), "The state of the scene as bytes, with a text of one's own.");
     py::def("loadScene", &loadScene, py::args("bytes"), "Give the scene a saved state; returns the text.");
     py::def("savedText", &savedText, py::args("bytes"), "The text alone.");

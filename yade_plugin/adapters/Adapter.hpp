@@ -1,159 +1,71 @@
-// What every class that YADE sees has in common: one list of attributes serves Python, dict(), saving, checkpoints and
-// the docs.
+// What every class that YADE sees has in common: one list of attributes serves Python, dict(), saving, checkpoints, the
+// check of values and the docs.
 //
 // A class `T : Adapter<T, HostBase>` gives `className`, `baseName`, `doc` and
-//     template <class Visit> static void attributes(Visit&& visit) { visit("young", &T::young, "Young's modulus [Pa]");
+//     template <class Visit> static void attributes(Visit&& visit) {
+//         visit("young", &T::young, number("Pa", "Young's modulus").above(0));
 //     }
-// and may define `void postLoad()`, which checks and prepares after any change, `void refresh()`, which brings the
-// attributes up to date before they are read, and `static void extras(PyClass&)`.
+// An attribute whose value lives elsewhere, as the state of a joint in columns, is given by two functions in place of a
+// member: `visit("jumps", computed(&T::jumps, &T::setJumps), ...)`. A class may define
+//     void postLoad()                               checks and prepares after any change of attributes
+//     std::vector<std::string> problems()           what is wrong beyond the bounds of single attributes
+//     std::string title()                           how messages name the object
+//     template <class PyClass> static void extras(PyClass&)    more properties and functions for Python
 #pragma once
-#include "files/Checkpoint.hpp"
+#include "StepGate.hpp"
+#include "Transfer.hpp"
+#include "common/Property.hpp"
 #include "host/Yade.hpp"
-#include "law/JointState.hpp"
-#include "law/SofteningTable.hpp"
-#include "common/Text.hpp"
 #include <atomic>
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
 #include <boost/archive/xml_iarchive.hpp>
 #include <boost/archive/xml_oarchive.hpp>
+#include <boost/mpl/vector.hpp>
 #include <boost/python/raw_function.hpp>
 #include <boost/serialization/export.hpp>
 #include <boost/serialization/nvp.hpp>
 #include <boost/serialization/shared_ptr.hpp>
 #include <boost/serialization/string.hpp>
 #include <boost/serialization/vector.hpp>
-#include <limits>
-#include <type_traits>
 
 namespace masonry {
 
 namespace py = boost::python;
 using boost::shared_ptr;
-using yade::Quaternionr;
-using yade::Vector3r;
 
-// Counts every change of joints and units that arrays kept by engines must follow.
+// Counts every change of joints, units and properties, after which scenes are read anew.
 inline std::atomic<long> changes{0};
 
-// An engine that keeps the state of joints in arrays of its own: it can bring the joints up to date, and let them go.
-struct Keeper {
-    virtual ~Keeper() = default;
-    virtual void store() = 0;
-    virtual void release() = 0;
-};
-
 // Hidden: saved, but not shown to Python. Given: by the scene that is built; no state, so checkpoints leave it alone.
-enum Flags { Plain = 0, ReadOnly = 1, Hidden = 2, Given = 4 };
+// Shown: shown to Python, but saved by another attribute.
+enum Flags { Plain = 0, ReadOnly = 1, Hidden = 2, Given = 4, Shown = 8 };
 
-template <class T> struct IsNumbers : std::false_type {}; // types of fixed size that are saved as plain numbers
-template <> struct IsNumbers<Vector3r> : std::true_type {};
-template <> struct IsNumbers<Quaternionr> : std::true_type {};
-template <> struct IsNumbers<TableRow> : std::true_type {};
-template <> struct IsNumbers<JointState> : std::true_type {};
-
-// Calls `each` with every number of a value, in a fixed order.
-template <class F> void numbers(Vector3r& v, F&& each) { each(v[0]), each(v[1]), each(v[2]); }
-template <class F> void numbers(Quaternionr& q, F&& each) { each(q.w()), each(q.x()), each(q.y()), each(q.z()); }
-template <class F> void numbers(TableRow& r, F&& each) { each(r.ratio), each(r.damage); }
-template <class F> void numbers(JointState& s, F&& each) {
-    double regime = double(s.regime);
-    each(s.opening), each(s.crushing), each(s.dilation), each(s.slip), each(s.largestOpening), each(s.largestClosure);
-    each(s.tensionDamage), each(s.shearDamage), each(s.normalStress), each(s.shearStress.a), each(s.shearStress.b);
-    each(regime);
-    if (!(regime >= 0 && regime <= 3)) throw std::invalid_argument("saved file is damaged at the regime of a joint");
-    s.regime = Regime(int(regime));
+// An attribute whose value lives elsewhere. Without `put` it is shown only.
+template <class Owner, class T> struct Computed {
+    T (Owner::*get)();
+    void (Owner::*put)(const T&);
+};
+template <class Owner, class T> Computed<Owner, T> computed(T (Owner::*get)(), void (Owner::*put)(const T&) = nullptr) {
+    return {get, put};
 }
 
-template <class Archive, class T> void archive(Archive& ar, const char* name, T& value) {
-    ar& boost::serialization::make_nvp(name, value);
+template <class Object, class Owner, class T> T valueOf(Object& object, T Owner::*member) { return object.*member; }
+template <class Object, class Owner, class T> T valueOf(Object& object, const Computed<Owner, T>& member) {
+    return (object.*member.get)();
 }
-
-template <class Archive, class T> void archiveNumbers(Archive& ar, const char* name, std::vector<T>& values) {
-    std::vector<double> flat;
-    if (Archive::is_saving::value)
-        for (auto& value : values)
-            numbers(value, [&](double& number) { flat.push_back(number); });
-    archive(ar, name, flat);
-    if (Archive::is_saving::value) return;
-    std::size_t width = 0, next = 0;
-    T sample;
-    numbers(sample, [&](double&) { ++width; });
-    if (flat.size() % width != 0) throw std::runtime_error(std::string("saved file is damaged at ") + name);
-    values.resize(flat.size() / width);
-    for (auto& value : values)
-        numbers(value, [&](double& number) { number = flat[next++]; });
+template <class Object, class Owner, class T> void give(Object& object, T Owner::*member, const T& value) {
+    object.*member = value;
+}
+template <class Object, class Owner, class T>
+void give(Object& object, const Computed<Owner, T>& member, const T& value) {
+    if (member.put) (object.*member.put)(value);
 }
 
 template <class T> struct IsShared : std::false_type {};
 template <class T> struct IsShared<shared_ptr<T>> : std::true_type {};
 template <class T> struct IsList : std::false_type {};
 template <class T> struct IsList<std::vector<T>> : std::true_type {};
-
-// State on its way from a scene to a checkpoint or back, piece by piece in the same order. Objects that are shared stay
-// the scene's own.
-class Transfer {
-public:
-    const bool back;   // to the scene
-    std::string owner; // whose state it is, before the names
-
-    Transfer(Checkpoint& file, bool back) : back(back), file_(file) {}
-
-    template <class T> void operator()(const std::string& name, T& value) {
-        if constexpr (std::is_same<T, std::string>::value) {
-            auto& text = file_.texts[owner + name];
-            back ? value = text : text = value;
-        } else if constexpr (plain<T>())
-            several(name, &value, 1);
-    }
-    template <class T> void operator()(const std::string& name, std::vector<T>& values) {
-        if constexpr (plain<T>()) {
-            if (back) values.resize(file_.numbers[owner + name].size() / width<T>());
-            several(name, values.data(), values.size());
-        }
-    }
-    template <class T> void several(const std::string& name, T* values, std::size_t count) { // as many as the scene has
-        auto& flat = file_.numbers[owner + name];
-        flat.resize(back ? flat.size() : count * width<T>());
-        if (flat.size() != count * width<T>()) damaged(name);
-        std::size_t next = 0;
-        for (std::size_t i = 0; i < count; ++i)
-            each(values[i], [&](double& number) {
-                auto& kept = flat[next++];
-                back ? number = kept : kept = number;
-            });
-    }
-    [[noreturn]] void damaged(const std::string& name) const {
-        throw std::invalid_argument("does not fit this scene, at '" + owner + name + "'");
-    }
-
-private:
-    template <class T> static constexpr bool plain() { return std::is_arithmetic<T>::value || IsNumbers<T>::value; }
-    template <class T, class F> static void each(T& value, F&& visit) {
-        if constexpr (std::is_arithmetic<T>::value) {
-            double number = double(value);
-            visit(number);
-            if (std::is_integral<T>::value && !(std::abs(number) <= double(std::numeric_limits<T>::max())))
-                throw std::invalid_argument("does not fit this scene: a whole number in it is too large");
-            value = T(number);
-        } else
-            numbers(value, visit);
-    }
-    template <class T> static std::size_t width() {
-        std::size_t count = 0;
-        T sample{};
-        each(sample, [&](double&) { ++count; });
-        return count;
-    }
-
-    Checkpoint& file_;
-};
-
-// What has a state of its own for checkpoints.
-struct Stateful {
-    virtual ~Stateful() = default;
-    virtual void transfer(Transfer&) = 0;
-};
 
 template <class T> std::string expectedType() {
     if constexpr (IsList<T>::value) {
@@ -192,14 +104,21 @@ template <class T> T given(const std::string& name, const py::object& value) {
     throw std::invalid_argument(name + ": expected " + expectedType<T>() + ", got " + shown(value));
 }
 
+// Raises AttributeError for an attribute that a class does not have, with the nearest name that it has.
+[[noreturn]] void refuseAttribute(const std::string& className, const py::object& ofClass, const std::string& name);
+
+// The description of a property for Python, as a dict.
+py::dict told(const std::string& name, const Property&);
+
 template <class Derived, class Base> class Adapter : public Base, public Stateful {
 public:
     std::string getClassName() const override { return Derived::className; }
     std::string getBaseClassName(unsigned i = 0) const override { return i == 0 ? Derived::baseName : ""; }
     int getBaseClassNumber() const override { return 1; }
 
-    void postLoad() {}
-    void refresh() {}
+    void postLoad() { check(); }
+    std::vector<std::string> problems() const { return {}; }
+    std::string title() const { return Derived::className; }
     template <class PyClass> static void extras(PyClass&) {}
 
     void callPostLoad() override {
@@ -209,22 +128,26 @@ public:
 
     void pySetAttr(const std::string& key, const py::object& value) override {
         bool known = false;
-        Derived::attributes([&](const char* name, auto member, const char*, int flags = Plain) {
+        Derived::attributes([&](const char* name, const auto& member, const Property&, int flags = Plain) {
             if (key != name || flags & Hidden) return;
             known = true;
-            if (flags & ReadOnly)
-                throw std::invalid_argument(std::string(Derived::className) + "." + key + " is read-only");
-            using T = std::decay_t<decltype(self().*member)>;
-            self().*member = given<T>(std::string(Derived::className) + "." + key, value);
+            const auto whole = std::string(Derived::className) + "." + key;
+            if (flags & (ReadOnly | Shown)) throw std::invalid_argument(whole + " is read-only");
+            using T = decltype(valueOf(self(), member));
+            give(self(), member, given<T>(whole, value));
         });
-        if (!known) Base::pySetAttr(key, value);
+        if (known) return;
+        const py::object mine = py::object(py::handle<>(py::borrowed(reinterpret_cast<PyObject*>(pythonClass()))));
+        if (!PyObject_HasAttrString(mine.ptr(), key.c_str())) refuseAttribute(Derived::className, mine, key);
+        Base::pySetAttr(key, value);
     }
 
     py::dict pyDict() const override {
+        const BetweenSteps still;
         py::dict all;
-        const_cast<Derived&>(static_cast<const Derived&>(*this)).refresh();
-        Derived::attributes([&](const char* name, auto member, const char*, int flags = Plain) {
-            if (!(flags & Hidden)) all[name] = py::object(static_cast<const Derived&>(*this).*member);
+        auto& mine = const_cast<Derived&>(static_cast<const Derived&>(*this));
+        Derived::attributes([&](const char* name, const auto& member, const Property&, int flags = Plain) {
+            if (!(flags & Hidden)) all[name] = py::object(valueOf(mine, member));
         });
         all.update(Base::pyDict());
         return all;
@@ -241,51 +164,38 @@ public:
                         return construct(py::object(args[0]), py::tuple(args.slice(1, py::_)), keywords);
                     },
                     1));
-        const Derived standard;
-        Derived::attributes([&](const char* name, auto member, const char* text, int flags = Plain) {
-            if (flags & Hidden) return;
-            using T = std::decay_t<decltype(self().*member)>;
-            T Derived::*const own = member;
-            std::string about = text;
-            if (std::is_arithmetic<T>::value || std::is_same<T, std::string>::value ||
-                std::is_same<T, Vector3r>::value) {
-                const std::string value = py::extract<std::string>(py::str(py::object(standard.*own)));
-                about += flags & ReadOnly ? " Read-only." : " Default: " + value + ".";
-            } else if (flags & ReadOnly)
-                about += " Read-only.";
-            const auto get = py::make_function(
-                [own](Derived& object) {
-                    object.refresh();
-                    return object.*own;
-                },
-                py::default_call_policies(), boost::mpl::vector<T, Derived&>());
-            if (flags & ReadOnly)
-                cls.add_property(name, get, about.c_str());
-            else {
-                const auto set = [name](Derived& object, const py::object& value) { object.set(name, value); };
-                cls.add_property(name, get,
-                                 py::make_function(set, py::default_call_policies(),
-                                                   boost::mpl::vector<void, Derived&, const py::object&>()),
-                                 about.c_str());
-            }
+        Derived standard;
+        Derived::attributes([&](const char* name, const auto& member, const Property& property, int flags = Plain) {
+            if (!(flags & Hidden)) addProperty(cls, standard, name, member, property, flags);
         });
+        cls.def("__setattr__", &Adapter::setAttribute);
         cls.def("updateAttrs", &Adapter::updateAll, py::args("values"),
                 "Set several attributes from a dict, all or, with an error that tells all problems, none.");
+        cls.def("properties", &Adapter::properties,
+                "The description of every attribute: a list of dicts with name, unit, meaning, source, low, high, "
+                "usual_low, usual_high and other_unit (the unit that an unusual value is probably given in).")
+            .staticmethod("properties");
         Derived::extras(cls);
     }
 
     template <class Archive> void serialize(Archive& ar, unsigned) {
-        if (Archive::is_saving::value) self().refresh();
+        const BetweenSteps still;
         ar& boost::serialization::make_nvp(Derived::baseName, boost::serialization::base_object<Base>(self()));
-        Derived::attributes(
-            [&](const char* name, auto member, const char*, int = Plain) { save(ar, name, self().*member); });
+        Derived::attributes([&](const char* name, const auto& member, const Property&, int flags = Plain) {
+            if (flags & Shown) return;
+            auto value = valueOf(self(), member);
+            archiveValue(ar, name, value);
+            if (Archive::is_loading::value) give(self(), member, value);
+        });
         if (Archive::is_loading::value) self().postLoad();
     }
 
     void transfer(Transfer& to) override {
-        self().refresh();
-        Derived::attributes([&](const char* name, auto member, const char*, int flags = Plain) {
-            if (!(flags & Given)) to(name, self().*member);
+        Derived::attributes([&](const char* name, const auto& member, const Property&, int flags = Plain) {
+            if (flags & (Given | Shown)) return;
+            auto value = valueOf(self(), member);
+            to(name, value);
+            if (to.back) give(self(), member, value);
         });
         if (to.back) self().postLoad();
     }
@@ -297,15 +207,85 @@ protected:
         set(one);
     }
 
+    // Throws std::invalid_argument with all attributes that are out of their bounds, and all other problems.
+    void check() {
+        std::vector<std::string> wrong;
+        Derived::attributes([&](const char* name, const auto& member, const Property& property, int flags = Plain) {
+            if (flags & (ReadOnly | Hidden | Shown)) return;
+            using T = decltype(valueOf(self(), member));
+            if constexpr (std::is_arithmetic<T>::value) {
+                if (property.isNumber())
+                    if (const auto what = property.problem(inWords(name), double(valueOf(self(), member)));
+                        !what.empty())
+                        wrong.push_back(what);
+            } else if constexpr (std::is_same<T, Vector3r>::value) {
+                if (!valueOf(self(), member).allFinite()) {
+                    const auto unit = property.isNumber() && property.unit != std::string("-")
+                                          ? std::string(" [") + property.unit + "]"
+                                          : "";
+                    wrong.push_back(inWords(name) + " must be finite numbers" + unit);
+                }
+            }
+        });
+        const auto more = self().problems();
+        wrong.insert(wrong.end(), more.begin(), more.end());
+        if (!wrong.empty()) throw std::invalid_argument(self().title() + ": " + joined(wrong, "; "));
+    }
+
 private:
     Derived& self() { return static_cast<Derived&>(*this); }
+
+    static PyTypeObject* pythonClass() { return py::converter::registered<Derived>::converters.get_class_object(); }
+
+    template <class PyClass, class Member>
+    static void addProperty(PyClass& cls, Derived& standard, const char* name, const Member& member,
+                            const Property& property, int flags) {
+        using T = decltype(valueOf(standard, member));
+        std::string about = property.documentation();
+        const bool fixed = flags & (ReadOnly | Shown);
+        if (std::is_arithmetic<T>::value || std::is_same<T, std::string>::value || std::is_same<T, Vector3r>::value) {
+            const std::string value = py::extract<std::string>(py::str(py::object(valueOf(standard, member))));
+            about += fixed ? " Read-only." : " Default: " + value + ".";
+        } else if (fixed)
+            about += " Read-only.";
+        const auto get = py::make_function(
+            [member](Derived& object) {
+                const BetweenSteps still;
+                return py::object(valueOf(object, member));
+            },
+            py::default_call_policies(), boost::mpl::vector<py::object, Derived&>());
+        if (fixed)
+            cls.add_property(name, get, about.c_str());
+        else {
+            const auto set = [name](Derived& object, const py::object& value) { object.set(name, value); };
+            cls.add_property(name, get,
+                             py::make_function(set, py::default_call_policies(),
+                                               boost::mpl::vector<void, Derived&, const py::object&>()),
+                             about.c_str());
+        }
+    }
+
+    static void setAttribute(const py::object& object, const std::string& name, const py::object& value) {
+        const py::object cls = object.attr("__class__");
+        if (!PyObject_HasAttrString(cls.ptr(), name.c_str())) refuseAttribute(Derived::className, cls, name);
+        if (PyObject_GenericSetAttr(object.ptr(), py::str(name).ptr(), value.ptr())) py::throw_error_already_set();
+    }
+
+    static py::list properties() {
+        py::list all;
+        Derived::attributes([&](const char* name, const auto&, const Property& property, int flags = Plain) {
+            if (!(flags & Hidden)) all.append(told(name, property));
+        });
+        return all;
+    }
 
     static void updateAll(Derived& object, const py::dict& values) { object.set(values); }
 
     void set(const py::dict& values) { // all of them or, where one is refused, none
+        const BetweenSteps still;
         py::dict before = Base::pyDict();
-        Derived::attributes([&](const char* name, auto member, const char*, int flags = Plain) {
-            if (!(flags & Hidden) && values.has_key(name)) before[name] = py::object(self().*member);
+        Derived::attributes([&](const char* name, const auto& member, const Property&, int flags = Plain) {
+            if (!(flags & Hidden) && values.has_key(name)) before[name] = py::object(valueOf(self(), member));
         });
         const py::list keys = values.keys();
         std::vector<std::string> wrong;
@@ -345,20 +325,27 @@ private:
         return made;
     }
 
-    template <class Archive, class T> static void save(Archive& ar, const char* name, T& value) {
+    template <class Archive, class T> static void archiveValue(Archive& ar, const char* name, T& value) {
         if constexpr (IsNumbers<T>::value) {
             std::vector<T> one{value};
             archiveNumbers(ar, name, one);
             if (one.size() != 1) throw std::runtime_error(std::string("saved file is damaged at ") + name);
             value = one[0];
         } else
-            archive(ar, name, value);
+            ar& boost::serialization::make_nvp(name, value);
     }
-    template <class Archive, class T> static void save(Archive& ar, const char* name, std::vector<T>& values) {
+    template <class Archive, class T> static void archiveValue(Archive& ar, const char* name, std::vector<T>& values) {
         if constexpr (IsNumbers<T>::value)
             archiveNumbers(ar, name, values);
         else
-            archive(ar, name, values);
+            ar& boost::serialization::make_nvp(name, values);
+    }
+    template <class Archive, class T>
+    static void archiveNumbers(Archive& ar, const char* name, std::vector<T>& values) {
+        auto flat = Archive::is_saving::value ? flattened(values) : std::vector<double>();
+        ar& boost::serialization::make_nvp(name, flat);
+        if (Archive::is_loading::value && !unflatten(flat, values))
+            throw std::runtime_error(std::string("saved file is damaged at ") + name);
     }
 };
 

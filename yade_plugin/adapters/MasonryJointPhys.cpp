@@ -1,118 +1,127 @@
 #include "MasonryJointPhys.hpp"
-#include "MasonryJointGeom.hpp"
-#include "SceneCheck.hpp"
+#include "SceneStore.hpp"
 
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryMat)
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJoint)
+template class masonry::Adapter<masonry::MasonryJointPhys, yade::IPhys>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJointPhys)
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Ip2_MasonryMat_MasonryMat_MasonryJointPhys)
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening)
 
 namespace masonry {
 
-namespace {
-
-const MasonryJointGeom& geometryOf(const yade::Interaction& interaction) {
-    const auto* geom = dynamic_cast<const MasonryJointGeom*>(interaction.geom.get());
-    if (!geom)
-        throw std::invalid_argument("interaction " + std::to_string(interaction.id1) + "+" +
-                                    std::to_string(interaction.id2) +
-                                    " has no MasonryJointGeom: Ig2_Polyhedra_Polyhedra_MasonryJointGeom must make it");
-    return *geom;
+void MasonryJointPhys::define(const shared_ptr<MasonryJoint>& kind, const ElasticStiffness& k, int points) {
+    home.reset(new JointStates(kind, k, 1, points));
+    index = 0;
 }
 
-} // namespace
+shared_ptr<MasonryJoint> MasonryJointPhys::joint() { return home ? home->joint : shared_ptr<MasonryJoint>(); }
 
-void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::assign(const MasonryMat& mat1, const MasonryMat& mat2,
-                                                        yade::Interaction& interaction,
-                                                        const shared_ptr<MasonryJoint>& joint) const {
-    const auto& geom = geometryOf(interaction);
-    // a deformable side shows its elasticity itself
-    const double d1 = geom.attachments1.empty() ? geom.distance1 : 0,
-                 d2 = geom.attachments2.empty() ? geom.distance2 : 0;
-    const auto k = inSeriesWithUnits(*joint, d1 / mat1.young + d2 / mat2.young,
-                                     d1 / mat1.shearModulus() + d2 / mat2.shearModulus());
-    const shared_ptr<MasonryJointPhys> phys(new MasonryJointPhys);
-    phys->joint = joint;
-    phys->normalStiffness = k.normal, phys->shearStiffness = k.shear;
-    phys->states.resize(geom.points.size());
-    phys->losses.assign(geom.points.size(), Vector3r::Zero());
-    interaction.phys = phys;
+// Archives give the property set before the numbers.
+void MasonryJointPhys::setJoint(const shared_ptr<MasonryJoint>& kind) {
+    home.reset();
+    loaded_ = kind;
 }
 
-void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::assignTo(const shared_ptr<yade::Interaction>& interaction,
-                                                          const shared_ptr<MasonryJoint>& joint) const {
-    if (!interaction || !joint) throw std::invalid_argument("assign needs an interaction and a MasonryJoint, got None");
-    const auto& scene = *Singleton<yade::Omega>::instance().getScene();
-    const auto unit = [&](int id) -> const MasonryMat& {
-        const auto* mat = dynamic_cast<const MasonryMat*>(bodyAt(scene, id, "body").material.get());
-        if (!mat) throw std::invalid_argument("body " + std::to_string(id) + " has no MasonryMat");
-        return *mat;
-    };
-    assign(unit(interaction->id1), unit(interaction->id2), *interaction, joint);
+double MasonryJointPhys::normalStiffness() { return home ? stiffness().normal : 0; }
+double MasonryJointPhys::shearStiffness() { return home ? stiffness().shear : 0; }
+
+Vector3r MasonryJointPhys::dissipated() {
+    Vector3r sum = Vector3r::Zero();
+    if (!home) return sum;
+    home->check();
+    if (!home->inScene) SceneStore::present().update(); // a joint that was just made or loaded
+    for (int p = 0; home->shapes && p < points(); ++p) {
+        const auto e = lost(p);
+        sum += home->shapes->areaAt(p, index) * Vector3r(e.tension, e.shear, e.compression);
+    }
+    return sum;
 }
 
-void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::go(const shared_ptr<yade::Material>& material1,
-                                                    const shared_ptr<yade::Material>& material2,
-                                                    const shared_ptr<yade::Interaction>& interaction) {
-    if (interaction->phys) return; // joints are made once
-    const auto &mat1 = static_cast<MasonryMat&>(*material1), &mat2 = static_cast<MasonryMat&>(*material2);
-    const Vector3r normal = geometryOf(*interaction).normal;
-    std::string names;
-    for (const auto& joint : joints) {
-        if (joint && joint->appliesTo(mat1.jointSet, mat2.jointSet, normal))
-            return assign(mat1, mat2, *interaction, joint);
-        if (joint) names += (names.empty() ? "" : ", ") + joint->name;
+// The two stiffnesses, and of every subcontact its state and the energies that it dissipated by mode.
+std::vector<double> MasonryJointPhys::record() {
+    if (!home) return {};
+    home->check();
+    std::vector<double> flat{stiffness().normal, stiffness().shear};
+    for (int p = 0; p < points(); ++p) {
+        auto s = state(p);
+        numbers(s, [&](double& value) { flat.push_back(value); });
+        const auto e = lost(p);
+        flat.insert(flat.end(), {e.tension, e.shear, e.compression});
     }
-    throw std::invalid_argument("no joint fits bodies " + std::to_string(interaction->id1) + " and " +
-                                std::to_string(interaction->id2) + ": joint sets \"" + mat1.jointSet + "\" and \"" +
-                                mat2.jointSet + "\", normal (" + text(normal[0]) + ", " + text(normal[1]) + ", " +
-                                text(normal[2]) + "); offered: " + (names.empty() ? "none" : names));
+    return flat;
 }
 
-bool Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening::go(shared_ptr<yade::IGeom>& ig,
-                                                                   shared_ptr<yade::IPhys>& ip,
-                                                                   yade::Interaction* interaction) {
-    auto& geom = static_cast<MasonryJointGeom&>(*ig);
-    auto& phys = static_cast<MasonryJointPhys&>(*ip);
-    // Not connect()'s. The loop is parallel, where an exception would end the program: MasonryEnergy tells of it.
-    if (!phys.joint || phys.states.size() != geom.points.size()) return true;
-    const JointLaw& law = phys.law();
-    const auto k = phys.stiffness();
-    Vector3r force = Vector3r::Zero(), torque = Vector3r::Zero(), lost = Vector3r::Zero(), moment = Vector3r::Zero();
-    for (std::size_t i = 0; i < phys.states.size(); ++i) {
-        auto& s = phys.states[i];
-        auto& point = geom.points[i];
-        const auto spent = law.advance(k, s, point.increment);
-        // The one place where stress meets area, and tension meets the host's forces: an open joint pulls body 1 on.
-        const Vector3r pull = Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) * point.area;
-        force += pull;
-        if (geom.zones) { // MasonryZones takes it to the nodes
-            point.force = geom.axes * pull;
-            moment += point.jump.cross(pull);
-        }
-        torque += point.arm.cross(pull);
-        phys.losses[i] += Vector3r(spent.tension, spent.shear, spent.compression);
-        lost += point.area * phys.losses[i];
+void MasonryJointPhys::setRecord(const std::vector<double>& flat) {
+    constexpr std::size_t width = 12 + 3;
+    if (flat.empty()) return;
+    const bool whole = flat.size() >= 2 && (flat.size() - 2) % width == 0;
+    if (!whole || !loaded_ || !(flat[0] > 0) || !(flat[1] > 0))
+        throw std::runtime_error("saved file is damaged at the state of a joint");
+    const int count = int((flat.size() - 2) / width);
+    home.reset(new JointStates(loaded_, {flat[0], flat[1]}, 1, count));
+    index = 0;
+    loaded_.reset();
+    auto next = flat.begin() + 2;
+    for (int p = 0; p < count; ++p) {
+        JointState s;
+        numbers(s, [&](double& value) { value = *next++; });
+        const Energies e{next[0], next[1], next[2]};
+        next += 3;
+        home->columns.set(p, 0, s);
+        home->columns.setDissipated(p, 0, e);
     }
-    phys.dissipated = lost;
-    force = geom.axes * force, torque = geom.axes * torque;
-    // The jump between nodes is seen in axes that turn with the mean rotation of the two blocks: so the joint works on
-    // that rotation too, half on each block's. It makes the joint's forces a couple without moment, however far it
-    // slid.
-    geom.moment = 0.5 * (geom.axes * moment);
-    auto& forces = scene->forces();
-    if (geom.attachments1.empty()) {
-        forces.addForce(interaction->id1, force);
-        forces.addTorque(interaction->id1, torque + geom.moment);
-    }
-    if (geom.attachments2.empty()) {
-        forces.addForce(interaction->id2, -force);
-        // the arms of body 2 are shorter by `between`; those of a deformable joint are the rigid side's own
-        forces.addTorque(interaction->id2,
-                         geom.zones ? Vector3r(geom.moment - torque) : geom.between.cross(force) - torque);
-    }
-    return true;
+}
+
+// ---- for Python -------------------------------------------------------------------------------------------------
+
+template <class F> py::list MasonryJointPhys::perSubcontact(F&& value) {
+    const BetweenSteps still;
+    py::list all;
+    if (!home) return all;
+    home->check();
+    for (int p = 0; p < points(); ++p)
+        all.append(value(state(p)));
+    return all;
+}
+
+py::list MasonryJointPhys::stress() {
+    return perSubcontact(
+        [](const JointState& s) { return Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b); });
+}
+
+py::list MasonryJointPhys::opening() {
+    return perSubcontact([](const JointState& s) { return s.opening; });
+}
+
+py::list MasonryJointPhys::slip() {
+    return perSubcontact([](const JointState& s) { return s.slip; });
+}
+
+py::list MasonryJointPhys::damage() {
+    return perSubcontact([this](const JointState& s) {
+        return Vector3r(s.tensionDamage, s.shearDamage, law().compressionDamage(stiffness(), s));
+    });
+}
+
+py::list MasonryJointPhys::largest() {
+    return perSubcontact([](const JointState& s) { return py::make_tuple(s.largestOpening, s.largestClosure); });
+}
+
+py::list MasonryJointPhys::yielding() {
+    return perSubcontact([this](const JointState& s) {
+        const auto& p = law().properties();
+        const auto f = law().yield(stiffness(), s);
+        const double sigma = std::abs(s.normalStress), tau = std::hypot(s.shearStress.a, s.shearStress.b);
+        const double elastic = stiffness().normal * (s.largestOpening + s.largestClosure) + stiffness().shear * s.slip;
+        const double quadratic =
+            p.capNormal * sigma * (sigma + elastic) + p.capShear * tau * (tau + elastic) + std::abs(f.cap);
+        const auto share = [](double value, double size) { return value == -1 ? -1 : size > 0 ? value / size : 0; };
+        return Vector3r(share(f.tension, sigma + p.tensileStrength + elastic),
+                        share(f.slip, tau + sigma * p.friction + p.cohesion + elastic),
+                        share(f.cap, quadratic + std::abs(p.capLinear) * sigma));
+    });
+}
+
+py::list MasonryJointPhys::regime() {
+    static const char* const names[] = {"elastic", "opening", "slipping", "crushing"};
+    return perSubcontact([](const JointState& s) { return py::str(names[int(s.regime)]); });
 }
 
 } // namespace masonry

@@ -1,6 +1,5 @@
 #pragma once
 #include "Adapter.hpp"
-#include "common/Text.hpp"
 
 namespace masonry {
 
@@ -17,35 +16,38 @@ class MasonryMat : public Adapter<MasonryMat, yade::Material> {
     std::string jointSet = "brick";
 
     template <class Visit> static void attributes(Visit&& visit) {
-        visit("young", &MasonryMat::young, "Young's modulus of the unit [Pa], > 0 (paper table 2).");
-        visit("poisson", &MasonryMat::poisson,
-              "Poisson's ratio of the unit [-], above -1 and below 0.5 (paper table 2).");
-        visit("jointSet", &MasonryMat::jointSet, "Name by which MasonryJoint.jointSet picks the joints of this unit.");
+        using M = MasonryMat;
+        visit(
+            "young", &M::young,
+            number("Pa", "Young's modulus of the unit").above(0).source("paper table 2").usually(1e6, infinity, "MPa"));
+        visit("poisson", &M::poisson,
+              number("-", "Poisson's ratio of the unit").above(-1).below(0.5).source("paper table 2"));
+        visit("jointSet", &M::jointSet, described("Name by which MasonryJoint.jointSet picks the joints of this unit"));
     }
 
     template <class PyClass> static void extras(PyClass& cls) { // over the host's, which would not be checked
         cls.add_property(
             "density", +[](const MasonryMat& mat) { return mat.density; },
             +[](MasonryMat& mat, const py::object& value) { mat.set("density", value); },
-            "Density [kg/m³], > 0. Default: 1000.");
+            (densityOf().documentation() + " Default: 1000.").c_str());
     }
 
     MasonryMat() { createIndex(); }
 
-    void postLoad() {
-        std::vector<std::string> wrong;
-        if (!(young > 0) || !std::isfinite(young))
-            wrong.push_back("young " + text(young) + " Pa must be a finite number above 0");
-        if (!(poisson > -1 && poisson < 0.5))
-            wrong.push_back("poisson " + text(poisson) + " must be above -1 and below 0.5");
-        if (!(density > 0) || !std::isfinite(density))
-            wrong.push_back("density " + text(density) + " kg/m³ must be a finite number above 0");
-        if (!wrong.empty()) throw std::invalid_argument("MasonryMat \"" + label + "\": " + joined(wrong, "; "));
+    std::vector<std::string> problems() const {
+        const auto wrong = densityOf().problem("density", density);
+        return wrong.empty() ? std::vector<std::string>{} : std::vector<std::string>{wrong};
     }
+    std::string title() const { return "MasonryMat \"" + label + "\""; }
 
     double shearModulus() const { return young / (2 * (1 + poisson)); }
+
+private:
+    static constexpr double infinity = Property::infinity;
+    static Property densityOf() { return number("kg/m³", "Density").above(0); }
 };
 
 } // namespace masonry
 
+extern template class masonry::Adapter<masonry::MasonryMat, yade::Material>;
 BOOST_CLASS_EXPORT_KEY(masonry::MasonryMat)

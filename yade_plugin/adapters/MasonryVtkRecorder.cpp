@@ -1,6 +1,8 @@
 #include "MasonryVtkRecorder.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
+#include "MasonryZones.hpp"
+#include "SceneStore.hpp"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cerrno>
@@ -21,6 +23,7 @@
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
+template class masonry::Adapter<masonry::MasonryVtkRecorder, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryVtkRecorder)
 
 namespace masonry {
@@ -69,18 +72,18 @@ std::string frame(const std::string& name, std::size_t number, const std::string
 
 } // namespace
 
-void MasonryVtkRecorder::postLoad() {
+std::vector<std::string> MasonryVtkRecorder::problems() const {
     std::vector<std::string> wrong;
     if (directory.empty()) wrong.push_back("directory must not be empty");
     if (!std::all_of(times.begin(), times.end(), [](double time) { return std::isfinite(time); }))
         wrong.push_back("times must be finite numbers [s]");
-    if (stepPeriod < 0) wrong.push_back("stepPeriod " + std::to_string(stepPeriod) + " must be at least 0");
-    if (!wrong.empty()) throw std::invalid_argument("MasonryVtkRecorder: " + joined(wrong, "; "));
+    return wrong;
 }
 
 bool MasonryVtkRecorder::isActivated() { return stepPeriod > 0 && scene->iter % stepPeriod == 0; }
 
 void MasonryVtkRecorder::action() {
+    const BetweenSteps still;
     const auto blocks = directory + "/" + frame("blocks", times.size(), ".vtu");
     writeBlocks(blocks);
     try {
@@ -111,25 +114,25 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
     std::set<int> deformable;
     for (const auto& engine : scene->engines) {
         auto* zones = dynamic_cast<MasonryZones*>(engine.get());
-        if (zones) zones->refresh();
         for (const auto& unit : zones ? zones->units() : std::vector<MasonryZones::Unit>{}) {
             deformable.insert(unit.body);
             const auto& mesh = unit.elasticity->mesh();
             const auto first = points->GetNumberOfPoints();
-            const auto* u = &zones->displacements[unit.firstNode];
+            std::vector<Vector3r> u;
             for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+                u.push_back(zones->displacementOf(unit.firstNode + int(n)));
                 points->InsertNextPoint(Vector3r(unit.centre + mesh.nodes[n]).data());
-                displacement->InsertNextTuple(u[n].data());
-                velocity->InsertNextTuple(zones->velocities[unit.firstNode + n].data());
+                displacement->InsertNextTuple(u.back().data());
+                velocity->InsertNextTuple(zones->velocityOf(unit.firstNode + int(n)).data());
             }
-            const Matrix3 rotation = unit.elasticity->rotation(u);
+            const Matrix3 rotation = unit.elasticity->rotation(u.data());
             for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
                 vtkIdType corners[4];
                 for (int i = 0; i < 4; ++i)
                     corners[i] = first + mesh.zones[z][i];
                 grid->InsertNextCell(VTK_TETRA, 4, corners);
                 ids->InsertNextValue(unit.body);
-                const Matrix3 s = unit.elasticity->stress(int(z), u, rotation);
+                const Matrix3 s = unit.elasticity->stress(int(z), u.data(), rotation);
                 const double six[6] = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)};
                 stress->InsertNextTuple(six);
                 principal->InsertNextTuple(Eigen::SelfAdjointEigenSolver<Matrix3>(s).eigenvalues().eval().data());
@@ -189,44 +192,50 @@ void MasonryVtkRecorder::writeJoints(const std::string& path) {
     auto *regime = column<vtkIntArray>(values, "regime"), *kind = column<vtkIntArray>(values, "kind"),
          *ids = column<vtkIntArray>(values, "bodies", 2);
 
-    for (std::size_t n = 0; n < scene->interactions->currSize; ++n) {
-        const auto& interaction = *scene->interactions->linIntrs[n];
-        const auto* geom = dynamic_cast<MasonryJointGeom*>(interaction.geom.get());
-        auto* phys = dynamic_cast<MasonryJointPhys*>(interaction.phys.get());
-        if (!geom || !phys || !phys->joint || geom->points.size() != phys->states.size()) continue;
-        phys->refresh();
-        const auto& s1 = *yade::Body::byId(interaction.id1, scene)->state;
-        const auto& s2 = *yade::Body::byId(interaction.id2, scene)->state;
-        const auto known = std::find(kinds.begin(), kinds.end(), phys->joint->name);
+    auto& store = SceneStore::of(*scene);
+    store.update();
+    for (const auto& joint : store.joints) {
+        const auto& geom = *joint.geom;
+        const auto& phys = *joint.phys;
+        const auto& r = geom.reference();
+        const auto& s1 = store.bodies.state(joint.interaction->id1);
+        const auto& s2 = store.bodies.state(joint.interaction->id2);
+        const auto& name = phys.home->joint->name;
+        const auto known = std::find(kinds.begin(), kinds.end(), name);
         const int number = int(known - kinds.begin());
-        if (known == kinds.end()) kinds.push_back(phys->joint->name);
-        const Vector3r side = geom->normal.cross(geom->tangent);
-        const auto parts = geom->cells();
-        for (std::size_t i = 0; i < parts.size(); ++i) {
-            cells->InsertNextCell(int(parts[i].size()));
-            for (const auto& corner : parts[i]) {
+        if (known == kinds.end()) kinds.push_back(name);
+        const Vector3r side = r.normal.cross(r.tangent);
+        const auto parts = geom.cells();
+        Vector3r dissipated = Vector3r::Zero();
+        for (int p = 0; p < geom.points(); ++p) {
+            const auto e = phys.lost(p);
+            dissipated += geom.area(p) * Vector3r(e.tension, e.shear, e.compression);
+        }
+        for (int p = 0; p < geom.points(); ++p) {
+            cells->InsertNextCell(int(parts[p].size()));
+            for (const auto& corner : parts[p]) {
                 cells->InsertCellPoint(points->InsertNextPoint(corner.data()));
-                displacement->InsertNextTuple(Vector3r(0.5 * (moved(s1, geom->position1, geom->orientation1, corner) +
-                                                              moved(s2, geom->position2, geom->orientation2, corner)))
-                                                  .data());
+                const Vector3r both = moved(s1, r.sides[0].position, r.sides[0].orientation, corner) +
+                                      moved(s2, r.sides[1].position, r.sides[1].orientation, corner);
+                displacement->InsertNextTuple(Vector3r(0.5 * both).data());
             }
-            const auto& s = phys->states[i];
+            const auto s = phys.state(p);
+            const Vector3r jump = geom.jump(p);
             opening->InsertNextValue(s.opening);
             slip->InsertNextValue(s.slip);
-            slide->InsertNextTuple(
-                Vector3r(geom->points[i].jump[1] * geom->tangent + geom->points[i].jump[2] * side).data());
-            normal->InsertNextTuple(geom->normal.data());
+            slide->InsertNextTuple(Vector3r(jump[1] * r.tangent + jump[2] * side).data());
+            normal->InsertNextTuple(r.normal.data());
             normalStress->InsertNextValue(s.normalStress);
             shearStress->InsertNextValue(std::hypot(s.shearStress.a, s.shearStress.b));
             tension->InsertNextValue(s.tensionDamage);
             shear->InsertNextValue(s.shearDamage);
-            compression->InsertNextValue(phys->law().compressionDamage(phys->stiffness(), s));
+            compression->InsertNextValue(phys.law().compressionDamage(phys.stiffness(), s));
             crushing->InsertNextValue(s.crushing);
-            area->InsertNextValue(geom->points[i].area);
-            lost->InsertNextTuple(phys->dissipated.data());
+            area->InsertNextValue(geom.area(p));
+            lost->InsertNextTuple(dissipated.data());
             regime->InsertNextValue(int(s.regime));
             kind->InsertNextValue(number);
-            const double bodies[2] = {double(interaction.id1), double(interaction.id2)};
+            const double bodies[2] = {double(joint.interaction->id1), double(joint.interaction->id2)};
             ids->InsertNextTuple(bodies);
         }
     }

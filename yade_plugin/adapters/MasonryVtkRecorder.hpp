@@ -22,13 +22,15 @@ public:
 
     template <class Visit> static void attributes(Visit&& visit) {
         using R = MasonryVtkRecorder;
-        visit("directory", &R::directory, "Existing folder to write to.", Given);
-        visit("stepPeriod", &R::stepPeriod, "Steps between frames [-]; 0: only when called.");
-        visit("kinds", &R::kinds, "Names of the joints' kinds, in the order of their numbers in the files.", ReadOnly);
-        visit("times", &R::times, "Simulation times of the frames so far [s]; given, the series goes on after them.");
+        visit("directory", &R::directory, described("Existing folder to write to"), Given);
+        visit("stepPeriod", &R::stepPeriod, number("-", "Steps between frames; 0: only when called").atLeast(0));
+        visit("kinds", &R::kinds, described("Names of the joints' kinds, in the order of their numbers in the files"),
+              ReadOnly);
+        visit("times", &R::times,
+              number("s", "Simulation times of the frames so far; given, the series goes on after them"));
     }
 
-    void postLoad();
+    std::vector<std::string> problems() const;
     bool isActivated() override;
     void action() override;
     void collect() const;
@@ -46,4 +48,5 @@ private:
 
 } // namespace masonry
 
+extern template class masonry::Adapter<masonry::MasonryVtkRecorder, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_KEY(masonry::MasonryVtkRecorder)

@@ -1,25 +1,25 @@
 #include "MasonryZones.hpp"
 #include "MasonryJointGeom.hpp"
+#include "MasonryJointLoop.hpp"
 #include "MasonryMat.hpp"
-#include "SceneCheck.hpp"
-#include "common/Text.hpp"
+#include "Neighbours.hpp"
+#include "SceneStore.hpp"
 #include <algorithm>
 
+template class masonry::Adapter<masonry::MasonryZones, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryZones)
 
 namespace masonry {
 
-void MasonryZones::postLoad() {
+std::vector<std::string> MasonryZones::problems() const {
     std::vector<std::string> wrong;
     if (divisions.size() != 3) wrong.push_back("divisions must be three whole numbers");
     for (int n : divisions)
-        if (n < 1 || n > 100) wrong.push_back("divisions " + std::to_string(n) + " must be 1 to 100");
-    if (!(damping >= 0 && damping <= 0.99)) wrong.push_back("damping " + text(damping) + " must be 0 to 0.99");
+        if (n < 1 || n > 100) wrong.push_back("divisions " + std::to_string(n) + " must be at least 1 and at most 100");
     if (dampingKind != "combined" && dampingKind != "local")
         wrong.push_back("dampingKind '" + dampingKind + "' must be 'combined' or 'local'");
     if (blocked.find_first_not_of("xyz") != std::string::npos)
         wrong.push_back("blocked '" + blocked + "' must be made of x, y and z");
-    if (!gravity.allFinite()) wrong.push_back("gravity must be finite numbers [m/s²]");
     auto sorted = bodies;
     std::sort(sorted.begin(), sorted.end());
     if (!sorted.empty() && sorted[0] < 0) wrong.push_back("body " + std::to_string(sorted[0]) + " does not exist");
@@ -27,30 +27,71 @@ void MasonryZones::postLoad() {
         wrong.push_back("body " + std::to_string(*twin) + " stands twice in bodies");
     if (!laidOut.empty() && laidOut != layout())
         wrong.push_back("bodies and divisions cannot change once joints or a run know their nodes");
-    if (!wrong.empty()) throw std::invalid_argument("MasonryZones: " + joined(wrong, "; "));
-    refresh();
-    units_.clear(), batches_.clear(); // meshed again when needed: after loading, or for other bodies
+    return wrong;
+}
+
+void MasonryZones::postLoad() {
+    check();
+    if (!units_.empty()) // meshed again when needed: for other bodies, or other held directions
+        loaded_ = {displacements(), velocities(), lastForces()};
+    units_.clear();
+    batches_.clear();
+    places_.clear();
     ++changes;
 }
 
-void MasonryZones::refresh() {
-    if (!ahead_) return;
-    ahead_ = false;
-    for (std::size_t node = 0; node < places_.size(); ++node) {
-        displacements[node] = at(displacements_, places_[node]);
-        velocities[node] = at(velocities_, places_[node]);
-        lastForces[node] = at(lastForces_, places_[node]);
-    }
+// ---- state of the nodes -----------------------------------------------------------------------------------------
+
+void MasonryZones::checkAlive() const {
+    if (acted_ && scene_.expired())
+        throw std::runtime_error("these MasonryZones are gone: the scene that they belonged to has ended");
 }
 
-int MasonryZones::addGuest() {
-    const int row = int(displacements_.size()), lane = guests_++ % lanes;
-    if (lane == 0) displacements_.resize(row + 3, Row{}), forces_.resize(row + 3, Row{});
+std::vector<Vector3r> MasonryZones::listed(const std::vector<Row>& rows, const std::vector<Vector3r>& loaded) const {
+    checkAlive();
+    if (units_.empty()) return loaded;
+    std::vector<Vector3r> all;
+    for (const int place : places_)
+        all.push_back(at(rows, place));
+    return all;
+}
+
+void MasonryZones::take(const std::vector<Vector3r>& values, std::vector<Row>& rows, std::vector<Vector3r>& loaded) {
+    if (units_.empty() || values.size() != places_.size()) {
+        if (!units_.empty()) postLoad(); // other nodes than these: units() tells
+        loaded = values;
+        return;
+    }
+    for (std::size_t node = 0; node < values.size(); ++node)
+        put(rows, places_[node], values[node]);
+}
+
+int MasonryZones::addDependentPoint() {
+    const int row = int(displacements_.size()), lane = dependentPoints_++ % lanes;
+    if (lane == 0) {
+        displacements_.resize(row + 3, Row{});
+        forces_.resize(row + 3, Row{});
+    }
     return lanes * (int(displacements_.size()) - 3) + lane;
 }
 
+void MasonryZones::dropDependentPoints() { // they have no velocities
+    displacements_.resize(velocities_.size());
+    forces_.resize(velocities_.size());
+    dependentPoints_ = 0;
+}
+
+// ---- units ------------------------------------------------------------------------------------------------------
+
 const std::vector<MasonryZones::Unit>& MasonryZones::units() {
-    if (!units_.empty() || (bodies.empty() && displacements.empty())) return units_;
+    if (units_.empty() && !(bodies.empty() && loaded_.displacements.empty())) {
+        mesh();
+        layOut();
+    }
+    return units_;
+}
+
+void MasonryZones::mesh() {
     const auto& all = Singleton<yade::Omega>::instance().getScene()->bodies->body;
     struct Kind {
         std::vector<Vector3r> corners;
@@ -102,9 +143,10 @@ const std::vector<MasonryZones::Unit>& MasonryZones::units() {
         units_.push_back({id, next, 0, kind->elasticity, state.refPos, state.refOri});
         next += int(kind->elasticity->masses().size());
     }
-    if (!displacements.empty() && displacements.size() != std::size_t(next))
+    const auto known = loaded_.displacements.size();
+    if (known != 0 && known != std::size_t(next))
         wrong.push_back("MasonryZones: bodies of " + std::to_string(next) + " nodes do not fit the state of " +
-                        std::to_string(displacements.size()) + " nodes");
+                        std::to_string(known) + " nodes");
     if (!wrong.empty()) {
         units_.clear();
         throw std::invalid_argument(firstOf(wrong));
@@ -114,21 +156,30 @@ const std::vector<MasonryZones::Unit>& MasonryZones::units() {
         state.blockedDOFs = 63; // the host's integrator leaves it alone
         state.vel = state.angVel = Vector3r::Zero();
     }
-    if (displacements.empty()) {
+    if (known == 0) {
         laidOut = layout();
-        displacements.assign(next, Vector3r::Zero());
-        velocities = lastForces = displacements;
+        loaded_.displacements.assign(next, Vector3r::Zero());
     }
-    batches_.clear(), guests_ = 0;
+    for (auto* list : {&loaded_.velocities, &loaded_.lastForces})
+        list->resize(next, Vector3r::Zero());
+}
+
+// Gives every node its place in the rows: congruent units stand side by side, one a lane.
+void MasonryZones::layOut() {
+    batches_.clear();
+    dependentPoints_ = 0;
+    places_.assign(loaded_.displacements.size(), 0);
+    std::vector<const BlockElasticity*> kinds; // in the order in which they were met
+    for (const auto& unit : units_)
+        if (std::find(kinds.begin(), kinds.end(), unit.elasticity.get()) == kinds.end())
+            kinds.push_back(unit.elasticity.get());
     int rows = 0;
-    places_.assign(next, 0);
-    for (const auto& kind : kinds) {
-        const int nodes = int(kind.elasticity->masses().size());
+    for (const auto* kind : kinds) {
+        const int nodes = int(kind->masses().size());
         for (std::size_t u = 0; u < units_.size(); ++u) {
-            if (units_[u].elasticity != kind.elasticity) continue;
-            if (batches_.empty() || batches_.back().elasticity != kind.elasticity.get() ||
-                batches_.back().units.size() == lanes) {
-                batches_.push_back({kind.elasticity.get(), rows, {}});
+            if (units_[u].elasticity.get() != kind) continue;
+            if (batches_.empty() || batches_.back().elasticity != kind || batches_.back().units.size() == lanes) {
+                batches_.push_back({kind, rows, {}});
                 rows += 3 * nodes;
             }
             auto& batch = batches_.back();
@@ -141,12 +192,13 @@ const std::vector<MasonryZones::Unit>& MasonryZones::units() {
     for (auto* all : {&displacements_, &velocities_, &forces_, &lastForces_})
         all->assign(rows, Row{});
     moments_.assign(3 * batches_.size(), Row{});
-    for (int node = 0; node < next; ++node) {
-        put(displacements_, places_[node], displacements[node]);
-        put(velocities_, places_[node], velocities[node]);
-        put(lastForces_, places_[node], lastForces[node]);
+    for (std::size_t node = 0; node < places_.size(); ++node) {
+        put(displacements_, places_[node], loaded_.displacements[node]);
+        put(velocities_, places_[node], loaded_.velocities[node]);
+        put(lastForces_, places_[node], loaded_.lastForces[node]);
     }
-    return units_;
+    loaded_ = {};
+    ++changes; // places are others
 }
 
 const MasonryZones::Unit* MasonryZones::unitOf(int body) {
@@ -156,12 +208,14 @@ const MasonryZones::Unit* MasonryZones::unitOf(int body) {
 }
 
 py::tuple MasonryZones::nodesOf(int body) {
+    const BetweenSteps still;
     const auto* unit = unitOf(body);
     if (!unit) throw std::invalid_argument("body " + std::to_string(body) + " is no deformable unit");
     return py::make_tuple(unit->firstNode, unit->firstNode + int(unit->elasticity->masses().size()));
 }
 
 Vector3r MasonryZones::referencePoint(int body, int node) {
+    const BetweenSteps still;
     const auto* unit = unitOf(body);
     if (!unit || node < unit->firstNode || node - unit->firstNode >= int(unit->elasticity->masses().size()))
         throw std::invalid_argument("body " + std::to_string(body) + " has no node " + std::to_string(node));
@@ -169,15 +223,17 @@ Vector3r MasonryZones::referencePoint(int body, int node) {
 }
 
 void MasonryZones::setVelocity(int node, const Vector3r& velocity) {
+    const BetweenSteps still;
+    checkAlive();
     units();
     if (!velocity.allFinite()) throw std::invalid_argument("velocity of a node must be finite numbers [m/s]");
     if (node < 0 || std::size_t(node) >= places_.size())
         throw std::invalid_argument("there is no node " + std::to_string(node));
     put(velocities_, places_[node], velocity);
-    ahead_ = true;
 }
 
 py::list MasonryZones::masses() {
+    const BetweenSteps still;
     py::list all;
     for (const auto& unit : units())
         for (double mass : unit.elasticity->masses())
@@ -230,10 +286,7 @@ std::vector<std::pair<int, double>> MasonryZones::nodesOn(const Unit& unit, cons
     return found;
 }
 
-void MasonryZones::dropGuests() { // guests have no velocities
-    displacements_.resize(velocities_.size()), forces_.resize(velocities_.size());
-    guests_ = 0;
-}
+// ---- a step -----------------------------------------------------------------------------------------------------
 
 namespace {
 
@@ -247,19 +300,7 @@ double total(const Row& row) {
 } // namespace
 
 // Forces of the joints that the functors of an InteractionLoop have brought up to date.
-void MasonryZones::gatherFromFunctors() {
-    const auto& interactions = scene->interactions->linIntrs;
-    bool same = seen_.size() == scene->interactions->currSize;
-    for (std::size_t i = 0; same && i < seen_.size(); ++i)
-        same = seen_[i] == interactions[i]->geom;
-    if (!same) {
-        seen_.clear(), joints_.clear();
-        for (std::size_t i = 0; i < scene->interactions->currSize; ++i) {
-            seen_.push_back(interactions[i]->geom);
-            const auto* geom = dynamic_cast<MasonryJointGeom*>(interactions[i]->geom.get());
-            if (geom && geom->zones.get() == this) joints_.push_back(geom);
-        }
-    }
+void MasonryZones::gatherFromFunctors(const SceneStore& store) {
     std::fill(forces_.begin(), forces_.end(), Row{});
     std::fill(moments_.begin(), moments_.end(), Row{});
     const auto hang = [&](const Attachment& a, const Vector3r& force) {
@@ -267,22 +308,28 @@ void MasonryZones::gatherFromFunctors() {
             for (int d = 0; d < 3; ++d)
                 (forceRows() + places_[a.nodes[i]])[d * lanes] += a.weights[i] * force[d];
     };
-    for (const auto* geom : joints_) {
-        for (std::size_t i = 0; i < geom->points.size(); ++i) {
-            if (!geom->attachments1.empty()) hang(geom->attachments1[i], geom->points[i].force);
-            if (!geom->attachments2.empty()) hang(geom->attachments2[i], -geom->points[i].force);
+    for (const auto& joint : store.joints) {
+        const auto& geom = *joint.geom;
+        const auto& r = geom.reference();
+        if (!r.hung || r.hung->zones.get() != this || !geom.step) continue;
+        for (int p = 0; p < geom.points(); ++p) {
+            const Vector3r force = geom.step->forces[p];
+            if (!r.rigid(0)) hang(r.hung->sides[0][p], force);
+            if (!r.rigid(1)) hang(r.hung->sides[1][p], -force);
         }
-        for (int body : {geom->body1, geom->body2})
-            if (const auto* unit = unitOf(body))
+        for (const auto& side : r.sides)
+            if (const auto* unit = unitOf(side.body))
                 for (int d = 0; d < 3; ++d)
-                    (momentRows() + unit->momentPlace)[d * lanes] += geom->moment[d];
+                    (momentRows() + unit->momentPlace)[d * lanes] += geom.step->moment[d];
     }
 }
 
 void MasonryZones::action() {
-    checkScene(*scene);
+    const EngineTurn turn(*scene, *this);
     units();
-    if (!looped) gatherFromFunctors();
+    scene_ = turn->life();
+    acted_ = true;
+    if (!turn->loop) gatherFromFunctors(turn.store());
     const NodeMotion motion{scene->dt,
                             damping,
                             {gravity[0], gravity[1], gravity[2]},
@@ -306,24 +353,19 @@ void MasonryZones::action() {
                    sums[b]);
         for (std::size_t lane = 0; lane < batch.units.size(); ++lane) {
             const auto& unit = units_[batch.units[lane]];
-            auto& state = *scene->bodies->body[unit.body]->state;
             Matrix3 rotation;
             for (int i = 0; i < 9; ++i)
                 rotation(i / 3, i % 3) = turned[i].lane[lane];
+            Vector3r place;
             for (int d = 0; d < 3; ++d)
-                state.pos[d] = unit.centre[d] + sums[b].moved[d].lane[lane] / batch.elasticity->mass();
-            state.ori = Quaternionr(rotation) * unit.orientation;
+                place[d] = unit.centre[d] + sums[b].moved[d].lane[lane] / batch.elasticity->mass();
+            turn->bodies.setPlace(unit.body, place, Quaternionr(rotation) * unit.orientation);
         }
     }
-    dampingWork += pendingDamping;
-    pendingDamping = kinetic = elastic = gravityWork = 0;
-    for (const auto& energy : energies)
-        elastic += total(energy);
-    for (const auto& sum : sums) {
-        kinetic += total(sum.kinetic), gravityWork += total(sum.gravityWork);
-        dampingWork += total(sum.damping), pendingDamping += total(sum.pending);
-    }
-    ahead_ = true;
+    beginStep();
+    for (int b = 0; b < count; ++b)
+        add({0, total(sums[b].damping), 0, total(sums[b].pending), total(sums[b].kinetic), total(sums[b].gravityWork),
+             total(energies[b])});
 }
 
 } // namespace masonry

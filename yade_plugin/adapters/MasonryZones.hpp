@@ -1,72 +1,64 @@
 #pragma once
-#include "Adapter.hpp"
+#include "JointHome.hpp"
+#include "Ledger.hpp"
 #include "blocks/BlockElasticity.hpp"
-#include "law/JointLaw.hpp"
 #include <memory>
 
 namespace masonry {
 
 class MasonryJointGeom;
 class MasonryMat;
+class SceneStore;
 
-// Where a subcontact hangs on the surface of a deformable unit.
-struct Attachment {
-    std::array<int, 3> nodes{0, 0, 0}; // numbers in the arrays of MasonryZones
-    std::array<double, 3> weights{1, 0, 0};
-};
-template <> struct IsNumbers<Attachment> : std::true_type {};
-template <class F> void numbers(Attachment& a, F&& each) {
-    for (int i = 0; i < 3; ++i) {
-        double node = a.nodes[i];
-        each(node), each(a.weights[i]);
-        a.nodes[i] = int(node);
-    }
-}
-
-class MasonryZones : public Adapter<MasonryZones, yade::GlobalEngine> {
+class MasonryZones : public Adapter<MasonryZones, yade::GlobalEngine>, public EnergyLedger {
 public:
     static constexpr const char* className = "MasonryZones";
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
         "Deformable units: blocks divided into tetrahedral zones of linear elastic material, masses at the nodes, "
-        "joints "
-        "between nodes (paper §2, eqs. (1)-(7)). A unit stays one body with a Polyhedra shape, whose position and "
-        "orientation follow the centre of mass and the mean rotation; strains are small in axes that turn with the "
-        "unit. "
-        "Stands after the interaction loop; the host's integrator leaves these bodies alone. Give it to "
+        "joints between nodes (paper §2, eqs. (1)-(7)). A unit stays one body with a Polyhedra shape, whose position "
+        "and orientation follow the centre of mass and the mean rotation; strains are small in axes that turn with the "
+        "unit. Stands after the interaction loop; the host's integrator leaves these bodies alone. Give it to "
         "Ig2_Polyhedra_Polyhedra_MasonryJointGeom.zones before joints are made.";
 
-    std::vector<int> bodies, divisions{1, 1, 1}, laidOut; // the last: what the nodes were numbered for
+    std::vector<int> bodies;
+    std::vector<int> divisions{1, 1, 1};
+    std::vector<int> laidOut; // divisions and bodies for which the nodes were numbered
     double damping = 0.8;
-    std::string dampingKind = "combined", blocked;
+    std::string dampingKind = "combined";
+    std::string blocked;
     Vector3r gravity = Vector3r(0, 0, -9.81);
-    double kinetic = 0, elastic = 0, gravityWork = 0, dampingWork = 0, pendingDamping = 0;
-    std::vector<Vector3r> displacements, velocities, lastForces;
 
     template <class Visit> static void attributes(Visit&& visit) {
         using Z = MasonryZones;
-        visit("bodies", &Z::bodies, "Ids of the deformable units; their material is MasonryMat.", Given);
+        visit("bodies", &Z::bodies, described("Ids of the deformable units; their material is MasonryMat"), Given);
         visit("divisions", &Z::divisions,
-              "Cells of a hexahedral unit in the directions nearest to x, y and z [-], 1 to 100; each is twelve zones. "
-              "Default: 1, 1, 1.",
+              number("-", "Cells of a hexahedral unit in the directions nearest to x, y and z, each of twelve zones; "
+                          "default 1, 1, 1")
+                  .atLeast(1)
+                  .atMost(100),
               Given);
-        visit("damping", &Z::damping, "Damping constant alpha [-], 0 to 0.99 (paper eq. (3): 0.8).");
-        visit("dampingKind", &Z::dampingKind,
-              "'combined': alpha |F| (sgn(dF/dt) - sgn(v)) / 2, calms what swings about a steady motion, too; "
-              "'local': -alpha |F| sgn(v), paper eq. (3), lets it swing and turns it into a drag.");
+        visit("damping", &Z::damping,
+              number("-", "Damping constant alpha").atLeast(0).atMost(0.99).source("paper eq. (3): 0.8"));
+        visit(
+            "dampingKind", &Z::dampingKind,
+            described("'combined': alpha |F| (sgn(dF/dt) - sgn(v)) / 2, calms what swings about a steady motion, too; "
+                      "'local': -alpha |F| sgn(v), paper eq. (3), lets it swing and turns it into a drag"));
         visit("blocked", &Z::blocked,
-              "Directions in which the nodes are held, as 'y': a wall in its plane, in plane stress.");
-        visit("gravity", &Z::gravity, "Gravity [m/s²].");
-        visit("kinetic", &Z::kinetic, "Kinetic energy of the nodes [J].", ReadOnly);
-        visit("elastic", &Z::elastic, "Elastic energy of the zones [J].", ReadOnly);
-        visit("gravityWork", &Z::gravityWork, "Work of gravity since the reference state [J].", ReadOnly);
-        visit("dampingWork", &Z::dampingWork, "Energy taken by damping so far [J].", ReadOnly);
-        visit("displacements", &Z::displacements, "Displacements of all nodes since the reference state [m].",
+              described("Directions in which the nodes are held, as 'y': a wall in its plane, in plane stress"));
+        visit("gravity", &Z::gravity, number("m/s²", "Gravity"));
+        visit("kinetic", &Z::kinetic, number("J", "Kinetic energy of the nodes"), ReadOnly);
+        visit("elastic", &Z::elastic, number("J", "Elastic energy of the zones"), ReadOnly);
+        visit("gravityWork", &Z::fallen, number("J", "Work of gravity since the reference state"), ReadOnly);
+        visit("dampingWork", &Z::damped, number("J", "Energy taken by damping so far"), ReadOnly);
+        visit("displacements", computed(&Z::displacements, &Z::setDisplacements),
+              number("m", "Displacements of all nodes since the reference state"), ReadOnly);
+        visit("velocities", computed(&Z::velocities, &Z::setVelocities), number("m/s", "Velocities of all nodes"),
               ReadOnly);
-        visit("velocities", &Z::velocities, "Velocities of all nodes [m/s].", ReadOnly);
-        visit("lastForces", &Z::lastForces, "", Hidden);
-        visit("pendingDamping", &Z::pendingDamping, "", Hidden);
-        visit("laidOut", &Z::laidOut, "", Hidden);
+        visit("lastForces", computed(&Z::lastForces, &Z::setLastForces),
+              number("N", "Forces on all nodes in the last step"), Hidden);
+        visit("pendingDamping", &Z::pendingDamped, number("J", "Damping of the last step"), Hidden);
+        visit("laidOut", &Z::laidOut, described("Divisions and bodies for which the nodes were numbered"), Hidden);
     }
 
     template <class PyClass> static void extras(PyClass& cls) {
@@ -79,11 +71,13 @@ public:
     }
 
     void postLoad();
-    void refresh(); // displacements, velocities and forces from the rows
+    std::vector<std::string> problems() const;
     void action() override;
 
     struct Unit {
-        int body, firstNode, momentPlace;
+        int body;
+        int firstNode;
+        int momentPlace; // in the rows of moments
         std::shared_ptr<const BlockElasticity> elasticity;
         Vector3r centre; // reference
         Quaternionr orientation;
@@ -98,19 +92,20 @@ public:
     std::vector<std::pair<int, double>> nodesOn(const Unit&, const std::vector<Vector3r>& polygon,
                                                 const Vector3r& normal) const;
 
-    // The rows of numbers behind the nodes, for engines that work on them directly: a node's three numbers stand at
-    // its place, one row apart. Guests are places at the end for what moves with something else.
+    // The rows of numbers in which the state of the nodes lives: a node's three numbers stand at its place, one row
+    // apart. Dependent points have places behind those of the nodes; they move with a rigid body or between nodes.
     int placeOf(int node) const { return places_[node]; }
-    int addGuest();
-    void dropGuests();
-    bool looped = false; // a MasonryJointLoop brings the joints' forces
+    int addDependentPoint();
+    void dropDependentPoints();
     double* displacementRows() { return displacements_[0].lane; }
     double* forceRows() { return forces_[0].lane; }
     double* momentRows() { return moments_[0].lane; } // of joints on the rotation of the units
+    Vector3r displacementOf(int node) const { return at(displacements_, places_[node]); }
+    Vector3r velocityOf(int node) const { return at(velocities_, places_[node]); }
     Vector3r displacementAt(const Attachment& a) const {
         Vector3r moved = Vector3r::Zero();
         for (int i = 0; i < 3 && a.weights[i] != 0; ++i)
-            moved += a.weights[i] * at(displacements_, places_[a.nodes[i]]);
+            moved += a.weights[i] * displacementOf(a.nodes[i]);
         return moved;
     }
 
@@ -133,22 +128,37 @@ private:
         for (int d = 0; d < 3; ++d)
             (rows[0].lane + place)[d * lanes] = value[d];
     }
-    void gatherFromFunctors();
+    void mesh();
+    void layOut();
+    void gatherFromFunctors(const SceneStore&);
+    void checkAlive() const;
+    std::vector<Vector3r> listed(const std::vector<Row>& rows, const std::vector<Vector3r>& loaded) const;
+    std::vector<Vector3r> displacements() { return listed(displacements_, loaded_.displacements); }
+    std::vector<Vector3r> velocities() { return listed(velocities_, loaded_.velocities); }
+    std::vector<Vector3r> lastForces() { return listed(lastForces_, loaded_.lastForces); }
+    void setDisplacements(const std::vector<Vector3r>& values) { take(values, displacements_, loaded_.displacements); }
+    void setVelocities(const std::vector<Vector3r>& values) { take(values, velocities_, loaded_.velocities); }
+    void setLastForces(const std::vector<Vector3r>& values) { take(values, lastForces_, loaded_.lastForces); }
+    void take(const std::vector<Vector3r>& values, std::vector<Row>& rows, std::vector<Vector3r>& loaded);
     py::tuple nodesOf(int body);
     Vector3r referencePoint(int body, int node);
     void setVelocity(int node, const Vector3r& velocity);
     py::list masses();
 
+    struct { // state of nodes that have no rows yet: it was just loaded
+        std::vector<Vector3r> displacements, velocities, lastForces;
+    } loaded_;
     std::vector<Unit> units_;
-    std::vector<int> unitOfBody_, places_; // of all nodes
+    std::vector<int> unitOfBody_;
+    std::vector<int> places_; // of all nodes
     std::vector<Batch> batches_;
     std::vector<Row> displacements_, velocities_, forces_, lastForces_, moments_;
-    int guests_ = 0;
-    bool ahead_ = false;                        // whether the rows are ahead of the attributes
-    std::vector<shared_ptr<yade::IGeom>> seen_; // of all interactions, to know when joints_ are others
-    std::vector<const MasonryJointGeom*> joints_;
+    int dependentPoints_ = 0;
+    boost::weak_ptr<yade::Factorable> scene_; // in which the units were last moved
+    bool acted_ = false;
 };
 
 } // namespace masonry
 
+extern template class masonry::Adapter<masonry::MasonryZones, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_KEY(masonry::MasonryZones)

@@ -1,7 +1,9 @@
 #include "SceneCheck.hpp"
-#include "MasonryEngines.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
+#include "MasonryMat.hpp"
+#include "SceneStore.hpp"
+#include "common/Text.hpp"
 #include <algorithm>
 
 namespace masonry {
@@ -78,21 +80,8 @@ std::string problemOfEngines(const yade::Scene& scene, bool jointed) {
 
 } // namespace
 
-void checkScene(const yade::Scene& scene) {
-    if (!(scene.dt > 0 && std::isfinite(scene.dt)))
-        throw std::invalid_argument("O.dt " + text(scene.dt) + " s must be a finite number above 0");
-    static struct {
-        const yade::Scene* scene;
-        long changes;
-        std::size_t interactions;
-        std::vector<std::pair<const yade::Engine*, bool>> engines;
-    } known;
-    bool same = known.scene == &scene && known.changes == changes &&
-                known.interactions == scene.interactions->currSize && known.engines.size() == scene.engines.size();
-    for (std::size_t i = 0; same && i < known.engines.size(); ++i)
-        same = known.engines[i] == std::make_pair<const yade::Engine*>(scene.engines[i].get(), scene.engines[i]->dead);
-    if (same) return;
-
+void checkScene(const SceneStore& store) {
+    const auto& scene = store.scene();
     std::vector<std::string> wrong;
     std::vector<const MasonryZones*> owner(scene.bodies->body.size(), nullptr), zones;
     for (const auto& engine : scene.engines)
@@ -108,7 +97,10 @@ void checkScene(const yade::Scene& scene) {
         }
     int blocks = 0;
     for (const auto& body : scene.bodies->body)
-        if (body && dynamic_cast<const yade::Polyhedra*>(body->shape.get())) add(wrong, problemsOf(*body)), ++blocks;
+        if (body && dynamic_cast<const yade::Polyhedra*>(body->shape.get())) {
+            add(wrong, problemsOf(*body));
+            ++blocks;
+        }
     bool jointed = false;
     for (std::size_t n = 0; n < scene.interactions->currSize; ++n) {
         const auto& interaction = *scene.interactions->linIntrs[n];
@@ -120,25 +112,27 @@ void checkScene(const yade::Scene& scene) {
             wrong.push_back("the joint of bodies " + std::to_string(interaction.id1) + " and " +
                             std::to_string(interaction.id2) + " " + what);
         };
-        if (!geom || !phys || !phys->joint || geom->points.empty() || phys->states.size() != geom->points.size()) {
+        if (!geom || !phys || !geom->made() || !phys->made() || geom->points() == 0 ||
+            geom->points() != phys->points()) {
             fail("is not one that connect() made");
             continue;
         }
-        if (geom->zones && std::find(zones.begin(), zones.end(), geom->zones.get()) == zones.end())
+        const auto& hung = geom->reference().hung;
+        const MasonryZones* own = hung ? hung->zones.get() : nullptr;
+        if (own && std::find(zones.begin(), zones.end(), own) == zones.end())
             fail("needs its MasonryZones in O.engines");
         for (int id : {interaction.id1, interaction.id2})
-            if (owner[id] && geom->zones.get() != owner[id])
+            if (owner[id] && own != owner[id])
                 fail("was made before MasonryZones had body " + std::to_string(id) +
                      ": give the zones to masonry.engines(), then connect()");
     }
+    for (int id : store.strangers())
+        wrong.push_back("body " + std::to_string(id) +
+                        " was added after connect() and has no joint, so nothing would hold it: build all blocks "
+                        "first, then call connect()");
     if (!jointed && blocks > 1) wrong.push_back("no joints: call masonry.connect() before the first step");
     if (const auto problem = problemOfEngines(scene, jointed); !problem.empty()) wrong.push_back(problem);
     if (!wrong.empty()) throw std::invalid_argument(firstOf(wrong));
-
-    known.scene = &scene, known.changes = changes, known.interactions = scene.interactions->currSize;
-    known.engines.clear();
-    for (const auto& engine : scene.engines)
-        known.engines.emplace_back(engine.get(), engine->dead);
 }
 
 } // namespace masonry

@@ -4,15 +4,16 @@
 
 namespace masonry {
 
+class SceneStore;
+
 // The body of that id; std::invalid_argument that begins with `what` if there is none.
 const yade::Body& bodyAt(const yade::Scene&, int id, const std::string& what);
 
 // What keeps a body from being a block, one sentence each; empty if nothing does.
 std::vector<std::string> problemsOf(const yade::Body&);
 
-// Throws std::invalid_argument with all that keeps the scene from being run: time step, order of the engines, blocks,
-// joints that are not connect()'s. Every engine asks at the start of its action; only a scene that changed is looked
-// at.
-void checkScene(const yade::Scene&);
+// Throws std::invalid_argument with all that keeps the scene from being run: order of the engines, blocks, joints that
+// are not connect()'s, blocks that came after connect().
+void checkScene(const SceneStore&);
 
 } // namespace masonry

@@ -1,6 +1,7 @@
 #include "SceneCheckpoint.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
+#include "SceneStore.hpp"
 #include "common/Text.hpp"
 #include <map>
 
@@ -29,23 +30,6 @@ template <> struct IsNumbers<BodyRecord> : std::true_type {};
 template <> struct IsNumbers<PointRecord> : std::true_type {};
 
 namespace {
-
-struct Joint {
-    const yade::Interaction* interaction;
-    MasonryJointGeom* geom;
-    MasonryJointPhys* phys;
-};
-
-std::vector<Joint> jointsOf(const yade::Scene& scene) {
-    std::vector<Joint> all;
-    for (std::size_t i = 0; i < scene.interactions->currSize; ++i) {
-        const auto& interaction = *scene.interactions->linIntrs[i];
-        auto* geom = dynamic_cast<MasonryJointGeom*>(interaction.geom.get());
-        auto* phys = dynamic_cast<MasonryJointPhys*>(interaction.phys.get());
-        if (geom && phys) all.push_back({&interaction, geom, phys});
-    }
-    return all;
-}
 
 std::vector<yade::Body*> bodiesOf(const yade::Scene& scene) {
     std::vector<yade::Body*> all;
@@ -86,25 +70,23 @@ void transferBodies(yade::Scene& scene, Transfer& to) {
     forces.sync();
 }
 
-void transferJoints(const yade::Scene& scene, Transfer& to) {
-    const auto joints = jointsOf(scene);
+void transferJoints(const SceneStore& store, Transfer& to) {
     std::vector<PointRecord> records;
-    for (const auto& joint : joints) {
-        joint.phys->refresh();
-        for (std::size_t p = 0; p < joint.geom->points.size(); ++p)
-            records.push_back({joint.geom->points[p].jump, joint.phys->losses[p], joint.phys->states[p]});
-    }
+    for (const auto& joint : store.joints)
+        for (int p = 0; p < joint.geom->points(); ++p) {
+            const auto e = joint.phys->lost(p);
+            records.push_back({joint.geom->jump(p), {e.tension, e.shear, e.compression}, joint.phys->state(p)});
+        }
     to.several("joints", records.data(), records.size());
     if (!to.back) return;
     auto next = records.begin();
-    for (const auto& [interaction, geom, phys] : joints) {
-        if (phys->keeper) phys->keeper->release();
-        phys->dissipated.setZero();
-        for (std::size_t p = 0; p < geom->points.size(); ++p, ++next) {
-            geom->points[p].jump = next->jump, phys->losses[p] = next->losses, phys->states[p] = next->state;
-            phys->dissipated += geom->points[p].area * phys->losses[p];
+    for (const auto& joint : store.joints)
+        for (int p = 0; p < joint.geom->points(); ++p, ++next) {
+            auto& states = joint.phys->home->columns;
+            joint.geom->home->setJump(p, joint.geom->index, next->jump);
+            states.set(p, joint.phys->index, next->state);
+            states.setDissipated(p, joint.phys->index, {next->losses[0], next->losses[1], next->losses[2]});
         }
-    }
 }
 
 void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
@@ -113,7 +95,9 @@ void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
     to("step", scene.iter), to("time", scene.time), to("dt", scene.dt);
     if (scene.iter < 0) to.damaged("step"); // the host would stop at an assertion
     transferBodies(scene, to);
-    transferJoints(scene, to);
+    auto& store = SceneStore::of(scene);
+    store.update();
+    transferJoints(store, to);
     int number = 0;
     for (const auto& engine : scene.engines)
         if (auto* own = dynamic_cast<Stateful*>(engine.get())) {
@@ -123,10 +107,11 @@ void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
         }
     for (const auto& engine : scene.engines)
         if (auto* zones = dynamic_cast<MasonryZones*>(engine.get())) zones->units(); // refuses other numbers of nodes
+    if (back) ++changes; // all engines look at everything anew
 }
 
-// By what a scene is known again: a sum over what does not change in a run.
-class Print {
+// A fingerprint of a scene: a sum over what does not change in a run, by which the same scene is recognised.
+class Fingerprint {
 public:
     template <class... T> void operator()(const T&... values) { (add(values), ...); }
     std::string text() const { return std::to_string(sumOf(bytes_)); }
@@ -149,7 +134,7 @@ private:
 Checkpoint captured(yade::Scene& scene) {
     Checkpoint made;
     transfer(scene, made, false);
-    Print blocks, joints;
+    Fingerprint blocks, joints;
     for (const auto* body : bodiesOf(scene)) {
         const auto& s = *body->state;
         blocks(double(body->id), s.refPos, s.refOri, s.mass, s.inertia);
@@ -159,15 +144,19 @@ Checkpoint captured(yade::Scene& scene) {
         blocks(dynamic_cast<Stateful*>(body->material.get()));
     }
     std::map<const MasonryJoint*, double> kinds;
-    for (const auto& [interaction, geom, phys] : jointsOf(scene)) {
-        const auto [kind, fresh] = kinds.emplace(phys->joint.get(), double(kinds.size()));
-        if (fresh) joints(static_cast<Stateful*>(phys->joint.get()));
-        joints(kind->second, double(interaction->id1), double(interaction->id2), geom->normal, geom->tangent,
-               phys->normalStiffness, phys->shearStiffness);
-        for (const auto& point : geom->points)
-            joints(point.offset, point.area);
-        for (const auto* attachments : {&geom->attachments1, &geom->attachments2})
-            for (const auto& attachment : *attachments)
+    auto& store = SceneStore::of(scene);
+    store.update();
+    for (const auto& joint : store.joints) {
+        const auto& r = joint.geom->reference();
+        auto* properties = joint.phys->home->joint.get();
+        const auto [kind, fresh] = kinds.emplace(properties, double(kinds.size()));
+        if (fresh) joints(static_cast<Stateful*>(properties));
+        joints(kind->second, double(joint.interaction->id1), double(joint.interaction->id2), r.normal, r.tangent,
+               joint.phys->stiffness().normal, joint.phys->stiffness().shear);
+        for (int p = 0; p < joint.geom->points(); ++p)
+            joints(joint.geom->offset(p), joint.geom->area(p));
+        for (int side = 0; side < 2 && r.hung; ++side)
+            for (const auto& attachment : r.hung->sides[side])
                 joints(attachment);
     }
     made.texts["blocks"] = blocks.text(), made.texts["joints"] = joints.text();
@@ -202,11 +191,21 @@ Checkpoint read(const py::object& bytes) {
     return Checkpoint::read({data, std::size_t(size)});
 }
 
+// A state that is taken or given in the middle of a step would be that of no instant.
+void refuseBeside(const std::string& what) {
+    if (Singleton<yade::Omega>::instance().isRunning())
+        throw std::invalid_argument("a checkpoint is " + what +
+                                    " between runs: O.run() works in the background, "
+                                    "call O.pause() first");
+}
+
 yade::Scene& present() { return *Singleton<yade::Omega>::instance().getScene(); }
 
 } // namespace
 
 py::object saveScene(const std::string& extra) {
+    refuseBeside("saved");
+    const BetweenSteps still;
     auto made = captured(present());
     for (const auto& [name, values] : made.numbers)
         for (double value : values)
@@ -218,6 +217,8 @@ py::object saveScene(const std::string& extra) {
 }
 
 std::string loadScene(const py::object& bytes) {
+    refuseBeside("loaded");
+    const BetweenSteps still;
     auto saved = read(bytes), here = captured(present());
     for (const auto& [name, values] : saved.numbers)
         for (double value : values)

@@ -1,4 +1,5 @@
 #include "BlockLanes.hpp"
+#include "motion/Damping.hpp"
 
 // The loops are written with vectors of a fixed width, which the compiler keeps in registers only if the instruction
 // set is known where they are written: so they are included once for each.
@@ -18,7 +19,7 @@ namespace avx2 {
 #include "BlockLanes.inl"
 #undef WIDTH
 } // namespace avx2
-#pragma GCC target("arch=skylake-avx512")
+#pragma GCC target("arch=x86-64-v4")
 namespace avx512 {
 #define WIDTH 8
 #include "BlockLanes.inl"

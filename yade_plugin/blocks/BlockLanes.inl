@@ -82,7 +82,7 @@ void addForces(const BlockMatrix& m, const Row* displacements, const Row* moment
 
 void move(const BlockMatrix& matrix, const NodeMotion& m, const Row& present, Row* displacements, Row* velocities,
           Row* forces, Row* lastForces, NodeSums& sums) {
-    const double alpha = m.combined ? 0.5 * m.damping : m.damping;
+    const double alpha = dampingShare(m.combined) * m.damping;
     for (int part = 0; part < parts; ++part) {
         Lanes *us = at(displacements, part), *vs = at(velocities, part), *fs = at(forces, part),
               *lasts = at(lastForces, part);
@@ -101,8 +101,7 @@ void move(const BlockMatrix& matrix, const NodeMotion& m, const Row& present, Ro
                 const Lanes half = 0.5 * perMass * force, middle = 0.5 * (old + half);
                 const Lanes reach = alpha * (half < zero ? -half : half);
                 const Lanes change = m.combined ? sign(force - lasts[i]) : zero;
-                const Lanes least = -reach - reach * change, most = reach - reach * change;
-                const Lanes taken = middle > most ? most : middle < least ? least : middle; // paper eq. (3)
+                const Lanes taken = dampingTaken(middle, reach, change);
                 lasts[i] = force;
                 const Lanes now = old + 2 * (half - taken); // eq. (2)
                 // trapezoidal work and kinetic energy at the same instant, as in MasonryEnergy

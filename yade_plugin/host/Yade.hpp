@@ -213,6 +213,16 @@ public:
         addTorque(count - 1, Vector3r::Zero());
         return torquesOfThreads_[0].data();
     }
+    // The sums over all threads, for bodies below `count`, each body's beside that of the next.
+    struct Summed {
+        const Vector3r *forces, *torques;
+    };
+    Summed summed(int count) {
+        addForce(count - 1, Vector3r::Zero()); // makes room
+        addTorque(count - 1, Vector3r::Zero());
+        sync();
+        return {&getForce(0), &getTorque(0)};
+    }
     void addForce(int id, const Vector3r&);
     void addTorque(int id, const Vector3r&);
     void sync();
@@ -358,6 +368,7 @@ class Omega {
 public:
     void buildDynlibDatabase(const std::vector<std::string>& names);
     const shared_ptr<Scene>& getScene() const;
+    bool isRunning(); // whether O.run() works in the background
 };
 
 } // namespace yade

@@ -1,0 +1,116 @@
+#include "BodyStep.hpp"
+#include "motion/Damping.hpp"
+#include <cmath>
+
+namespace masonry {
+
+using yade::Matrix3r;
+using yade::Quaternionr;
+using yade::State;
+using yade::Vector3r;
+
+namespace {
+
+int sign(double x) { return (x > 0) - (x < 0); }
+
+} // namespace
+
+Matrix3r inverseInertia(const State& s) {
+    Vector3r inverse = s.inertia.cwiseInverse();
+    if (!rotationRestrained(s)) {
+        const Matrix3r axes = s.ori.toRotationMatrix();
+        return axes * inverse.asDiagonal() * axes.transpose();
+    }
+    for (int i = 0; i < 3; ++i)
+        if (isBlocked(s, 3 + i)) inverse[i] = 0;
+    return inverse.asDiagonal();
+}
+
+Vector3r inverseMass(const State& s) {
+    Vector3r inverse;
+    for (int i = 0; i < 3; ++i)
+        inverse[i] = isBlocked(s, i) ? 0 : 1 / s.mass;
+    return inverse;
+}
+
+BodyStep stepOf(const State& s, const BodyForces& on, const Vector3r& gravity, double dt, const BodyDamping& damping) {
+    BodyStep step{s.vel, s.angVel, on.torque, {}};
+    auto& e = step.energies;
+    const double alpha = s.isDamped ? damping.alpha : 0, rate = 1 / dt;
+    const bool combined = damping.last != nullptr;
+    const double share = dampingShare(combined);
+    // What damping takes of an acceleration whose undamped value is `free`, with the velocity in the middle of the step
+    // over the step as `middle`.
+    const auto drag = [&](double free, double middle, double* before) {
+        const double reach = alpha * std::abs(free);
+        if (damping.host) return reach * sign(middle);
+        const int trend = before ? sign(free - *before) : 0;
+        if (before) *before = free;
+        return dampingTaken(middle, share * reach, double(trend));
+    };
+    for (int i = 0; i < 3; ++i) {
+        const double all = on.force[i] + s.mass * gravity[i];
+        if (isBlocked(s, i)) {
+            e.external -= 0.5 * dt * s.vel[i] * all;
+            continue;
+        }
+        const double free = on.force[i] / s.mass + gravity[i];
+        const double taken = drag(free, rate * s.vel[i] + 0.5 * free, combined ? &damping.last->force[i] : nullptr);
+        step.vel[i] += dt * (free - taken);
+        e.damped += 0.5 * dt * s.mass * taken * s.vel[i];
+        e.pendingDamped += 0.5 * dt * s.mass * taken * step.vel[i];
+        e.kinetic += 0.5 * s.mass * s.vel[i] * step.vel[i];
+    }
+    // With a blocked rotation the integrator damps accelerations about the global axes. Without one it damps the
+    // torque, and what stops the spin about one of the axes cannot be more than its share of the smallest inertia.
+    const bool restrained = rotationRestrained(s);
+    const Vector3r gained = restrained || damping.host ? Vector3r::Zero() : Vector3r(inverseInertia(s) * on.torque);
+    const double least = s.inertia.minCoeff();
+    Vector3r taken = Vector3r::Zero();
+    for (int i = 0; i < 3; ++i) {
+        if (isBlocked(s, 3 + i)) {
+            e.external -= 0.5 * dt * s.angVel[i] * on.torque[i];
+            continue;
+        }
+        const double free = on.torque[i] / s.inertia[i];
+        const double middle = restrained ? rate * s.angVel[i] + 0.5 * free
+                                         : least / s.inertia[i] * (rate * s.angVel[i] + 0.5 * gained[i]);
+        taken[i] = s.inertia[i] * drag(free, middle, combined ? &damping.last->torque[i] : nullptr);
+    }
+    step.torque -= taken;
+    e.pendingExternal = e.external;
+    if (restrained) {
+        for (int i = 0; i < 3; ++i)
+            if (!isBlocked(s, 3 + i)) {
+                step.angVel[i] += dt * step.torque[i] / s.inertia[i];
+                e.kinetic += 0.5 * s.inertia[i] * s.angVel[i] * step.angVel[i];
+            }
+    } else {
+        const Matrix3r axes = s.ori.toRotationMatrix();
+        step.angVel += dt * (inverseInertia(s) * step.torque);
+        e.kinetic += 0.5 * (axes.transpose() * s.angVel).dot(s.inertia.cwiseProduct(axes.transpose() * step.angVel));
+    }
+    e.damped += 0.5 * dt * taken.dot(s.angVel);
+    e.pendingDamped += 0.5 * dt * taken.dot(step.angVel);
+    return step;
+}
+
+// Leapfrog of the angular momentum, its spin taken in the body's axes, with the orientation at half step from the
+// momentum at the step; the host's scheme for aspherical bodies.
+void turnInSpace(State& s, const BodyStep& step, double dt) {
+    const auto spinOf = [&](const Vector3r& momentum) {
+        return Vector3r((s.ori.conjugate() * momentum).cwiseQuotient(s.inertia));
+    };
+    const auto moved = [](const Quaternionr& from, const Quaternionr& by, const Vector3r& spin, double time) {
+        const Quaternionr change = by * Quaternionr(0, spin[0], spin[1], spin[2]);
+        return Quaternionr((from.coeffs() + 0.5 * time * change.coeffs()).eval());
+    };
+    const Quaternionr middle = moved(s.ori, s.ori, spinOf(s.angMom + 0.5 * dt * step.torque), 0.5 * dt);
+    s.angMom += dt * step.torque;
+    const Vector3r spin = spinOf(s.angMom);
+    s.ori = moved(s.ori, middle, spin, dt);
+    s.angVel = s.ori * spin;
+    s.ori.normalize();
+}
+
+} // namespace masonry

@@ -1,0 +1,188 @@
+#include "CriticalTimeStep.hpp"
+#include "BodyStep.hpp"
+#include "MasonryJointGeom.hpp"
+#include "MasonryJointPhys.hpp"
+#include "MasonryZones.hpp"
+#include "SceneCheck.hpp"
+#include "SceneStore.hpp"
+#include "motion/LargestEigenvalue.hpp"
+#include <map>
+
+namespace masonry {
+
+using yade::Matrix3r;
+using yade::State;
+
+namespace {
+
+// Stiffness over masses of a scene, S K S with S = sqrt((1 + alpha) / M), as a sum over its joints and deformable
+// units. The degrees of freedom are the six of every rigid body and the three of every node; those that are blocked
+// have no part in it.
+class Dynamics {
+public:
+    explicit Dynamics(SceneStore&);
+
+    std::vector<bool> moves; // whether a degree of freedom can
+    void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
+    // The bodies of the joint, or twice the unit, that has most of a mode's energy.
+    std::pair<int, int> stiffest(const Eigen::VectorXd& mode) const;
+
+private:
+    struct Joint { // between rigid bodies, or a point of one at nodes
+        std::vector<int> degrees;
+        Eigen::MatrixXd stiffness;
+        int body1, body2;
+    };
+    struct Unit {
+        BlockMatrix matrix;
+        int first, body;
+    };
+    void addDegree(double mass, double damping, bool blocked) {
+        moves.push_back(!blocked);
+        scale_.push_back(blocked ? 0 : std::sqrt((1 + damping) / mass));
+    }
+    void addJoint(const SceneStore&, const JointView&);
+    // Calls `visit(body1, body2, degree, force)` with the force of every part on its degrees under a motion.
+    template <class F> void eachForce(const Eigen::VectorXd& motion, F&& visit) const;
+
+    std::vector<double> scale_; // sqrt((1 + alpha) / mass) of a degree of freedom; 0 where it is blocked
+    std::map<int, int> firstOfBody_;
+    std::vector<Joint> joints_;
+    std::vector<Unit> units_;
+};
+
+Dynamics::Dynamics(SceneStore& store) {
+    if (store.zones)
+        for (const auto& unit : store.zones->units()) {
+            units_.push_back({unit.elasticity->matrix(), 3 * unit.firstNode, unit.body});
+            for (double mass : unit.elasticity->masses())
+                for (int d = 0; d < 3; ++d)
+                    addDegree(mass, store.zones->damping, store.zones->holds(d));
+        }
+    for (const auto& joint : store.joints)
+        addJoint(store, joint);
+}
+
+void Dynamics::addJoint(const SceneStore& store, const JointView& joint) {
+    const auto& geom = *joint.geom;
+    const auto& r = geom.reference();
+    const Matrix3r axes = r.axes();
+    for (int p = 0; p < geom.points(); ++p) {
+        Joint part{{}, {}, r.sides[0].body, r.sides[1].body};
+        std::vector<Vector3r> rows; // of the jump: its derivative by each degree
+        const auto add = [&](int degree, const Vector3r& moved) {
+            if (!moves[degree]) return;
+            part.degrees.push_back(degree);
+            rows.push_back(axes.transpose() * moved);
+        };
+        for (int side = 0; side < 2; ++side) {
+            const double sign = side ? 1 : -1;
+            if (!r.rigid(side)) {
+                const auto& a = r.hung->sides[side][p];
+                for (int n = 0; n < 3 && a.weights[n] > 0; ++n)
+                    for (int d = 0; d < 3; ++d)
+                        add(3 * a.nodes[n] + d, sign * a.weights[n] * Vector3r::Unit(d));
+                continue;
+            }
+            const auto& body = *store.scene().bodies->body[r.sides[side].body];
+            const State& s = *body.state;
+            const auto [first, fresh] = firstOfBody_.emplace(body.id, int(moves.size()));
+            if (fresh)
+                if (const auto wrong = problemsOf(body); !wrong.empty()) throw std::invalid_argument(joined(wrong));
+            for (int d = 0; fresh && d < 6; ++d)
+                addDegree(d < 3 ? s.mass : s.inertia[d - 3], s.isDamped ? store.damping() : 0, isBlocked(s, d));
+            const Matrix3r own = rotationRestrained(s) ? Matrix3r(Matrix3r::Identity()) : s.ori.toRotationMatrix();
+            const Vector3r arm = geom.centre(p) - r.sides[side].position;
+            for (int d = 0; d < 6; ++d)
+                add(first->second + d, sign * (d < 3 ? Vector3r(Vector3r::Unit(d)) : own.col(d - 3).cross(arm)));
+        }
+        const auto& stiffness = joint.phys->stiffness();
+        const Vector3r k = geom.area(p) * Vector3r(stiffness.normal, stiffness.shear, stiffness.shear);
+        part.stiffness.resize(rows.size(), rows.size());
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            for (std::size_t j = 0; j < rows.size(); ++j)
+                part.stiffness(i, j) = rows[i].dot(k.cwiseProduct(rows[j]));
+        if (r.hung || p == 0)
+            joints_.push_back(std::move(part));
+        else
+            joints_.back().stiffness += part.stiffness;
+    }
+}
+
+template <class F> void Dynamics::eachForce(const Eigen::VectorXd& motion, F&& visit) const {
+    for (const auto& joint : joints_)
+        for (std::size_t i = 0; i < joint.degrees.size(); ++i) {
+            double force = 0;
+            for (std::size_t j = 0; j < joint.degrees.size(); ++j)
+                force += joint.stiffness(j, i) * motion[joint.degrees[j]];
+            visit(joint.body1, joint.body2, joint.degrees[i], force);
+        }
+    for (const auto& unit : units_)
+        for (int r = 0; r < unit.matrix.rowCount; ++r) {
+            const auto& row = unit.matrix.rows[r];
+            double force = 0;
+            for (int e = row.first; e < row.beyond; ++e)
+                force += unit.matrix.values[e] * motion[unit.first + unit.matrix.columns[e]];
+            visit(unit.body, unit.body, unit.first + row.degree, force);
+        }
+}
+
+void Dynamics::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+    const Eigen::Map<const Eigen::VectorXd> scale(scale_.data(), Eigen::Index(scale_.size()));
+    y.setZero();
+    eachForce(scale.cwiseProduct(x), [&](int, int, int degree, double force) { y[degree] += force; });
+    y.array() *= scale.array();
+}
+
+std::pair<int, int> Dynamics::stiffest(const Eigen::VectorXd& mode) const {
+    const Eigen::VectorXd motion =
+        Eigen::Map<const Eigen::VectorXd>(scale_.data(), Eigen::Index(scale_.size())).cwiseProduct(mode);
+    std::map<std::pair<int, int>, double> energies;
+    eachForce(motion, [&](int body1, int body2, int degree, double force) {
+        energies[{body1, body2}] += motion[degree] * force;
+    });
+    const auto most = std::max_element(energies.begin(), energies.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    return most == energies.end() ? std::pair(-1, -1) : most->first;
+}
+
+// What the limit was found for.
+struct Known {
+    const SceneStore* store = nullptr;
+    long revision = -1;
+    double damping = 0, zoneDamping = 0;
+    bool operator==(const Known& o) const {
+        return store == o.store && revision == o.revision && damping == o.damping && zoneDamping == o.zoneDamping;
+    }
+};
+
+} // namespace
+
+TimeStepLimit timeStepLimit(SceneStore& store, bool anew) {
+    static Known known;
+    static TimeStepLimit last;
+    const Known now{&store, store.revision(), store.damping(), store.zones ? store.zones->damping : 0};
+    if (!anew && now == known) return last;
+    const Dynamics dynamics(store);
+    const auto highest = largestEigenvalue(
+        dynamics.moves, [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) { dynamics.multiply(x, y); });
+    last.dt = highest.bound > 0 ? 2 / std::sqrt(highest.bound) : HUGE_VAL;
+    std::tie(last.id1, last.id2) = dynamics.stiffest(highest.mode);
+    known = now;
+    return last;
+}
+
+std::string described(const SceneStore& store, const TimeStepLimit& limit) {
+    std::string what = "the time step is " + text(store.scene().dt) + " s";
+    if (limit.id1 < 0) return what;
+    what += ", its limit " + text(limit.dt) + " s, which ";
+    if (limit.id1 == limit.id2) return what + "unit " + std::to_string(limit.id1) + " sets";
+    std::string name;
+    for (const auto& joint : store.joints)
+        if (joint.interaction->id1 == limit.id1 && joint.interaction->id2 == limit.id2)
+            name = joint.phys->home->joint->name;
+    return what + "joint \"" + name + "\" between bodies " + std::to_string(limit.id1) + " and " +
+           std::to_string(limit.id2) + " sets";
+}
+
+} // namespace masonry

@@ -1,0 +1,52 @@
+#pragma once
+#include "MasonryJointGeom.hpp"
+
+namespace masonry {
+
+class Ig2_Polyhedra_Polyhedra_MasonryJointGeom
+    : public Adapter<Ig2_Polyhedra_Polyhedra_MasonryJointGeom, yade::IGeomFunctor> {
+public:
+    static constexpr const char* className = "Ig2_Polyhedra_Polyhedra_MasonryJointGeom";
+    static constexpr const char* baseName = "IGeomFunctor";
+    static constexpr const char* doc =
+        "Creates a MasonryJointGeom from the faces that two convex Polyhedra share in the reference state, and updates "
+        "its jumps. A pair without a shared face gets no joint; asked for one (utils.createInteraction), it is an "
+        "error.";
+
+    int subcontacts = 4;
+    int rows = 1;
+    Vector3r rowDirection = Vector3r::Zero();
+    double tolerance = 1e-4;
+    shared_ptr<MasonryZones> zones;
+
+    template <class Visit> static void attributes(Visit&& visit) {
+        using F = Ig2_Polyhedra_Polyhedra_MasonryJointGeom;
+        visit("subcontacts", &F::subcontacts, number("-", "Subcontacts along a joint").atLeast(1).atMost(1000));
+        visit("rows", &F::rows,
+              number("-", "Rows of subcontacts across a joint; 1 is enough for walls loaded in their plane")
+                  .atLeast(1)
+                  .atMost(1000));
+        visit("rowDirection", &F::rowDirection,
+              described("Direction across which rows are counted (the thickness of a wall); zero: across the longest "
+                        "edge of the joint"));
+        visit("tolerance", &F::tolerance,
+              number("-", "Largest gap or overlap of coincident faces, relative to the size of the smaller block")
+                  .above(0)
+                  .atMost(0.01));
+        visit("zones", &F::zones, described("MasonryZones of the deformable units; None: all units are rigid"));
+    }
+
+    std::string get2DFunctorType1() const override { return "Polyhedra"; }
+    std::string get2DFunctorType2() const override { return "Polyhedra"; }
+    std::vector<std::string> getFunctorTypes() const override { return {"Polyhedra", "Polyhedra"}; }
+    std::string checkOrder() const override { return "Polyhedra Polyhedra"; }
+    void preStep() override;
+    bool go(const shared_ptr<yade::Shape>&, const shared_ptr<yade::Shape>&, const yade::State&, const yade::State&,
+            const Vector3r& shift, const bool& force, const shared_ptr<yade::Interaction>&) override;
+    using FunctorCalls::go;
+};
+
+} // namespace masonry
+
+extern template class masonry::Adapter<masonry::Ig2_Polyhedra_Polyhedra_MasonryJointGeom, yade::IGeomFunctor>;
+BOOST_CLASS_EXPORT_KEY(masonry::Ig2_Polyhedra_Polyhedra_MasonryJointGeom)

@@ -1,0 +1,393 @@
+#include "JointPlan.hpp"
+#include "MasonryJointGeom.hpp"
+#include "MasonryJointPhys.hpp"
+#include "MasonryZones.hpp"
+#include "common/Vectorised.hpp"
+#include "motion/JointFrames.hpp"
+#include <algorithm>
+
+namespace masonry {
+
+namespace {
+
+constexpr int most = JointFrames::most; // joints that a thread takes at a time
+constexpr double flat = 1e-9;           // what counts as nothing out of the plane [rad, m, -]
+
+// Whether y and the rotations about x and z are blocked.
+bool heldInPlane(const BodyColumns& bodies, int body) {
+    return bodies.isBlocked(body, 1) && bodies.isBlocked(body, 3) && bodies.isBlocked(body, 5);
+}
+
+// A turn about y as cosine and sine of its half angle; whether the rotation is one.
+bool aboutY(const Quaternionr& q, double& cosine, double& sine) {
+    cosine = q.w();
+    sine = q.y();
+    return std::abs(q.x()) + std::abs(q.z()) < flat;
+}
+
+// The turn of a joint's axes in a block from normal z and tangent x, which leads e1 to x, e2 to y, e3 to z first.
+Quaternionr fromPlane(const yade::State& s, const Quaternionr& frame) {
+    return s.refOri * frame * Quaternionr(0.5, 0.5, 0.5, 0.5);
+}
+
+} // namespace
+
+void JointPlan::Receivers::fill(const std::vector<std::vector<Item>>& lists) {
+    receivers.clear();
+    items.clear();
+    start.assign(1, 0);
+    for (std::size_t r = 0; r < lists.size(); ++r) {
+        if (lists[r].empty()) continue;
+        receivers.push_back(int(r));
+        items.insert(items.end(), lists[r].begin(), lists[r].end());
+        start.push_back(int(items.size()));
+    }
+}
+
+// ---- when the scene has changed ---------------------------------------------------------------------------------
+
+// Whether all joints lie across a plane y = constant, on blocks that can move and turn in it only, and have no stress
+// or jump out of it beyond round-off.
+bool JointPlan::liesInPlane(const SceneStore& store) const {
+    double cosine, sine;
+    for (const auto& joint : store.joints) {
+        const auto& r = joint.geom->reference();
+        if ((r.normal.cross(r.tangent) - Vector3r::UnitY()).norm() > flat) return false;
+        for (int side = 0; side < 2; ++side) {
+            const int id = r.sides[side].body;
+            const auto& s = store.bodies.state(id);
+            const bool held = zones_ && zones_->unitOf(id) ? zones_->holds(1) : heldInPlane(store.bodies, id);
+            if (!held || !(std::abs(s.pos.y() - s.refPos.y()) < flat) ||
+                !aboutY(fromPlane(s, r.frame(side)), cosine, sine) ||
+                !aboutY(s.ori * s.refOri.conjugate(), cosine, sine))
+                return false;
+        }
+        for (int p = 0; p < joint.geom->points(); ++p) {
+            const double elastic = joint.phys->state(p).shearStress.b / joint.phys->stiffness().shear;
+            if (!(std::abs(elastic) + std::abs(joint.geom->jump(p)[2]) < flat)) return false;
+        }
+    }
+    return true;
+}
+
+void JointPlan::build(SceneStore& store, bool mayBePlane) {
+    zones_ = nullptr;
+    for (const auto& kind : store.kinds)
+        if (kind.hung) zones_ = kind.shapes->joints[0].hung->zones.get();
+    if (zones_) {
+        zones_->units();
+        zones_->dropDependentPoints();
+    }
+    for (int b = 0; b < store.bodies.size(); ++b)
+        if (store.bodies.has(b)) store.bodies.notice(b);
+    plane_ = mayBePlane && liesInPlane(store);
+    dependentPoints_.clear();
+    blocks_.clear();
+    kinds_.assign(store.kinds.size(), Kind());
+
+    const int count = store.bodies.size();
+    std::vector<std::vector<Receivers::Item>> atBodies(count), atPlaces;
+    int joints = 0, points = 0;
+    for (std::size_t k = 0; k < kinds_.size(); ++k) {
+        const auto& kind = store.kinds[k];
+        const int stride = (int(kind.shapes->joints.size()) + lanes - 1) / lanes * lanes;
+        kinds_[k].first = joints;
+        kinds_[k].firstPoint = points;
+        joints += stride;
+        if (kind.hung) points += stride * kind.shapes->points;
+        for (int from = 0; from < int(kind.shapes->joints.size()); from += most)
+            blocks_.push_back({int(k), from});
+        buildKind(store, kind, kinds_[k], atBodies);
+        if (kind.hung) buildPlaces(kind, kinds_[k], atPlaces);
+    }
+    referenceY_.assign(count, 0);
+    momentPlace_.assign(count, -1);
+    joined_.assign(count, 0);
+    for (auto& column : turn_)
+        column.assign(count, 0);
+    for (int b = 0; b < count; ++b) {
+        joined_[b] = !atBodies[b].empty();
+        referenceY_[b] = store.bodies.referencePosition[1][b];
+        const auto* unit = zones_ ? zones_->unitOf(b) : nullptr;
+        if (unit) momentPlace_[b] = unit->momentPlace;
+    }
+    onJoints_.assign(std::size_t(plane_ ? 4 : 9) * joints, 0);
+    onPoints_.assign(std::size_t(plane_ ? 2 : 3) * points, 0);
+    toBodies_.fill(atBodies);
+    toNodes_.fill(atPlaces);
+    store_ = &store;
+    revision_ = store.revision();
+}
+
+void JointPlan::buildKind(SceneStore& store, const JointKind& kind, Kind& made,
+                          std::vector<std::vector<Receivers::Item>>& atBodies) {
+    const int count = int(kind.shapes->joints.size());
+    const int stride = (count + lanes - 1) / lanes * lanes;
+    for (auto* columns : {made.frame1, made.frame2})
+        for (int d = 0; d < 4; ++d)
+            columns[d].resize(stride);
+    for (auto& column : made.span)
+        column.resize(stride);
+    made.body1.resize(stride);
+    made.body2.resize(stride);
+    for (int j = 0; j < stride; ++j) { // the last joint stands for the places up to whole lanes, too
+        const auto& r = kind.shapes->joints[std::min(j, count - 1)];
+        made.body1[j] = r.sides[0].body;
+        made.body2[j] = r.sides[1].body;
+        const auto put = [&](std::vector<double>* columns, int side) {
+            const Quaternionr q = r.frame(side);
+            if (plane_) {
+                aboutY(fromPlane(store.bodies.state(r.sides[side].body), q), columns[0][j], columns[1][j]);
+                return;
+            }
+            columns[0][j] = q.w();
+            for (int d = 0; d < 3; ++d)
+                columns[1 + d][j] = q.vec()[d];
+        };
+        put(made.frame1, 0);
+        put(made.frame2, 1);
+        const Vector3r span = r.span();
+        for (int d = 0; d < 3; ++d)
+            made.span[d][j] = span[d];
+        if (j >= count) continue;
+        atBodies[made.body1[j]].push_back({made.first + j, false});
+        atBodies[made.body2[j]].push_back({made.first + j, true});
+    }
+    // Where all joints are alike, a block of them has the geometry of all, which then stays in the innermost cache.
+    const double length = std::hypot(made.span[0][0], made.span[1][0], made.span[2][0]);
+    struct Shared {
+        std::vector<double>* column;
+        double scale;
+    };
+    std::vector<Shared> shared;
+    for (int d = 0; d < 4; ++d)
+        shared.insert(shared.end(), {{&made.frame1[d], 1}, {&made.frame2[d], 1}});
+    for (auto& column : made.span)
+        shared.push_back({&column, length});
+    bool alike = stride >= most;
+    for (const auto& s : shared)
+        for (int j = 0; alike && j < count; ++j)
+            alike = sameButRoundOff((*s.column)[j], (*s.column)[0], s.scale);
+    if (!alike) return;
+    kind.shapes->shareShapes();
+    if (!kind.shapes->alike) return;
+    made.alike = true;
+    for (const auto& s : shared) {
+        s.column->resize(most);
+        s.column->shrink_to_fit();
+    }
+}
+
+// Where the two sides of subcontacts with deformable sides stand in the rows of MasonryZones.
+void JointPlan::buildPlaces(const JointKind& kind, Kind& made, std::vector<std::vector<Receivers::Item>>& atPlaces) {
+    const int count = int(kind.shapes->joints.size()), points = kind.shapes->points;
+    const int stride = int(made.body1.size());
+    made.place1.assign(std::size_t(stride) * points, 0);
+    made.place2 = made.place1;
+    for (int j = 0; j < count; ++j) {
+        const auto& r = kind.shapes->joints[j];
+        for (int p = 0; p < points; ++p)
+            for (int side = 0; side < 2; ++side) {
+                const auto& hung = r.hung->sides[side];
+                int place;
+                if (!hung.empty() && hung[p].weights[0] == 1)
+                    place = zones_->placeOf(hung[p].nodes[0]);
+                else {
+                    const auto& from = r.sides[side];
+                    const Vector3r reference = r.sides[0].position + r.axes() * kind.shapes->offsetAt(p, j);
+                    DependentPoint point{zones_->addDependentPoint(), -1, reference, Vector3r::Zero(), {}};
+                    if (hung.empty()) {
+                        point.body = from.body;
+                        point.local = from.orientation.conjugate() * (reference - from.position);
+                    } else
+                        point.attachment = hung[p];
+                    dependentPoints_.push_back(point);
+                    place = point.place;
+                }
+                const int i = p * stride + j;
+                (side ? made.place2 : made.place1)[i] = place;
+                if (int(atPlaces.size()) <= place) atPlaces.resize(place + 1);
+                atPlaces[place].push_back({made.firstPoint + i, side == 1});
+            }
+    }
+}
+
+// ---- a step -----------------------------------------------------------------------------------------------------
+
+// Takes what somebody moved; whether the bodies are where the plan can follow them: in the plane, if it is for the
+// plane.
+bool JointPlan::noticeBodies(SceneStore& store) {
+    auto& bodies = store.bodies;
+    const int count = bodies.size();
+    bool fits = true;
+#pragma omp parallel for schedule(static) reduction(&& : fits)
+    for (int b = 0; b < count; ++b) {
+        if (!joined_[b]) continue;
+        bodies.noticePlace(b);
+        if (!plane_) continue;
+        fits = fits && aboutY(bodies.orientationOf(b) * bodies.fromReference[b], turn_[0][b], turn_[1][b]);
+        fits = fits && std::abs(bodies.position[1][b] - referenceY_[b]) < flat;
+        fits = fits && (momentPlace_[b] >= 0 || heldInPlane(bodies, b));
+    }
+    return fits;
+}
+
+void JointPlan::advanceBlock(SceneStore& store, const JointKind& kind, const Kind& plan, int from, int n) {
+    auto& shapes = *kind.shapes;
+    auto& states = kind.states->columns;
+    const auto& bodies = store.bodies;
+    JointFrames frames;
+    const int own = plan.alike ? 0 : from;
+    // in the plane complex numbers z + ix stand for places
+    const double* const position[3] = {bodies.position[plane_ ? 2 : 0].data(), bodies.position[plane_ ? 0 : 1].data(),
+                                       bodies.position[plane_ ? 1 : 2].data()};
+    const double *turn[4], *frame1[4], *frame2[4], *span[3];
+    for (int d = 0; d < 4; ++d) {
+        turn[d] = plane_ ? turn_[d].data() : bodies.orientation[d].data();
+        frame1[d] = &plan.frame1[d][own];
+        frame2[d] = &plan.frame2[d][own];
+    }
+    for (int d = 0; d < 3; ++d)
+        span[d] = &plan.span[d][own];
+    const int *body1 = &plan.body1[from], *body2 = &plan.body2[from];
+    if (kind.hung)
+        (plane_ ? alignNodalInPlane : alignNodal)(n, body1, body2, turn, frame1, frame2, frames);
+    else
+        (plane_ ? alignRigidInPlane : alignRigid)(n, body1, body2, position, turn, frame1, frame2, span, frames);
+    const int stride = int(plan.body1.size());
+    for (int p = 0; p < shapes.points; ++p) {
+        const std::size_t i = shapes.at(p, from), shape = shapes.alike ? shapes.shape(p, 0) : i;
+        const std::size_t hung = std::size_t(p) * stride + from;
+        const double *area = &shapes.area[shape], *a0 = &shapes.offset[0][shape], *a1 = &shapes.offset[1][shape],
+                     *a2 = &shapes.offset[2][shape];
+        double *j0 = &shapes.jump[0][i], *j1 = &shapes.jump[1][i], *j2 = &shapes.jump[2][i];
+        if (kind.hung) {
+            const int *place1 = &plan.place1[hung], *place2 = &plan.place2[hung];
+            const double* u = zones_->displacementRows();
+            plane_ ? jumpNodalInPlane(n, place1, place2, u, j0, j1, frames)
+                   : jumpNodal(n, place1, place2, u, j0, j1, j2, frames);
+        } else
+            plane_ ? jumpRigidInPlane(n, a0, a1, j0, j1, frames) : jumpRigid(n, a0, a1, a2, j0, j1, j2, frames);
+        states.advance(p, from, n, frames.step[0], frames.step[1], plane_ ? nullptr : frames.step[2],
+                       frames.normalStress);
+        const double *normal = frames.normalStress, *a = states.shearStressA(p, from),
+                     *b = states.shearStressB(p, from);
+        if (kind.hung) {
+            double* onPoints = &onPoints_[(plane_ ? 2 : 3) * (plan.firstPoint + hung)];
+            plane_ ? pullNodalInPlane(n, area, normal, a, j0, j1, frames, onPoints)
+                   : pullNodal(n, area, normal, a, b, j0, j1, j2, frames, onPoints);
+        } else
+            plane_ ? pullRigidInPlane(n, area, normal, a, a0, a1, frames) : pullRigid(n, area, normal, a, b, frames);
+    }
+    double* onJoints = &onJoints_[std::size_t(plane_ ? 4 : 9) * (plan.first + from)];
+    if (kind.hung)
+        (plane_ ? finishNodalInPlane : finishNodal)(n, frames, onJoints);
+    else
+        (plane_ ? finishRigidInPlane : finishRigid)(n, frames, onJoints);
+}
+
+void JointPlan::moveDependentPoints(const SceneStore& store) {
+    double* rows = zones_->displacementRows();
+    for (const auto& point : dependentPoints_) {
+        Vector3r moved;
+        if (point.body >= 0) {
+            const auto& s = store.bodies.state(point.body);
+            moved = s.pos + s.ori * point.local - point.reference;
+        } else
+            moved = zones_->displacementAt(point.attachment);
+        for (int d = 0; d < 3; ++d)
+            rows[point.place + d * lanes] = moved[d];
+    }
+}
+
+void JointPlan::bringToBodies() {
+    const int count = int(toBodies_.receivers.size());
+#pragma omp parallel for schedule(static)
+    for (int r = 0; r < count; ++r) {
+        Vector3r force = Vector3r::Zero(), torque = Vector3r::Zero();
+        for (int n = toBodies_.start[r]; n < toBodies_.start[r + 1]; ++n) {
+            const auto& item = toBodies_.items[n];
+            const double sign = item.second ? -1 : 1;
+            if (plane_) {
+                const double* on = &onJoints_[4 * item.source];
+                force[0] += sign * on[0];
+                force[2] += sign * on[1];
+                torque[1] += on[2 + item.second];
+            } else {
+                const double* on = &onJoints_[9 * item.source];
+                for (int d = 0; d < 3; ++d) {
+                    force[d] += sign * on[d];
+                    torque[d] += on[3 + 3 * item.second + d];
+                }
+            }
+        }
+        const int body = toBodies_.receivers[r];
+        if (momentPlace_[body] >= 0) {
+            for (int d = 0; d < 3; ++d)
+                (zones_->momentRows() + momentPlace_[body])[d * lanes] = torque[d];
+        } else {
+            forces_[body] += force;
+            torques_[body] += torque;
+        }
+    }
+}
+
+void JointPlan::bringToNodes(SceneStore& store) {
+    double* forces = zones_->forceRows();
+    const int count = int(toNodes_.receivers.size());
+#pragma omp parallel for schedule(static)
+    for (int r = 0; r < count; ++r) {
+        double sum[3] = {0, 0, 0};
+        for (int n = toNodes_.start[r]; n < toNodes_.start[r + 1]; ++n) {
+            const auto& item = toNodes_.items[n];
+            const double sign = item.second ? -1 : 1;
+            if (plane_) {
+                const double* on = &onPoints_[2 * item.source];
+                sum[0] += sign * on[0];
+                sum[2] += sign * on[1];
+            } else {
+                const double* on = &onPoints_[3 * item.source];
+                for (int d = 0; d < 3; ++d)
+                    sum[d] += sign * on[d];
+            }
+        }
+        for (int d = 0; d < 3; ++d)
+            (forces + toNodes_.receivers[r])[d * lanes] = sum[d];
+    }
+    for (const auto& point : dependentPoints_) {
+        const double* on = forces + point.place;
+        const Vector3r force(on[0], on[lanes], on[2 * lanes]);
+        if (point.body >= 0) {
+            forces_[point.body] += force;
+            torques_[point.body] += (store.bodies.state(point.body).ori * point.local).cross(force);
+        } else
+            for (int i = 0; i < 3; ++i)
+                for (int d = 0; d < 3; ++d)
+                    forces[zones_->placeOf(point.attachment.nodes[i]) + d * lanes] +=
+                        point.attachment.weights[i] * force[d];
+    }
+}
+
+void JointPlan::advance(SceneStore& store) {
+    if (store_ != &store || revision_ != store.revision()) build(store, true);
+    if (!noticeBodies(store)) {
+        build(store, false);
+        noticeBodies(store);
+    }
+    if (zones_) moveDependentPoints(store);
+    const int count = int(blocks_.size());
+#pragma omp parallel for schedule(static)
+    for (int n = 0; n < count; ++n) {
+        const auto& kind = store.kinds[blocks_[n].kind];
+        const auto& plan = kinds_[blocks_[n].kind];
+        const int from = blocks_[n].from, left = int(kind.shapes->joints.size()) - from;
+        advanceBlock(store, kind, plan, from, std::min(most, left));
+    }
+    const int bodies = store.bodies.size();
+    forces_ = store.scene().forces().forces(bodies);
+    torques_ = store.scene().forces().torques(bodies);
+    bringToBodies();
+    if (zones_) bringToNodes(store);
+}
+
+} // namespace masonry

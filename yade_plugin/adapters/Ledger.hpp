@@ -1,0 +1,21 @@
+// The energies that an engine keeps, as attributes.
+#pragma once
+#include "Adapter.hpp"
+#include "motion/EnergyLedger.hpp"
+
+namespace masonry {
+
+template <class Class, class Visit> void ledgerOfBodies(Visit&& visit) {
+    visit("external", &Class::external,
+          number("J",
+                 "Work of prescribed motions of bodies so far, without that of MasonryLoad; for MasonryEnergy with "
+                 "the energy of motion at the first step and at given()"),
+          ReadOnly);
+    visit("damped", &Class::damped, number("J", "Energy taken by damping so far"), ReadOnly);
+    visit("kinetic", &Class::kinetic, number("J", "Kinetic energy"), ReadOnly);
+    visit("fallen", &Class::fallen, number("J", "Work of gravity since the reference state"), ReadOnly);
+    visit("pendingExternal", &Class::pendingExternal, number("J", "External work of the last step"), Hidden);
+    visit("pendingDamped", &Class::pendingDamped, number("J", "Damping of the last step"), Hidden);
+}
+
+} // namespace masonry

@@ -1,0 +1,177 @@
+#include "MasonryEnergy.hpp"
+#include "BodyStep.hpp"
+#include "CriticalTimeStep.hpp"
+#include "MasonryIntegrator.hpp"
+#include "MasonryLoad.hpp"
+#include "MasonryZones.hpp"
+#include "SceneStore.hpp"
+
+template class masonry::Adapter<masonry::MasonryEnergy, yade::GlobalEngine>;
+BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryEnergy)
+
+namespace masonry {
+
+using yade::State;
+
+MasonryEnergy::Inventory MasonryEnergy::inventory(const SceneStore& store) const {
+    Inventory all{external, fallen, kinetic, damped, 0};
+    for (const auto* load : store.allLoads)
+        all.work += load->work;
+    for (const EnergyLedger* other :
+         {static_cast<const EnergyLedger*>(store.integrator), static_cast<const EnergyLedger*>(store.zones)}) {
+        if (!other) continue;
+        all.work += other->external;
+        all.falls += other->fallen;
+        all.moving += other->kinetic;
+        all.drag += other->damped;
+        all.inUnits += other->elastic;
+    }
+    return all;
+}
+
+namespace {
+
+std::string firstNotFinite(const yade::Scene& scene) {
+    for (const auto& body : scene.bodies->body)
+        if (body && body->state && !(body->state->pos + body->state->vel + body->state->angVel).allFinite())
+            return "of body " + std::to_string(body->id);
+    return "of the joints";
+}
+
+} // namespace
+
+// Looks every tenth step, and when time step or joints are others. The energy of motion m v-·v+ / 2 of a stable motion
+// lies between that of all work done and minus 1/(1 - r²) of it, at a share r of the limit; r is 0.995 for a hundred.
+void MasonryEnergy::watchOver(SceneStore& store) {
+    const bool tenth = scene->iter % 10 == 0;
+    if (!tenth && scene->dt == checkedStep_ && store.revision() == checkedRevision_) return;
+    checkedStep_ = scene->dt;
+    checkedRevision_ = store.revision();
+    for (bool anew : {false, true}) { // masses may have changed
+        const auto limit = timeStepLimit(store, anew);
+        if (scene->dt <= limit.dt) break;
+        if (anew) throw std::runtime_error("unstable: " + masonry::described(store, limit));
+    }
+    if (!tenth) return;
+    const auto all = inventory(store);
+    const double motion = std::abs(all.moving);
+    if (!std::isfinite(motion))
+        throw std::runtime_error("numbers " + firstNotFinite(*scene) + " are not finite at step " +
+                                 std::to_string(scene->iter) + "; " +
+                                 masonry::described(store, timeStepLimit(store, false)));
+    largestInput = std::max(largestInput, std::abs(all.work + all.falls));
+    if (motion > 100 * largestInput + 1e-12)
+        throw std::runtime_error("unstable: motion out of nothing at step " + std::to_string(scene->iter) + ", " +
+                                 text(motion) + " J where " + text(largestInput) + " J of work were done; " +
+                                 masonry::described(store, timeStepLimit(store, true)) +
+                                 ". Velocities set by hand must be told at once by MasonryEnergy.given()");
+}
+
+namespace {
+
+double motionOf(SceneStore& store) { // energy of what is free to move [J]
+    double twice = 0;
+    auto* zones = store.zones;
+    for (const auto& body : store.scene().bodies->body) {
+        if (!body || !body->state || (zones && zones->unitOf(body->id))) continue;
+        const State& s = *body->state;
+        const Vector3r spin = rotationRestrained(s) ? s.angVel : Vector3r(s.ori.conjugate() * s.angVel);
+        for (int i = 0; i < 3; ++i) {
+            if (!isBlocked(s, i)) twice += s.mass * s.vel[i] * s.vel[i];
+            if (!isBlocked(s, 3 + i)) twice += s.inertia[i] * spin[i] * spin[i];
+        }
+    }
+    if (!zones) return 0.5 * twice;
+    for (const auto& unit : zones->units()) {
+        const auto& masses = unit.elasticity->masses();
+        for (std::size_t n = 0; n < masses.size(); ++n)
+            for (int d = 0; d < 3; ++d)
+                if (!zones->holds(d)) twice += masses[n] * std::pow(zones->velocityOf(unit.firstNode + int(n))[d], 2);
+    }
+    return 0.5 * twice;
+}
+
+} // namespace
+
+void MasonryEnergy::countPresentMotion(SceneStore& store) {
+    external += motionOf(store) - inventory(store).moving;
+    begun = true;
+}
+
+void MasonryEnergy::given() {
+    const BetweenSteps still;
+    auto& store = SceneStore::present();
+    store.update();
+    countPresentMotion(store);
+}
+
+void MasonryEnergy::action() {
+    const EngineTurn turn(*scene, *this);
+    if (!begun) countPresentMotion(turn.store());
+    if (watch) watchOver(turn.store());
+    if (turn->integrator) return; // keeps them itself
+    const Vector3r gravity = turn->gravity();
+    const BodyDamping damping{turn->damping(), turn->hostIntegrator != nullptr, nullptr};
+    auto& forces = scene->forces();
+    forces.sync();
+    beginStep();
+    for (const auto& body : scene->bodies->body) {
+        if (!body || !body->state || (turn->zones && turn->zones->unitOf(body->id))) continue; // zones keep their own
+        const State& s = *body->state;
+        fallen += s.mass * gravity.dot(s.pos - s.refPos);
+        if (!isFreeOrMoves(s)) continue;
+        const BodyForces on{forces.getForce(body->id), forces.getTorque(body->id)};
+        add(stepOf(s, on, gravity, scene->dt, damping).energies);
+    }
+    for (auto* load : turn->loads) {
+        const State& s = *scene->bodies->body[load->body]->state;
+        const BodyForces on{forces.getForce(load->body), forces.getTorque(load->body)};
+        const auto step = stepOf(s, on, gravity, scene->dt, damping);
+        load->workBefore(scene->dt, s);
+        load->workAfter(scene->dt, step.vel, step.angVel);
+    }
+}
+
+py::dict MasonryEnergy::balance() {
+    const BetweenSteps still;
+    auto& store = SceneStore::present();
+    store.update();
+    JointColumns::Sums joints{};
+    for (const auto& kind : store.kinds) {
+        const auto sums = kind.states->columns.energies(kind.shapes->area.data(), kind.shapes->alike);
+        joints.stored.tension += sums.stored.tension;
+        joints.stored.shear += sums.stored.shear;
+        joints.stored.compression += sums.stored.compression;
+        joints.dissipated.tension += sums.dissipated.tension;
+        joints.dissipated.shear += sums.dissipated.shear;
+        joints.dissipated.compression += sums.dissipated.compression;
+    }
+    const auto& stored = joints.stored;
+    const Vector3r lost(joints.dissipated.tension, joints.dissipated.shear, joints.dissipated.compression);
+    const auto [work, falls, moving, drag, inUnits] = inventory(store);
+    const double in = work + falls;
+    const double out = moving + drag + inUnits + stored.tension + stored.shear + stored.compression + lost.sum();
+    const double size = std::max(std::abs(work) + std::abs(falls), std::abs(out));
+    // What is dissipated cannot come back: a joint that opens or closes within a step takes the trapezoidal work of
+    // both stiffnesses, and a long undamped series of such steps makes energy, which damping or shorter steps prevent.
+    mostLost = mostLost.cwiseMax(lost);
+    const double error = size > 0 ? (in - out) / size : 0;
+    largestError = std::max(largestError, std::abs(error));
+    if (size > 0) largestMade = std::max(largestMade, (mostLost - lost).sum() / size);
+    py::dict all;
+    all["external"] = work;
+    all["gravity"] = falls;
+    all["kinetic"] = moving;
+    all["damping"] = drag;
+    all["elastic_units"] = inUnits;
+    all["elastic_tension"] = stored.tension;
+    all["elastic_shear"] = stored.shear;
+    all["elastic_compression"] = stored.compression;
+    all["dissipated_tension"] = lost[0];
+    all["dissipated_shear"] = lost[1];
+    all["dissipated_compression"] = lost[2];
+    all["error"] = error;
+    return all;
+}
+
+} // namespace masonry

@@ -1,0 +1,138 @@
+#include "MasonryIntegrator.hpp"
+#include "BodyStep.hpp"
+#include "MasonryLoad.hpp"
+#include "MasonryZones.hpp"
+#include "SceneStore.hpp"
+
+template class masonry::Adapter<masonry::MasonryIntegrator, yade::GlobalEngine>;
+BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryIntegrator)
+
+namespace masonry {
+
+std::vector<std::string> MasonryIntegrator::problems() const {
+    if (combined() || dampingKind == "local") return {};
+    return {"dampingKind '" + dampingKind + "' must be 'combined' or 'local'"};
+}
+
+// Two vectors a body, as they are saved.
+std::vector<Vector3r> MasonryIntegrator::lastForces() {
+    std::vector<Vector3r> all;
+    for (std::size_t b = 0; b < last_[0].size(); ++b) {
+        all.emplace_back(last_[0][b], last_[1][b], last_[2][b]);
+        all.emplace_back(last_[3][b], last_[4][b], last_[5][b]);
+    }
+    return all;
+}
+
+void MasonryIntegrator::setLastForces(const std::vector<Vector3r>& all) {
+    for (int d = 0; d < 6; ++d) {
+        last_[d].assign(all.size() / 2, 0);
+        for (std::size_t b = 0; b < all.size() / 2; ++b)
+            last_[d][b] = all[2 * b + d / 3][d % 3];
+    }
+}
+
+void MasonryIntegrator::action() {
+    const EngineTurn turn(*scene, *this);
+    auto& bodies = turn->bodies;
+    const int count = bodies.size();
+    const auto summed = scene->forces().summed(count);
+    for (auto& column : last_)
+        if (combined()) column.resize(count, 0);
+    for (auto* load : turn->loads)
+        load->workBefore(scene->dt, bodies.state(load->body));
+    // Bodies whose energies are summed up together are the same whatever the number of threads.
+    constexpr int piece = RigidMotion::most;
+    const int pieces = (count + piece - 1) / piece;
+    std::vector<EnergyLedger> sums(pieces);
+#pragma omp parallel for schedule(static)
+    for (int n = 0; n < pieces; ++n)
+        sums[n] = advance(turn.store(), summed.forces, summed.torques, n * piece, std::min(count, (n + 1) * piece));
+    beginStep();
+    for (const auto& sum : sums)
+        add(sum);
+    for (auto* load : turn->loads) {
+        const auto& s = bodies.state(load->body);
+        load->workAfter(scene->dt, s.vel, s.angVel);
+    }
+}
+
+EnergyLedger MasonryIntegrator::advance(SceneStore& store, const Vector3r* forces, const Vector3r* torques, int first,
+                                        int beyond) {
+    constexpr int ahead = 8;
+    auto& bodies = store.bodies;
+    EnergyLedger sum;
+    RigidMotion motion;
+    unsigned axes = 0;
+    bool mine[RigidMotion::most];
+    for (int b = first; b < beyond; ++b) {
+        const int i = b - first;
+        if (b + ahead < beyond && bodies.has(b + ahead)) bodies.prefetch(b + ahead);
+        mine[i] = false;
+        motion.alpha[i] = 0;
+        for (int d = 0; d < 6; ++d)
+            motion.free[d][i] = motion.force[d][i] = 0;
+        if (!bodies.has(b) || (store.zones && store.zones->unitOf(b))) continue;
+        bodies.notice(b);
+        const Vector3r moved(bodies.position[0][b] - bodies.referencePosition[0][b],
+                             bodies.position[1][b] - bodies.referencePosition[1][b],
+                             bodies.position[2][b] - bodies.referencePosition[2][b]);
+        sum.fallen += bodies.mass[b] * gravity.dot(moved);
+        const unsigned own = bodies.axes(b);
+        if (own == 0) continue;
+        if (bodies.spins(b)) {
+            sum.add(turnFreely(store, forces[b], torques[b], b));
+            continue;
+        }
+        mine[i] = true;
+        axes |= own;
+        motion.alpha[i] = bodies.isDamped(b) ? damping : 0;
+        for (int d = 0; d < 3; ++d) {
+            motion.force[d][i] = forces[b][d];
+            motion.force[3 + d][i] = torques[b][d];
+            motion.free[d][i] = !bodies.isBlocked(b, d);
+            motion.free[3 + d][i] = !bodies.isBlocked(b, 3 + d);
+        }
+    }
+    if (axes == 0) return sum;
+    const RigidMotion::Around around{scene->dt, {gravity[0], gravity[1], gravity[2]}, combined()};
+    double unused[RigidMotion::most] = {}; // local damping looks at no earlier forces
+    double* last[6];
+    for (int d = 0; d < 6; ++d)
+        last[d] = combined() ? &last_[d][first] : unused;
+    motion.advance(bodies, last, first, beyond - first, around, axes);
+    for (int b = first; b < beyond; ++b) {
+        const int i = b - first;
+        if (!mine[i]) continue;
+        bodies.give(b);
+        EnergyLedger own;
+        own.external = own.pendingExternal = motion.work[i];
+        own.damped = motion.damped[0][i];
+        own.pendingDamped = motion.damped[1][i];
+        own.kinetic = motion.kinetic[i];
+        sum.add(own);
+    }
+    return sum;
+}
+
+// One body that is free to turn in space: the host's State holds its angular momentum, so the step is made there.
+EnergyLedger MasonryIntegrator::turnFreely(SceneStore& store, const Vector3r& force, const Vector3r& torque, int body) {
+    auto& s = store.bodies.state(body);
+    BodyForces before{Vector3r::Zero(), Vector3r::Zero()};
+    for (int d = 0; combined() && d < 3; ++d) {
+        before.force[d] = last_[d][body];
+        before.torque[d] = last_[3 + d][body];
+    }
+    const auto step = stepOf(s, {force, torque}, gravity, scene->dt, {damping, false, combined() ? &before : nullptr});
+    for (int d = 0; combined() && d < 3; ++d) {
+        last_[d][body] = before.force[d];
+        last_[3 + d][body] = before.torque[d];
+    }
+    s.vel = step.vel;
+    s.pos += scene->dt * s.vel;
+    turnInSpace(s, step, scene->dt);
+    store.bodies.take(body);
+    return step.energies;
+}
+
+} // namespace masonry

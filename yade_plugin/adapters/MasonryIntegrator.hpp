@@ -1,0 +1,51 @@
+#pragma once
+#include "Ledger.hpp"
+#include "motion/RigidMotion.hpp"
+
+namespace masonry {
+
+class SceneStore;
+
+class MasonryIntegrator : public Adapter<MasonryIntegrator, yade::GlobalEngine>, public EnergyLedger {
+public:
+    static constexpr const char* className = "MasonryIntegrator";
+    static constexpr const char* baseName = "GlobalEngine";
+    static constexpr const char* doc =
+        "Moves the rigid bodies, in the equations of NewtonIntegrator (paper eqs. (1)-(3)) without what masonry does "
+        "not need (periodic cells, clumps, bounds for a collider), and keeps their energies. NewtonIntegrator and "
+        "MasonryEnergy stay as the reference.";
+
+    double damping = 0.8;
+    std::string dampingKind = "local";
+    Vector3r gravity = Vector3r(0, 0, -9.81);
+
+    template <class Visit> static void attributes(Visit&& visit) {
+        using I = MasonryIntegrator;
+        visit("damping", &I::damping,
+              number("-", "Damping constant alpha").atLeast(0).atMost(0.99).source("paper eq. (3): 0.8"));
+        visit("dampingKind", &I::dampingKind,
+              described("'local': -alpha |F| sgn(v), paper eq. (3); 'combined': alpha |F| (sgn(dF/dt) - sgn(v)) / 2, "
+                        "which calms what swings about a steady motion, too"));
+        visit("gravity", &I::gravity, number("m/s²", "Gravity"));
+        ledgerOfBodies<I>(visit);
+        visit("last", computed(&I::lastForces, &I::setLastForces),
+              described("Force per mass and torque per inertia of every body in the last step"), Hidden);
+    }
+
+    std::vector<std::string> problems() const;
+    void action() override;
+
+private:
+    bool combined() const { return dampingKind == "combined"; }
+    EnergyLedger advance(SceneStore&, const Vector3r* forces, const Vector3r* torques, int first, int beyond);
+    EnergyLedger turnFreely(SceneStore&, const Vector3r& force, const Vector3r& torque, int body);
+    std::vector<Vector3r> lastForces();
+    void setLastForces(const std::vector<Vector3r>&);
+
+    std::vector<double> last_[6]; // force per mass and torque per inertia of the last step, for combined damping
+};
+
+} // namespace masonry
+
+extern template class masonry::Adapter<masonry::MasonryIntegrator, yade::GlobalEngine>;
+BOOST_CLASS_EXPORT_KEY(masonry::MasonryIntegrator)

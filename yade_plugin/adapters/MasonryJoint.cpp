@@ -1,0 +1,51 @@
+#include "MasonryJoint.hpp"
+
+template class masonry::Adapter<masonry::MasonryJoint, yade::Serializable>;
+BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJoint)
+
+namespace masonry {
+
+void MasonryJoint::postLoad() {
+    if (!direction.allFinite()) throw std::invalid_argument("joint \"" + name + "\": direction must be finite numbers");
+    law_ = std::make_shared<const JointLaw>(*this); // refuses what is wrong
+    ++changes;
+}
+
+bool MasonryJoint::appliesTo(const std::string& set1, const std::string& set2, const Vector3r& normal) const {
+    constexpr double within = 0.8660254; // cos 30°
+    if (!jointSet.empty() && jointSet != set1 && jointSet != set2) return false;
+    return direction.isZero() || std::abs(direction.normalized().dot(normal)) >= within;
+}
+
+py::list MasonryJoint::compressionCurve(const std::vector<double>& closures) const {
+    py::list strengths;
+    for (double u : closures) {
+        if (!std::isfinite(u)) throw std::invalid_argument("closure " + text(u) + " m must be a finite number");
+        strengths.append(law_->compression().strength(u));
+    }
+    return strengths;
+}
+
+py::dict MasonryJoint::softening() const {
+    const auto rows = [](const SofteningTable& table) {
+        py::list all;
+        for (const auto& row : table.rows())
+            all.append(py::make_tuple(row.ratio, row.damage));
+        return all;
+    };
+    py::dict both;
+    both["tension"] = rows(law_->tension());
+    both["shear"] = rows(law_->shear());
+    return both;
+}
+
+shared_ptr<MasonryJoint> MasonryJoint::brittle() const {
+    shared_ptr<MasonryJoint> made(new MasonryJoint);
+    static_cast<JointProperties&>(*made) = brittleCoulomb(*this);
+    made->jointSet = jointSet;
+    made->direction = direction;
+    made->postLoad();
+    return made;
+}
+
+} // namespace masonry

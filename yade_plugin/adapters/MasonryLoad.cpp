@@ -1,0 +1,63 @@
+#include "MasonryLoad.hpp"
+#include "BodyStep.hpp"
+#include "MasonryZones.hpp"
+#include "SceneCheck.hpp"
+#include "SceneStore.hpp"
+
+template class masonry::Adapter<masonry::MasonryLoad, yade::GlobalEngine>;
+BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryLoad)
+
+namespace masonry {
+
+std::vector<std::string> MasonryLoad::problems() const {
+    if (direction.norm() > 0 || !direction.allFinite()) return {};
+    return {"direction must not be zero"};
+}
+
+void MasonryLoad::action() {
+    const EngineTurn turn(*scene, *this);
+    if (turn->zones && turn->zones->unitOf(body))
+        throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) +
+                                    " is a deformable unit; load a rigid block joined to it");
+    auto& state = *bodyAt(*scene, body, "MasonryLoad.body").state;
+    state.isDamped = false;
+    arm_ = state.ori * state.refOri.conjugate() * (point - state.refPos);
+    total_ = force;
+    auto& forces = scene->forces();
+    if (driven) {
+        // The force R that gives the point its velocity after this step: d·(v + w x arm) = V with
+        // v' = v + dt (F + R d)/m + dt g, w' = w + dt I^-1 (T + arm x R d).
+        const Vector3r d = direction.normalized(), lever = arm_.cross(d), perMass = inverseMass(state);
+        const yade::Matrix3r perInertia = inverseInertia(state);
+        const Vector3r push = forces.getForceSingle(body) + total_ + state.mass * turn->gravity();
+        const Vector3r twist = forces.getTorqueSingle(body) + arm_.cross(total_);
+        const Vector3r v = state.vel + scene->dt * perMass.cwiseProduct(push);
+        const Vector3r w = state.angVel + scene->dt * (perInertia * twist);
+        const double mobility = d.dot(perMass.cwiseProduct(d)) + lever.dot(perInertia * lever);
+        if (mobility <= 0)
+            throw std::invalid_argument("MasonryLoad: body " + std::to_string(body) +
+                                        " is blocked in the driven direction");
+        reaction = (velocity - d.dot(v) - lever.dot(w)) / (mobility * scene->dt);
+        total_ += reaction * d;
+    } else
+        reaction = 0;
+    forces.addForce(body, total_);
+    forces.addTorque(body, arm_.cross(total_));
+}
+
+Vector3r MasonryLoad::displacement() const {
+    const BetweenSteps still;
+    const auto& state = *bodyAt(*Singleton<yade::Omega>::instance().getScene(), body, "MasonryLoad.body").state;
+    const Vector3r r = point - state.refPos;
+    return state.pos + state.ori * state.refOri.conjugate() * r - point;
+}
+
+void MasonryLoad::workBefore(double dt, const yade::State& s) {
+    work += pendingWork + 0.5 * dt * total_.dot(s.vel + s.angVel.cross(arm_));
+}
+
+void MasonryLoad::workAfter(double dt, const Vector3r& vel, const Vector3r& angVel) {
+    pendingWork = 0.5 * dt * total_.dot(vel + angVel.cross(arm_));
+}
+
+} // namespace masonry

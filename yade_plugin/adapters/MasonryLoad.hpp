@@ -1,0 +1,65 @@
+#pragma once
+#include "Adapter.hpp"
+
+namespace masonry {
+
+class MasonryLoad : public Adapter<MasonryLoad, yade::GlobalEngine> {
+public:
+    static constexpr const char* className = "MasonryLoad";
+    static constexpr const char* baseName = "GlobalEngine";
+    static constexpr const char* doc =
+        "Loads a rigid block at a point fixed to it: with a constant force, and, when driven, with a velocity of that "
+        "point in one direction, while the block stays free to rotate and to move otherwise. Stands after the "
+        "interaction loop and before the integrator. The block is taken out of the integrator's damping, so that the "
+        "velocity is met exactly; of two driven loads on one block that is true only if it cannot turn.";
+
+    int body = 0;
+    Vector3r point = Vector3r::Zero();
+    Vector3r force = Vector3r::Zero();
+    Vector3r direction = Vector3r::UnitX();
+    bool driven = false;
+    double velocity = 0;
+    double reaction = 0;
+    double work = 0;
+    double pendingWork = 0;
+
+    template <class Visit> static void attributes(Visit&& visit) {
+        using L = MasonryLoad;
+        visit("body", &L::body, number("", "Id of the loaded body").atLeast(0));
+        visit("point", &L::point, number("m", "Loaded point in the reference state of the body, global axes"));
+        visit("force", &L::force, number("N", "Force at the point"));
+        visit("direction", &L::direction, described("Direction of the driven velocity; not zero"));
+        visit("driven", &L::driven, described("Whether the velocity is prescribed"));
+        visit("velocity", &L::velocity, number("m/s", "Velocity of the point along the direction"));
+        visit("reaction", &L::reaction, number("N", "Force that the drive applies along the direction"), ReadOnly);
+        visit("work", &L::work,
+              number("J",
+                     "Work done on the block by force and drive so far; kept by the engine that keeps the energies "
+                     "of rigid bodies"),
+              ReadOnly);
+        visit("pendingWork", &L::pendingWork, number("J", "Work of the last step"), Hidden);
+    }
+
+    template <class PyClass> static void extras(PyClass& cls) {
+        cls.def("displacement", &MasonryLoad::displacement,
+                "Displacement of the loaded point since the reference state [m].");
+    }
+
+    std::vector<std::string> problems() const;
+    void action() override;
+
+    // Half of a load's work is done with the velocity before the step and half with the one after, as in BodyStep.
+    void workBefore(double dt, const yade::State&);
+    void workAfter(double dt, const Vector3r& vel, const Vector3r& angVel);
+
+private:
+    Vector3r displacement() const; // of the point, since the reference state
+
+    Vector3r total_ = Vector3r::Zero(); // force of the present step
+    Vector3r arm_ = Vector3r::Zero();   // from the body's centre to the point in the present step
+};
+
+} // namespace masonry
+
+extern template class masonry::Adapter<masonry::MasonryLoad, yade::GlobalEngine>;
+BOOST_CLASS_EXPORT_KEY(masonry::MasonryLoad)

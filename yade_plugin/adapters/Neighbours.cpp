@@ -1,0 +1,117 @@
+#include "Neighbours.hpp"
+#include "SceneCheck.hpp"
+#include "common/Text.hpp"
+#include <algorithm>
+
+namespace masonry {
+
+namespace py = boost::python;
+using yade::Quaternionr;
+using yade::Vector3r;
+
+ConvexBlock blockOf(yade::Polyhedra& shape, const Vector3r& position, const Quaternionr& orientation) {
+    ConvexBlock block;
+    const auto corners = shape.GetSurfaceTriangulation();
+    for (const auto& v : shape.v)
+        block.vertices.push_back(position + orientation * v);
+    for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+        std::array<int, 3> t{corners[i], corners[i + 1], corners[i + 2]};
+        const auto &a = block.vertices[t[0]], &b = block.vertices[t[1]], &c = block.vertices[t[2]];
+        if ((b - a).cross(c - a).dot(a - position) < 0) std::swap(t[1], t[2]); // outward from the centre
+        block.triangles.push_back(t);
+    }
+    return block;
+}
+
+namespace {
+
+struct Candidate {
+    int id;
+    KnownBlock block;
+    Vector3r low, high; // of the space in which it may touch others
+    std::vector<int> joined;
+};
+
+// All blocks of the scene; std::invalid_argument with all that is wrong with them.
+std::vector<Candidate> candidates(double tolerance) {
+    if (!(tolerance > 0 && tolerance <= 0.01))
+        throw std::invalid_argument("tolerance " + text(tolerance) + " must be above 0 and at most 0.01");
+    std::vector<Candidate> all;
+    std::vector<std::string> wrong;
+    for (const auto& body : Singleton<yade::Omega>::instance().getScene()->bodies->body) {
+        auto* shape = body ? dynamic_cast<yade::Polyhedra*>(body->shape.get()) : nullptr;
+        if (!shape) continue;
+        const auto found = problemsOf(*body);
+        wrong.insert(wrong.end(), found.begin(), found.end());
+        if (!found.empty()) continue;
+        const auto& s = *body->state;
+        Candidate c{
+            body->id, blockOf(*shape, s.pos, s.ori), Vector3r::Constant(HUGE_VAL), Vector3r::Constant(-HUGE_VAL), {}};
+        const double size = c.block.diagonal, away = (s.pos - s.refPos).norm();
+        if (away > tolerance * size)
+            wrong.push_back("body " + std::to_string(body->id) + " lies " + text(1e3 * away) +
+                            " mm from its reference place state.refPos, which addBlock() sets");
+        for (const auto& v : c.block.vertices)
+            c.low = c.low.cwiseMin(v), c.high = c.high.cwiseMax(v);
+        const Vector3r margin = Vector3r::Constant(std::max(tolerance * size, 0.125 * c.block.thickness));
+        c.low -= margin, c.high += margin;
+        all.push_back(std::move(c));
+    }
+    if (!wrong.empty()) throw std::invalid_argument(firstOf(wrong));
+    return all;
+}
+
+} // namespace
+
+py::tuple neighbours(double tolerance) {
+    auto all = candidates(tolerance);
+    Vector3r low = Vector3r::Constant(HUGE_VAL), high = -low;
+    for (const auto& c : all)
+        low = low.cwiseMin(c.low), high = high.cwiseMax(c.low);
+    int axis; // along which the blocks are spread most
+    (high - low).maxCoeff(&axis);
+    std::sort(all.begin(), all.end(), [axis](const auto& a, const auto& b) { return a.low[axis] < b.low[axis]; });
+    using Pair = std::pair<int, int>;
+    std::vector<Pair> pairs;
+    std::vector<std::tuple<std::size_t, std::size_t, Misfit>> misfits;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (std::size_t j = i + 1; j < all.size() && all[j].low[axis] <= all[i].high[axis]; ++j) {
+            auto &one = all[i], &two = all[j];
+            if ((two.low.array() > one.high.array()).any() || (one.low.array() > two.high.array()).any()) continue;
+            if (coincidentFaces(one.block, two.block, tolerance)) {
+                pairs.emplace_back(std::minmax(one.id, two.id));
+                one.joined.push_back(int(j)), two.joined.push_back(int(i));
+            } else if (const auto found = misfit(one.block, two.block, tolerance))
+                misfits.emplace_back(i, j, *found);
+        }
+    std::sort(pairs.begin(), pairs.end());
+    std::vector<std::tuple<Pair, double, double>> gaps;
+    for (const auto& [i, j, found] : misfits) {
+        const auto filled = [&, &others = all[j].joined, &middle = found.middle](int k) { // by a block joined to both
+            return std::count(others.begin(), others.end(), k) &&
+                   all[k].block.holds(middle, 1e-3 * all[k].block.thickness);
+        };
+        if (found.gap < 0 || std::none_of(all[i].joined.begin(), all[i].joined.end(), filled))
+            gaps.emplace_back(std::minmax(all[i].id, all[j].id), found.gap,
+                              tolerance * std::min(all[i].block.diagonal, all[j].block.diagonal));
+    }
+    std::sort(gaps.begin(), gaps.end());
+    py::list touching, missing, sizes;
+    for (const auto& [one, two] : pairs)
+        touching.append(py::make_tuple(one, two));
+    for (const auto& [ids, gap, bound] : gaps)
+        missing.append(py::make_tuple(ids.first, ids.second, gap, bound));
+    if (!all.empty()) {
+        const auto thin = std::min_element(
+            all.begin(), all.end(), [](const auto& a, const auto& b) { return a.block.thickness < b.block.thickness; });
+        const auto large = std::max_element(
+            all.begin(), all.end(), [](const auto& a, const auto& b) { return a.block.diagonal < b.block.diagonal; });
+        sizes.append(py::make_tuple(thin->id, thin->block.thickness));
+        sizes.append(py::make_tuple(large->id, large->block.size()));
+    }
+    return py::make_tuple(touching, missing, sizes);
+}
+
+py::list touchingPairs(double tolerance) { return py::extract<py::list>(neighbours(tolerance)[0]); }
+
+} // namespace masonry

@@ -1,0 +1,217 @@
+#include "SceneStore.hpp"
+#include "MasonryEnergy.hpp"
+#include "MasonryIntegrator.hpp"
+#include "MasonryJointGeom.hpp"
+#include "MasonryJointLoop.hpp"
+#include "MasonryJointPhys.hpp"
+#include "MasonryLoad.hpp"
+#include "SceneCheck.hpp"
+#include <algorithm>
+#include <exception>
+#include <map>
+#include <memory>
+
+namespace masonry {
+
+SceneStore::SceneStore(yade::Scene& scene) : scene_(scene), life_(scene.shared_from_this()) {}
+
+SceneStore& SceneStore::of(yade::Scene& scene) {
+    static std::vector<std::unique_ptr<SceneStore>> all;
+    for (auto& store : all)
+        if (&store->scene_ == &scene && !store->gone()) return *store;
+    all.erase(std::remove_if(all.begin(), all.end(), [](const auto& store) { return store->gone(); }), all.end());
+    all.emplace_back(new SceneStore(scene));
+    return *all.back();
+}
+
+SceneStore& SceneStore::present() { return of(*Singleton<yade::Omega>::instance().getScene()); }
+
+double SceneStore::damping() const {
+    return integrator ? integrator->damping : hostIntegrator ? hostIntegrator->damping : 0;
+}
+
+yade::Vector3r SceneStore::gravity() const {
+    return integrator ? integrator->gravity : hostIntegrator ? hostIntegrator->gravity : yade::Vector3r(0, 0, 0);
+}
+
+// Whether they are others than before.
+bool SceneStore::readEngines() {
+    const auto& present = scene_.engines;
+    bool same = engines_.size() == present.size();
+    for (std::size_t i = 0; same && i < present.size(); ++i)
+        same = engines_[i].first == present[i].get() && engines_[i].second == present[i]->dead;
+    if (same) return false;
+    engines_.clear();
+    loads.clear();
+    allLoads.clear();
+    loop = nullptr;
+    zones = nullptr;
+    energy = nullptr;
+    integrator = nullptr;
+    hostIntegrator = nullptr;
+    last = nullptr;
+    for (const auto& engine : present) {
+        engines_.emplace_back(engine.get(), engine->dead);
+        auto* load = dynamic_cast<MasonryLoad*>(engine.get());
+        if (load) allLoads.push_back(load);
+        if (engine->dead) continue;
+        const auto note = [&](auto*& place, auto* found) {
+            if (!found) return false;
+            if (!place) place = found;
+            last = engine.get();
+            return true;
+        };
+        if (load) {
+            loads.push_back(load);
+            last = engine.get();
+        } else if (!note(loop, dynamic_cast<MasonryJointLoop*>(engine.get())) &&
+                   !note(zones, dynamic_cast<MasonryZones*>(engine.get())) &&
+                   !note(energy, dynamic_cast<MasonryEnergy*>(engine.get())) &&
+                   !note(integrator, dynamic_cast<MasonryIntegrator*>(engine.get())) &&
+                   engine->getClassName() == "NewtonIntegrator")
+            hostIntegrator = static_cast<const yade::NewtonIntegrator*>(engine.get());
+    }
+    return true;
+}
+
+void SceneStore::update(bool inStep) {
+    if (readEngines()) checked_ = false;
+    const bool looked = inStep && seenStep_ == scene_.iter;
+    const bool thoroughly = !inStep || scene_.iter % 100 == 0; // States hardly ever change hands
+    const bool sameBodies = looked || bodies.fits(scene_, thoroughly);
+    seenStep_ = scene_.iter;
+    if (sameBodies && seenChanges_ == changes && seenInteractions_ == scene_.interactions->currSize) return;
+    checked_ = false;
+    readJoints();
+    bodies.read(scene_);
+    static long readings = 0;
+    revision_ = ++readings;
+    seenChanges_ = changes;
+    seenInteractions_ = scene_.interactions->currSize;
+}
+
+// Joints move into homes by kind; within a kind they keep the order of the host's container.
+void SceneStore::readJoints() {
+    struct Group {
+        ElasticStiffness k;
+        std::vector<std::size_t> members;
+    };
+    using Key = std::tuple<const MasonryJoint*, int, bool>;
+    std::map<Key, std::multimap<double, std::size_t>> byStiffness; // groups by normal stiffness
+    std::vector<Group> groups;
+    std::vector<JointView> found;
+    const MasonryZones* zonesOfJoints = nullptr;
+    for (std::size_t n = 0; n < scene_.interactions->currSize; ++n) {
+        const auto& interaction = *scene_.interactions->linIntrs[n];
+        const auto geom = boost::dynamic_pointer_cast<MasonryJointGeom>(interaction.geom);
+        const auto phys = boost::dynamic_pointer_cast<MasonryJointPhys>(interaction.phys);
+        if (!geom || !phys || !geom->made() || !phys->made() || geom->points() != phys->points()) continue;
+        const auto& hung = geom->reference().hung;
+        if (hung && zonesOfJoints && zonesOfJoints != hung->zones.get())
+            throw std::invalid_argument("the joints of a scene can belong to one MasonryZones only");
+        if (hung) zonesOfJoints = hung->zones.get();
+        const auto& k = phys->stiffness();
+        auto& alike = byStiffness[{phys->home->joint.get(), geom->points(), hung != nullptr}];
+        auto at = alike.lower_bound(k.normal * (1 - 2e-12));
+        const auto fits = [&](std::size_t group) {
+            return sameButRoundOff(groups[group].k.normal, k.normal, k.normal) &&
+                   sameButRoundOff(groups[group].k.shear, k.shear, k.shear);
+        };
+        while (at != alike.end() && at->first <= k.normal * (1 + 2e-12) && !fits(at->second))
+            ++at;
+        if (at == alike.end() || !fits(at->second)) {
+            at = alike.emplace(k.normal, groups.size());
+            groups.push_back({k, {}});
+        }
+        groups[at->second].members.push_back(found.size());
+        found.push_back({&interaction, geom, phys});
+    }
+
+    std::vector<JointKind> made;
+    for (const auto& group : groups) {
+        const auto& first = found[group.members[0]];
+        const int count = int(group.members.size()), points = first.geom->points();
+        JointKind kind{shared_ptr<JointShapes>(new JointShapes(count, points)),
+                       shared_ptr<JointStates>(new JointStates(first.phys->home->joint, group.k, count, points)),
+                       first.geom->reference().hung != nullptr};
+        kind.states->shapes = kind.shapes;
+        for (Home* home : {static_cast<Home*>(kind.shapes.get()), static_cast<Home*>(kind.states.get())}) {
+            home->scene = life_;
+            home->inScene = true;
+        }
+        for (int j = 0; j < count; ++j) {
+            const auto& joint = found[group.members[j]];
+            kind.shapes->take(j, *joint.geom->home, joint.geom->index);
+            kind.states->take(j, *joint.phys->home, joint.phys->index);
+            joint.geom->home = kind.shapes;
+            joint.phys->home = kind.states;
+            joint.geom->index = joint.phys->index = j;
+        }
+        made.push_back(kind);
+    }
+    for (auto& kind : kinds) // what still sees these was taken out of the scene
+        kind.shapes->left = kind.states->left = true;
+    kinds = std::move(made);
+    joints = std::move(found);
+}
+
+void SceneStore::check() {
+    if (!(scene_.dt > 0 && std::isfinite(scene_.dt)))
+        throw std::invalid_argument("O.dt " + text(scene_.dt) + " s must be a finite number above 0");
+    if (checked_) return;
+    checkScene(*this);
+    if (connected_.empty() && !joints.empty()) connected();
+    checked_ = true;
+}
+
+void SceneStore::connected() {
+    connected_.clear();
+    for (const auto& body : scene_.bodies->body)
+        connected_.push_back(body.get());
+}
+
+std::vector<int> SceneStore::strangers() const {
+    std::vector<int> all;
+    if (connected_.empty()) return all;
+    std::vector<bool> joined(scene_.bodies->body.size(), false);
+    for (const auto& joint : joints)
+        joined[joint.interaction->id1] = joined[joint.interaction->id2] = true;
+    for (std::size_t id = 0; id < joined.size(); ++id) {
+        const auto& body = scene_.bodies->body[id];
+        const bool isBlock = body && dynamic_cast<const yade::Polyhedra*>(body->shape.get());
+        const bool known = id < connected_.size() && connected_[id] == body.get();
+        if (isBlock && !known && !joined[id]) all.push_back(int(id));
+    }
+    return all;
+}
+
+EngineTurn::EngineTurn(yade::Scene& scene, const yade::Engine& engine)
+    : engine_(&engine), errors_(std::uncaught_exceptions()) {
+    StepGate::instance().enter();
+    try {
+        store_ = &SceneStore::of(scene);
+        store_->update(true);
+        store_->check();
+    } catch (...) {
+        StepGate::instance().leave(true);
+        throw;
+    }
+}
+
+EngineTurn::EngineTurn(yade::Scene& scene) : errors_(std::uncaught_exceptions()) {
+    StepGate::instance().enter();
+    try {
+        store_ = &SceneStore::of(scene);
+        store_->update(true);
+    } catch (...) {
+        StepGate::instance().leave(true);
+        throw;
+    }
+}
+
+EngineTurn::~EngineTurn() {
+    const bool failed = std::uncaught_exceptions() > errors_;
+    StepGate::instance().leave(failed || (engine_ && store_->last == engine_));
+}
+
+} // namespace masonry

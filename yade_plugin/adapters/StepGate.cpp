@@ -1,0 +1,83 @@
+#include "StepGate.hpp"
+#include "host/Yade.hpp"
+#include <chrono>
+
+namespace masonry {
+
+namespace {
+
+// Lets other Python threads run while this one waits: the thread that it waits for may need the interpreter.
+class WithoutInterpreter {
+public:
+    WithoutInterpreter() : state_(PyGILState_Check() ? PyEval_SaveThread() : nullptr) {}
+    ~WithoutInterpreter() {
+        if (state_) PyEval_RestoreThread(state_);
+    }
+
+private:
+    PyThreadState* state_;
+};
+
+bool runsInBackground() { return Singleton<yade::Omega>::instance().isRunning(); }
+
+} // namespace
+
+StepGate& StepGate::instance() {
+    static StepGate gate;
+    return gate;
+}
+
+// The mutex is never held while the interpreter is waited for, or the other way round.
+template <class Ready> void StepGate::wait(std::unique_lock<std::mutex>& held, Ready&& ready) {
+    while (!ready()) { // again where somebody was quicker while the interpreter was taken back
+        held.unlock();
+        {
+            const WithoutInterpreter free;
+            held.lock();
+            while (!ready())
+                changed_.wait_for(held, std::chrono::milliseconds(20));
+            held.unlock();
+        }
+        held.lock();
+    }
+}
+
+void StepGate::enter() {
+    std::unique_lock<std::mutex> held(mutex_);
+    const auto me = std::this_thread::get_id();
+    wait(held, [&] { return (depth_ == 0 || reader_ == me) && (inStep_ || waiting_ == 0); });
+    stepper_ = me;
+    acting_ = inStep_ = true;
+}
+
+void StepGate::leave(bool stepDone) {
+    const std::lock_guard<std::mutex> held(mutex_);
+    acting_ = false;
+    if (stepDone) inStep_ = false;
+    if (waiting_ > 0) changed_.notify_all();
+}
+
+void StepGate::lock() {
+    std::unique_lock<std::mutex> held(mutex_);
+    const auto me = std::this_thread::get_id();
+    const bool nested = depth_ > 0 && reader_ == me;
+    const bool ownAction = acting_ && stepper_ == me;
+    if (!nested && !ownAction) {
+        ++waiting_;
+        wait(held, [&] {
+            if (depth_ > 0 || acting_) return false;
+            return !inStep_ || stepper_ == me || !runsInBackground(); // a step that an error ended never leaves
+        });
+        --waiting_;
+        reader_ = me;
+    }
+    ++depth_;
+    if (ownAction && depth_ == 1) reader_ = me;
+}
+
+void StepGate::unlock() {
+    const std::lock_guard<std::mutex> held(mutex_);
+    if (--depth_ == 0) changed_.notify_all();
+}
+
+} // namespace masonry
