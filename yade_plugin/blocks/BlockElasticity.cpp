@@ -29,7 +29,7 @@ BlockElasticity::BlockElasticity(BlockMesh mesh, double E, double nu, double den
         z.volume = masonry::volume(c);
         Matrix3 edges;
         edges << c[1] - c[0], c[2] - c[0], c[3] - c[0];
-        const Matrix3 inverse = edges.inverse(); // rows are the gradients of nodes 1 to 3
+        const Matrix3 inverse = edges.inverse(); // its rows are the gradients of the shape functions of nodes 1 to 3
         for (int i = 1; i < 4; ++i)
             z.gradients[i] = inverse.row(i - 1);
         z.gradients[0] = -(z.gradients[1] + z.gradients[2] + z.gradients[3]);
@@ -42,13 +42,13 @@ BlockElasticity::BlockElasticity(BlockMesh mesh, double E, double nu, double den
     }
     for (auto& g : meanGradients_) {
         g /= whole;
-        if (held >= 0) g[held] = 0; // turns about the held direction only
+        if (held >= 0) g[held] = 0; // so that the block turns about the held direction only
     }
     mass_ = density * whole;
     assemble(held);
 }
 
-// The stiffness matrix of the whole block, row by row; a direction that is held has no rows and no columns.
+// Builds the stiffness matrix of the whole block, without the rows and columns of the held direction.
 void BlockElasticity::assemble(int held) {
     std::vector<std::map<int, double>> rows(3 * mesh_.nodes.size());
     for (std::size_t z = 0; z < zones_.size(); ++z) {
@@ -61,8 +61,10 @@ void BlockElasticity::assemble(int held) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (int(i) % 3 == held) continue;
         const int first = int(columns_.size());
-        for (const auto& [column, value] : rows[i])
-            columns_.push_back(column), values_.push_back(value);
+        for (const auto& [column, value] : rows[i]) {
+            columns_.push_back(column);
+            values_.push_back(value);
+        }
         rows_.push_back({int(i), first, int(columns_.size())});
     }
 }
@@ -71,7 +73,8 @@ Matrix3 BlockElasticity::rotation(const Point* u) const {
     Matrix3 r = Matrix3::Identity();
     for (std::size_t i = 0; i < meanGradients_.size(); ++i)
         r += u[i] * meanGradients_[i].transpose();
-    for (int i = 0; i < 4; ++i) { // Newton's iteration for the polar part; two steps are enough at elastic strains
+    // Newton's iteration converges to the rotation; at elastic strains two steps are enough.
+    for (int i = 0; i < 4; ++i) {
         const Matrix3 next = 0.5 * (r + r.inverse().transpose());
         const double change = (next - r).squaredNorm();
         r = next;

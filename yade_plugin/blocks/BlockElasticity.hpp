@@ -1,5 +1,6 @@
-// Linear elasticity of a meshed block, paper §2: constant-strain zones, lumped masses, small strains in axes that turn
-// with the block. Congruent blocks share one, and their forces are computed several blocks at a time.
+// Linear elasticity of a meshed block (paper §2): zones of constant strain and masses lumped at the nodes. Strains are
+// small, but the block may turn: strains and stresses are computed in axes that turn with it. Congruent blocks share
+// one object, and the forces of several of them are computed at a time (BlockLanes.hpp).
 #pragma once
 #include "BlockLanes.hpp"
 #include "BlockMesh.hpp"
@@ -10,34 +11,38 @@ using Matrix3 = Eigen::Matrix3d;
 
 class BlockElasticity {
 public:
-    // Throws std::invalid_argument with what is wrong with the constants (E > 0, -1 < nu < 0.5, density > 0).
-    // `held` is the one direction in which all nodes are held, or -1: it is kept free of stress, not of strain (plane
-    // stress), and the block turns about it only.
+    // Throws std::invalid_argument, which says what is wrong, unless E > 0, -1 < nu < 0.5 and density > 0.
+    // `held` is the direction (0, 1 or 2) in which no node can move, or -1 if there is none. Normal stress in this
+    // direction is zero (plane stress), although the nodes are held, and the block turns about it only.
     BlockElasticity(BlockMesh mesh, double youngModulus, double poissonRatio, double density, int held = -1);
 
     const BlockMesh& mesh() const { return mesh_; }
-    const std::vector<double>& masses() const { return masses_; } // [kg] of the nodes
-    double mass() const { return mass_; }
+    const std::vector<double>& masses() const { return masses_; } // of the nodes [kg]
+    double mass() const { return mass_; }                         // of the block [kg]
 
-    // Rotation of the block: the polar part of its mean deformation gradient, from displacements of all nodes.
+    // Rotation of the block: the rotation in the polar decomposition of its mean deformation gradient. `displacements`
+    // [m] has one entry a node.
     Matrix3 rotation(const Point* displacements) const;
 
-    // Stress of a zone [Pa], in the axes turned back by the rotation.
+    // Stress of a zone [Pa], in axes that turn with the block: along x, y and z before the block has turned.
     Matrix3 stress(int zone, const Point* displacements, const Matrix3& rotation) const;
 
-    // Stiffness matrix of a zone without rotation, nodes x 3 [N/m].
+    // Stiffness matrix of a zone in a block that has not turned [N/m]; row and column 3 i + j belong to node i of the
+    // zone and direction j.
     Eigen::Matrix<double, 12, 12> stiffness(int zone) const;
 
-    // For the loops over blocks side by side; lives as long as this.
+    // The stiffness matrix, masses and gradients of the block for the functions of BlockLanes.hpp. It points into this
+    // object and is valid as long as this object exists.
     BlockMatrix matrix() const;
 
 private:
     struct Zone {
         std::array<int, 4> nodes;
-        std::array<Point, 4> gradients; // of the shape functions [1/m]
-        double volume;
+        std::array<Point, 4> gradients; // of the shape functions of its nodes [1/m]
+        double volume;                  // [m³]
     };
-    // Displacement of a node in axes that turn with the block; its symmetric gradient is the strain.
+    // Displacement of a node relative to the turned block, in axes that turn with the block [m]. The symmetric part of
+    // its gradient is the strain.
     Point turnedBack(int node, const Point* displacements, const Matrix3& rotation) const {
         return rotation.transpose() * (mesh_.nodes[node] + displacements[node]) - mesh_.nodes[node];
     }
@@ -49,11 +54,12 @@ private:
     BlockMesh mesh_;
     std::vector<Zone> zones_;
     std::vector<double> masses_;
-    std::vector<Point> meanGradients_; // volume-averaged, per node
-    double mass_ = 0, lambda_ = 0, shear_ = 0;
-    std::vector<BlockMatrix::Entries> rows_; // of the degrees that are not held
-    std::vector<int> columns_;
-    std::vector<double> values_;
+    std::vector<Point> meanGradients_; // of the shape function of each node, averaged over the block [1/m]
+    double mass_ = 0;
+    double lambda_ = 0, shear_ = 0;          // Lamé's constants [Pa]; lambda_ is reduced for plane stress
+    std::vector<BlockMatrix::Entries> rows_; // of the stiffness matrix, without those of held directions
+    std::vector<int> columns_;               // of the entries of the stiffness matrix that are not zero, row by row
+    std::vector<double> values_;             // of these entries [N/m]
 };
 
 } // namespace masonry

@@ -1,8 +1,8 @@
 #include "BlockLanes.hpp"
 #include "motion/Damping.hpp"
 
-// The loops are written with vectors of a fixed width, which the compiler keeps in registers only if the instruction
-// set is known where they are written: so they are included once for each.
+// The functions use vectors of a fixed width. The compiler keeps these in registers only if it knows the instruction
+// set when it compiles them, so BlockLanes.inl is included once for each instruction set.
 namespace masonry {
 
 namespace plain {
@@ -30,6 +30,7 @@ namespace avx512 {
 
 namespace {
 
+// The version of a function for the widest instruction set that the processor has.
 template <class F> F* choose(F* forAll, [[maybe_unused]] F* forAvx2, [[maybe_unused]] F* forAvx512) {
 #if defined(__x86_64__)
     if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq")) return forAvx512;

@@ -1,8 +1,9 @@
-// The loops of BlockLanes.hpp for vectors of WIDTH numbers; included once for each instruction set.
+// The functions of BlockLanes.hpp for vectors of WIDTH numbers. A row is handled in several parts of that width.
 
 typedef double Lanes __attribute__((vector_size(8 * WIDTH), may_alias));
-constexpr int parts = lanes / WIDTH; // of a row
+constexpr int parts = lanes / WIDTH; // vectors in a row
 
+// A part of the first of some rows; the same part of the next row lies `parts` vectors further on.
 inline const Lanes* at(const Row* rows, int part) { return reinterpret_cast<const Lanes*>(rows->lane + part * WIDTH); }
 inline Lanes* at(Row* rows, int part) { return reinterpret_cast<Lanes*>(rows->lane + part * WIDTH); }
 
@@ -11,13 +12,15 @@ inline Lanes sign(Lanes x) {
     return (x > zero ? one : zero) - (x < zero ? one : zero);
 }
 
-// Newton's iteration for the polar part, F <- (F + F^-T) / 2: three steps are exact at elastic strains.
+// Replaces F by the rotation in its polar decomposition, by Newton's iteration F <- (F + F^-T) / 2. At elastic strains
+// three steps reach round-off.
 inline void polar(Lanes (&f)[9]) {
     for (int iteration = 0; iteration < 3; ++iteration) {
-        Lanes c[9]; // cofactors: det F times F^-T
+        Lanes c[9]; // the cofactors of F, which are det F times F^-T
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) {
-                const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+                const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+                const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
                 c[3 * i + j] = f[3 * i1 + j1] * f[3 * i2 + j2] - f[3 * i1 + j2] * f[3 * i2 + j1];
             }
         const Lanes half = 0.5 / (f[0] * c[0] + f[1] * c[1] + f[2] * c[2]);
@@ -31,7 +34,9 @@ void addForces(const BlockMatrix& m, const Row* displacements, const Row* moment
     const int count = m.nodeCount;
     for (int part = 0; part < parts; ++part) {
         const Lanes* u = at(displacements, part);
-        Lanes *f = at(forces, part), *d = at(scratch, 0), *local = d + 3 * count;
+        Lanes* f = at(forces, part);
+        Lanes* d = at(scratch, 0);    // displacements relative to the turned block, in axes that turn with it
+        Lanes* local = d + 3 * count; // elastic forces in these axes
         const Lanes zero = {}, one = zero + 1;
         Lanes r[9] = {one, zero, zero, zero, one, zero, zero, zero, one}; // mean deformation gradient
         for (int n = 0; n < count; ++n)
@@ -40,7 +45,8 @@ void addForces(const BlockMatrix& m, const Row* displacements, const Row* moment
                     r[3 * i + j] += u[(3 * n + i) * parts] * m.gradients[3 * n + j];
         polar(r);
 
-        const double* origin = m.nodes; // displacements in axes that turn with the block, less those of the first node
+        // The first node serves as origin, because a translation of the block causes no forces.
+        const double* origin = m.nodes;
         for (int n = 0; n < count; ++n) {
             const double* node = m.nodes + 3 * n;
             Lanes now[3];
@@ -60,7 +66,8 @@ void addForces(const BlockMatrix& m, const Row* displacements, const Row* moment
             stored += sum * d[entries.degree];
             local[entries.degree] = sum;
         }
-        // The rotation changes by the sum of R g x du / 2 over the nodes, so a moment M is forces M x R g / 2.
+        // Displacements du of the nodes turn the block by the sum of (R g) x du / 2 over the nodes, with R the rotation
+        // and g the mean gradients. So a moment M does the same work as nodal forces M x (R g) / 2.
         const Lanes moment[3] = {*at(moments, part), *at(moments + 1, part), *at(moments + 2, part)};
         for (int n = 0; n < count; ++n) {
             const double* g = m.gradients + 3 * n;
@@ -84,32 +91,39 @@ void move(const BlockMatrix& matrix, const NodeMotion& m, const Row& present, Ro
           Row* forces, Row* lastForces, NodeSums& sums) {
     const double alpha = dampingShare(m.combined) * m.damping;
     for (int part = 0; part < parts; ++part) {
-        Lanes *us = at(displacements, part), *vs = at(velocities, part), *fs = at(forces, part),
-              *lasts = at(lastForces, part);
-        const Lanes there = *at(&present, part), zero = {};
-        Lanes kinetic = zero, gravityWork = zero, damping = zero, pending = zero, moved[3] = {zero, zero, zero};
+        Lanes* us = at(displacements, part);
+        Lanes* vs = at(velocities, part);
+        Lanes* fs = at(forces, part);
+        Lanes* lasts = at(lastForces, part);
+        const Lanes inUse = *at(&present, part);
+        const Lanes zero = {};
+        Lanes kinetic = zero, gravityWork = zero, damping = zero, pending = zero;
+        Lanes moved[3] = {zero, zero, zero};
         for (int n = 0; n < matrix.nodeCount; ++n) {
-            const double mass = matrix.masses[n], perMass = m.dt / mass;
+            const double mass = matrix.masses[n];
+            const double perMass = m.dt / mass;
             for (int direction = 0; direction < 3; ++direction) {
                 const int i = (3 * n + direction) * parts;
-                const Lanes weight = mass * m.gravity[direction] * there, force = fs[i] + weight, old = vs[i];
+                const Lanes weight = mass * m.gravity[direction] * inUse;
+                const Lanes force = fs[i] + weight;
+                const Lanes old = vs[i];
                 fs[i] = zero;
                 if (m.held[direction]) continue;
                 gravityWork += weight * us[i];
-                // Half the step's impulse per mass. Damping takes its share against the velocity in the middle of the
-                // step, at most what stops it there: it never turns a motion round, so it never adds energy.
-                const Lanes half = 0.5 * perMass * force, middle = 0.5 * (old + half);
+                // `half` is the change of velocity in half a step without damping.
+                const Lanes half = 0.5 * perMass * force;
+                const Lanes middle = 0.5 * (old + half);
                 const Lanes reach = alpha * (half < zero ? -half : half);
                 const Lanes change = m.combined ? sign(force - lasts[i]) : zero;
                 const Lanes taken = dampingTaken(middle, reach, change);
                 lasts[i] = force;
-                const Lanes now = old + 2 * (half - taken); // eq. (2)
-                // trapezoidal work and kinetic energy at the same instant, as in MasonryEnergy
+                const Lanes now = old + 2 * (half - taken); // paper eq. (2)
+                // Work by the trapezoidal rule, and kinetic energy at the time of the forces.
                 damping += mass * taken * old;
                 pending += mass * taken * now;
                 kinetic += 0.5 * mass * old * now;
                 vs[i] = now;
-                us[i] += m.dt * now; // eq. (1)
+                us[i] += m.dt * now; // paper eq. (1)
                 moved[direction] += mass * us[i];
             }
         }

@@ -9,43 +9,49 @@ namespace masonry {
 
 namespace {
 
-// Eight corners of a hexahedron in the order of a unit cube (x fastest), axes turned to lie nearest to x, y and z;
-// empty if the block is no hexahedron.
+// The eight corners of a hexahedron in the order of those of a unit cube, x changing fastest; the three edges at the
+// first corner are taken in the order that lies nearest to x, y and z. Empty if the block is not a hexahedron.
 std::vector<Point> hexahedron(const ConvexBlock& block) {
     if (block.vertices.size() != 8) return {};
     const auto faces = block.faces();
     if (faces.size() != 6) return {};
     for (const auto& face : faces)
         if (face.size() != 4) return {};
-    // neighbours of each vertex along the edges of the faces
     const auto index = [&](const Point& p) {
         return int(std::find(block.vertices.begin(), block.vertices.end(), p) - block.vertices.begin());
     };
-    std::map<int, std::vector<int>> next;
+    std::map<int, std::vector<int>> next; // vertices at the other ends of the edges of each vertex
     for (const auto& face : faces)
         for (int i = 0; i < 4; ++i)
             next[index(face[i])].push_back(index(face[(i + 1) % 4]));
-    // start at the vertex nearest to the corner (-,-,-) and take its three edges nearest to x, y, z
+    // The first corner is the one with the smallest sum of coordinates.
     int start = 0;
     for (int i = 1; i < 8; ++i)
         if (block.vertices[i].sum() < block.vertices[start].sum() - 1e-12 * block.size()) start = i;
     if (next[start].size() != 3) return {};
-    std::array<int, 3> edge{next[start][0], next[start][1], next[start][2]}, best = edge;
+    // Of the six orders of its edges, the best has the largest sum of cosines between edges and axes.
+    std::array<int, 3> edge{next[start][0], next[start][1], next[start][2]};
+    std::array<int, 3> best = edge;
     std::sort(edge.begin(), edge.end());
     double most = -HUGE_VAL;
     do {
         double along = 0;
         for (int d = 0; d < 3; ++d)
             along += (block.vertices[edge[d]] - block.vertices[start]).normalized()[d];
-        if (along > most) most = along, best = edge;
+        if (along > most) {
+            most = along;
+            best = edge;
+        }
     } while (std::next_permutation(edge.begin(), edge.end()));
-    const auto common = [&](int a, int b, int except) { // the other vertex next to both
+    // The vertex, other than `except`, that has edges to both a and b; -1 if there is none.
+    const auto common = [&](int a, int b, int except) {
         for (int v : next[a])
             if (v != except && std::count(next[b].begin(), next[b].end(), v)) return v;
         return -1;
     };
-    const int xy = common(best[0], best[1], start), xz = common(best[0], best[2], start),
-              yz = common(best[1], best[2], start);
+    const int xy = common(best[0], best[1], start);
+    const int xz = common(best[0], best[2], start);
+    const int yz = common(best[1], best[2], start);
     if (xy < 0 || xz < 0 || yz < 0) return {};
     const int xyz = common(xy, xz, best[0]);
     if (xyz < 0) return {};
@@ -63,8 +69,8 @@ BlockMesh divide(const ConvexBlock& block, const std::array<int, 3>& divisions, 
     for (int n : divisions)
         if (n < 1 || n > 100) throw std::invalid_argument("divisions " + std::to_string(n) + " must be 1 to 100");
     BlockMesh mesh;
-    const auto star = [&](int centre, const std::array<int, 3>& face) {
-        mesh.zones.push_back({face[0], face[1], face[2], centre});
+    const auto addZone = [&](int apex, const std::array<int, 3>& base) {
+        mesh.zones.push_back({base[0], base[1], base[2], apex});
     };
     const auto cube = hexahedron(block);
     if (cube.empty()) {
@@ -75,15 +81,17 @@ BlockMesh divide(const ConvexBlock& block, const std::array<int, 3>& divisions, 
             centre += v / block.vertices.size();
         mesh.nodes.push_back(centre);
         for (const auto& t : block.triangles)
-            star(int(mesh.nodes.size()) - 1, {t[0], t[2], t[1]});
+            addZone(int(mesh.nodes.size()) - 1, {t[0], t[2], t[1]});
     } else {
         const auto [nx, ny, nz] = divisions;
+        // The point of the block with these coordinates, each from 0 to 1 along the edges.
         const auto at = [&](double x, double y, double z) {
             Point p = Point::Zero();
             for (int c = 0; c < 8; ++c)
                 p += (c & 1 ? x : 1 - x) * (c & 2 ? y : 1 - y) * (c & 4 ? z : 1 - z) * cube[c];
             return p;
         };
+        // The number of a node at the corner of cells, from its indices along the edges.
         const auto node = [&, ax = nx + 1, ay = ny + 1](int i, int j, int k) { return (k * ay + j) * ax + i; };
         for (int k = 0; k <= nz; ++k)
             for (int j = 0; j <= ny; ++j)
@@ -94,34 +102,40 @@ BlockMesh divide(const ConvexBlock& block, const std::array<int, 3>& divisions, 
                 for (int i = 0; i < nx; ++i) {
                     const int centre = int(mesh.nodes.size());
                     mesh.nodes.push_back(at((i + 0.5) / nx, (j + 0.5) / ny, (k + 0.5) / nz));
-                    const int base[3] = {i, j, k}, last[3] = {nx - 1, ny - 1, nz - 1};
+                    const int cell[3] = {i, j, k};
+                    const int last[3] = {nx - 1, ny - 1, nz - 1};
                     for (int axis = 0; axis < 3; ++axis)
                         for (int side = 0; side < 2; ++side) {
-                            const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-                            int q[4], odd = 0;
-                            for (int c = 0; c < 4; ++c) { // around the face, outward for side 1
-                                int at[3] = {base[0], base[1], base[2]};
-                                at[axis] += side;
-                                at[u] += c == 1 || c == 2;
-                                at[v] += c >= 2;
-                                q[c] = node(at[0], at[1], at[2]);
-                                if (c == 0) odd = (at[0] + at[1] + at[2] - (axis == 1 ? 0 : at[axis])) % 2;
+                            const int u = (axis + 1) % 3;
+                            const int v = (axis + 2) % 3;
+                            int q[4]; // nodes around the face, counter-clockwise about the positive axis
+                            int odd = 0;
+                            for (int c = 0; c < 4; ++c) {
+                                int index[3] = {cell[0], cell[1], cell[2]};
+                                index[axis] += side;
+                                index[u] += c == 1 || c == 2;
+                                index[v] += c >= 2;
+                                q[c] = node(index[0], index[1], index[2]);
+                                if (c == 0) odd = (index[0] + index[1] + index[2] - (axis == 1 ? 0 : index[axis])) % 2;
                             }
                             if (!side) std::swap(q[1], q[3]);
-                            // The diagonal joins the corners with an even sum of indices. On faces across x and z it
-                            // does not depend on the layer, so that blocks laid in courses meet with equal triangles.
+                            // The diagonal joins the corners whose indices have an even sum. On faces across x and z
+                            // the index along the axis does not count, so that all of them have the same diagonals
+                            // and blocks laid in courses meet with equal triangles.
                             const std::array<int, 3> halves[2][2] = {{{q[0], q[1], q[2]}, {q[0], q[2], q[3]}},
                                                                      {{q[1], q[2], q[3]}, {q[1], q[3], q[0]}}};
                             for (const auto& t : halves[odd]) {
-                                star(centre, {t[0], t[2], t[1]});
-                                if (base[axis] == (side ? last[axis] : 0)) mesh.triangles.push_back(t);
+                                addZone(centre, {t[0], t[2], t[1]});
+                                const bool atSurface = cell[axis] == (side ? last[axis] : 0);
+                                if (atSurface) mesh.triangles.push_back(t);
                             }
                         }
                 }
     }
     for (const auto& zone : mesh.zones) {
         std::array<Point, 4> c;
-        double longest = 0, largest = 0;
+        double longest = 0; // edge [m]
+        double largest = 0; // area of a side [m²]
         for (int i = 0; i < 4; ++i)
             c[i] = mesh.nodes[zone[i]];
         for (int i = 0; i < 4; ++i)
@@ -147,10 +161,13 @@ SurfacePoint nearestOnSurface(const BlockMesh& mesh, const Point& p) {
         const Point &a = mesh.nodes[t[0]], &b = mesh.nodes[t[1]], &c = mesh.nodes[t[2]];
         const Point n = (b - a).cross(c - a);
         Eigen::Vector3d w(n.dot((b - p).cross(c - p)), n.dot((c - p).cross(a - p)), n.dot((a - p).cross(b - p)));
-        w = (w / w.sum()).cwiseMax(0); // clipped to the triangle, so a point outside takes its rim
+        w = (w / w.sum()).cwiseMax(0); // weights below zero belong to a point outside the triangle: move it to the rim
         w /= w.sum();
         const double distance = (w[0] * a + w[1] * b + w[2] * c - p).squaredNorm();
-        if (distance < nearest) nearest = distance, best = {t, {w[0], w[1], w[2]}};
+        if (distance < nearest) {
+            nearest = distance;
+            best = {t, {w[0], w[1], w[2]}};
+        }
     }
     return best;
 }

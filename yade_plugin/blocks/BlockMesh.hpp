@@ -1,30 +1,40 @@
-// A convex block divided into tetrahedral zones, paper §2. Pure geometry.
+// A convex block divided into tetrahedral zones (paper §2: deformable blocks). Pure geometry.
 #pragma once
 #include "FaceContact.hpp"
 
 namespace masonry {
 
 struct BlockMesh {
-    std::vector<Point> nodes;
-    std::vector<std::array<int, 4>> zones;     // positive volume
-    std::vector<std::array<int, 3>> triangles; // of the surface, outward
+    std::vector<Point> nodes;                  // places of the nodes [m]
+    std::vector<std::array<int, 4>> zones;     // nodes of each zone, in an order that makes its volume positive
+    std::vector<std::array<int, 3>> triangles; // nodes of each triangle of the surface, counter-clockwise from outside
 };
 
-// Zones of a block. A hexahedron is divided along its own edges into the given numbers of cells in the directions that
-// lie nearest to x, y and z, each cell a star of twelve zones about its centre; the diagonals of neighbouring faces
-// alternate, and opposite faces across x and z have the same, so that blocks laid in courses meet node to node with
-// equal triangles. Any other convex block is one star about its
-// centroid, and divisions do not apply. Throws std::invalid_argument for a block without volume, one that is not
-// convex, and slivers: zones whose height is less than `sliver` times their longest edge.
+// Divides a block into zones.
+//
+// A hexahedron is first divided into cells: `divisions` says how many along those of its edges that lie nearest to x, y
+// and z. Twelve zones make up a cell. Each has its apex at the centre of the cell and its base on one half of one of
+// the six faces of the cell. The diagonals that halve neighbouring faces alternate; faces across x and z that lie
+// behind one another have the same diagonals, so that blocks laid in courses meet node to node, with equal triangles.
+//
+// Any other convex block is divided about the mean of its vertices, with one zone for each triangle of its surface;
+// `divisions` then has no effect.
+//
+// Throws std::invalid_argument if the block has no volume, is not convex, or gets a sliver: a zone whose smallest
+// height is less than `sliver` times its longest edge.
 BlockMesh divide(const ConvexBlock&, const std::array<int, 3>& divisions, double sliver = 0.01);
 
+// Volume of a tetrahedron [m³]; negative if its corners stand in the other order.
 double volume(const std::array<Point, 4>& corners);
 
-// Weights of the surface point nearest to p: the nodes of its triangle and their shares, which add up to one.
+// A point on the surface of a mesh: the nodes of the triangle that it lies on, and the weight of each. The weights add
+// up to one.
 struct SurfacePoint {
     std::array<int, 3> nodes;
     std::array<double, 3> weights;
 };
+
+// The point on the surface that is nearest to p.
 SurfacePoint nearestOnSurface(const BlockMesh&, const Point& p);
 
 } // namespace masonry

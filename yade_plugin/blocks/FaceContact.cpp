@@ -8,32 +8,36 @@ namespace masonry {
 
 namespace {
 
-constexpr double parallel = 1 - 1e-6;     // cosine between normals of faces that count as parallel (1.4 mrad)
-constexpr double nearlyParallel = 0.9945; // 6°
+constexpr double parallel = 1 - 1e-6;     // least cosine between the normals of parallel faces: an angle of 1.4 mrad
+constexpr double nearlyParallel = 0.9945; // least cosine between the normals of nearly parallel faces: an angle of 6°
 
-Point unitNormal(const Polygon& p) { // Newell's sum: twice the vector area
+// The normal of a polygon by Newell's method: the sum is twice the area vector.
+Point unitNormal(const Polygon& p) {
     Point sum = Point::Zero();
     for (std::size_t i = 0; i < p.size(); ++i)
         sum += (p[i] - p[0]).cross(p[(i + 1) % p.size()] - p[0]);
     return sum.normalized();
 }
 
-// The part of a convex polygon on the side (x - origin)·inward >= 0.
+// The part of a convex polygon on one side of a plane: its points x satisfy (x - origin)·inward >= 0.
 Polygon cut(const Polygon& polygon, const Point& origin, const Point& inward) {
     Polygon kept;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const Point &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-        const double da = (a - origin).dot(inward), db = (b - origin).dot(inward);
+        const double da = (a - origin).dot(inward);
+        const double db = (b - origin).dot(inward);
         if (da >= 0) kept.push_back(a);
-        if ((da > 0 && db < 0) || (da < 0 && db > 0)) kept.push_back(a + (b - a) * (da / (da - db)));
+        const bool crossesPlane = (da > 0 && db < 0) || (da < 0 && db > 0);
+        if (crossesPlane) kept.push_back(a + (b - a) * (da / (da - db)));
     }
     return kept;
 }
 
-// Without corners that lie on the line between their neighbours, as round-off leaves them.
+// The polygon without corners that lie on the line between their neighbours. Round-off in `cut` leaves such corners.
 Polygon withoutFlatCorners(Polygon p, double width) {
     for (std::size_t i = 0; i < p.size() && p.size() > 2;) {
-        const Point &before = p[(i + p.size() - 1) % p.size()], chord = p[(i + 1) % p.size()] - before;
+        const Point& before = p[(i + p.size() - 1) % p.size()];
+        const Point chord = p[(i + 1) % p.size()] - before;
         if ((p[i] - before).cross(chord).norm() <= width * chord.norm())
             p.erase(p.begin() + std::ptrdiff_t(i));
         else
@@ -46,8 +50,10 @@ Polygon withoutFlatCorners(Polygon p, double width) {
 
 double ConvexBlock::size() const {
     Point low = vertices.front(), high = low;
-    for (const auto& v : vertices)
-        low = low.cwiseMin(v), high = high.cwiseMax(v);
+    for (const auto& v : vertices) {
+        low = low.cwiseMin(v);
+        high = high.cwiseMax(v);
+    }
     return (high - low).norm();
 }
 
@@ -57,10 +63,14 @@ std::vector<Polygon> ConvexBlock::faces() const {
     std::vector<std::vector<int>> corners;
     for (const auto& t : triangles) {
         const Point n = unitNormal({vertices[t[0]], vertices[t[1]], vertices[t[2]]});
+        // A convex block has at most one face with a given normal, so triangles with one normal belong to one face.
         std::size_t f = 0;
         while (f < normals.size() && normals[f].dot(n) < parallel)
-            ++f; // a convex body has one face to a direction
-        if (f == normals.size()) normals.push_back(n), corners.emplace_back();
+            ++f;
+        if (f == normals.size()) {
+            normals.push_back(n);
+            corners.emplace_back();
+        }
         for (int corner : t)
             if (std::find(corners[f].begin(), corners[f].end(), corner) == corners[f].end())
                 corners[f].push_back(corner);
@@ -69,7 +79,8 @@ std::vector<Polygon> ConvexBlock::faces() const {
         Point middle = Point::Zero();
         for (int c : corners[f])
             middle += vertices[c] / corners[f].size();
-        const Point e1 = (vertices[corners[f][0]] - middle).normalized(), e2 = normals[f].cross(e1);
+        const Point e1 = (vertices[corners[f][0]] - middle).normalized();
+        const Point e2 = normals[f].cross(e1);
         const auto angle = [&](int c) {
             return std::atan2((vertices[c] - middle).dot(e2), (vertices[c] - middle).dot(e1));
         };
@@ -87,7 +98,8 @@ KnownBlock::KnownBlock(ConvexBlock block) : ConvexBlock(std::move(block)), diago
         double deep = 0;
         for (const auto& v : vertices) {
             const double below = (face[0] - v).dot(normal);
-            if (below < -0.002 * diagonal) // more than what merged faces may bend
+            // Merged triangles may deviate from one plane by a little, so a vertex may lie a little above a face.
+            if (below < -0.002 * diagonal)
                 throw std::invalid_argument("block is not convex, or the corners of its faces wind the wrong way");
             deep = std::max(deep, below);
         }
@@ -103,9 +115,12 @@ bool KnownBlock::holds(const Point& p, double margin) const {
 
 namespace {
 
+// Two faces that look at each other, projected onto one of them along its normal.
 struct Meeting {
-    Polygon shared; // of a face with one opposite, seen along its normal
-    double gap = 0, area = 0, perimeter = 0;
+    Polygon shared;       // what the two faces have in common
+    double gap = 0;       // largest distance between the two faces over the shared polygon [m]
+    double area = 0;      // of the shared polygon [m²]
+    double perimeter = 0; // of the shared polygon [m]
 };
 
 Meeting meet(const KnownBlock::Face& mine, const KnownBlock::Face& theirs) {
@@ -113,7 +128,9 @@ Meeting meet(const KnownBlock::Face& mine, const KnownBlock::Face& theirs) {
     const auto& corners = theirs.corners;
     for (std::size_t i = 0; i < corners.size() && m.shared.size() > 2; ++i) {
         const Point edge = corners[(i + 1) % corners.size()] - corners[i];
-        m.shared = cut(m.shared, corners[i], edge.cross(mine.normal)); // their edges run clockwise about our normal
+        // The corners of the opposite face run clockwise about our normal, so this vector points into that face.
+        const Point inward = edge.cross(mine.normal);
+        m.shared = cut(m.shared, corners[i], inward);
     }
     if (m.shared.size() < 3) return m;
     m.area = area(m.shared, mine.normal);
@@ -124,15 +141,19 @@ Meeting meet(const KnownBlock::Face& mine, const KnownBlock::Face& theirs) {
     return m;
 }
 
-// The largest distance of two convex blocks between planes across an axis, below 0 the least overlap: over the normals
-// of their faces and, where those part them by less than `enough`, the directions across an edge of each.
+// How far apart two convex blocks are [m], by the separating axis theorem: along each axis both blocks are projected,
+// and the largest gap between the projections counts. If no axis separates the blocks, the result is negative, and its
+// magnitude is the smallest overlap. The axes are the normals of all faces; if these give less than `enough`, also the
+// directions at right angles to an edge of each block.
 double separation(const KnownBlock& one, const KnownBlock& two, double enough) {
     double most = -HUGE_VAL;
     const auto across = [&](const Point& axis) {
         double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
         for (int side = 0; side < 2; ++side)
-            for (const auto& v : (side ? two : one).vertices)
-                low[side] = std::min(low[side], v.dot(axis)), high[side] = std::max(high[side], v.dot(axis));
+            for (const auto& v : (side ? two : one).vertices) {
+                low[side] = std::min(low[side], v.dot(axis));
+                high[side] = std::max(high[side], v.dot(axis));
+            }
         most = std::max({most, low[1] - high[0], low[0] - high[1]});
     };
     for (const auto* block : {&one, &two})
@@ -143,9 +164,10 @@ double separation(const KnownBlock& one, const KnownBlock& two, double enough) {
         for (const auto& s : two.triangles)
             for (int i = 0; i < 3; ++i)
                 for (int j = 0; j < 3; ++j) {
-                    const Point e = (one.vertices[t[(i + 1) % 3]] - one.vertices[t[i]]).normalized(),
-                                f = (two.vertices[s[(j + 1) % 3]] - two.vertices[s[j]]).normalized();
-                    if (e.cross(f).norm() > 1e-6) across(e.cross(f).normalized());
+                    const Point e = (one.vertices[t[(i + 1) % 3]] - one.vertices[t[i]]).normalized();
+                    const Point f = (two.vertices[s[(j + 1) % 3]] - two.vertices[s[j]]).normalized();
+                    const bool areParallel = !(e.cross(f).norm() > 1e-6);
+                    if (!areParallel) across(e.cross(f).normalized());
                 }
     return most;
 }
@@ -158,8 +180,8 @@ std::optional<FaceContact> coincidentFaces(const KnownBlock& one, const KnownBlo
         for (const auto& theirs : two.known) {
             if (mine.normal.dot(theirs.normal) > -parallel) continue;
             const Point& origin = theirs.corners[0];
-            if (std::abs((origin - mine.corners[0]).dot(mine.normal)) > 100 * width)
-                continue; // far; the exact test comes below
+            // A cheap test leaves out faces that are far apart; the gap is measured below.
+            if (std::abs((origin - mine.corners[0]).dot(mine.normal)) > 100 * width) continue;
             auto m = meet(mine, theirs);
             if (m.shared.size() < 3 || m.gap > width || m.area < 0.5 * m.perimeter * width) continue;
             m.shared = withoutFlatCorners(std::move(m.shared), 0.01 * width);
@@ -201,7 +223,7 @@ Point centroid(const Polygon& p, const Point& normal) {
     double twice = 0;
     for (std::size_t i = 1; i + 1 < p.size(); ++i) {
         const double part = (p[i] - p[0]).cross(p[i + 1] - p[0]).dot(normal);
-        moment += part * (p[i] + p[i + 1] - 2 * p[0]) / 3; // from p[0], to keep digits far from the origin
+        moment += part * (p[i] + p[i + 1] - 2 * p[0]) / 3; // about p[0]: less round-off far from the origin
         twice += part;
     }
     return p[0] + moment / twice;
@@ -213,9 +235,12 @@ std::vector<Subcontact> subdivide(const Polygon& polygon, const Point& normal, c
     const int counts[2] = {along, across};
     double low[2], step[2];
     for (int d = 0; d < 2; ++d) {
-        double high = low[d] = polygon[0].dot(axes[d]);
-        for (const auto& p : polygon)
-            low[d] = std::min(low[d], p.dot(axes[d])), high = std::max(high, p.dot(axes[d]));
+        low[d] = polygon[0].dot(axes[d]);
+        double high = low[d];
+        for (const auto& p : polygon) {
+            low[d] = std::min(low[d], p.dot(axes[d]));
+            high = std::max(high, p.dot(axes[d]));
+        }
         step[d] = (high - low[d]) / counts[d];
     }
     const double smallest = 1e-9 * area(polygon, normal);
@@ -224,14 +249,15 @@ std::vector<Subcontact> subdivide(const Polygon& polygon, const Point& normal, c
         for (int j = 0; j < across; ++j) {
             const int at[2] = {i, j};
             Polygon cell = polygon;
-            for (int d = 0; d < 2 && cell.size() > 2; ++d) { // the outermost sides are the polygon's own
+            // Cells at the rim are not cut on their outer side: the polygon bounds them there.
+            for (int d = 0; d < 2 && cell.size() > 2; ++d) {
                 if (at[d] > 0) cell = cut(cell, (low[d] + at[d] * step[d]) * axes[d], axes[d]);
                 if (at[d] + 1 < counts[d] && cell.size() > 2)
                     cell = cut(cell, (low[d] + (at[d] + 1) * step[d]) * axes[d], -axes[d]);
             }
             if (cell.size() < 3) continue;
             const double size = area(cell, normal);
-            if (size > smallest) cells.push_back({centroid(cell, normal), size});
+            if (size > smallest) cells.push_back({centroid(cell, normal), size}); // smaller ones are round-off
         }
     return cells;
 }

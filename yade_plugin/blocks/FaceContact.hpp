@@ -1,4 +1,5 @@
-// Joints between convex blocks: coincident faces -> joint polygon -> subcontacts. Pure geometry, in one common frame.
+// Joints between convex blocks. Where two faces coincide, the blocks share a joint; its shape is a polygon, which is
+// divided into subcontacts. This is pure geometry: all points are in one common coordinate system [m].
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -8,64 +9,76 @@
 namespace masonry {
 
 using Point = Eigen::Vector3d;
-using Polygon = std::vector<Point>; // convex, counter-clockwise about its normal
+using Polygon = std::vector<Point>; // corners of a convex polygon, counter-clockwise about its normal
 
-// A convex polyhedron: vertices and outward triangles of its surface.
+// A convex polyhedron, given by its vertices and the triangles of its surface. Seen from outside, the corners of a
+// triangle run counter-clockwise.
 struct ConvexBlock {
     std::vector<Point> vertices;
     std::vector<std::array<int, 3>> triangles;
 
-    double size() const;                // [m] diagonal of the bounding box
-    std::vector<Polygon> faces() const; // coplanar triangles merged
+    double size() const;                // diagonal of the bounding box [m]
+    std::vector<Polygon> faces() const; // one polygon for all triangles that lie in one plane
 };
 
-// A block with what its neighbours ask of it again and again.
+// A convex block with its faces, normals and sizes, computed once: finding joints compares a block with each of its
+// neighbours.
 struct KnownBlock : ConvexBlock {
-    KnownBlock(ConvexBlock block); // std::invalid_argument if it is not convex, or its triangles wind inward
+    // Throws std::invalid_argument if the block is not convex, or if its triangles run the wrong way round.
+    KnownBlock(ConvexBlock block);
     struct Face {
         Polygon corners;
-        Point normal;
+        Point normal; // outward
     };
-    std::vector<Face> known;
-    double diagonal, thickness; // [m] of the bounding box; smallest extent along the normal of a face
-    bool holds(const Point&, double margin) const; // whether a point lies inside, or outside by no more than that
+    std::vector<Face> known; // all faces of the block
+    double diagonal;         // of the bounding box [m]
+    double thickness;        // smallest extent of the block along the normal of one of its faces [m]
+
+    // Whether a point lies inside the block, or outside by at most `margin` [m].
+    bool holds(const Point&, double margin) const;
 };
 
+// A joint between two blocks.
 struct FaceContact {
     Point normal;    // from block 1 to block 2
     Polygon polygon; // counter-clockwise about the normal, midway between the two faces
 };
 
-// The face that two blocks share: opposite normals and a gap or overlap within `tolerance` times the size of the
-// smaller block. Faces that touch along less than that width share nothing.
+// The joint of two blocks that share a face, or nothing. Two faces coincide if their normals are opposite and if the
+// gap or overlap between them is at most a width: `tolerance` times the diagonal of the smaller block. Faces that touch
+// along a strip narrower than this width share nothing.
 std::optional<FaceContact> coincidentFaces(const KnownBlock& one, const KnownBlock& two, double tolerance = 1e-4);
 
-// How two blocks without a coincident face miss each other by little.
+// Describes two blocks that share no face but probably should: they overlap, or two of their faces nearly coincide.
 struct Misfit {
-    double gap;   // [m] above 0: largest gap between two faces that nearly coincide; below 0: depth of the overlap
-    Point middle; // of the gap
+    double gap;   // largest gap between the two faces [m] if above 0; depth of the overlap [m], negative, if below 0
+    Point middle; // the middle of the gap; (0, 0, 0) for an overlap
 };
 
-// The misfit of two blocks that overlap by more than the width of `coincidentFaces`, or have faces opposite each other
-// (within 6° and over a hundredth of the smaller face) that are no further apart than a quarter of the thinner block.
+// The misfit of two blocks, or nothing. Blocks overlap if their overlap is deeper than the width of `coincidentFaces`.
+// Faces nearly coincide if three things hold: their normals are opposite within 6°, they face each other over at least
+// a hundredth of the smaller face, and they are no further apart than a quarter of the thinner block.
 std::optional<Misfit> misfit(const KnownBlock& one, const KnownBlock& two, double tolerance = 1e-4);
 
+// A part of a joint, to which the joint law is applied at one point.
 struct Subcontact {
     Point centre;
     double area; // [m²]
 };
 
-double area(const Polygon&, const Point& normal);
+double area(const Polygon&, const Point& normal); // [m²]
 Point centroid(const Polygon&, const Point& normal);
 
-// A grid over the polygon's extent, `along` cells in the direction of that unit vector and `across` cells beside it,
-// cut by the polygon: the areas add up to the polygon's.
+// Subcontacts of a joint. A grid covers the polygon, with `along` cells in the given direction (a unit vector in the
+// plane of the joint) and `across` cells at right angles to it. Each subcontact is the part of a cell that lies inside
+// the polygon, so that their areas add up to the area of the polygon.
 std::vector<Subcontact> subdivide(const Polygon&, const Point& normal, const Point& direction, int along, int across);
 
-// The part of a polygon nearest to each of the given points, for pictures.
+// Divides a polygon, for pictures: for each given point, the part of the polygon that is nearer to it than to all other
+// points.
 std::vector<Polygon> nearestCells(const Polygon&, const std::vector<Point>& points);
 
-// Direction of the longest edge of a polygon, the default for `subdivide`.
+// Unit vector along the longest edge of a polygon; where no other direction is asked for, `subdivide` gets this one.
 Point longestEdge(const Polygon&);
 
 } // namespace masonry

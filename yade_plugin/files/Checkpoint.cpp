@@ -57,7 +57,8 @@ std::string Checkpoint::bytes() const {
     std::string records;
     const auto add = [&](char kind, const std::string& name, const void* value, std::size_t size) {
         records += kind;
-        append(records, name.size()), append(records, size);
+        append(records, name.size());
+        append(records, size);
         records += name;
         records.append(static_cast<const char*>(value), size);
     };

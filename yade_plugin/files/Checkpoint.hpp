@@ -1,5 +1,5 @@
-// What a checkpoint holds, and its bytes. No file is opened here, and nothing that is read is trusted: bytes that are
-// cut short, altered or of another kind are refused in words.
+// The contents of a checkpoint and their form as bytes. No file is opened here. Bytes that come from a file are not
+// trusted: if they are cut short, altered or no checkpoint at all, they are refused with the reason.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -9,22 +9,26 @@
 
 namespace masonry {
 
-// Numbers and texts by name. The bytes are a title line, the number of bytes that follow, the records, and a sum over
-// everything before it. A record is its kind ('n' or 't'), the sizes of name and value, the name, and the value:
-// numbers as they stand in memory (IEEE 754, little-endian), so that they come back to the last bit.
+// Numbers and texts by name. As bytes a checkpoint consists of a title line, the number of bytes that follow, the
+// records, and a checksum of everything before it. A record consists of its kind ('n' for numbers, 't' for a text), the
+// size of its name, the size of its value, the name and the value. Numbers are written as they are in memory (IEEE 754,
+// little-endian), so that no bit of them is lost.
 struct Checkpoint {
     std::map<std::string, std::vector<double>> numbers;
     std::map<std::string, std::string> texts;
 
     std::string bytes() const;
-    // Throws std::invalid_argument that says what is wrong with the bytes.
+
+    // Reads a checkpoint from its bytes. Throws std::invalid_argument, which says what is wrong with them.
     static Checkpoint read(std::string_view bytes);
 
-    // Title and size before some records, and the sum behind them.
+    // The bytes of a checkpoint with these records: adds the title and the size before them and the checksum after
+    // them.
     static std::string sealed(std::string_view records);
 };
 
-// FNV-1a: each byte leads from one sum to another in a one-to-one way, so that no single altered byte goes unnoticed.
+// Checksum of some bytes (FNV-1a, 64 bits). Equal bytes turn different sums into different sums, so a change of a
+// single byte always changes the result.
 std::uint64_t sumOf(std::string_view bytes);
 
 } // namespace masonry

@@ -5,7 +5,9 @@
 #include <cstring>
 #include <dlfcn.h>
 
-#ifndef MASONRY_FALSIFY // the tests build a second module that expects this much more at State.mass
+// Bytes added to the expected offset of State.mass. The tests build a second module with 8, which must refuse to
+// import.
+#ifndef MASONRY_FALSIFY
 #define MASONRY_FALSIFY 0
 #endif
 
@@ -20,8 +22,9 @@ struct Member {
     std::size_t offset;
 };
 
+// C++ leaves offsetof open for classes with virtual functions, and GCC warns of it but gives the right value.
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Winvalid-offsetof" // these classes have virtual functions; GCC supports it
+#pragma GCC diagnostic ignored "-Winvalid-offsetof"
 #define AT(Class, member)                                                                                              \
     { #Class, #member, offsetof(Class, member) }
 const Member members[] = {
@@ -77,7 +80,7 @@ const Member members[] = {
 struct Slot {
     const char* ofClass;
     int index;
-    const char* function; // text that the demangled name of the function in that slot contains
+    const char* function; // part of the demangled name of the function that the slot must point to
 };
 
 const Slot slots[] = {
@@ -132,13 +135,17 @@ const Slot slots[] = {
 
 constexpr const char* version = "2023.02a";
 
-void** tableOf(const std::string& name) { // first slot of a host class's virtual function table
+// Slot 0 of the virtual function table of a YADE class; null if YADE exports no such table. The two words before it
+// hold the distance to the beginning of the object and the type information.
+void** tableOf(const std::string& name) {
     const auto symbol = "_ZTVN4yade" + std::to_string(name.size()) + name + "E";
     auto* table = static_cast<void**>(dlsym(RTLD_DEFAULT, symbol.c_str()));
     return table ? table + 2 : nullptr;
 }
 
-// Boost.Python keeps the member pointer of an attribute in its getter: function object -> caller -> offset.
+// The offset [bytes] that Python reads an attribute at, or -1 if its getter is no function of Boost.Python. The
+// function object holds the address of its caller after its header of 16 bytes, and the caller holds the offset after
+// the address of its virtual function table.
 long offsetSeenByPython(const py::object& wrapper, const Member& m) {
     const py::object property = wrapper.attr(m.ofClass).attr("__dict__")[m.name];
     const py::object getter = property.attr("fget");
@@ -149,11 +156,13 @@ long offsetSeenByPython(const py::object& wrapper, const Member& m) {
 
 std::string found(long offset) { return offset < 0 ? "no such data member" : "offset " + std::to_string(offset); }
 
+// Whether an object is exactly of the YADE class of that name, by the address of its virtual function table.
 template <class T> bool isReally(const T* object, const char* name) {
     return object && *reinterpret_cast<void** const*>(object) == tableOf(name);
 }
 
-// What Python cannot see is tried out in a scene of its own, so that the user's stays as it is.
+// Tries out members of Scene that Python cannot see: the containers of bodies, interactions, engines and forces. This
+// happens in a scene of its own, so that the user's scene stays as it is.
 void probe(std::vector<std::string>& wrong, const py::object& wrapper) {
     py::object omega = wrapper.attr("Omega")();
     const py::object usersScene = omega.attr("thisScene");

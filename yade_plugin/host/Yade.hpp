@@ -1,7 +1,10 @@
-// The host's classes as far as this plugin touches them, in our own words: YADE ships no headers. Layouts are those of
-// YADE 2023.02a with double precision; SelfCheck.cpp compares them with the installed YADE when the plugin is imported.
-// Destructors stand first and nothing virtual is defined here, so that the host's own tables and type information are
-// used: dispatch, dynamic_cast and saving meet one type, not two.
+// The classes of YADE that this plugin touches, declared in our own words, because Debian's YADE comes without headers.
+// Layouts are those of YADE 2023.02a with double precision. SelfCheck.cpp compares them with the running YADE when the
+// plugin is imported; README.md says why they are declared as they are.
+//
+// Each class declares its destructor before all other virtual functions and does not define it. The compiler then
+// writes no virtual function table for the class and uses YADE's own, so that dispatch, dynamic_cast and saving see one
+// type and not two.
 #pragma once
 #include <Eigen/Geometry>
 #include <boost/enable_shared_from_this.hpp>
@@ -30,8 +33,8 @@ public:
     virtual std::string getClassName() const;
 };
 
-// What every serializable host class overrides, in the order of its table. The host's own instantiation of `serialize`
-// is found first at run time (host.md); the one here only lets our classes name their base.
+// The functions that every serializable class of YADE overrides, in the order of its table. `serialize` is declared so
+// that our classes can name their base; what runs is YADE's own function of that name, which the loader finds first.
 #define MASONRY_HOST_CLASS(Class)                                                                                      \
 public:                                                                                                                \
     virtual ~Class();                                                                                                  \
@@ -60,8 +63,8 @@ public:
     template <class Archive> void serialize(Archive&, unsigned) {}
 };
 
-// Gives each class of a kind the number by which dispatchers know it. The host exports no table of this class, so ours
-// is defined inline.
+// Numbers the classes of one kind (materials, shapes, geometries or physics); dispatchers choose a functor by these
+// numbers. YADE exports no table of this class, so its functions are defined here.
 class Indexable {
 public:
     virtual void incrementMaxCurrentlyUsedClassIndexOfKin() { unexpected(); }
@@ -134,7 +137,7 @@ private:
     char hull_[328 - 96];
 
 public:
-    std::vector<Vector3r> v; // vertices about the centroid, in the body's own axes
+    std::vector<Vector3r> v; // vertices [m], relative to the centroid, in the axes of the body
 };
 
 class Material : public Serializable, public Indexable {
@@ -200,13 +203,16 @@ class InteractionContainer : public Serializable {
     std::size_t currSize;
 };
 
-class ForceContainer { // only ever reached by reference
+// No object of this class is made here: its size is not declared, and Scene::forces() gives a reference to YADE's own.
+class ForceContainer {
     std::vector<std::vector<Vector3r>> forcesOfThreads_, torquesOfThreads_;
 
 public:
-    // Where the first thread adds up forces and torques, for bodies below `count`, until they are next summed.
+    // The arrays in which the first thread adds up forces [N] and torques [N m]. Each holds at least the bodies with
+    // numbers below `count`. Their values count from the next sync() on. Adding zero makes YADE enlarge the array and
+    // note that there is something to sum.
     Vector3r* forces(int count) {
-        addForce(count - 1, Vector3r::Zero()); // makes room, and says that there is something to sum
+        addForce(count - 1, Vector3r::Zero());
         return forcesOfThreads_[0].data();
     }
     Vector3r* torques(int count) {
@@ -228,14 +234,14 @@ public:
     void sync();
     const Vector3r& getForce(int id);
     const Vector3r& getTorque(int id);
-    const Vector3r getForceSingle(int id); // summed for one body
+    const Vector3r getForceSingle(int id); // sums up the forces on this body only, so it needs no sync()
     const Vector3r getTorqueSingle(int id);
     void setPermForce(int id, const Vector3r&);
     void setPermTorque(int id, const Vector3r&);
     bool getPermForceUsed() const;
-    const Vector3r& getPermForce(int id); // only if they are used: there is no array before
+    const Vector3r& getPermForce(int id); // only after getPermForceUsed(): before that there is no array
     const Vector3r& getPermTorque(int id);
-    void reset(long iter, bool permanentToo); // what was added since the last sync() outlives it
+    void reset(long iter, bool permanentToo); // needs sync() before: unsynchronised forces can survive it
 };
 
 class Engine : public Serializable {
@@ -306,8 +312,9 @@ class Functor : public Serializable {
     Functor() = default;
 };
 
-// The calls that a dispatcher makes on a functor, in the order of its table: checkOrder, go and goReverse with one to
-// seven arguments. Law and physics functors take three (the rest are void places), geometry functors seven.
+// The functions that a dispatcher calls on a functor, in the order of its table: checkOrder, then go and goReverse,
+// each with one to seven arguments. Laws and physics functors use the go with three arguments, geometry functors the
+// one with seven. The other ones only fill their slots of the table.
 struct NoArgument {};
 
 template <class R, class A, class B, class C, class D = NoArgument, class E = NoArgument, class F = NoArgument,
@@ -373,7 +380,7 @@ public:
 
 } // namespace yade
 
-template <class T> class Singleton { // defined and kept by the host
+template <class T> class Singleton { // the object is YADE's; instance() is found in its library
 public:
     static T& instance();
 };
