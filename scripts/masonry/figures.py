@@ -14,7 +14,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 
-from .options import Refused
+from .errors import Refused
 from .results import filesOf, onFolder, readCurve, readRun
 
 MAGNIFICATION = 30  # of displacements in cracks.png, as in the paper's figure 6
