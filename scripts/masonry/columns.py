@@ -9,13 +9,32 @@ from collections import namedtuple
 #: ``name`` has the unit at its end. ``value`` is a function of a reading that gives the number in that unit.
 Column = namedtuple("Column", "name meaning value")
 
-#: What a wall reads: time since it was built [s]; displacement of the loading block since the push began, along the push
-#: and upwards [m]; its rotation about the axis across the wall since it was built [rad]; force of the wall on the fixed
-#: block, along the push, and force that drives the loading block [N]; the energy balance [J]; and the displacement of
-#: the loading block since the wall was built, along the push and upwards [m].
-WallReading = namedtuple(
-    "WallReading", "time along up rotation baseShear topShear energy alongAll upAll"
-)
+
+class WallReading(
+    namedtuple(
+        "WallReading",
+        "time along up baseShear topShear energy orientation reference sunk",
+    )
+):
+    """What a wall reads, for a row.
+
+    - ``time`` since it was built [s]
+    - ``along`` and ``up``: displacement of the loading block since the push began, along the push and upwards [m]
+    - ``baseShear``: force of the wall on the fixed block, along the push [N]
+    - ``topShear``: force that drives the loading block [N]
+    - ``energy``: the energy balance [J]
+    - ``orientation`` of the loading block, and ``reference``, the inverse of that in which it was built: quaternions
+    - ``sunk``: displacement of the loading block downwards since the wall was built [m]
+    """
+
+    __slots__ = ()
+
+    @property
+    def rotation(self):
+        """Rotation of the loading block about the axis across the wall [rad]."""
+        axis, angle = (self.orientation * self.reference).toAxisAngle()
+        return angle * axis[1]
+
 
 #: What a couplet reads: time since it was built [s]; means over its bed joint of opening and slide [m] and of normal and
 #: shear stress [Pa]; force of the couplet on the fixed block, upwards and along the slide [N]; the energy balance [J].

@@ -84,7 +84,7 @@ def settle(run, model):
 class Pushing:
     """What :func:`push` remembers."""
 
-    origin: list = None  # displacement of the loading block when the push began [m]
+    origin: list = None  # displacement of the loading block when the push began, along it and up [m]
     began: float = 0.0  # time then [s]
     moved: float = 0.0  # displacement since then [mm]
     peak: float = 0.0  # largest base shear so far [kN]
@@ -115,24 +115,28 @@ def push(run, model):
     model.damp(args.damping, args.damping_kind)
     shear = 0.0
     detail = lambda: f"{at.moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
+    now, stretch, velocity = O.time, every * O.dt, None
     while at.moved < args.until:
         if at.moved >= at.nextFrame:
             run.frame()
             at.nextFrame += args.vtk_every
-        growth = min(1.0, (O.time - at.began + every * O.dt) / growing)
-        load.velocity = args.rate * 1e-3 * growth
+        growth = min(1.0, (now - at.began + stretch) / growing)
+        if velocity != args.rate * 1e-3 * growth:
+            velocity = load.velocity = args.rate * 1e-3 * growth
         model.keepLoadLine()
         run.advance(every)
         reading = run.record()
+        now = reading.time
         shear, at.moved = 1e-3 * reading.baseShear, 1e3 * reading.along
         if shear > at.peak:
             at.peak, at.peakAt = shear, at.moved
         run.show(max(0, at.moved / args.until), detail)
         lost = at.moved > at.peakAt + 1 and shear < 0.2 * at.peak
-        if lost or model.hasSunk(reading.upAll):
+        if lost or model.hasSunk(reading.sunk):
             run.collapsed = True
             break
     run.show(1, detail, final=True)
+    run.flush()
     if run.collapsed:
         say(f"the wall has collapsed at {at.moved:.2f} mm")
 
@@ -182,4 +186,5 @@ def drive(run, model, name, distance):
         at.done = mark
         reading = run.record()
         run.show(at.done / at.length, lambda: model.brief(reading))
+    run.flush()
     load.velocity = 0

@@ -56,8 +56,6 @@ import time
 from .errors import Refused, Unwritable
 from .progress import say
 
-FLUSH_EVERY = 0.2  # [s] of wall-clock time after which a row is on the disk
-
 #: Names of the files that a run leaves.
 OURS = re.compile(
     r"((blocks|joints)(_\d+\.vt[up]|\.pvd)|curve\.(csv|png)|cracks\.png|run\.(json|checkpoint))(\.new)?"
@@ -67,9 +65,6 @@ OURS = re.compile(
 class Results:
     """The folder of a run, while it is written. A folder that cannot be written is refused at once.
 
-    Rows wait in memory for 0.2 s at most before they are on the disk, and until :meth:`flush` or :meth:`close`. Only a
-    kill can lose those that wait. A checkpoint holds them, so that a run that is resumed has them all.
-
     :param directory: folder, made if it is missing
     :param columns: names of the columns of curve.csv
     :param resumed: whether to leave everything as it is, until :meth:`takeUp`
@@ -78,6 +73,8 @@ class Results:
     def __init__(self, directory, columns, resumed=False):
         self.directory = os.path.abspath(directory)
         self.columns, self.rows, self.run = list(columns), [], {}
+        self._line = ",".join(["%.9g"] * len(self.columns)) + "\r\n"
+        self.started = time.perf_counter()
         try:
             os.makedirs(self.directory, exist_ok=True)
             # files of an earlier run would be taken for those of this one
@@ -86,15 +83,12 @@ class Results:
                     os.remove(os.path.join(self.directory, name))
             self._file = open(self.path("curve.csv"), "ab", buffering=0)
             if not resumed:
-                self._append(self._head())
+                self._write(self._head())
                 os.fsync(self._file.fileno())
         except OSError as error:
             raise Refused(
                 f"--out: cannot write to {self.directory}: {error.strerror}"
             ) from None
-        self._line = ",".join(["%.9g"] * len(self.columns)) + "\r\n"
-        self._waiting = []  # lines that are not on the disk yet
-        self.started = self._flushed = self._lastRow = time.perf_counter()
 
     def path(self, name):
         return os.path.join(self.directory, name)
@@ -109,48 +103,38 @@ class Results:
             if number and int(number[1]) >= frames:
                 os.remove(self.path(name))
         self._file.truncate(0)
-        self._append(self._head())
-        for row in rows:
-            self.row(row)
-        self.flush()
+        self._write(self._head())
+        self.append(rows)
         self.started -= seconds
 
-    def row(self, values):
-        """Append a row to curve.csv.
+    def append(self, rows):
+        """Write rows to curve.csv.
 
-        :param values: a number for every column
-        :raises FloatingPointError: if one is not finite; the row is left out
-        :raises Unwritable: if rows cannot be written
+        :param rows: lists with a number for every column
+        :raises FloatingPointError: if a number is not finite; its row and those after it are left out
+        :raises Unwritable: if the disk refuses; what fits is kept, in whole lines, and ``rows`` has all of them
         """
-        if not all(map(math.isfinite, values)):
-            broken = [c for c, v in zip(self.columns, values) if not math.isfinite(v)]
-            raise FloatingPointError(
-                f"the run has left finite numbers in {', '.join(broken)}; see curve.csv up to here"
-            )
-        self._waiting.append(self._line % tuple(values))
-        self.rows.append(values)
-        # the next row is expected as long after this one as this one after the last
-        now = time.perf_counter()
-        if 2 * now - self._lastRow >= self._flushed + FLUSH_EVERY:
-            self.flush()
-        self._lastRow = now
-
-    def flush(self):
-        """Write the rows that wait. Raises Unwritable if the disk refuses; what fits is kept then, in whole lines."""
-        text = "".join(self._waiting)
-        self._waiting.clear()
-        self._flushed = time.perf_counter()
+        fine = 0
+        while fine < len(rows) and all(map(math.isfinite, rows[fine])):
+            fine += 1
+        self.rows += rows[:fine]
         try:
-            self._append(text)
+            self._write("".join(self._line % tuple(row) for row in rows[:fine]))
         except OSError as error:
             raise Unwritable(
                 f"cannot write {self.path('curve.csv')}: {error.strerror}"
             ) from None
+        if fine < len(rows):
+            numbers = zip(self.columns, rows[fine])
+            broken = [name for name, number in numbers if not math.isfinite(number)]
+            raise FloatingPointError(
+                f"the run has left finite numbers in {', '.join(broken)}; see curve.csv up to here"
+            )
 
-    def _append(self, text):
-        """Append lines to curve.csv. If the disk is full, those that fit stay, each of them whole."""
+    def _write(self, text):
+        """Add lines to curve.csv. If the disk is full, those that fit stay, each of them whole."""
         data, written = text.encode(), 0
-        start = self._file.seek(0, os.SEEK_END) if data else 0
+        start = self._file.seek(0, os.SEEK_END)
         try:
             while written < len(data):
                 written += self._file.write(data[written:])
@@ -178,15 +162,9 @@ class Results:
         return time.perf_counter() - self.started
 
     def close(self):
-        """Write the rows that wait, and run.json, whole or not at all. Raises Unwritable if the disk refuses either."""
-        try:
-            self.flush()
-        finally:
-            self._file.close()
-            self.run["wall_clock_s"] = round(self.seconds(), 3)
-            self._writeRun()
-
-    def _writeRun(self):
+        """Close curve.csv and write run.json, whole or not at all. Raises Unwritable if the disk refuses."""
+        self.run["wall_clock_s"] = round(self.seconds(), 3)
+        self._file.close()
         path = self.path("run.json")
         try:
             with open(path + ".new", "w") as f:

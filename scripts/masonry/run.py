@@ -36,6 +36,8 @@ from .results import Results
 
 PARTS = "setup", "steps", "rows", "frames"  # of a run's time
 OFF = 0.01  # of the work done: a larger error of the energy balance is a warning
+FLUSH_EVERY = 0.2  # [s] of wall-clock time: rows are on the disk after it
+SHOW_EVERY = 0.05  # [s] of wall-clock time: what is shown on the terminal is not older
 
 
 @dataclass
@@ -71,10 +73,10 @@ class Run:
         self._goesOn = False  # whether this run has advanced
         self._entered = 0  # number of the stage that was entered last
         self._memory = None  # of that stage, as an object
-        self._safe = (
-            None  # place and rows after the last steps, or None while steps are taken
-        )
-        self._saved = time.monotonic()
+        self._readings = []  # that are no rows of curve.csv yet
+        self._safe = None  # what a checkpoint keeps, None while steps are taken
+        self._now = now = time.perf_counter()  # [s] at the end of the last steps
+        self._saved = self._flushed = self._recorded = self._shown = now  # [s]
         self._handlers = {}  # of signals, as they were before
 
     # -- beginning ------------------------------------------------------------------------------------------------
@@ -184,30 +186,51 @@ class Run:
             step, began = O.step, time.perf_counter()
             for _ in range(steps):
                 step()
-            at.seconds["steps"] += time.perf_counter() - began
+            self._now = time.perf_counter()
+            at.seconds["steps"] += self._now - began
             at.steps += steps
         else:  # the scene of a checkpoint is that after the steps
             self._goOn()
-        place = dict(vars(at), memory=dict(vars(self._memory)))
-        self._safe = place, len(self.results.rows)
-        if time.monotonic() - self._saved > 60 * self.args.checkpoint_every:
-            self.results.flush()
+        rows = len(self.results.rows) + len(self._readings)
+        self._safe = vars(self._memory).copy(), at.steps, at.frames, rows
+        if self._now - self._saved > 60 * self.args.checkpoint_every:
+            self.flush()
             self.checkpoint()
         if self.interrupted:
             raise Interrupted()
 
     def record(self):
-        """Read the model and write a row of curve.csv. Returns the reading."""
+        """Read the model for a row of curve.csv. Returns the reading.
+
+        Readings wait for 0.2 s of wall-clock time at most, and not beyond a checkpoint or the end, before they become
+        rows. So only a kill can lose them, and a run that is resumed after a kill makes them again.
+        """
         began = time.perf_counter()
         reading = self.model.read()
-        self.results.row([value(reading) for value in self._values])
-        self.at.seconds["rows"] += time.perf_counter() - began
+        self._readings.append(reading)
+        now = time.perf_counter()
+        self.at.seconds["rows"] += now - began
+        # the next reading is expected as long after this one as this one after the last
+        if now - self._flushed + now - self._recorded > FLUSH_EVERY:
+            self.flush()
+        self._recorded = now
         return reading
+
+    def flush(self):
+        """Write the readings that wait as rows of curve.csv. Raises as :meth:`masonry.results.Results.append` does."""
+        began = time.perf_counter()
+        rows = [
+            [value(reading) for value in self._values] for reading in self._readings
+        ]
+        self._readings.clear()
+        self.results.append(rows)
+        self._flushed = time.perf_counter()
+        self.at.seconds["rows"] += self._flushed - began
 
     def frame(self):
         """Write a frame for ParaView, if the user wants any."""
         if self.vtk:
-            self.results.flush()
+            self.flush()
             began = time.perf_counter()
             try:
                 self.vtk()
@@ -217,10 +240,17 @@ class Run:
             self.at.frames = list(self.vtk.times)
 
     def show(self, fraction, detail, final=False):
-        """Show on the terminal how far the present stage has come; the words are those of :meth:`Progress.show`."""
-        at = self.at
-        rate = at.steps / at.seconds["steps"] if at.steps else 0.0
-        self.progress.show(at.stage, fraction, detail, rate, final)
+        """Show on the terminal how far the present stage has come, if it is time to.
+
+        :param fraction: how much of the stage is done, 0 to 1 [-]
+        :param detail: function without arguments that gives the text to show
+        :param final: whether the stage ends here; this is always shown
+        """
+        if final or self._now - self._shown > SHOW_EVERY:
+            at = self.at
+            rate = at.steps / at.seconds["steps"] if at.steps else 0.0
+            self.progress.show(at.stage, fraction, detail, rate, final)
+            self._shown = self._now
 
     # -- checkpoints ----------------------------------------------------------------------------------------------
 
@@ -236,7 +266,10 @@ class Run:
         """Save the state after the last steps. Returns whether it could; a disk that refuses does not end the run."""
         if not (self.args.checkpoint_every and self._safe):
             return False
-        place, rows = self._safe
+        memory, steps, frames, rows = self._safe
+        if len(self.results.rows) < rows:
+            return False
+        place = dict(vars(self.at), memory=memory, steps=steps, frames=frames)
         told = dict(
             scene=self.name,
             options={
@@ -249,7 +282,7 @@ class Run:
             seconds=self.results.seconds(),
             **self._host(),
         )
-        self._saved = time.monotonic()
+        self._saved = time.perf_counter()
         path = self.results.path(NAME)
         try:
             saveCheckpoint(path, told)
@@ -288,6 +321,12 @@ class Run:
                 self.status = 2
             return self.status == 2
         stopped = []
+        try:
+            self.flush()
+        except Unwritable as unwritable:
+            stopped.append(unwritable)
+        except FloatingPointError as broken:
+            error = error or broken
         if isinstance(error, Interrupted):
             say("\ninterrupted: what was computed is kept")
         elif isinstance(error, Unwritable):
@@ -296,7 +335,7 @@ class Run:
             self.results.run["error"] = str(error)
             self.checkpoint()
             self.finish()
-            return False
+            raise error
         kept = self.checkpoint()
         try:
             self.finish()

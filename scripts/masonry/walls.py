@@ -118,7 +118,10 @@ class WallModel(Model):
         if self.halves and "crack" not in joints:
             problems.append("--crack-surfaces on: the units of this wall have none")
         super().__init__(args, unit, joints, problems)
-        self.origin = (0, 0, 0)  # displacement of the top when the push began [m]
+        self.origin = (
+            0,
+            0,
+        )  # displacement of the top when the push began, along it and up [m]
 
     # -- what is built --------------------------------------------------------------------------------------------
 
@@ -159,10 +162,12 @@ class WallModel(Model):
         if wall.loadHeight is None:
             state.blockedDOFs = "yXYZ"
         self.blocks = {"base": base, "top": top}
+        # Rows are read at every few steps: what does not change is kept as plain numbers.
         measured = Vector3(length / 2, thickness / 2, wall.measureHeight)
-        self._arm = measured - state.refPos
-        self._upright = state.refOri.conjugate()
-        self._ownArm = self._upright * self._arm  # in the axes of the block
+        arm, self._upright = measured - state.refPos, state.refOri.conjugate()
+        self._ownArm = self._upright * arm  # in the axes of the block
+        self._arm, self._start = (arm[0], arm[2]), (state.refPos[0], state.refPos[2])
+        self._forces = O.forces
 
     def _rule(self, body1, body2, geom):
         """Halves of one brick share a crack; all other joints are chosen by their direction and joint set."""
@@ -191,36 +196,36 @@ class WallModel(Model):
     # -- what is measured -----------------------------------------------------------------------------------------
 
     def topDisplacement(self):
-        """Displacement of the loading block at the measure height since the wall was built [m], as three numbers."""
-        state, arm = self._state, self._arm
-        now, then, turned = state.pos, state.refPos, state.ori * self._ownArm
-        return (
-            now[0] + turned[0] - then[0] - arm[0],
-            now[1] + turned[1] - then[1] - arm[1],
-            now[2] + turned[2] - then[2] - arm[2],
-        )
+        """Displacement of the loading block at the measure height since the wall was built, along the push and up [m]."""
+        return self._moved(self._state.ori)
 
-    def hasSunk(self, up=None):
+    def _moved(self, orientation):
+        now, turned = self._state.pos, orientation * self._ownArm
+        along = now[0] + turned[0] - self._start[0] - self._arm[0]
+        up = now[2] + turned[2] - self._start[1] - self._arm[1]
+        return along, up
+
+    def hasSunk(self, down=None):
         """Whether the loading block has come down by half a course.
 
-        :param up: its upward displacement [m], if that is known
+        :param down: its displacement downwards [m], if that is known
         """
-        up = self.topDisplacement()[2] if up is None else up
-        return up < -0.5 * self.wall.unit[2]
+        down = -self.topDisplacement()[1] if down is None else down
+        return down > 0.5 * self.wall.unit[2]
 
     def read(self):
-        along, _, up = self.topDisplacement()
-        axis, angle = (self._state.ori * self._upright).toAxisAngle()
+        orientation = self._state.ori
+        along, up = self._moved(orientation)
         return columns.WallReading(
-            time=O.time,
-            along=along - self.origin[0],
-            up=up - self.origin[2],
-            rotation=angle * axis[1],
-            baseShear=O.forces.f(self.blocks["base"], True)[0],
-            topShear=self.loads["push"].reaction,
-            energy=self.energy.balance(),
-            alongAll=along,
-            upAll=up,
+            O.time,
+            along - self.origin[0],
+            up - self.origin[1],
+            self._forces.f(self.blocks["base"], True)[0],
+            self.loads["push"].reaction,
+            self.energy.balance(),
+            orientation,
+            self._upright,
+            -up,
         )
 
     # -- what comes out -------------------------------------------------------------------------------------------
