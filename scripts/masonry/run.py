@@ -194,7 +194,6 @@ class Run:
         rows = len(self.results.rows) + len(self._readings)
         self._safe = vars(self._memory).copy(), at.steps, at.frames, rows
         if self._now - self._saved > 60 * self.args.checkpoint_every:
-            self.flush()
             self.checkpoint()
         if self.interrupted:
             raise Interrupted()
@@ -263,9 +262,10 @@ class Run:
         }
 
     def checkpoint(self):
-        """Save the state after the last steps. Returns whether it could; a disk that refuses does not end the run."""
+        """Save the state after the last steps. Returns whether it could; a disk that refuses it does not end the run."""
         if not (self.args.checkpoint_every and self._safe):
             return False
+        self.flush()
         memory, steps, frames, rows = self._safe
         if len(self.results.rows) < rows:
             return False
