@@ -15,6 +15,7 @@
 - ``versions``: of ``yade``, ``python`` and ``masonry``; ``commit``: of the plugin; ``threads``: how many
 - ``time_step_s``, ``time_step_limit_s``: the time step and its stable limit
 - ``steps``: how many were taken; ``microseconds_per_step``, ``nanoseconds_per_subcontact_step``: their mean cost
+- ``stages``: a list with the name of every ``stage``, its ``steps`` and their ``seconds`` of wall-clock time
 - ``seconds``: wall-clock time of ``setup``, ``steps``, ``rows`` and ``frames`` [s]; ``wall_clock_s``: of all
 - ``energy_balance_error``: largest error of the energy balance, relative to the work done [-]
 - ``energy_made``: most energy that joints made by opening or closing within a step, relative to the work done [-]

@@ -48,6 +48,8 @@ class Place:
     stage: str = ""  # its name
     memory: dict = field(default_factory=dict)  # what the stage must know to go on
     steps: int = 0  # taken so far
+    #: Of every stage so far: its name, and the steps and their seconds of wall-clock time before it.
+    stages: list = field(default_factory=list)
     seconds: dict = field(default_factory=lambda: dict.fromkeys(PARTS, 0.0))
     frames: list = field(default_factory=list)  # times of the ParaView frames [s]
     resumed: list = field(default_factory=list)  # times at which it was taken up [s]
@@ -174,7 +176,10 @@ class Run:
                 memory = type(memory)(**self.at.memory)
             except TypeError as error:
                 raise _otherVersion(error) from None
-        self.at.number, self.at.stage = self._entered, name
+        else:
+            self.at.number, self.at.stage = self._entered, name
+            before = [name, self.at.steps, self.at.seconds["steps"]]
+            self.at.stages = [*self.at.stages, before]
         self._memory = memory
         return memory
 
@@ -192,7 +197,14 @@ class Run:
         else:  # the scene of a checkpoint is that after the steps
             self._goOn()
         rows = len(self.results.rows) + len(self._readings)
-        self._safe = vars(self._memory).copy(), at.steps, at.frames, rows
+        self._safe = rows, {
+            "number": at.number,
+            "stage": at.stage,
+            "memory": vars(self._memory).copy(),
+            "steps": at.steps,
+            "stages": at.stages,
+            "frames": at.frames,
+        }
         if self._now - self._saved > 60 * self.args.checkpoint_every:
             self.checkpoint()
         if self.interrupted:
@@ -266,10 +278,9 @@ class Run:
         if not (self.args.checkpoint_every and self._safe):
             return False
         self.flush()
-        memory, steps, frames, rows = self._safe
+        rows, place = self._safe
         if len(self.results.rows) < rows:
             return False
-        place = dict(vars(self.at), memory=memory, steps=steps, frames=frames)
         told = dict(
             scene=self.name,
             options={
@@ -277,7 +288,7 @@ class Run:
                 for name, value in vars(self.args).items()
                 if name not in ("resume", "out")
             },
-            at=place,
+            at={**vars(self.at), **place},
             rows=self.results.rows[:rows],
             seconds=self.results.seconds(),
             **self._host(),
@@ -387,6 +398,7 @@ class Run:
             interrupted=self.interrupted,
             resumed_at_s=at.resumed,
             steps=at.steps,
+            stages=self._stages(),
             kinds=self.vtk.kinds if self.vtk else [],
             seconds={part: round(s, 3) for part, s in at.seconds.items()},
         )
@@ -394,6 +406,13 @@ class Run:
             perStep = at.seconds["steps"] / at.steps
             run["microseconds_per_step"] = 1e6 * perStep
             run["nanoseconds_per_subcontact_step"] = 1e9 * perStep / model.subcontacts
+
+    def _stages(self):
+        ends = [*self.at.stages[1:], ["", self.at.steps, self.at.seconds["steps"]]]
+        return [
+            {"stage": name, "steps": after[1] - steps, "seconds": after[2] - seconds}
+            for (name, steps, seconds), after in zip(self.at.stages, ends)
+        ]
 
     def _report(self):
         run = self.results.run

@@ -87,6 +87,8 @@ def test_the_squat_wall_leaves_what_is_promised(squat):
         "time_step_limit_s steps options joints columns"
     ).split():
         assert key in run
+    stages = {stage["stage"]: stage["steps"] for stage in run["stages"]}
+    assert list(stages) == ["settle", "push"] and sum(stages.values()) == run["steps"]
     curve = readCurve(squat)
     assert list(run["columns"]) == list(curve)
     assert {"time_s", "displacement_mm", "base_shear_kN", "vertical_mm"} <= set(curve)
