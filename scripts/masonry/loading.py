@@ -111,30 +111,30 @@ def push(run, model):
         at.origin, at.began = list(model.topDisplacement()), O.time
         model.origin = at.origin
         at.moved = 1e3 * run.record().along
+        run.frame()
+        at.nextFrame = args.vtk_every
     model.origin = at.origin
     model.damp(args.damping, args.damping_kind)
-    shear = 0.0
     detail = lambda: f"{at.moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
     now, stretch, velocity = O.time, every * O.dt, None
-    while at.moved < args.until:
-        if at.moved >= at.nextFrame:
-            run.frame()
-            at.nextFrame += args.vtk_every
+    while at.moved < args.until and not run.collapsed:
         growth = min(1.0, (now - at.began + stretch) / growing)
         if velocity != args.rate * 1e-3 * growth:
             velocity = load.velocity = args.rate * 1e-3 * growth
         model.keepLoadLine()
         run.advance(every)
         reading = run.record()
-        now = reading.time
-        shear, at.moved = 1e-3 * reading.baseShear, 1e3 * reading.along
+        now, at.moved = reading.time, 1e3 * reading.along
+        shear = 1e-3 * reading.baseShear
         if shear > at.peak:
             at.peak, at.peakAt = shear, at.moved
-        run.show(max(0, at.moved / args.until), detail)
         lost = at.moved > at.peakAt + 1 and shear < 0.2 * at.peak
-        if lost or model.hasSunk(reading.sunk):
-            run.collapsed = True
-            break
+        run.collapsed = lost or model.hasSunk(reading.sunk)
+        run.show(max(0, at.moved / args.until), detail)
+        goesOn = at.moved < args.until and not run.collapsed
+        if goesOn and at.moved >= at.nextFrame:
+            run.frame()
+            at.nextFrame += args.vtk_every
     run.show(1, detail, final=True)
     run.flush()
     if run.collapsed:

@@ -20,6 +20,7 @@ import signal
 import sys
 import time
 from dataclasses import dataclass, field
+from types import SimpleNamespace
 
 import yade.config
 from yade import O
@@ -68,13 +69,13 @@ class Run:
 
     def __init__(self, name, args):
         self.name, self.args, self.status = name, args, 0
-        self.at, self.told = Place(), None
+        self.at, self._told = Place(), None
         self.model = self.results = self.vtk = None
         self.collapsed = self.interrupted = False
         self.progress = Progress()
         self._goesOn = False  # whether this run has advanced
         self._entered = 0  # number of the stage that was entered last
-        self._memory = None  # of that stage, as an object
+        self._memory = SimpleNamespace()  # of that stage
         self._readings = []  # that are no rows of curve.csv yet
         self._safe = None  # what a checkpoint keeps, None while steps are taken
         self._now = now = time.perf_counter()  # [s] at the end of the last steps
@@ -109,16 +110,16 @@ class Run:
         model.build()
         self.at.seconds["setup"] += time.perf_counter() - began
         self.results.checkRoom(*model.room())
-        if self.told:
+        if self._told:
             self._load()
-        self.recorder = MasonryVtkRecorder(
+        self._recorder = MasonryVtkRecorder(
             directory=self.results.directory, times=self.at.frames
         )
-        self.vtk = None if args.no_vtk else self.recorder
+        self.vtk = None if args.no_vtk else self._recorder
         return model
 
     def _readProgress(self):
-        told = self.told = readProgress(self.args.resume)
+        told = self._told = readProgress(self.args.resume)
         if told["scene"] != self.name:
             raise Refused(
                 f"--resume: {self.args.resume} holds a run of {told['scene']}, this is {self.name}"
@@ -130,7 +131,7 @@ class Run:
 
     def _load(self):
         width = len(self.model.columns)
-        if any(len(row) != width for row in self.told["rows"]):
+        if any(len(row) != width for row in self._told["rows"]):
             raise Refused(f"--resume: its rows are not of {width} columns")
         try:
             loadCheckpoint(self.results.path(NAME))
@@ -138,21 +139,21 @@ class Run:
             raise Refused(f"--resume: {error}") from None
         self.at.resumed.append(O.time)
         for what, now in self._host().items():
-            if self.told.get(what) != now:
+            if self._told.get(what) != now:
                 say(
-                    f"note: the checkpoint was made with {what} {self.told.get(what)}, this run has {now}: "
+                    f"note: the checkpoint was made with {what} {self._told.get(what)}, this run has {now}: "
                     "it may differ in last digits from one without a break"
                 )
 
     def _goOn(self):
         """From here on files are written; those of a run that is resumed are cut back to its checkpoint."""
-        if self.told:
+        if self._told:
             try:
                 self.results.takeUp(
-                    self.told["rows"], len(self.at.frames), self.told["seconds"]
+                    self._told["rows"], len(self.at.frames), self._told["seconds"]
                 )
                 if self.at.frames:
-                    self.recorder.collect()
+                    self._recorder.collect()
             except (TypeError, OSError, RuntimeError, Unwritable) as error:
                 raise Refused(f"--resume: {error}") from None
         self._goesOn = True
@@ -186,7 +187,7 @@ class Run:
     def advance(self, steps):
         """Take time steps, then leave a checkpoint if one is due. Raises Interrupted after Ctrl-C and SIGTERM."""
         at = self.at
-        if self._goesOn or not self.told:
+        if self._goesOn or not self._told:
             self._goesOn, self._safe = True, None
             step, began = O.step, time.perf_counter()
             for _ in range(steps):

@@ -5,12 +5,14 @@ import itertools
 import json
 import math
 import os
+import re
 import resource
 
 import pytest
+from conftest import ROOT
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from masonry import brickwork, curves, materials, options, presets, results
+from masonry import brickwork, columns, curves, materials, options, presets, results
 from masonry.errors import Refused, Unwritable
 
 
@@ -301,3 +303,35 @@ def test_initial_stiffness_is_the_slope_of_a_straight_start(slope):
     y = [min(slope * v, slope) for v in x]
     assert curves.initialStiffness(x, y) == pytest.approx(slope, rel=1e-9)
     assert curves.initialStiffness([], []) == 0
+
+
+@pytest.mark.parametrize("reader", ["figures", "measure"])
+def test_readers_ask_only_for_keys_of_run_json_that_are_documented(reader):
+    source = open(os.path.join(ROOT, "scripts", "masonry", reader + ".py")).read()
+    documented = set(re.findall(r"``(\w+)``", results.__doc__))
+    asked = set(re.findall(r'\b(?:run|wall)(?:\["\w+"\])?\["(\w+)"\]', source))
+    assert asked and not asked - documented
+
+
+@pytest.mark.parametrize("reader", ["figures", "measure"])
+def test_readers_ask_only_for_columns_that_are_described(reader):
+    source = open(os.path.join(ROOT, "scripts", "masonry", reader + ".py")).read()
+    described = {c.name for c in columns.WALL + columns.COUPLET}
+    asked = set(re.findall(r'\b(?:curve|data)\["(\w+)"\]', source))
+    assert asked and not asked - described
+
+
+@pytest.mark.parametrize("listed", [columns.WALL, columns.COUPLET])
+def test_a_column_says_its_unit_in_its_name_and_in_its_meaning(listed):
+    heads = columns.names(listed)
+    assert len(set(heads)) == len(heads) and heads[0] == "time_s"
+    for column in listed:
+        unit = column.meaning[column.meaning.rindex("[") + 1 : -1]
+        assert unit == "-" or column.name.endswith("_" + unit)
+
+
+def test_the_energies_are_those_of_the_balance(scene):
+    from yade.wrapper import MasonryEnergy
+
+    scene.engines = [MasonryEnergy()]
+    assert set(columns.ENERGIES) | {"error"} == set(scene.engines[0].balance())
