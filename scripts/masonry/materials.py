@@ -132,7 +132,7 @@ def dryGraniteJoints(level, height, brittle=False):
 
 
 def loadingBlock():
-    """A block that loads or supports a wall, as in the paper's section 4.1: so stiff that its joint's stiffness is all."""
+    """A block that supports or loads a wall, section 4.1 of the paper: so stiff that only its joint gives way."""
     return MasonryMat(
         label="loading block", young=1e16, poisson=0.0, density=1800, jointSet="support"
     )

@@ -10,8 +10,8 @@
 - ``columns``: what each column of curve.csv means
 - ``joints``: the properties of every kind of joint [SI units]; ``joint_units``: the units by property
 - ``unit_material``: ``young_Pa``, ``poisson`` and ``density_kg_per_m3`` of the bricks
-- ``units``, ``nodes``, ``joint_count``, ``subcontacts``: how many bodies can move or break, nodes of deformable units,
-  joints, and points of joints there are; ``joints_by_kind``: how many joints of each kind
+- ``units``: how many bricks or half bricks there are; ``nodes``: how many nodes of deformable units; ``joint_count``: how
+  many joints between blocks; ``joints_by_kind``: how many of each kind; ``subcontacts``: how many points of joints
 - ``versions``: of ``yade``, ``python`` and ``masonry``; ``commit``: of the plugin; ``threads``: how many
 - ``time_step_s``, ``time_step_limit_s``: the time step and its stable limit
 - ``steps``: how many were taken; ``microseconds_per_step``, ``nanoseconds_per_subcontact_step``: their mean cost

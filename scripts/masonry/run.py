@@ -422,8 +422,9 @@ class Run:
         off, made = run.get("energy_balance_error", 0), run.get("energy_made", 0)
         if max(off, made) > OFF:
             say(
-                f"warning: the energy balance is off by {100 * off:.1f} % of the work done, and joints that open or close "
-                f"within a step made {100 * made:.1f} % of it: a smaller --dt-fraction or --rate or more --damping helps"
+                f"warning: the energy balance is off by {100 * off:.1f} % of the work done, and joints that open or "
+                f"close within a step made {100 * made:.1f} % of it: a smaller --dt-fraction or --rate or more --damping "
+                "helps"
             )
         if self.results.rows:
             for line in self.model.report(run):
