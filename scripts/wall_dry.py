@@ -5,10 +5,9 @@ The vertical load is what the top course feels. The granite blocks do not crack.
 
 from functools import partial
 
-from masonry import materials, options
+from masonry import materials, options, walls
 from masonry.loading import push, settle
 from masonry.run import Run
-from masonry.walls import Wall, WallModel
 
 BLOCK = (0.200, 0.200, 0.150)  # [m] length, thickness, height
 LOAD_HEIGHT = 1.325  # [m] above the base; displacements refer to it, too
@@ -31,7 +30,7 @@ parser.add_argument(
 parser.set_defaults(crack_surfaces="off", subcontacts=16)
 args = parser.parse_args()
 
-wall = Wall(
+wall = walls.Wall(
     name="wall_dry",
     title=f"Dry-joint granite wall, 1.0 × 1.2 m, cantilever, {args.level} kN",
     halfUnits=10,
@@ -46,7 +45,7 @@ wall = Wall(
 )
 
 with Run(wall.name, args) as run:
-    model = run.build(WallModel(wall, args))  # stones between two blocks
+    model = run.build(walls.WallModel(wall, args))  # stones between two blocks
     settle(run, model)  # gravity and precompression, until the wall is at rest
     push(run, model)  # the upper block to the right, a row every 0.01 mm
 raise SystemExit(run.status)

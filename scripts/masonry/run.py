@@ -2,10 +2,10 @@
 
 A scene reads like this, with any model and any stages::
 
-    with Run("my_wall", args) as run:
-        model = run.build(WallModel(wall, args))
-        settle(run, model)
-        push(run, model)
+    with Run("my_scene", args) as run:
+        model = run.build(MyModel(args))
+        firstStage(run, model)
+        secondStage(run, model)
     raise SystemExit(run.status)
 
 A stage is a function that steps by :meth:`Run.advance` alone. What it must know to go on after a checkpoint is a

@@ -19,11 +19,10 @@ import resource
 import sys
 import time
 
-from masonry import brickwork, materials, options, scene
+from masonry import brickwork, materials, options, scene, walls
 from masonry.loading import push, settle
 from masonry.results import readCurve, readRun
 from masonry.run import Run
-from masonry.walls import Wall, WallModel
 from yade import O, Vector3, polyhedra_utils, timing, utils
 from yade.wrapper import *
 
@@ -53,13 +52,13 @@ def plugin(words="", until=0.2, functors=False):
 
     :returns: seconds a step, subcontacts, and microseconds of each engine
     """
-    wall = Wall(
+    wall = walls.Wall(
         name="benchmark", title="TUD-COMP-4", halfUnits=36, precompression=0.5e6
     )
     words = f"--no-vtk --checkpoint-every 0 --rate 50 --until {until} --out {OUT} {words}".split()
     args = options.parser("", until=12).parse_args(words)
     run = Run(wall.name, args)
-    model = run.build(WallModel(wall, args, functors))
+    model = run.build(walls.WallModel(wall, args, functors))
     settle(run, model)
     push(run, model)
     seconds = cost(STEPS)
