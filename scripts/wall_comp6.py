@@ -1,15 +1,24 @@
-"""TUD-COMP-6: squat calcium-silicate wall, cantilever, 0.50 MPa. Paper tables 1 and 2.
+"""TUD-COMP-6: squat calcium-silicate wall, cantilever, 0.50 MPa. Tables 1 and 2 of the paper.
 
 The wall is 4.0 m long, 18.18 units; it is built of 36 half units, 3.96 m.
 """
 
 from masonry import options, walls
+from masonry.loading import push, settle
+from masonry.run import Run
+
+args = options.parser(__doc__, until=25).parse_args()
 
 wall = walls.Wall(
     name="wall_comp6",
     title="TUD-COMP-6: 4.0 × 2.76 m, cantilever, 0.50 MPa",
     halfUnits=36,
-    precompression=0.50e6,  # [Pa]
-    loadHeight=3.20,  # [m] h0, shear ratio × width above the base
+    precompression=0.50e6,  # [Pa] on the top course
+    loadHeight=3.20,  # [m] above the base: shear ratio × width
 )
-raise SystemExit(walls.test(wall, options.parser(__doc__, until=25).parse_args()))
+
+with Run(wall.name, args) as run:
+    model = run.build(walls.WallModel(wall, args))  # bricks between two blocks
+    settle(run, model)  # gravity and precompression, until the wall is at rest
+    push(run, model)  # the upper block to the right, a row every 0.01 mm
+raise SystemExit(run.status)

@@ -6,9 +6,11 @@ The vertical load is what the top course feels. The granite blocks do not crack.
 from functools import partial
 
 from masonry import materials, options, walls
+from masonry.loading import push, settle
+from masonry.run import Run
 
 BLOCK = (0.200, 0.200, 0.150)  # [m] length, thickness, height
-LOAD_HEIGHT = 1.325  # [m] displacements refer to it too
+LOAD_HEIGHT = 1.325  # [m] above the base; displacements refer to it, too
 
 parser = options.parser(__doc__, until=30, rate=5)
 parser.add_argument(
@@ -34,11 +36,16 @@ wall = walls.Wall(
     halfUnits=10,
     courses=8,
     unit=BLOCK,
-    precompression=args.level * 1e3 / (1.0 * BLOCK[1]),  # [Pa]
+    precompression=args.level * 1e3 / (1.0 * BLOCK[1]),  # [Pa] on the top course
     loadHeight=LOAD_HEIGHT,
     measureHeight=LOAD_HEIGHT,
     loadLineFixed=args.load_line == "fixed",
     unitMaterial=materials.graniteUnit,
     joints=partial(materials.dryGraniteJoints, args.level, BLOCK[2]),
 )
-raise SystemExit(walls.test(wall, args))
+
+with Run(wall.name, args) as run:
+    model = run.build(walls.WallModel(wall, args))  # stones between two blocks
+    settle(run, model)  # gravity and precompression, until the wall is at rest
+    push(run, model)  # the upper block to the right, a row every 0.01 mm
+raise SystemExit(run.status)

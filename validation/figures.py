@@ -13,7 +13,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from masonry.results import readCurve
-from validate import HERE, RESULTS, readCase
+from studies import HERE, RESULTS, readCase
 
 STYLES = {"rigid": "-", "deformable": "--"}
 
@@ -26,7 +26,7 @@ def save(figure, case, name):
 def wall(case):
     """curve.png: all runs over the window of the peak; cracks_RUN.png: the crack pattern of each."""
     runs = {
-        name: os.path.join(RESULTS, case, name)
+        name: os.path.join(RESULTS, "validation", case, name)
         for name in readCase(case)
         if name != "quick"
     }
@@ -51,7 +51,7 @@ def wall(case):
 
 
 def couplet(case):
-    """curves.png: the four paths, both block models, over the closed forms of law.md §2 to §6 for a joint alone."""
+    """curves.png: the four paths, both block models, over the closed forms of a joint alone: yade_plugin/law/README.md."""
     kn, ft, cp, mu, GfI, GfII = 3.352e11, 0.1e6, 0.11e6, 0.43, 16, 160
     fcp, fel, fcr, Gc = 7.55e6, 0.3 * 7.55e6, 0.2 * 7.55e6, 15000
     ucp, uel, fcm = 68.5 * fcp / kn, fel / kn, 0.5 * (fcp + fcr)
@@ -84,7 +84,9 @@ def couplet(case):
 
     for blocks, style in STYLES.items():
         line = dict(ls=style, lw=1.2, color="tab:red" if style == "-" else "tab:blue")
-        read = lambda run: readCurve(os.path.join(RESULTS, case, f"{run}-{blocks}"))
+        read = lambda run: readCurve(
+            os.path.join(RESULTS, "validation", case, f"{run}-{blocks}")
+        )
         path = read("opening")
         opening.plot(path["opening_mm"], path["normal_stress_MPa"], **line)
         for stress in ("0.1", "0.5", "1.0"):

@@ -5,43 +5,23 @@
 
 import argparse
 import glob
-import json
 import math
 import os
-import subprocess
 import sys
 
 from masonry.measure import measure
-
-HERE = os.path.dirname(os.path.abspath(__file__))
-ROOT = os.path.dirname(HERE)
-RESULTS = os.path.join(ROOT, "results", "validation")
-
-
-def readCase(case):
-    """case.json of a case: its runs by name, with ``quick``, the variant for the tests, as one of them if it has one."""
-    with open(os.path.join(HERE, case, "case.json")) as f:
-        content = json.load(f)
-    quick = {"quick": content["quick"]} if "quick" in content else {}
-    return {**content["runs"], **quick}
-
-
-def run(definition, out):
-    """Run a scene of scripts/ with its options, results in the folder ``out``; raises if the scene fails."""
-    scene = os.path.join(ROOT, "scripts", definition["scene"])
-    command = ["yade", "-n", "-x", scene, "--out", out, *definition["options"]]
-    subprocess.run(command, check=True)
+from studies import HERE, RESULTS, readCase, run
 
 
 def bounds(limits, name, other):
-    """The two bounds of a number; one given as the name of a case is that number in the same run of that case."""
+    """The two bounds of a number. A bound that is the name of a case stands for that number in its run."""
     value = lambda bound: other(bound)[name] if isinstance(bound, str) else bound
     low, high = (value(bound) for bound in limits)
     return (-math.inf if low is None else low, math.inf if high is None else high)
 
 
 def check(limits, numbers, other):
-    """Compare numbers with limits; prints a line a limit and returns whether all hold.
+    """Compare numbers with limits, and print a line a limit. Returns whether all hold.
 
     :param limits: dict of name -> [low, high], null for none
     :param numbers: what :func:`masonry.measure.measure` returns
@@ -66,7 +46,11 @@ def main(words=None):
     parser.add_argument(
         "--measure", action="store_true", help="measure the results there are"
     )
-    parser.add_argument("--results", default=RESULTS, help="folder of the results")
+    parser.add_argument(
+        "--results",
+        default=os.path.join(RESULTS, "validation"),
+        help="folder of the results",
+    )
     args = parser.parse_args(words)
     runs = readCase(args.case)
     unknown = set(args.run) - set(runs)
@@ -76,7 +60,8 @@ def main(words=None):
     for name in args.run or [name for name in runs if name != "quick"]:
         folder = lambda case: os.path.join(args.results, case, name)
         if not args.measure:
-            run(runs[name], folder(args.case))
+            chosen = runs[name]
+            run(chosen["scene"], chosen["options"], folder(args.case))
         print(f"{args.case} {name}", flush=True)
         numbers = measure(folder(args.case))
         held = check(runs[name]["limits"], numbers, lambda case: measure(folder(case)))

@@ -1,12 +1,12 @@
-"""Masonry for YADE: the joint law of a published paper on polyhedral blocks.
+"""Masonry for YADE: joint laws on polyhedral blocks.
 
 Import it from a YADE script (or after ``import yade``)::
 
     from masonry import MasonryMat, MasonryJoint, connect
 
-The classes registered in YADE (``masonry.classes``) are also in ``yade.wrapper``, with their manual in ``help()``.
-Without YADE only the modules that read results work: :mod:`masonry.results`, :mod:`masonry.figures`,
-:mod:`masonry.measure`.
+The classes that it registers in YADE (``masonry.classes``) are also in ``yade.wrapper``; ``help()`` is their manual.
+Without YADE only the modules work that read results: :mod:`masonry.results`, :mod:`masonry.figures`,
+:mod:`masonry.measure`, and :mod:`masonry.presets`.
 """
 
 import sys

@@ -1,15 +1,16 @@
-"""Bricks of a wall as plain records, before anything is made in YADE."""
+"""Bricks of a wall as plain records, before anything is made in YADE. This module needs no YADE."""
 
 import math
 import numbers
 from collections import namedtuple
 
-#: One block of a wall: ``brick`` numbers the unit it belongs to, ``low`` and ``high`` are opposite corners [m].
+#: One block of a wall: a brick or a piece of one. ``brick`` is the number of the brick that it belongs to, ``course`` and
+#: ``column`` are its place in half units, ``low`` and ``high`` are opposite corners [m].
 Block = namedtuple("Block", "brick course column low high")
 
 
 def problems(courses, halfUnits, unit):
-    """What is wrong with the measures of :func:`runningBond`: a list of sentences."""
+    """What is wrong with the parameters of :func:`runningBond`: a list of sentences."""
     found = []
     whole = all(isinstance(n, numbers.Integral) for n in (courses, halfUnits))
     if not whole or courses < 1 or halfUnits < 2 or halfUnits % 2:
@@ -36,7 +37,7 @@ def runningBond(courses, halfUnits, unit=(0.220, 0.102, 0.081), halves=True):
     :param courses: number of courses
     :param halfUnits: length of the wall in half units; even
     :param unit: length, thickness and height of a unit, joints included [m]
-    :param halves: every unit as two half bricks that may crack apart; else whole units
+    :param halves: whether every unit is two half bricks that may crack apart; else units are whole
     """
     wrong = problems(courses, halfUnits, unit)
     if wrong:

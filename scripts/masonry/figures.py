@@ -1,6 +1,7 @@
 """Figures of a run, made from the files in its folder and nothing else.
 
-``/usr/bin/python3 -m masonry.figures results/wall_comp4`` draws curve.png and, where ParaView files are, cracks.png.
+``/usr/bin/python3 -m masonry.figures results/wall_comp4`` draws curve.png and, if there are ParaView files, cracks.png.
+This module needs no YADE.
 """
 
 import glob
@@ -14,16 +15,16 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 
-from .options import Refused
+from .errors import Refused
 from .results import filesOf, onFolder, readCurve, readRun
 
-MAGNIFICATION = 30  # of displacements in cracks.png, as in the paper's figure 6
+MAGNIFICATION = 30  # of displacements in cracks.png, as in figure 6 of the paper (see yade_plugin/law/README.md)
 CRACK = 0.05e-3  # [m] opening or slip from which a joint is drawn as cracked
 CRUSHED = 0.5e-3  # [m] plastic closure from which a joint is drawn as crushed
 
 
 def readFrame(directory, kind, number=-1):
-    """A frame of blocks or joints as a dict: 'points' and 'cells' (lists of point numbers), and every data array."""
+    """A frame of blocks or joints as a dict: ``points`` [m], ``cells`` (lists of point numbers), and every data array."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkObject
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
@@ -32,7 +33,7 @@ def readFrame(directory, kind, number=-1):
     if not paths:
         raise Refused(f"no file {kind}_*.vt? in {directory}")
     path = paths[number]
-    vtkObject.GlobalWarningDisplayOff()  # it would tell in many lines
+    vtkObject.GlobalWarningDisplayOff()  # VTK would print many lines
     reader = (
         vtkXMLPolyDataReader() if kind == "joints" else vtkXMLUnstructuredGridReader()
     )
@@ -54,7 +55,7 @@ def readFrame(directory, kind, number=-1):
 
 
 def _save(figure, path, dpi):
-    """A picture, whole or not at all."""
+    """Write a picture, whole or not at all."""
     try:
         figure.savefig(path, dpi=dpi)
     except OSError:
@@ -65,7 +66,7 @@ def _save(figure, path, dpi):
 
 
 def curve(directory):
-    """curve.png: base shear and, below, the energies over the displacement."""
+    """Draw curve.png: the base shear and, below it, the energies over the displacement."""
     run, data = readRun(directory), readCurve(directory)
     x = data["displacement_mm"]
     figure, (top, bottom) = plt.subplots(
@@ -153,7 +154,10 @@ def _faces(blocks, displaced):
 
 
 def cracks(directory):
-    """cracks.png: the deformed wall, magnified, over the undeformed one; cracks red, sliding blue, crushed spots black."""
+    """Draw cracks.png: the deformed wall, magnified, over the undeformed one.
+
+    Cracks are red, joints that slid are blue, and crushed spots are black.
+    """
     run = readRun(directory)
     blocks, joints = readFrame(directory, "blocks"), readFrame(directory, "joints")
     figure, axes = plt.subplots(figsize=(9, 8))

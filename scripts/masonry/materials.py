@@ -1,16 +1,18 @@
-"""Published parameter sets. Each function names its source, and what is assumed."""
+"""Published parameter sets. Each function names its source, and what is assumed.
+
+The paper: see yade_plugin/law/README.md.
+"""
 
 import math
 
 from yade import Vector3
-
-from . import MasonryJoint, MasonryMat
+from yade.wrapper import MasonryJoint, MasonryMat
 
 BED_DIRECTION, HEAD_DIRECTION = Vector3(0, 0, 1), Vector3(1, 0, 0)
 
 
 def calciumSilicateUnit():
-    """Calcium-silicate brick of the TUD-COMP walls: paper table 2."""
+    """Calcium-silicate brick of the TUD-COMP walls: the paper's table 2."""
     return MasonryMat(
         label="calcium silicate",
         young=4.8e9,
@@ -25,12 +27,16 @@ def calciumSilicateJoints(brittle=False):
 
     Pairs of units get the first of support, bed and head that fits; the crack joint is for the halves of one brick.
 
-    Strengths, friction, Gc and peak ratio: paper table 2. Stiffnesses: paper eq. (26) with tm = 10 mm. Assumed, since
-    the paper gives no value (law.md §1 and §8, [decided]): residual cohesion 0, one friction value, no dilatancy,
-    fcr = 0.2 fcp, GfI = 16 and GfII = 160 J/m², cap 1, 9, 0, and all of the brick's crack surface. The crack surface is
-    ten times as stiff as a bed joint; between rigid half bricks, in series with them, that leaves 0.99 E/L.
+    Strengths, friction, compressive fracture energy and peak ratio are those of the paper's table 2. Stiffnesses follow
+    from its eq. (26) with a mortar 10 mm thick.
 
-    :param brittle: the brittle Coulomb slip set instead (law.md §9), for comparison
+    The paper gives no value for these, and yade_plugin/law/README.md (parameters; crack surfaces) says why they were
+    chosen: residual cohesion 0, one value of friction, no dilatancy, a residual compressive strength of 0.2 of the peak,
+    fracture energies of 16 J/m² in mode I and 160 J/m² in mode II, the shape of the cap, and all of the brick's crack
+    surface. The crack surface is ten times as stiff as a bed joint. In series with rigid half bricks, whose Young's
+    modulus is E and whose length is L, that leaves 0.99 E/L.
+
+    :param brittle: whether to give the brittle Coulomb slip joints instead, for comparison
     """
     bed = MasonryJoint(name="bed", jointSet="brick", direction=BED_DIRECTION)
     head = MasonryJoint(
@@ -63,7 +69,7 @@ def calciumSilicateJoints(brittle=False):
 
 
 def _byName(joints, brittle):
-    """Joints as a dict by name; ``brittle``: those that are not elastic as brittle Coulomb slip joints (law.md §9)."""
+    """Joints as a dict by name. If ``brittle``, those that are not elastic become brittle Coulomb slip joints."""
     if brittle:
         joints = [
             joint if joint.elastic else joint.brittleCoulomb() for joint in joints
@@ -78,8 +84,8 @@ DRY_GRANITE_MASONRY = {100: 3.287e9, 175: 4.068e9, 250: 4.722e9}
 def graniteUnit():
     """Sawn granite block of the dry-joint walls of Vasconcelos and Lourenço (2009).
 
-    Young's modulus: the data of Vanin et al. (2017), doi 10.1007/s10518-017-0188-5. Assumed, not in the data: Poisson's
-    ratio 0.2 and density 2600 kg/m³ (granite's usual values).
+    Young's modulus is that of the data of Vanin et al. (2017), doi 10.1007/s10518-017-0188-5. Poisson's ratio 0.2 and
+    density 2600 kg/m³ are not in the data; they are assumed, as usual for granite.
     """
     return MasonryMat(
         label="granite", young=20.2e9, poisson=0.2, density=2600, jointSet="granite"
@@ -89,14 +95,15 @@ def graniteUnit():
 def dryGraniteJoints(level, height, brittle=False):
     """Support, bed and head joints of the dry-joint granite walls, as a dict by name.
 
-    No tension, no cohesion. The normal stiffness is what is missing between block and masonry, one joint a course:
-    1/kn = height (1/Em - 1/E), with Em of the load level and E of the block, both from the data of Vanin et al. (2017).
-    Assumed, not in the data: friction 0.65, shear stiffness 0.4 kn, no dilatancy, head joints and the joints to support
-    and loading block like bed joints. Not modelled: crushing (masonry strength 73 MPa) and cracks in the blocks.
+    The joints have no tensile strength and no cohesion. Their normal stiffness kn is what is missing between block and
+    masonry, with one joint a course: 1/kn = height (1/Em - 1/E). The modulus Em of the masonry at the load level and E
+    of the block are from the data of Vanin et al. (2017). These are assumed, since they are not in the data: friction
+    0.65, shear stiffness 0.4 kn, no dilatancy, and head joints and joints to the support and to the loading block like
+    bed joints. Crushing (the masonry's strength is 73 MPa) and cracks in the blocks are not modelled.
 
     :param level: vertical load of the test [kN], a key of DRY_GRANITE_MASONRY
     :param height: of a course [m]
-    :param brittle: brittle Coulomb slip joints instead; the same here, where nothing softens
+    :param brittle: whether to give brittle Coulomb slip joints instead; they are the same here, where nothing softens
     """
     problems = []
     if level not in DRY_GRANITE_MASONRY:
@@ -125,7 +132,7 @@ def dryGraniteJoints(level, height, brittle=False):
 
 
 def loadingBlock():
-    """Stiff block that loads or supports a wall (paper §4.1): so stiff that it adds nothing to its elastic joint."""
+    """A block that supports or loads a wall, section 4.1 of the paper: so stiff that only its joint gives way."""
     return MasonryMat(
         label="loading block", young=1e16, poisson=0.0, density=1800, jointSet="support"
     )

@@ -1,7 +1,8 @@
 """Numbers of a run, measured from the files in its folder and nothing else.
 
-``/usr/bin/python3 -m masonry.measure results/wall_comp4`` prints them, units in the names. Walls are pushed to the
-right, so that the compressed corners are the toe, bottom right, and top left; a diagonal crack falls to the right.
+``/usr/bin/python3 -m masonry.measure results/wall_comp4`` prints them, with units in the names. Walls are pushed to the
+right: the compressed corners are the toe at the bottom right and the top left, and a diagonal crack falls to the right.
+This module needs no YADE.
 """
 
 import glob
@@ -14,9 +15,9 @@ import numpy as np
 from .figures import CRACK, readFrame
 from .results import filesOf, onFolder, readCurve, readRun
 
-NEAR = 3  # courses to either side of the diagonal that count as near it
-OUTER = 2  # courses at base and top that do not count for the diagonal: rocking cracks are there
-LOST = 0.05  # of the peak force: a drop, above the scatter by single bricks at the toe
+NEAR = 3  # courses to either side of the diagonal: joints within them are near it
+OUTER = 2  # courses at base and top: joints there do not count for the diagonal, since they crack by rocking
+LOST = 0.05  # of the peak force: a larger loss is a drop, a smaller one may be the scatter by single bricks at the toe
 
 
 def layOut(frame, wall):
@@ -24,10 +25,11 @@ def layOut(frame, wall):
 
     :param frame: what :func:`masonry.figures.readFrame` returns for joints
     :param wall: the entry ``wall`` of run.json
-    :returns: dicts of bed joints, arrays (courses - 1, half units), and of upright ones, head joints and brick cracks,
-        arrays (courses, half units - 1), from the base up and from left to right: ``opening`` and ``slide``, means over
-        a joint [m]; ``shear``, energy dissipated by a joint in shear [J]; ``crushing``, volume of plastic closure [m³];
-        ``past``, area that closed past the peak of its compression curve [m²]
+    :returns: two dicts of arrays, from the base up and from left to right. The first is of bed joints, its arrays have
+        the shape (courses - 1, half units). The second is of upright joints, which are head joints and cracks of
+        bricks, its arrays have the shape (courses, half units - 1). Each has ``opening`` and ``slide``, means over a
+        joint [m]; ``shear``, the energy that a joint dissipated in shear [J]; ``crushing``, the volume of plastic
+        closure [m³]; and ``past``, the area that closed past the peak of its compression curve [m²]
     """
     half, height = wall["unit_m"][0] / 2, wall["unit_m"][2]
     courses, columns = wall["courses"], wall["half_units"]
@@ -65,9 +67,9 @@ def diagonalReach(bed, upright):
     """Size of the largest diagonal crack that falls to the right through the brickwork [courses, half units].
 
     A crack goes from an upright joint of a course to those of the course below, straight down or to either side along
-    cracked bed joints. It crosses so many courses and so many half units; its reach is the smaller number. A bed joint
-    cracked from side to side reaches 0, a vertical split 0, a crack from corner to corner nearly as far as the shorter
-    side of the wall.
+    cracked bed joints. It crosses some courses and some half units; its reach is the smaller of the two numbers. A bed
+    joint that is cracked from side to side reaches 0, and so does a vertical split. A crack from corner to corner
+    reaches nearly as far as the shorter side of the wall.
 
     :param bed: which bed joints are cracked, bool (courses - 1, columns)
     :param upright: which upright joints are cracked, bool (courses, columns - 1)
@@ -88,7 +90,7 @@ def diagonalReach(bed, upright):
 
 
 def acrossDiagonal(shape, upright):
-    """Height of joints above the corner-to-corner diagonal [courses], array of ``shape``, NaN in the outer courses."""
+    """Height of joints above the diagonal from corner to corner [courses]: an array, NaN in the outer courses."""
     rows, columns = np.indices(shape)
     level = rows + (0.5 if upright else 1.0)
     place = columns + (1.0 if upright else 0.5)
@@ -98,7 +100,10 @@ def acrossDiagonal(shape, upright):
 
 
 def narrowestBand(positions, weights, share=0.5):
-    """Width of the narrowest interval of ``positions`` that holds ``share`` of the sum of ``weights``; NaN of none."""
+    """Width of the narrowest interval of ``positions`` that holds ``share`` of the sum of ``weights``.
+
+    It is NaN if the weights sum to zero.
+    """
     order = np.argsort(positions)
     positions, held = positions[order], np.append(0, np.cumsum(weights[order]))
     if not held[-1] > 0:
@@ -200,7 +205,7 @@ def frameAt(directory, time):
 
 
 def wallNumbers(directory):
-    """All numbers of a wall's run; those of the crack pattern only if it left ParaView files."""
+    """All numbers of a wall's run. Those of the crack pattern are left out if there are no ParaView files."""
     run, curve = readRun(directory), readCurve(directory)
     shear, moved = curve["base_shear_kN"], curve["displacement_mm"]
     at = int(np.argmax(shear))
@@ -239,7 +244,7 @@ def coupletNumbers(directory):
 def measure(directory):
     """Numbers of a run as a dict by name: those at the top level of run.json, and those measured here.
 
-    ``balance_error`` is run.json's energy_balance_error: the largest of the run, relative to the work done [-].
+    ``balance_error`` is the ``energy_balance_error`` of run.json.
     """
     run = readRun(directory)
     numbers = {

@@ -1,4 +1,4 @@
-"""Command-line options that all scenes share."""
+"""Options of the command line that all scenes share."""
 
 import argparse
 import math
@@ -6,60 +6,29 @@ import os
 import re
 import sys
 
+from .checkpoints import readProgress
+from .errors import Refused
+from .presets import HARMLESS, PRESETS, USUAL, asOption
+from .scene import properties
 
-#: Options that trade accuracy for time, the same for all walls; a scene of one's own may take them from here.
-PRESETS = {
-    "fast": {"blocks": "rigid", "divisions": 1, "subcontacts": 4, "rate": 100.0},
-    "balanced": {"blocks": "deformable", "divisions": 2, "rate": 100.0},
-    "accurate": {"blocks": "deformable", "divisions": 2, "rate": 50.0},
-}
-for _preset in PRESETS.values():
-    _preset.update(damping=0.8, damping_kind="combined", dt_fraction=0.8)
-
-#: Most that a preset's peak and work over the push differ from a fine and slow run [-], and how far that was pushed
-#: [mm] and takes [s] with ``yade -j2`` on two idle server cores, by wall. Measured in validation/trade.
-PROMISES = {
-    "fast": {
-        "peak_error": 0.03,
-        "work_error": 0.04,
-        "walls": {
-            "wall_comp0a": (30, 8),
-            "wall_comp1": (30, 8),
-            "wall_comp4": (12, 8),
-            "wall_comp6": (16, 9),
-        },
-    },
-    "balanced": {
-        "peak_error": 0.02,
-        "work_error": 0.04,
-        "walls": {
-            "wall_comp0a": (30, 30),
-            "wall_comp1": (30, 30),
-            "wall_comp4": (12, 40),
-            "wall_comp6": (16, 50),
-        },
-    },
-    "accurate": {
-        "peak_error": 0.02,
-        "work_error": 0.02,
-        "walls": {
-            "wall_comp0a": (30, 60),
-            "wall_comp1": (30, 60),
-            "wall_comp4": (12, 90),
-            "wall_comp6": (16, 120),
-        },
-    },
+#: Units of the options that have one.
+UNITS = {
+    "until": "mm",
+    "rate": "mm/s",
+    "vtk_every": "mm",
+    "checkpoint_every": "min",
 }
 
-#: Options that leave a preset's promise alone.
-HARMLESS = {"preset", "until", "out", "vtk_every", "no_vtk", "checkpoint_every"}
-
-
-class Refused(ValueError):
-    """Input that cannot be run, with all problems at once."""
+#: Options that can be changed when a run is resumed.
+FREE = {"until", "checkpoint_every", "vtk_every", "no_vtk"}
 
 
 def number(text, low=-math.inf, high=math.inf, above=False):
+    """The number that a text stands for.
+
+    :param above: whether it must be above ``low``, not at least
+    :raises argparse.ArgumentTypeError: if it is none, or out of its bounds
+    """
     try:
         value = float(text)
     except ValueError:
@@ -103,17 +72,17 @@ def _folder(text):
 
 
 class Parser(argparse.ArgumentParser):
-    """Tells all wrong options at once, and takes no part of a name for the whole.
+    """A parser that tells all wrong options at once, and takes no part of a name for the whole.
 
-    Takes the options that ``--preset`` names for those that are not given, or those of a run that is resumed.
-    ``overrides`` of the parsed options lists those that were given and differ from the preset's or from the default.
-    Options that would change a resumed run are refused.
+    Options that are not given are those of ``--preset``, or those of the run that is resumed. Options that would change
+    a resumed run are refused, but for those in ``free``. ``overrides`` of the parsed options lists those that were given
+    beside a preset and differ from it, or from the default.
     """
 
     def __init__(self, **settings):
         super().__init__(allow_abbrev=False, **settings)
         self.problems = []
-        self.free = {"until", "checkpoint_every", "vtk_every", "no_vtk"}  # when resumed
+        self.free = set(FREE)
         # argparse knows no exponents: -5e-1 would be an option
         self._negative_number_matcher = re.compile(
             r"-(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$|-(inf|nan)$", re.IGNORECASE
@@ -153,10 +122,8 @@ class Parser(argparse.ArgumentParser):
         return found
 
     def _resumed(self, args, folder):
-        from .checkpoints import readRun
-
         try:
-            known = readRun(folder)["options"]
+            known = readProgress(folder)["options"]
         except Refused as refused:
             self.exit(2, f"{refused}\n")
         known["set"] = [tuple(setting) for setting in known.get("set", [])]
@@ -165,7 +132,7 @@ class Parser(argparse.ArgumentParser):
         given = super().parse_args(args, start)
         given.set = given.set or known["set"]
         fixed = [
-            f"--{name.replace('_', '-')} is {value}"
+            f"{asOption(name)} is {value}"
             for name, value in known.items()
             if name not in self.free and getattr(given, name) != value
         ]
@@ -174,39 +141,8 @@ class Parser(argparse.ArgumentParser):
         return given
 
 
-def presetOf(args, wall):
-    """What run.json says of ``--preset``, for a wall's name: None without one, or a dict.
-
-    Keys: ``name``; ``overrides``, options given beside it; ``promise``, None if there are any or if the wall is none
-    of those that it was measured on, else ``peak_error`` and ``work_error`` [-], ``until_mm`` and ``seconds``.
-    """
-    if not args.preset:
-        return None
-    entry, promise = {"name": args.preset, "overrides": args.overrides}, None
-    known = PROMISES[args.preset]
-    if not args.overrides and wall in known["walls"]:
-        until, seconds = known["walls"][wall]
-        promise = {name: known[name] for name in ("peak_error", "work_error")}
-        promise.update(until_mm=until, seconds=seconds)
-    return {**entry, "promise": promise}
-
-
-def presetNote(preset, wall):
-    """The same as a line to read."""
-    name, promise = preset["name"], preset["promise"]
-    if promise:
-        return (
-            f"preset {name}: promises the peak within {100 * promise['peak_error']:g} % and the work over "
-            f"{promise['until_mm']:g} mm within {100 * promise['work_error']:g} % of a fine and slow run, "
-            f"in about {promise['seconds']:g} s"
-        )
-    reason = ", ".join("--" + o.replace("_", "-") for o in preset["overrides"])
-    reason = reason and f"{reason} beside it"
-    return f"preset {name} without its promise: {reason or f'not measured on {wall}'}"
-
-
-def parser(description, until, rate=20.0):
-    """Parser with the common options; a scene adds its own.
+def parser(description, until, rate=USUAL["rate"]):
+    """A parser with the common options, to which a scene adds its own.
 
     :param until: default displacement to stop at [mm]
     :param rate: default loading rate [mm/s]
@@ -221,7 +157,7 @@ def parser(description, until, rate=20.0):
         "--preset",
         choices=list(PRESETS),
         help="blocks, divisions, subcontacts, rate and damping with a promise of error and time; "
-        "an option beside it goes before the preset's",
+        "an option given beside it wins, and drops the promise",
     )
     p.add_argument(
         "--until",
@@ -238,41 +174,44 @@ def parser(description, until, rate=20.0):
         help="loading rate [mm/s]",
     )
     p.add_argument(
-        "--blocks", choices=["rigid", "deformable"], default="rigid", help="block model"
+        "--blocks",
+        choices=["rigid", "deformable"],
+        default=USUAL["blocks"],
+        help="block model",
     )
     p.add_argument(
         "--divisions",
         metavar="N",
         type=lambda t: _count(t, 10),
-        default=1,
-        help="cells of a deformable half brick along its length; along its height as many; its joints have a point at "
-        "every node",
+        default=USUAL["divisions"],
+        help="cells of a deformable half brick along its length, and as many along its height; its joints have a point "
+        "at every node",
     )
     p.add_argument(
         "--damping-kind",
         choices=["local", "combined"],
-        default="combined",
-        help="local (paper eq. (3)) or combined damping, which does not brake a steady motion",
+        default=USUAL["damping_kind"],
+        help="local damping (the paper's eq. (3)) or combined damping, which does not brake a steady motion",
     )
     p.add_argument(
         "--subcontacts",
         metavar="N",
         type=lambda t: _count(t, 100),
-        default=4,
+        default=USUAL["subcontacts"],
         help="points along each joint of rigid units",
     )
     p.add_argument(
         "--damping",
         metavar="A",
         type=lambda t: number(t, 0, 0.99),
-        default=0.8,
-        help="damping constant, paper eq. (3) [-]",
+        default=USUAL["damping"],
+        help="damping constant, the paper's eq. (3) [-]",
     )
     p.add_argument(
         "--dt-fraction",
         metavar="F",
         type=lambda t: number(t, 1e-3, 1),
-        default=0.8,
+        default=USUAL["dt_fraction"],
         help="time step over its stable limit [-]",
     )
     p.add_argument(
@@ -316,8 +255,8 @@ def parser(description, until, rate=20.0):
         metavar="MINUTES",
         type=lambda t: number(t, 0, 1e6),
         default=5.0,
-        help="wall-clock time between checkpoints [min]; there is one at the end, too, on Ctrl-C and on an error; 0: "
-        "none at all",
+        help="wall-clock time between checkpoints [min]; there is one at the end, on Ctrl-C and on an error, too; with 0 "
+        "there is none at all",
     )
     p.add_argument(
         "--resume",
@@ -343,9 +282,12 @@ def parser(description, until, rate=20.0):
 
 
 def check(args, joints, more=()):
-    """Apply ``--set`` to a dict of MasonryJoint objects and raise Refused for options that do not go together.
+    """Apply ``--set`` to the joints of a scene, and refuse options that do not go together.
 
-    :param more: problems found by the caller, told with the others
+    :param args: the parsed options
+    :param joints: dict of MasonryJoint by name
+    :param more: problems that the caller has found, to be told with the others
+    :raises Refused: with all problems at once
     """
     problems = list(more)
     if args.blocks == "rigid" and args.divisions > 1:
@@ -359,21 +301,16 @@ def check(args, joints, more=()):
 
 
 def units(cls):
-    """Units of a class's attributes, as their docs give them: dict of attribute -> text between the first brackets."""
-    docs = {
-        name: value.__doc__
-        for name, value in vars(cls).items()
-        if isinstance(value, property)
-    }
-    return {
-        name: doc[doc.index("[") + 1 : doc.index("]")]
-        for name, doc in docs.items()
-        if "[" in doc
-    }
+    """Units of the properties of a class of the plugin: a dict of name -> unit, of those that have one."""
+    return {p["name"]: p["unit"] for p in properties(cls) if p["unit"]}
 
 
 def applySettings(joints, settings):
-    """Apply ``--set`` to a dict of MasonryJoint objects; raises Refused with all problems at once."""
+    """Give joints the values of ``--set``. Raises Refused with all problems at once.
+
+    :param joints: dict of MasonryJoint by name
+    :param settings: list of (joint, property, text of the value)
+    """
     problems, changes = [], {}
     for name, attribute, text in settings:
         if name not in joints:
@@ -407,7 +344,7 @@ def applySettings(joints, settings):
 
 
 def _value(text, example):
-    """The value that a setting's text stands for, of the kind of ``example``; ValueError if it is none."""
+    """The value that the text of a setting stands for, of the kind of ``example``. Raises ValueError if it is none."""
     if isinstance(example, bool):
         switches = {
             "on": True,

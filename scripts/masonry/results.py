@@ -1,4 +1,48 @@
-"""What a run leaves behind: curve.csv, run.json, progress on the terminal; and how to read it again."""
+"""The files that a run leaves in its folder, and how to read them again. This module needs no YADE.
+
+``curve.csv`` has a row a reading; :mod:`masonry.columns` says what is in each column.
+
+``run.json`` has these keys, in every run:
+
+- ``scene``: name of the scene; ``title``: what it is, for figures
+- ``options``: all options of the command line; ``option_units``: units of those that have one
+- ``preset``: None, or what :func:`masonry.presets.presetOf` says
+- ``columns``: what each column of curve.csv means
+- ``joints``: the properties of every kind of joint [SI units]; ``joint_units``: the units by property
+- ``unit_material``: ``young_Pa``, ``poisson`` and ``density_kg_per_m3`` of the bricks
+- ``units``: how many bricks or half bricks there are; ``nodes``: how many nodes of deformable units; ``joint_count``: how
+  many joints between blocks; ``joints_by_kind``: how many of each kind; ``subcontacts``: how many points of joints
+- ``versions``: of ``yade``, ``python`` and ``masonry``; ``commit``: of the plugin; ``threads``: how many
+- ``time_step_s``, ``time_step_limit_s``: the time step and its stable limit
+- ``steps``: how many were taken; ``microseconds_per_step``, ``nanoseconds_per_subcontact_step``: their mean cost
+- ``stages``: a list with the name of every ``stage``, its ``steps`` and their ``seconds`` of wall-clock time
+- ``seconds``: wall-clock time of ``setup``, ``steps``, ``rows`` and ``frames`` [s]; ``wall_clock_s``: of all
+- ``energy_balance_error``: largest error of the energy balance, relative to the work done [-]
+- ``energy_made``: most energy that joints made by opening or closing within a step, relative to the work done [-]
+- ``kinds``: names of the kinds of joints, in the order of the numbers in the ParaView files
+- ``collapsed``: whether what was built has fallen; ``interrupted``: whether Ctrl-C or SIGTERM ended the run
+- ``resumed_at_s``: the times in the scene at which the run was taken up from a checkpoint
+- ``error``: what ended the run, if an error did
+
+A wall has these, too:
+
+- ``wall``: ``length_m``, ``height_m``, ``thickness_m``, ``courses``, ``half_units`` (the length, in half units),
+  ``unit_m`` (length, thickness and height of a unit), ``precompression_Pa``, ``load_height_m`` (height of the push
+  above the base, None if the loading block cannot turn), ``measure_height_m`` (height of the displacement above the
+  base) and ``load_line_fixed`` (whether the vertical load keeps its line in space)
+- ``peak_base_shear_kN``, ``displacement_at_peak_mm``: the largest force at the base, and where it is reached
+- ``base_shear_end_kN``, ``displacement_end_mm``: the last row
+- ``initial_stiffness_kN_per_mm``: as :func:`masonry.curves.initialStiffness` fits it
+- ``dynamic_imbalance``: as of :func:`masonry.curves.dynamicImbalance` [-]; ``too_fast``: whether it is more than a push
+  may have
+
+A couplet has these, too:
+
+- ``peak_normal_stress_MPa``, ``peak_compressive_stress_MPa``, ``peak_shear_stress_MPa``: largest means over the joint
+- ``end_normal_stress_MPa``, ``end_shear_stress_MPa``: the last row
+- ``dissipated_tension_J_per_m2``, ``dissipated_shear_J_per_m2``, ``dissipated_compression_J_per_m2``: energy that the
+  bed joint dissipated, over its area
+"""
 
 import contextlib
 import csv
@@ -7,125 +51,97 @@ import math
 import os
 import re
 import shutil
-import signal
 import sys
 import time
 
-from .options import Refused
+from .errors import Refused, Unwritable
+from .progress import say
 
-ENERGIES = [
-    "external",
-    "gravity",
-    "kinetic",
-    "damping",
-    "elastic_units",
-    "elastic_tension",
-    "elastic_shear",
-    "elastic_compression",
-    "dissipated_tension",
-    "dissipated_shear",
-    "dissipated_compression",
-]
-
-
+#: Names of the files that a run leaves.
 OURS = re.compile(
     r"((blocks|joints)(_\d+\.vt[up]|\.pvd)|curve\.(csv|png)|cracks\.png|run\.(json|checkpoint))(\.new)?"
 )
 
 
-class Interrupted(Exception):
-    """Ctrl-C or SIGTERM: the run ends in order and keeps what is there."""
-
-
-class Unwritable(Exception):
-    """A file of the results cannot be written: the run ends in order and keeps what is there."""
-
-
-def say(text, stream=None):
-    """Print, unless the terminal or the log is gone or full: no reason to stop a run."""
-    with contextlib.suppress(OSError):
-        print(text, file=stream, flush=True)
-
-
 class Results:
-    """Folder of one run. Unwritable folders are reported when it is made, not after an hour.
+    """The folder of a run, while it is written. A folder that cannot be written is refused at once.
 
-    :param directory: folder, made if missing
-    :param columns: columns of curve.csv, units in the names
-    :param resumed: leave everything as it is, until :meth:`takeUp`
+    :param directory: folder, made if it is missing
+    :param columns: names of the columns of curve.csv
+    :param resumed: whether to leave everything as it is, until :meth:`takeUp`
     """
 
     def __init__(self, directory, columns, resumed=False):
         self.directory = os.path.abspath(directory)
+        self.columns, self.rows, self.run = list(columns), [], {}
+        self._line = ",".join(["%.9g"] * len(self.columns)) + "\r\n"
+        self.started = time.perf_counter()
         try:
             os.makedirs(self.directory, exist_ok=True)
+            # files of an earlier run would be taken for those of this one
             for name in [] if resumed else os.listdir(self.directory):
-                if OURS.fullmatch(name):  # an earlier run's would be taken for ours
+                if OURS.fullmatch(name):
                     os.remove(os.path.join(self.directory, name))
             self._file = open(self.path("curve.csv"), "ab", buffering=0)
             if not resumed:
-                self._write(columns)
+                self._write(self._head())
                 os.fsync(self._file.fileno())
         except OSError as error:
             raise Refused(
                 f"--out: cannot write to {self.directory}: {error.strerror}"
             ) from None
-        self.columns, self.rows, self.run = columns, [], {}
-        self.started = time.perf_counter()
-        self.interrupted = False
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, self._interrupt)
 
     def path(self, name):
         return os.path.join(self.directory, name)
 
+    def _head(self):
+        return ",".join(self.columns) + "\r\n"
+
     def takeUp(self, rows, frames, seconds):
-        """Go on after the rows, ParaView frames and wall-clock seconds of a run that is resumed; what came later goes."""
-        if any(len(row) != len(self.columns) for row in rows):
-            raise ValueError(f"its rows are not of {len(self.columns)} columns")
+        """Go on after these rows, so many ParaView frames and seconds of wall-clock time. What came later is removed."""
         for name in os.listdir(self.directory):
             number = re.fullmatch(r"(?:blocks|joints)_(\d+)\.vt[up]", name)
             if number and int(number[1]) >= frames:
                 os.remove(self.path(name))
         self._file.truncate(0)
-        self._write(self.columns)
-        for row in rows:
-            self.row(dict(zip(self.columns, row)))
+        self._write(self._head())
+        self.append(rows)
         self.started -= seconds
 
-    def _interrupt(self, number, frame):
-        self.interrupted = True
+    def append(self, rows):
+        """Write rows to curve.csv.
 
-    def checkInterrupt(self):
-        if self.interrupted:
-            raise Interrupted()
-
-    def row(self, values):
-        """Append a row of curve.csv; ``values`` has a number for every column."""
-        row = [values[c] for c in self.columns]
-        if not all(math.isfinite(v) for v in row):
-            broken = [c for c, v in zip(self.columns, row) if not math.isfinite(v)]
-            raise FloatingPointError(
-                f"the run has left finite numbers in {', '.join(broken)}; see curve.csv up to here"
-            )
+        :param rows: lists with a number for every column
+        :raises FloatingPointError: if a number is not finite; its row and those after it are left out
+        :raises Unwritable: if the disk refuses; what fits is kept, in whole lines, and ``rows`` has all of them
+        """
+        fine = 0
+        while fine < len(rows) and all(map(math.isfinite, rows[fine])):
+            fine += 1
+        self.rows += rows[:fine]
         try:
-            self._write([f"{v:.9g}" for v in row])
+            self._write("".join(self._line % tuple(row) for row in rows[:fine]))
         except OSError as error:
             raise Unwritable(
                 f"cannot write {self.path('curve.csv')}: {error.strerror}"
             ) from None
-        self.rows.append(row)
+        if fine < len(rows):
+            numbers = zip(self.columns, rows[fine])
+            broken = [name for name, number in numbers if not math.isfinite(number)]
+            raise FloatingPointError(
+                f"the run has left finite numbers in {', '.join(broken)}; see curve.csv up to here"
+            )
 
-    def _write(self, cells):
-        """A line of curve.csv, whole or not at all."""
-        line = (",".join(cells) + "\r\n").encode()
+    def _write(self, text):
+        """Add lines to curve.csv. If the disk is full, those that fit stay, each of them whole."""
+        data, written = text.encode(), 0
         start = self._file.seek(0, os.SEEK_END)
         try:
-            while line:
-                line = line[self._file.write(line) :]
+            while written < len(data):
+                written += self._file.write(data[written:])
         except OSError:
             with contextlib.suppress(OSError):
-                self._file.truncate(start)
+                self._file.truncate(start + data.rfind(b"\n", 0, written) + 1)
             raise
 
     def checkRoom(self, least, likely):
@@ -138,6 +154,7 @@ class Results:
             say(f"warning: {told} some {1e-6 * likely:.1f} MB")
 
     def column(self, name):
+        """All values of a column so far."""
         i = self.columns.index(name)
         return [row[i] for row in self.rows]
 
@@ -146,7 +163,7 @@ class Results:
         return time.perf_counter() - self.started
 
     def close(self):
-        """Close curve.csv and write run.json, whole or not at all."""
+        """Close curve.csv and write run.json, whole or not at all. Raises Unwritable if the disk refuses."""
         self.run["wall_clock_s"] = round(self.seconds(), 3)
         self._file.close()
         path = self.path("run.json")
@@ -161,77 +178,6 @@ class Results:
             raise Unwritable(f"cannot write {path}: {error.strerror}") from None
 
 
-class Progress:
-    """One line that keeps itself up to date on a terminal; a plain line now and then elsewhere."""
-
-    def __init__(self, stream=None):
-        self.stream = stream or sys.stdout
-        self.terminal = self.stream.isatty()
-        self.last = self.stage = None
-        self.began = self.first = self.lastTenth = 0
-
-    def show(self, stage, fraction, detail, stepsPerSecond, final=False):
-        now = time.perf_counter()
-        if stage != self.stage:
-            self.stage, self.began, self.first = stage, now, fraction
-            self.lastTenth, self.last = -1, 0
-        tenth = int(10 * fraction)
-        if not final and (
-            now - self.last < 0.2 if self.terminal else tenth == self.lastTenth
-        ):
-            return
-        self.last, self.lastTenth = now, tenth
-        done = fraction - self.first
-        left = (now - self.began) * (1 - fraction) / done if done > 0.01 else None
-        text = f"{stage:<12} {detail}  {stepsPerSecond:,.0f} steps/s"
-        if left is not None and not final:
-            text += f"  {int(left) // 60}:{int(left) % 60:02d} left"
-        if self.terminal:
-            bar = "#" * int(24 * fraction)
-            text = f"\r[{bar:<24}] {text}\x1b[K" + ("\n" if final else "")
-        else:
-            text += "\n"
-        with contextlib.suppress(OSError):  # as in say()
-            self.stream.write(text)
-            self.stream.flush()
-
-
-def conduct(make):
-    """Make a model, run its stages and finish it in every case; returns the exit status of the scene.
-
-    ``make`` raises Refused for input that cannot be run, and gives a :class:`masonry.checkpoints.Resumable` with a
-    method ``finish()``.
-    """
-    try:
-        model = make()
-    except Refused as refused:
-        print(refused, file=sys.stderr)
-        return 2
-    stopped = []
-    try:
-        for model.at.stage in model.stages[model.stages.index(model.at.stage) :]:
-            getattr(model, model.at.stage)()
-    except Interrupted:
-        say("\ninterrupted: what was computed is kept")
-    except Unwritable as error:
-        stopped.append(error)
-    except Exception as error:
-        model.results.run["error"] = str(error)
-        model.checkpoint()
-        model.finish()  # keeps what was computed
-        raise
-    kept = model.checkpoint()
-    try:
-        model.finish()
-    except Unwritable as error:
-        stopped.append(error)
-    for error in dict.fromkeys(map(str, stopped)):
-        say(f"{error}; what was written before is kept", sys.stderr)
-    if kept and (stopped or model.results.interrupted):
-        say(f"--resume {model.results.directory} goes on from here")
-    return 1 if stopped else 130 if model.results.interrupted else 0
-
-
 def _read(path):
     """Text of a file of a run."""
     try:
@@ -244,7 +190,7 @@ def _read(path):
 
 
 def readCurve(directory):
-    """curve.csv of a run as a dict of column name -> list of numbers; Refused if it is none."""
+    """curve.csv of a run as a dict of column name -> list of numbers. Raises Refused if there is none."""
     path = os.path.join(directory, "curve.csv")
     lines = list(csv.reader(_read(path).splitlines()))
     if len(lines) < 2:
@@ -268,7 +214,7 @@ def readCurve(directory):
 
 
 def readRun(directory):
-    """run.json of a run as a dict; Refused if it is none."""
+    """run.json of a run as a dict; this module's docstring lists its keys. Raises Refused if there is none."""
     path = os.path.join(directory, "run.json")
     try:
         run = json.loads(_read(path))
@@ -281,7 +227,7 @@ def readRun(directory):
 
 @contextlib.contextmanager
 def filesOf(directory):
-    """Where files of a run are used: what they lack, since they are damaged or another's, becomes Refused."""
+    """Use the files of a run. What they lack, since they are damaged or not of a finished run, becomes Refused."""
     try:
         yield
     except (KeyError, IndexError, AttributeError, TypeError, SyntaxError) as problem:
@@ -291,7 +237,7 @@ def filesOf(directory):
 
 
 def onFolder(act, words):
-    """Main program of what reads a run: calls ``act`` with the folder that is the only word; the exit status."""
+    """Main program of what reads a run: calls ``act`` with the folder that is the only word. Returns the exit status."""
     try:
         if len(words) != 1:
             raise Refused("name one folder of results, for example results/wall_comp4")
@@ -303,40 +249,3 @@ def onFolder(act, words):
         print(f"cannot write to {words[0]}: {error.strerror}", file=sys.stderr)
         return 2
     return 0
-
-
-def haste(top, base):
-    """How much of the force of a push does not arrive at its base [-]: 0 if all does, 1 and more if none does.
-
-    Root mean square of top less base shear over the largest of either, from half the peak at the base to that peak; all
-    the way if this peak is less than half of the largest. Inertia swings about it, damping drags.
-    """
-    forces = [abs(b) for b in base]
-    largest = max([*map(abs, top), *forces], default=0)
-    if not largest:
-        return 0.0
-    peak, rows = max(forces), slice(None)
-    if peak >= largest / 2:
-        start = next(i for i, f in enumerate(forces) if f >= peak / 2)
-        rows = slice(start, forces.index(peak) + 1)
-    squares = [(t - b) ** 2 for t, b in zip(top[rows], base[rows])]
-    return math.sqrt(sum(squares) / len(squares)) / largest
-
-
-def initialStiffness(displacement, force):
-    """Slope [force/displacement] of the line fitted between 5 % and 25 % of the peak, on the way to it."""
-    if not force:
-        return 0.0
-    peak = max(force)
-    points = []
-    for d, f in zip(displacement, force):
-        if f > 0.25 * peak:
-            break
-        if f > 0.05 * peak:
-            points.append((d, f))
-    if len(points) < 2:
-        points = [(d, f) for d, f in zip(displacement, force)][:2]
-    n = len(points)
-    md, mf = sum(p[0] for p in points) / n, sum(p[1] for p in points) / n
-    spread = sum((d - md) ** 2 for d, _ in points)
-    return sum((d - md) * (f - mf) for d, f in points) / spread if spread > 0 else 0.0

@@ -1,4 +1,4 @@
-"""Bodies, joints and engines: what any scene of masonry blocks needs. Bad input raises ValueError, all problems at once."""
+"""Blocks, joints and engines: what any scene of masonry needs. Bad input raises ValueError, with all problems at once."""
 
 import math
 
@@ -7,22 +7,52 @@ from yade.wrapper import *
 
 from ._masonry import neighbours
 
-#: What is thinner than this share of its length is no block.
+#: A body that is thinner than this share of its length is no block.
 THINNEST = 1e-6
 
-#: Values that a wrong unit gives: attribute, unit, bounds of what is usual, the unit it may be in instead.
-USUAL = {
-    MasonryMat: [("young", "Pa", 1e6, math.inf, "MPa")],
-    MasonryJoint: [
-        ("normalStiffness", "Pa/m", 1e7, math.inf, "N/mm³"),
-        ("shearStiffness", "Pa/m", 1e7, math.inf, "N/mm³"),
-        ("tensileStrength", "Pa", 1e3, 1e9, "MPa"),
-        ("cohesion", "Pa", 1e3, 1e9, "MPa"),
-        ("compressiveStrength", "Pa", 1e3, 1e9, "MPa"),
-        ("modeIFractureEnergy", "J/m²", 0.1, 1e6, "N/mm"),
-        ("modeIIFractureEnergy", "J/m²", 0.1, 1e6, "N/mm"),
-    ],
+# until the C++ description lands: from here
+_USUAL = {
+    "MasonryMat": {"young": (1e6, math.inf, "MPa")},
+    "MasonryJoint": {
+        "normalStiffness": (1e7, math.inf, "N/mm³"),
+        "shearStiffness": (1e7, math.inf, "N/mm³"),
+        "tensileStrength": (1e3, 1e9, "MPa"),
+        "cohesion": (1e3, 1e9, "MPa"),
+        "compressiveStrength": (1e3, 1e9, "MPa"),
+        "modeIFractureEnergy": (0.1, 1e6, "N/mm"),
+        "modeIIFractureEnergy": (0.1, 1e6, "N/mm"),
+    },
 }
+
+
+def _fromDocs(cls):
+    for name, value in vars(cls).items():
+        if isinstance(value, property):
+            doc = value.__doc__
+            low, high, other = _USUAL.get(cls.__name__, {}).get(
+                name, (-math.inf, math.inf, "")
+            )
+            yield {
+                "name": name,
+                "unit": doc[doc.index("[") + 1 : doc.index("]")] if "[" in doc else "",
+                "usual_low": low,
+                "usual_high": high,
+                "other_unit": other,
+            }
+
+
+# until the C++ description lands: to here
+
+
+def properties(cls):
+    """The plugin's description of the properties of one of its classes: a list of dicts.
+
+    Keys are ``name``, ``unit``, ``meaning``, ``source``, the bounds ``low`` and ``high``, and what is usual:
+    ``usual_low`` and ``usual_high``. A value beyond these is probably given in ``other_unit``.
+    """
+    if not hasattr(cls, "properties"):  # until the C++ description lands
+        return list(_fromDocs(cls))  # until the C++ description lands
+    return cls.properties()
 
 
 def _refuse(problems, hint=None, most=10):
@@ -55,7 +85,7 @@ def _extent(points):
 
 
 def addBlock(vertices, material, inPlane=False, color=(0.75, 0.7, 0.65)):
-    """Append a convex block to the scene and return its body id.
+    """Append a convex block to the scene. Returns its body id.
 
     :param vertices: corners [m], at least four, in global axes; every one a corner of the convex block
     :param material: MasonryMat
@@ -126,13 +156,14 @@ def engines(
     zones=None,
     functors=False,
 ):
-    """Fill O.engines for a masonry scene: joints, loads, energy balance, integration. No collider.
+    """Fill O.engines for a masonry scene: joints, loads, energy balance and integration. There is no collider.
 
-    :param joints: MasonryJoint objects; the first that fits a pair of units is taken
-    :param damping: Cundall's local damping of rigid units [-] (paper eq. (3): 0.8)
+    :param joints: MasonryJoint objects; a pair of units takes the first that fits
+    :param damping: Cundall's local damping of rigid units [-]; the paper's eq. (3) has 0.8 (the paper: see
+        yade_plugin/law/README.md)
     :param gravity: [m/s²]
-    :param subcontacts: per joint, along it
-    :param rows: rows of subcontacts across a joint; 1 is enough in the plane
+    :param subcontacts: how many there are along a joint
+    :param rows: rows of subcontacts across a joint; one is enough for a wall that stays in its plane
     :param loads: MasonryLoad engines
     :param zones: MasonryZones of the deformable units, if there are any
     :param functors: YADE's InteractionLoop and NewtonIntegrator, the slow reference, instead of MasonryJointLoop and
@@ -199,15 +230,16 @@ def engines(
 
 
 def connect(rule=None, tolerance=1e-4, allowGaps=False):
-    """Make the joints between all blocks that share a face in the present, reference state. Returns the interactions.
+    """Make the joints between all blocks that share a face. The present state is the reference. Returns the interactions.
 
-    Blocks that lie in each other, and those that miss a shared face by less than a quarter of their thickness, are
-    refused with the gap; so is a scene without any joint, and one that has its joints. Nothing changes then. Values
-    that look like those of another unit, and blocks without joints, are told as warnings.
+    Blocks that lie in each other are refused, and those that miss a shared face by less than a quarter of their
+    thickness; the message has the gap. A scene without any joint is refused, too, and one that has its joints already.
+    Nothing changes then. Values that look like those of another unit and blocks without joints are printed as warnings.
 
-    :param rule: function (body1, body2, geom) -> MasonryJoint, or None to leave the choice to direction and joint set
+    :param rule: function (body1, body2, geom) that returns a MasonryJoint, or None to leave the choice to direction and
+        joint set
     :param tolerance: largest gap or overlap of coincident faces, relative to the smaller block's size, at most 0.01
-    :param allowGaps: blocks that nearly share a face stand apart on purpose
+    :param allowGaps: whether blocks that nearly share a face stand apart on purpose
     """
     engines = list(O.engines)
     loop = next(
@@ -292,7 +324,7 @@ def _pairs(tolerance, allowGaps):
 
 
 def _connect(pairs, physics, rule):
-    """Make the joints of all pairs, or none. Returns the interactions and the MasonryJoint objects."""
+    """Make the joints of all pairs, or none of them. Returns the interactions and the MasonryJoint objects."""
     made, problems, joints = [], [], {id(j): j for j in physics.joints}
     try:
         for id1, id2 in pairs:
@@ -322,7 +354,7 @@ def _connect(pairs, physics, rule):
 
 
 def _warn(pairs, joints, sizes, engines):
-    """Print what looks like a slip: units, blocks without joints, divisions that do not apply."""
+    """Print warnings of what looks like a mistake: other units, blocks without joints, divisions without effect."""
     (thin, thickness), (large, size) = sizes
     hints = []
     if thickness < 1e-3:
@@ -333,11 +365,12 @@ def _warn(pairs, joints, sizes, engines):
     mats = {(b.mat.label, b.mat.young, b.mat.density): b.mat for b in bodies.values()}
     for thing in (*mats.values(), *joints):
         name = thing.name if isinstance(thing, MasonryJoint) else thing.label
-        for attribute, unit, low, high, other in USUAL[type(thing)]:
-            value = getattr(thing, attribute)
-            if value > 0 and not low <= value <= high:
+        for p in properties(type(thing)):
+            value = getattr(thing, p["name"]) if p["other_unit"] else 0
+            if value > 0 and not p["usual_low"] <= value <= p["usual_high"]:
                 hints.append(
-                    f'{type(thing).__name__} "{name}": {attribute} {value:g} {unit}: is it in {unit}, not {other}?'
+                    f'{type(thing).__name__} "{name}": {p["name"]} {value:g} {p["unit"]}: is it in {p["unit"]}, '
+                    f'not {p["other_unit"]}?'
                 )
     integrator = next(
         (e for e in engines if isinstance(e, (MasonryIntegrator, NewtonIntegrator))),

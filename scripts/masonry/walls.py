@@ -1,62 +1,48 @@
-"""Walls under precompression and a lateral push: paper §4, validation.md §1."""
+"""Walls in running bond on a fixed block, with a loading block on top.
+
+The walls of the paper (see yade_plugin/law/README.md) are tested like this, in its section 4.
+"""
 
 import os
-import subprocess
-import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import inf
 from numbers import Real
 from typing import Callable
 
-import yade.config
 from yade import O, Vector3
-from yade.wrapper import MasonryJoint, MasonryLoad, MasonryMat, MasonryZones
+from yade.wrapper import MasonryJoint, MasonryLoad, MasonryMat
 
-from . import brickwork, commit, criticalTimeStep, materials, options
-from .checkpoints import Place, Resumable
-from .options import Refused
-from .results import ENERGIES, Unwritable, conduct, haste, initialStiffness, say
-from .scene import addBlock, connect, engines
+from . import brickwork, columns, materials
+from .curves import dynamicImbalance, initialStiffness
+from .loading import IMBALANCE, ROW_EVERY, tooFast
+from .model import Model, drawFigures
+from .scene import addBlock
 
-CURVE = [
-    "time_s",
-    "displacement_mm",
-    "base_shear_kN",
-    "top_shear_kN",
-    "vertical_mm",
-    "rotation_mrad",
-]
-CURVE += [name + "_J" for name in ENERGIES] + ["balance_error"]
-
-BLOCK_HEIGHT = 0.2  # [m] of the support, and of the loading block of a clamped wall
-RAMP = 0.02  # [s] in which precompression and velocity grow: some ten periods of a wave through the height
-SETTLING = 0.5  # local damping of zones until the push: with more they creep to rest, with less they swing
-REST = 5e-3  # of the vertical load: what may be missing at the base before the push
-ROW_EVERY = 0.01  # [mm] between rows of curve.csv
-HASTE = 0.1  # a push with more is too fast: its peak is off by 1 to 5 % and more, validation/trade
+BLOCK_HEIGHT = 0.2  # [m] of the fixed block, and of the loading block of a clamped wall
 
 
 @dataclass
 class Wall:
-    """A running-bond wall and its test, in SI units.
+    """A wall in running bond, and how it is held and loaded. Impossible ones raise ValueError, with all problems.
 
-    ``loadHeight`` is h0 of a cantilever: the height above the base at which the loading block is pushed and free to
-    turn; None is double clamped. ``halfUnits`` is the length in half units. ``measureHeight`` is the height above the
-    base of the displacement in curve.csv; None is the top of the masonry. ``loadLineFixed``: the vertical load
-    keeps its line in space, as over rollers, instead of riding on the loading block. ``unitMaterial`` and ``joints``
-    make the unit's MasonryMat and the dict of MasonryJoint (of whether they are brittle).
+    The wall stands on a fixed block, and carries a loading block that is pressed down and pushed sideways.
     """
 
-    name: str
-    title: str
-    halfUnits: int
-    precompression: float
+    name: str  # of its folder of results
+    title: str  # of its figures
+    halfUnits: int  # length, in half units; even
+    precompression: float  # mean vertical stress that the top course feels [Pa], 0 or above
+    #: Height above the base at which the loading block is pushed [m]; the block is free to turn then, and the wall is a
+    #: cantilever. None: the block is pushed as a whole and cannot turn, and the wall is double clamped.
     loadHeight: float = None
     courses: int = 34
-    unit: tuple = (0.220, 0.102, 0.081)
+    unit: tuple = (0.220, 0.102, 0.081)  # length, thickness, height, with joints [m]
+    #: Height above the base of the displacement in curve.csv [m]; None: the top of the masonry.
     measureHeight: float = None
+    #: Whether the vertical load keeps its line in space, as over rollers; else it rides on the loading block.
     loadLineFixed: bool = False
-    unitMaterial: Callable = materials.calciumSilicateUnit
+    unitMaterial: Callable = materials.calciumSilicateUnit  # makes the MasonryMat
+    #: Makes the dict of MasonryJoint by name; it is called with brittle=True or brittle=False.
     joints: Callable = materials.calciumSilicateJoints
 
     def __post_init__(self):
@@ -105,375 +91,195 @@ class Wall:
         return self.length * self.unit[1]
 
 
-@dataclass
-class WallPlace(Place):
-    """How far a wall's test has come."""
+class WallModel(Model):
+    """A :class:`Wall` in YADE: the blocks ``base`` and ``top``, and the loads ``vertical`` and ``push`` on the top one.
 
-    done: int = 0  # steps towards rest
-    quiet: int = 0  # times in a row that it was at rest
-    origin: list = field(default_factory=list)  # of the push: displacement [m]
-    began: float = 0.0  # and time [s]
-    moved: float = 0.0  # [mm]
-    peak: float = 0.0  # [kN]
-    peakAt: float = 0.0  # [mm]
-    nextFrame: float = 0.0  # [mm]
+    :param wall: the wall
+    :param args: the options of :func:`masonry.options.parser`
+    :param functors: as of :func:`masonry.scene.engines`
+    """
 
+    columns = columns.WALL
 
-class WallModel(Resumable):
-    """The wall in YADE, and the stages of its test. ``args`` are the options of :func:`masonry.options.parser`."""
-
-    stages = ("settle", "push")
-
-    def __init__(self, wall, args):
-        self.wall = wall
-        self.brick = wall.unitMaterial()
-        self.joints = wall.joints(brittle=args.joints == "brittle")
-        if not isinstance(self.brick, MasonryMat):
-            raise ValueError(f"wall {wall.name}: unitMaterial() gave {self.brick!r}")
-        if not isinstance(self.joints, dict) or not all(
-            isinstance(joint, MasonryJoint) for joint in self.joints.values()
+    def __init__(self, wall, args, functors=False):
+        self.wall, self.title, self.functors = wall, wall.title, functors
+        unit = wall.unitMaterial()
+        joints = wall.joints(brittle=args.joints == "brittle")
+        if not isinstance(unit, MasonryMat):
+            raise ValueError(f"wall {wall.name}: unitMaterial() gave {unit!r}")
+        if not isinstance(joints, dict) or not all(
+            isinstance(joint, MasonryJoint) for joint in joints.values()
         ):
             raise ValueError(
-                f"wall {wall.name}: joints() must give a dict of MasonryJoint by name, gave {self.joints!r}"
+                f"wall {wall.name}: joints() must give a dict of MasonryJoint by name, gave {joints!r}"
             )
-        lacking = args.crack_surfaces == "on" and "crack" not in self.joints
-        options.check(
-            args,
-            self.joints,
-            ["--crack-surfaces on: the units of this wall have none"] * lacking,
-        )
-        super().__init__(wall.name, args, CURVE, WallPlace())
-        if not args.until > self.at.moved:
-            raise Refused(
-                f"--until {args.until:g}: the run is at {self.at.moved:.2f} mm already"
-            )
-        self.preset = options.presetOf(args, wall.name)
-        if self.preset:
-            say(options.presetNote(self.preset, wall.name))
-        self.collapsed = False
-        with self._timed("setup"):
-            self._build()
-        self._begin()
+        self.halves = args.crack_surfaces == "on"
+        problems = []
+        if self.halves and "crack" not in joints:
+            problems.append("--crack-surfaces on: the units of this wall have none")
+        super().__init__(args, unit, joints, problems)
+        self.origin = (
+            0,
+            0,
+        )  # displacement of the top when the push began, along it and up [m]
 
-    def _build(self):
+    # -- what is built --------------------------------------------------------------------------------------------
+
+    def build(self):
         O.reset()
-        wall = self.wall
-        brick, rigid = self.brick, materials.loadingBlock()
-        # heavier and less attracted: the same weights, slower waves, and a longer time step
-        scaling = self.args.density_scaling
-        for material in (brick, rigid):
-            material.density *= scaling
-        self.gravity, self.ramp = 9.81 / scaling, RAMP * scaling**0.5
-        O.materials.append([brick, rigid])
+        self._lay()
+        wall, n = self.wall, self.args.divisions
+        point = (wall.length / 2, wall.unit[1] / 2, self.loadHeight)
+        top = dict(body=self.blocks["top"], point=point)
+        self.assemble(
+            [joint for name, joint in self.joints.items() if name != "crack"],
+            [
+                MasonryLoad(label="vertical", **top),
+                MasonryLoad(label="push", driven=True, **top),
+            ],
+            # cells of a half brick along its length; a whole one has twice as many
+            divisions=[n if self.halves else 2 * n, 1, n],
+            gravity=self.gravity,
+            rule=self._rule,
+            functors=self.functors,
+        )
+
+    def _lay(self):
+        """The fixed block, the bricks, and the loading block."""
+        wall, rigid = self.wall, materials.loadingBlock()
+        rigid.density *= self.args.density_scaling
+        O.materials.append([self.unit, rigid])
         length, thickness, height = wall.length, wall.unit[1], wall.height
-        top = wall.loadHeight or height + BLOCK_HEIGHT
-        self.base = addBlock(
-            brickwork.corners((0, 0, -BLOCK_HEIGHT), (length, thickness, 0)),
-            rigid,
-            inPlane=True,
-        )
-        O.bodies[self.base].state.blockedDOFs = "xyzXYZ"
-        self.brickOf = {}
+        self.loadHeight = wall.loadHeight or height + BLOCK_HEIGHT
+        base = _box((0, 0, -BLOCK_HEIGHT), (length, thickness, 0), rigid)
+        O.bodies[base].state.blockedDOFs = "xyzXYZ"
         for block in brickwork.runningBond(
-            wall.courses,
-            wall.halfUnits,
-            wall.unit,
-            halves=self.args.crack_surfaces == "on",
+            wall.courses, wall.halfUnits, wall.unit, self.halves
         ):
-            self.brickOf[
-                addBlock(brickwork.corners(block.low, block.high), brick, inPlane=True)
-            ] = block.brick
-        self.top = addBlock(
-            brickwork.corners((0, 0, height), (length, thickness, top)),
-            rigid,
-            inPlane=True,
-        )
-        topState = O.bodies[self.top].state
+            self.bricks[_box(block.low, block.high, self.unit)] = block.brick
+        top = _box((0, 0, height), (length, thickness, self.loadHeight), rigid)
+        state = self._state = O.bodies[top].state
         if wall.loadHeight is None:
-            topState.blockedDOFs = "yXYZ"
+            state.blockedDOFs = "yXYZ"
+        self.blocks = {"base": base, "top": top}
+        # Rows are read at every few steps: what does not change is kept as plain numbers.
+        measured = Vector3(length / 2, thickness / 2, wall.measureHeight)
+        arm, self._upright = measured - state.refPos, state.refOri.conjugate()
+        self._ownArm = self._upright * arm  # in the axes of the block
+        self._arm, self._start = (arm[0], arm[2]), (state.refPos[0], state.refPos[2])
+        self._forces = O.forces
 
-        point = (length / 2, thickness / 2, top)
-        self.vertical = MasonryLoad(body=self.top, point=point, label="vertical")
-        self.load = MasonryLoad(body=self.top, point=point, driven=True, label="load")
-        found = [joint for name, joint in self.joints.items() if name != "crack"]
-        self.zones = None
-        if self.args.blocks == "deformable":
-            n = self.args.divisions
-            along = n if self.args.crack_surfaces == "on" else 2 * n
-            self.zones = MasonryZones(
-                bodies=list(self.brickOf),
-                divisions=[along, 1, n],
-                damping=self.args.damping,
-                dampingKind="local",  # brings a wall to rest; the push has its own
-                blocked="y",
-                label="zones",
-            )
-        engines(
-            found,
-            damping=self.args.damping,
-            gravity=(0, 0, -self.gravity),
-            subcontacts=self.args.subcontacts,
-            inPlane=True,
-            loads=[self.vertical, self.load],
-            zones=self.zones,
-        )
-        self.energy, self.integrator = [
-            e for e in O.engines if e.label in ("energy", "integrator")
-        ]
-        crack = self.joints.get("crack")
-        sameBrick = lambda b1, b2: b1.id in self.brickOf and self.brickOf[
-            b1.id
-        ] == self.brickOf.get(b2.id)
-        self.interactions = connect(
-            lambda b1, b2, geom: crack if sameBrick(b1, b2) else None
-        )
-        self.limit = criticalTimeStep()[0]
-        O.dt = self.args.dt_fraction * self.limit
-        self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)
-        nodes = len(self.zones.displacements) if self.zones else 0
-        self._checkRoom(50 * self.subcontacts + 150 * len(O.bodies) + 100 * nodes)
-        kinds = {}
-        for i in self.interactions:
-            kinds[i.phys.joint.name] = kinds.get(i.phys.joint.name, 0) + 1
-        self.results.run.update(
-            scene=wall.name,
-            title=wall.title,
-            wall={
-                "length_m": wall.length,
-                "height_m": wall.height,
-                "thickness_m": wall.unit[1],
-                "courses": wall.courses,
-                "half_units": wall.halfUnits,
-                "unit_m": wall.unit,
-                "precompression_Pa": wall.precompression,
-                "load_height_m": wall.loadHeight,
-                "measure_height_m": wall.measureHeight,
-                "load_line_fixed": wall.loadLineFixed,
-            },
-            options=dict(vars(self.args)),
-            preset=self.preset,
-            option_units={
-                "until": "mm",
-                "rate": "mm/s",
-                "vtk_every": "mm",
-                "checkpoint_every": "min",
-            },
-            joints={name: joint.dict() for name, joint in self.joints.items()},
-            joint_units=options.units(materials.MasonryJoint),
-            unit_material={
-                "young_Pa": brick.young,
-                "poisson": brick.poisson,
-                "density_kg_per_m3": brick.density / scaling,
-            },
-            versions={
-                "yade": yade.config.version,
-                "python": sys.version.split()[0],
-                "masonry": commit,
-            },
-            commit=commit,
-            threads=O.numThreads,
-            time_step_s=O.dt,
-            time_step_limit_s=self.limit,
-            units=len(self.brickOf),
-            nodes=nodes,
-            joint_count=len(self.interactions),
-            joints_by_kind=kinds,
-            subcontacts=self.subcontacts,
-        )
-        for joint in self.results.run["joints"].values():
-            joint["direction"] = list(joint["direction"])
+    def _rule(self, body1, body2, geom):
+        """Halves of one brick share a crack; all other joints are chosen by their direction and joint set."""
+        brick = self.bricks.get(body1.id, -1)
+        return self.joints["crack"] if brick == self.bricks.get(body2.id) else None
 
-    def _checkRoom(self, frame):
-        """Whether the folder has room for the run; ``frame`` is what ParaView's files of a frame take at least [bytes]."""
-        until = self.args.until
-        frames = 0 if self.args.no_vtk else until / self.args.vtk_every + 2
-        least = 400e3 + frame * min(frames, 2)  # figures, first and last frame
-        self.results.checkRoom(least, least + frame * frames + 250 * until / ROW_EVERY)
+    # -- how it is loaded -----------------------------------------------------------------------------------------
 
-    # -- stages ---------------------------------------------------------------------------------------------------
+    def weight(self):
+        """Weight of all blocks but the fixed one [N]."""
+        base = self.blocks["base"]
+        return self.gravity * sum(b.state.mass for b in O.bodies if b.id != base)
 
-    def settle(self):
-        """Gravity, and precompression on the loading block that grows smoothly, to rest.
+    def verticalForce(self):
+        """Force on the loading block from which, with its weight, the top course feels the precompression [N]."""
+        own = self._state.mass * self.gravity
+        return self.wall.precompression * self.wall.area - own
 
-        The precompression is what the top course feels: the block's weight is part of it. At rest the base carries what
-        is above it but for the share REST, and hardly anything moves; the damping of the push takes what is left.
+    def keepLoadLine(self):
+        """Move the point of the vertical load back to its line in space, if that is fixed."""
+        if self.wall.loadLineFixed:
+            load = self.loads["push"]
+            along = load.displacement()[0]
+            self.loads["vertical"].point = load.point - Vector3(along, 0, 0)
+
+    # -- what is measured -----------------------------------------------------------------------------------------
+
+    def topDisplacement(self):
+        """Displacement of the loading block at the measure height since the wall was built, along the push and up [m]."""
+        return self._moved(self._state.ori)
+
+    def _moved(self, orientation):
+        now, turned = self._state.pos, orientation * self._ownArm
+        along = now[0] + turned[0] - self._start[0] - self._arm[0]
+        up = now[2] + turned[2] - self._start[1] - self._arm[1]
+        return along, up
+
+    def hasSunk(self, down=None):
+        """Whether the loading block has come down by half a course.
+
+        :param down: its displacement downwards [m], if that is known
         """
-        weight = self.gravity * sum(b.state.mass for b in O.bodies if b.id != self.base)
-        force = (
-            self.wall.precompression * self.wall.area
-            - O.bodies[self.top].state.mass * self.gravity
+        down = -self.topDisplacement()[1] if down is None else down
+        return down > 0.5 * self.wall.unit[2]
+
+    def read(self):
+        orientation = self._state.ori
+        along, up = self._moved(orientation)
+        return columns.WallReading(
+            O.time,
+            along - self.origin[0],
+            up - self.origin[1],
+            self._forces.f(self.blocks["base"], True)[0],
+            self.loads["push"].reaction,
+            self.energy.balance(),
+            orientation,
+            self._upright,
+            -up,
         )
-        if self.zones:
-            self.zones.damping = min(SETTLING, self.args.damping)
-        at, ramp, most = self.at, int(self.ramp / O.dt), int(10 * self.ramp / O.dt)
-        while at.done < most and at.quiet < 3:
-            x = min(1, (at.done + 100) / ramp)
-            self.vertical.force = Vector3(0, 0, -force * x * x * (3 - 2 * x))
-            self._advance(100)
-            at.done += 100
-            e = self.energy.balance()
-            elastic = (
-                e["elastic_compression"]
-                + e["elastic_shear"]
-                + e["elastic_tension"]
-                + e["elastic_units"]
-            )
-            missing = 1 + O.forces.f(self.base, True)[2] / (
-                weight - self.vertical.force[2]
-            )
-            rests = abs(missing) < REST and abs(e["kinetic"]) < 1e-5 * elastic
-            at.quiet = at.quiet + 1 if rests and x == 1 else 0
-            self.progress.show(
-                "settle",
-                at.done / most,
-                f"unbalanced {100 * missing:+.2f} %, kinetic/elastic {abs(e['kinetic']) / elastic:.1e}",
-                self._rate(),
-                at.quiet == 3,
-            )
-            if self._sunk():
-                self.collapsed = True
-                say("the wall has collapsed before the push")
-                return
-        if at.quiet < 3:
-            say(f"note: the wall is not quite at rest after {at.steps} steps")
 
-    def push(self):
-        """Lateral velocity at the loaded point, to ``--until`` or to collapse."""
-        args, at = self.args, self.at
-        if self.collapsed:
-            return
-        every = max(1, int(ROW_EVERY / (args.rate * O.dt)))
-        if not self.advanced:
-            at.origin, at.began = list(self._topDisplacement()), O.time
-            at.moved = self._record()["displacement_mm"]
-        if self.zones:
-            self.zones.damping = args.damping
-            self.zones.dampingKind = args.damping_kind
-        else:
-            self.integrator.dampingKind = args.damping_kind
-        while at.moved < args.until:
-            if at.moved >= at.nextFrame:
-                self._frame()
-                at.nextFrame += args.vtk_every
-            self.load.velocity = (
-                args.rate
-                * 1e-3
-                * min(1.0, (O.time - at.began + every * O.dt) / self.ramp)
-            )
-            if self.wall.loadLineFixed:
-                along = self.load.displacement()[0]
-                self.vertical.point = self.load.point - Vector3(along, 0, 0)
-            self._advance(every)
-            with self._timed("rows"):
-                values = self._record()
-            shear, at.moved = values["base_shear_kN"], values["displacement_mm"]
-            if shear > at.peak:
-                at.peak, at.peakAt = shear, at.moved
-            detail = f"{at.moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
-            self.progress.show(
-                "push", max(0, at.moved / args.until), detail, self._rate()
-            )
-            if self._sunk() or (at.moved > at.peakAt + 1 and shear < 0.2 * at.peak):
-                self.collapsed = True
-                break
-        self.progress.show("push", 1, detail, self._rate(), final=True)
-        if self.collapsed:
-            say(f"the wall has collapsed at {at.moved:.2f} mm")
+    # -- what comes out -------------------------------------------------------------------------------------------
 
-    def _sunk(self):
-        """Whether the loading block has come down by half a course."""
-        return self._topDisplacement()[2] < -0.5 * self.wall.unit[2]
-
-    def _topDisplacement(self):
-        """Displacement of the loading block at the height of measurement [m]."""
-        s, wall = O.bodies[self.top].state, self.wall
-        arm = Vector3(wall.length / 2, wall.unit[1] / 2, wall.measureHeight) - s.refPos
-        return s.pos + s.ori * (s.refOri.conjugate() * arm) - s.refPos - arm
-
-    def _record(self):
-        moved = self._topDisplacement() - Vector3(*self.at.origin)
-        e = self.energy.balance()
-        s = O.bodies[self.top].state
-        axis, angle = (s.ori * s.refOri.conjugate()).toAxisAngle()
-        values = {
-            "time_s": O.time,
-            "displacement_mm": 1e3 * moved[0],
-            "base_shear_kN": 1e-3 * O.forces.f(self.base, True)[0],
-            "top_shear_kN": 1e-3 * self.load.reaction,
-            "vertical_mm": 1e3 * moved[2],
-            "rotation_mrad": 1e3 * angle * axis[1],
-            "balance_error": e["error"],
-        }
-        values.update({name + "_J": e[name] for name in ENERGIES})
-        self.results.row(values)
-        return values
-
-    def _describe(self):
-        results, run, done = self.results, self.results.run, self.at
-        if results.rows:
-            shear, moved = results.column("base_shear_kN"), results.column(
-                "displacement_mm"
-            )
-            at = max(range(len(shear)), key=shear.__getitem__)
-            run.update(
-                peak_base_shear_kN=shear[at],
-                displacement_at_peak_mm=moved[at],
-                base_shear_end_kN=shear[-1],
-                displacement_end_mm=moved[-1],
-                initial_stiffness_kN_per_mm=initialStiffness(moved, shear),
-                energy_balance_error=self.energy.largestError,
-                energy_made=self.energy.largestMade,
-                haste=haste(results.column("top_shear_kN"), shear),
-            )
-        run.update(
-            collapsed=self.collapsed,
-            too_fast=run.get("haste", 0) > HASTE,
-            interrupted=results.interrupted,
-            resumed_at_s=done.resumed,
-            steps=done.steps,
-            kinds=self.vtk.kinds if self.vtk else [],
-            seconds={part: round(s, 3) for part, s in done.seconds.items()},
-        )
-        if done.steps:
-            perStep = done.seconds["steps"] / done.steps
-            run["microseconds_per_step"] = 1e6 * perStep
-            run["nanoseconds_per_subcontact_step"] = 1e9 * perStep / self.subcontacts
-
-    def _report(self):
-        results, run = self.results, self.results.run
-        if results.rows:
-            drawing = [sys.executable, "-m", "masonry.figures", results.directory]
-            if subprocess.run(drawing).returncode:
-                raise Unwritable("the figures are not drawn")
-        off, made = run.get("energy_balance_error", 0), run.get("energy_made", 0)
-        if max(off, made) > 0.01:
-            say(
-                f"warning: the energy balance is off by {100 * off:.1f} % of the work done, and joints that open or close "
-                f"within a step made {100 * made:.1f} % of it: a smaller --dt-fraction or --rate or more --damping helps"
-            )
-        if run.get("haste", 0) > HASTE:
-            say(self._tooFast(run["haste"]))
-        if results.rows:
-            say(
-                f"{self.wall.name}: peak {run['peak_base_shear_kN']:.1f} kN at {run['displacement_at_peak_mm']:.2f} mm, "
-                f"{run['base_shear_end_kN']:.1f} kN at {run['displacement_end_mm']:.2f} mm; {run['steps']} steps of "
-                f"{run['microseconds_per_step']:.0f} µs, {run['wall_clock_s']:.1f} s in all; see {results.directory}"
-            )
-        if self.preset:
-            say(options.presetNote(self.preset, self.wall.name))
-
-    def _tooFast(self, haste):
-        """The warning of a push that is too fast, with what would do: what is missing grows with the rate at least."""
+    def room(self):
         args = self.args
-        slower = f"--rate {float(f'{args.rate * HASTE / haste:.2g}'):g}"
-        return (
-            f"warning: the push is too fast: {100 * haste:.0f} % of the force does not reach the base, "
-            f"more than {100 * HASTE:.0f} % spoil the peak; "
-            + ("--damping-kind combined" if args.damping_kind == "local" else slower)
-            + " would do"
+        nodes = len(self.zones.displacements) if self.zones else 0
+        frame = 50 * self.subcontacts + 150 * len(O.bodies) + 100 * nodes
+        frames = 0 if args.no_vtk else args.until / args.vtk_every + 2
+        least = 400e3 + frame * min(frames, 2)  # figures, first and last frame
+        return least, least + frame * frames + 250 * args.until / ROW_EVERY
+
+    def describe(self):
+        wall = self.wall
+        measures = {
+            "length_m": wall.length,
+            "height_m": wall.height,
+            "thickness_m": wall.unit[1],
+            "courses": wall.courses,
+            "half_units": wall.halfUnits,
+            "unit_m": wall.unit,
+            "precompression_Pa": wall.precompression,
+            "load_height_m": wall.loadHeight,
+            "measure_height_m": wall.measureHeight,
+            "load_line_fixed": wall.loadLineFixed,
+        }
+        return dict(super().describe(), wall=measures)
+
+    def summary(self, column):
+        shear, moved = column("base_shear_kN"), column("displacement_mm")
+        at = max(range(len(shear)), key=shear.__getitem__)
+        imbalance = dynamicImbalance(column("top_shear_kN"), shear)
+        return dict(
+            peak_base_shear_kN=shear[at],
+            displacement_at_peak_mm=moved[at],
+            base_shear_end_kN=shear[-1],
+            displacement_end_mm=moved[-1],
+            initial_stiffness_kN_per_mm=initialStiffness(moved, shear),
+            dynamic_imbalance=imbalance,
+            too_fast=imbalance > IMBALANCE,
         )
 
+    def report(self, run):
+        if run["too_fast"]:
+            yield tooFast(self.args, run["dynamic_imbalance"])
+        yield (
+            f"{self.wall.name}: peak {run['peak_base_shear_kN']:.1f} kN at {run['displacement_at_peak_mm']:.2f} mm, "
+            f"{run['base_shear_end_kN']:.1f} kN at {run['displacement_end_mm']:.2f} mm"
+        )
 
-def test(wall, args):
-    """Gravity, precompression, push and results of a wall; the exit status of the scene."""
-    return conduct(lambda: WallModel(wall, args))
+    def draw(self, directory):
+        drawFigures(directory)
+
+
+def _box(low, high, material):
+    """A block with these opposite corners, which stays in the plane of the wall; its body id."""
+    return addBlock(brickwork.corners(low, high), material, inPlane=True)

@@ -1,14 +1,19 @@
-"""The Python package: brickwork, materials, options, results."""
+"""The Python package: brickwork, materials, options, presets, results, curves."""
 
 import argparse
 import itertools
 import json
 import math
+import os
+import re
+import resource
 
 import pytest
+from conftest import ROOT
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from masonry import brickwork, materials, options, results
+from masonry import brickwork, columns, curves, materials, options, presets, results
+from masonry.errors import Refused, Unwritable
 
 
 # -- brickwork --------------------------------------------------------------------------------------------------------
@@ -110,7 +115,7 @@ def test_all_wrong_settings_are_told_at_once():
         "head.friction=-1",
         "crack.name=x",
     ]
-    with pytest.raises(options.Refused) as refused:
+    with pytest.raises(Refused) as refused:
         options.applySettings(joints, [options._setting(w) for w in words])
     message = str(refused.value)
     for part in (
@@ -160,12 +165,12 @@ def test_a_preset_stands_for_its_options_and_keeps_its_promise(name):
     args = parse("--preset", name, "--until", "3", "--no-vtk", "--out", "x")
     for option, value in options.PRESETS[name].items():
         assert getattr(args, option) == value
-    preset = options.presetOf(args, "wall_comp4")
-    promise = options.PROMISES[name]
+    preset = presets.presetOf(args, "wall_comp4")
+    promise = presets.PROMISES[name]
     assert preset["promise"]["peak_error"] == promise["peak_error"]
     assert preset["promise"]["work_error"] == promise["work_error"]
     assert preset["overrides"] == []
-    assert f"within {100 * promise['work_error']:g} %" in options.presetNote(
+    assert f"within {100 * promise['work_error']:g} %" in presets.presetNote(
         preset, "wall_comp4"
     )
 
@@ -182,24 +187,24 @@ def test_a_preset_stands_for_its_options_and_keeps_its_promise(name):
 )
 def test_an_option_beside_a_preset_wins_and_drops_the_promise(words, dropped):
     args = parse("--preset", "accurate", *words)
-    preset = options.presetOf(args, "wall_comp4")
+    preset = presets.presetOf(args, "wall_comp4")
     assert preset["overrides"] == dropped and (preset["promise"] is None) == bool(
         dropped
     )
     assert args.blocks == "deformable" and args.dt_fraction == 0.8
     if words[0] == "--rate":
         assert args.rate == float(words[1])
-    note = options.presetNote(preset, "wall_comp4")
+    note = presets.presetNote(preset, "wall_comp4")
     assert ("without its promise" in note) == bool(dropped)
     for name in dropped:
         assert "--" + name.replace("_", "-") in note
 
 
 def test_a_preset_promises_nothing_of_a_wall_it_was_not_measured_on():
-    preset = options.presetOf(parse("--preset", "fast"), "my_wall")
+    preset = presets.presetOf(parse("--preset", "fast"), "my_wall")
     assert preset["promise"] is None
-    assert "not measured on my_wall" in options.presetNote(preset, "my_wall")
-    assert options.presetOf(parse(), "wall_comp4") is None
+    assert "not measured on my_wall" in presets.presetNote(preset, "my_wall")
+    assert presets.presetOf(parse(), "wall_comp4") is None
 
 
 @settings(max_examples=300, deadline=None)
@@ -208,7 +213,7 @@ def test_any_text_for_a_table_is_refused_in_words_or_makes_a_joint(text):
     joints = {"bed": materials.MasonryJoint()}
     try:
         options.applySettings(joints, [("bed", "shearTable", text)])
-    except options.Refused as refused:
+    except Refused as refused:
         assert str(refused).startswith(
             ("--set bed.shearTable=", 'joint "bed": shear table, ')
         )
@@ -230,14 +235,14 @@ def test_every_option_is_explained_with_its_default(capsys):
 
 def test_an_unwritable_folder_is_told_at_the_start(tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(options.Refused, match="--out: cannot write to"):
+    with pytest.raises(Refused, match="--out: cannot write to"):
         results.Results(str(tmp_path / "file" / "below"), ["a"])
 
 
 def test_rows_and_run_are_read_back(tmp_path):
     r = results.Results(str(tmp_path), ["a_mm", "b_kN"])
-    r.row({"a_mm": 1, "b_kN": 2.5})
-    r.row({"a_mm": 2, "b_kN": -3})
+    r.append([[1, 2.5], [2, -3]])
+    r.append([])
     r.run["title"] = "t"
     r.close()
     assert results.readCurve(str(tmp_path)) == {"a_mm": [1, 2], "b_kN": [2.5, -3]}
@@ -247,27 +252,86 @@ def test_rows_and_run_are_read_back(tmp_path):
 def test_a_run_that_leaves_finite_numbers_is_stopped(tmp_path):
     r = results.Results(str(tmp_path), ["a_mm", "b_kN"])
     with pytest.raises(FloatingPointError, match="finite numbers in b_kN"):
-        r.row({"a_mm": 1, "b_kN": math.nan})
+        r.append([[1, 2], [2, math.nan], [3, 3]])
+    assert results.readCurve(str(tmp_path)) == {"a_mm": [1], "b_kN": [2]}
 
 
-def test_haste_is_the_share_of_the_force_that_does_not_arrive():
+def test_rows_that_a_full_disk_takes_stay_whole(tmp_path):
+    folder = str(tmp_path)
+
+    def child():
+        r = results.Results(folder, ["a_mm", "b_kN"])
+        limit = os.path.getsize(r.path("curve.csv")) + 100  # bytes: 18 rows and a bit
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+        try:
+            r.append([[1, 2]] * 3)
+            r.append([[3, 4]] * 50)
+        except Unwritable as error:
+            return len(r.rows) == 53 and str(error).endswith("File too large")
+
+    process = os.fork()
+    if process == 0:
+        os._exit(0 if child() else 1)
+    assert os.waitpid(process, 0)[1] == 0
+    # as many lines of 5 bytes as fit after the first 3
+    assert results.readCurve(folder)["a_mm"] == [1] * 3 + [3] * 17
+
+
+def test_dynamic_imbalance_is_the_share_of_the_force_that_does_not_arrive():
     base = [min(0.01 * i, 1.0) for i in range(200)]
-    assert results.haste(base, base) == 0 and results.haste([], []) == 0
+    assert (
+        curves.dynamicImbalance(base, base) == 0
+        and curves.dynamicImbalance([], []) == 0
+    )
     drag = [b + 0.25 for b in base]
-    assert results.haste(drag, base) == pytest.approx(0.25 / 1.25, rel=1e-9)
+    assert curves.dynamicImbalance(drag, base) == pytest.approx(0.25 / 1.25, rel=1e-9)
     swing = [b + 0.25 * (-1) ** i for i, b in enumerate(base)]
-    assert results.haste(swing, base) == pytest.approx(0.25 / 1.25, rel=1e-9)
+    assert curves.dynamicImbalance(swing, base) == pytest.approx(0.25 / 1.25, rel=1e-9)
     start = [b + 0.25 * (b < 0.4) for b in base]  # that it swings at first is no harm
-    assert results.haste(start, base) == 0
+    assert curves.dynamicImbalance(start, base) == 0
     after = base + [0.2] * 100  # nor what it does when it breaks
-    assert results.haste(base + [0.9] * 100, after) == 0
+    assert curves.dynamicImbalance(base + [0.9] * 100, after) == 0
     stuck = [0.1 * b for b in base]
-    assert results.haste(base, stuck) == pytest.approx(0.9 * math.sqrt(2 / 3), rel=0.01)
+    assert curves.dynamicImbalance(base, stuck) == pytest.approx(
+        0.9 * math.sqrt(2 / 3), rel=0.01
+    )
 
 
 @given(slope=st.floats(0.1, 1e3))
 def test_initial_stiffness_is_the_slope_of_a_straight_start(slope):
     x = [0.01 * i for i in range(400)]
     y = [min(slope * v, slope) for v in x]
-    assert results.initialStiffness(x, y) == pytest.approx(slope, rel=1e-9)
-    assert results.initialStiffness([], []) == 0
+    assert curves.initialStiffness(x, y) == pytest.approx(slope, rel=1e-9)
+    assert curves.initialStiffness([], []) == 0
+
+
+@pytest.mark.parametrize("reader", ["figures", "measure"])
+def test_readers_ask_only_for_keys_of_run_json_that_are_documented(reader):
+    source = open(os.path.join(ROOT, "scripts", "masonry", reader + ".py")).read()
+    documented = set(re.findall(r"``(\w+)``", results.__doc__))
+    asked = set(re.findall(r'\b(?:run|wall)(?:\["\w+"\])?\["(\w+)"\]', source))
+    assert asked and not asked - documented
+
+
+@pytest.mark.parametrize("reader", ["figures", "measure"])
+def test_readers_ask_only_for_columns_that_are_described(reader):
+    source = open(os.path.join(ROOT, "scripts", "masonry", reader + ".py")).read()
+    described = {c.name for c in columns.WALL + columns.COUPLET}
+    asked = set(re.findall(r'\b(?:curve|data)\["(\w+)"\]', source))
+    assert asked and not asked - described
+
+
+@pytest.mark.parametrize("listed", [columns.WALL, columns.COUPLET])
+def test_a_column_says_its_unit_in_its_name_and_in_its_meaning(listed):
+    heads = columns.names(listed)
+    assert len(set(heads)) == len(heads) and heads[0] == "time_s"
+    for column in listed:
+        unit = column.meaning[column.meaning.rindex("[") + 1 : -1]
+        assert unit == "-" or column.name.endswith("_" + unit)
+
+
+def test_the_energies_are_those_of_the_balance(scene):
+    from yade.wrapper import MasonryEnergy
+
+    scene.engines = [MasonryEnergy()]
+    assert set(columns.ENERGIES) | {"error"} == set(scene.engines[0].balance())

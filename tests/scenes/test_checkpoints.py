@@ -8,9 +8,11 @@ import time
 
 import pytest
 from conftest import ROOT
-from masonry import couplet, options, readCheckpoint, saveCheckpoint, walls
-from masonry.checkpoints import Resumable
-from masonry.results import readRun
+from masonry import readCheckpoint, saveCheckpoint
+from masonry.results import readCurve, readRun
+from masonry.run import Run
+from masonry.walls import Wall, WallModel
+from small import SMALL, carryOut, parsed, scene as runScript
 
 
 def files(folder):
@@ -64,21 +66,17 @@ def test_a_wall_killed_ten_times_leaves_the_curve_of_a_whole_run(runScene, tmp_p
 
 # -- a small wall, in this process -------------------------------------------------------------------------------------
 
-SMALL = walls.Wall(
-    name="small", title="a small wall", halfUnits=6, precompression=0.5e6, courses=6
-)
 PUSH = ["--until", "0.3", "--vtk-every", "0.1", "--rate", "40"]
 
 
 def run(out, *words, wall=SMALL, resume=False):
     where = ["--resume" if resume else "--out", str(out)]
-    args = options.parser("", until=1).parse_args([*where, *words])
-    return walls.test(wall, args)
+    return carryOut(wall, parsed(*where, *words))
 
 
 @pytest.fixture
 def at(monkeypatch):
-    """Do something just before the n-th ``_advance`` from now on."""
+    """Do something just before the n-th ``advance`` from now on."""
 
     def plan(n, act):
         count = [n]
@@ -90,17 +88,17 @@ def at(monkeypatch):
             original(self, steps)
 
         original = at.original
-        monkeypatch.setattr(Resumable, "_advance", advance)
+        monkeypatch.setattr(Run, "advance", advance)
 
-    at.original = Resumable._advance
+    at.original = Run.advance
     return plan
 
 
-def interrupt(model):
-    os.kill(os.getpid(), signal.SIGINT if model.at.steps % 2 else signal.SIGTERM)
+def interrupt(run):
+    os.kill(os.getpid(), signal.SIGINT if run.at.steps % 2 else signal.SIGTERM)
 
 
-CANTILEVER = walls.Wall(
+CANTILEVER = Wall(
     name="small",
     title="a small cantilever under rollers",
     halfUnits=6,
@@ -141,12 +139,10 @@ def test_a_couplet_interrupted_in_every_move_leaves_the_curve_of_a_whole_run(
     scene, tmp_path, at, blocks, path
 ):
     def run(*words):
-        parser = options.parser("", until=0.05, rate=20)
-        args = parser.parse_args(list(words))
-        args.path, args.normal_stress, args.closure = path, -0.5, 0.02
-        return couplet.test(args)
+        return runScript("couplet", *words)
 
-    words = ["--blocks", blocks]
+    words = ["--path", path, "--until", "0.05", "--rate", "20", "--closure", "0.02"]
+    words += ["--blocks", blocks]
     assert run("--out", str(tmp_path / "whole"), *words) == 0
     words += ["--out", str(tmp_path / "broken")]
     moves = []
@@ -155,7 +151,7 @@ def test_a_couplet_interrupted_in_every_move_leaves_the_curve_of_a_whole_run(
         if run(*words) == 0:
             break
         told = readCheckpoint(str(tmp_path / "broken" / "run.checkpoint"))
-        moves.append(told["at"]["move"])
+        moves.append(told["at"]["number"])
         words = ["--resume", str(tmp_path / "broken")]
     assert set(moves) == ({1, 2, 3} if path == "shear" else {1, 2})
     assert files(tmp_path / "broken") == files(tmp_path / "whole")
@@ -173,28 +169,32 @@ def test_frames_can_begin_and_end_with_a_resumed_run(scene, tmp_path):
     assert run(tmp_path / "whole", *PUSH) == 0
     assert run(tmp_path / "parts", *PUSH, "--no-vtk", "--until", "0.15") == 0
     told = str(tmp_path / "parts")
-    args = options.parser("", until=1).parse_args(["--resume", told, "--until", "0.3"])
+    args = parsed("--resume", told, "--until", "0.3")
     args.no_vtk = False
-    assert walls.test(SMALL, args) == 0
+    assert carryOut(SMALL, args) == 0
     frames = [n for n in files(told) if n.endswith("vtu")]
     assert frames == ["blocks_0000.vtu", "blocks_0001.vtu"]  # at 0.2 mm and the end
     assert files(told)["curve.csv"] == files(tmp_path / "whole")["curve.csv"]
 
 
-def test_a_run_that_fails_can_be_taken_up_where_it_failed(scene, tmp_path, monkeypatch):
+@pytest.mark.parametrize("rows", [0, 29])
+def test_a_run_that_fails_can_be_taken_up_where_it_failed(
+    scene, tmp_path, monkeypatch, rows
+):
     assert run(tmp_path / "whole", *PUSH) == 0
-    record, count = walls.WallModel._record, [30]
+    read, count = WallModel.read, [rows + 1]
 
     def fail(self):
-        values = record(self)
         count[0] -= 1
         if count[0] == 0:
             raise OSError("a pipe that broke")
-        return values
+        return read(self)
 
-    monkeypatch.setattr(walls.WallModel, "_record", fail)
+    monkeypatch.setattr(WallModel, "read", fail)
     with pytest.raises(OSError, match="a pipe that broke"):
         run(tmp_path / "failed", *PUSH)
+    lines = open(tmp_path / "failed" / "curve.csv").readlines()
+    assert len(lines) == 1 + rows
     assert run(tmp_path / "failed", resume=True) == 0
     assert files(tmp_path / "failed") == files(tmp_path / "whole")
 
@@ -204,11 +204,11 @@ def test_a_full_disk_is_told_and_the_run_goes_on(scene, tmp_path, at, capsys):
     kept = str(tmp_path / "full" / "run.checkpoint")
     seen = {}
 
-    def fill(model):
-        model.checkpoint()
+    def fill(run):
+        run.checkpoint()
         seen["before"] = open(kept, "rb").read()
         os.symlink("/dev/full", kept + ".new")
-        model.checkpoint()
+        run.checkpoint()
         seen["after"] = open(kept, "rb").read()
 
     at(60, fill)
@@ -219,7 +219,9 @@ def test_a_full_disk_is_told_and_the_run_goes_on(scene, tmp_path, at, capsys):
     assert said in capsys.readouterr().err
     assert seen["before"] == seen["after"]
     assert files(tmp_path / "full") == files(tmp_path / "whole")
-    assert readCheckpoint(kept)["at"]["moved"] > 0.25  # the disk has room again
+    assert (
+        readCheckpoint(kept)["at"]["memory"]["moved"] > 0.25
+    )  # the disk has room again
 
 
 @pytest.mark.parametrize("lost", ["curve.csv", "joints_0001.vtp", "run.json.new"])
@@ -229,10 +231,10 @@ def test_a_run_whose_results_cannot_be_written_goes_on_when_there_is_room(
     assert run(tmp_path / "whole", *PUSH) == 0
     out = tmp_path / "full"
 
-    def fill(model):
+    def fill(run):
         if lost == "curve.csv":
             full = os.open("/dev/full", os.O_WRONLY)
-            os.dup2(full, model.results._file.fileno())
+            os.dup2(full, run.results._file.fileno())
             os.close(full)
         else:
             os.symlink("/dev/full", out / lost)
@@ -245,6 +247,59 @@ def test_a_run_whose_results_cannot_be_written_goes_on_when_there_is_room(
     assert f"--resume {out} goes on from here" in said.out
     assert run(out, resume=True) == 0
     assert files(out) == files(tmp_path / "whole")
+
+
+# -- rows that wait ----------------------------------------------------------------------------------------------------
+
+
+def test_a_row_waits_for_a_fifth_of_a_second_at_most(scene, tmp_path, at):
+    """While steps are slow every row is written at once, while they are quick several together."""
+    seen = []
+
+    def look(run):
+        read = len(run.results.rows) + len(run._readings)
+        seen.append((read, len(readCurve(str(tmp_path))["time_s"])))
+        at(1, slow)
+
+    def slow(run):
+        time.sleep(0.15)
+        at(1, look)
+
+    at(40, slow)
+    assert run(tmp_path, *PUSH, "--no-vtk", "--until", "0.1") == 0
+    assert len(seen) > 3
+    assert all(written == read for read, written in seen)
+    assert seen[-1][0] == seen[0][0] + 2 * (len(seen) - 1)
+
+
+@pytest.mark.parametrize("end", ["checkpoint", "interrupt", "error"])
+def test_rows_that_wait_are_kept(scene, tmp_path, at, end):
+    def act(run):
+        waiting = len(run._readings)
+        assert waiting > 1
+        seen.append(len(run.results.rows) + waiting)
+        if end == "checkpoint":
+            run.args.checkpoint_every = 1e-9  # due after these steps
+            at(1, lambda run: seen.append(len(readCurve(str(tmp_path))["time_s"])))
+        elif end == "interrupt":
+            interrupt(run)
+        else:
+            raise OSError("a pipe that broke")
+
+    seen = []
+    monkey = pytest.MonkeyPatch()
+    monkey.setattr("masonry.run.FLUSH_EVERY", 1e9)
+    at(60, act)
+    try:
+        run(tmp_path, *PUSH, "--no-vtk")
+    except OSError:
+        assert end == "error"
+    monkey.undo()
+    rows = len(readCurve(str(tmp_path))["time_s"])
+    if end == "checkpoint":
+        assert seen[1] == seen[0] and rows > seen[0]
+    else:
+        assert rows == seen[0]
 
 
 # -- what is refused ---------------------------------------------------------------------------------------------------
@@ -297,14 +352,10 @@ def test_what_cannot_be_taken_up_is_refused(broken, tmp_path, capsys):
         error = capsys.readouterr().err
         assert message in error and len(error.splitlines()) == 1
 
-    other = walls.Wall(
-        name="other", title="", halfUnits=6, precompression=0.5e6, courses=6
-    )
+    other = Wall(name="other", title="", halfUnits=6, precompression=0.5e6, courses=6)
     assert refused(broken, wall=other) == 2
     says("holds a run of small, this is other")
-    higher = walls.Wall(
-        name="small", title="", halfUnits=6, precompression=0.5e6, courses=7
-    )
+    higher = Wall(name="small", title="", halfUnits=6, precompression=0.5e6, courses=7)
     assert refused(broken, wall=higher) == 2
     says("run.checkpoint is of another scene: its blocks are others")
 
@@ -323,7 +374,7 @@ def test_what_cannot_be_taken_up_is_refused(broken, tmp_path, capsys):
         says(message)
     saveCheckpoint(str(kept), "a user's own")
     assert refused(broken) == 2
-    says("was not left by a wall or couplet")
+    says("was not left by a run in stages")
     os.remove(kept)
     assert refused(broken) == 2
     says("No such file or directory")

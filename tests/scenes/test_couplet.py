@@ -1,4 +1,4 @@
-"""Two bricks through the whole of the host against the closed forms of law.md §6, with both block models."""
+"""Two bricks through the whole of the host against the closed forms of the law, with both block models."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,8 @@ def couplet(request, runScene):
 def test_opening_peaks_at_ft_and_takes_the_mode_I_energy(couplet):
     curve, run = couplet("opening", "--until", "3", "--rate", "40")
     assert run["end_normal_stress_MPa"] == pytest.approx(0, abs=1e-6)
-    # GfI, and what law.md §7 adds where the units' elasticity L/Eb is lumped into the joint: ft² L / 2 Eb
+    # GfI, and ft² L / 2 Eb where the units' elasticity L/Eb is lumped into the joint (yade_plugin/law/README.md, rigid
+    # units)
     lumped = (
         0.1e6**2 * 0.081 / (2 * 4.8e9) if run["options"]["blocks"] == "rigid" else 0
     )

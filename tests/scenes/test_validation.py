@@ -12,18 +12,20 @@ sys.path.insert(0, os.path.join(ROOT, "validation"))
 sys.path.insert(0, os.path.join(ROOT, "validation", "sensitivity"))
 sys.path.insert(0, os.path.join(ROOT, "validation", "stability"))
 import invariance  # noqa: E402
+import observed  # noqa: E402
 import stability  # noqa: E402
+import studies  # noqa: E402
 import tornado  # noqa: E402
 import validate  # noqa: E402
 
 CASES = [
     os.path.basename(os.path.dirname(path))
-    for path in sorted(glob.glob(os.path.join(validate.HERE, "*", "case.json")))
+    for path in sorted(glob.glob(os.path.join(studies.HERE, "*", "case.json")))
 ]
 
 
 @pytest.mark.parametrize(
-    "case", [case for case in CASES if "quick" in validate.readCase(case)]
+    "case", [case for case in CASES if "quick" in studies.readCase(case)]
 )
 def test_the_quick_variant_holds_its_limits(case, tmp_path, capsys):
     assert validate.main([case, "quick", "--results", str(tmp_path)]) == 0
@@ -41,7 +43,7 @@ def test_a_missed_limit_is_said_and_counted(capsys):
 
 def test_every_limit_is_an_interval():
     for case in CASES:
-        for name, run in validate.readCase(case).items():
+        for name, run in studies.readCase(case).items():
             assert os.path.exists(os.path.join(ROOT, "scripts", run["scene"]))
             for limit, (low, high) in run["limits"].items():
                 assert (low, high) != (None, None), (case, name, limit)
@@ -87,7 +89,7 @@ def test_energy_that_joints_make_is_an_error_of_the_balance():
     assert "the run says so" in found["why"]
 
 
-@pytest.mark.parametrize("blocks", stability.BLOCKS)
+@pytest.mark.parametrize("blocks", observed.BLOCKS)
 def test_a_panel_told_in_other_units_turned_and_renumbered_gives_the_same_curve(blocks):
     telling = dict(
         length=1e-3,

@@ -3,8 +3,10 @@
 from functools import partial
 
 import pytest
-from masonry import materials, options, walls
+from masonry import materials
 from masonry.results import readCurve, readRun
+from masonry.walls import Wall
+from small import settled
 
 GRANITE = dict(
     unit=(0.2, 0.2, 0.15),
@@ -31,14 +33,12 @@ def test_joints_and_units_in_series_give_back_the_masonry(
     scene, tmp_path, blocks, tolerance
 ):
     # plane strain and the stiff platens make deformable units up to 1/(1 - 0.2²) stiffer, a fifth of the whole
-    wall = walls.Wall(
+    wall = Wall(
         name="w", title="", halfUnits=10, courses=8, precompression=0.875e6, **GRANITE
     )
-    words = ["--no-vtk", "--crack-surfaces", "off", "--blocks", blocks]
-    args = options.parser("", until=1).parse_args([*words, "--out", str(tmp_path)])
-    model = walls.WallModel(wall, args)
-    model.settle()
-    loaded = model._topDisplacement()[2]
+    words = ["--crack-surfaces", "off", "--blocks", blocks]
+    _, model = settled(tmp_path, *words, wall=wall)
+    loaded = model.topDisplacement()[1]
     joint, young = model.joints["bed"].normalStiffness, 20.2e9
     assert 8 / joint + 1.2 / young == pytest.approx(1.2 / 4.068e9, rel=1e-9)
     own = 2600 * 9.81 * 1.2 / 2  # mean stress of the wall's weight [Pa]
@@ -63,7 +63,7 @@ def test_what_a_dry_wall_has_not_is_refused(runScene, words, message):
 
 def test_a_measure_height_inside_the_masonry_is_refused():
     with pytest.raises(ValueError, match="measure height 1 m must be at least .* 1.2"):
-        walls.Wall(
+        Wall(
             name="w",
             title="",
             halfUnits=10,

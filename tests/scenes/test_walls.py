@@ -3,17 +3,19 @@
 import glob
 import json
 import os
+import re
 import signal
 import subprocess
 import time
-import types
 
 import numpy as np
 import pytest
 from conftest import ROOT
-from masonry import options, walls
+from masonry import loading, options, results
 from masonry.figures import readFrame
 from masonry.results import readCurve, readRun
+from masonry.walls import Wall, WallModel
+from small import SMALL, carryOut, parsed, settled
 from yade import O
 
 ENERGY_IN, ENERGY_OUT = ("external_J", "gravity_J"), ("kinetic_J", "damping_J")
@@ -44,7 +46,7 @@ def test_the_squat_wall_peaks_between_friction_and_the_cracked_section(squat):
     run = readRun(squat)
     assert (
         92.0 * 0.99 <= run["peak_base_shear_kN"] <= 130.6 * 0.99
-    )  # validation.md §1, for 3.96 of 4.00 m
+    )  # validation/README.md, for 3.96 of 4.00 m
     assert 1 < run["displacement_at_peak_mm"] < 4
     assert (
         run["units"] == 1224
@@ -60,6 +62,11 @@ def test_the_squat_wall_peaks_between_friction_and_the_cracked_section(squat):
     assert run["energy_balance_error"] < 1e-6
 
 
+def documented():
+    """The keys of run.json that its module lists."""
+    return set(re.findall(r"``(\w+)``", results.__doc__))
+
+
 def test_the_squat_wall_leaves_what_is_promised(squat):
     names = set(os.listdir(squat))
     assert {
@@ -73,13 +80,17 @@ def test_the_squat_wall_leaves_what_is_promised(squat):
     for picture in ("curve.png", "cracks.png"):
         assert os.path.getsize(os.path.join(squat, picture)) > 10000
     run = readRun(squat)
+    assert not set(run) - documented()
     for key in (
         "peak_base_shear_kN displacement_at_peak_mm base_shear_end_kN initial_stiffness_kN_per_mm wall_clock_s "
         "microseconds_per_step nanoseconds_per_subcontact_step energy_balance_error commit versions time_step_s "
-        "time_step_limit_s steps options joints"
+        "time_step_limit_s steps options joints columns"
     ).split():
         assert key in run
+    stages = {stage["stage"]: stage["steps"] for stage in run["stages"]}
+    assert list(stages) == ["settle", "push"] and sum(stages.values()) == run["steps"]
     curve = readCurve(squat)
+    assert list(run["columns"]) == list(curve)
     assert {"time_s", "displacement_mm", "base_shear_kN", "vertical_mm"} <= set(curve)
     assert (
         0.005 < np.max(np.diff(curve["displacement_mm"])) <= 0.02
@@ -210,26 +221,13 @@ def test_ctrl_c_ends_in_order_and_keeps_what_is_there(tmp_path):
 
 # -- a small wall, in this process ------------------------------------------------------------------------------------
 
-SMALL = walls.Wall(
-    name="small", title="a small wall", halfUnits=6, precompression=0.5e6, courses=6
-)
-
-
-def small(tmp_path, *words):
-    arguments = options.parser("", until=1).parse_args(
-        ["--no-vtk", "--out", str(tmp_path), *words]
-    )
-    model = walls.WallModel(SMALL, arguments)
-    model.settle()
-    return model
-
 
 def base(model):
-    return O.forces.f(model.base, True)
+    return O.forces.f(model.blocks["base"], True)
 
 
 def test_at_rest_the_base_carries_the_precompression_and_the_weight(scene, tmp_path):
-    model = small(tmp_path)
+    _, model = settled(tmp_path)
     weight = 6 * 3 * 0.22 * 0.102 * 0.081 * 1800 * 9.81
     assert base(model)[2] == pytest.approx(-(0.5e6 * 0.66 * 0.102 + weight), rel=1e-4)
     assert abs(base(model)[0]) < 1e-3 * weight
@@ -238,8 +236,8 @@ def test_at_rest_the_base_carries_the_precompression_and_the_weight(scene, tmp_p
 def test_before_it_cracks_a_mirrored_push_gives_the_mirrored_force(scene, tmp_path):
     forces = []
     for sign in (1, -1):
-        model = small(tmp_path)
-        model.load.velocity = sign * 0.002
+        _, model = settled(tmp_path)
+        model.loads["push"].velocity = sign * 0.002
         for _ in range(2000):
             O.step()
         forces.append(base(model)[0])
@@ -249,14 +247,12 @@ def test_before_it_cracks_a_mirrored_push_gives_the_mirrored_force(scene, tmp_pa
 
 
 def test_a_wall_saved_in_the_middle_of_its_push_goes_on_the_same(scene, tmp_path):
-    model = small(tmp_path)
-    model.load.velocity = 0.02
+    _, model = settled(tmp_path)
+    model.loads["push"].velocity = 0.02
     for _ in range(1500):
         O.step()
     O.save(str(tmp_path / "middle.yade.gz"))
-    curve = lambda: [
-        (O.step(), O.forces.f(model.base, True)[0])[1] for _ in range(1500)
-    ]
+    curve = lambda: [(O.step(), base(model)[0])[1] for _ in range(1500)]
     there = curve()
     assert max(there) > 1e3
     O.load(str(tmp_path / "middle.yade.gz"))
@@ -264,12 +260,12 @@ def test_a_wall_saved_in_the_middle_of_its_push_goes_on_the_same(scene, tmp_path
 
 
 def test_deformable_units_carry_the_weight_and_keep_the_balance(scene, tmp_path):
-    model = small(tmp_path, "--blocks", "deformable", "--until", "0.3")
+    run, model = settled(tmp_path, "--blocks", "deformable", "--until", "0.3")
     weight = 6 * 3 * 0.22 * 0.102 * 0.081 * 1800 * 9.81
     load = 0.5e6 * 0.66 * 0.102 + weight
-    assert base(model)[2] == pytest.approx(-load, rel=walls.REST)
-    model.push()
-    assert max(model.results.column("base_shear_kN")) > 5
+    assert base(model)[2] == pytest.approx(-load, rel=loading.REST)
+    loading.push(run, model)
+    assert max(run.results.column("base_shear_kN")) > 5
     assert model.energy.largestError < 1e-3
 
 
@@ -281,9 +277,9 @@ def test_density_scaling_is_another_rate(scene, tmp_path, blocks):
         words = (
             f"--blocks {blocks} --until 0.3 --density-scaling {scaling} --rate {rate}"
         )
-        model = small(tmp_path, *words.split())
-        model.push()
-        curves.append(model.results.column)
+        run, model = settled(tmp_path, *words.split())
+        loading.push(run, model)
+        curves.append(run.results.column)
     one, other = curves
     assert len(one("time_s")) > 20
     assert other("time_s") == pytest.approx([2 * t for t in one("time_s")], rel=1e-9)
@@ -333,7 +329,7 @@ def test_a_dry_wall_takes_a_preset_without_a_promise(runScene):
 def test_a_push_that_is_too_fast_says_so_and_what_would_do(runScene, words, cure):
     words = ["--no-vtk", *words.split()]
     process, out = runScene("wall_comp1", *words)
-    assert readRun(out)["too_fast"] and readRun(out)["haste"] > 0.1
+    assert readRun(out)["too_fast"] and readRun(out)["dynamic_imbalance"] > 0.1
     told = [t for t in process.stdout.splitlines() if "the push is too fast" in t]
     slower = told[0].split("; ")[1].removesuffix(" would do").split()
     assert slower[0] == cure.split()[0]
@@ -346,7 +342,7 @@ def test_an_impossible_wall_is_refused_with_all_problems():
         ValueError,
         match="load height 0.3 m must be above the wall's top at 0.486 m; precompression -1 Pa",
     ):
-        walls.Wall(
+        Wall(
             name="w",
             title="",
             halfUnits=6,
@@ -357,31 +353,42 @@ def test_an_impossible_wall_is_refused_with_all_problems():
 
 
 def test_a_run_that_breaks_down_keeps_what_was_computed(scene, tmp_path, monkeypatch):
-    rows = []
+    rows, read = [], WallModel.read
 
     def breakDown(self):
         rows.append(1)
         if len(rows) > 50:
             raise FloatingPointError("broken")
-        return record(self)
+        return read(self)
 
-    record = walls.WallModel._record
-    monkeypatch.setattr(walls.WallModel, "_record", breakDown)
+    monkeypatch.setattr(WallModel, "read", breakDown)
     with pytest.raises(FloatingPointError, match="broken"):
-        walls.test(
-            SMALL,
-            options.parser("", until=1).parse_args(
-                ["--no-vtk", "--out", str(tmp_path)]
-            ),
-        )
+        carryOut(SMALL, parsed("--no-vtk", "--out", str(tmp_path)))
     assert len(readCurve(str(tmp_path))["time_s"]) == 50
     assert readRun(str(tmp_path))["steps"] > 0 and (tmp_path / "curve.png").exists()
+
+
+def test_a_reading_that_is_not_finite_ends_the_run_with_the_rows_before(
+    scene, tmp_path, monkeypatch
+):
+    read, count = WallModel.read, [20]
+
+    def broken(self):
+        count[0] -= 1
+        reading = read(self)
+        return reading if count[0] else reading._replace(up=float("nan"))
+
+    monkeypatch.setattr(WallModel, "read", broken)
+    with pytest.raises(FloatingPointError, match="finite numbers in vertical_mm"):
+        carryOut(SMALL, parsed("--no-vtk", "--until", "0.5", "--out", str(tmp_path)))
+    assert len(readCurve(str(tmp_path))["time_s"]) == 19
+    assert "finite numbers in vertical_mm" in readRun(str(tmp_path))["error"]
 
 
 def test_stronger_joints_carry_more(scene, tmp_path):
     peaks = []
     for cohesion in ("0.11e6", "0.5e6"):
-        model = small(
+        run, model = settled(
             tmp_path,
             "--until",
             "2",
@@ -390,6 +397,6 @@ def test_stronger_joints_carry_more(scene, tmp_path):
             "--set",
             f"head.cohesion={cohesion}",
         )
-        model.push()
-        peaks.append(max(model.results.column("base_shear_kN")))
+        loading.push(run, model)
+        peaks.append(max(run.results.column("base_shear_kN")))
     assert peaks[1] > 1.1 * peaks[0]

@@ -18,12 +18,12 @@ from masonry.results import readCurve
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from validate import RESULTS, run
+from studies import RESULTS, done, nameOf, runMissing, table
 
 #: Walls, their options, and how far they must go to show their peak.
 WALLS = {
-    "COMP-4": ("wall_comp4.py", "--until 5"),
-    "COMP-1": ("wall_comp1.py", "--until 25"),
+    "COMP-4": ("wall_comp4", "--until 5"),
+    "COMP-1": ("wall_comp1", "--until 25"),
 }
 COMMON = "--blocks deformable --no-vtk"
 
@@ -58,46 +58,50 @@ SERIES = {
 
 
 def folder(wall, options):
-    name = options.replace("--", "").replace(" ", "_") or "default"
-    return os.path.join(RESULTS, "convergence", wall, name)
-
-
-def done(wall, options):
-    return os.path.exists(os.path.join(folder(wall, options), "run.json"))
+    return os.path.join(RESULTS, "validation", "convergence", wall, nameOf(options))
 
 
 def runAll():
-    for series in SERIES.values():
-        for wall, (scene, common) in WALLS.items():
-            for options in series.values():
-                if not done(wall, options):
-                    print(wall, options, flush=True)
-                    words = f"{COMMON} {common} {options}".split()
-                    run({"scene": scene, "options": words}, folder(wall, options))
-
-
-def table():
-    """Print the markdown table: peaks, their distance from the finest run of the same series, and times."""
-    print(
-        "| varied | wall | run | peak kN | at mm | of the finest mesh | top less base kN "
-        "| energy error | steps | µs a step | s |"
+    runMissing(
+        [
+            (scene, f"{COMMON} {common} {options}".split(), folder(wall, options))
+            for series in SERIES.values()
+            for wall, (scene, common) in WALLS.items()
+            for options in series.values()
+        ]
     )
-    print("|---|---|---|---|---|---|---|---|---|---|---|")
+
+
+HEADS = (
+    "varied, wall, run, peak kN, at mm, of the finest mesh, top less base kN, energy error, steps, µs a step, s"
+).split(", ")
+
+
+def rows():
+    """Peaks, their ratio to that of the finest mesh, and times, of every run that is there."""
     for title, series in SERIES.items():
         for wall in WALLS:
             meshes = list(SERIES.values())[0].values()
-            reference = measure(folder(wall, [m for m in meshes if done(wall, m)][-1]))
+            finest = [m for m in meshes if done(folder(wall, m))][-1]
+            reference = measure(folder(wall, finest))
             for name, options in series.items():
-                if not done(wall, options):
+                if not done(folder(wall, options)):
                     continue
                 n = measure(folder(wall, options))
                 ratio = n["peak_base_shear_kN"] / reference["peak_base_shear_kN"]
-                print(
-                    f"| {title} | {wall} | {name} | {n['peak_base_shear_kN']:.1f} "
-                    f"| {n['displacement_at_peak_mm']:.1f} | {ratio:.3f} | {n['top_less_base_shear_kN']:.1f} "
-                    f"| {n['balance_error']:.0e} | {n['steps']} | {n['microseconds_per_step']:.0f} "
-                    f"| {n['wall_clock_s']:.0f} |"
-                )
+                yield [
+                    title,
+                    wall,
+                    name,
+                    f"{n['peak_base_shear_kN']:.1f}",
+                    f"{n['displacement_at_peak_mm']:.1f}",
+                    f"{ratio:.3f}",
+                    f"{n['top_less_base_shear_kN']:.1f}",
+                    f"{n['balance_error']:.0e}",
+                    n["steps"],
+                    f"{n['microseconds_per_step']:.0f}",
+                    f"{n['wall_clock_s']:.0f}",
+                ]
 
 
 def draw():
@@ -107,7 +111,7 @@ def draw():
     for row, wall in zip(axes, WALLS):
         for axis, (title, series) in zip(row, SERIES.items()):
             for name, options in series.items():
-                if done(wall, options):
+                if done(folder(wall, options)):
                     curve = readCurve(folder(wall, options))
                     x, y = curve["displacement_mm"], curve["base_shear_kN"]
                     axis.plot(x, y, lw=1, label=name)
@@ -124,5 +128,5 @@ def draw():
 if __name__ == "__main__":
     if sys.argv[1:] != ["--draw"]:
         runAll()
-    table()
+    print(table(HEADS, rows()))
     draw()

@@ -18,16 +18,17 @@ from masonry.measure import measure
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from validate import RESULTS, readCase, run
+from studies import RESULTS, done, nameOf, readCase, runMissing, table
 
 #: Walls and their options: the rate moves the peak of COMP-4 by less than 0.5 %; COMP-1 peaks at 19 mm and then holds.
 WALLS = {
-    "COMP-4": ("wall_comp4.py", ["--rate", "40", "--vtk-every", "100"]),
-    "COMP-1": ("wall_comp1.py", ["--until", "25", "--no-vtk"]),
+    "COMP-4": ("wall_comp4", ["--rate", "40", "--vtk-every", "100"]),
+    "COMP-1": ("wall_comp1", ["--until", "25", "--no-vtk"]),
 }
 
 #: ``low`` and ``high`` are options of a scene, "" the default; ``why`` tells where the range comes from.
 Row = namedtuple("Row", "name default low high why")
+ENDS = "low", "high"
 
 
 def bonds(*settings):
@@ -40,7 +41,7 @@ def joint(name, *settings):
 
 
 ROWS = [
-    # the law's decided values, law.md §1 to §5
+    # what the paper leaves open: yade_plugin/law/README.md, parameters
     Row(
         "GfI 8…32 J/m²",
         16,
@@ -182,7 +183,7 @@ ROWS = [
         joint("head", "friction=0.6", "residualFriction=0.6", "tensileStrength=0.1e6"),
         "the table has one value for both",
     ),
-    # brick crack surfaces, law.md §8
+    # brick crack surfaces: yade_plugin/law/README.md, crack surfaces
     Row(
         "brick ft 0.75…3 MPa",
         1.5,
@@ -232,7 +233,7 @@ ROWS = [
         "",
         "bricks that cannot crack",
     ),
-    # measured values of paper table 2, beside them for scale
+    # measured values, the paper's table 2, beside them for scale
     Row(
         "measured: friction ∓10 %",
         0.43,
@@ -289,31 +290,28 @@ ROWS = [
 
 
 def folder(wall, row=None, end=None):
-    """Folder of a run's results; without a row that of the run with all defaults."""
-    name = f"{row.name} {end}" if row else "default"
-    plain = "".join(c if c.isalnum() or c in ".…" else "_" for c in name)
-    return os.path.join(RESULTS, "sensitivity", wall, plain)
+    """Folder of a run's results; without a row, or at an end without options, that of the run with all defaults."""
+    name = f"{row.name} {end}" if row and getattr(row, end) else "default"
+    return os.path.join(
+        RESULTS, "validation", "sensitivity", wall, nameOf(name).replace("-", "_")
+    )
 
 
 def runAll():
-    """Run what has no results yet."""
-    for wall, (scene, options) in WALLS.items():
-        tasks = [(folder(wall), "")] + [
-            (folder(wall, row, end), getattr(row, end))
-            for row in ROWS
-            for end in ("low", "high")
-            if getattr(row, end)
+    runMissing(
+        [
+            (scene, options + getattr(row, end, "").split(), folder(wall, row, end))
+            for wall, (scene, options) in WALLS.items()
+            for row, end in [(None, ""), *((r, e) for r in ROWS for e in ENDS)]
+            if not row or getattr(row, end)
         ]
-        for out, changes in tasks:
-            if not os.path.exists(os.path.join(out, "run.json")):
-                print(out, flush=True)
-                run({"scene": scene, "options": options + changes.split()}, out)
+    )
 
 
 def numbers(wall, row=None, end=None):
-    """Measured numbers of a run, or None if it was not run; an end without options is the default run."""
-    out = folder(wall, row, end) if row and getattr(row, end) else folder(wall)
-    return measure(out) if os.path.exists(os.path.join(out, "run.json")) else None
+    """Measured numbers of a run, or None if it was not run."""
+    out = folder(wall, row, end)
+    return measure(out) if done(out) else None
 
 
 #: From this reach on the crack of COMP-4 goes along its diagonal.
@@ -323,21 +321,17 @@ DIAGONAL = readCase("wall_comp4")["rigid"]["limits"]["diagonal_reach"][0]
 SHOWN = {"peak": "peak_base_shear_kN", "force at the end": "base_shear_end_kN"}
 
 
-def table(ranges):
-    """Print a markdown table: changes of peak and end force in percent and reach of the diagonal crack, low and high."""
-    heads = [f"{wall} {title} %" for wall in WALLS for title in ("peak", "end")]
-    print("| value | default | why this range |", " | ".join(heads), "| COMP-4 reach |")
-    print("|---" * (len(heads) + 4) + "|")
+def lines(ranges):
+    """Changes of peak and end force in percent and reach of the diagonal crack, low and high: a line a row."""
     for row in ROWS:
-        cells = [row.name, str(row.default), row.why]
+        cells = [row.name, row.default, row.why]
         for wall in WALLS:
             low, high, base = ranges[wall, row]
             for name in SHOWN.values():
                 changes = (100 * (r[name] / base[name] - 1) for r in (low, high))
                 cells.append(", ".join(f"{change:+.1f}" for change in changes))
         low, high, _ = ranges["COMP-4", row]
-        cells.append(f"{low['diagonal_reach']}, {high['diagonal_reach']}")
-        print("|", " | ".join(cells), "|")
+        yield [*cells, f"{low['diagonal_reach']}, {high['diagonal_reach']}"]
 
 
 def draw(ranges):
@@ -385,11 +379,13 @@ if __name__ == "__main__":
     if sys.argv[1:] != ["--draw"]:
         runAll()
     ranges = {
-        (wall, row): [numbers(wall, row, "low"), numbers(wall, row, "high"), base]
+        (wall, row): [*(numbers(wall, row, end) for end in ENDS), base]
         for wall in WALLS
         for base in [numbers(wall)]
         for row in ROWS
     }
     ROWS = [row for row in ROWS if all(all(ranges[w, row]) for w in WALLS)]
-    table(ranges)
+    heads = [f"{wall} {title} %" for wall in WALLS for title in ("peak", "end")]
+    heads = ["value", "default", "why this range", *heads, "COMP-4 reach"]
+    print(table(heads, lines(ranges)))
     draw(ranges)

@@ -23,8 +23,10 @@ from masonry import (
 from masonry.brickwork import corners, runningBond
 from yade import O, Quaternion, Vector3
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(sys.argv[0])))  # yade leaves it out
-from stability import BLOCKS, UNIT  # noqa: E402
+HERE = os.path.dirname(os.path.abspath(sys.argv[0]))
+sys.path[:0] = [HERE, os.path.dirname(HERE)]  # yade leaves it out
+from observed import BLOCKS, UNIT  # noqa: E402
+from studies import head, line  # noqa: E402
 
 COURSES, COLUMNS = 4, 4
 ROWS, EVERY = 60, 10  # rows of the curve, steps between them
@@ -141,10 +143,8 @@ def difference(blocks, telling, damping=0.0):
 
 
 def main():
-    print(
-        f"| telling | units | damping | after {ROWS * EVERY // 10} steps | after {ROWS * EVERY} steps |"
-    )
-    print("|---|---|---|---|---|")
+    after = [f"after {n} steps" for n in (ROWS * EVERY // 10, ROWS * EVERY)]
+    print(head(["telling", "units", "damping", *after]))
     fine = True
     for name, telling in TELLINGS.items():
         for blocks in BLOCKS:
@@ -153,10 +153,8 @@ def main():
                     continue
                 early, late = difference(blocks, telling, damping)
                 fine = fine and late < 1e-6
-                print(
-                    f"| {name} | {blocks} | {damping:g} | {early:.0e} | {late:.0e} |",
-                    flush=True,
-                )
+                numbers = f"{damping:g}", f"{early:.0e}", f"{late:.0e}"
+                print(line([name, blocks, *numbers]), flush=True)
     return fine
 
 

@@ -25,8 +25,10 @@ from masonry.brickwork import corners
 from yade import O, Vector3
 from yade.wrapper import MasonryEnergy, MasonryIntegrator
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(sys.argv[0])))  # yade leaves it out
-from stability import BLOCKS, UNIT, Point, model  # noqa: E402
+HERE = os.path.dirname(os.path.abspath(sys.argv[0]))
+sys.path[:0] = [HERE, os.path.dirname(HERE)]  # yade leaves it out
+from observed import BLOCKS, UNIT, Observed, Point  # noqa: E402
+from studies import head, line  # noqa: E402
 
 STEPS = 3000
 RESOLUTION = 0.002
@@ -53,7 +55,7 @@ def comp4(blocks):
     joints = {"all": dict(elastic=True)}
     with tempfile.TemporaryDirectory() as folder:
         point = Point(0, whole=True, gravity=False, joints=joints)
-        return list(model(point, blocks, folder).brickOf)
+        return list(Observed(point, blocks, folder).model.bricks)
 
 
 def isCalm(make, damping, share):
@@ -104,15 +106,14 @@ SCENES = {
 
 
 def main(scenes=SCENES):
-    print("| scene | units | damping | onset / limit |")
-    print("|---|---|---|---|")
+    print(head(["scene", "units", "damping", "onset / limit"]))
     fine = True
     for scene, of in scenes.items():
         for blocks in BLOCKS:
             for damping in DAMPINGS:
                 found = onset(of(blocks), damping)
                 fine = fine and 1.0 <= found + RESOLUTION and found <= 1.6
-                print(f"| {scene} | {blocks} | {damping} | {found:.3f} |", flush=True)
+                print(line([scene, blocks, damping, f"{found:.3f}"]), flush=True)
     return fine
 
 

@@ -12,8 +12,10 @@ import tempfile
 
 from yade import O
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(sys.argv[0])))  # yade leaves it out
-from stability import BLOCKS, Point, model  # noqa: E402
+HERE = os.path.dirname(os.path.abspath(sys.argv[0]))
+sys.path[:0] = [HERE, os.path.dirname(HERE)]  # yade leaves it out
+from observed import BLOCKS, Observed, Point  # noqa: E402
+from studies import head, line  # noqa: E402
 
 AMPLITUDE, RATE = 1.0, 50.0  # [mm], [mm/s]
 REPORTS = 20
@@ -28,33 +30,36 @@ def memory():
 def soak(blocks, steps):
     """Rows of steps, memory [MB], largest error of the balance [-], base shear [kN] and energy lost in the joints [J]."""
     with tempfile.TemporaryDirectory() as folder:
-        m = model(Point(0), blocks, folder)
+        m = Observed(Point(0), blocks, folder)
         m.settle()
+        model = m.model
         quarter = int(AMPLITUDE / RATE / O.dt)
         rows, done, way, leg = [], 0, 1, quarter
         for report in range(1, REPORTS + 1):
             while done < report * steps // REPORTS:
-                m.load.velocity = way * RATE * 1e-3
+                model.loads["push"].velocity = way * RATE * 1e-3
                 O.run(leg, True)
                 done, way, leg = done + leg, -way, 2 * quarter
-            e = m.energy.balance()
+            e = model.energy.balance()
             m.look()
             lost = sum(v for k, v in e.items() if k.startswith("dissipated"))
-            shear = 1e-3 * O.forces.f(m.base, True)[0]
-            rows.append((done, memory(), m.energy.largestError, shear, lost))
+            shear = 1e-3 * O.forces.f(model.blocks["base"], True)[0]
+            rows.append((done, memory(), model.energy.largestError, shear, lost))
     return rows
 
 
 def main(steps=2_000_000):
-    print("| units | steps | memory MB | balance error | base shear kN | lost J |")
-    print("|---|---|---|---|---|---|")
+    print(
+        head(
+            "units, steps, memory MB, balance error, base shear kN, lost J".split(", ")
+        )
+    )
     fine = True
     for blocks in BLOCKS:
         rows = soak(blocks, steps)
         for done, used, error, shear, lost in rows:
-            print(
-                f"| {blocks} | {done} | {used:.1f} | {error:.0e} | {shear:.2f} | {lost:.1f} |"
-            )
+            numbers = f"{used:.1f}", f"{error:.0e}", f"{shear:.2f}", f"{lost:.1f}"
+            print(line([blocks, done, *numbers]))
         fine = fine and rows[-1][1] - rows[1][1] < 1 and rows[-1][2] < 0.01
     return fine
 

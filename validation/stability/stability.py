@@ -11,138 +11,43 @@ import os
 import sys
 import tempfile
 import time
-from dataclasses import dataclass, field
 
 import numpy as np
-from masonry import materials, options, walls
-from masonry.options import Refused
-from yade import O, Vector3
+from masonry.errors import Refused
+from yade import O
 
-BLOCKS = ["rigid", "deformable"]
-UNIT = (0.220, 0.102, 0.081)
-STEPS = 4000  # of the push, where an axis does not ask for another rate
+HERE = os.path.dirname(os.path.abspath(sys.argv[0]))
+sys.path[:0] = [HERE, os.path.dirname(HERE)]  # yade leaves it out
+from observed import BLOCKS, UNIT, Observed, Point  # noqa: E402
+from studies import table  # noqa: E402
+
 ROUND_OFF = 1e-12  # of yield functions over the size of what they carry
 SHARE = 0.01  # of the work done: largest error of the balance, largest energy made; a run with more says so
 
 
-@dataclass
-class Point:
-    """A run: ``value`` on its axis, options, keywords of :class:`masonry.walls.Wall`, and what else is different."""
-
-    value: object
-    words: str = ""
-    wall: dict = field(default_factory=dict)
-    joints: dict = field(
-        default_factory=dict
-    )  # by name, properties in SI units; "all": bed, head and crack
-    until: float = 1.0  # [mm]
-    rate: float = None  # [mm/s]; None: STEPS steps
-    dt: float = None  # of the push, over the limit
-    gravity: bool = True
-    whole: bool = False  # COMP-4 instead of the small wall
-
-
-class Observed(walls.WallModel):
-    """A wall whose state is looked at all the time."""
-
-    def __init__(self, wall, args, point):
-        self.worst = dict.fromkeys(["yield", "healed"], 0.0)
-        self.before, self.point, self.looked = None, point, 0
-        super().__init__(wall, args)
-        self.progress.show = lambda *a, **kw: None
-        if not point.gravity:
-            self.gravity = 0
-            for engine in O.engines:
-                if hasattr(engine, "gravity"):
-                    engine.gravity = Vector3.Zero
-
-    def _advance(self, steps):
-        super()._advance(steps)
-        self.looked += 1
-        if len(self.interactions) < 500 or self.looked % 20 == 0:
-            self.look()
-
-    def look(self):
-        all = lambda what: np.array([[*v] for i in self.interactions for v in what(i)])
-        memory = np.hstack(
-            [
-                all(lambda i: i.phys.damage),
-                all(lambda i: i.phys.largest),
-                all(lambda i: [[s] for s in i.phys.slip]),
-            ]
-        )
-        energies = self.energy.balance()
-        bodies = np.array(
-            [[*b.state.pos, *b.state.vel, *b.state.ori] for b in O.bodies]
-        )
-        stresses, jumps = all(lambda i: i.phys.stress), all(lambda i: i.geom.jumps)
-        yields = all(lambda i: i.phys.yielding)
-        for what in (memory, list(energies.values()), bodies, stresses, jumps, yields):
-            if not np.isfinite(what).all():
-                raise AssertionError(f"numbers are not finite after {O.iter} steps")
-        self.note("yield", yields.max())
-        if self.before is not None:
-            self.note("healed", (self.before - memory).max())
-        self.before = memory
-
-    def note(self, what, value):
-        self.worst[what] = max(self.worst[what], float(value))
-
-    def push(self):
-        point, args = self.point, self.args
-        if point.dt:
-            O.dt = point.dt * self.limit
-        if point.rate is None:
-            args.rate = args.until / (STEPS * O.dt)
-        self.pushed = O.iter
-        super().push()
-
-
-def model(point, blocks, folder):
-    joints = lambda brittle: changed(
-        materials.calciumSilicateJoints(brittle), point.joints
-    )
-    small = dict(halfUnits=4, courses=4, precompression=0.5e6, unit=UNIT)
-    if point.whole:
-        small.update(halfUnits=36, courses=34)
-    wall = walls.Wall(name="w", title="", **{**small, **point.wall}, joints=joints)
-    words = f"--no-vtk --out {folder} --blocks {blocks} --until {point.until!r} {point.words}"
-    if point.rate:
-        words += f" --rate {point.rate!r}"
-    args = options.parser("", until=1).parse_args(words.split())
-    return Observed(wall, args, point)
-
-
-def changed(joints, changes):
-    for name, values in changes.items():
-        for joint in ["bed", "head", "crack"] if name == "all" else [name]:
-            joints[joint].updateAttrs(values)
-    return joints
-
-
 def run(point, blocks):
-    """Run a point; a dict of its verdict, 'green', 'warned' or 'failed', why, and its numbers."""
-    began, found, m = time.perf_counter(), {}, None
+    """Run a point. Returns a dict: its verdict ('green', 'warned' or 'failed'), why, and its numbers."""
+    began, found, m, settled = time.perf_counter(), {}, None, 0
     with tempfile.TemporaryDirectory() as folder:
         try:
-            m = model(point, blocks, folder)
+            m = Observed(point, blocks, folder)
             m.settle()
+            settled = O.iter
             m.push()
             found.update(verdict="green", why="collapsed" if m.collapsed else "")
         except (Refused, ValueError) as refused:
             found.update(verdict="warned", why="refused: " + str(refused))
-        except (
-            RuntimeError
-        ) as stopped:  # an engine's: all but a time step over the limit is our failure
+        except RuntimeError as stopped:
+            # of an engine; all but a time step over the limit is our failure
             said = "the time step is" in str(stopped) and " sets" in str(stopped)
-            took = O.iter - getattr(m, "pushed", 0)
+            took = O.iter - settled
             fine = said and point.dt and point.dt > 1 and took <= 100
             found.update(verdict="warned" if fine else "failed")
             found.update(why=f"after {took} steps: {stopped}")
         except AssertionError as broken:
             found.update(verdict="failed", why=str(broken))
     if m:
-        energy = m.energy
+        energy = m.model.energy
         found.update(m.worst, steps=O.iter)
         found.update(balance=energy.largestError, made=energy.largestMade)
         if m.results.rows:
@@ -173,7 +78,7 @@ def exponential(decay, rows):
 
 
 def softening(rows):
-    """Tables of the calcium-silicate bed joint (law.md §3) with so many rows, for all joints."""
+    """Tables of the calcium-silicate bed joint (yade_plugin/law/README.md, softening tables) with so many rows, for all joints."""
     kn, ks, ft, cp, GfI, GfII = 3.352e11, 1.445e11, 0.1e6, 0.11e6, 16, 160
     tables = dict(
         tensionTable=exponential(ft**2 / (kn * GfI), rows),
@@ -349,21 +254,24 @@ def shown(value):
     return value if isinstance(value, str) else f"{value:.3g}"
 
 
-def table(found):
-    print(
-        "| axis | range | points | green | warned | failed | balance | F over size | made / work |"
-    )
-    print("|---|---|---|---|---|---|---|---|---|")
+HEADS = "axis, range, points, green, warned, failed, balance, F over size, made / work"
+
+
+def rows(found):
+    """Numbers of every axis, over both block models."""
     for axis, models in found.items():
         all = [p for results in models.values() for p in results]
         verdicts = [p["verdict"] for p in all]
-        worst = lambda name: max(p.get(name, 0) for p in all)
+        worst = lambda name: f"{max(p.get(name, 0) for p in all):.0e}"
         values = [shown(p["value"]) for p in models[BLOCKS[0]]]
-        print(
-            f"| {axis} | {values[0]}–{values[-1]} | {len(all)} | {verdicts.count('green')} "
-            f"| {verdicts.count('warned')} | {verdicts.count('failed')} | {worst('balance'):.0e} "
-            f"| {worst('yield'):.0e} | {worst('made'):.0e} |"
-        )
+        counts = [verdicts.count(v) for v in ("green", "warned", "failed")]
+        yield [
+            axis,
+            f"{values[0]}–{values[-1]}",
+            len(all),
+            *counts,
+            *map(worst, ("balance", "yield", "made")),
+        ]
 
 
 def draw(found, path):
@@ -417,9 +325,9 @@ def draw(found, path):
 
 def main(names):
     found = runAll(names or list(AXES))
-    table(found)
+    print(table(HEADS.split(", "), rows(found)))
     if not names:
-        draw(found, os.path.join(os.path.dirname(sys.argv[0]), "map.png"))
+        draw(found, os.path.join(HERE, "map.png"))
     results = [p for models in found.values() for r in models.values() for p in r]
     return not any(p["verdict"] == "failed" for p in results)
 

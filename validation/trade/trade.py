@@ -12,26 +12,26 @@ import glob
 import json
 import os
 import resource
-import subprocess
 import sys
 import time
-from concurrent.futures import ThreadPoolExecutor
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from masonry.curves import dynamicImbalance
 from masonry.figures import CRACK, readFrame
 from masonry.measure import layOut
-from masonry.options import PRESETS, parser
-from masonry.results import haste, readCurve, readRun
+from masonry.presets import PRESETS, USUAL, asOption
+from masonry.results import readCurve, readRun
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from validate import ROOT, run
+import studies
+from studies import run, runMissing, table
 
-RESULTS = os.path.join(ROOT, "results", "trade")
+RESULTS = os.path.join(studies.RESULTS, "trade")
 
 #: Walls and how far they are pushed [mm].
 WALLS = {"wall_comp0a": 30, "wall_comp1": 30, "wall_comp4": 12, "wall_comp6": 16}
@@ -41,11 +41,10 @@ SOFT = "--blocks deformable"
 
 def asOptions(preset):
     """Options of a preset as words, without those that are defaults."""
-    usual = vars(parser("", until=1).parse_args([]))
     return " ".join(
-        f"--{name.replace('_', '-')} {str(value).removesuffix('.0')}"
+        f"{asOption(name)} {str(value).removesuffix('.0')}"
         for name, value in PRESETS[preset].items()
-        if value != usual[name]
+        if value != USUAL[name]
     )
 
 
@@ -99,9 +98,7 @@ def folder(wall, options):
 
 def done(wall, options):
     """Whether a run is there and went to its end."""
-    out = folder(wall, options)
-    there = os.path.exists(os.path.join(out, "run.json"))
-    return there and not readRun(out)["interrupted"]
+    return studies.done(folder(wall, options))
 
 
 def repeats(series):
@@ -119,15 +116,9 @@ def allRuns():
 
 def runAll(walls, jobs):
     """Run what has no results yet; frames of the start and of the end only."""
-    tasks = [(w, o) for w in walls for o in allRuns() if not done(w, o)]
-
-    def one(task):
-        wall, options = task
-        words = f"--until {WALLS[wall]} --vtk-every 1000 {options}".split()
-        run({"scene": wall + ".py", "options": words}, folder(wall, options))
-
-    with ThreadPoolExecutor(jobs) as pool:
-        list(pool.map(one, tasks))
+    words = lambda wall, o: f"--until {WALLS[wall]} --vtk-every 1000 {o}".split()
+    runs = [(wall, options) for wall in walls for options in allRuns()]
+    runMissing([(w, words(w, o), folder(w, o)) for w, o in runs], jobs)
 
 
 # -- what a run says ----------------------------------------------------------------------------------------------
@@ -170,7 +161,7 @@ def errors(wall, runs):
     """Signed errors [-] of runs against the mean of the reference runs, a dict of lists.
 
     ``pattern`` is the share of the crack volume that lies in other patches than those of the first reference run: 0 is
-    the same pattern, 1 has nothing in common. ``haste`` is run.json's.
+    the same pattern, 1 has nothing in common. ``imbalance`` is the dynamic imbalance of run.json.
     """
     references = [numbers(wall, r) for r in repeats("reference") if done(wall, r)]
     mean = {name: np.mean([r[name] for r in references]) for name in references[0]}
@@ -181,7 +172,9 @@ def errors(wall, runs):
     shares = [share(pattern(folder(wall, r))) for r in runs]
     result["pattern"] = [0.5 * float(np.abs(s - aim).sum()) for s in shares]
     curves = [readCurve(folder(wall, r)) for r in runs]
-    result["haste"] = [haste(c["top_shear_kN"], c["base_shear_kN"]) for c in curves]
+    result["imbalance"] = [
+        dynamicImbalance(c["top_shear_kN"], c["base_shear_kN"]) for c in curves
+    ]
     return result
 
 
@@ -193,17 +186,15 @@ def kind(wall, options):
     chosen = readRun(folder(wall, options))["options"]
     chosen = {name: chosen[name] for name in KINDS}
     chosen.pop("divisions" if chosen["blocks"] == "rigid" else "subcontacts")
-    return " ".join(f"--{n.replace('_', '-')} {v}" for n, v in chosen.items())
+    return " ".join(f"{asOption(n)} {v}" for n, v in chosen.items())
 
 
 def timeOne(wall, kind, threads):
     """Run a short stretch; seconds of a step, a row, a frame, and of all that does not grow with the run."""
     out = os.path.join(RESULTS, "times", wall)
-    command = ["yade", f"-j{threads}", "-n", "-x"]
-    command += [os.path.join(ROOT, "scripts", wall + ".py"), "--out", out]
-    command += STRETCH[kind.split()[1]].split() + kind.split()
+    words = STRETCH[kind.split()[1]].split() + kind.split()
     before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    run(wall, words, out, threads, quiet=True)
     wallClock = time.perf_counter() - began
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
@@ -257,7 +248,7 @@ def cost(wall, options, threads):
 
 # -- what comes out -----------------------------------------------------------------------------------------------
 
-ERRORS = ["peak", "work", "end", "stiffness", "dissipated", "pattern", "haste"]
+ERRORS = ["peak", "work", "end", "stiffness", "dissipated", "pattern", "imbalance"]
 
 
 def study(walls):
@@ -312,15 +303,10 @@ def worst(found):
 
 def percent(entry, name):
     """An error in percent as text, with half the range of its repetitions."""
-    signed = "" if name in ("pattern", "haste") else "+"
+    signed = "" if name in ("pattern", "imbalance") else "+"
     text = format(100 * entry[name], signed + ".1f")
     chance = 100 * entry["spread"][name]
     return text + (f" ± {chance:.1f}" if entry["repetitions"] > 1 else "")
-
-
-def markdown(heads, rows):
-    lines = [heads, ["---"] * len(heads), *rows]
-    return "".join("| " + " | ".join(cells) + " |\n" for cells in lines)
 
 
 def summary(found):
@@ -343,10 +329,10 @@ def summary(found):
                     for e in mine
                 ] or [""]
             rows.append(cells)
-    return markdown(heads, rows)
+    return table(heads, rows)
 
 
-def table(found):
+def details(found):
     """Markdown: a row a run of each wall, with everything."""
     heads = ["wall", "series", "options"] + [name + " %" for name in ERRORS]
     heads += ["steps", "s, one core", "s, two cores", "CPU s, two cores"]
@@ -361,7 +347,7 @@ def table(found):
         cells += [f"{e['steps'] / 1000:.0f}k"]
         cells += [f"{e['seconds'][n]:.0f}" for n in THREADS]
         rows.append(cells + [f"{e['cpu_seconds'][THREADS[-1]]:.0f}"])
-    return markdown(heads, rows)
+    return table(heads, rows)
 
 
 FLOOR = 2e-4  # errors below are drawn here
@@ -469,8 +455,8 @@ def main():
         json.dump(found, f, indent=1)
         f.write("\n")
     with open(os.path.join(HERE, "table.md"), "w") as f:
-        f.write(summary(found) + "\n" + table(found))
-    print(table(found))
+        f.write(f"{summary(found)}\n\n{details(found)}\n")
+    print(details(found))
     found += worst(found)
     for wall in dict.fromkeys(e["wall"] for e in found):
         draw(found, wall)

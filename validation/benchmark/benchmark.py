@@ -1,10 +1,16 @@
-"""Cost of a step on the wall TUD-COMP-4, all side by side in one run; one table, and results/benchmark/benchmark.json.
+"""What a step costs.
 
-yade -n -x [-j THREADS] scripts/benchmark.py [STEPS]
+yade -n -x [-j THREADS] validation/benchmark/benchmark.py [STEPS]
 
-The plugin with rigid and deformable units from the first push to the end of the test, with features on and off, and
-through YADE's own interaction loop and integrator; walls of 1,000 to 100,000 half bricks and their memory; YADE's
-volumetric law on the half bricks of COMP-4; YADE's one-point mortar law on spheres in their places.
+compares, on the wall TUD-COMP-4 and side by side in one run: the plugin with rigid and deformable units from the first
+push to the end of the test, with features on and off, and through YADE's own interaction loop and integrator; walls of
+1,000 to 100,000 half bricks and their memory; YADE's volumetric law on the half bricks of COMP-4; YADE's one-point
+mortar law on spheres in their places. It prints one table, and writes results/benchmark/benchmark.json.
+
+yade -n -x [-j THREADS] validation/benchmark/benchmark.py --push wall_comp4 --until 3 --rate 20
+
+runs a scene with its options, in a process of its own, and prints the mean cost of a step over its whole push, and of a
+row of curve.csv. Two builds of the plugin are compared by PYTHONPATH.
 """
 
 import json
@@ -14,12 +20,20 @@ import sys
 import time
 
 from masonry import brickwork, materials, options, scene, walls
+from masonry.loading import push, settle
+from masonry.results import readCurve, readRun
+from masonry.run import Run
 from yade import O, Vector3, polyhedra_utils, timing, utils
 from yade.wrapper import *
 
+HERE = os.path.dirname(os.path.abspath(sys.argv[0]))
+sys.path.insert(0, os.path.dirname(HERE))  # yade leaves it out
+import studies  # noqa: E402
+
 OUT = os.path.join("results", "benchmark")
-STEPS = int(sys.argv[1]) if len(sys.argv) > 1 else 500
 BLOCKS = brickwork.runningBond(34, 36)
+PUSH = sys.argv[1:2] == ["--push"]
+STEPS = int(sys.argv[1]) if len(sys.argv) > 1 and not PUSH else 500
 
 
 def cost(steps):
@@ -34,15 +48,19 @@ def cost(steps):
 
 
 def plugin(words="", until=0.2, functors=False):
-    """Seconds a step, subcontacts, and microseconds of each engine, for a wall pushed to ``until`` [mm] with options."""
-    walls.engines = lambda *a, **k: scene.engines(*a, functors=functors, **k)
+    """Cost of a step of COMP-4, when it is pushed to ``until`` [mm] with these options.
+
+    :returns: seconds a step, subcontacts, and microseconds of each engine
+    """
     wall = walls.Wall(
         name="benchmark", title="TUD-COMP-4", halfUnits=36, precompression=0.5e6
     )
     words = f"--no-vtk --checkpoint-every 0 --rate 50 --until {until} --out {OUT} {words}".split()
-    model = walls.WallModel(wall, options.parser("", until=12).parse_args(words))
-    model.settle()
-    model.push()
+    args = options.parser("", until=12).parse_args(words)
+    run = Run(wall.name, args)
+    model = run.build(walls.WallModel(wall, args, functors))
+    settle(run, model)
+    push(run, model)
     seconds = cost(STEPS)
     O.timingEnabled = True
     timing.reset()
@@ -53,9 +71,8 @@ def plugin(words="", until=0.2, functors=False):
         for e in O.engines
         if e.execCount
     }
-    engines["a row of curve.csv"] = (
-        1e6 * model.at.seconds["rows"] / len(model.results.rows)
-    )
+    rows = len(run.results.rows)
+    engines["a row of curve.csv"] = 1e6 * run.at.seconds["rows"] / rows
     return seconds, model.subcontacts, engines
 
 
@@ -66,7 +83,10 @@ def resident():
 
 
 def wide(courses, halfUnits):
-    """Seconds a step, subcontacts, and bytes a half brick of YADE's bodies and of our joints, for a wall as laid."""
+    """Cost of a step of a wall as laid.
+
+    :returns: seconds a step, subcontacts, and bytes a half brick of YADE's bodies and of our joints
+    """
     O.reset()
     unit, joints = materials.calciumSilicateUnit(), materials.calciumSilicateJoints()
     before = resident()
@@ -175,27 +195,52 @@ CASES = {
     "YADE's mortar law, spheres": mortar,
 }
 
-results = {}
-for name, case in CASES.items():
-    seconds, contacts, engines = case()
-    results[name] = {
-        "step_us": 1e6 * seconds,
-        "contacts": contacts,
-        "contact_ns": 1e9 * seconds / contacts,
-        "engines_us": engines,
-    }
-base = results["rigid units"]
-print(f"\n{O.numThreads} threads; ratios to the first")
-print(
-    f"{'':42}{'µs a step':>12}{'ratio':>8}{'contacts':>10}{'ns each':>10}{'ratio':>8}"
-)
-for name, r in results.items():
-    ratio, each = (r[k] / base[k] for k in ("step_us", "contact_ns"))
+
+def compare():
+    """Run all cases, and print and write their table."""
+    results = {}
+    for name, case in CASES.items():
+        seconds, contacts, engines = case()
+        results[name] = {
+            "step_us": 1e6 * seconds,
+            "contacts": contacts,
+            "contact_ns": 1e9 * seconds / contacts,
+            "engines_us": engines,
+        }
+    base = results["rigid units"]
+    print(f"\n{O.numThreads} threads; ratios to the first")
     print(
-        f"{name:42}{r['step_us']:12.1f}{ratio:8.2f}{r['contacts']:10d}{r['contact_ns']:10.1f}{each:8.2f}"
+        f"{'':42}{'µs a step':>12}{'ratio':>8}{'contacts':>10}{'ns each':>10}{'ratio':>8}"
     )
-    for engine, us in r["engines_us"].items():
-        print(f"    {engine:38}{us:12.1f}")
-os.makedirs(OUT, exist_ok=True)
-with open(os.path.join(OUT, "benchmark.json"), "w") as f:
-    json.dump({"threads": O.numThreads, "cases": results}, f, indent=1)
+    for name, r in results.items():
+        ratio, each = (r[k] / base[k] for k in ("step_us", "contact_ns"))
+        print(
+            f"{name:42}{r['step_us']:12.1f}{ratio:8.2f}{r['contacts']:10d}{r['contact_ns']:10.1f}{each:8.2f}"
+        )
+        for engine, us in r["engines_us"].items():
+            print(f"    {engine:38}{us:12.1f}")
+    os.makedirs(OUT, exist_ok=True)
+    with open(os.path.join(OUT, "benchmark.json"), "w") as f:
+        json.dump({"threads": O.numThreads, "cases": results}, f, indent=1)
+
+
+def wholePush(name, *words):
+    """Run a scene, and print the cost of a step of its push and of a row, from its own clocks."""
+    out = os.path.join(OUT, name)
+    quiet = ["--no-vtk", "--checkpoint-every", "0"]
+    studies.run(name, [*quiet, *words], out, O.numThreads, quiet=True)
+    run, rows = readRun(out), len(readCurve(out)["time_s"])
+    stages = [s for s in run["stages"] if s["stage"] != "settle"]
+    steps = sum(stage["steps"] for stage in stages)
+    step = 1e6 * sum(stage["seconds"] for stage in stages) / steps
+    row = 1e6 * run["seconds"]["rows"] / rows
+    print(
+        f"{name}, plugin {run['commit']}, threads {run['threads']}: {step:.1f} µs a step of {steps}, "
+        f"{row:.1f} µs a row of {rows}, which is {row / step:.2f} of a step"
+    )
+
+
+if PUSH:
+    wholePush(*sys.argv[2:])
+else:
+    compare()

@@ -1,0 +1,53 @@
+"""What a run says on the terminal."""
+
+import contextlib
+import sys
+import time
+
+
+def say(text, stream=None):
+    """Print a text. A terminal that is gone or a log that is full is no reason to stop a run."""
+    with contextlib.suppress(OSError):
+        print(text, file=stream, flush=True)
+
+
+class Progress:
+    """How far a stage has come: on a terminal one line that is kept up to date, elsewhere a line every tenth."""
+
+    def __init__(self, stream=None):
+        self.stream = stream or sys.stdout
+        self.terminal = self.stream.isatty()
+        self.last = self.stage = None
+        self.began = self.first = self.lastTenth = 0
+
+    def show(self, stage, fraction, detail, stepsPerSecond, final=False):
+        """Show a stage, if it is time to.
+
+        :param stage: name of the stage
+        :param fraction: how much of the stage is done, 0 to 1 [-]
+        :param detail: function without arguments that gives the text to show; it is called only if the text is shown
+        :param stepsPerSecond: time steps in a second of wall-clock time
+        :param final: whether the stage ends here; this is always shown
+        """
+        now = time.perf_counter()
+        if stage != self.stage:
+            self.stage, self.began, self.first = stage, now, fraction
+            self.lastTenth, self.last = -1, 0
+        tenth = int(10 * fraction)
+        early = now - self.last < 0.2 if self.terminal else tenth == self.lastTenth
+        if early and not final:
+            return
+        self.last, self.lastTenth = now, tenth
+        done = fraction - self.first
+        text = f"{stage:<12} {detail()}  {stepsPerSecond:,.0f} steps/s"
+        if done > 0.01 and not final:
+            left = int((now - self.began) * (1 - fraction) / done)
+            text += f"  {left // 60}:{left % 60:02d} left"
+        if self.terminal:
+            bar = "#" * int(24 * fraction)
+            text = f"\r[{bar:<24}] {text}\x1b[K" + ("\n" if final else "")
+        else:
+            text += "\n"
+        with contextlib.suppress(OSError):  # as in say()
+            self.stream.write(text)
+            self.stream.flush()

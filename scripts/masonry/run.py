@@ -1,0 +1,441 @@
+"""A run: stages one after another, in a folder of results, with checkpoints from which it can be taken up again.
+
+A scene reads like this, with any model and any stages::
+
+    with Run("my_scene", args) as run:
+        model = run.build(MyModel(args))
+        firstStage(run, model)
+        secondStage(run, model)
+    raise SystemExit(run.status)
+
+A stage is a function that steps by :meth:`Run.advance` alone. What it must know to go on after a checkpoint is a
+dataclass that it gives to :meth:`Run.stage`. In a run that is resumed, stages that were over are left out. The stage in
+which the checkpoint was made is entered with the scene and its memory as they were right after the steps of an
+``advance``, and its first ``advance`` does nothing. So a stage changes its memory after it has advanced, and what it
+does before it advances may be done twice.
+"""
+
+import os
+import signal
+import sys
+import time
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+
+import yade.config
+from yade import O
+from yade.wrapper import MasonryVtkRecorder
+
+from ._masonry import commit
+from .checkpoints import NAME, loadCheckpoint, readProgress, saveCheckpoint
+from .columns import meanings, names
+from .errors import Interrupted, Refused, Unwritable
+from .options import UNITS
+from .presets import presetNote, presetOf
+from .progress import Progress, say
+from .results import Results
+
+PARTS = "setup", "steps", "rows", "frames"  # of a run's time
+OFF = 0.01  # of the work done: a larger error of the energy balance is a warning
+FLUSH_EVERY = 0.2  # [s] of wall-clock time: rows are on the disk after it
+SHOW_EVERY = 0.05  # [s] of wall-clock time: what is shown on the terminal is not older
+
+
+@dataclass
+class Place:
+    """How far a run has come, beside the state of the scene."""
+
+    number: int = 0  # of the present stage, from 1
+    stage: str = ""  # its name
+    memory: dict = field(default_factory=dict)  # what the stage must know to go on
+    steps: int = 0  # taken so far
+    #: Of every stage so far: its name, and the steps and their seconds of wall-clock time before it.
+    stages: list = field(default_factory=list)
+    seconds: dict = field(default_factory=lambda: dict.fromkeys(PARTS, 0.0))
+    frames: list = field(default_factory=list)  # times of the ParaView frames [s]
+    resumed: list = field(default_factory=list)  # times at which it was taken up [s]
+
+
+class Run:
+    """A run in stages; the module says how to use it.
+
+    At the end of its block it finishes in order, whatever ended it, and ``status`` is the exit status of the scene: 0 at
+    the end, 1 if a file cannot be written, 2 for refused input, 130 after Ctrl-C or SIGTERM. An error of the stages
+    goes on to the caller when the results are finished.
+
+    :param name: name of the scene; its results go to ``results/<name>`` if the options do not say otherwise
+    :param args: the options of :func:`masonry.options.parser`
+    """
+
+    def __init__(self, name, args):
+        self.name, self.args, self.status = name, args, 0
+        self.at, self._told = Place(), None
+        self.model = self.results = self.vtk = None
+        self.collapsed = self.interrupted = False
+        self.progress = Progress()
+        self._goesOn = False  # whether this run has advanced
+        self._entered = 0  # number of the stage that was entered last
+        self._memory = SimpleNamespace()  # of that stage
+        self._readings = []  # that are no rows of curve.csv yet
+        self._safe = None  # what a checkpoint keeps, None while steps are taken
+        self._now = now = time.perf_counter()  # [s] at the end of the last steps
+        self._saved = self._flushed = self._recorded = self._shown = now  # [s]
+        self._handlers = {}  # of signals, as they were before
+
+    # -- beginning ------------------------------------------------------------------------------------------------
+
+    def __enter__(self):
+        return self
+
+    def build(self, model):
+        """Open the folder, build the model in YADE, and load the checkpoint of a run that is resumed. Returns the model.
+
+        Files of a run that is resumed are left as they are until the run goes on.
+
+        :param model: a :class:`masonry.model.Model`
+        """
+        args = self.args
+        if args.resume:
+            self._readProgress()
+        self.model, columns = model, names(model.columns)
+        self._values = [column.value for column in model.columns]
+        folder = args.out or os.path.join("results", self.name)
+        self.results = Results(folder, columns, bool(args.resume))
+        for number in (signal.SIGINT, signal.SIGTERM):
+            self._handlers[number] = signal.signal(number, self._interrupt)
+        self.preset = presetOf(args, self.name)
+        if self.preset:
+            say(presetNote(self.preset, self.name))
+        began = time.perf_counter()
+        model.build()
+        self.at.seconds["setup"] += time.perf_counter() - began
+        self.results.checkRoom(*model.room())
+        if self._told:
+            self._load()
+        self._recorder = MasonryVtkRecorder(
+            directory=self.results.directory, times=self.at.frames
+        )
+        self.vtk = None if args.no_vtk else self._recorder
+        return model
+
+    def _readProgress(self):
+        told = self._told = readProgress(self.args.resume)
+        if told["scene"] != self.name:
+            raise Refused(
+                f"--resume: {self.args.resume} holds a run of {told['scene']}, this is {self.name}"
+            )
+        try:
+            self.at = Place(**told["at"])
+        except TypeError as error:
+            raise _otherVersion(error) from None
+
+    def _load(self):
+        width = len(self.model.columns)
+        if any(len(row) != width for row in self._told["rows"]):
+            raise Refused(f"--resume: its rows are not of {width} columns")
+        try:
+            loadCheckpoint(self.results.path(NAME))
+        except (ValueError, TypeError, OSError) as error:
+            raise Refused(f"--resume: {error}") from None
+        self.at.resumed.append(O.time)
+        for what, now in self._host().items():
+            if self._told.get(what) != now:
+                say(
+                    f"note: the checkpoint was made with {what} {self._told.get(what)}, this run has {now}: "
+                    "it may differ in last digits from one without a break"
+                )
+
+    def _goOn(self):
+        """From here on files are written; those of a run that is resumed are cut back to its checkpoint."""
+        if self._told:
+            try:
+                self.results.takeUp(
+                    self._told["rows"], len(self.at.frames), self._told["seconds"]
+                )
+                if self.at.frames:
+                    self._recorder.collect()
+            except (TypeError, OSError, RuntimeError, Unwritable) as error:
+                raise Refused(f"--resume: {error}") from None
+        self._goesOn = True
+
+    # -- what stages call -----------------------------------------------------------------------------------------
+
+    def stage(self, name, memory):
+        """Enter the next stage. Returns its memory, or None if it was over before the run was resumed.
+
+        :param name: what it is called on the terminal
+        :param memory: what the stage must know to go on, as it is at the beginning: a dataclass of values that JSON can
+            hold. Checkpoints keep it.
+        """
+        self._entered += 1
+        if self._entered < self.at.number:
+            return None
+        if self._entered == self.at.number:
+            if self.at.stage != name:
+                raise _otherVersion(f"stage '{self.at.stage}'")
+            try:
+                memory = type(memory)(**self.at.memory)
+            except TypeError as error:
+                raise _otherVersion(error) from None
+        else:
+            self.at.number, self.at.stage = self._entered, name
+            before = [name, self.at.steps, self.at.seconds["steps"]]
+            self.at.stages = [*self.at.stages, before]
+        self._memory = memory
+        return memory
+
+    def advance(self, steps):
+        """Take time steps, then leave a checkpoint if one is due. Raises Interrupted after Ctrl-C and SIGTERM."""
+        at = self.at
+        if self._goesOn or not self._told:
+            self._goesOn, self._safe = True, None
+            step, began = O.step, time.perf_counter()
+            for _ in range(steps):
+                step()
+            self._now = time.perf_counter()
+            at.seconds["steps"] += self._now - began
+            at.steps += steps
+        else:  # the scene of a checkpoint is that after the steps
+            self._goOn()
+        rows = len(self.results.rows) + len(self._readings)
+        self._safe = rows, {
+            "number": at.number,
+            "stage": at.stage,
+            "memory": vars(self._memory).copy(),
+            "steps": at.steps,
+            "stages": at.stages,
+            "frames": at.frames,
+        }
+        if self._now - self._saved > 60 * self.args.checkpoint_every:
+            self.checkpoint()
+        if self.interrupted:
+            raise Interrupted()
+
+    def record(self):
+        """Read the model for a row of curve.csv. Returns the reading.
+
+        Readings wait for 0.2 s of wall-clock time at most, and not beyond a checkpoint or the end, before they become
+        rows. So only a kill can lose them, and a run that is resumed after a kill makes them again.
+        """
+        began = time.perf_counter()
+        reading = self.model.read()
+        self._readings.append(reading)
+        now = time.perf_counter()
+        self.at.seconds["rows"] += now - began
+        # the next reading is expected as long after this one as this one after the last
+        if now - self._flushed + now - self._recorded > FLUSH_EVERY:
+            self.flush()
+        self._recorded = now
+        return reading
+
+    def flush(self):
+        """Write the readings that wait as rows of curve.csv. Raises as :meth:`masonry.results.Results.append` does."""
+        began = time.perf_counter()
+        rows = [
+            [value(reading) for value in self._values] for reading in self._readings
+        ]
+        self._readings.clear()
+        self.results.append(rows)
+        self._flushed = time.perf_counter()
+        self.at.seconds["rows"] += self._flushed - began
+
+    def frame(self):
+        """Write a frame for ParaView, if the user wants any."""
+        if self.vtk:
+            self.flush()
+            began = time.perf_counter()
+            try:
+                self.vtk()
+            except RuntimeError as error:
+                raise Unwritable(str(error)) from None
+            self.at.seconds["frames"] += time.perf_counter() - began
+            self.at.frames = list(self.vtk.times)
+
+    def show(self, fraction, detail, final=False):
+        """Show on the terminal how far the present stage has come, if it is time to.
+
+        :param fraction: how much of the stage is done, 0 to 1 [-]
+        :param detail: function without arguments that gives the text to show
+        :param final: whether the stage ends here; this is always shown
+        """
+        if final or self._now - self._shown > SHOW_EVERY:
+            at = self.at
+            rate = at.steps / at.seconds["steps"] if at.steps else 0.0
+            self.progress.show(at.stage, fraction, detail, rate, final)
+            self._shown = self._now
+
+    # -- checkpoints ----------------------------------------------------------------------------------------------
+
+    @staticmethod
+    def _host():
+        return {
+            "build": commit,
+            "YADE": yade.config.version,
+            "threads": O.numThreads,
+        }
+
+    def checkpoint(self):
+        """Save the state after the last steps. Returns whether it could; a disk that refuses it does not end the run."""
+        if not (self.args.checkpoint_every and self._safe):
+            return False
+        self.flush()
+        rows, place = self._safe
+        if len(self.results.rows) < rows:
+            return False
+        told = dict(
+            scene=self.name,
+            options={
+                name: value
+                for name, value in vars(self.args).items()
+                if name not in ("resume", "out")
+            },
+            at={**vars(self.at), **place},
+            rows=self.results.rows[:rows],
+            seconds=self.results.seconds(),
+            **self._host(),
+        )
+        self._saved = time.perf_counter()
+        path = self.results.path(NAME)
+        try:
+            saveCheckpoint(path, told)
+            return True
+        except (OSError, ValueError) as error:
+            say(
+                f"warning: no checkpoint could be written to {path}: {error}; an earlier one stays",
+                sys.stderr,
+            )
+            return False
+
+    # -- the end --------------------------------------------------------------------------------------------------
+
+    def _interrupt(self, number, frame):
+        self.interrupted = True
+
+    def __exit__(self, kind, error, trace):
+        try:
+            return self._end(error)
+        finally:
+            for number, handler in self._handlers.items():
+                signal.signal(number, handler)
+
+    def _end(self, error):
+        """Finish in order after an error, or after none. Returns whether the error is dealt with."""
+        if not self.results and not isinstance(error, Refused):
+            return False
+        try:
+            if not error and not self._goesOn:
+                self._goOn()
+        except Refused as refused:
+            error = refused
+        if not self._goesOn:
+            if isinstance(error, Refused):
+                print(error, file=sys.stderr)
+                self.status = 2
+            return self.status == 2
+        stopped = []
+        try:
+            self.flush()
+        except Unwritable as unwritable:
+            stopped.append(unwritable)
+        except FloatingPointError as broken:
+            error = error or broken
+        if isinstance(error, Interrupted):
+            say("\ninterrupted: what was computed is kept")
+        elif isinstance(error, Unwritable):
+            stopped.append(error)
+        elif error:
+            self.results.run["error"] = str(error)
+            self.checkpoint()
+            self.finish()
+            raise error
+        kept = self.checkpoint()
+        try:
+            self.finish()
+        except Unwritable as unwritable:
+            stopped.append(unwritable)
+        for text in dict.fromkeys(map(str, stopped)):
+            say(f"{text}; what was written before is kept", sys.stderr)
+        if kept and (stopped or self.interrupted):
+            say(f"--resume {self.results.directory} goes on from here")
+        self.status = 1 if stopped else 130 if self.interrupted else 0
+        return True
+
+    def finish(self):
+        """Write the last frame and run.json, which is written even if there is no room for the frame, and report."""
+        try:
+            if self.results.rows:
+                self.frame()
+        finally:
+            self._describe()
+            self.results.close()
+        self._report()
+
+    def _describe(self):
+        """Fill run.json; the docstring of :mod:`masonry.results` lists its keys."""
+        at, model, run = self.at, self.model, self.results.run
+        run.update(
+            scene=self.name,
+            options=dict(vars(self.args)),
+            option_units=UNITS,
+            preset=self.preset,
+            columns=meanings(model.columns),
+            versions={
+                "yade": yade.config.version,
+                "python": sys.version.split()[0],
+                "masonry": commit,
+            },
+            commit=commit,
+            threads=O.numThreads,
+            **model.describe(),
+        )
+        if self.results.rows:
+            run.update(
+                energy_balance_error=model.energy.largestError,
+                energy_made=model.energy.largestMade,
+                **model.summary(self.results.column),
+            )
+        run.update(
+            collapsed=self.collapsed,
+            interrupted=self.interrupted,
+            resumed_at_s=at.resumed,
+            steps=at.steps,
+            stages=self._stages(),
+            kinds=self.vtk.kinds if self.vtk else [],
+            seconds={part: round(s, 3) for part, s in at.seconds.items()},
+        )
+        if at.steps:
+            perStep = at.seconds["steps"] / at.steps
+            run["microseconds_per_step"] = 1e6 * perStep
+            run["nanoseconds_per_subcontact_step"] = 1e9 * perStep / model.subcontacts
+
+    def _stages(self):
+        ends = [*self.at.stages[1:], ["", self.at.steps, self.at.seconds["steps"]]]
+        return [
+            {"stage": name, "steps": after[1] - steps, "seconds": after[2] - seconds}
+            for (name, steps, seconds), after in zip(self.at.stages, ends)
+        ]
+
+    def _report(self):
+        run = self.results.run
+        if self.results.rows:
+            self.model.draw(self.results.directory)
+        off, made = run.get("energy_balance_error", 0), run.get("energy_made", 0)
+        if max(off, made) > OFF:
+            say(
+                f"warning: the energy balance is off by {100 * off:.1f} % of the work done, and joints that open or "
+                f"close within a step made {100 * made:.1f} % of it: a smaller --dt-fraction or --rate or more --damping "
+                "helps"
+            )
+        if self.results.rows:
+            for line in self.model.report(run):
+                say(line)
+            say(
+                f"{run['steps']} steps of {run['microseconds_per_step']:.0f} µs, {run['wall_clock_s']:.1f} s in all; "
+                f"see {self.results.directory}"
+            )
+        if self.preset:
+            say(presetNote(self.preset, self.name))
+
+
+def _otherVersion(why):
+    return Refused(f"--resume: of another version of the plugin: {why}")

@@ -1,0 +1,119 @@
+"""Walls whose state is looked at all the time: what the studies of this folder share. It needs YADE."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from masonry import materials, options
+from masonry.loading import push, settle
+from masonry.run import Run
+from masonry.walls import Wall, WallModel
+from yade import O, Vector3
+
+BLOCKS = ["rigid", "deformable"]
+UNIT = (0.220, 0.102, 0.081)  # [m]
+STEPS = 4000  # of the push, where an axis does not ask for another rate
+SMALL = dict(halfUnits=4, courses=4, precompression=0.5e6, unit=UNIT)
+
+
+@dataclass
+class Point:
+    """A run: a value on an axis, and what is different from a small wall of calcium silicate."""
+
+    value: object
+    words: str = ""  # options
+    wall: dict = field(default_factory=dict)  # keywords of masonry.walls.Wall
+    #: Properties in SI units by the name of the joint; "all" stands for bed, head and crack.
+    joints: dict = field(default_factory=dict)
+    until: float = 1.0  # [mm]
+    rate: float = None  # [mm/s]; None: what takes STEPS steps
+    dt: float = None  # of the push, over the limit [-]
+    gravity: bool = True
+    whole: bool = False  # whether it is COMP-4 and not the small wall
+
+    def jointsOf(self, brittle):
+        """The joints of calcium silicate with the changes of this point."""
+        joints = materials.calciumSilicateJoints(brittle)
+        for name, values in self.joints.items():
+            for joint in ["bed", "head", "crack"] if name == "all" else [name]:
+                joints[joint].updateAttrs(values)
+        return joints
+
+
+class Observed(Run):
+    """A run of a point, with ``model``. Every step or so, numbers that are not finite raise AssertionError.
+
+    ``worst`` has the largest value of a yield function over its size, and the most that any memory of a joint fell.
+
+    :param folder: of the results
+    """
+
+    def __init__(self, point, blocks, folder):
+        words = f"--no-vtk --out {folder} --blocks {blocks} --until {point.until!r} {point.words}"
+        if point.rate:
+            words += f" --rate {point.rate!r}"
+        args = options.parser("", until=1).parse_args(words.split())
+        super().__init__("w", args)
+        self.point, self.before, self.looked = point, None, 0
+        self.worst = dict.fromkeys(["yield", "healed"], 0.0)
+        whole = dict(halfUnits=36, courses=34) if point.whole else {}
+        wall = Wall(
+            name="w",
+            title="",
+            joints=point.jointsOf,
+            **{**SMALL, **whole, **point.wall},
+        )
+        model = self.build(WallModel(wall, args))
+        if not point.gravity:
+            model.gravity = 0
+            for engine in O.engines:
+                if hasattr(engine, "gravity"):
+                    engine.gravity = Vector3.Zero
+
+    def show(self, *args, **more):
+        """Nothing is shown: a study has thousands of runs."""
+
+    def advance(self, steps):
+        super().advance(steps)
+        self.looked += 1
+        if len(self.model.interactions) < 500 or self.looked % 20 == 0:
+            self.look()
+
+    def look(self):
+        every = lambda what: np.array(
+            [[*v] for i in self.model.interactions for v in what(i)]
+        )
+        memory = np.hstack(
+            [
+                every(lambda i: i.phys.damage),
+                every(lambda i: i.phys.largest),
+                every(lambda i: [[s] for s in i.phys.slip]),
+            ]
+        )
+        energies = list(self.model.energy.balance().values())
+        bodies = np.array(
+            [[*b.state.pos, *b.state.vel, *b.state.ori] for b in O.bodies]
+        )
+        stresses = every(lambda i: i.phys.stress)
+        jumps = every(lambda i: i.geom.jumps)
+        yields = every(lambda i: i.phys.yielding)
+        for numbers in (memory, energies, bodies, stresses, jumps, yields):
+            if not np.isfinite(numbers).all():
+                raise AssertionError(f"numbers are not finite after {O.iter} steps")
+        self._note("yield", yields.max())
+        if self.before is not None:
+            self._note("healed", (self.before - memory).max())
+        self.before = memory
+
+    def _note(self, what, value):
+        self.worst[what] = max(self.worst[what], float(value))
+
+    def settle(self):
+        settle(self, self.model)
+
+    def push(self):
+        point, args = self.point, self.args
+        if point.dt:
+            O.dt = point.dt * self.model.limit
+        if point.rate is None:
+            args.rate = args.until / (STEPS * O.dt)
+        push(self, self.model)
