@@ -668,9 +668,15 @@ TEST_CASE("ranges of joints can be advanced by threads at the same time") {
             columns.advance(0, from, beyond - from, &n[from], &a[from], nullptr, &stress[from]);
         }
     };
-    run(one, 0, 8), run(one, 8, 40), run(one, 40, 64);
-    std::thread first(run, std::ref(two), 0, 8), second(run, std::ref(two), 8, 40), third(run, std::ref(two), 40, 64);
-    first.join(), second.join(), third.join();
+    run(one, 0, 8);
+    run(one, 8, 40);
+    run(one, 40, 64);
+    std::thread first(run, std::ref(two), 0, 8);
+    std::thread second(run, std::ref(two), 8, 40);
+    std::thread third(run, std::ref(two), 40, 64);
+    first.join();
+    second.join();
+    third.join();
     for (int j = 0; j < joints; ++j) {
         CHECK(one.get(0, j).slip == two.get(0, j).slip);
         CHECK(one.shearStressA(0, 0)[j] == two.shearStressA(0, 0)[j]);

@@ -202,7 +202,7 @@ void JointColumns::advance(int point, int from, int count, const double* opening
     int many = 0;
     for (int n = 0; n < count; ++n)
         if (waits[n]) waiting[many++] = n;
-    if (many < 3) {
+    if (many < 5) { // side by side, the others would be calculated for nothing
         for (int n = 0; n < many; ++n) {
             const int i = waiting[n];
             normalStress[i] = advanceOne(point, from + i, {opening[i], {slideA[i], jumps.slideB[i]}});
@@ -211,45 +211,8 @@ void JointColumns::advance(int point, int from, int count, const double* opening
     }
     for (int n = 0; n < count; n += lanes)
         yieldFrom(point, from + n);
-    if (3 * many >= count)
-        advanceSideBySide(equations_, law_->tension(), law_->shear(), columns_.from(first), &rows_[first], regime,
-                          jumps, waits, count, normalStress);
-    else
-        advanceGathered(first, waiting, many, jumps, normalStress);
-}
-
-// Few subcontacts are brought together for a step, so that all lanes have something to do.
-void JointColumns::advanceGathered(std::size_t first, const int* waiting, int many, const Jumps& jumps,
-                                   double* normalStress) {
-    constexpr int room = most / 2;
-    alignas(64) double column[Columns::count][room];
-    double opening[room], slideA[room], slideB[room], stress[room];
-    Mask waits[room];
-    TableRows rows[room];
-    Regime regime[room];
-    const int padded = (many + lanes - 1) / lanes * lanes;
-    for (int n = 0; n < padded; ++n) {
-        const int i = waiting[std::min(n, many - 1)]; // the last one fills the lanes
-        for (int c = 0; c < Columns::count; ++c)
-            column[c][n] = columns_[c][first + i];
-        opening[n] = jumps.opening[i];
-        slideA[n] = jumps.slideA[i];
-        slideB[n] = jumps.slideB[i];
-        waits[n] = n < many;
-        rows[n] = rows_[first + i];
-        regime[n] = Regime::Elastic;
-        stress[n] = 0;
-    }
-    advanceSideBySide(equations_, law_->tension(), law_->shear(), Columns{column[0], room}, rows, regime,
-                      {opening, slideA, slideB, false}, waits, padded, stress);
-    for (int n = 0; n < many; ++n) {
-        const int i = waiting[n];
-        for (int c = 0; c < Columns::count; ++c)
-            columns_[c][first + i] = column[c][n];
-        rows_[first + i] = rows[n];
-        regime_[first + i] = regime[n];
-        normalStress[i] = stress[n];
-    }
+    advanceSideBySide(equations_, law_->tension(), law_->shear(), columns_.from(first), &rows_[first], regime, jumps,
+                      waits, count, normalStress);
 }
 
 } // namespace masonry

@@ -59,9 +59,8 @@ private:
     std::size_t group(int point, int joint) const { return std::size_t(point) * groups_ + joint / lanes; }
     void prepare(); // what follows from law and stiffness
     bool neverYielded(const JointState& s) const;
-    void yieldFrom(int point, int joint); // the group of this joint now has what yielded subcontacts have
-    void derive(std::size_t i);
-    void advanceGathered(std::size_t first, const int* waiting, int many, const Jumps& jumps, double* normalStress);
+    void yieldFrom(int point, int joint); // from now on the eight joints of this one use all columns
+    void derive(std::size_t i);           // finds what follows from a state
 
     std::shared_ptr<const JointLaw> law_;
     ElasticStiffness k_;

@@ -84,7 +84,7 @@ MASONRY_INLINED Mask stayElasticAs(const Equations& given, const Consequences& o
         shearStressA[i] = elastic ? a : oldA;
         if (spatial) shearStressB[i] = elastic ? b : oldB;
         largestOpening[i] = elastic ? moved.farthest : farthest;
-        largestClosure[i] = elastic & (closure > closest) ? closure : closest;
+        largestClosure[i] = (elastic & (closure > closest)) ? closure : closest;
         waits[i] = elastic ? 0 : 1;
         waiting += elastic ? 0 : 1;
     }
@@ -214,12 +214,11 @@ void advanceSideBySide(const Equations& given, const SofteningTable& tension, co
             if (s.asks[i] && !s.open[i]) s.dilatancy[i] = e.dilatancy(slip[i]);
         MASONRY_INDEPENDENT
         for (int i = 0; i < count; ++i) {
-            const bool weaker = s.shearDamage[i] > shearDamage[i];
             s.intact[i] = Equations::intact(s.tensionDamage[i], s.shearDamage[i]);
             s.secant[i] = e.secant(s.intact[i], s.farthest[i]);
             s.newStiffness[i] = e.stiffness(s.elastic[i], s.secant[i]);
             const auto slid = e.slide(s.size[i], s.sigma[i], s.intact[i], s.dilatancy[i]);
-            s.sigma[i] = (s.open[i] != 0) & weaker ? s.newStiffness[i] * s.elastic[i] : slid.sigma;
+            s.sigma[i] = s.open[i] ? s.newStiffness[i] * s.elastic[i] : slid.sigma;
             s.share[i] = slid.share;
             s.slip[i] = slid.slip;
             s.dilation[i] = slid.dilation;
@@ -242,7 +241,7 @@ void advanceSideBySide(const Equations& given, const SofteningTable& tension, co
         s.left[i] = 1;
         s.closure[i] = 0;
         s.crushingSlip[i] = 0;
-        crushes |= passes | ((closure > closest) & (closure > limit)) ? waits[i] : 0;
+        crushes |= (passes | ((closure > closest) & (closure > limit))) ? waits[i] : 0;
     }
     if (crushes && e.cap) {
         double* capSquared = columns[Columns::CapSquared];
