@@ -12,6 +12,7 @@ BUILD = os.path.join(ROOT, "build")
 RINGS = ["law", "blocks", "files", "fuzz", "sanitizers", "host", "package", "scenes"]
 
 sys.path.insert(1, "/usr/lib/x86_64-linux-gnu/yade-double/py")  # as /usr/bin/yade does
+sys.path.insert(1, os.path.join(ROOT, "tests", "references"))
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # as /usr/bin/yade does
 import yade  # noqa: E402
 import yade.config  # noqa: E402

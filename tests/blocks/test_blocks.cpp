@@ -483,6 +483,31 @@ TEST_CASE("every instruction set moves blocks to the same bits") {
     }
 }
 
+TEST_CASE("combined damping of a node takes nothing of a growing force, half of a steady one, all of one that falls") {
+    const auto e = elastic(box(Point::Zero(), brick), {1, 1, 1});
+    const auto matrix = e.matrix();
+    const std::size_t rows = 3 * e.mesh().nodes.size();
+    const double dt = 1e-6, alpha = 0.3, velocity = 5;
+    Row present;
+    std::fill_n(present.lane, lanes, 1.0);
+    for (bool combined : {true, false})
+        for (const auto& [before, force, share] :
+             {std::tuple(1., 2., 0.), std::tuple(2., 2., 0.5), std::tuple(3., 2., 1.), std::tuple(-3., -2., 0.)}) {
+            std::vector<Row> u(rows, Row{}), v(rows, Row{}), f(rows, Row{}), last(rows, Row{});
+            for (std::size_t row = 0; row < rows; ++row)
+                for (int lane = 0; lane < lanes; ++lane)
+                    v[row].lane[lane] = velocity, f[row].lane[lane] = force, last[row].lane[lane] = before;
+            NodeSums sums;
+            moveBlocks(matrix, {dt, alpha, {0, 0, 0}, combined, {false, false, false}}, present, u.data(), v.data(),
+                       f.data(), last.data(), sums);
+            const double taken = alpha * std::abs(force) * (combined ? share : 1);
+            for (std::size_t row = 0; row < rows; ++row)
+                for (double now : v[row].lane)
+                    CHECK((now - velocity) * matrix.masses[row / 3] / dt ==
+                          doctest::Approx(force - taken).epsilon(1e-6));
+        }
+}
+
 TEST_CASE("damping takes energy in every step of every node, whatever the force") {
     std::mt19937 dice(17);
     std::normal_distribution<> normal;

@@ -8,14 +8,11 @@ answers is no reason. What is not named here is zero.
 
 import os
 import subprocess
-import sys
 
 import pytest
-from conftest import ROOT
+import references
 
-FOLDER = os.path.join(ROOT, "tests", "references")
-sys.path.insert(1, FOLDER)
-import references  # noqa: E402
+FOLDER = references.FOLDER
 
 #: Run -> instant or quantity -> largest relative difference; a quantity goes before an instant.
 TOLERANCES = {
