@@ -223,16 +223,13 @@ TEST_CASE("the cap bounds shear and compression together, along the ray to the o
 TEST_CASE("what a joint slides is the elastic part and its slip, by Coulomb and by crushing") {
     JointProperties strong = bed; // slips by crushing alone
     strong.cohesion = 1e9;
-    for (const auto& [properties, crushes] : {std::pair(strong, true), std::pair(bed, false)}) {
+    for (const auto& properties : {strong, bed}) {
         Path p(properties);
         p.move({-1.5e-3, {}}, 1000);
-        bool crushed = false, slid = false;
-        p.move({-0.2e-3, {0.3e-3, 0.4e-3}}, 20000, [&] {
-            crushed |= p.state.regime == Regime::Crushing && p.state.slip > 0;
-            slid |= p.state.regime == Regime::Slipping;
-        });
+        bool crushed = false;
+        p.move({-0.2e-3, {0.3e-3, 0.4e-3}}, 20000,
+               [&] { crushed |= p.state.regime == Regime::Crushing && p.state.slip > 0; });
         CHECK(crushed);
-        CHECK(slid == !crushes);
         const double elastic = std::hypot(p.state.shearStress.a, p.state.shearStress.b) / p.k.shear;
         CHECK(p.state.slip == within(0.5e-3 - elastic, 1e-6));
         CHECK(elastic < 0.1 * p.state.slip);
