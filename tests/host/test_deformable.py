@@ -74,6 +74,7 @@ def frequency(length, cells):
     return 2 / (crossings[4] - crossings[0])
 
 
+@pytest.mark.slow
 def test_a_bar_s_wave_speed_converges_to_theory_at_second_order(scene):
     length = 0.4
     theory = math.sqrt(E / RHO) / (4 * length)
@@ -118,6 +119,7 @@ def deflection(cells, length=0.4, section=0.05):
     return moved / beam
 
 
+@pytest.mark.slow
 def test_a_cantilever_s_deflection_converges_to_theory(scene):
     # constant-strain zones are too stiff in bending, by a share that falls with the square of their size
     coarse, fine = 1 / deflection(1) - 1, 1 / deflection(2) - 1
@@ -125,6 +127,7 @@ def test_a_cantilever_s_deflection_converges_to_theory(scene):
     assert coarse / fine > 2.5  # order 2: a factor of 4
 
 
+@pytest.mark.slow
 def test_energy_without_damping_is_kept_over_a_hundred_thousand_steps(scene):
     zones, unit = bar(0.2, 2, damping=0, poisson=NU)
     for number in range(*zones.nodesOf(unit)):
@@ -216,6 +219,7 @@ def hold(load, steps=20000):
     return load.reaction
 
 
+@pytest.mark.slow
 def test_two_deformable_bricks_pulled_apart_carry_ft_and_take_the_mode_I_energy(scene):
     load = couplet(True, MasonryJoint(name="bed"))
     assert pull(load, 8e-6, 0.02).max() == pytest.approx(0.1e6, rel=0.005)
@@ -228,6 +232,7 @@ def test_two_deformable_bricks_pulled_apart_carry_ft_and_take_the_mode_I_energy(
     assert abs(b["error"]) < 1e-4
 
 
+@pytest.mark.slow
 def test_rigid_and_stiff_deformable_bricks_agree(scene):
     reactions = []
     for deformable in (False, True):
@@ -275,6 +280,7 @@ def test_bricks_that_slide_on_each_other_keep_momentum_and_energy(scene):
     assert there == pytest.approx(start, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_the_stiffness_of_a_pair_is_that_of_bricks_and_joint_in_series(scene):
     elastic = MasonryJoint(name="bed", elastic=True)
     load = couplet(True, elastic, divisions=(2, 1, 2))
@@ -285,6 +291,7 @@ def test_the_stiffness_of_a_pair_is_that_of_bricks_and_joint_in_series(scene):
     assert 1 < hold(load) / (series * load.displacement()[2]) < 1 + 2 * NU**2
 
 
+@pytest.mark.slow
 def test_local_damping_drags_a_moving_unit_and_combined_does_not(scene):
     """The force on the drive above that in the joint: what damping adds while two bricks are pressed steadily."""
     drag = {}

@@ -74,6 +74,7 @@ def test_every_run_has_its_tolerances_and_its_file():
     assert sum(os.path.getsize(os.path.join(FOLDER, f)) for f in there) < 200e3
 
 
+@pytest.mark.slow
 def test_two_threads_give_the_same_references():
     program = os.path.join(FOLDER, "references.py")
     run = subprocess.run(
