@@ -474,7 +474,9 @@ RUNS = {
         wall, PUSH[:3], dt=ZONED, deformable=True, kind="combined", **SPACE
     ),
     "deformable_unlike": run(wall, PUSH[:3], dt=ZONED, rigidBricks=2, **UNLIKE),
-    "deformable_space_unlike": run(wall, SHORT, dt=ZONED, **UNLIKE, **SPACE),
+    "deformable_space_unlike": run(
+        wall, SHORT, dt=ZONED, **{**UNLIKE, "divisions": (2, 2, 2)}, **SPACE
+    ),
     "deformable_functors": run(
         wall, SHORT, dt=ZONED, deformable=True, kind="combined", functors=True
     ),
