@@ -5,6 +5,7 @@ quick ring (``scripts/test.sh quick``) leaves them out. With pytest-xdist every 
 shares an expensive fixture stays in one worker (``--dist loadgroup``).
 """
 
+import contextlib
 import os
 import re
 import subprocess
@@ -21,8 +22,11 @@ TOGETHER = ["programs", "targets", "squat"]  # fixtures that many tests share
 sys.path.insert(1, "/usr/lib/x86_64-linux-gnu/yade-double/py")  # as /usr/bin/yade does
 sys.path.insert(1, os.path.join(ROOT, "tests", "references"))
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # as /usr/bin/yade does
-import yade  # noqa: E402
-import yade.config  # noqa: E402
+with contextlib.redirect_stdout(
+    None
+):  # YADE tells its version, which would stand after pytest's closing line
+    import yade
+    import yade.config
 
 
 class Cpp(pytest.File):
