@@ -1,6 +1,22 @@
 #!/usr/bin/env bash
-# Sets up what is missing and runs all tests, fastest ring first. Arguments go to pytest.
+# Sets up what is missing and runs tests, fastest ring first.
+#
+#   bash scripts/test.sh                   all tests, on all cores side by side
+#   bash scripts/test.sh quick             law, blocks, files and the fast part of the host: under a minute
+#   bash scripts/test.sh tests/law ...     these tests alone, one after the other; all arguments go to pytest
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-bash scripts/setup.sh clang-14 libclang-rt-14-dev libomp-14-dev # for tests/fuzz and tests/sanitizers
-exec /usr/bin/python3 -m pytest -q -p no:cacheprovider -W ignore::DeprecationWarning "${@:-tests}"
+
+if [[ "${1:-}" == quick ]]; then
+    shift
+    bash scripts/setup.sh python3-pytest-xdist
+    tests=(tests/law tests/blocks tests/files tests/host -m "not slow" "$@")
+    workers=$(nproc)
+else
+    bash scripts/setup.sh python3-pytest-xdist clang-14 libclang-rt-14-dev libomp-14-dev # for fuzz and sanitizers
+    tests=("${@:-tests}")
+    workers=$(($# ? 0 : $(nproc)))
+fi
+export OMP_NUM_THREADS=1 # so that workers do not take each other's cores; a test that needs threads asks for them
+exec /usr/bin/python3 -m pytest -q -p no:cacheprovider -W ignore::DeprecationWarning \
+    --numprocesses "$workers" --dist loadgroup "${tests[@]}"

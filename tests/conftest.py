@@ -1,5 +1,11 @@
-"""Rings: law, blocks and files (C++, doctest), fuzz, sanitizers, host, package, scenes. The host is the installed YADE, in this process."""
+"""Rings, fastest first: law, blocks and files (C++, doctest), host, package, sanitizers, fuzz, scenes.
 
+The host is the installed YADE, in this process. Tests marked ``slow`` stand at the end, whatever their ring, and the
+quick ring (``scripts/test.sh quick``) leaves them out. With pytest-xdist every worker has a YADE of its own; what
+shares an expensive fixture stays in one worker (``--dist loadgroup``).
+"""
+
+import contextlib
 import os
 import re
 import subprocess
@@ -9,12 +15,18 @@ import pytest
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 BUILD = os.path.join(ROOT, "build")
-RINGS = ["law", "blocks", "files", "fuzz", "sanitizers", "host", "package", "scenes"]
+RINGS = ["law", "blocks", "files", "host", "package", "sanitizers", "fuzz", "scenes"]
+SLOW = ["sanitizers", "fuzz", "scenes"]  # rings of which every test is slow
+TOGETHER = ["programs", "targets", "squat"]  # fixtures that many tests share
 
 sys.path.insert(1, "/usr/lib/x86_64-linux-gnu/yade-double/py")  # as /usr/bin/yade does
+sys.path.insert(1, os.path.join(ROOT, "tests", "references"))
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # as /usr/bin/yade does
-import yade  # noqa: E402
-import yade.config  # noqa: E402
+with contextlib.redirect_stdout(
+    None
+):  # YADE tells its version, which would stand after pytest's closing line
+    import yade
+    import yade.config
 
 
 class Cpp(pytest.File):
@@ -57,12 +69,27 @@ def pytest_collect_file(parent, file_path):
         return Cpp.from_parent(parent, path=file_path)
 
 
+def pytest_configure(config):
+    config.addinivalue_line("markers", "slow: takes seconds; not in the quick ring")
+    config.addinivalue_line("markers", "xdist_group: one worker for all of a name")
+
+
 def pytest_collection_modifyitems(items):
     def ring(item):
         parts = item.path.relative_to(os.path.join(ROOT, "tests")).parts
-        return RINGS.index(parts[0]) if parts[0] in RINGS else len(RINGS)
+        return parts[0] if parts[0] in RINGS else RINGS[-1]
 
-    items.sort(key=ring)
+    for item in items:
+        if ring(item) in SLOW:
+            item.add_marker(pytest.mark.slow)
+        for name in set(TOGETHER) & set(getattr(item, "fixturenames", [])):
+            item.add_marker(pytest.mark.xdist_group(name))
+    items.sort(
+        key=lambda item: (
+            item.get_closest_marker("slow") is not None,
+            RINGS.index(ring(item)),
+        )
+    )
 
 
 @pytest.fixture

@@ -839,6 +839,7 @@ def test_a_tolerance_of_the_users_makes_the_joint(scene):
 # -- as a user meets it -----------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name, words, message",
     [
@@ -866,6 +867,7 @@ def test_the_command_line_ends_with_status_2_and_leaves_what_is_there(
     assert before.read_text() == "of another run"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name, words, most, lost",
     [

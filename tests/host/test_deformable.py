@@ -15,7 +15,7 @@ from masonry import (
     engines,
 )
 from masonry.brickwork import corners
-from yade import O, Vector3
+from yade import O, Quaternion, Vector3
 
 E, NU, RHO = 4.8e9, 0.16, 1800.0
 BRICK = (0.220, 0.102, 0.081)
@@ -74,6 +74,7 @@ def frequency(length, cells):
     return 2 / (crossings[4] - crossings[0])
 
 
+@pytest.mark.slow
 def test_a_bar_s_wave_speed_converges_to_theory_at_second_order(scene):
     length = 0.4
     theory = math.sqrt(E / RHO) / (4 * length)
@@ -118,6 +119,7 @@ def deflection(cells, length=0.4, section=0.05):
     return moved / beam
 
 
+@pytest.mark.slow
 def test_a_cantilever_s_deflection_converges_to_theory(scene):
     # constant-strain zones are too stiff in bending, by a share that falls with the square of their size
     coarse, fine = 1 / deflection(1) - 1, 1 / deflection(2) - 1
@@ -125,6 +127,7 @@ def test_a_cantilever_s_deflection_converges_to_theory(scene):
     assert coarse / fine > 2.5  # order 2: a factor of 4
 
 
+@pytest.mark.slow
 def test_energy_without_damping_is_kept_over_a_hundred_thousand_steps(scene):
     zones, unit = bar(0.2, 2, damping=0, poisson=NU)
     for number in range(*zones.nodesOf(unit)):
@@ -216,6 +219,38 @@ def hold(load, steps=20000):
     return load.reaction
 
 
+@pytest.mark.xfail(
+    reason="a weight of zero before another ends the sum over an attachment's nodes: such a point hangs in the air"
+)
+@pytest.mark.parametrize("functors", [False, True], ids=["loop", "functors"])
+@pytest.mark.parametrize("seed", range(3))
+def test_bricks_that_move_together_do_not_strain_their_joint_whatever_their_meshes(
+    scene, seed, functors
+):
+    dice = np.random.default_rng(seed)
+    turn = Quaternion(*dice.normal(size=4))
+    turn.normalize()
+    x, y, z = BRICK
+    mat = MasonryMat(young=E, poisson=NU, density=RHO)
+    put = lambda low, high: addBlock(
+        [turn * Vector3(*c) for c in corners(low, high)], mat
+    )
+    units = [put((0, 0, 0), (x, y, z)), put((0, 0, z), (x / 2, y, 2 * z))]
+    zones = MasonryZones(bodies=units, divisions=[2, 1, 1], damping=0)
+    around = dict(gravity=(0, 0, 0), damping=0, rows=2, functors=functors)
+    engines([stiff(1e10)], zones=zones, **around)
+    (interaction,) = connect()
+    O.dt = 0.1 * criticalTimeStep()[0]
+    for node in range(len(zones.masses)):
+        zones.setVelocity(node, Vector3(0.3, -0.2, 0.5))
+    for _ in range(20):
+        O.step()
+    moved = zones.displacements[0].norm()
+    assert moved > 1e-6
+    assert max(j.norm() for j in interaction.geom.jumps) < 1e-9 * moved
+
+
+@pytest.mark.slow
 def test_two_deformable_bricks_pulled_apart_carry_ft_and_take_the_mode_I_energy(scene):
     load = couplet(True, MasonryJoint(name="bed"))
     assert pull(load, 8e-6, 0.02).max() == pytest.approx(0.1e6, rel=0.005)
@@ -228,6 +263,7 @@ def test_two_deformable_bricks_pulled_apart_carry_ft_and_take_the_mode_I_energy(
     assert abs(b["error"]) < 1e-4
 
 
+@pytest.mark.slow
 def test_rigid_and_stiff_deformable_bricks_agree(scene):
     reactions = []
     for deformable in (False, True):
@@ -275,6 +311,7 @@ def test_bricks_that_slide_on_each_other_keep_momentum_and_energy(scene):
     assert there == pytest.approx(start, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_the_stiffness_of_a_pair_is_that_of_bricks_and_joint_in_series(scene):
     elastic = MasonryJoint(name="bed", elastic=True)
     load = couplet(True, elastic, divisions=(2, 1, 2))
@@ -285,6 +322,7 @@ def test_the_stiffness_of_a_pair_is_that_of_bricks_and_joint_in_series(scene):
     assert 1 < hold(load) / (series * load.displacement()[2]) < 1 + 2 * NU**2
 
 
+@pytest.mark.slow
 def test_local_damping_drags_a_moving_unit_and_combined_does_not(scene):
     """The force on the drive above that in the joint: what damping adds while two bricks are pressed steadily."""
     drag = {}

@@ -291,6 +291,7 @@ def test_arrays_made_anew_in_every_step_change_nothing():
         assert (values == runs[1][name]).all(), name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("blocks", ["rigid", "deformable"])
 def test_a_run_is_the_same_bit_for_bit_with_any_number_of_threads(blocks, tmp_path):
     script = tmp_path / "run.py"

@@ -59,7 +59,10 @@ struct Path {
     double lost() const { return dissipated.tension + dissipated.shear + dissipated.compression; }
 };
 
-doctest::Approx within(double value, double relative) { return doctest::Approx(value).epsilon(relative); }
+// Approx adds 1 to the size of the numbers unless it is told another scale: nothing in metres would ever differ.
+doctest::Approx within(double value, double relative) {
+    return doctest::Approx(value).epsilon(relative).scale(value == 0 ? 1 : 0);
+}
 
 } // namespace
 
@@ -214,6 +217,17 @@ TEST_CASE("a slipping joint with dilatancy opens by tan(psi) per slip, and decay
     }
 }
 
+TEST_CASE("dilatancy dies away with the slip and ends at tan(psi) over its decay") {
+    JointProperties q = bed;
+    q.dilatancy = 0.2, q.dilatancyDecay = 2000, q.cap = false; // what it presses is 33 MPa
+    Path p(q);
+    p.move({0, {3e-3, 0}}, 20000);
+    const double s = p.state.slip;
+    CHECK(s > 2e-3); // 1 - exp(-2000 s) is 0.98 and more
+    CHECK(p.state.dilation == within(0.2 * (1 - std::exp(-2000 * s)) / 2000, 1e-3));
+    CHECK(p.state.normalStress == within(-p.k.normal * p.state.dilation, 1e-9));
+}
+
 TEST_CASE("the cap bounds shear and compression together, along the ray to the origin") {
     Path p(bed);
     p.step({-3e-3, {1e-3, 2e-3}});
@@ -221,6 +235,23 @@ TEST_CASE("the cap bounds shear and compression together, along the ray to the o
     const auto f = p.law.yield(p.k, p.state);
     CHECK(f.cap <= 1e-9 * 7.55e6 * 7.55e6);
     CHECK(p.state.shearStress.b / p.state.shearStress.a == within(2, 1e-12));
+}
+
+TEST_CASE("what a joint slides is the elastic part and its slip, by Coulomb and by crushing") {
+    JointProperties strong = bed; // slips by crushing alone
+    strong.cohesion = 1e9;
+    for (const auto& properties : {strong, bed}) {
+        Path p(properties);
+        p.move({-1.5e-3, {}}, 1000);
+        bool crushed = false;
+        p.move({-0.2e-3, {0.3e-3, 0.4e-3}}, 20000,
+               [&] { crushed |= p.state.regime == Regime::Crushing && p.state.slip > 0; });
+        CHECK(crushed);
+        const double elastic = std::hypot(p.state.shearStress.a, p.state.shearStress.b) / p.k.shear;
+        CHECK(p.state.slip == within(0.5e-3 - elastic, 1e-6));
+        CHECK(elastic < 0.1 * p.state.slip);
+        CHECK(-p.state.opening == within(p.state.crushing - p.state.normalStress / p.k.normal, 1e-9));
+    }
 }
 
 TEST_CASE("lumping the units into the joint changes the elastic part only") {
@@ -242,6 +273,12 @@ TEST_CASE("lumping the units into the joint changes the elastic part only") {
     const double stretch = 1 / k.normal - 1 / bed.normalStiffness, peak = 7.55e6;
     for (double u : {1.6e-3, 1.8e-3, 2.5e-3, 9e-3}) // beyond the peak, shifted by the elastic part at the peak
         CHECK(curve.strength(u + peak * stretch, stretch) == within(curve.strength(u), 1e-9));
+
+    Path crushed(bed, k); // and so for the law that reads it: its stress on the way down
+    for (double u : {1.6e-3, 1.8e-3, 2.5e-3, 9e-3}) {
+        crushed.move({-u - peak * stretch - crushed.state.opening, {}}, 2000);
+        CHECK(-crushed.state.normalStress == within(curve.strength(u), 1e-6));
+    }
 }
 
 TEST_CASE("the brittle Coulomb set drops at the first yield and never crushes") {

@@ -26,6 +26,42 @@ def build(sanitizers, name, target):
     return folder
 
 
+#: What the threads of the engines do at the same time, and what a thread of Python reads beside them.
+THREADED = """
+import threading
+import masonry
+from test_joint_loop import *
+
+def look(interactions):
+    for i in interactions:
+        i.phys.stress, i.phys.damage, i.geom.jumps
+    energy()
+    for e in O.engines:
+        if isinstance(e, MasonryZones):
+            e.displacements, e.velocities
+
+for case, options in CASES.items():
+    interactions = panel(False, **options, size=12, damping=0.8)
+    for _ in range(100):
+        O.step()
+    hurt = state(interactions)['damage'].max(axis=0).min() > 0
+    print('ran', case, 'threads', O.numThreads, 'damaged', hurt)
+    looks, goes = [0], [True]
+    def again():
+        while goes[0]:
+            look(interactions)
+            looks[0] += 1
+    reader = threading.Thread(target=again)
+    reader.start()
+    O.run(100)
+    O.wait()
+    goes[0] = False
+    reader.join()
+    print('read', case, 'beside the run', looks[0] > 0, 'to its end', O.iter == 200)
+print('module', masonry._masonry.__file__)
+"""
+
+
 @pytest.fixture(scope="module")
 def programs():
     return build("address,undefined,float-cast-overflow", "address", "rings")
@@ -42,22 +78,14 @@ def test_no_two_threads_race(tmp_path):
     """The panels of test_joint_loop.py on two threads. GCC's OpenMP runtime hides from ThreadSanitizer what waits for
     what, and every loop would be reported. Clang's runtime, which has the same entry points, takes its place, and its
     tool Archer tells. The host's own code is not instrumented, so only races in which ours has a part can be seen.
+    A thread of Python then reads joints, energies and nodes beside a run in the background.
     """
     if not os.path.exists(ARCHER):
         pytest.skip(ARCHER + " is missing (apt-get install libomp-14-dev)")
     folder = build("thread", "thread", "masonry_module_fit")
     subprocess.run(["cmake", "--install", folder], check=True, capture_output=True)
     script = tmp_path / "run.py"
-    script.write_text(
-        "import masonry\n"
-        "from test_joint_loop import *\n"
-        "for case, options in CASES.items():\n"
-        "    interactions = panel(False, **options, size=12, damping=0.8)\n"
-        "    for _ in range(100):\n        O.step()\n"
-        "    hurt = state(interactions)['damage'].max(axis=0).min() > 0\n"
-        "    print('ran', case, 'threads', O.numThreads, 'damaged', hurt)\n"
-        "print('module', masonry._masonry.__file__)\n"
-    )
+    script.write_text(THREADED)
     suppressions = os.path.join(HERE, "suppressions.txt")
     env = dict(
         os.environ,
@@ -74,10 +102,11 @@ def test_no_two_threads_race(tmp_path):
         env=env,
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=600,
     )
     told = run.stdout + run.stderr
     assert run.returncode == 0, told[-6000:]
     assert "Archer detected OpenMP application with TSan" in told
     assert told.count(" threads 2 damaged True") == 5, told
+    assert told.count("beside the run True to its end True") == 5, told
     assert "module " + folder in told

@@ -1,0 +1,489 @@
+"""What a user does at the prompt, while a scene runs or is gone, ends in an answer or in an error, never in a crash.
+
+Most of it runs in a YADE of its own, so that a crash is a failed test and not the end of pytest.
+"""
+
+import os
+import subprocess
+import sys
+
+import masonry
+import pytest
+from masonry import MasonryJoint, addBlock, classes, connect, criticalTimeStep, engines
+from masonry import MasonryMat, MasonryZones
+from references import box
+from yade import O, Vector3
+from yade import wrapper
+
+HERE = os.path.dirname(__file__)
+
+#: Promises that commit 0e9b866 does not keep; every later build must.
+promised = pytest.mark.xfail(
+    masonry.commit.startswith("0e9b866"), reason="promised for builds after 0e9b866"
+)
+
+BEGIN = """
+import sys
+sys.path.insert(1, "/usr/lib/x86_64-linux-gnu/yade-double/py")
+import yade
+import gc, hashlib, os, threading, time
+import numpy as np
+from yade import O, Vector3
+from masonry import *
+from test_joint_loop import CASES, energy, panel, state
+from yade.wrapper import *
+
+def bits(interactions):
+    '''A fingerprint of all that a run can be told by.'''
+    values = [np.array([O.iter, O.time, *energy().values()])]
+    values += list(state(interactions).values())
+    return hashlib.sha256(b"".join(v.tobytes() for v in values)).hexdigest()
+"""
+
+
+def inYade(code, threads=1, timeout=120):
+    """Run a program in a YADE of its own; what it printed. Fails if it ends in any other way than by itself."""
+    folders = [HERE, os.path.join(HERE, "..", "references"), os.path.join(HERE, "..")]
+    env = dict(
+        os.environ,
+        OMP_NUM_THREADS=str(threads),
+        PYTHONFAULTHANDLER="1",
+        PYTHONPATH=os.pathsep.join([os.environ.get("PYTHONPATH", ""), *folders]),
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", BEGIN + code + "\nprint('ENDED')\n"],
+        capture_output=True,
+        text=True,
+        env=env,
+        timeout=timeout,
+    )
+    told = (run.stdout + run.stderr)[-3000:]
+    assert run.returncode == 0, f"ended with {run.returncode}:\n{told}"
+    assert run.stdout.rstrip().endswith("ENDED"), told
+    return run.stdout
+
+
+# -- beside a run in the background ----------------------------------------------------------------------------------
+
+READER = """
+STEPS = {steps}
+
+def look(interactions):
+    '''Read all that there is to read, once.'''
+    for i in interactions:
+        i.phys.stress, i.phys.damage, i.phys.regime, i.phys.dissipated, i.geom.jumps
+    energy()
+    for e in O.engines:
+        if isinstance(e, MasonryZones):
+            e.displacements, e.velocities
+        if isinstance(e, MasonryLoad):
+            e.displacement(), e.reaction, e.work
+        if isinstance(e, MasonryIntegrator):
+            e.kinetic, e.damped
+
+def write(interactions):
+    for joint in {{id(i.phys.joint): i.phys.joint for i in interactions}}.values():
+        joint.cohesion = joint.cohesion
+
+def end(beside=None):
+    '''The state after a run in the background, beside which another thread does something again and again.'''
+    interactions = panel(False, {blocks!r}, damping=0.3)
+    done, goes = [0], [True]
+    def again():
+        while goes[0]:
+            beside(interactions)
+            done[0] += 1
+    thread = threading.Thread(target=again)
+    if beside:
+        thread.start()
+    try:
+        O.run(STEPS)
+        O.wait()
+    finally:
+        goes[0] = False
+    if beside:
+        thread.join()
+        assert done[0] > 3, done
+    assert O.iter == STEPS, (O.iter, STEPS)
+    return bits(interactions)
+"""
+STEPS = {"rigid": 3000, "deformable": 1500}
+KINDS = pytest.mark.parametrize("blocks", STEPS)
+THREADS = pytest.mark.parametrize("threads", [1, 2])
+
+
+def reader(blocks):
+    return READER.format(steps=STEPS[blocks], blocks=blocks)
+
+
+@pytest.mark.slow
+@THREADS
+@KINDS
+def test_reading_beside_a_run_changes_nothing_of_it(blocks, threads):
+    inYade(reader(blocks) + "assert end(look) == end()", threads)
+
+
+@pytest.mark.slow
+@promised
+@THREADS
+@KINDS
+def test_writing_a_property_to_the_same_value_beside_a_run_does_no_harm(
+    blocks, threads
+):
+    code = "end(lambda joints: (write(joints), time.sleep(1e-4)))\nend(look)"
+    inYade(reader(blocks) + code, threads)
+
+
+@pytest.mark.slow
+@promised
+@KINDS
+def test_a_checkpoint_saved_beside_a_run_is_of_a_whole_step_or_refused(
+    blocks, tmp_path
+):
+    code = f"""
+import itertools, random
+number, saved, refused = itertools.count(), [], []
+def save(interactions):
+    path = os.path.join({str(tmp_path)!r}, str(next(number)))
+    try:
+        saveCheckpoint(path)
+        saved.append(path)
+    except (ValueError, RuntimeError) as error:
+        assert len(str(error)) > 20 and "\\n" not in str(error), error
+        refused.append(path)
+    time.sleep(0.002)
+plain = end()
+assert end(save) == plain, "saving changed the run"
+print("saved", len(saved), "refused", len(refused))
+for path in random.Random(1).sample(saved, min(8, len(saved))):
+    interactions = panel(False, {blocks!r}, damping=0.3)
+    loadCheckpoint(path)
+    left = STEPS - O.iter
+    assert 0 <= left <= STEPS, left
+    if left:
+        O.run(left, True)
+    assert bits(interactions) == plain, f"from step {{STEPS - left}} the end is another"
+"""
+    inYade(reader(blocks) + code)
+
+
+@pytest.mark.slow
+def test_pausing_and_going_on_changes_nothing():
+    code = """
+plain = end()
+interactions = panel(False, 'rigid', damping=0.3)
+O.run(STEPS)
+while O.iter < STEPS and O.running:
+    O.pause()
+    look(interactions)
+    if O.iter < STEPS:
+        O.run(STEPS - O.iter)
+    time.sleep(0.003)
+O.wait()
+assert O.iter == STEPS and bits(interactions) == plain
+"""
+    inYade(reader("rigid") + code)
+
+
+# -- what outlives its scene -----------------------------------------------------------------------------------------
+
+#: What is read -> whether it is state of a scene, and so an error once the scene is gone.
+READ = {
+    "phys.stress": True,
+    "phys.damage": True,
+    "phys.slip": True,
+    "phys.regime": True,
+    "phys.dissipated": True,
+    "geom.jumps": True,
+    "zones.displacements": True,
+    "zones.velocities": True,
+    "zones.nodesOf(2)": True,
+    "zones.masses": False,
+    "zones.dict()": False,
+    "phys.dict()": False,
+    "geom.areas": False,
+    "geom.centres": False,
+    "energy.balance()": False,
+    "load.displacement()": False,
+    "load.reaction": False,
+    "loop.dict()": False,
+    "integrator.kinetic": False,
+    "joint.cohesion": False,
+    "joint.updateAttrs(dict(cohesion=2e4, tensileStrength=1e4))": False,
+    "zones.setVelocity(0, Vector3(0, 0, 1))": False,
+}
+GONE = {
+    "reset": "O.reset()",
+    "loaded": "O.loadTmp()",
+    "another scene": "panel(False, 'deformable')",
+    "another scene that has run": "panel(False, 'deformable')\nO.run(5, True)",
+    "without engines": "O.engines = []\nO.reset()\ngc.collect()",
+}
+
+
+@promised
+@pytest.mark.parametrize("gone", GONE)
+def test_what_outlives_its_scene_raises_an_error_when_read(gone):
+    code = f"""
+interactions = panel(False, 'deformable', halves=False)
+O.run(20, True)
+O.saveTmp()
+one = next(i for i in interactions if i.phys.joint.name == "weak")
+phys, geom, joint = one.phys, one.geom, one.phys.joint
+kind = lambda cls: next(e for e in O.engines if isinstance(e, cls))
+zones, energy_, load = kind(MasonryZones), kind(MasonryEnergy), kind(MasonryLoad)
+loop, integrator = kind(MasonryJointLoop), kind(MasonryIntegrator)
+names = dict(phys=phys, geom=geom, joint=joint, zones=zones, energy=energy_, load=load, loop=loop,
+             integrator=integrator, Vector3=Vector3)
+{GONE[gone]}
+silent = []
+for text, state in {READ!r}.items():
+    try:
+        eval(text, dict(names))
+        if state:
+            silent.append(text)
+    except Exception as error:
+        print(text, "raises", type(error).__name__, error)
+del phys, geom, zones, loop, one, interactions, names
+gc.collect()
+panel(False, 'deformable', halves=False)
+O.run(20, True)  # the scenes after it are sound
+assert not silent, "read without an error: " + ", ".join(silent)
+"""
+    inYade(code)
+
+
+@pytest.mark.parametrize("blocks", ["rigid", "deformable"])
+def test_a_joint_read_after_its_engine_is_gone_shows_its_last_state(blocks):
+    inYade(
+        f"""
+interactions = panel(False, {blocks!r})
+O.run(200, True)
+before = state(interactions)
+engines = O.engines
+O.engines = []
+del engines
+gc.collect()
+after = state(interactions)
+assert all((before[name] == after[name]).all() for name in before)
+"""
+    )
+
+
+# -- other engines in the middle -------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+@THREADS
+@pytest.mark.parametrize("blocks", ["rigid", "deformable"])
+def test_loop_and_functors_take_turns_twenty_times_while_python_holds_the_old_loops(
+    blocks, threads
+):
+    inYade(
+        f"""
+interactions = panel(True, {blocks!r})
+O.run(400, True)
+whole = state(interactions)
+interactions = panel(True, {blocks!r})
+slow, held = list(O.engines), []
+for turn in range(20):
+    loops = [
+        MasonryJointLoop(geometry=e.geomDispatcher.functors[0], physics=e.physDispatcher.functors[0])
+        if e.label == "joints" else e for e in slow
+    ]
+    held += [e for e in loops if isinstance(e, MasonryJointLoop)]
+    O.engines = slow if turn % 2 else loops
+    O.run(20, True)
+    state(interactions)
+    for old in held:
+        old.dict()
+    if turn % 5 == 4:
+        del held[:3]
+        gc.collect()
+assert O.iter == 400
+for name, values in state(interactions).items():
+    assert np.isfinite(values).all(), name
+    size = np.abs(values).max()
+    # on two threads the host's own loop sums forces in another order in every run
+    assert {threads} > 1 or np.abs(values - whole[name]).max() <= 1e-8 * size, name
+""",
+        threads,
+    )
+
+
+@pytest.mark.slow
+def test_engines_replaced_beside_a_run_do_no_harm():
+    inYade(
+        """
+interactions = panel(False)
+O.run(3000)
+for _ in range(20):
+    O.engines = list(O.engines)
+    time.sleep(0.002)
+O.wait()
+assert O.iter == 3000
+"""
+    )
+
+
+# -- blocks that come and go -----------------------------------------------------------------------------------------
+
+UNIT = (0.22, 0.102, 0.081)
+
+
+def brick(level, x=0.0):
+    low = (x, 0, level * UNIT[2])
+    high = (x + UNIT[0], UNIT[1], (level + 1) * UNIT[2])
+    mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    return addBlock(box(low, high), mat)
+
+
+def stack(deformable=False, functors=False):
+    for level in range(3):
+        brick(level)
+    O.bodies[0].state.blockedDOFs = "xyzXYZ"
+    zones = MasonryZones(bodies=[1, 2]) if deformable else None
+    engines([MasonryJoint()], zones=zones, functors=functors)
+    connect()
+    O.dt = 0.5 * criticalTimeStep()[0]
+
+
+@promised
+@pytest.mark.parametrize("steps", [0, 1, 150], ids=lambda n: f"after {n} steps")
+@pytest.mark.parametrize("deformable", [False, True], ids=["rigid", "deformable"])
+def test_a_block_added_after_connect_is_named(scene, deformable, steps):
+    stack(deformable)
+    for _ in range(steps):
+        O.step()
+    late = brick(3)
+    with pytest.raises(ValueError, match=rf"body {late} was added after connect\(\)"):
+        O.step()
+
+
+ERASED = [
+    pytest.param(3, id="a deformable block without a joint", marks=promised),
+    pytest.param(2, id="a deformable block with a joint"),
+    pytest.param(1, id="a rigid block with joints"),
+    pytest.param(0, id="the base"),
+]
+
+
+@pytest.mark.parametrize("steps", [0, 30], ids=lambda n: f"after {n} steps")
+@pytest.mark.parametrize("erased", ERASED)
+def test_a_block_that_is_erased_is_an_error_or_left_out(erased, steps):
+    inYade(
+        f"""
+from test_prompt import brick
+for level in range(3):
+    brick(level)
+brick(0, 1.0)
+O.bodies[0].state.blockedDOFs = "xyzXYZ"
+engines([MasonryJoint()], zones=MasonryZones(bodies=[2, 3]))
+interactions = connect()
+O.dt = 0.5 * criticalTimeStep()[0]
+O.run({steps}, True) if {steps} else None
+O.bodies.erase({erased})
+for act in (
+    lambda: O.step(), lambda: O.step(), lambda: [O.step() for _ in range(200)], lambda: energy(),
+    lambda: criticalTimeStep(), lambda: saveCheckpoint("/dev/null/x"), lambda: [i.phys.stress for i in interactions],
+    lambda: MasonryVtkRecorder(directory="/dev/null")(),
+):
+    try:
+        act()
+    except (ValueError, RuntimeError, OSError, TypeError) as error:
+        print(type(error).__name__, error)
+panel(False)
+O.run(20, True)
+"""
+    )
+
+
+def test_a_joint_that_is_erased_leaves_the_others_alone():
+    inYade(
+        """
+interactions = panel(False)
+O.run(50, True)
+i = interactions[5]
+phys, geom, ids = i.phys, i.geom, (i.id1, i.id2)
+O.interactions.erase(*ids)
+O.run(50, True)
+phys.stress, geom.jumps
+assert O.iter == 100
+others = [o for o in interactions if (o.id1, o.id2) != ids]
+assert len(others) == len(interactions) - 1
+assert all(np.isfinite(s[0]) for o in others for s in o.phys.stress)
+"""
+    )
+
+
+# -- misspelt names --------------------------------------------------------------------------------------------------
+
+
+def ownProperties(cls):
+    return [k for k, v in vars(cls).items() if isinstance(v, property)]
+
+
+def misspelt(name):
+    """The name with two neighbouring letters in the other order."""
+    places = [k for k in range(1, len(name) - 1) if name[k] != name[k + 1]]
+    k = places[len(places) // 2] if places else 0
+    return name[:k] + name[k + 1] + name[k] + name[k + 2 :]
+
+
+@promised
+def test_a_misspelt_property_of_a_joint_is_an_error_that_names_the_right_one():
+    joint = MasonryJoint()
+    with pytest.raises(AttributeError, match="tensileStrenght.*tensileStrength"):
+        joint.tensileStrenght = 0
+    with pytest.raises(AttributeError, match="tensileStrenght.*tensileStrength"):
+        MasonryJoint(tensileStrenght=0)
+    with pytest.raises(AttributeError, match="tensileStrenght.*tensileStrength"):
+        joint.updateAttrs(dict(tensileStrenght=0))
+    assert joint.tensileStrength == MasonryJoint().tensileStrength
+
+
+@promised
+@pytest.mark.parametrize("name", classes)
+def test_a_misspelt_property_is_an_error_that_names_the_right_one(name):
+    cls = getattr(wrapper, name)
+    instance = cls()
+    for right in ownProperties(cls):
+        wrong = misspelt(right)
+        assert wrong != right and not hasattr(instance, wrong)
+        with pytest.raises(AttributeError, match=f"{wrong}.*{right}"):
+            setattr(instance, wrong, 0)
+        with pytest.raises(AttributeError, match=f"{wrong}.*{right}"):
+            cls(**{wrong: 0})
+
+
+@promised
+@pytest.mark.parametrize("name", classes)
+def test_a_property_that_does_not_exist_cannot_be_set(name):
+    instance = getattr(wrapper, name)()
+    with pytest.raises(AttributeError, match="nonsense"):
+        instance.nonsense = 1
+    with pytest.raises(AttributeError, match="nonsense"):
+        instance.updateAttrs(dict(nonsense=1))
+
+
+@promised
+def test_every_property_of_an_object_of_no_scene_can_be_read_and_set_to_what_it_is():
+    """In a YADE of its own: MasonryJointPhys().yielding of commit 0e9b866 ends the process."""
+    inYade(
+        """
+import masonry
+for cls in masonry.classes:
+    instance = globals()[cls]()
+    for name, own in vars(type(instance)).items():
+        if not isinstance(own, property):
+            continue
+        print(cls, name, flush=True)
+        try:
+            value = getattr(instance, name)
+            setattr(instance, name, value)
+            assert type(getattr(instance, name)) is type(value), name
+        except (AttributeError, ValueError) as error:  # read-only; or not without a scene
+            print(type(error).__name__, error)
+    repr(instance.dict())
+"""
+    )

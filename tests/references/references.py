@@ -1,0 +1,656 @@
+"""Short runs whose numbers are stored, so that a rewrite of the internals can be held against them.
+
+    yade -n -x tests/references/references.py             # compares all runs with what is stored
+    yade -n -x tests/references/references.py --write     # makes the stored files anew, with the plugin that is imported
+    yade -n -x tests/references/references.py rigid ...   # only the runs whose names begin so
+
+A run is a scene and its stages. After each stage the state is read through the public Python interface alone: reactions
+of loads, forces on the base, energies, two bodies, sums and extremes over all joints, and a fingerprint of every number
+of every joint, body and node. Time steps are written down here and not taken from criticalTimeStep(), so that a change
+of the limit in its last digit changes the limit alone. The numbers are those of glibc 2.36 on a processor with FMA
+(glibc takes other polynomials without it) and hang on no number of threads.
+"""
+
+import hashlib
+import json
+import math
+import os
+import re
+import struct
+import sys
+import tempfile
+from dataclasses import dataclass
+
+import masonry
+from masonry import (
+    MasonryEnergy,
+    MasonryIntegrator,
+    MasonryJoint,
+    MasonryLoad,
+    MasonryMat,
+    MasonryZones,
+    addBlock,
+    connect,
+    criticalTimeStep,
+    engines,
+    loadCheckpoint,
+    saveCheckpoint,
+)
+from yade import O, Quaternion, Vector3
+
+FOLDER = os.path.dirname(
+    os.path.abspath(sys.argv[0] if __name__ == "__main__" else __file__)
+)
+REMAKE = "yade -n -x tests/references/references.py --write"
+
+LENGTH, THICKNESS, HEIGHT = 0.220, 0.102, 0.081  # of a brick [m]
+TURN = Quaternion(Vector3(1, 2, 0.5).normalized(), 0.7)
+STRAIGHT = Quaternion.Identity
+
+
+# -- what is read ----------------------------------------------------------------------------------------------------
+
+peaks = {}  # smallest and largest reaction of every load since the run began [N]
+
+
+def loads():
+    return [e for e in O.engines if isinstance(e, MasonryLoad)]
+
+
+def engine(kind):
+    return next((e for e in O.engines if isinstance(e, kind)), None)
+
+
+def step(count):
+    driven = list(enumerate(loads()))
+    for _ in range(count):
+        O.step()
+        for number, load in driven:
+            low, high = peaks.get(number, (0.0, 0.0))
+            peaks[number] = min(low, load.reaction), max(high, load.reaction)
+
+
+def spread(rows):
+    """Sum, smallest and largest of every column. The sum is rounded once, so the order of the rows is no matter."""
+    return [f(column) for column in zip(*rows) for f in (math.fsum, min, max)]
+
+
+def state():
+    """All that is stored of an instant: quantity -> list of numbers; and the fingerprint of what stands behind them."""
+    joints = sorted(O.interactions.all(), key=lambda i: (i.id1, i.id2))
+    points = {
+        "stress [Pa]": [s for i in joints for s in i.phys.stress],
+        "jump [m]": [j for i in joints for j in i.geom.jumps],
+        "damage [-]": [d for i in joints for d in i.phys.damage],
+        "slip [m]": [[s] for i in joints for s in i.phys.slip],
+        "dissipated [J]": [i.phys.dissipated for i in joints],
+    }
+    regimes = [r for i in joints for r in i.phys.regime]
+    zones = engine(MasonryZones)
+    if zones:
+        points["node displacement [m]"] = zones.displacements
+        points["node velocity [m/s]"] = zones.velocities
+    bodies = [b.state for b in O.bodies if b]
+    motions = {
+        "position [m]": [b.pos for b in bodies],
+        "orientation [-]": [b.ori for b in bodies],
+        "velocity [m/s]": [b.vel for b in bodies],
+        "spin [rad/s]": [b.angVel for b in bodies],
+    }
+    shown = sorted({len(bodies) // 2, len(bodies) - 1})
+    balance = engine(MasonryEnergy).balance()
+    numbers = {
+        "step": [float(O.iter)],
+        "limit of the time step [s]": [criticalTimeStep()[0]],
+        "peak reaction [N]": [p for n in sorted(peaks) for p in peaks[n]],
+        "reaction [N]": [e.reaction for e in loads()],
+        "work of loads [J]": spread([[e.work] for e in loads()]),
+        "displacement of loads [m]": spread([e.displacement() for e in loads()]),
+        "force on the base [N]": list(O.forces.f(0, True)),
+        "torque on the base [N m]": list(O.forces.t(0, True)),
+        "error of the balance [-]": [balance.pop("error")],
+        "energy [J]": list(balance.values()),
+        "subcontacts in a regime": [
+            float(regimes.count(r))
+            for r in ("elastic", "opening", "slipping", "crushing")
+        ],
+    }
+    numbers.update({name: spread(rows) for name, rows in points.items() if rows})
+    for name, rows in motions.items():
+        numbers[name] = [x for n in shown for x in rows[n]]
+    behind = [
+        x for rows in (*points.values(), *motions.values()) for r in rows for x in r
+    ]
+    behind += [x for values in numbers.values() for x in values]
+    packed = struct.pack(f"{len(behind)}d", *(x + 0.0 for x in behind))  # no -0.0
+    return numbers, hashlib.sha256(packed).hexdigest()[:16]
+
+
+# -- scenes ----------------------------------------------------------------------------------------------------------
+
+
+def box(low, high, turn=STRAIGHT):
+    sides = zip(low, high)
+    (x0, x1), (y0, y1), (z0, z1) = sides
+    return [
+        turn * Vector3(x, y, z) for x in (x0, x1) for y in (y0, y1) for z in (z0, z1)
+    ]
+
+
+def layout(courses, halfUnits, halves):
+    """Running bond: (brick, low, high) of every block."""
+    brick, blocks = 0, []
+    for course in range(courses):
+        cuts = [c for c in range(1, halfUnits) if c % 2 == course % 2]
+        for first, beyond in zip([0, *cuts], [*cuts, halfUnits]):
+            brick += 1
+            ends = range(first, beyond + 1) if halves else (first, beyond)
+            for a, b in zip(ends, list(ends)[1:]):
+                low = (a * LENGTH / 2, 0, course * HEIGHT)
+                high = (b * LENGTH / 2, THICKNESS, (course + 1) * HEIGHT)
+                blocks.append((brick, low, high))
+    return blocks
+
+
+def wall(
+    dt,
+    courses=4,
+    halfUnits=6,
+    halves=True,
+    turn=STRAIGHT,
+    rows=1,
+    deformable=False,
+    divisions=(1, 1, 1),
+    rigidBricks=0,
+    damping=0.6,
+    kind="local",
+    functors=False,
+    pressure=0.12e6,
+    held=True,
+):
+    """A small wall in running bond between plates: bed, head, crack and support joints; the upper plate is driven."""
+    inPlane = turn == STRAIGHT
+    unit = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    plate = MasonryMat(density=2400, young=1e16, jointSet="plate")
+    length, height = halfUnits * LENGTH / 2, courses * HEIGHT
+    put = lambda low, high, mat: addBlock(box(low, high, turn), mat, inPlane=inPlane)
+    base = put((0, 0, -0.1), (length, THICKNESS, 0), plate)
+    brickOf = {
+        put(low, high, unit): brick
+        for brick, low, high in layout(courses, halfUnits, halves)
+    }
+    top = put((0, 0, height), (length, THICKNESS, height + 0.1), plate)
+    if held:
+        O.bodies[base].state.blockedDOFs = "xyzXYZ"
+    up, along = turn * Vector3(0, 0, 1), turn * Vector3(1, 0, 0)
+    joints = [
+        MasonryJoint(name="support", jointSet="plate", elastic=True),
+        MasonryJoint(
+            name="bed",
+            direction=up,
+            compressiveStrength=1.2e6,
+            peakRatio=20,
+            compressiveFractureEnergy=3000,
+            dilatancy=0.1,
+            dilatancyDecay=200,
+            residualFriction=0.3,
+        ),
+        MasonryJoint(
+            name="head", direction=along, tensileStrength=0.05e6, cohesion=0.06e6
+        ),
+    ]
+    crack = MasonryJoint(name="crack", tensileStrength=0.2e6, cohesion=0.4e6, cap=False)
+    load = MasonryLoad(
+        body=top,
+        point=turn * Vector3(0.4 * length, THICKNESS / 3, height),
+        force=turn * Vector3(0, 0, -pressure * length * THICKNESS),
+        direction=turn * Vector3(1, 0 if inPlane else 0.1, 0),
+        driven=True,
+        velocity=0.005,
+    )
+    zones = None
+    if deformable:
+        zones = MasonryZones(
+            bodies=sorted(brickOf)[: len(brickOf) - rigidBricks],
+            divisions=list(divisions),
+            damping=damping,
+            dampingKind=kind,
+            blocked="y" if inPlane else "",
+        )
+    engines(
+        joints,
+        damping=damping,
+        gravity=turn * Vector3(0, 0, -9.81),
+        rows=rows,
+        inPlane=inPlane,
+        loads=[load],
+        zones=zones,
+        functors=functors,
+    )
+    if not functors:
+        engine(MasonryIntegrator).dampingKind = kind
+    connect(
+        lambda one, two, geom: (
+            crack
+            if one.id in brickOf and brickOf.get(two.id) == brickOf[one.id]
+            else None
+        )
+    )
+    O.dt = dt
+
+
+def drive(velocity):
+    def change():
+        loads()[0].velocity = velocity
+
+    return change
+
+
+PUSH = [
+    ("pressed", 60, None),
+    ("pushed", 600, drive(0.15)),
+    ("pushed far", 1200, drive(0.3)),
+    ("pulled back", 600, drive(-0.3)),
+]
+SHORT = [("pressed", 60, None), ("pushed", 600, drive(0.2))]
+
+
+def kinds():
+    """All kinds of joints that a user can make."""
+    brittle = MasonryJoint().brittleCoulomb()
+    brittle.name = "brittle"
+    return [
+        MasonryJoint(name="default"),
+        MasonryJoint(name="elastic", elastic=True),
+        brittle,
+        MasonryJoint(
+            name="dry",
+            tensileStrength=0,
+            cohesion=0,
+            friction=0.6,
+            residualFriction=0.6,
+        ),
+        MasonryJoint(
+            name="dilatant", dilatancy=0.2, dilatancyDecay=3000, residualFriction=0.3
+        ),
+        MasonryJoint(
+            name="tables",
+            tensionTable=[(1, 0), (40, 0.6), (400, 1)],
+            shearTable=[(1, 0), (30, 0.5), (300, 1)],
+            residualCohesion=0.02e6,
+        ),
+        MasonryJoint(
+            name="crushing",
+            compressiveStrength=1e6,
+            peakRatio=20,
+            compressiveFractureEnergy=3000,
+            capShear=2,
+            capLinear=2e4,
+        ),
+        MasonryJoint(name="without cap", cap=False, residualFriction=0.2),
+    ]
+
+
+def couplets(dt, turn=STRAIGHT, damping=0.6, kind="local"):
+    """For every kind of joint a brick on it, and on the brick, by an elastic joint, a block driven up and along."""
+    inPlane = turn == STRAIGHT
+    mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    offered, drives = kinds(), []
+    for number in range(len(offered)):
+        for level, blocked in enumerate(("xyzXYZ", "yXZ" if inPlane else "", "yXYZ")):
+            low = (number, 0, level * HEIGHT)
+            high = (number + LENGTH, THICKNESS, (level + 1) * HEIGHT)
+            body = addBlock(box(low, high, turn), mat, inPlane=inPlane)
+            O.bodies[body].state.blockedDOFs = blocked
+        if not inPlane:
+            O.bodies[body].state.blockedDOFs = "XYZ"
+        top = turn * Vector3(number + LENGTH / 2, THICKNESS / 2, 3 * HEIGHT)
+        for way in ((0, 0, 1), (1, 0, 0)):
+            way = turn * Vector3(*way)
+            drives.append(MasonryLoad(body=body, point=top, direction=way, driven=True))
+    elastic = MasonryJoint(name="between", elastic=True)
+    engines(
+        offered,
+        damping=damping,
+        gravity=turn * Vector3(0, 0, -9.81),
+        rows=1 if inPlane else 2,
+        inPlane=inPlane,
+        loads=drives,
+    )
+    engine(MasonryIntegrator).dampingKind = kind
+    connect(lambda one, two, geom: elastic if one.id % 3 else offered[one.id // 3])
+    O.dt = dt
+
+
+def lead(up, along):
+    """Velocities of the couplets' driven blocks [m/s]."""
+
+    def change():
+        for number, load in enumerate(loads()):
+            load.velocity = along if number % 2 else up
+
+    return change
+
+
+PATH = [
+    ("pressed", 100, lead(-0.0005, 0)),
+    ("opened", 300, lead(0.01, 0)),
+    ("closed again", 320, lead(-0.01, 0)),
+    ("slid", 400, lead(-0.0005, 0.02)),
+    ("slid back", 600, lead(-0.0005, -0.02)),
+    ("crushed", 400, lead(-0.02, 0.005)),
+    ("torn", 600, lead(0.05, 0.01)),
+]
+
+
+def tilted(dt, turn=STRAIGHT, rows=1, deformable=False, about=(0, 1, 0), rate=2.0):
+    """A wall without an upper plate on a base that turns until the wall topples."""
+    inPlane = turn == STRAIGHT
+    unit = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    plate = MasonryMat(density=2400, young=1e16, jointSet="plate")
+    put = lambda low, high, mat: addBlock(box(low, high, turn), mat, inPlane=inPlane)
+    base = put((0, 0, -0.1), (4 * LENGTH / 2, THICKNESS, 0), plate)
+    bricks = [put(low, high, unit) for _, low, high in layout(5, 4, halves=False)]
+    soft = dict(normalStiffness=4e9, shearStiffness=2e9, cap=False)
+    zones = None
+    if deformable:
+        zones = MasonryZones(bodies=bricks, blocked="y" if inPlane else "")
+    engines(
+        [
+            MasonryJoint(
+                name="support",
+                jointSet="plate",
+                elastic=True,
+                **{k: soft[k] for k in ("normalStiffness", "shearStiffness")},
+            ),
+            MasonryJoint(
+                name="dry",
+                tensileStrength=0,
+                cohesion=0,
+                friction=0.6,
+                residualFriction=0.6,
+                **soft,
+            ),
+        ],
+        damping=0.3,
+        gravity=turn * Vector3(0, 0, -9.81),
+        rows=rows,
+        inPlane=inPlane,
+        zones=zones,
+    )
+    connect()
+    s = O.bodies[base].state
+    s.blockedDOFs = "xyzXYZ"
+    s.angVel = turn * (rate * Vector3(*about))
+    O.dt = dt
+
+
+def flying(dt, kind="local", damping=0.1):
+    """A brick that spins about no axis of its own, and a pair that spins until its joint breaks."""
+    mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    for low in ((0, 0, 0), (0, 0, HEIGHT), (1, 0, 0)):
+        high = [a + b for a, b in zip(low, (LENGTH, THICKNESS, HEIGHT))]
+        addBlock(box(low, high, TURN), mat)
+    engines([MasonryJoint()], damping=damping, rows=2)
+    engine(MasonryIntegrator).dampingKind = kind
+    connect()
+    for body, spin in ((0, (3, 1, -2)), (1, (-4, 2, 1)), (2, (3, -14, 5))):
+        s = O.bodies[body].state
+        s.vel = Vector3(0.5, -0.1, 2)
+        s.angVel = Vector3(*spin)
+        own = s.ori.conjugate() * s.angVel
+        s.angMom = s.ori * Vector3(*(i * w for i, w in zip(s.inertia, own)))
+    O.forces.setPermF(2, Vector3(1, 2, -3))
+    O.forces.setPermT(2, Vector3(0.02, 0.01, -0.03))
+    O.dt = dt
+
+
+def otherProperties():
+    joint = next(i.phys.joint for i in O.interactions if i.phys.joint.name == "bed")
+    joint.updateAttrs(dict(cohesion=0.02e6, tensileStrength=0.02e6, dilatancy=0.05))
+
+
+def otherEngines():
+    integrator = engine(MasonryIntegrator)
+    integrator.damping, integrator.dampingKind = 0.3, "combined"
+    integrator.gravity = (0.5, 0, -12)
+    load = loads()[0]
+    load.driven, load.force = False, Vector3(2e3, 0, -4e3)
+    O.dt *= 0.75
+
+
+def outOfThePlane():
+    """A planar run that goes on in space."""
+    for body in (5, 9):
+        O.bodies[body].state.pos += Vector3(0, 2e-6, 0)
+        O.bodies[body].state.blockedDOFs = ""
+    O.bodies[7].state.blockedDOFs = "yX"
+
+
+CHANGES = [
+    ("pressed", 60, None),
+    ("pushed", 300, drive(0.2)),
+    ("other properties", 200, otherProperties),
+    ("other engines", 300, otherEngines),
+    ("out of the plane", 200, outOfThePlane),
+]
+
+
+# -- runs ------------------------------------------------------------------------------------------------------------
+
+
+@dataclass
+class Run:
+    build: callable  # takes the keywords
+    stages: list  # (instant, steps to it, what is changed before them)
+    keywords: dict
+    through: str = (
+        ""  # what the scene goes through after its second stage: "checkpoint" or "file"
+    )
+    like: str = ""  # the run whose stored numbers it must give; its own if empty
+
+
+def run(build, stages, through="", like="", **keywords):
+    return Run(build, stages, keywords, through, like)
+
+
+SPACE = dict(turn=TURN, rows=2)
+RIGID, ZONED = 2.5e-5, 8e-6  # time steps of the walls [s]
+UNLIKE = dict(deformable=True, halves=False, divisions=(2, 1, 1), kind="combined")
+RUNS = {
+    "rigid": run(wall, PUSH, dt=RIGID, halfUnits=8, courses=5),
+    "rigid_combined": run(wall, PUSH, dt=RIGID, kind="combined"),
+    "rigid_space": run(wall, PUSH, dt=RIGID, **SPACE),
+    "rigid_space_combined": run(wall, SHORT, dt=RIGID, kind="combined", **SPACE),
+    "rigid_functors": run(wall, SHORT, dt=RIGID, functors=True),
+    "rigid_space_functors": run(wall, SHORT, dt=RIGID, functors=True, **SPACE),
+    "rigid_resumed": run(
+        wall, PUSH, "checkpoint", "rigid", dt=RIGID, halfUnits=8, courses=5
+    ),
+    "rigid_saved": run(wall, PUSH[:3], "file", dt=RIGID, kind="combined"),
+    "deformable": run(wall, PUSH, dt=ZONED, deformable=True, kind="combined"),
+    "deformable_local": run(wall, SHORT, dt=ZONED, deformable=True),
+    "deformable_space": run(
+        wall, PUSH[:3], dt=ZONED, deformable=True, kind="combined", **SPACE
+    ),
+    "deformable_unlike": run(wall, PUSH[:3], dt=ZONED, rigidBricks=2, **UNLIKE),
+    "deformable_space_unlike": run(
+        wall, SHORT, dt=ZONED, **{**UNLIKE, "divisions": (2, 2, 2)}, **SPACE
+    ),
+    "deformable_functors": run(
+        wall, SHORT, dt=ZONED, deformable=True, kind="combined", functors=True
+    ),
+    "deformable_resumed": run(
+        wall,
+        PUSH,
+        "checkpoint",
+        "deformable",
+        dt=ZONED,
+        deformable=True,
+        kind="combined",
+    ),
+    "deformable_saved": run(
+        wall, PUSH[:3], "file", dt=ZONED, deformable=True, kind="combined"
+    ),
+    "couplets": run(couplets, PATH, dt=2.5e-5),
+    "couplets_combined": run(couplets, PATH, dt=2.5e-5, turn=TURN, kind="combined"),
+    "couplets_undamped": run(couplets, PATH[:3], dt=2.5e-5, damping=0),
+    "flying": run(flying, [("early", 200, None), ("late", 6000, None)], dt=3e-5),
+    "flying_combined": run(
+        flying, [("early", 200, None), ("late", 6000, None)], dt=3e-5, kind="combined"
+    ),
+    "collapse": run(
+        tilted,
+        [("early", 400, None), ("tilted", 3000, None), ("fallen", 5000, None)],
+        dt=5e-5,
+    ),
+    "collapse_space": run(
+        tilted,
+        [("early", 400, None), ("tilted", 2000, None), ("fallen", 5000, None)],
+        dt=5e-5,
+        about=(1, 0.3, 0),
+        **SPACE,
+    ),
+    "collapse_deformable": run(
+        tilted,
+        [("early", 1000, None), ("fallen", 12000, None)],
+        dt=1e-5,
+        deformable=True,
+        rate=8.0,
+    ),
+    "changes": run(wall, CHANGES, dt=RIGID),
+}
+
+
+def go(name):
+    """The run's instants: name -> (quantity -> numbers, fingerprint). Leaves the scene as it is at the end."""
+    wanted, instants = RUNS[name], {}
+    O.reset()
+    peaks.clear()
+    wanted.build(**wanted.keywords)
+    for number, (instant, steps, change) in enumerate(wanted.stages):
+        if number == 2 and wanted.through:
+            through(wanted)
+        if change:
+            change()
+        step(steps)
+        instants[instant] = state()
+    return instants
+
+
+def through(wanted):
+    with tempfile.TemporaryDirectory() as folder:
+        if wanted.through == "file":
+            path = os.path.join(folder, "scene.yade.gz")
+            O.save(path)
+            O.load(path)
+            return
+        path = os.path.join(folder, "checkpoint")
+        saveCheckpoint(path)
+        O.reset()
+        wanted.build(**wanted.keywords)
+        loadCheckpoint(path)
+
+
+# -- files -----------------------------------------------------------------------------------------------------------
+
+
+def pathOf(name):
+    return os.path.join(FOLDER, (RUNS[name].like or name) + ".json")
+
+
+def brief(number):
+    """float.hex() without the zeros at its end; float.fromhex() reads it."""
+    return re.sub(r"\.?0+p", "p", number.hex())
+
+
+def write(name, instants):
+    lines = [
+        f'{{"made by": {json.dumps(f"masonry {masonry.commit}")},',
+        f' "to remake it": {json.dumps(REMAKE)},',
+        ' "instants": {',
+    ]
+    blocks = []
+    for instant, (numbers, fingerprint) in instants.items():
+        rows = [f'  "fingerprint": "{fingerprint}"'] + [
+            f"  {json.dumps(quantity)}: " + json.dumps(" ".join(map(brief, values)))
+            for quantity, values in numbers.items()
+        ]
+        blocks.append(f"  {json.dumps(instant)}: {{\n" + ",\n".join(rows) + "}")
+    with open(pathOf(name), "w") as f:
+        f.write("\n".join(lines) + "\n" + ",\n".join(blocks) + "}}\n")
+
+
+def stored(name):
+    """As go() gives it."""
+    with open(pathOf(name)) as f:
+        instants = json.load(f)["instants"]
+    return {
+        instant: (
+            {
+                quantity: [float.fromhex(v) for v in values.split()]
+                for quantity, values in rows.items()
+                if quantity != "fingerprint"
+            },
+            rows["fingerprint"],
+        )
+        for instant, rows in instants.items()
+    }
+
+
+def sizes(instants):
+    """Largest number of every quantity in a run; an error of a balance is a share, so its size is 1."""
+    largest = {}
+    for numbers, _ in instants.values():
+        for quantity, values in numbers.items():
+            largest[quantity] = max([largest.get(quantity, 0.0), *map(abs, values)])
+    largest["error of the balance [-]"] = 1.0
+    return largest
+
+
+def differences(name, instants):
+    """(instant, quantity, difference over the size of the quantity) of all that is not, bit for bit, what is stored."""
+    before, found = stored(name), []
+    if list(before)[: len(instants)] != list(instants):
+        return [("all", "instants", math.inf)]
+    size = sizes(before)
+    for instant, (numbers, fingerprint) in instants.items():
+        old, oldFingerprint = before[instant]
+        for quantity in {**old, **numbers}:
+            pair = old.get(quantity, []), numbers.get(quantity, [])
+            if pair[0] == pair[1]:
+                continue
+            apart = math.inf
+            if len(pair[0]) == len(pair[1]) and size[quantity] > 0:
+                apart = max(abs(a - b) for a, b in zip(*pair)) / size[quantity]
+            found.append((instant, quantity, apart))
+        if fingerprint != oldFingerprint:
+            found.append((instant, "fingerprint", 0.0))
+    return found
+
+
+def main(words):
+    writing = "--write" in words
+    names = [w for w in words if w != "--write"]
+    different = 0
+    for name in RUNS:
+        if names and not name.startswith(tuple(names)):
+            continue
+        if O.numThreads > 1 and RUNS[name].keywords.get("functors"):
+            print(name, "is left out: the host's own loop sums forces by threads")
+            continue
+        instants = go(name)
+        if writing and not RUNS[name].like:
+            write(name, instants)
+        found = differences(name, instants)
+        different += bool(found)
+        print(name, "differs:" if found else "is the same, bit for bit")
+        for instant, quantity, apart in found:
+            print(f"    {instant}: {quantity}: {apart:.2g}")
+    O.reset()
+    print(f"{different} runs differ, with {O.numThreads} threads; {masonry.__file__}")
+    return 1 if different else 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))
