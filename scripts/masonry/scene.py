@@ -5,44 +5,10 @@ import math
 from yade import O, Vector3, polyhedra_utils, utils
 from yade.wrapper import *
 
-from ._masonry import neighbours
+from ._masonry import connected, neighbours
 
 #: A body that is thinner than this share of its length is no block.
 THINNEST = 1e-6
-
-# until the C++ description lands: from here
-_USUAL = {
-    "MasonryMat": {"young": (1e6, math.inf, "MPa")},
-    "MasonryJoint": {
-        "normalStiffness": (1e7, math.inf, "N/mm³"),
-        "shearStiffness": (1e7, math.inf, "N/mm³"),
-        "tensileStrength": (1e3, 1e9, "MPa"),
-        "cohesion": (1e3, 1e9, "MPa"),
-        "compressiveStrength": (1e3, 1e9, "MPa"),
-        "modeIFractureEnergy": (0.1, 1e6, "N/mm"),
-        "modeIIFractureEnergy": (0.1, 1e6, "N/mm"),
-    },
-}
-
-
-def _fromDocs(cls):
-    for name, value in vars(cls).items():
-        if isinstance(value, property):
-            doc = value.__doc__
-            low, high, other = _USUAL.get(cls.__name__, {}).get(
-                name, (-math.inf, math.inf, "")
-            )
-            yield {
-                "name": name,
-                "unit": doc[doc.index("[") + 1 : doc.index("]")] if "[" in doc else "",
-                "usual_low": low,
-                "usual_high": high,
-                "other_unit": other,
-            }
-
-
-# until the C++ description lands: to here
-
 
 def properties(cls):
     """The plugin's description of the properties of one of its classes: a list of dicts.
@@ -50,8 +16,6 @@ def properties(cls):
     Keys are ``name``, ``unit``, ``meaning``, ``source``, the bounds ``low`` and ``high``, and what is usual:
     ``usual_low`` and ``usual_high``. A value beyond these is probably given in ``other_unit``.
     """
-    if not hasattr(cls, "properties"):  # until the C++ description lands
-        return list(_fromDocs(cls))  # until the C++ description lands
     return cls.properties()
 
 
@@ -275,6 +239,7 @@ def connect(rule=None, tolerance=1e-4, allowGaps=False):
     finally:
         O.engines = engines
         geometry.tolerance = before
+    connected()
     _warn(pairs, joints, sizes, engines)
     return made
 

@@ -70,6 +70,17 @@ bool JointPlan::liesInPlane(const SceneStore& store) const {
     return true;
 }
 
+// The law in the plane knows no stress out of it: what round-off has left there goes.
+void JointPlan::dropStressOutOfPlane(SceneStore& store) {
+    for (const auto& joint : store.joints)
+        for (int p = 0; p < joint.geom->points(); ++p) {
+            auto s = joint.phys->state(p);
+            if (s.shearStress.b == 0) continue;
+            s.shearStress.b = 0;
+            joint.phys->home->columns.set(p, joint.phys->index, s);
+        }
+}
+
 void JointPlan::build(SceneStore& store, bool mayBePlane) {
     zones_ = nullptr;
     for (const auto& kind : store.kinds)
@@ -81,6 +92,7 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
     for (int b = 0; b < store.bodies.size(); ++b)
         if (store.bodies.has(b)) store.bodies.notice(b);
     plane_ = mayBePlane && liesInPlane(store);
+    if (plane_) dropStressOutOfPlane(store);
     dependentPoints_.clear();
     blocks_.clear();
     kinds_.assign(store.kinds.size(), Kind());

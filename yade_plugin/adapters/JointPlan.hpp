@@ -41,6 +41,7 @@ private:
 
     void build(SceneStore&, bool mayBePlane);
     bool liesInPlane(const SceneStore&) const;
+    void dropStressOutOfPlane(SceneStore&);
     void buildKind(SceneStore&, const JointKind&, Kind&, std::vector<std::vector<Receivers::Item>>& atBodies);
     void buildPlaces(const JointKind&, Kind&, std::vector<std::vector<Receivers::Item>>& atPlaces);
     bool noticeBodies(SceneStore&);

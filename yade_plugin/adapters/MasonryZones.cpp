@@ -15,7 +15,7 @@ std::vector<std::string> MasonryZones::problems() const {
     std::vector<std::string> wrong;
     if (divisions.size() != 3) wrong.push_back("divisions must be three whole numbers");
     for (int n : divisions)
-        if (n < 1 || n > 100) wrong.push_back("divisions " + std::to_string(n) + " must be at least 1 and at most 100");
+        if (n < 1 || n > 100) wrong.push_back("divisions " + std::to_string(n) + " must be 1 to 100");
     if (dampingKind != "combined" && dampingKind != "local")
         wrong.push_back("dampingKind '" + dampingKind + "' must be 'combined' or 'local'");
     if (blocked.find_first_not_of("xyz") != std::string::npos)

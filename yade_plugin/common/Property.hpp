@@ -44,8 +44,10 @@ struct Property {
 
     bool isNumber() const { return unit != nullptr; }
 
-    // The bounds in words: "above 0 and at most 1"; empty without bounds.
+    // The bounds in words: "0 to 0.99", "above 0 and at most 1"; empty without bounds.
     std::string bounds() const {
+        const bool both = low > -infinity && high < infinity;
+        if (both && !lowExcluded && !highExcluded) return text(low) + " to " + text(high);
         std::vector<std::string> parts;
         if (low > -infinity) parts.push_back((lowExcluded ? "above " : "at least ") + text(low));
         if (high < infinity) parts.push_back((highExcluded ? "below " : "at most ") + text(high));
@@ -65,7 +67,9 @@ struct Property {
     std::string problem(const std::string& name, double value) const {
         const bool bare = !unit || !*unit || std::string(unit) == "-";
         const auto shown = name + " " + text(value) + (bare ? "" : std::string(" ") + unit) + " must be ";
-        if (!std::isfinite(value)) return shown + "a finite number" + (bounds().empty() ? "" : " " + bounds());
+        const bool range = std::isdigit(static_cast<unsigned char>(bounds()[0])) != 0;
+        if (!std::isfinite(value))
+            return shown + "a finite number" + (bounds().empty() ? "" : (range ? ", " : " ") + bounds());
         const bool tooLow = value < low || (lowExcluded && value == low);
         const bool tooHigh = value > high || (highExcluded && value == high);
         return tooLow || tooHigh ? shown + bounds() : "";
