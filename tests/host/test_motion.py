@@ -278,6 +278,33 @@ def test_one_couplet_of_seventy_that_is_one_per_cent_other_keeps_its_own_numbers
         assert np.abs(one - same).max() < 1e-6 * np.abs(one).max()
 
 
+# -- joints that go, and units that differ ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("functors", [False, True], ids=["loop", "functors"])
+def test_a_block_whose_joint_is_erased_in_the_middle_of_a_run_falls_freely(
+    scene, functors
+):
+    stack(count=3, damping=0, functors=functors)
+    steps(50)
+    O.interactions.erase(1, 2)
+    O.interactions.eraseNonReal()  # YADE only asks for it before
+    before = O.bodies[2].state.vel[2]
+    steps(100)
+    fall = O.bodies[2].state.vel[2] - before
+    assert fall == pytest.approx(-9.81 * 100 * O.dt, rel=1e-9)
+
+
+def test_deformable_units_of_one_shape_and_two_materials_have_their_own_numbers(scene):
+    dense = brick(density=2400, young=9.6e9)
+    units = [addBlock(box((k, 0, 0)), brick() if k else dense) for k in (0, 1)]
+    zones = MasonryZones(bodies=units)
+    volume = UNIT[0] * UNIT[1] * UNIT[2]
+    for unit, density in zip(units, (2400, 1800)):
+        mass = sum(zones.masses[n] for n in range(*zones.nodesOf(unit)))
+        assert mass == pytest.approx(density * volume, rel=1e-9)
+
+
 # -- out of the plane ------------------------------------------------------------------------------------------------
 
 
