@@ -197,6 +197,19 @@ def test_a_drive_at_rest_carries_the_weight_and_what_pushes(scene):
         assert O.forces.f(1, True)[2] == pytest.approx(-weight, abs=1e-7)
 
 
+def test_a_load_that_is_dead_does_no_work(scene):
+    stack(count=2, damping=0.1)
+    load = MasonryLoad(body=1, point=O.bodies[1].state.pos, force=(100, 0, -500))
+    O.engines = O.engines[:2] + [load] + O.engines[2:]
+    steps(50)
+    assert load.work != 0
+    load.dead = True
+    steps(1)  # the other half of the last step's work
+    work = load.work
+    steps(50)
+    assert load.work == work
+
+
 # -- joints that are nearly alike ------------------------------------------------------------------------------------
 
 #: What the last couplet of seventy has one per cent more of: it is far behind the first that are taken together.
