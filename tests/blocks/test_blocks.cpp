@@ -508,8 +508,7 @@ TEST_CASE("combined damping of a node takes nothing of a growing force, half of 
             const double taken = alpha * std::abs(force) * (combined ? share : 1);
             for (std::size_t row = 0; row < rows; ++row)
                 for (double now : v[row].lane)
-                    CHECK((now - velocity) * matrix.masses[row / 3] / dt ==
-                          within(force - taken, 1e-6));
+                    CHECK((now - velocity) * matrix.masses[row / 3] / dt == within(force - taken, 1e-6));
         }
 }
 

@@ -73,6 +73,8 @@ def test_what_a_script_changes_in_engines_is_kept(tmp_path):
     load.velocity, load.driven, load.dead = 0.125, False, True
     zones.damping, zones.dampingKind = 0.4, "local"
     O.forces.setPermF(1, Vector3(1, 2, 3))
+    O.forces.setPermT(1, Vector3(0.3, 0.1, 0.2))
+    O.bodies[0].state.isDamped = False
     O.dt *= 0.5
     dt = O.dt
     run(3)
@@ -85,6 +87,8 @@ def test_what_a_script_changes_in_engines_is_kept(tmp_path):
     assert (zones.damping, zones.dampingKind) == (0.4, "local")
     assert (O.iter, O.dt) == (3, dt)
     assert O.forces.permF(1) == Vector3(1, 2, 3)
+    assert O.forces.permT(1) == Vector3(0.3, 0.1, 0.2)
+    assert not O.bodies[0].state.isDamped
     assert (O.forces.f(1, True) - force).norm() < 1e-12 * force.norm()
 
 
@@ -111,6 +115,17 @@ def test_a_checkpoint_of_another_scene_is_refused_and_changes_nothing(tmp_path):
     joint = next(i.phys.joint for i in interactions if i.phys.joint.name == "weak")
     joint.cohesion *= 1.0000001
     refused("its joints are others, or have other properties")
+
+
+def test_a_checkpoint_of_blocks_of_another_material_is_refused(tmp_path):
+    path = str(tmp_path / "c")
+    panel(False, "deformable")
+    run(5)
+    saveCheckpoint(path)
+    panel(False, "deformable")
+    O.bodies[1].mat.young *= 1.01  # no mass and no stiffness of a joint hangs on it
+    with pytest.raises(ValueError, match="is of another scene: its blocks are others"):
+        loadCheckpoint(path)
 
 
 @pytest.fixture

@@ -197,6 +197,19 @@ def test_a_drive_at_rest_carries_the_weight_and_what_pushes(scene):
         assert O.forces.f(1, True)[2] == pytest.approx(-weight, abs=1e-7)
 
 
+def test_a_load_that_is_dead_does_no_work(scene):
+    stack(count=2, damping=0.1)
+    load = MasonryLoad(body=1, point=O.bodies[1].state.pos, force=(100, 0, -500))
+    O.engines = O.engines[:2] + [load] + O.engines[2:]
+    steps(50)
+    assert load.work != 0
+    load.dead = True
+    steps(1)  # the other half of the last step's work
+    work = load.work
+    steps(50)
+    assert load.work == work
+
+
 # -- joints that are nearly alike ------------------------------------------------------------------------------------
 
 #: What the last couplet of seventy has one per cent more of: it is far behind the first that are taken together.
@@ -276,6 +289,33 @@ def test_one_couplet_of_seventy_that_is_one_per_cent_other_keeps_its_own_numbers
     # what is left is round-off of places 17 m away, 2e-15 m, times stiffness: 1e-4 of some 1e3 Pa
     for one, same in zip(*ends):
         assert np.abs(one - same).max() < 1e-6 * np.abs(one).max()
+
+
+# -- joints that go, and units that differ ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("functors", [False, True], ids=["loop", "functors"])
+def test_a_block_whose_joint_is_erased_in_the_middle_of_a_run_falls_freely(
+    scene, functors
+):
+    stack(count=3, damping=0, functors=functors)
+    steps(50)
+    O.interactions.erase(1, 2)
+    O.interactions.eraseNonReal()  # YADE only asks for it before
+    before = O.bodies[2].state.vel[2]
+    steps(100)
+    fall = O.bodies[2].state.vel[2] - before
+    assert fall == pytest.approx(-9.81 * 100 * O.dt, rel=1e-9)
+
+
+def test_deformable_units_of_one_shape_and_two_materials_have_their_own_numbers(scene):
+    dense = brick(density=2400, young=9.6e9)
+    units = [addBlock(box((k, 0, 0)), brick() if k else dense) for k in (0, 1)]
+    zones = MasonryZones(bodies=units)
+    volume = UNIT[0] * UNIT[1] * UNIT[2]
+    for unit, density in zip(units, (2400, 1800)):
+        mass = sum(zones.masses[n] for n in range(*zones.nodesOf(unit)))
+        assert mass == pytest.approx(density * volume, rel=1e-9)
 
 
 # -- out of the plane ------------------------------------------------------------------------------------------------

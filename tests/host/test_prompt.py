@@ -273,6 +273,7 @@ assert all((before[name] == after[name]).all() for name in before)
 # -- other engines in the middle -------------------------------------------------------------------------------------
 
 
+@promised
 @pytest.mark.slow
 @THREADS
 @pytest.mark.parametrize("blocks", ["rigid", "deformable"])

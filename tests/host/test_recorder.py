@@ -131,6 +131,26 @@ def test_a_cell_of_a_joint_lies_around_its_subcontact_and_has_its_area(frame):
     assert row == len(corners)
 
 
+def test_the_points_of_a_joint_move_by_the_mean_of_its_two_blocks(frame):
+    _, folder, _ = frame
+    _, points, places, corners, _ = written(folder, "joints")
+
+    def moved(s, place):
+        return s.pos + s.ori * s.refOri.conjugate() * (place - s.refPos) - place
+
+    row, size = 0, np.abs(points["displacement"]).max()
+    assert size > 1e-5
+    for i in O.interactions:
+        states = [O.bodies[body].state for body in (i.id1, i.id2)]
+        for _ in i.geom.areas:
+            for point in corners[row]:
+                place = Vector3(*places[point])
+                mean = 0.5 * (moved(states[0], place) + moved(states[1], place))
+                there = Vector3(*points["displacement"][point])
+                assert (there - mean).norm() < 1e-9 * size
+            row += 1
+
+
 def test_the_points_of_blocks_move_as_bodies_and_nodes_do(frame):
     _, folder, _ = frame
     cells, points, places, corners, types = written(folder, "blocks")
