@@ -82,7 +82,10 @@ def addBlock(vertices, material, inPlane=False, color=(0.75, 0.7, 0.65)):
             )
     _refuse(problems)
     body = polyhedra_utils.polyhedra(material, v=points, color=color)
-    state = body.state
+    state = material.newAssocState()  # beside those of the other blocks
+    for name in ("mass", "inertia", "pos", "ori"):
+        setattr(state, name, getattr(body.state, name))
+    body.state = state
     hull = body.shape.v
     for n, p in enumerate(points if len(hull) < len(points) else []):
         if p in points[:n]:

@@ -90,7 +90,7 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
         zones_->dropDependentPoints();
     }
     for (int b = 0; b < store.bodies.size(); ++b)
-        if (store.bodies.has(b)) store.bodies.notice(b);
+        if (store.bodies.has(b)) store.bodies.noticeAll(b);
     plane_ = mayBePlane && liesInPlane(store);
     if (plane_) dropStressOutOfPlane(store);
     dependentPoints_.clear();
@@ -226,20 +226,32 @@ void JointPlan::buildPlaces(const JointKind& kind, Kind& made, std::vector<std::
 
 // ---- a step -----------------------------------------------------------------------------------------------------
 
-// Takes what somebody moved; whether the bodies are where the plan can follow them: in the plane, if it is for the
-// plane.
+// Takes what somebody moved; whether the bodies are where the plan can follow them: in the plane, if it is for the plane.
 bool JointPlan::noticeBodies(SceneStore& store) {
+    constexpr int piece = 64;
     auto& bodies = store.bodies;
-    const int count = bodies.size();
+    const int pieces = (bodies.size() + piece - 1) / piece;
     bool fits = true;
 #pragma omp parallel for schedule(static) reduction(&& : fits)
-    for (int b = 0; b < count; ++b) {
-        if (!joined_[b]) continue;
-        bodies.noticePlace(b);
+    for (int n = 0; n < pieces; ++n) {
+        const int first = n * piece, beyond = std::min(bodies.size(), first + piece);
+        double aside = 0; // how far bodies are out of the plane
+        for (int b = first; b < beyond; ++b) {
+            if (!joined_[b]) continue;
+            bodies.noticePlace(b);
+            aside = std::max(aside, std::abs(bodies.position[1][b] - referenceY_[b]));
+            fits = fits && (bodies.isUnit[b] || !plane_ || heldInPlane(bodies, b));
+        }
         if (!plane_) continue;
-        fits = fits && aboutY(bodies.orientationOf(b) * bodies.fromReference[b], turn_[0][b], turn_[1][b]);
-        fits = fits && std::abs(bodies.position[1][b] - referenceY_[b]) < flat;
-        fits = fits && (momentPlace_[b] >= 0 || heldInPlane(bodies, b));
+        const double* orientation[4];
+        const double* fromReference[4];
+        for (int d = 0; d < 4; ++d) {
+            orientation[d] = &bodies.orientation[d][first];
+            fromReference[d] = &bodies.fromReference[d][first];
+        }
+        const double turned =
+            turnsInPlane(beyond - first, orientation, fromReference, &turn_[0][first], &turn_[1][first]);
+        fits = fits && aside < flat && turned < flat; // false for what is not finite, too
     }
     return fits;
 }

@@ -61,57 +61,56 @@ EnergyLedger MasonryIntegrator::advance(SceneStore& store, const Vector3r* force
                                         int beyond) {
     constexpr int ahead = 8;
     auto& bodies = store.bodies;
+    const int count = beyond - first;
+    const bool thoroughly = scene->iter % 10 == 0;
     EnergyLedger sum;
     RigidMotion motion;
-    unsigned axes = 0;
-    bool mine[RigidMotion::most];
-    for (int b = first; b < beyond; ++b) {
-        const int i = b - first;
-        if (b + ahead < beyond && bodies.has(b + ahead)) bodies.prefetch(b + ahead);
-        mine[i] = false;
-        motion.alpha[i] = 0;
-        for (int d = 0; d < 6; ++d)
-            motion.free[d][i] = motion.force[d][i] = 0;
-        if (!bodies.has(b) || (store.zones && store.zones->unitOf(b))) continue;
-        bodies.notice(b);
-        const Vector3r moved(bodies.position[0][b] - bodies.referencePosition[0][b],
-                             bodies.position[1][b] - bodies.referencePosition[1][b],
-                             bodies.position[2][b] - bodies.referencePosition[2][b]);
-        sum.fallen += bodies.mass[b] * gravity.dot(moved);
-        const unsigned own = bodies.axes(b);
-        if (own == 0) continue;
-        if (bodies.spins(b)) {
+    unsigned axes = 0, spinning = 0;
+    unsigned char moved[RigidMotion::most]; // bits in which a body is free or moves, if it is moved by the columns
+    for (int i = 0; i < count; ++i) {
+        const int b = first + i;
+        moved[i] = 0;
+        if (i + ahead < count && bodies.has(b + ahead)) bodies.prefetch(b + ahead);
+        if (!bodies.has(b) || bodies.isUnit[b]) continue;
+        thoroughly ? bodies.noticeAll(b) : bodies.notice(b);
+        double fall = 0;
+        for (int d = 0; d < 3; ++d)
+            if (gravity[d] != 0) fall += gravity[d] * (bodies.position[d][b] - bodies.referencePosition[d][b]);
+        sum.fallen += bodies.mass[b] * fall;
+        if (bodies.spins(b))
+            ++spinning;
+        else
+            axes |= moved[i] = (unsigned char)(bodies.axes(b));
+    }
+    if (axes != 0) {
+        const RigidMotion::Around around{scene->dt, {gravity[0], gravity[1], gravity[2]}, combined()};
+        double unused[RigidMotion::most] = {}; // local damping looks at no earlier forces
+        double* last[6];
+        for (int i = 0; i < count; ++i)
+            motion.alpha[i] = bodies.isDamped(first + i) ? damping : 0;
+        for (int d = 0; d < 6; ++d) {
+            last[d] = combined() ? &last_[d][first] : unused;
+            if (!(axes >> d & 1)) continue;
+            const Vector3r* on = d < 3 ? forces : torques;
+            for (int i = 0; i < count; ++i) {
+                motion.force[d][i] = on[first + i][d % 3];
+                motion.free[d][i] = moved[i] != 0 && !bodies.isBlocked(first + i, d);
+            }
+        }
+        motion.advance(bodies, last, first, count, around, axes);
+        for (int i = 0; i < count; ++i) {
+            if (moved[i] == 0) continue;
+            bodies.give(first + i, axes);
+            sum.external += motion.work[i];
+            sum.damped += motion.damped[0][i];
+            sum.pendingDamped += motion.damped[1][i];
+            sum.kinetic += motion.kinetic[i];
+        }
+        sum.pendingExternal = sum.external;
+    }
+    for (int b = first; spinning > 0 && b < beyond; ++b) // after the others, whose columns carried theirs along
+        if (bodies.has(b) && !bodies.isUnit[b] && bodies.spins(b))
             sum.add(turnFreely(store, forces[b], torques[b], b));
-            continue;
-        }
-        mine[i] = true;
-        axes |= own;
-        motion.alpha[i] = bodies.isDamped(b) ? damping : 0;
-        for (int d = 0; d < 3; ++d) {
-            motion.force[d][i] = forces[b][d];
-            motion.force[3 + d][i] = torques[b][d];
-            motion.free[d][i] = !bodies.isBlocked(b, d);
-            motion.free[3 + d][i] = !bodies.isBlocked(b, 3 + d);
-        }
-    }
-    if (axes == 0) return sum;
-    const RigidMotion::Around around{scene->dt, {gravity[0], gravity[1], gravity[2]}, combined()};
-    double unused[RigidMotion::most] = {}; // local damping looks at no earlier forces
-    double* last[6];
-    for (int d = 0; d < 6; ++d)
-        last[d] = combined() ? &last_[d][first] : unused;
-    motion.advance(bodies, last, first, beyond - first, around, axes);
-    for (int b = first; b < beyond; ++b) {
-        const int i = b - first;
-        if (!mine[i]) continue;
-        bodies.give(b);
-        EnergyLedger own;
-        own.external = own.pendingExternal = motion.work[i];
-        own.damped = motion.damped[0][i];
-        own.pendingDamped = motion.damped[1][i];
-        own.kinetic = motion.kinetic[i];
-        sum.add(own);
-    }
     return sum;
 }
 

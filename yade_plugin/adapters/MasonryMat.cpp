@@ -1,4 +1,30 @@
 #include "MasonryMat.hpp"
+#include <memory>
+#include <mutex>
+#include <new>
 
 template class masonry::Adapter<masonry::MasonryMat, yade::Material>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryMat)
+
+namespace masonry {
+
+using yade::State;
+
+shared_ptr<State> MasonryMat::newAssocState() const {
+    constexpr int places = 64;
+    struct Shelf { // lives as long as a State on it
+        alignas(64) unsigned char memory[places][sizeof(State)];
+    };
+    static std::mutex mutex;
+    static std::shared_ptr<Shelf> shelf;
+    static int used = places;
+    const std::lock_guard<std::mutex> held(mutex);
+    if (used == places) {
+        shelf = std::make_shared<Shelf>();
+        used = 0;
+    }
+    auto* state = new (shelf->memory[used++]) State;
+    return shared_ptr<State>(state, [kept = shelf](State* s) { s->~State(); });
+}
+
+} // namespace masonry

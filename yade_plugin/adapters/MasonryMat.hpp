@@ -40,6 +40,9 @@ class MasonryMat : public Adapter<MasonryMat, yade::Material> {
     }
     std::string title() const { return "MasonryMat \"" + label + "\""; }
 
+    // States of units stand beside each other in the memory, because every step reads and writes them all.
+    shared_ptr<yade::State> newAssocState() const override;
+
     double shearModulus() const { return young / (2 * (1 + poisson)); }
 
 private:

@@ -5,6 +5,7 @@
 #include "MasonryJointLoop.hpp"
 #include "MasonryJointPhys.hpp"
 #include "MasonryLoad.hpp"
+#include "MasonryZones.hpp"
 #include "SceneCheck.hpp"
 #include <algorithm>
 #include <exception>
@@ -75,7 +76,11 @@ bool SceneStore::readEngines() {
 }
 
 void SceneStore::update(bool inStep) {
-    if (readEngines()) checked_ = false;
+    if (readEngines()) {
+        checked_ = false;
+        seenChanges_ = -1; // other engines move the bodies
+    }
+    if (zones) zones->units(); // meshed before anything asks for nodes
     const bool looked = inStep && seenStep_ == scene_.iter;
     const bool thoroughly = !inStep || scene_.iter % 100 == 0; // States hardly ever change hands
     const bool sameBodies = looked || bodies.fits(scene_, thoroughly);
@@ -84,6 +89,8 @@ void SceneStore::update(bool inStep) {
     checked_ = false;
     readJoints();
     bodies.read(scene_);
+    for (int b = 0; zones && b < bodies.size(); ++b)
+        bodies.isUnit[b] = zones->unitOf(b) != nullptr;
     static long readings = 0;
     revision_ = ++readings;
     seenChanges_ = changes;

@@ -44,7 +44,8 @@ const Member members[] = {
     AT(Material, id),
     AT(Material, label),
     AT(Material, density),
-    {"LudingMat", "k1", sizeof(Material)}, // the first member of a derived class gives the size of its base
+    {"CpmState", "epsVolumetric", sizeof(State)}, // the first member of a derived class gives the size of its base
+    {"LudingMat", "k1", sizeof(Material)},
     {"NormPhys", "kn", sizeof(IPhys)},
     {"PartialEngine", "ids", sizeof(Engine)},
     AT(Body, id),

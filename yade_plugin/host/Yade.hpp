@@ -103,6 +103,7 @@ private:
     char updateMutex_[40];
 
 public:
+    State();
     Vector3r pos;
     Quaternionr ori;
     Vector3r vel;

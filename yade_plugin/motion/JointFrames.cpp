@@ -1,6 +1,8 @@
 #include "JointFrames.hpp"
 #include "common/Vectorised.hpp"
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 namespace masonry {
 
@@ -167,6 +169,26 @@ MASONRY_VECTORISED void finishNodal(int n, const JointFrames& f, double* __restr
             onJoints[9 * i + 3 + d] = onJoints[9 * i + 6 + d] =
                 0.5 * (f.axes[3 * d][i] * f.torque[0][i] + f.axes[3 * d + 1][i] * f.torque[1][i] +
                        f.axes[3 * d + 2][i] * f.torque[2][i]);
+}
+
+MASONRY_VECTORISED double turnsInPlane(int n, const double* const* q, const double* const* r, double* cosine,
+                                       double* sine) {
+    const double *a = q[0], *b = q[1], *c = q[2], *d = q[3], *e = r[0], *f = r[1], *g = r[2], *h = r[3];
+    std::int64_t out = 0; // bits of the largest that lies out of the plane: positive numbers are ordered as their bits
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < n; ++i) {
+        cosine[i] = a[i] * e[i] - b[i] * f[i] - c[i] * g[i] - d[i] * h[i];
+        sine[i] = a[i] * g[i] + c[i] * e[i] + d[i] * f[i] - b[i] * h[i];
+        const double x = a[i] * f[i] + b[i] * e[i] + c[i] * h[i] - d[i] * g[i];
+        const double z = a[i] * h[i] + d[i] * e[i] + b[i] * g[i] - c[i] * f[i];
+        const double away = std::abs(x) + std::abs(z);
+        std::int64_t bits;
+        std::memcpy(&bits, &away, sizeof bits);
+        out = bits > out ? bits : out;
+    }
+    double largest;
+    std::memcpy(&largest, &out, sizeof largest);
+    return largest;
 }
 
 // ---- in the plane -----------------------------------------------------------------------------------------------

@@ -17,6 +17,10 @@ struct JointFrames { // of some joints, as scratch in the innermost cache
     double force[3][most], torque[3][most]; // on block 1, sums over the points
 };
 
+// Turns of bodies from their reference orientations as rotations about y: cosine and sine of half angles, from the
+// orientations `q` and the inverse reference orientations `r`. Gives how far the turns are from that, at most.
+double turnsInPlane(int n, const double* const* q, const double* const* r, double* cosine, double* sine);
+
 // Joints between rigid blocks. `turn` and `f1`, `f2`: quaternions of the blocks and of the joints' axes in each block;
 // `span`: from centre to centre in the reference state, in the joints' axes; `a`: a point's offset from the centre of
 // block 1 there. `onJoints`: per joint 9 numbers, force on block 1 and torques on both.

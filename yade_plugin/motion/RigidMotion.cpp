@@ -3,6 +3,7 @@
 #include "common/Vectorised.hpp"
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace masonry {
 
@@ -21,18 +22,19 @@ void RigidColumns::resize(int count) {
 // Half of a step's work is done with the velocity before it and half with the one after.
 MASONRY_VECTORISED
 void RigidMotion::push(int n, const Axis& axis, const Around& around, double gravity) {
-    const double* __restrict inert = axis.inert, * __restrict damping = axis.alpha, * __restrict moves = axis.free, * __restrict push = axis.force;
-    double* __restrict velocity = axis.velocity, * __restrict last = axis.last;
+    const double *inert = axis.inert, *moves = axis.free, *pushed = axis.force;
+    double *velocity = axis.velocity, *last = axis.last;
     const double dt = around.dt, half = 0.5 * dt, rate = 1 / dt;
     const double share = dampingShare(around.combined), calms = around.combined ? 1 : 0;
+    MASONRY_INDEPENDENT
     for (int i = 0; i < n; ++i) {
-        const double before = velocity[i], mass = inert[i], undamped = push[i] / mass + gravity, seen = last[i];
+        const double before = velocity[i], mass = inert[i], undamped = pushed[i] / mass + gravity, seen = last[i];
         const double middle = rate * before + 0.5 * undamped, change = undamped - seen;
         const double trend = calms * ((change > 0 ? 1.0 : 0.0) - (change < 0 ? 1.0 : 0.0));
-        const double taken = dampingTaken(middle, share * damping[i] * std::abs(undamped), trend);
+        const double taken = dampingTaken(middle, share * alpha[i] * std::abs(undamped), trend);
         const bool isFree = moves[i] != 0;
         const double end = before + dt * (undamped - taken), after = isFree ? end : before;
-        const double drag = half * mass * taken, held = half * before * (push[i] + mass * gravity);
+        const double drag = half * mass * taken, held = half * before * (pushed[i] + mass * gravity);
         const double energy = 0.5 * mass * before * after;
         kinetic[i] += isFree ? energy : 0;
         damped[0][i] += isFree ? drag * before : 0;
@@ -52,18 +54,24 @@ void RigidMotion::move(int n, double dt, const double* __restrict velocity, doub
 // By the rotation vector. The series are exact to the last digit up to a thousandth; hardly anything turns faster.
 MASONRY_VECTORISED
 void RigidMotion::turn(int n, double dt, const double* const* spin, double* const* orientation) {
-    const double* __restrict wx = spin[0], * __restrict wy = spin[1], * __restrict wz = spin[2];
-    double* __restrict q0 = orientation[0], * __restrict q1 = orientation[1], * __restrict q2 = orientation[2], * __restrict q3 = orientation[3];
-    double cosine[most], sinc[most], angle2[most];
+    const double *wx = spin[0], *wy = spin[1], *wz = spin[2];
+    double *q0 = orientation[0], *q1 = orientation[1], *q2 = orientation[2], *q3 = orientation[3];
+    double cosine[most], sinc[most], angle2[most]; // of half the angle
+    std::int64_t quick = 0; // how many turn too quickly for the series
     for (int i = 0; i < n; ++i) {
         const double h2 = 0.25 * dt * dt * (wx[i] * wx[i] + wy[i] * wy[i] + wz[i] * wz[i]);
-        cosine[i] = 1 - h2 * (0.5 - h2 / 24), sinc[i] = 1 - h2 * (1 / 6.0 - h2 / 120), angle2[i] = h2;
+        cosine[i] = 1 - h2 * (0.5 - h2 / 24);
+        sinc[i] = 1 - h2 * (1 / 6.0 - h2 / 120);
+        angle2[i] = h2;
+        quick += h2 > 1e-6 ? 1 : 0;
     }
-    for (int i = 0; i < n; ++i)
+    for (int i = 0; quick && i < n; ++i)
         if (angle2[i] > 1e-6) {
             const double h = std::sqrt(angle2[i]);
-            cosine[i] = std::cos(h), sinc[i] = std::sin(h) / h;
+            cosine[i] = std::cos(h);
+            sinc[i] = std::sin(h) / h;
         }
+    MASONRY_INDEPENDENT
     for (int i = 0; i < n; ++i) {
         const double by = 0.5 * dt * sinc[i], w = cosine[i], x = by * wx[i], y = by * wy[i], z = by * wz[i];
         const double a = q0[i], b = q1[i], c = q2[i], d = q3[i];
