@@ -360,7 +360,7 @@ TEST_CASE("refusals name the joint, the value with its unit and the bound, all a
          "exponential table"},
         {[](P& p) { p.compressiveStrength = 0; }, "compressive strength 0 Pa must be above 0"},
         {[](P& p) { p.elasticLimitRatio = 1; }, "elastic limit ratio 1 must be above 0 and at most 0.999"},
-        {[](P& p) { p.residualStrengthRatio = 1; }, "residual strength ratio 1 must be at least 0 and at most 0.999"},
+        {[](P& p) { p.residualStrengthRatio = 1; }, "residual strength ratio 1 must be 0 to 0.999"},
         {[](P& p) { p.peakRatio = 0.5; }, "peak ratio 0.5 must be at least 1"},
         {[](P& p) { p.capNormal = 0; }, "cap normal 0 must be above 0"},
         {[](P& p) { p.capShear = -1; }, "cap shear -1 must be at least 0"},

@@ -630,8 +630,8 @@ def differences(name, instants):
 
 
 def main(words):
-    writing = "--write" in words
-    names = [w for w in words if w != "--write"]
+    writing, telling = "--write" in words, "--told" in words
+    names = [w for w in words if not w.startswith("--")]
     different = 0
     for name in RUNS:
         if names and not name.startswith(tuple(names)):
@@ -640,6 +640,8 @@ def main(words):
             print(name, "is left out: the host's own loop sums forces by threads")
             continue
         instants = go(name)
+        for instant, (_, fingerprint) in instants.items() if telling else ():
+            print("told", name, instant, fingerprint)
         if writing and not RUNS[name].like:
             write(name, instants)
         found = differences(name, instants)

@@ -215,7 +215,7 @@ protected:
             using T = decltype(valueOf(self(), member));
             if constexpr (std::is_arithmetic<T>::value) {
                 if (property.isNumber())
-                    if (const auto what = property.problem(inWords(name), double(valueOf(self(), member)));
+                    if (const auto what = property.problem(name, double(valueOf(self(), member)));
                         !what.empty())
                         wrong.push_back(what);
             } else if constexpr (std::is_same<T, Vector3r>::value) {
@@ -223,7 +223,7 @@ protected:
                     const auto unit = property.isNumber() && property.unit != std::string("-")
                                           ? std::string(" [") + property.unit + "]"
                                           : "";
-                    wrong.push_back(inWords(name) + " must be finite numbers" + unit);
+                    wrong.push_back(std::string(name) + " must be finite numbers" + unit);
                 }
             }
         });

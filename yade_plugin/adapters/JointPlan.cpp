@@ -181,8 +181,6 @@ void JointPlan::buildKind(SceneStore& store, const JointKind& kind, Kind& made,
         for (int j = 0; alike && j < count; ++j)
             alike = sameButRoundOff((*s.column)[j], (*s.column)[0], s.scale);
     if (!alike) return;
-    kind.shapes->shareShapes();
-    if (!kind.shapes->alike) return;
     made.alike = true;
     for (const auto& s : shared) {
         s.column->resize(most);

@@ -80,7 +80,6 @@ void SceneStore::update(bool inStep) {
         checked_ = false;
         seenChanges_ = -1; // other engines move the bodies
     }
-    if (zones) zones->units(); // meshed before anything asks for nodes
     const bool looked = inStep && seenStep_ == scene_.iter;
     const bool thoroughly = !inStep || scene_.iter % 100 == 0; // States hardly ever change hands
     const bool sameBodies = looked || bodies.fits(scene_, thoroughly);
@@ -89,8 +88,9 @@ void SceneStore::update(bool inStep) {
     checked_ = false;
     readJoints();
     bodies.read(scene_);
-    for (int b = 0; zones && b < bodies.size(); ++b)
-        bodies.isUnit[b] = zones->unitOf(b) != nullptr;
+    if (zones)
+        for (int id : zones->bodies)
+            if (id >= 0 && id < bodies.size()) bodies.isUnit[id] = true;
     static long readings = 0;
     revision_ = ++readings;
     seenChanges_ = changes;
@@ -108,11 +108,15 @@ void SceneStore::readJoints() {
     std::vector<Group> groups;
     std::vector<JointView> found;
     const MasonryZones* zonesOfJoints = nullptr;
+    bool broken = false;
     for (std::size_t n = 0; n < scene_.interactions->currSize; ++n) {
         const auto& interaction = *scene_.interactions->linIntrs[n];
         const auto geom = boost::dynamic_pointer_cast<MasonryJointGeom>(interaction.geom);
         const auto phys = boost::dynamic_pointer_cast<MasonryJointPhys>(interaction.phys);
-        if (!geom || !phys || !geom->made() || !phys->made() || geom->points() != phys->points()) continue;
+        if (!geom || !phys || !geom->made() || !phys->made() || geom->points() != phys->points()) {
+            broken = broken || geom || phys;
+            continue;
+        }
         const auto& hung = geom->reference().hung;
         if (hung && zonesOfJoints && zonesOfJoints != hung->zones.get())
             throw std::invalid_argument("the joints of a scene can belong to one MasonryZones only");
@@ -154,10 +158,11 @@ void SceneStore::readJoints() {
             joint.phys->home = kind.states;
             joint.geom->index = joint.phys->index = j;
         }
+        kind.shapes->shareShapes();
         made.push_back(kind);
     }
-    for (auto& kind : kinds) // what still sees these was taken out of the scene
-        kind.shapes->left = kind.states->left = true;
+    for (auto& kind : kinds) // what still sees these was taken out of the scene, or is half of a broken joint
+        kind.shapes->left = kind.states->left = !broken;
     kinds = std::move(made);
     joints = std::move(found);
 }
@@ -167,6 +172,7 @@ void SceneStore::check() {
         throw std::invalid_argument("O.dt " + text(scene_.dt) + " s must be a finite number above 0");
     if (checked_) return;
     checkScene(*this);
+    if (zones) zones->units(); // meshed when nothing else is wrong
     if (connected_.empty() && !joints.empty()) connected();
     checked_ = true;
 }
