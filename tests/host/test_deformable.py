@@ -219,9 +219,6 @@ def hold(load, steps=20000):
     return load.reaction
 
 
-@pytest.mark.xfail(
-    reason="a weight of zero before another ends the sum over an attachment's nodes: such a point hangs in the air"
-)
 @pytest.mark.parametrize("functors", [False, True], ids=["loop", "functors"])
 @pytest.mark.parametrize("seed", range(3))
 def test_bricks_that_move_together_do_not_strain_their_joint_whatever_their_meshes(

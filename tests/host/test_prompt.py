@@ -18,10 +18,6 @@ from yade import wrapper
 HERE = os.path.dirname(__file__)
 
 #: Promises that commit 0e9b866 does not keep; every later build must.
-promised = pytest.mark.xfail(
-    masonry.commit.startswith("0e9b866"), reason="promised for builds after 0e9b866"
-)
-
 BEGIN = """
 import sys
 sys.path.insert(1, "/usr/lib/x86_64-linux-gnu/yade-double/py")
@@ -124,7 +120,6 @@ def test_reading_beside_a_run_changes_nothing_of_it(blocks, threads):
 
 
 @pytest.mark.slow
-@promised
 @THREADS
 @KINDS
 def test_writing_a_property_to_the_same_value_beside_a_run_does_no_harm(
@@ -135,7 +130,6 @@ def test_writing_a_property_to_the_same_value_beside_a_run_does_no_harm(
 
 
 @pytest.mark.slow
-@promised
 @KINDS
 def test_a_checkpoint_saved_beside_a_run_is_of_a_whole_step_or_refused(
     blocks, tmp_path
@@ -221,7 +215,6 @@ GONE = {
 }
 
 
-@promised
 @pytest.mark.parametrize("gone", GONE)
 def test_what_outlives_its_scene_raises_an_error_when_read(gone):
     code = f"""
@@ -273,7 +266,6 @@ assert all((before[name] == after[name]).all() for name in before)
 # -- other engines in the middle -------------------------------------------------------------------------------------
 
 
-@promised
 @pytest.mark.slow
 @THREADS
 @pytest.mark.parametrize("blocks", ["rigid", "deformable"])
@@ -349,7 +341,6 @@ def stack(deformable=False, functors=False):
     O.dt = 0.5 * criticalTimeStep()[0]
 
 
-@promised
 @pytest.mark.parametrize("steps", [0, 1, 150], ids=lambda n: f"after {n} steps")
 @pytest.mark.parametrize("deformable", [False, True], ids=["rigid", "deformable"])
 def test_a_block_added_after_connect_is_named(scene, deformable, steps):
@@ -362,7 +353,7 @@ def test_a_block_added_after_connect_is_named(scene, deformable, steps):
 
 
 ERASED = [
-    pytest.param(3, id="a deformable block without a joint", marks=promised),
+    pytest.param(3, id="a deformable block without a joint"),
     pytest.param(2, id="a deformable block with a joint"),
     pytest.param(1, id="a rigid block with joints"),
     pytest.param(0, id="the base"),
@@ -431,7 +422,6 @@ def misspelt(name):
     return name[:k] + name[k + 1] + name[k] + name[k + 2 :]
 
 
-@promised
 def test_a_misspelt_property_of_a_joint_is_an_error_that_names_the_right_one():
     joint = MasonryJoint()
     with pytest.raises(AttributeError, match="tensileStrenght.*tensileStrength"):
@@ -443,7 +433,6 @@ def test_a_misspelt_property_of_a_joint_is_an_error_that_names_the_right_one():
     assert joint.tensileStrength == MasonryJoint().tensileStrength
 
 
-@promised
 @pytest.mark.parametrize("name", classes)
 def test_a_misspelt_property_is_an_error_that_names_the_right_one(name):
     cls = getattr(wrapper, name)
@@ -457,7 +446,6 @@ def test_a_misspelt_property_is_an_error_that_names_the_right_one(name):
             cls(**{wrong: 0})
 
 
-@promised
 @pytest.mark.parametrize("name", classes)
 def test_a_property_that_does_not_exist_cannot_be_set(name):
     instance = getattr(wrapper, name)()
@@ -467,7 +455,6 @@ def test_a_property_that_does_not_exist_cannot_be_set(name):
         instance.updateAttrs(dict(nonsense=1))
 
 
-@promised
 def test_every_property_of_an_object_of_no_scene_can_be_read_and_set_to_what_it_is():
     """In a YADE of its own: MasonryJointPhys().yielding of commit 0e9b866 ends the process."""
     inYade(

@@ -230,7 +230,7 @@ def test_a_joint_torn_open_dissipates_its_fracture_energy(scene, functors):
     joint = MasonryJoint()
     phys = pair(joint, functors)
     move(4e-3, (0, 0, 1), 20000)
-    # GfI of law.md §3, and the elastic energy of the bricks in series, §7
+    # GfI, and the elastic energy of the bricks in series (law/README.md, rigid units)
     series = 0.5 * 0.1e6**2 * (1 / phys.normalStiffness - 1 / joint.normalStiffness)
     perArea(external=16 + series, dissipated_tension=16 + series)
 
@@ -247,7 +247,7 @@ def test_a_joint_that_slides_dissipates_its_fracture_energy_and_friction(
     slide = 60e-3
     move(slide, (1, 0, 0), 60000)
     peak, friction = 0.11e6 + 0.43 * pressure, 0.43 * pressure
-    # GfII grows with the peak (law.md §3); the bricks in series store and give back; friction works over the slip
+    # GfII grows with the peak (law/README.md, softening tables); the bricks in series store and give back; friction works over the slip
     series = (
         0.5
         * (peak**2 - friction**2)
@@ -276,7 +276,7 @@ def test_a_joint_crushed_to_its_peak_dissipates_what_lies_under_its_curve(
         joint.peakRatio * fcp / joint.normalStiffness + fcp * bricks,
     )
     move(-peak, (0, 0, 1), 20000)
-    # a quarter of an ellipse from the elastic limit to the peak (law.md §4)
+    # a quarter of an ellipse from the elastic limit to the peak (law/README.md, compression)
     work = 0.5 * fel * elastic + (peak - elastic) * (fel + (fcp - fel) * math.pi / 4)
     kept = 0.5 * fcp**2 / phys.normalStiffness
     perArea(external=work, dissipated_compression=work - kept, elastic_compression=kept)

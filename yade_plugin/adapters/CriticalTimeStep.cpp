@@ -79,8 +79,8 @@ void Dynamics::addJoint(const SceneStore& store, const JointView& joint) {
             const double sign = side ? 1 : -1;
             if (!r.rigid(side)) {
                 const auto& a = r.hung->sides[side][p];
-                for (int n = 0; n < 3 && a.weights[n] > 0; ++n)
-                    for (int d = 0; d < 3; ++d)
+                for (int n = 0; n < 3; ++n)
+                    for (int d = 0; a.weights[n] != 0 && d < 3; ++d)
                         add(3 * a.nodes[n] + d, sign * a.weights[n] * Vector3r::Unit(d));
                 continue;
             }

@@ -304,8 +304,8 @@ void MasonryZones::gatherFromFunctors(const SceneStore& store) {
     std::fill(forces_.begin(), forces_.end(), Row{});
     std::fill(moments_.begin(), moments_.end(), Row{});
     const auto hang = [&](const Attachment& a, const Vector3r& force) {
-        for (int i = 0; i < 3 && a.weights[i] != 0; ++i)
-            for (int d = 0; d < 3; ++d)
+        for (int i = 0; i < 3; ++i)
+            for (int d = 0; a.weights[i] != 0 && d < 3; ++d)
                 (forceRows() + places_[a.nodes[i]])[d * lanes] += a.weights[i] * force[d];
     };
     for (const auto& joint : store.joints) {

@@ -104,8 +104,8 @@ public:
     Vector3r velocityOf(int node) const { return at(velocities_, places_[node]); }
     Vector3r displacementAt(const Attachment& a) const {
         Vector3r moved = Vector3r::Zero();
-        for (int i = 0; i < 3 && a.weights[i] != 0; ++i)
-            moved += a.weights[i] * displacementOf(a.nodes[i]);
+        for (int i = 0; i < 3; ++i)
+            if (a.weights[i] != 0) moved += a.weights[i] * displacementOf(a.nodes[i]);
         return moved;
     }
 

@@ -75,15 +75,16 @@ bool SceneStore::readEngines() {
     return true;
 }
 
-void SceneStore::update(bool inStep) {
+void SceneStore::update(Look look) {
     if (readEngines()) {
         checked_ = false;
         seenChanges_ = -1; // other engines move the bodies
     }
-    const bool looked = inStep && seenStep_ == scene_.iter;
-    const bool thoroughly = !inStep || scene_.iter % 100 == 0; // States hardly ever change hands
-    const bool sameBodies = looked || bodies.fits(scene_, thoroughly);
-    seenStep_ = scene_.iter;
+    bool sameBodies = true;
+    if (look == Look::AtAll || (look == Look::InStep && seenStep_ != scene_.iter)) {
+        sameBodies = bodies.fits(scene_, look == Look::AtAll || scene_.iter % 100 == 0);
+        seenStep_ = scene_.iter;
+    }
     if (sameBodies && seenChanges_ == changes && seenInteractions_ == scene_.interactions->currSize) return;
     checked_ = false;
     readJoints();
@@ -203,7 +204,7 @@ EngineTurn::EngineTurn(yade::Scene& scene, const yade::Engine& engine)
     StepGate::instance().enter();
     try {
         store_ = &SceneStore::of(scene);
-        store_->update(true);
+        store_->update(SceneStore::Look::InStep);
         store_->check();
     } catch (...) {
         StepGate::instance().leave(true);
@@ -215,7 +216,7 @@ EngineTurn::EngineTurn(yade::Scene& scene) : errors_(std::uncaught_exceptions())
     StepGate::instance().enter();
     try {
         store_ = &SceneStore::of(scene);
-        store_->update(true);
+        store_->update(SceneStore::Look::InStep);
     } catch (...) {
         StepGate::instance().leave(true);
         throw;

@@ -32,8 +32,13 @@ public:
     static SceneStore& present(); // of the scene that Python sees
 
     // Reads what has changed since the last time. Throws std::invalid_argument, and leaves the joints where they are,
-    // for a scene whose joints cannot stand together. `inStep`: bodies were looked at in this step already.
-    void update(bool inStep = false);
+    // for a scene whose joints cannot stand together.
+    enum class Look {
+        AtAll,    // joints, bodies and their States
+        InStep,   // joints; bodies once a step, their States every hundredth, because they hardly ever change hands
+        AtJoints, // joints only
+    };
+    void update(Look look = Look::AtAll);
     // Throws std::invalid_argument with all that keeps the scene from being run; looks at it once a change only.
     void check();
     // All blocks have their joints: what is added later is told. For masonry.connect().
