@@ -9,11 +9,8 @@ public:
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
         "Writes blocks.pvd and joints.pvd with their series for ParaView, a frame at every action: units in their "
-        "reference place with displacement [m] and velocity [m/s], deformable ones as zones with stress (xx, yy, zz, "
-        "xy, "
-        "yz, xz) and principal stresses [Pa]; subcontacts as cells with opening and slip [m], "
-        "normal and shear stress [Pa], the three damages [-], regime (0 elastic, 1 opening, 2 slipping, 3 crushing), "
-        "kind and displacement [m]. Kinds are numbered in the order of `kinds`. Call it, or give it a period.";
+        "reference place, deformable ones as zones; subcontacts as cells. fields() says what the files hold; every "
+        "field carries its unit. Call it, or give it a period.";
 
     std::string directory = ".";
     int stepPeriod = 0;
@@ -37,10 +34,14 @@ public:
 
     template <class PyClass> static void extras(PyClass& cls) {
         cls.def("collect", &MasonryVtkRecorder::collect,
-                "Write blocks.pvd and joints.pvd alone, for the frames of `times`.");
+                "Write blocks.pvd and joints.pvd alone, for the frames of `times`.")
+            .def("fields", &MasonryVtkRecorder::fieldsOfFiles,
+                 "What the files hold: a dict of name -> meaning with unit.")
+            .staticmethod("fields");
     }
 
 private:
+    static py::dict fieldsOfFiles();
     void writeBlocks(const std::string& path) const;
     void writeJoints(const std::string& path);
     void writeCollection(const std::string& name, const std::string& extension) const;
