@@ -154,9 +154,13 @@ private:
 };
 
 void exchange(Numbers& n, JointReference& r) {
-    n(r.normal), n(r.tangent), n.list(r.polygon);
+    n(r.normal);
+    n(r.tangent);
+    n.list(r.polygon);
     for (auto& side : r.sides) {
-        n(side.body), n(side.position), n(side.orientation);
+        n(side.body);
+        n(side.position);
+        n(side.orientation);
     }
     std::vector<Attachment> none;
     for (int side = 0; side < 2; ++side)
@@ -175,7 +179,9 @@ std::vector<double> MasonryJointGeom::record() {
     for (int p = 0; p < count; ++p) {
         Vector3r offsetOfPoint = offset(p), jumpOfPoint = jump(p);
         double areaOfPoint = area(p);
-        n(offsetOfPoint), n(areaOfPoint), n(jumpOfPoint);
+        n(offsetOfPoint);
+        n(areaOfPoint);
+        n(jumpOfPoint);
     }
     return n.flat;
 }
@@ -192,7 +198,9 @@ void MasonryJointGeom::setRecord(const std::vector<double>& flat) {
     for (int p = 0; p < count; ++p) {
         Vector3r offsetOfPoint = Vector3r::Zero(), jumpOfPoint = Vector3r::Zero();
         double areaOfPoint = 0;
-        n(offsetOfPoint), n(areaOfPoint), n(jumpOfPoint);
+        n(offsetOfPoint);
+        n(areaOfPoint);
+        n(jumpOfPoint);
         made->setShape(p, 0, offsetOfPoint, areaOfPoint);
         made->setJump(p, 0, jumpOfPoint);
     }

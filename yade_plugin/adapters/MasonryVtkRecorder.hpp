@@ -8,12 +8,12 @@ public:
     static constexpr const char* className = "MasonryVtkRecorder";
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
-        "Writes blocks.pvd and joints.pvd with their series for ParaView, a frame at every action: units in their "
-        "reference place with displacement [m] and velocity [m/s], deformable ones as zones with stress (xx, yy, zz, "
-        "xy, "
-        "yz, xz) and principal stresses [Pa]; subcontacts as cells with opening and slip [m], "
-        "normal and shear stress [Pa], the three damages [-], regime (0 elastic, 1 opening, 2 slipping, 3 crushing), "
-        "kind and displacement [m]. Kinds are numbered in the order of `kinds`. Call it, or give it a period.";
+        "Writes blocks.pvd and joints.pvd with their series of files for ParaView, one frame at every action. Units "
+        "stand at their reference place, with displacement [m] and velocity [m/s]; deformable ones are drawn as zones "
+        "with stress (xx, yy, zz, xy, yz, xz) and principal stresses [Pa]. Subcontacts are cells with opening and slip "
+        "[m], normal and shear stress [Pa], the three damages [-], regime (0 elastic, 1 opening, 2 slipping, 3 "
+        "crushing), kind and displacement [m]. Kinds are numbered in the order of `kinds`. Call the engine as a "
+        "function for a frame, or set stepPeriod.";
 
     std::string directory = ".";
     int stepPeriod = 0;
@@ -27,7 +27,7 @@ public:
         visit("kinds", &R::kinds, described("Names of the joints' kinds, in the order of their numbers in the files"),
               ReadOnly);
         visit("times", &R::times,
-              number("s", "Simulation times of the frames so far; given, the series goes on after them"));
+              number("s", "Simulation times of the frames so far; a new recorder that is given them continues the series"));
     }
 
     std::vector<std::string> problems() const;

@@ -248,8 +248,10 @@ Vector3r MasonryZones::reference(const Unit& unit, int node) const {
 Attachment MasonryZones::attach(const Unit& unit, const Vector3r& point) const {
     const auto place = nearestOnSurface(unit.elasticity->mesh(), point - unit.centre);
     Attachment a;
-    for (int i = 0; i < 3; ++i)
-        a.nodes[i] = unit.firstNode + place.nodes[i], a.weights[i] = place.weights[i];
+    for (int i = 0; i < 3; ++i) {
+        a.nodes[i] = unit.firstNode + place.nodes[i];
+        a.weights[i] = place.weights[i];
+    }
     return a;
 }
 

@@ -51,10 +51,13 @@ std::vector<Candidate> candidates(double tolerance) {
         if (away > tolerance * size)
             wrong.push_back("body " + std::to_string(body->id) + " lies " + text(1e3 * away) +
                             " mm from its reference place state.refPos, which addBlock() sets");
-        for (const auto& v : c.block.vertices)
-            c.low = c.low.cwiseMin(v), c.high = c.high.cwiseMax(v);
+        for (const auto& v : c.block.vertices) {
+            c.low = c.low.cwiseMin(v);
+            c.high = c.high.cwiseMax(v);
+        }
         const Vector3r margin = Vector3r::Constant(std::max(tolerance * size, 0.125 * c.block.thickness));
-        c.low -= margin, c.high += margin;
+        c.low -= margin;
+        c.high += margin;
         all.push_back(std::move(c));
     }
     if (!wrong.empty()) throw std::invalid_argument(firstOf(wrong));
@@ -66,8 +69,10 @@ std::vector<Candidate> candidates(double tolerance) {
 py::tuple neighbours(double tolerance) {
     auto all = candidates(tolerance);
     Vector3r low = Vector3r::Constant(HUGE_VAL), high = -low;
-    for (const auto& c : all)
-        low = low.cwiseMin(c.low), high = high.cwiseMax(c.low);
+    for (const auto& c : all) {
+        low = low.cwiseMin(c.low);
+        high = high.cwiseMax(c.low);
+    }
     int axis; // along which the blocks are spread most
     (high - low).maxCoeff(&axis);
     std::sort(all.begin(), all.end(), [axis](const auto& a, const auto& b) { return a.low[axis] < b.low[axis]; });
@@ -80,7 +85,8 @@ py::tuple neighbours(double tolerance) {
             if ((two.low.array() > one.high.array()).any() || (one.low.array() > two.high.array()).any()) continue;
             if (coincidentFaces(one.block, two.block, tolerance)) {
                 pairs.emplace_back(std::minmax(one.id, two.id));
-                one.joined.push_back(int(j)), two.joined.push_back(int(i));
+                one.joined.push_back(int(j));
+                two.joined.push_back(int(i));
             } else if (const auto found = misfit(one.block, two.block, tolerance))
                 misfits.emplace_back(i, j, *found);
         }

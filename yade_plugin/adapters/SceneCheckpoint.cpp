@@ -15,7 +15,9 @@ struct BodyRecord { // with the forces of the last step, so that they can be rea
 template <class F> void numbers(BodyRecord& b, F&& each) {
     for (auto* v : {&b.position, &b.velocity, &b.spin, &b.momentum, &b.force, &b.torque, &b.lasting, &b.lastingTorque})
         numbers(*v, each);
-    numbers(b.orientation, each), each(b.blocked), each(b.damped);
+    numbers(b.orientation, each);
+    each(b.blocked);
+    each(b.damped);
 }
 
 struct PointRecord { // of a joint
@@ -23,7 +25,9 @@ struct PointRecord { // of a joint
     JointState state;
 };
 template <class F> void numbers(PointRecord& p, F&& each) {
-    numbers(p.jump, each), numbers(p.losses, each), numbers(p.state, each);
+    numbers(p.jump, each);
+    numbers(p.losses, each);
+    numbers(p.state, each);
 }
 
 template <> struct IsNumbers<BodyRecord> : std::true_type {};
@@ -49,8 +53,10 @@ void transferBodies(yade::Scene& scene, Transfer& to) {
         const int id = body->id;
         records.push_back({s.pos, s.vel, s.angVel, s.angMom, forces.getForce(id), forces.getTorque(id), none, none,
                            s.ori, double(s.blockedDOFs), double(s.isDamped)});
-        if (forces.getPermForceUsed())
-            records.back().lasting = forces.getPermForce(id), records.back().lastingTorque = forces.getPermTorque(id);
+        if (forces.getPermForceUsed()) {
+            records.back().lasting = forces.getPermForce(id);
+            records.back().lastingTorque = forces.getPermTorque(id);
+        }
     }
     to.several("bodies", records.data(), records.size());
     if (!to.back) return;
@@ -60,8 +66,13 @@ void transferBodies(yade::Scene& scene, Transfer& to) {
         const int id = bodies[i]->id;
         const auto& r = records[i];
         if (!(r.blocked >= 0 && r.blocked <= 63)) to.damaged("bodies");
-        s.pos = r.position, s.vel = r.velocity, s.angVel = r.spin, s.angMom = r.momentum, s.ori = r.orientation;
-        s.blockedDOFs = unsigned(r.blocked), s.isDamped = r.damped != 0;
+        s.pos = r.position;
+        s.vel = r.velocity;
+        s.angVel = r.spin;
+        s.angMom = r.momentum;
+        s.ori = r.orientation;
+        s.blockedDOFs = unsigned(r.blocked);
+        s.isDamped = r.damped != 0;
         forces.addForce(id, r.force - r.lasting);
         forces.addTorque(id, r.torque - r.lastingTorque);
         if (!r.lasting.isZero(0)) forces.setPermForce(id, r.lasting);

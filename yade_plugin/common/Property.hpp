@@ -85,7 +85,8 @@ private:
 
 constexpr Property number(const char* unit, const char* meaning) {
     Property p;
-    p.unit = unit, p.meaning = meaning;
+    p.unit = unit;
+    p.meaning = meaning;
     return p;
 }
 
@@ -120,7 +121,8 @@ inline std::string nearestName(const std::string& wrong, const std::vector<std::
                 const bool same = std::tolower(static_cast<unsigned char>(wrong[i])) ==
                                   std::tolower(static_cast<unsigned char>(name[j]));
                 const std::size_t next = std::min({row[j + 1] + 1, row[j] + 1, diagonal + (same ? 0 : 1)});
-                diagonal = row[j + 1], row[j + 1] = next;
+                diagonal = row[j + 1];
+                row[j + 1] = next;
             }
         }
         if (row.back() < least) least = row.back(), best = name;
