@@ -26,7 +26,7 @@ void BodyColumns::read(const yade::Scene& scene) {
             seen_[b].blocked = 63;
     }
     for (int b = 0; b < count; ++b)
-        if (!states_[b]) seen_[b].blocked = 63; // an empty place: nothing in it moves
+        if (!states_[b]) seen_[b].blocked = 63; // there is no body with this id
 }
 
 bool BodyColumns::fits(const yade::Scene& scene, bool thoroughly) const {

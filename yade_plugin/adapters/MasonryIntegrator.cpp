@@ -14,7 +14,7 @@ std::vector<std::string> MasonryIntegrator::problems() const {
     return {"dampingKind '" + dampingKind + "' must be 'combined' or 'local'"};
 }
 
-// Two vectors a body, as they are saved.
+// In saved files and checkpoints: two vectors for each body, force per mass and torque per inertia.
 std::vector<Vector3r> MasonryIntegrator::lastForces() {
     std::vector<Vector3r> all;
     for (std::size_t b = 0; b < last_[0].size(); ++b) {
@@ -41,7 +41,7 @@ void MasonryIntegrator::action() {
         if (combined()) column.resize(count, 0);
     for (auto* load : turn->loads)
         load->workBefore(scene->dt, bodies.state(load->body));
-    // Bodies whose energies are summed up together are the same whatever the number of threads.
+    // The pieces over which energies are summed up do not depend on the number of threads, so neither do the sums.
     constexpr int piece = RigidMotion::most;
     const int pieces = (count + piece - 1) / piece;
     std::vector<EnergyLedger> sums(pieces);
@@ -66,7 +66,7 @@ EnergyLedger MasonryIntegrator::advance(SceneStore& store, const Vector3r* force
     EnergyLedger sum;
     RigidMotion motion;
     unsigned axes = 0, spinning = 0;
-    unsigned char moved[RigidMotion::most]; // bits in which a body is free or moves, if it is moved by the columns
+    unsigned char moved[RigidMotion::most]; // BodyColumns::axes() of a body that RigidMotion moves, else 0
     for (int i = 0; i < count; ++i) {
         const int b = first + i;
         moved[i] = 0;
@@ -84,7 +84,7 @@ EnergyLedger MasonryIntegrator::advance(SceneStore& store, const Vector3r* force
     }
     if (axes != 0) {
         const RigidMotion::Around around{scene->dt, {gravity[0], gravity[1], gravity[2]}, combined()};
-        double unused[RigidMotion::most] = {}; // local damping looks at no earlier forces
+        double unused[RigidMotion::most] = {}; // local damping does not use earlier forces
         double* last[6];
         for (int i = 0; i < count; ++i)
             motion.alpha[i] = bodies.isDamped(first + i) ? damping : 0;
@@ -108,13 +108,13 @@ EnergyLedger MasonryIntegrator::advance(SceneStore& store, const Vector3r* force
         }
         sum.pendingExternal = sum.external;
     }
-    for (int b = first; spinning > 0 && b < beyond; ++b) // after the others, whose columns carried theirs along
+    for (int b = first; spinning > 0 && b < beyond; ++b) // last, because RigidMotion has also written to the rows of these bodies
         if (bodies.has(b) && !bodies.isUnit[b] && bodies.spins(b))
             sum.add(turnFreely(store, forces[b], torques[b], b));
     return sum;
 }
 
-// One body that is free to turn in space: the host's State holds its angular momentum, so the step is made there.
+// The step is made in the host's State, because only that holds the angular momentum of the body.
 EnergyLedger MasonryIntegrator::turnFreely(SceneStore& store, const Vector3r& force, const Vector3r& torque, int body) {
     auto& s = store.bodies.state(body);
     BodyForces before{Vector3r::Zero(), Vector3r::Zero()};

@@ -48,8 +48,8 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
     // subcontacts on the shared polygon.
     void define(const FaceContact&, const Vector3r& along, int columns, int rows, int body1, int body2,
                 const yade::State&, const yade::State&);
-    // For a joint with a deformable side. Puts the subcontacts at the nodes where the nodes of both sides match, or where
-    // only one side is deformable. Otherwise attaches the subcontacts of the grid to the surfaces between the nodes.
+    // For a joint with a deformable side. Puts the subcontacts at the nodes if those of a deformable side cover the
+    // polygon and, where both sides are deformable, match. Otherwise attaches the grid's subcontacts between the nodes.
     void attach(const shared_ptr<MasonryZones>&);
 
     // Whether the joint was made by define() or loaded from a file.

@@ -28,11 +28,11 @@ namespace {
 struct Candidate {
     int id;
     KnownBlock block;
-    Vector3r low, high; // of the space in which it may touch others
-    std::vector<int> joined;
+    Vector3r low, high;      // corners of the box in which it may touch others [m]
+    std::vector<int> joined; // numbers of the candidates that share a face with it
 };
 
-// All blocks of the scene; std::invalid_argument with all that is wrong with them.
+// All blocks of the present scene. Throws std::invalid_argument that names all problems of these blocks.
 std::vector<Candidate> candidates(double tolerance) {
     if (!(tolerance > 0 && tolerance <= 0.01))
         throw std::invalid_argument("tolerance " + text(tolerance) + " must be above 0 and at most 0.01");
@@ -73,7 +73,7 @@ py::tuple neighbours(double tolerance) {
         low = low.cwiseMin(c.low);
         high = high.cwiseMax(c.low);
     }
-    int axis; // along which the blocks are spread most
+    int axis; // the axis along which the blocks spread most; sorted by it, far blocks are never compared
     (high - low).maxCoeff(&axis);
     std::sort(all.begin(), all.end(), [axis](const auto& a, const auto& b) { return a.low[axis] < b.low[axis]; });
     using Pair = std::pair<int, int>;
@@ -93,7 +93,8 @@ py::tuple neighbours(double tolerance) {
     std::sort(pairs.begin(), pairs.end());
     std::vector<std::tuple<Pair, double, double>> gaps;
     for (const auto& [i, j, found] : misfits) {
-        const auto filled = [&, &others = all[j].joined, &middle = found.middle](int k) { // by a block joined to both
+        // Whether block k, which is joined to both, fills the gap between them, as a layer of mortar does.
+        const auto filled = [&, &others = all[j].joined, &middle = found.middle](int k) {
             return std::count(others.begin(), others.end(), k) &&
                    all[k].block.holds(middle, 1e-3 * all[k].block.thickness);
         };

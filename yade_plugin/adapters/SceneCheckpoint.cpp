@@ -7,8 +7,11 @@
 
 namespace masonry {
 
-struct BodyRecord { // with the forces of the last step, so that they can be read, and those that stay
-    Vector3r position, velocity, spin, momentum, force, torque, lasting, lastingTorque;
+// State of a body in a checkpoint.
+struct BodyRecord {
+    Vector3r position, velocity, spin, momentum;
+    Vector3r force, torque;          // of the last step, so that scripts can read them after loading
+    Vector3r lasting, lastingTorque; // the host's permanent force and torque
     Quaternionr orientation;
     double blocked, damped;
 };
@@ -20,8 +23,10 @@ template <class F> void numbers(BodyRecord& b, F&& each) {
     each(b.damped);
 }
 
-struct PointRecord { // of a joint
-    Vector3r jump, losses;
+// State of a subcontact in a checkpoint.
+struct PointRecord {
+    Vector3r jump;   // [m]
+    Vector3r losses; // energies dissipated in tension, shear and compression [J/m²]
     JointState state;
 };
 template <class F> void numbers(PointRecord& p, F&& each) {
@@ -103,8 +108,10 @@ void transferJoints(const SceneStore& store, Transfer& to) {
 void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
     Transfer to(file, back);
     to.owner = "scene.";
-    to("step", scene.iter), to("time", scene.time), to("dt", scene.dt);
-    if (scene.iter < 0) to.damaged("step"); // the host would stop at an assertion
+    to("step", scene.iter);
+    to("time", scene.time);
+    to("dt", scene.dt);
+    if (scene.iter < 0) to.damaged("step"); // an assertion of the host would end the program
     transferBodies(scene, to);
     auto& store = SceneStore::of(scene);
     store.update();
@@ -117,11 +124,12 @@ void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
             own->transfer(to);
         }
     for (const auto& engine : scene.engines)
-        if (auto* zones = dynamic_cast<MasonryZones*>(engine.get())) zones->units(); // refuses other numbers of nodes
-    if (back) ++changes; // all engines look at everything anew
+        if (auto* zones = dynamic_cast<MasonryZones*>(engine.get())) zones->units(); // refuses the state of another number of nodes
+    if (back) ++changes; // all engines read the scene anew
 }
 
-// A fingerprint of a scene: a sum over what does not change in a run, by which the same scene is recognised.
+// A checksum of numbers and texts that do not change in a run. A checkpoint holds it, so that it is recognised whether the
+// scene into which it is loaded is the same.
 class Fingerprint {
 public:
     template <class... T> void operator()(const T&... values) { (add(values), ...); }
@@ -170,7 +178,8 @@ Checkpoint captured(yade::Scene& scene) {
             for (const auto& attachment : r.hung->sides[side])
                 joints(attachment);
     }
-    made.texts["blocks"] = blocks.text(), made.texts["joints"] = joints.text();
+    made.texts["blocks"] = blocks.text();
+    made.texts["joints"] = joints.text();
     std::vector<std::string> engines;
     for (const auto& engine : scene.engines)
         if (dynamic_cast<Stateful*>(engine.get())) engines.push_back(engine->getClassName());
