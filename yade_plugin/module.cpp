@@ -123,7 +123,8 @@ static void registerAll() {
     py::def(
         "neighbours", &neighbours, (py::arg("tolerance") = 1e-4),
         "Three lists for masonry.connect(): pairs (id1, id2) of bodies that share a face; pairs (id1, id2, gap, bound) "
-        "that nearly share one or overlap, with the gap and the largest one accepted; (id, size) of the thinnest and of "
+        "that nearly share one or overlap, with the gap and the largest one accepted; (id, size) of the thinnest and "
+        "of "
         "the largest block. Gaps and sizes in m.");
     py::def("touchingPairs", &touchingPairs, (py::arg("tolerance") = 1e-4),
             "Pairs (id1, id2) of bodies whose Polyhedra share a face; tolerance as in "
@@ -133,15 +134,18 @@ static void registerAll() {
         "(dt, id1, id2): the stable time step [s] under the damping of O.engines, at most 1.1 % below the limit, and "
         "the pair of bodies whose joint sets it (twice the same for a deformable unit). Ask again after changing "
         "joints, masses, blocked motions or damping.");
-    py::def("connected", &connected, "Tell the plugin that all blocks have their joints. A block that is added later and has no joint is then an "
-            "error. For masonry.connect().");
-    py::def("saveScene", &saveScene, py::args("extra"), "The state of the scene as bytes, together with a text of the caller.");
+    py::def(
+        "connected", &connected,
+        "Tell the plugin that all blocks have their joints. A block that is added later and has no joint is then an "
+        "error. For masonry.connect().");
+    py::def("saveScene", &saveScene, py::args("extra"),
+            "The state of the scene as bytes, together with a text of the caller.");
     py::def("loadScene", &loadScene, py::args("bytes"), "Set the scene to a saved state; returns the caller's text.");
     py::def("savedText", &savedText, py::args("bytes"), "The caller's text in a saved state.");
 }
 
-// Written in place of BOOST_PYTHON_MODULE, which gives Python the module even when its body has failed. An import into a
-// YADE that does not fit must raise an error and register nothing.
+// Written in place of BOOST_PYTHON_MODULE, which gives Python the module even when its body has failed. An import into
+// a YADE that does not fit must raise an error and register nothing.
 extern "C" PyObject* PyInit__masonry() {
     std::vector<std::string> differences;
     if (py::handle_exception([&] { differences = host::differences(); })) return nullptr;

@@ -223,8 +223,7 @@ protected:
             using T = decltype(valueOf(self(), member));
             if constexpr (std::is_arithmetic<T>::value) {
                 if (property.isNumber())
-                    if (const auto what = property.problem(name, double(valueOf(self(), member)));
-                        !what.empty())
+                    if (const auto what = property.problem(name, double(valueOf(self(), member))); !what.empty())
                         wrong.push_back(what);
             } else if constexpr (std::is_same<T, Vector3r>::value) {
                 if (!valueOf(self(), member).allFinite()) {

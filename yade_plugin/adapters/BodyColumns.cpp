@@ -41,7 +41,8 @@ bool BodyColumns::sameFrame(int b) const {
     const auto& s = *states_[b];
     bool same = s.refOri.w() == fromReference[0][b];
     for (int d = 0; d < 3; ++d)
-        same = same && -s.refOri.vec()[d] == fromReference[1 + d][b] && s.inertia[d] == inertia[d][b] && s.refPos[d] == referencePosition[d][b];
+        same = same && -s.refOri.vec()[d] == fromReference[1 + d][b] && s.inertia[d] == inertia[d][b] &&
+               s.refPos[d] == referencePosition[d][b];
     return same;
 }
 

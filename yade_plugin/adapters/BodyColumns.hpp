@@ -1,5 +1,5 @@
-// Place, motion and mass of the bodies of a scene, in columns. MasonryIntegrator moves the rigid bodies here. The row of
-// a body is its id. The integrator writes the host's State once a step. Scripts and other engines may change a State
+// Place, motion and mass of the bodies of a scene, in columns. MasonryIntegrator moves the rigid bodies here. The row
+// of a body is its id. The integrator writes the host's State once a step. Scripts and other engines may change a State
 // between two steps; the engines of this plugin notice that before they use the columns.
 #pragma once
 #include "host/Yade.hpp"
@@ -13,7 +13,8 @@ class BodyColumns : public RigidColumns {
 public:
     // Takes all bodies of a scene from the host.
     void read(const yade::Scene&);
-    // Whether the scene's bodies are still those that were read. With `thoroughly` their State objects are compared, too.
+    // Whether the scene's bodies are still those that were read. With `thoroughly` their State objects are compared,
+    // too.
     bool fits(const yade::Scene&, bool thoroughly) const;
 
     int size() const { return int(states_.size()); }
@@ -54,7 +55,7 @@ public:
     std::vector<bool> isUnit; // whether the body is a deformable unit, which MasonryZones moves
 
 private:
-    struct Seen { // what the host's State held beside the columns when the body was last taken
+    struct Seen {           // what the host's State held beside the columns when the body was last taken
         unsigned blocked;   // one bit for each blocked axis, as in State.blockedDOFs
         bool damped;        // whether the integrator damps the body
         unsigned char axes; // see axes()

@@ -15,9 +15,9 @@ using yade::State;
 
 namespace {
 
-// Stiffness over mass of a scene: the operator S K S with S = sqrt((1 + alpha) / M), as a sum over joints and deformable
-// units. The degrees of freedom are three of every node and six of every rigid body that has a joint; those that are
-// blocked are left out.
+// Stiffness over mass of a scene: the operator S K S with S = sqrt((1 + alpha) / M), as a sum over joints and
+// deformable units. The degrees of freedom are three of every node and six of every rigid body that has a joint; those
+// that are blocked are left out.
 class Dynamics {
 public:
     explicit Dynamics(SceneStore&);
@@ -28,7 +28,7 @@ public:
     std::pair<int, int> stiffest(const Eigen::VectorXd& mode) const;
 
 private:
-    struct Joint { // a joint between rigid bodies, or one subcontact of a joint with a deformable side
+    struct Joint {                // a joint between rigid bodies, or one subcontact of a joint with a deformable side
         std::vector<int> degrees; // the degrees of freedom on which it acts
         Eigen::MatrixXd stiffness;
         int body1, body2;
@@ -43,11 +43,11 @@ private:
         scale_.push_back(blocked ? 0 : std::sqrt((1 + damping) / mass));
     }
     void addJoint(const SceneStore&, const JointView&);
-    // Calls `visit(body1, body2, degree, force)` for every degree of freedom of every joint and unit, with the force that
-    // the joint or unit has there under these displacements.
+    // Calls `visit(body1, body2, degree, force)` for every degree of freedom of every joint and unit, with the force
+    // that the joint or unit has there under these displacements.
     template <class F> void eachForce(const Eigen::VectorXd& motion, F&& visit) const;
 
-    std::vector<double> scale_; // sqrt((1 + alpha) / mass) of a degree of freedom; 0 where it is blocked
+    std::vector<double> scale_;      // sqrt((1 + alpha) / mass) of a degree of freedom; 0 where it is blocked
     std::map<int, int> firstOfBody_; // first degree of freedom of a rigid body
     std::vector<Joint> joints_;
     std::vector<Unit> units_;

@@ -7,24 +7,26 @@ namespace masonry {
 class SceneStore;
 
 // The largest time step that is safe under the damping of the engines. It is 2/sqrt(L), where L is the largest
-// eigenvalue of stiffness over mass and every damped mass is divided by 1 + alpha. The value given is at most 1.1 % below
-// that, because L is found with an error on the safe side (motion/LargestEigenvalue.hpp).
+// eigenvalue of stiffness over mass and every damped mass is divided by 1 + alpha. The value given is at most 1.1 %
+// below that, because L is found with an error on the safe side (motion/LargestEigenvalue.hpp).
 //
-// Why it is safe: let x be the displacements, each scaled by the square root of its mass, and a = -A x the accelerations
-// without damping. A step of the leapfrog scheme consists of half of the velocity change, dt a/2; of the impulse of
-// damping; of the other half of the velocity change; and of the motion. Let w be the velocity between the two halves.
-// Without damping such steps keep E = w·w/2 + x·(A - dt² A²/4) x/2. This is positive while all eigenvalues of dt² A are
-// below 4, so the motion is bounded. Damping brings each component of w by up to dt alpha |a| towards zero, and never
-// beyond zero (motion/Damping.hpp). So E falls with every such impulse, for any alpha and for both kinds of damping.
-// Therefore dt² A < 4 is enough for stability, and the factor 1 + alpha is a margin. It is needed because close to the
-// limit the highest modes swing with w near zero, where damping has no effect, and joints that yield let them drift.
+// Why it is safe: let x be the displacements, each scaled by the square root of its mass, and a = -A x the
+// accelerations without damping. A step of the leapfrog scheme consists of half of the velocity change, dt a/2; of the
+// impulse of damping; of the other half of the velocity change; and of the motion. Let w be the velocity between the
+// two halves. Without damping such steps keep E = w·w/2 + x·(A - dt² A²/4) x/2. This is positive while all eigenvalues
+// of dt² A are below 4, so the motion is bounded. Damping brings each component of w by up to dt alpha |a| towards
+// zero, and never beyond zero (motion/Damping.hpp). So E falls with every such impulse, for any alpha and for both
+// kinds of damping. Therefore dt² A < 4 is enough for stability, and the factor 1 + alpha is a margin. It is needed
+// because close to the limit the highest modes swing with w near zero, where damping has no effect, and joints that
+// yield let them drift.
 //
 // All this holds for elastic joints and small rotations; joints that yield, open or crush are softer. The host's own
 // damping may bring w beyond zero. That such runs are calm below the limit is measured, not proved
 // (validation/stability).
 struct TimeStepLimit {
     double dt = 0; // [s]; infinite where nothing can vibrate
-    // The two bodies whose joint sets the limit; twice the same body where a deformable unit does; -1 where nothing does.
+    // The two bodies whose joint sets the limit; twice the same body where a deformable unit does; -1 where nothing
+    // does.
     int id1 = -1;
     int id2 = -1;
 };

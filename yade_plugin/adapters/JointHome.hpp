@@ -1,7 +1,7 @@
-// The columns in which the state of joints lives: jumps and geometry in JointShapes, the state of the law in JointStates.
-// Each of these is a home. A joint that was just made has homes of its own. When SceneStore reads a scene, it moves all
-// joints of one kind into common homes, on which the engines work. MasonryJointGeom and MasonryJointPhys are views: each
-// holds a home and the joint's number in it.
+// The columns in which the state of joints lives: jumps and geometry in JointShapes, the state of the law in
+// JointStates. Each of these is a home. A joint that was just made has homes of its own. When SceneStore reads a scene,
+// it moves all joints of one kind into common homes, on which the engines work. MasonryJointGeom and MasonryJointPhys
+// are views: each holds a home and the joint's number in it.
 #pragma once
 #include "MasonryJoint.hpp"
 #include "blocks/FaceContact.hpp"
@@ -18,7 +18,7 @@ class MasonryZones;
 struct Home {
     boost::weak_ptr<yade::Factorable> scene; // empty before the joints belong to a scene
     bool inScene = false;                    // whether a scene has read these joints
-    bool left = false; // whether all joints that are still in the scene have moved to other homes
+    bool left = false;                       // whether all joints that are still in the scene have moved to other homes
 
     // Throws std::runtime_error if the joints of this home no longer exist.
     void check() const {
@@ -27,8 +27,8 @@ struct Home {
     }
 };
 
-// How a subcontact moves with the surface of a deformable unit: by the weighted mean of three of its nodes. Nodes behind
-// a weight of zero do not count. A subcontact at a node has the weights 1, 0, 0.
+// How a subcontact moves with the surface of a deformable unit: by the weighted mean of three of its nodes. Nodes
+// behind a weight of zero do not count. A subcontact at a node has the weights 1, 0, 0.
 struct Attachment {
     std::array<int, 3> nodes{0, 0, 0};      // numbers in the lists of MasonryZones
     std::array<double, 3> weights{1, 0, 0}; // their sum is 1
@@ -80,8 +80,8 @@ struct JointReference {
     bool rigid(int side) const { return !hung || hung->sides[side].empty(); }
 };
 
-// Geometry and jumps of joints that have the same number of subcontacts. The columns hold first the values of subcontact
-// 0 of all joints, then those of subcontact 1, and so on. Vectors are in the joints' axes.
+// Geometry and jumps of joints that have the same number of subcontacts. The columns hold first the values of
+// subcontact 0 of all joints, then those of subcontact 1, and so on. Vectors are in the joints' axes.
 struct JointShapes : Home {
     JointShapes(int joints, int pointCount);
 

@@ -1,6 +1,6 @@
-// A step of all joints of a scene: it finds the jumps from the places of blocks and nodes, calls the law, and brings the
-// forces to blocks and nodes. The state is in the columns of SceneStore. What a plan keeps itself follows from the scene,
-// and is made anew when the scene has changed. See JointFrames for the arithmetic.
+// A step of all joints of a scene: it finds the jumps from the places of blocks and nodes, calls the law, and brings
+// the forces to blocks and nodes. The state is in the columns of SceneStore. What a plan keeps itself follows from the
+// scene, and is made anew when the scene has changed. See JointFrames for the arithmetic.
 #pragma once
 #include "SceneStore.hpp"
 
@@ -31,8 +31,8 @@ private:
         Vector3r local;        // of a point on a rigid body: its place in the body's axes [m]
         Attachment attachment; // of a point between nodes
     };
-    // For every body or node that joints act on, the list of what acts on it. Each receiver sums up its own list, in the
-    // same order with any number of threads.
+    // For every body or node that joints act on, the list of what acts on it. Each receiver sums up its own list, in
+    // the same order with any number of threads.
     struct Receivers {
         struct Item {
             int source;  // number of a joint or of a subcontact
@@ -63,9 +63,9 @@ private:
         int kind; // number of the kind to which its joints belong
         int from; // number of its first joint within that kind
     };
-    std::vector<Batch> batches_;        // joints that a thread takes at a time
-    std::vector<double> turn_[4];       // planar runs only: cosine and sine of half the angle by which a body has turned
-    std::vector<double> referenceY_;    // of all bodies [m]
+    std::vector<Batch> batches_;     // joints that a thread takes at a time
+    std::vector<double> turn_[4];    // planar runs only: cosine and sine of half the angle by which a body has turned
+    std::vector<double> referenceY_; // of all bodies [m]
     std::vector<unsigned char> joined_; // whether a body has joints
     std::vector<int> momentPlace_;      // of all bodies: place in MasonryZones' rows of moments; -1 if it is rigid
     MasonryZones* zones_ = nullptr;     // null if no joint has a deformable side

@@ -43,8 +43,8 @@ bool Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening::go(shared_ptr<ya
     }
     if (r.rigid(1)) {
         forces.addForce(interaction->id2, -force);
-        // The arms lead from body 1, so those of body 2 are shorter by `between`. If body 1 is deformable, the arms lead
-        // from body 2 already.
+        // The arms lead from body 1, so those of body 2 are shorter by `between`. If body 1 is deformable, the arms
+        // lead from body 2 already.
         const Vector3r onBody2 = hung ? Vector3r(step.moment - torque) : Vector3r(step.between.cross(force) - torque);
         forces.addTorque(interaction->id2, onBody2);
     }

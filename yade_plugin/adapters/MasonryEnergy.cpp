@@ -154,9 +154,9 @@ py::dict MasonryEnergy::balance() {
     const double in = work + falls;
     const double out = moving + drag + inUnits + stored.tension + stored.shear + stored.compression + lost.sum();
     const double size = std::max(std::abs(work) + std::abs(falls), std::abs(out));
-    // Dissipated energies should never fall. They can: where a joint opens or closes within a step, the trapezoidal rule
-    // takes the mean of the tractions before and after, and the error is counted as dissipated, also where it is negative.
-    // A long undamped series of such steps makes energy. Damping or shorter steps prevent that.
+    // Dissipated energies should never fall. They can: where a joint opens or closes within a step, the trapezoidal
+    // rule takes the mean of the tractions before and after, and the error is counted as dissipated, also where it is
+    // negative. A long undamped series of such steps makes energy. Damping or shorter steps prevent that.
     mostLost = mostLost.cwiseMax(lost);
     const double error = size > 0 ? (in - out) / size : 0;
     largestError = std::max(largestError, std::abs(error));

@@ -11,9 +11,11 @@ public:
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
         "Keeps the energy balance of a run: work of loads, prescribed motions and gravity = kinetic + elastic + "
-        "dissipated in the joints by mode + damping. MasonryIntegrator and MasonryZones count the energies of what they "
+        "dissipated in the joints by mode + damping. MasonryIntegrator and MasonryZones count the energies of what "
+        "they "
         "move. With NewtonIntegrator this engine must stand directly before it, and counts them by its equations. The "
-        "error of the balance is round-off and the small terms of finite rotation. It also watches over the run: a time "
+        "error of the balance is round-off and the small terms of finite rotation. It also watches over the run: a "
+        "time "
         "step above its limit, motion that grows without work and numbers that are not finite stop it with an error.";
 
     // See attributes() for the meaning and unit of each. Users set `watch` only.
@@ -27,10 +29,10 @@ public:
     template <class Visit> static void attributes(Visit&& visit) {
         using E = MasonryEnergy;
         ledgerOfBodies<E>(visit);
-        visit(
-            "watch", &E::watch,
-            described("Whether an unstable run is stopped. If it is not, a time step above criticalTimeStep() gives wrong "
-                      "results that look sound, because damping keeps the unstable motion within bounds"));
+        visit("watch", &E::watch,
+              described(
+                  "Whether an unstable run is stopped. If it is not, a time step above criticalTimeStep() gives wrong "
+                  "results that look sound, because damping keeps the unstable motion within bounds"));
         visit("largestError", &E::largestError,
               number("-", "Largest error of the balance seen by balance(), relative to the work done"), ReadOnly);
         visit("largestMade", &E::largestMade,
@@ -38,7 +40,8 @@ public:
                           "relative to the work done: energy made by joints that open or close within a step"),
               ReadOnly);
         visit("mostLost", &E::mostLost, number("J", "Largest dissipated energies seen by balance(), by mode"), Hidden);
-        visit("largestInput", &E::largestInput, number("J", "Largest work of loads, prescribed motions and gravity so far"), Hidden);
+        visit("largestInput", &E::largestInput,
+              number("J", "Largest work of loads, prescribed motions and gravity so far"), Hidden);
         visit("begun", &E::begun, described("Whether the kinetic energy at the first step has been counted"), Hidden);
     }
 
@@ -54,7 +57,7 @@ public:
     void action() override;
 
 private:
-    struct Inventory { // energies that the engines of a scene keep, without those of the joints [J]
+    struct Inventory {      // energies that the engines of a scene keep, without those of the joints [J]
         double work = 0;    // of loads and prescribed motions
         double falls = 0;   // work of gravity
         double moving = 0;  // kinetic energy

@@ -12,7 +12,8 @@ public:
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
         "Moves the rigid bodies by the equations of NewtonIntegrator (paper eqs. (1)-(3)) and counts their energies. "
-        "Leaves out what masonry does not need: periodic cells, clumps and bounds for a collider. NewtonIntegrator with "
+        "Leaves out what masonry does not need: periodic cells, clumps and bounds for a collider. NewtonIntegrator "
+        "with "
         "MasonryEnergy remains as the reference.";
 
     double damping = 0.8;

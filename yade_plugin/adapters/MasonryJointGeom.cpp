@@ -39,8 +39,8 @@ void MasonryJointGeom::attach(const shared_ptr<MasonryZones>& all) {
     };
     std::vector<AtNode> atNodes;
     std::vector<Attachment> hung[2];
-    // Every node of one side becomes a subcontact. Where both sides are deformable, its area is the mean of the areas of
-    // the two nodes that face each other.
+    // Every node of one side becomes a subcontact. Where both sides are deformable, its area is the mean of the areas
+    // of the two nodes that face each other.
     const int lead = units[0] ? 0 : 1;
     for (const auto& [node, part] : nodes[lead]) {
         const Vector3r place = all->reference(*units[lead], node);
@@ -236,13 +236,14 @@ py::list MasonryJointGeom::jumps() {
 
 // ---- one joint alone --------------------------------------------------------------------------------------------
 
-// Each body carries the joint's axes along with it. The mean of the two rotations is the frame of the joint. The rotation
-// `half` leads from that frame to the axes carried by body 2, and its inverse to those carried by body 1. Let d be the
-// vector from centre to centre and a the offset of a subcontact from the centre of body 1, both in the reference state,
-// and `between` the present vector from centre to centre. In the joint's frame the jump at the subcontact is
+// Each body carries the joint's axes along with it. The mean of the two rotations is the frame of the joint. The
+// rotation `half` leads from that frame to the axes carried by body 2, and its inverse to those carried by body 1. Let
+// d be the vector from centre to centre and a the offset of a subcontact from the centre of body 1, both in the
+// reference state, and `between` the present vector from centre to centre. In the joint's frame the jump at the
+// subcontact is
 //     between - half d + (half - half^T) a,
-// where half - half^T = 4 w [v ×] for the unit quaternion (w, v). Forces act at the middle of the jump, and the axes turn
-// with the mean rotation. Together this conserves the angular momentum, and the power of the forces is that of the
+// where half - half^T = 4 w [v ×] for the unit quaternion (w, v). Forces act at the middle of the jump, and the axes
+// turn with the mean rotation. Together this conserves the angular momentum, and the power of the forces is that of the
 // tractions on the jumps.
 void MasonryJointGeom::follow(const yade::State& state1, const yade::State& state2) {
     if (!step) step = std::make_unique<Step>();

@@ -44,8 +44,8 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
                           "tangent, slide across it [m].");
     }
 
-    // Makes the joint in its reference state, with a grid of `columns` along the direction `along` by `rows` across it of
-    // subcontacts on the shared polygon.
+    // Makes the joint in its reference state, with a grid of `columns` along the direction `along` by `rows` across it
+    // of subcontacts on the shared polygon.
     void define(const FaceContact&, const Vector3r& along, int columns, int rows, int body1, int body2,
                 const yade::State&, const yade::State&);
     // For a joint with a deformable side. Puts the subcontacts at the nodes if those of a deformable side cover the

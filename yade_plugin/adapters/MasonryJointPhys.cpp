@@ -34,8 +34,8 @@ Vector3r MasonryJointPhys::dissipated() {
     return sum;
 }
 
-// Holds the two stiffnesses [Pa/m], then of every subcontact the twelve numbers of its state and the energies dissipated
-// in tension, shear and compression [J/m²].
+// Holds the two stiffnesses [Pa/m], then of every subcontact the twelve numbers of its state and the energies
+// dissipated in tension, shear and compression [J/m²].
 std::vector<double> MasonryJointPhys::record() {
     if (!home) return {};
     home->check();

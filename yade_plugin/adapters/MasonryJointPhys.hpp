@@ -35,7 +35,8 @@ class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys> {
     template <class PyClass> static void extras(PyClass& cls) {
         cls.add_property("stress", &MasonryJointPhys::stress,
                          "Per subcontact: normal stress and shear stress along and across the tangent [Pa].")
-            .add_property("opening", &MasonryJointPhys::opening, "Per subcontact: total opening [m]; negative where the joint is closed.")
+            .add_property("opening", &MasonryJointPhys::opening,
+                          "Per subcontact: total opening [m]; negative where the joint is closed.")
             .add_property("slip", &MasonryJointPhys::slip, "Per subcontact: accumulated plastic slip [m].")
             .add_property("damage", &MasonryJointPhys::damage,
                           "Per subcontact: damage in tension, shear and compression [-], 0 to 1.")

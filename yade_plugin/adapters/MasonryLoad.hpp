@@ -33,9 +33,8 @@ public:
         visit("velocity", &L::velocity, number("m/s", "Velocity of the point along the direction"));
         visit("reaction", &L::reaction, number("N", "Force that the drive applies along the direction"), ReadOnly);
         visit("work", &L::work,
-              number("J",
-                     "Work done on the block by force and drive so far; counted by the engine that counts the "
-                     "energies of rigid bodies"),
+              number("J", "Work done on the block by force and drive so far; counted by the engine that counts the "
+                          "energies of rigid bodies"),
               ReadOnly);
         visit("pendingWork", &L::pendingWork, number("J", "Work of the last step"), Hidden);
     }
@@ -48,8 +47,8 @@ public:
     std::vector<std::string> problems() const;
     void action() override;
 
-    // For the engine that counts energies. Half of a load's work is done with the velocity before the step, and half with
-    // the one after it, as in BodyStep.
+    // For the engine that counts energies. Half of a load's work is done with the velocity before the step, and half
+    // with the one after it, as in BodyStep.
     void workBefore(double dt, const yade::State&);
     void workAfter(double dt, const Vector3r& vel, const Vector3r& angVel);
 

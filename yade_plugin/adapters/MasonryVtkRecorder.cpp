@@ -38,8 +38,8 @@ template <class Array> Array* column(vtkDataSetAttributes* data, const char* nam
     return array; // owned by `data`
 }
 
-// Displacement of a point of the reference state that moves with a body. For a deformable unit this is the rigid part of
-// the motion.
+// Displacement of a point of the reference state that moves with a body. For a deformable unit this is the rigid part
+// of the motion.
 Vector3r moved(const yade::State& s, const Vector3r& position, const Quaternionr& orientation, const Vector3r& point) {
     return s.pos + s.ori * orientation.conjugate() * (point - position) - point;
 }

@@ -27,7 +27,8 @@ public:
         visit("kinds", &R::kinds, described("Names of the joints' kinds, in the order of their numbers in the files"),
               ReadOnly);
         visit("times", &R::times,
-              number("s", "Simulation times of the frames so far; a new recorder that is given them continues the series"));
+              number("s",
+                     "Simulation times of the frames so far; a new recorder that is given them continues the series"));
     }
 
     std::vector<std::string> problems() const;

@@ -32,9 +32,9 @@ std::vector<std::string> MasonryZones::problems() const {
 
 void MasonryZones::postLoad() {
     check();
-    // Attributes have changed, so the bodies are divided anew by the next call of units(). The state is kept until then.
-    if (!units_.empty())
-        loaded_ = {displacements(), velocities(), lastForces()};
+    // Attributes have changed, so the bodies are divided anew by the next call of units(). The state is kept until
+    // then.
+    if (!units_.empty()) loaded_ = {displacements(), velocities(), lastForces()};
     units_.clear();
     batches_.clear();
     places_.clear();

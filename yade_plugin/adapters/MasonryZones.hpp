@@ -18,7 +18,8 @@ public:
         "Deformable units: blocks divided into tetrahedral zones of linear elastic material, with their masses and "
         "joints at the nodes (paper §2, eqs. (1)-(7)). A unit remains one body with a Polyhedra shape; its position "
         "and orientation follow the centre of mass and the mean rotation. Strains are taken as small in axes that turn "
-        "with the unit. Stands after the loop of the joints; integrators of rigid bodies do not move these bodies. Give "
+        "with the unit. Stands after the loop of the joints; integrators of rigid bodies do not move these bodies. "
+        "Give "
         "this engine to Ig2_Polyhedra_Polyhedra_MasonryJointGeom.zones before joints are made.";
 
     std::vector<int> bodies;
@@ -40,10 +41,10 @@ public:
               Given);
         visit("damping", &Z::damping,
               number("-", "Damping constant alpha").atLeast(0).atMost(0.99).source("paper eq. (3): 0.8"));
-        visit(
-            "dampingKind", &Z::dampingKind,
-            described("'combined': alpha |F| (sgn(dF/dt) - sgn(v)) / 2, which also calms vibration about a steady motion; "
-                      "'local': -alpha |F| sgn(v), paper eq. (3), which leaves that vibration and resists the motion"));
+        visit("dampingKind", &Z::dampingKind,
+              described(
+                  "'combined': alpha |F| (sgn(dF/dt) - sgn(v)) / 2, which also calms vibration about a steady motion; "
+                  "'local': -alpha |F| sgn(v), paper eq. (3), which leaves that vibration and resists the motion"));
         visit("blocked", &Z::blocked,
               described("Directions in which the nodes are held: 'y' for a wall loaded in its plane, in plane stress"));
         visit("gravity", &Z::gravity, number("m/s²", "Gravity"));
@@ -76,8 +77,8 @@ public:
 
     struct Unit {
         int body;
-        int firstNode;   // number of its first node; the others follow
-        int momentPlace; // in the rows of moments
+        int firstNode;                                     // number of its first node; the others follow
+        int momentPlace;                                   // in the rows of moments
         std::shared_ptr<const BlockElasticity> elasticity; // shared by congruent units
         Vector3r centre;                                   // of the body in the reference state [m]
         Quaternionr orientation;                           // of the body in the reference state
@@ -90,14 +91,14 @@ public:
     Vector3r reference(const Unit&, int node) const;
     // How the point of the unit's surface nearest to `point` moves with the nodes.
     Attachment attach(const Unit&, const Vector3r& point) const;
-    // Nodes of a unit on a joint polygon, each with its share of the area [m²]: a third of every surface triangle on the
-    // polygon that has this node. Empty if those triangles do not cover the polygon.
+    // Nodes of a unit on a joint polygon, each with its share of the area [m²]: a third of every surface triangle on
+    // the polygon that has this node. Empty if those triangles do not cover the polygon.
     std::vector<std::pair<int, double>> nodesOn(const Unit&, const std::vector<Vector3r>& polygon,
                                                 const Vector3r& normal) const;
 
-    // The rows in which the state of the nodes lives. The three components of a node are one row apart, the first at the
-    // node's place: rows()[place + d * lanes]. Dependent points are subcontacts' sides without a node of their own, which
-    // move with a rigid body or between nodes. JointPlan adds them; their places follow those of the nodes.
+    // The rows in which the state of the nodes lives. The three components of a node are one row apart, the first at
+    // the node's place: rows()[place + d * lanes]. Dependent points are subcontacts' sides without a node of their own,
+    // which move with a rigid body or between nodes. JointPlan adds them; their places follow those of the nodes.
     int placeOf(int node) const { return places_[node]; }
     int addDependentPoint();
     void dropDependentPoints();

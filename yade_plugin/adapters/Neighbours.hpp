@@ -10,7 +10,8 @@ ConvexBlock blockOf(yade::Polyhedra&, const yade::Vector3r& position, const yade
 
 // Looks at all blocks of the present scene, and gives a tuple of three lists. The lower id stands first in a pair.
 // - (id1, id2) of all pairs that share a face
-// - (id1, id2, gap, bound) of all pairs that nearly share one or that overlap: the gap, which is negative for an overlap,
+// - (id1, id2, gap, bound) of all pairs that nearly share one or that overlap: the gap, which is negative for an
+// overlap,
 //   and the largest gap that would be accepted [m]
 // - (id, thickness) of the thinnest block and (id, diagonal) of the largest [m]
 boost::python::tuple neighbours(double tolerance);

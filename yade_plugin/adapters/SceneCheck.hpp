@@ -12,8 +12,8 @@ const yade::Body& bodyAt(const yade::Scene&, int id, const std::string& what);
 // What is wrong with a body that must be a block, one sentence for each problem; empty if nothing is.
 std::vector<std::string> problemsOf(const yade::Body&);
 
-// Throws std::invalid_argument with all problems that prevent a run: engines in a wrong order, wrong blocks, joints that
-// connect() did not make, and blocks that were added after connect().
+// Throws std::invalid_argument with all problems that prevent a run: engines in a wrong order, wrong blocks, joints
+// that connect() did not make, and blocks that were added after connect().
 void checkScene(const SceneStore&);
 
 } // namespace masonry

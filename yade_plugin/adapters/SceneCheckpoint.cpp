@@ -124,12 +124,13 @@ void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
             own->transfer(to);
         }
     for (const auto& engine : scene.engines)
-        if (auto* zones = dynamic_cast<MasonryZones*>(engine.get())) zones->units(); // refuses the state of another number of nodes
-    if (back) ++changes; // all engines read the scene anew
+        if (auto* zones = dynamic_cast<MasonryZones*>(engine.get()))
+            zones->units(); // refuses the state of another number of nodes
+    if (back) ++changes;    // all engines read the scene anew
 }
 
-// A checksum of numbers and texts that do not change in a run. A checkpoint holds it, so that it is recognised whether the
-// scene into which it is loaded is the same.
+// A checksum of numbers and texts that do not change in a run. A checkpoint holds it, so that it is recognised whether
+// the scene into which it is loaded is the same.
 class Fingerprint {
 public:
     template <class... T> void operator()(const T&... values) { (add(values), ...); }

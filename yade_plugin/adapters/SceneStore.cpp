@@ -163,7 +163,7 @@ void SceneStore::readJoints() {
         made.push_back(kind);
     }
     // A view that still has one of the old homes belongs to a joint that was taken out of the scene, or to one of which
-    // only one half is left. The latter is reported by checkScene(), so it must remain readable.
+    // only one half is left. If there is one of the latter, the old homes stay readable, and checkScene() reports it.
     for (auto& kind : kinds)
         kind.shapes->left = kind.states->left = !broken;
     kinds = std::move(made);

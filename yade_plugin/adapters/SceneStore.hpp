@@ -41,8 +41,8 @@ public:
     // Reads again what has changed since the last time. Throws std::invalid_argument, and leaves the joints in their
     // homes, if the joints of the scene belong to more than one MasonryZones.
     void update(Look look = Look::AtAll);
-    // Throws std::invalid_argument with all problems that prevent a run. Checks only when the scene has changed; the time
-    // step is checked every time.
+    // Throws std::invalid_argument with all problems that prevent a run. Checks only when the scene has changed; the
+    // time step is checked every time.
     void check();
     // masonry.connect() calls this when all blocks have their joints. Blocks that are added later are then reported by
     // strangers().
@@ -82,9 +82,9 @@ private:
     yade::Scene& scene_;
     boost::weak_ptr<yade::Factorable> life_;
     long revision_ = 0;
-    long seenChanges_ = -1;            // value of `changes` when the joints were last read
-    std::size_t seenInteractions_ = 0; // number of interactions when the joints were last read
-    long seenStep_ = -1;               // step in which the bodies were last looked at
+    long seenChanges_ = -1;                                     // value of `changes` when the joints were last read
+    std::size_t seenInteractions_ = 0;                          // number of interactions when the joints were last read
+    long seenStep_ = -1;                                        // step in which the bodies were last looked at
     std::vector<std::pair<const yade::Engine*, bool>> engines_; // all engines, and whether each is dead
     bool checked_ = false;                                      // whether the scene was checked since it changed
     std::vector<const yade::Body*> connected_;                  // the bodies at connected()

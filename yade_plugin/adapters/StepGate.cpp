@@ -6,7 +6,8 @@ namespace masonry {
 
 namespace {
 
-// Releases Python's interpreter while this thread waits, because the thread for which it waits may need the interpreter.
+// Releases Python's interpreter while this thread waits, because the thread for which it waits may need the
+// interpreter.
 class WithoutInterpreter {
 public:
     WithoutInterpreter() : state_(PyGILState_Check() ? PyEval_SaveThread() : nullptr) {}
@@ -27,8 +28,8 @@ StepGate& StepGate::instance() {
     return gate;
 }
 
-// Never waits for the interpreter while it holds the mutex, nor for the mutex while it holds the interpreter, because two
-// threads could then wait for each other.
+// Never waits for the interpreter while it holds the mutex. A thread that holds the interpreter may be waiting for the
+// mutex, and the two would then wait for each other.
 template <class Ready> void StepGate::wait(std::unique_lock<std::mutex>& held, Ready&& ready) {
     while (!ready()) { // again, because another thread may have gone first while this one took the interpreter back
         held.unlock();
@@ -67,7 +68,8 @@ void StepGate::lock() {
         ++waiting_;
         wait(held, [&] {
             if (depth_ > 0 || acting_) return false;
-            return !inStep_ || stepper_ == me || !runsInBackground(); // a step that failed may never have called leave()
+            return !inStep_ || stepper_ == me ||
+                   !runsInBackground(); // a step that failed may never have called leave()
         });
         --waiting_;
         reader_ = me;

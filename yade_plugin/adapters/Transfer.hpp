@@ -1,5 +1,5 @@
-// Moves the state of a scene into a checkpoint or back. The same code does both: it names every value, and the direction
-// decides which side is written. Values of a fixed size become plain numbers.
+// Moves the state of a scene into a checkpoint or back. The same code does both: it names every value, and the
+// direction decides which side is written. Values of a fixed size become plain numbers.
 #pragma once
 #include "files/Checkpoint.hpp"
 #include "host/Yade.hpp"

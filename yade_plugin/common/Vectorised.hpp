@@ -1,6 +1,6 @@
 // How inner loops use the vector units of a processor. A function marked MASONRY_VECTORISED is compiled for several
-// instruction sets, and the program takes the best one that the processor has when it starts. All give the same numbers,
-// because the project is built without contraction of products and sums.
+// instruction sets, and the program takes the best one that the processor has when it starts. All give the same
+// numbers, because the project is built without contraction of products and sums.
 #pragma once
 
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)

@@ -6,14 +6,14 @@
 
 namespace masonry {
 
-// The equations of MasonryJointGeom::update, for many joints at a time. Columns of a block never overlap.
-
 namespace {
 
+// Finds the joint's frame and the rotation `half` from it to side 2.
 [[gnu::always_inline]] inline void align(int n, const int* body1, const int* body2, const double* const* q,
                                          const double* const* f1, const double* const* f2,
                                          JointFrames& __restrict out) {
     const double *qw = q[0], *qx = q[1], *qy = q[2], *qz = q[3];
+    // Suffix 1 and 2: the joint's axes as bodies 1 and 2 have carried them along.
     const double *aw = f1[0], *ax = f1[1], *ay = f1[2], *az = f1[3];
     const double *bw = f2[0], *bx = f2[1], *by = f2[2], *bz = f2[3];
 #pragma GCC ivdep
@@ -27,6 +27,7 @@ namespace {
         double x2 = qw[two] * bx[i] + qx[two] * bw[i] + qy[two] * bz[i] - qz[two] * by[i];
         double y2 = qw[two] * by[i] + qy[two] * bw[i] + qz[two] * bx[i] - qx[two] * bz[i];
         double z2 = qw[two] * bz[i] + qz[two] * bw[i] + qx[two] * by[i] - qy[two] * bx[i];
+        // A quaternion and its negative are the same rotation; take the one that is nearer.
         const double same = w1 * w2 + x1 * x2 + y1 * y2 + z1 * z2 < 0 ? -1.0 : 1.0;
         w2 *= same;
         x2 *= same;
@@ -38,7 +39,7 @@ namespace {
         x *= size;
         y *= size;
         z *= size;
-        out.w[i] = w * w2 + x * x2 + y * y2 + z * z2; // the half turn from the mean to side 2
+        out.w[i] = w * w2 + x * x2 + y * y2 + z * z2;
         out.v[0][i] = w * x2 - x * w2 - (y * z2 - z * y2);
         out.v[1][i] = w * y2 - y * w2 - (z * x2 - x * z2);
         out.v[2][i] = w * z2 - z * w2 - (x * y2 - y * x2);
@@ -70,7 +71,7 @@ MASONRY_VECTORISED void alignRigid(int n, const int* body1, const int* body2, co
         out.between[2][i] = z;
         const double v0 = out.v[0][i], v1 = out.v[1][i], v2 = out.v[2][i], w = out.w[i];
         const double t0 = 2 * (v1 * sz[i] - v2 * sy[i]), t1 = 2 * (v2 * sx[i] - v0 * sz[i]),
-                     t2 = 2 * (v0 * sy[i] - v1 * sx[i]); // half d = d + w (2v × d) + v × (2v × d)
+                     t2 = 2 * (v0 * sy[i] - v1 * sx[i]); // for half d = d + w (2v × d) + v × (2v × d)
         out.common[0][i] =
             out.axes[0][i] * x + out.axes[3][i] * y + out.axes[6][i] * z - (sx[i] + w * t0 + (v1 * t2 - v2 * t1));
         out.common[1][i] =
@@ -107,13 +108,14 @@ MASONRY_VECTORISED void jumpRigid(int n, const double* __restrict ax, const doub
         jy[i] = j1;
         jz[i] = j2;
         const double shrink = 1 - 2 * (v0 * v0 + v1 * v1 + v2 * v2), along = 2 * (v0 * a0 + v1 * a1 + v2 * a2);
-        out.arm[0][i] = shrink * a0 + along * v0 + 0.5 * c0; // half^T a + jump / 2
+        out.arm[0][i] =
+            shrink * a0 + along * v0 + 0.5 * c0; // half^T a + jump / 2, as forces act at the middle of the jump
         out.arm[1][i] = shrink * a1 + along * v1 + 0.5 * c1;
         out.arm[2][i] = shrink * a2 + along * v2 + 0.5 * c2;
     }
 }
 
-// The one place where stress meets area, and tension meets the host's forces: an open joint pulls body 1 on.
+// Multiplies stress by area. Tension is positive, so a joint in tension pulls body 1 along the normal.
 MASONRY_VECTORISED void pullRigid(int n, const double* area, const double* normal, const double* shearA,
                                   const double* shearB, JointFrames& __restrict out) {
 #pragma GCC ivdep
@@ -138,7 +140,7 @@ MASONRY_VECTORISED void finishRigid(int n, const JointFrames& f, double* __restr
         const double fx = turned(f.force, 0), fy = turned(f.force, 1), fz = turned(f.force, 2);
         const double tx = turned(f.torque, 0), ty = turned(f.torque, 1), tz = turned(f.torque, 2);
         const double bx = f.between[0][i], by = f.between[1][i], bz = f.between[2][i];
-        out[0] = fx;
+        out[0] = fx; // on body 1
         out[1] = fy;
         out[2] = fz;
         out[3] = tx;
@@ -184,7 +186,9 @@ MASONRY_VECTORISED void pullNodal(int n, const double* area, const double* norma
     }
 }
 
-// The moment on the rotation of each of the two blocks, as in the Law2 functor.
+// The jump is measured in axes that turn with the mean rotation of the two blocks. So the joint does work on that
+// rotation, too, and each block takes half of the moment. With it the two forces, which act apart by the jump, have no
+// resulting moment.
 MASONRY_VECTORISED void finishNodal(int n, const JointFrames& f, double* __restrict onJoints) {
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i)
@@ -197,7 +201,9 @@ MASONRY_VECTORISED void finishNodal(int n, const JointFrames& f, double* __restr
 MASONRY_VECTORISED double turnsInPlane(int n, const double* const* q, const double* const* r, double* cosine,
                                        double* sine) {
     const double *a = q[0], *b = q[1], *c = q[2], *d = q[3], *e = r[0], *f = r[1], *g = r[2], *h = r[3];
-    std::int64_t out = 0; // bits of the largest that lies out of the plane: positive numbers are ordered as their bits
+    // Bits of the largest part that is not about y. Positive numbers are ordered as their bits are. A comparison of
+    // bits also finds a NaN, and the compiler can vectorise it.
+    std::int64_t out = 0;
     MASONRY_INDEPENDENT
     for (int i = 0; i < n; ++i) {
         cosine[i] = a[i] * e[i] - b[i] * f[i] - c[i] * g[i] - d[i] * h[i];
@@ -285,7 +291,8 @@ MASONRY_VECTORISED void pullRigidInPlane(int n, const double* area, const double
     }
 }
 
-// The arms are those of finishRigid: the offsets shrunk by the half turn, and half of what all points' jumps share.
+// The arms are those of jumpRigid: 1 - 2 v² times the offset, plus half of the common part of the jump. Here v stands
+// across all offsets. Factor and common part are the same for all subcontacts, so they are applied to the sums.
 MASONRY_VECTORISED void finishRigidInPlane(int n, const JointFrames& f, double* __restrict onJoints) {
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
