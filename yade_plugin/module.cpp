@@ -1,4 +1,5 @@
-// The Python module masonry._masonry: checks itself against the running YADE, then registers its classes there.
+// The Python module masonry._masonry. When it is imported it checks whether it fits the running YADE, and registers its
+// classes there.
 #include "adapters/CriticalTimeStep.hpp"
 #include "adapters/Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening.hpp"
 #include "adapters/MasonryEnergy.hpp"
@@ -24,7 +25,7 @@ template <class T> void enroll(std::vector<std::string>& names) {
     names.push_back(T::className);
 }
 
-// Lists of what the host has no converter for, from and to Python sequences.
+// Converts lists between C++ and Python for a type for which the host has no such converter.
 template <class T, class ToPython, class FromPython> struct Sequence {
     static PyObject* convert(const std::vector<T>& values) {
         py::list all;
@@ -121,9 +122,10 @@ static void registerAll() {
     py::scope().attr("commit") = MASONRY_COMMIT;
     py::def(
         "neighbours", &neighbours, (py::arg("tolerance") = 1e-4),
-        "(pairs that share a face, pairs (id1, id2, gap, bound) that nearly do or overlap, (thinnest, largest)) of the "
-        "blocks; "
-        "for masonry.connect(). Gaps and sizes in m.");
+        "Three lists for masonry.connect(): pairs (id1, id2) of bodies that share a face; pairs (id1, id2, gap, bound) "
+        "that nearly share one or overlap, with the gap and the largest one accepted; (id, size) of the thinnest and "
+        "of "
+        "the largest block. Gaps and sizes in m.");
     py::def("touchingPairs", &touchingPairs, (py::arg("tolerance") = 1e-4),
             "Pairs (id1, id2) of bodies whose Polyhedra share a face; tolerance as in "
             "Ig2_Polyhedra_Polyhedra_MasonryJointGeom.");
@@ -132,14 +134,18 @@ static void registerAll() {
         "(dt, id1, id2): the stable time step [s] under the damping of O.engines, at most 1.1 % below the limit, and "
         "the pair of bodies whose joint sets it (twice the same for a deformable unit). Ask again after changing "
         "joints, masses, blocked motions or damping.");
-    py::def("connected", &connected, "All blocks have their joints: what is added later is told. For connect().");
-    py::def("saveScene", &saveScene, py::args("extra"), "The state of the scene as bytes, with a text of one's own.");
-    py::def("loadScene", &loadScene, py::args("bytes"), "Give the scene a saved state; returns the text.");
-    py::def("savedText", &savedText, py::args("bytes"), "The text alone.");
+    py::def(
+        "connected", &connected,
+        "Tell the plugin that all blocks have their joints. A block that is added later and has no joint is then an "
+        "error. For masonry.connect().");
+    py::def("saveScene", &saveScene, py::args("extra"),
+            "The state of the scene as bytes, together with a text of the caller.");
+    py::def("loadScene", &loadScene, py::args("bytes"), "Set the scene to a saved state; returns the caller's text.");
+    py::def("savedText", &savedText, py::args("bytes"), "The caller's text in a saved state.");
 }
 
-// Written out because BOOST_PYTHON_MODULE hands the module over even when its body failed: an import that refuses must
-// raise, and must have registered nothing.
+// Written in place of BOOST_PYTHON_MODULE, which gives Python the module even when its body has failed. An import into
+// a YADE that does not fit must raise an error and register nothing.
 extern "C" PyObject* PyInit__masonry() {
     std::vector<std::string> differences;
     if (py::handle_exception([&] { differences = host::differences(); })) return nullptr;

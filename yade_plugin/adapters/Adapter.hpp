@@ -1,16 +1,16 @@
-// What every class that YADE sees has in common: one list of attributes serves Python, dict(), saving, checkpoints, the
-// check of values and the docs.
+// What the classes of this plugin that YADE sees have in common. Each class lists its attributes once, and this list
+// serves Python, dict(), saving, checkpoints, the check of values and the documentation.
 //
-// A class `T : Adapter<T, HostBase>` gives `className`, `baseName`, `doc` and
+// A class `T : Adapter<T, HostBase>` defines `className`, `baseName`, `doc` and
 //     template <class Visit> static void attributes(Visit&& visit) {
 //         visit("young", &T::young, number("Pa", "Young's modulus").above(0));
 //     }
-// An attribute whose value lives elsewhere, as the state of a joint in columns, is given by two functions in place of a
-// member: `visit("jumps", computed(&T::jumps, &T::setJumps), ...)`. A class may define
-//     void postLoad()                               checks and prepares after any change of attributes
-//     std::vector<std::string> problems()           what is wrong beyond the bounds of single attributes
-//     std::string title()                           how messages name the object
-//     template <class PyClass> static void extras(PyClass&)    more properties and functions for Python
+// An attribute whose value lives elsewhere, as the state of a joint does, is given by two functions in place of a
+// member: `visit("record", computed(&T::record, &T::setRecord), ...)`. A class may also define
+//     void postLoad()                               checks and prepares the object after attributes were changed
+//     std::vector<std::string> problems()           says what is wrong beyond the bounds of single attributes
+//     std::string title()                           gives the name of the object in messages
+//     template <class PyClass> static void extras(PyClass&)    adds more properties and functions for Python
 #pragma once
 #include "StepGate.hpp"
 #include "Transfer.hpp"
@@ -34,14 +34,21 @@ namespace masonry {
 namespace py = boost::python;
 using boost::shared_ptr;
 
-// Counts every change of joints, units and properties, after which scenes are read anew.
+// Counts the changes of joints, deformable units and properties. When the number has changed, the engines read their
+// scene anew.
 inline std::atomic<long> changes{0};
 
-// Hidden: saved, but not shown to Python. Given: by the scene that is built; no state, so checkpoints leave it alone.
-// Shown: shown to Python, but saved by another attribute.
-enum Flags { Plain = 0, ReadOnly = 1, Hidden = 2, Given = 4, Shown = 8 };
+// How an attribute is treated. Flags can be combined.
+enum Flags {
+    Plain = 0,
+    ReadOnly = 1, // Python reads it, but cannot set it
+    Hidden = 2,   // saved and in checkpoints, but not shown to Python
+    Given = 4,    // set by the script that builds the scene; not part of the state, so checkpoints do not hold it
+    Shown = 8,    // Python reads it, but cannot set it; not saved by itself, because another attribute holds its value
+};
 
-// An attribute whose value lives elsewhere. Without `put` it is shown only.
+// An attribute whose value lives elsewhere: a function that reads it, and one that sets it. Without `put` it cannot be
+// set.
 template <class Owner, class T> struct Computed {
     T (Owner::*get)();
     void (Owner::*put)(const T&);
@@ -91,23 +98,24 @@ inline std::string shown(const py::object& value) {
     return text.size() > 80 ? text.substr(0, 80) + "..." : text;
 }
 
-// What Python gives for an attribute, as the attribute's type; std::invalid_argument that names both if it is another.
+// Converts what Python gives for an attribute to the attribute's type. Throws std::invalid_argument, which names the
+// expected type and the value, where that cannot be done.
 template <class T> T given(const std::string& name, const py::object& value) {
     py::extract<T> extracted(value);
-    const bool sort = !std::is_arithmetic<T>::value || PyBool_Check(value.ptr()) == std::is_same<T, bool>::value;
+    const bool fits = !std::is_arithmetic<T>::value || PyBool_Check(value.ptr()) == std::is_same<T, bool>::value;
     try {
-        if (sort && extracted.check()) return extracted();
-    } catch (const py::error_already_set&) { // a list of other things
+        if (fits && extracted.check()) return extracted();
+    } catch (const py::error_already_set&) { // an entry of a list has another type
         PyErr_Clear();
-    } catch (const std::bad_cast&) { // a whole number out of range
+    } catch (const std::bad_cast&) { // a whole number is out of range
     }
     throw std::invalid_argument(name + ": expected " + expectedType<T>() + ", got " + shown(value));
 }
 
-// Raises AttributeError for an attribute that a class does not have, with the nearest name that it has.
+// Raises AttributeError for an attribute that a class does not have. The message offers the nearest name that it has.
 [[noreturn]] void refuseAttribute(const std::string& className, const py::object& ofClass, const std::string& name);
 
-// The description of a property for Python, as a dict.
+// The description of a property as a dict for Python.
 py::dict told(const std::string& name, const Property&);
 
 template <class Derived, class Base> class Adapter : public Base, public Stateful {
@@ -207,7 +215,7 @@ protected:
         set(one);
     }
 
-    // Throws std::invalid_argument with all attributes that are out of their bounds, and all other problems.
+    // Throws std::invalid_argument that names all attributes out of their bounds, and all of problems().
     void check() {
         std::vector<std::string> wrong;
         Derived::attributes([&](const char* name, const auto& member, const Property& property, int flags = Plain) {
@@ -215,8 +223,7 @@ protected:
             using T = decltype(valueOf(self(), member));
             if constexpr (std::is_arithmetic<T>::value) {
                 if (property.isNumber())
-                    if (const auto what = property.problem(name, double(valueOf(self(), member)));
-                        !what.empty())
+                    if (const auto what = property.problem(name, double(valueOf(self(), member))); !what.empty())
                         wrong.push_back(what);
             } else if constexpr (std::is_same<T, Vector3r>::value) {
                 if (!valueOf(self(), member).allFinite()) {
@@ -281,7 +288,8 @@ private:
 
     static void updateAll(Derived& object, const py::dict& values) { object.set(values); }
 
-    void set(const py::dict& values) { // all of them or, where one is refused, none
+    // Sets all of the values or, where one is refused, none.
+    void set(const py::dict& values) {
         const BetweenSteps still;
         py::dict before = Base::pyDict();
         Derived::attributes([&](const char* name, const auto& member, const Property&, int flags = Plain) {
@@ -295,7 +303,7 @@ private:
                 self().pySetAttr(name, value);
             } catch (const std::invalid_argument& error) {
                 wrong.push_back(error.what());
-            } catch (const py::error_already_set&) { // the host's, of its own attributes
+            } catch (const py::error_already_set&) { // raised by the host for an attribute of its own
                 if (!PyErr_ExceptionMatches(PyExc_TypeError)) throw;
                 PyErr_Clear();
                 wrong.push_back(std::string(Derived::className) + "." + name + ": cannot be " + shown(value));
@@ -307,7 +315,8 @@ private:
             if (!wrong.empty()) throw std::invalid_argument(joined(wrong));
             self().callPostLoad();
         } catch (...) {
-            PyObject *type, *value, *trace; // an error of Python's own must not be met by what sets back
+            // An error of Python is put aside while the old values are set again, which calls Python, too.
+            PyObject *type, *value, *trace;
             PyErr_Fetch(&type, &value, &trace);
             for (py::ssize_t i = 0; i < py::len(keys); ++i)
                 if (before.has_key(keys[i])) put(keys[i], before[keys[i]]);
@@ -349,7 +358,7 @@ private:
     }
 };
 
-// The number by which dispatchers know a class of materials, geometries or physics.
+// The number by which YADE's dispatchers know a class of materials, geometries or physics. Stands first in the class.
 #define MASONRY_DISPATCHED(Class, HostBase)                                                                            \
 public:                                                                                                                \
     int& modifyClassIndex() override { return dispatchIndex(); }                                                       \

@@ -26,7 +26,7 @@ void BodyColumns::read(const yade::Scene& scene) {
             seen_[b].blocked = 63;
     }
     for (int b = 0; b < count; ++b)
-        if (!states_[b]) seen_[b].blocked = 63; // an empty place: nothing in it moves
+        if (!states_[b]) seen_[b].blocked = 63; // there is no body with this id
 }
 
 bool BodyColumns::fits(const yade::Scene& scene, bool thoroughly) const {
@@ -41,7 +41,8 @@ bool BodyColumns::sameFrame(int b) const {
     const auto& s = *states_[b];
     bool same = s.refOri.w() == fromReference[0][b];
     for (int d = 0; d < 3; ++d)
-        same = same && -s.refOri.vec()[d] == fromReference[1 + d][b] && s.inertia[d] == inertia[d][b] && s.refPos[d] == referencePosition[d][b];
+        same = same && -s.refOri.vec()[d] == fromReference[1 + d][b] && s.inertia[d] == inertia[d][b] &&
+               s.refPos[d] == referencePosition[d][b];
     return same;
 }
 

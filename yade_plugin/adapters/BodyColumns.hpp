@@ -1,6 +1,6 @@
-// Where the bodies of a scene are and how they move, in columns: the home of what MasonryIntegrator moves. A body's
-// number is its id. The host's State is written once a step; what somebody else changed in it is noticed before it is
-// used.
+// Place, motion and mass of the bodies of a scene, in columns. MasonryIntegrator moves the rigid bodies here. The row
+// of a body is its id. The integrator writes the host's State once a step. Scripts and other engines may change a State
+// between two steps; the engines of this plugin notice that before they use the columns.
 #pragma once
 #include "host/Yade.hpp"
 #include "motion/RigidMotion.hpp"
@@ -13,19 +13,25 @@ class BodyColumns : public RigidColumns {
 public:
     // Takes all bodies of a scene from the host.
     void read(const yade::Scene&);
-    // Whether the scene's bodies are still those that were read; `thoroughly`: whether their States are, too.
+    // Whether the scene's bodies are still those that were read. With `thoroughly` their State objects are compared,
+    // too.
     bool fits(const yade::Scene&, bool thoroughly) const;
 
     int size() const { return int(states_.size()); }
     bool has(int body) const { return states_[body] != nullptr; }
     yade::State& state(int body) const { return *states_[body]; }
-    bool isBlocked(int body, int axis) const { return seen_[body].blocked >> axis & 1; } // 0-2 move, 3-5 turn
+    // Axes 0 to 2 are the translations along x, y and z, axes 3 to 5 the rotations about them.
+    bool isBlocked(int body, int axis) const { return seen_[body].blocked >> axis & 1; }
+    unsigned blockedAxes(int body) const { return seen_[body].blocked; } // as in State.blockedDOFs
     bool isDamped(int body) const { return seen_[body].damped; }
-    bool spins(int body) const { return seen_[body].blocked >> 3 == 0; } // no rotation is blocked: it turns in space
-    // Bits of the translations and rotations in which the body is free or moves.
+    // Whether no rotation is blocked, so that the body turns freely in space.
+    bool spins(int body) const { return seen_[body].blocked >> 3 == 0; }
+    // One bit for each of the six axes in which the body is free or has a velocity.
     unsigned axes(int body) const { return seen_[body].axes; }
 
-    // Takes from the host what somebody changed there: places; place, motion, mass and blocked motions; or all.
+    // Each of these takes a body from the host if its State has changed since it was last taken or given. noticePlace()
+    // compares position and orientation; notice() also velocities, mass, blocked axes and damping; noticeAll() also
+    // inertia and reference place, which hardly ever change.
     void noticePlace(int body) {
         if (!samePlace(body)) take(body);
     }
@@ -35,35 +41,37 @@ public:
     void noticeAll(int body) {
         if (!samePlace(body) || !sameMotion(body) || !sameFrame(body)) take(body);
     }
+    // Asks the processor for the body's State, so that it is in the cache when it is needed.
     void prefetch(int body) const;
-    // Gives the host place and motion of a body in the translations and rotations whose bits are set.
+    // Writes place and motion of a body into the host's State, for the axes whose bits are set.
     void give(int body, unsigned axes);
-    // Gives the body a new place, here and in the host.
+    // Sets position and orientation of a body, here and in the host's State.
     void setPlace(int body, const yade::Vector3r& place, const yade::Quaternionr& turned);
-    // Takes all of a body from the host.
+    // Reads all of a body from the host's State.
     void take(int body);
 
     std::vector<double> referencePosition[3]; // [m]
-    std::vector<double> fromReference[4];     // inverse of the reference orientation
+    std::vector<double> fromReference[4];     // inverse of the reference orientation: w, x, y, z
 
-    std::vector<bool> isUnit; // a deformable unit, which MasonryZones moves
+    std::vector<unsigned char> isUnit; // whether the body is a deformable unit, which MasonryZones moves
 
 private:
-    struct Seen { // beside the columns, what the host's State held when it was last taken or given
-        unsigned blocked;
-        bool damped;
-        unsigned char axes;
+    struct Seen {           // what the host's State held beside the columns when the body was last taken
+        unsigned blocked;   // one bit for each blocked axis, as in State.blockedDOFs
+        bool damped;        // whether the integrator damps the body
+        unsigned char axes; // see axes()
     };
     bool samePlace(int body) const;
     bool sameMotion(int body) const;
-    bool sameFrame(int body) const; // inertia and reference place, which hardly ever change
+    bool sameFrame(int body) const; // compares inertia and reference place
 
     std::vector<Seen> seen_;
     std::vector<const yade::Body*> bodies_;
     std::vector<boost::shared_ptr<yade::State>> states_;
 };
 
-// The bits of a number: a comparison of bits is quicker than one of numbers, and knows NaN again.
+// The bits of a number. Bits are compared in place of numbers because that is quicker, and because a NaN is then equal
+// to itself.
 inline std::uint64_t bitsOf(double value) {
     std::uint64_t bits;
     std::memcpy(&bits, &value, sizeof bits);
@@ -72,7 +80,7 @@ inline std::uint64_t bitsOf(double value) {
 
 inline bool BodyColumns::samePlace(int b) const {
     const auto& s = *states_[b];
-    const double* q = s.ori.coeffs().data(); // x, y, z, w
+    const double* q = s.ori.coeffs().data(); // in the order x, y, z, w
     std::uint64_t differs = bitsOf(q[3]) ^ bitsOf(orientation[0][b]);
     for (int d = 0; d < 3; ++d)
         differs |= (bitsOf(s.pos[d]) ^ bitsOf(position[d][b])) | (bitsOf(q[d]) ^ bitsOf(orientation[1 + d][b]));
@@ -90,7 +98,7 @@ inline bool BodyColumns::sameMotion(int b) const {
 
 inline void BodyColumns::prefetch(int b) const {
     const char* state = reinterpret_cast<const char*>(states_[b].get());
-    for (int line = 1; line < 5; ++line) // States lie all over the memory
+    for (int line = 1; line < 5; ++line) // the cache lines that hold what a step needs
         __builtin_prefetch(state + 64 * line);
 }
 

@@ -39,8 +39,8 @@ BodyStep stepOf(const State& s, const BodyForces& on, const Vector3r& gravity, d
     const double alpha = s.isDamped ? damping.alpha : 0, rate = 1 / dt;
     const bool combined = damping.last != nullptr;
     const double share = dampingShare(combined);
-    // What damping takes of an acceleration whose undamped value is `free`, with the velocity in the middle of the step
-    // over the step as `middle`.
+    // What damping takes of an acceleration whose undamped value is `free`. `middle` is the velocity in the middle of
+    // the step divided by the time step; `before` is the undamped value of the step before, which is replaced, or null.
     const auto drag = [&](double free, double middle, double* before) {
         const double reach = alpha * std::abs(free);
         if (damping.host) return reach * sign(middle);
@@ -61,8 +61,9 @@ BodyStep stepOf(const State& s, const BodyForces& on, const Vector3r& gravity, d
         e.pendingDamped += 0.5 * dt * s.mass * taken * step.vel[i];
         e.kinetic += 0.5 * s.mass * s.vel[i] * step.vel[i];
     }
-    // With a blocked rotation the integrator damps accelerations about the global axes. Without one it damps the
-    // torque, and what stops the spin about one of the axes cannot be more than its share of the smallest inertia.
+    // If a rotation is blocked, the integrator damps the accelerations about the global axes. If none is, it damps the
+    // components of the torque about the global axes. The torque that stops a rotation depends on the body's own axes;
+    // the smallest inertia gives a torque that never reverses it.
     const bool restrained = rotationRestrained(s);
     const Vector3r gained = restrained || damping.host ? Vector3r::Zero() : Vector3r(inverseInertia(s) * on.torque);
     const double least = s.inertia.minCoeff();
@@ -95,8 +96,9 @@ BodyStep stepOf(const State& s, const BodyForces& on, const Vector3r& gravity, d
     return step;
 }
 
-// Leapfrog of the angular momentum, its spin taken in the body's axes, with the orientation at half step from the
-// momentum at the step; the host's scheme for aspherical bodies.
+// The leapfrog scheme of the host for aspherical bodies. The angular momentum at the middle of the step before is
+// advanced to the present step; the angular velocity that belongs to it, in the body's axes, gives the orientation at
+// the middle of the step. With that orientation the momentum at the middle of the step turns the body by a whole step.
 void turnInSpace(State& s, const BodyStep& step, double dt) {
     const auto spinOf = [&](const Vector3r& momentum) {
         return Vector3r((s.ori.conjugate() * momentum).cwiseQuotient(s.inertia));

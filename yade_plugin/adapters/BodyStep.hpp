@@ -1,43 +1,50 @@
-// A step of one rigid body, in the host's equations: the reference for RigidMotion, and the way of bodies that are free
-// to turn in space.
+// A step of one rigid body, by the equations of NewtonIntegrator. It is the reference for RigidMotion, and it moves the
+// bodies that are free to turn in space.
 #pragma once
 #include "host/Yade.hpp"
 #include "motion/EnergyLedger.hpp"
 
 namespace masonry {
 
-inline bool isBlocked(const yade::State& s, int axis) { return s.blockedDOFs >> axis & 1; } // 0-2 move, 3-5 turn
+// Axes 0 to 2 are the translations along x, y and z, axes 3 to 5 the rotations about them.
+inline bool isBlocked(const yade::State& s, int axis) { return s.blockedDOFs >> axis & 1; }
 inline bool rotationRestrained(const yade::State& s) { return s.blockedDOFs >> 3 != 0; }
 inline bool isFreeOrMoves(const yade::State& s) {
     return (s.blockedDOFs & 63) != 63 || !s.vel.isZero(0) || !s.angVel.isZero(0);
 }
 
-// Inverse inertia in global axes as the integrator uses it: with a blocked rotation the three values stand for the
-// global axes, without for the body's own.
+// Inverse inertia in global axes [1/(kg m²)], as the integrator uses it. If a rotation is blocked, the three values of
+// State.inertia belong to the global axes; if none is, they belong to the body's own axes. Zero for blocked rotations.
 yade::Matrix3r inverseInertia(const yade::State&);
+// Inverse mass along the global axes [1/kg], zero for blocked translations.
 yade::Vector3r inverseMass(const yade::State&);
 
 struct BodyForces {
-    yade::Vector3r force, torque;
+    yade::Vector3r force;  // [N]
+    yade::Vector3r torque; // about the centre [N m]
 };
 
 struct BodyDamping {
-    double alpha = 0;  // of a body that is damped
-    bool host = false; // the host's rule, which takes all of alpha |F| and may turn a motion round
-    BodyForces* last;  // combined damping: per mass and inertia in the step before, brought up to date; else null
+    double alpha = 0;  // damping constant of a body that is damped [-]
+    bool host = false; // whether the host's rule is used, which takes all of alpha |F| and may reverse a motion
+    // For combined damping: force per mass [m/s²] and torque per inertia [1/s²] in the step before, which stepOf()
+    // replaces by those of this step. Null for local damping.
+    BodyForces* last;
 };
 
-// A step takes v- to v+ with the forces at x_n. Between x_n and x_n+1 a force does the work of its mean over both ends:
-// half of it with v- at n, half with v+ (pending until n+1). With the kinetic energy m v-·v+ / 2 the balance at x_n is
-// then an identity, and the joints' trapezoidal work is its counterpart.
+// A step takes the velocity v- to v+ with the forces at the place x_n. Between x_n and x_n+1 a force does the work of
+// its mean over both ends: half of the force at x_n works with v-, before that place, and half with v+, after it. The
+// second half is pending until step n+1. With the kinetic energy m v-·v+ / 2 the energy balance at x_n is then an
+// identity. The joints count their work by the same trapezoidal rule.
 struct BodyStep {
-    yade::Vector3r vel, angVel; // after the step
-    yade::Vector3r torque;      // less what damping takes
+    yade::Vector3r vel;    // after the step [m/s]
+    yade::Vector3r angVel; // after the step [1/s]; of a body that turns in space see turnInSpace()
+    yade::Vector3r torque; // without what damping takes [N m]
     EnergyLedger energies;
 };
 BodyStep stepOf(const yade::State&, const BodyForces&, const yade::Vector3r& gravity, double dt, const BodyDamping&);
 
-// Turns a body that is free to turn in space by a step.
+// Makes the rotation of a step for a body that is free to turn in space, and sets its angular velocity and momentum.
 void turnInSpace(yade::State&, const BodyStep&, double dt);
 
 } // namespace masonry

@@ -15,38 +15,40 @@ using yade::State;
 
 namespace {
 
-// Stiffness over masses of a scene, S K S with S = sqrt((1 + alpha) / M), as a sum over its joints and deformable
-// units. The degrees of freedom are the six of every rigid body and the three of every node; those that are blocked
-// have no part in it.
+// Stiffness over mass of a scene: the operator S K S with S = sqrt((1 + alpha) / M), as a sum over joints and
+// deformable units. The degrees of freedom are three of every node and six of every rigid body that has a joint; those
+// that are blocked are left out.
 class Dynamics {
 public:
     explicit Dynamics(SceneStore&);
 
-    std::vector<bool> moves; // whether a degree of freedom can
+    std::vector<bool> moves; // whether a degree of freedom can move, that is, is not blocked
     void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
-    // The bodies of the joint, or twice the unit, that has most of a mode's energy.
+    // The bodies of the joint that has most of a mode's elastic energy, or twice the body of the unit that has.
     std::pair<int, int> stiffest(const Eigen::VectorXd& mode) const;
 
 private:
-    struct Joint { // between rigid bodies, or a point of one at nodes
-        std::vector<int> degrees;
+    struct Joint {                // a joint between rigid bodies, or one subcontact of a joint with a deformable side
+        std::vector<int> degrees; // the degrees of freedom on which it acts
         Eigen::MatrixXd stiffness;
         int body1, body2;
     };
-    struct Unit {
+    struct Unit { // a deformable unit
         BlockMatrix matrix;
-        int first, body;
+        int first; // its first degree of freedom
+        int body;
     };
     void addDegree(double mass, double damping, bool blocked) {
         moves.push_back(!blocked);
         scale_.push_back(blocked ? 0 : std::sqrt((1 + damping) / mass));
     }
     void addJoint(const SceneStore&, const JointView&);
-    // Calls `visit(body1, body2, degree, force)` with the force of every part on its degrees under a motion.
+    // Calls `visit(body1, body2, degree, force)` for every degree of freedom of every joint and unit, with the force
+    // that the joint or unit has there under these displacements.
     template <class F> void eachForce(const Eigen::VectorXd& motion, F&& visit) const;
 
-    std::vector<double> scale_; // sqrt((1 + alpha) / mass) of a degree of freedom; 0 where it is blocked
-    std::map<int, int> firstOfBody_;
+    std::vector<double> scale_;      // sqrt((1 + alpha) / mass) of a degree of freedom; 0 where it is blocked
+    std::map<int, int> firstOfBody_; // first degree of freedom of a rigid body
     std::vector<Joint> joints_;
     std::vector<Unit> units_;
 };
@@ -69,7 +71,7 @@ void Dynamics::addJoint(const SceneStore& store, const JointView& joint) {
     const Matrix3r axes = r.axes();
     for (int p = 0; p < geom.points(); ++p) {
         Joint part{{}, {}, r.sides[0].body, r.sides[1].body};
-        std::vector<Vector3r> rows; // of the jump: its derivative by each degree
+        std::vector<Vector3r> rows; // derivative of the jump by each of these degrees of freedom
         const auto add = [&](int degree, const Vector3r& moved) {
             if (!moves[degree]) return;
             part.degrees.push_back(degree);
@@ -146,7 +148,7 @@ std::pair<int, int> Dynamics::stiffest(const Eigen::VectorXd& mode) const {
     return most == energies.end() ? std::pair(-1, -1) : most->first;
 }
 
-// What the limit was found for.
+// What the limit that is kept was found for.
 struct Known {
     const SceneStore* store = nullptr;
     long revision = -1;

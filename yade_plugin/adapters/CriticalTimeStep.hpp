@@ -1,4 +1,4 @@
-// The largest time step that is stable.
+// The largest time step for which a scene is stable.
 #pragma once
 #include <string>
 
@@ -6,29 +6,36 @@ namespace masonry {
 
 class SceneStore;
 
-// The largest time step [s] that is safe under the damping of the engines, and the two bodies whose joint, or twice the
-// unit, sets it; without any -1, -1 and an infinite step. It is 2/sqrt(w²) with w² the largest eigenvalue of stiffness
-// over mass, damped masses over 1 + alpha, and at most 1.1 % below it (motion/LargestEigenvalue.hpp).
+// The largest time step that is safe under the damping of the engines. It is 2/sqrt(L), where L is the largest
+// eigenvalue of stiffness over mass and every damped mass is divided by 1 + alpha. The value given is at most 1.1 %
+// below that, because L is found with an error on the safe side (motion/LargestEigenvalue.hpp).
 //
-// Why it is safe, in degrees of freedom scaled by sqrt(mass), with a = -A x the acceleration without damping: a step of
-// leapfrog is half a kick dt a/2, in whose middle the velocity is w, damping's impulse, the other half kick, and the
-// motion. Without the impulse it keeps E = w·w/2 + x·(A - dt² A²/4) x/2, which is positive while dt² A < 4, so that the
-// motion is bounded. Damping draws each w by dt alpha |a| towards zero, at most to zero (motion/Damping.hpp): E falls
-// with every such impulse, whatever alpha, local or combined. So dt² A < 4 is enough for stability, and 1 + alpha a
-// margin: close to that limit the highest motions go to and fro with w near zero, unseen by damping, and joints that
+// Why it is safe: let x be the displacements, each scaled by the square root of its mass, and a = -A x the
+// accelerations without damping. A step of the leapfrog scheme consists of half of the velocity change, dt a/2; of the
+// impulse of damping; of the other half of the velocity change; and of the motion. Let w be the velocity between the
+// two halves. Without damping such steps keep E = w·w/2 + x·(A - dt² A²/4) x/2. This is positive while all eigenvalues
+// of dt² A are below 4, so the motion is bounded. Damping brings each component of w by up to dt alpha |a| towards
+// zero, and never beyond zero (motion/Damping.hpp). So E falls with every such impulse, for any alpha and for both
+// kinds of damping. Therefore dt² A < 4 is enough for stability, and the factor 1 + alpha is a margin. It is needed
+// because close to the limit the highest modes swing with w near zero, where damping has no effect, and joints that
 // yield let them drift.
-// All this is for elastic joints and small turns; joints that yield, open or crush are softer. The host's damping may
-// draw w past zero; that it is calm below the bound is measured (validation/stability).
+//
+// All this holds for elastic joints and small rotations; joints that yield, open or crush are softer. The host's own
+// damping may bring w beyond zero. That such runs are calm below the limit is measured, not proved
+// (validation/stability).
 struct TimeStepLimit {
-    double dt = 0; // [s]
+    double dt = 0; // [s]; infinite where nothing can vibrate
+    // The two bodies whose joint sets the limit; twice the same body where a deformable unit does; -1 where nothing
+    // does.
     int id1 = -1;
     int id2 = -1;
 };
 
-// The limit of a scene; `anew`: found again even where joints, units and damping are those of the last time.
+// The limit of a scene. It is kept while joints, units and damping are the same; with `anew` it is found again in any
+// case, because changes of masses or blocked axes are not noticed.
 TimeStepLimit timeStepLimit(SceneStore&, bool anew);
 
-// The scene's time step, its limit, and what sets that, in words.
+// A text for messages: the scene's time step, its limit, and what sets the limit.
 std::string described(const SceneStore&, const TimeStepLimit&);
 
 } // namespace masonry

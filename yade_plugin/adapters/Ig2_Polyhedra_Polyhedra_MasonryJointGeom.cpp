@@ -7,7 +7,8 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Ig2_Polyhedra_Polyhedra_MasonryJointGeom)
 
 namespace masonry {
 
-// The host asks before every step: joints are then in their columns, with the properties of the moment.
+// The host calls this before the interaction loop of every step. It brings the store up to date, so that all joints are
+// in their common homes and have the present properties.
 void Ig2_Polyhedra_Polyhedra_MasonryJointGeom::preStep() {
     if (scene) const EngineTurn turn(*scene);
 }

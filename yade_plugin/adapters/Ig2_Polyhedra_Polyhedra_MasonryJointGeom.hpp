@@ -10,7 +10,7 @@ public:
     static constexpr const char* baseName = "IGeomFunctor";
     static constexpr const char* doc =
         "Creates a MasonryJointGeom from the faces that two convex Polyhedra share in the reference state, and updates "
-        "its jumps. A pair without a shared face gets no joint; asked for one (utils.createInteraction), it is an "
+        "its jumps. A pair without a shared face gets no joint; utils.createInteraction() for such a pair raises an "
         "error.";
 
     int subcontacts = 4;
@@ -27,7 +27,7 @@ public:
                   .atLeast(1)
                   .atMost(1000));
         visit("rowDirection", &F::rowDirection,
-              described("Direction across which rows are counted (the thickness of a wall); zero: across the longest "
+              described("Direction in which rows follow each other (the thickness of a wall); zero: across the longest "
                         "edge of the joint"));
         visit("tolerance", &F::tolerance,
               number("-", "Largest gap or overlap of coincident faces, relative to the size of the smaller block")

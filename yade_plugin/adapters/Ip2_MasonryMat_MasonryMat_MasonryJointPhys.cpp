@@ -25,7 +25,7 @@ void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::assign(const MasonryMat& mat1, 
                                                         const shared_ptr<MasonryJoint>& joint) const {
     const auto& geom = geometryOf(interaction);
     const auto& r = geom.reference();
-    // a deformable side shows its elasticity itself
+    // The elasticity of a rigid unit is added to its joints. Zones of a deformable unit deform themselves.
     const double d1 = r.rigid(0) ? r.distance(0) : 0, d2 = r.rigid(1) ? r.distance(1) : 0;
     const auto k = inSeriesWithUnits(*joint, d1 / mat1.young + d2 / mat2.young,
                                      d1 / mat1.shearModulus() + d2 / mat2.shearModulus());
@@ -50,7 +50,7 @@ void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::assignTo(const shared_ptr<yade:
 void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::go(const shared_ptr<yade::Material>& material1,
                                                     const shared_ptr<yade::Material>& material2,
                                                     const shared_ptr<yade::Interaction>& interaction) {
-    if (interaction->phys) return; // joints are made once
+    if (interaction->phys) return; // the joint has been made already
     const auto& mat1 = static_cast<MasonryMat&>(*material1);
     const auto& mat2 = static_cast<MasonryMat&>(*material2);
     const Vector3r normal = geometryOf(*interaction).reference().normal;

@@ -10,8 +10,8 @@ public:
     static constexpr const char* className = "Ip2_MasonryMat_MasonryMat_MasonryJointPhys";
     static constexpr const char* baseName = "IPhysFunctor";
     static constexpr const char* doc =
-        "Gives every joint its property set: the first of `joints` whose jointSet and direction fit. Another rule is "
-        "the user's: assign(interaction, joint).";
+        "Gives every joint its property set: the first of `joints` whose jointSet and direction fit. For any other "
+        "rule call assign(interaction, joint).";
 
     std::vector<shared_ptr<MasonryJoint>> joints;
 

@@ -1,6 +1,7 @@
-// Where the state of joints lives, in columns: jumps and places in JointShapes, what the law remembers in JointStates.
-// A joint begins with a home of its own; when a scene is read (SceneStore), all joints of one kind move into one home,
-// which the engines work on. MasonryJointGeom and MasonryJointPhys are views of a home and the joint's number in it.
+// The columns in which the state of joints lives: jumps and geometry in JointShapes, the state of the law in
+// JointStates. Each of these is a home. A joint that was just made has homes of its own. When SceneStore reads a scene,
+// it moves all joints of one kind into common homes, on which the engines work. MasonryJointGeom and MasonryJointPhys
+// are views: each holds a home and the joint's number in it.
 #pragma once
 #include "MasonryJoint.hpp"
 #include "blocks/FaceContact.hpp"
@@ -12,97 +13,106 @@ namespace masonry {
 
 class MasonryZones;
 
-// Tells a view that its joint has gone: its scene has ended, or the joint was taken out of it.
+// What both homes have in common: they know whether their joints still exist. A Python object may outlive its joint,
+// when the scene ends or the interaction is erased.
 struct Home {
-    boost::weak_ptr<yade::Factorable> scene; // empty before the joints belong to one
-    bool inScene = false;
-    bool left = false; // all joints that are still in the scene have moved on
+    boost::weak_ptr<yade::Factorable> scene; // empty before the joints belong to a scene
+    bool inScene = false;                    // whether a scene has read these joints
+    bool left = false;                       // whether all joints that are still in the scene have moved to other homes
 
-    // Throws std::runtime_error where the joint has gone.
+    // Throws std::runtime_error if the joints of this home no longer exist.
     void check() const {
         if (left || (inScene && scene.expired()))
             throw std::runtime_error("this joint is gone: its scene has ended, or it was taken out of the scene");
     }
 };
 
-// Where a subcontact hangs on the surface of a deformable unit.
+// How a subcontact moves with the surface of a deformable unit: by the weighted mean of three of its nodes. Nodes
+// behind a weight of zero do not count. A subcontact at a node has the weights 1, 0, 0.
 struct Attachment {
-    std::array<int, 3> nodes{0, 0, 0}; // numbers in the lists of MasonryZones
-    std::array<double, 3> weights{1, 0, 0};
+    std::array<int, 3> nodes{0, 0, 0};      // numbers in the lists of MasonryZones
+    std::array<double, 3> weights{1, 0, 0}; // their sum is 1
 };
 template <> struct IsNumbers<Attachment> : std::true_type {};
 template <class F> void numbers(Attachment& a, F&& each) {
     for (int i = 0; i < 3; ++i) {
         double node = a.nodes[i];
-        each(node), each(a.weights[i]);
+        each(node);
+        each(a.weights[i]);
         a.nodes[i] = int(node);
     }
 }
 
-// What a joint is in the reference state, in which its blocks were when it was made.
+// Geometry of a joint in its reference state: the state of its two blocks when it was made. Vectors without another
+// remark are in global axes.
 struct JointReference {
     struct Side {
         int body = -1;
-        Vector3r position = Vector3r::Zero(); // of the body's centre [m]
-        Quaternionr orientation = Quaternionr::Identity();
+        Vector3r position = Vector3r::Zero();              // of the body's centre [m]
+        Quaternionr orientation = Quaternionr::Identity(); // of the body
     };
-    Vector3r normal = Vector3r::UnitX();  // from side 0 to side 1
+    Vector3r normal = Vector3r::UnitX();  // unit normal, from side 0 to side 1
     Vector3r tangent = Vector3r::UnitY(); // first direction in the joint's plane
     Polygon polygon;                      // corners of the shared face [m]
-    Side sides[2];
-    // Of a joint with a deformable side: where every subcontact hangs on each side; empty at a rigid side.
+    Side sides[2];                        // bodies 1 and 2 of the interaction
+    // How the subcontacts of a joint with a deformable side move with the nodes.
     struct Hung {
         shared_ptr<MasonryZones> zones;
-        std::vector<Attachment> sides[2];
+        std::vector<Attachment> sides[2]; // one for each subcontact; empty at a rigid side
     };
-    std::shared_ptr<Hung> hung;
+    std::shared_ptr<Hung> hung; // null if both sides are rigid
 
-    // The joint's axes as columns: normal, tangent, normal × tangent.
+    // Matrix whose columns are the joint's axes: normal, tangent, normal × tangent.
     yade::Matrix3r axes() const {
         yade::Matrix3r columns;
         columns << normal, tangent, normal.cross(tangent);
         return columns;
     }
-    // The joint's axes seen from the body of a side.
+    // Rotation from the axes of the body of a side to the joint's axes.
     Quaternionr frame(int side) const { return sides[side].orientation.conjugate() * Quaternionr(axes()); }
-    // From the centre of body 1 to that of body 2, in the joint's axes [m].
+    // Vector from the centre of body 1 to that of body 2, in the joint's axes [m].
     Vector3r span() const { return axes().transpose() * (sides[1].position - sides[0].position); }
     // Distance of a body's centre from the joint's plane [m].
     double distance(int side) const {
         return side == 0 ? (polygon[0] - sides[0].position).dot(normal) : (sides[1].position - polygon[0]).dot(normal);
     }
+    // Whether the body of a side is rigid.
     bool rigid(int side) const { return !hung || hung->sides[side].empty(); }
 };
 
-// Subcontacts of joints with one number of them: columns [point][joint]. Vectors are in the joints' axes.
+// Geometry and jumps of joints that have the same number of subcontacts. The columns hold first the values of
+// subcontact 0 of all joints, then those of subcontact 1, and so on. Vectors are in the joints' axes.
 struct JointShapes : Home {
     JointShapes(int joints, int pointCount);
 
-    int points;         // subcontacts of a joint
-    int stride;         // joints in a column, padded to whole lanes; one joint alone has no padding
-    bool alike = false; // all joints have the same areas and offsets: one value stands `JointFrames::most` times
+    int points;         // number of subcontacts of a joint
+    int stride;         // number of joints, rounded up to whole lanes; one joint alone is not rounded up
+    bool alike = false; // see shareShapes()
     std::vector<JointReference> joints;
-    std::vector<double> jump[3];   // since the reference state [m]
-    std::vector<double> area;      // [m²]
-    std::vector<double> offset[3]; // from the centre of body 1 [m]
+    std::vector<double> jump[3];   // displacement jump since the reference state: opening and the two slides [m]
+    std::vector<double> area;      // of a subcontact [m²]
+    std::vector<double> offset[3]; // from the centre of body 1 to the subcontact in the reference state [m]
 
+    // Place of a subcontact in the columns of jumps.
     std::size_t at(int point, int joint) const { return std::size_t(point) * stride + joint; }
-    std::size_t shape(int point, int joint) const { // of areas and offsets
+    // Place of a subcontact in the columns of areas and offsets.
+    std::size_t shape(int point, int joint) const {
         return alike ? std::size_t(point) * JointFrames::most : at(point, joint);
     }
     Vector3r jumpAt(int point, int joint) const { return vectorAt(jump, at(point, joint)); }
     Vector3r offsetAt(int point, int joint) const { return vectorAt(offset, shape(point, joint)); }
     double areaAt(int point, int joint) const { return area[shape(point, joint)]; }
     void setJump(int point, int joint, const Vector3r& value) { setVector(jump, at(point, joint), value); }
-    // Area and offset of a home whose joints are not alike.
+    // Sets area and offset of a subcontact. Only for homes whose joints do not share them.
     void setShape(int point, int joint, const Vector3r& offsetOfPoint, double areaOfPoint) {
         setVector(offset, at(point, joint), offsetOfPoint);
         area[at(point, joint)] = areaOfPoint;
     }
-    // Takes a joint over from another home with the same number of points.
+    // Copies joint number `other` of another home with the same number of points into place `joint` of this one.
     void take(int joint, const JointShapes& from, int other);
-    // Keeps one value for all joints where areas and offsets are the same but for round-off: they then stay in the
-    // innermost cache.
+    // If areas and offsets of all joints are the same but for round-off, keeps those of the first joint alone and sets
+    // `alike`. Each value then stands `JointFrames::most` times, so that a batch of joints reads them as it reads
+    // others, and they stay in the innermost cache.
     void shareShapes();
 
 private:
@@ -115,18 +125,20 @@ private:
     }
 };
 
-// Whether numbers are the same but for round-off: stiffnesses, lengths and areas calculated in many places.
+// Whether two numbers of about this size differ by round-off only. Equal stiffnesses, lengths and areas differ by that
+// much when they are calculated at different places of a wall.
 inline bool sameButRoundOff(double a, double b, double scale) { return std::abs(a - b) <= 1e-12 * scale; }
 
-// What the law remembers of joints that share properties and stiffness.
+// State of the law in joints that share properties and stiffness.
 struct JointStates : Home {
     JointStates(const shared_ptr<MasonryJoint>& kind, const ElasticStiffness& k, int joints, int points)
         : joint(kind), columns(kind->law(), k, joints, points) {}
 
-    shared_ptr<MasonryJoint> joint;
+    shared_ptr<MasonryJoint> joint; // the property set of these joints
     JointColumns columns;
     shared_ptr<JointShapes> shapes; // of the same joints in the same order; null before they belong to a scene
 
+    // Copies joint number `other` of another home into place `number` of this one.
     void take(int number, const JointStates& from, int other) {
         for (int p = 0; p < columns.points(); ++p) {
             columns.set(p, number, from.columns.get(p, other));

@@ -10,22 +10,23 @@ namespace masonry {
 
 namespace {
 
-constexpr int most = JointFrames::most; // joints that a thread takes at a time
-constexpr double flat = 1e-9;           // what counts as nothing out of the plane [rad, m, -]
+constexpr int most = JointFrames::most; // largest number of joints in a batch
+constexpr double flat = 1e-9; // distances [m], angles [rad] and directions out of the plane below this count as none
 
-// Whether y and the rotations about x and z are blocked.
+// Whether a body can only move and turn in a plane y = constant.
 bool heldInPlane(const BodyColumns& bodies, int body) {
     return bodies.isBlocked(body, 1) && bodies.isBlocked(body, 3) && bodies.isBlocked(body, 5);
 }
 
-// A turn about y as cosine and sine of its half angle; whether the rotation is one.
+// Gives cosine and sine of half the angle of a rotation about y. Returns whether the rotation is about y at all.
 bool aboutY(const Quaternionr& q, double& cosine, double& sine) {
     cosine = q.w();
     sine = q.y();
     return std::abs(q.x()) + std::abs(q.z()) < flat;
 }
 
-// The turn of a joint's axes in a block from normal z and tangent x, which leads e1 to x, e2 to y, e3 to z first.
+// The rotation from the axes (normal z, tangent x, second tangent y) to a joint's axes in the reference state. It is
+// about y for joints of a planar run. The constant quaternion is the rotation that takes x, y, z to y, z, x.
 Quaternionr fromPlane(const yade::State& s, const Quaternionr& frame) {
     return s.refOri * frame * Quaternionr(0.5, 0.5, 0.5, 0.5);
 }
@@ -46,8 +47,8 @@ void JointPlan::Receivers::fill(const std::vector<std::vector<Item>>& lists) {
 
 // ---- when the scene has changed ---------------------------------------------------------------------------------
 
-// Whether all joints lie across a plane y = constant, on blocks that can move and turn in it only, and have no stress
-// or jump out of it beyond round-off.
+// Whether the run is planar: the normal and the first tangent of every joint lie in a plane y = constant, its blocks
+// can only move and turn in that plane, and stress and jump out of it are round-off at most.
 bool JointPlan::liesInPlane(const SceneStore& store) const {
     double cosine, sine;
     for (const auto& joint : store.joints) {
@@ -70,7 +71,7 @@ bool JointPlan::liesInPlane(const SceneStore& store) const {
     return true;
 }
 
-// The law in the plane knows no stress out of it: what round-off has left there goes.
+// In a planar run the law is called without the stress out of the plane. Sets to zero what round-off has left of it.
 void JointPlan::dropStressOutOfPlane(SceneStore& store) {
     for (const auto& joint : store.joints)
         for (int p = 0; p < joint.geom->points(); ++p) {
@@ -94,7 +95,7 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
     plane_ = mayBePlane && liesInPlane(store);
     if (plane_) dropStressOutOfPlane(store);
     dependentPoints_.clear();
-    blocks_.clear();
+    batches_.clear();
     kinds_.assign(store.kinds.size(), Kind());
 
     const int count = store.bodies.size();
@@ -108,7 +109,7 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
         joints += stride;
         if (kind.hung) points += stride * kind.shapes->points;
         for (int from = 0; from < int(kind.shapes->joints.size()); from += most)
-            blocks_.push_back({int(k), from});
+            batches_.push_back({int(k), from});
         buildKind(store, kind, kinds_[k], atBodies);
         if (kind.hung) buildPlaces(kind, kinds_[k], atPlaces);
     }
@@ -142,7 +143,7 @@ void JointPlan::buildKind(SceneStore& store, const JointKind& kind, Kind& made,
         column.resize(stride);
     made.body1.resize(stride);
     made.body2.resize(stride);
-    for (int j = 0; j < stride; ++j) { // the last joint stands for the places up to whole lanes, too
+    for (int j = 0; j < stride; ++j) { // places after the last joint, up to whole lanes, are filled with its numbers
         const auto& r = kind.shapes->joints[std::min(j, count - 1)];
         made.body1[j] = r.sides[0].body;
         made.body2[j] = r.sides[1].body;
@@ -165,7 +166,8 @@ void JointPlan::buildKind(SceneStore& store, const JointKind& kind, Kind& made,
         atBodies[made.body1[j]].push_back({made.first + j, false});
         atBodies[made.body2[j]].push_back({made.first + j, true});
     }
-    // Where all joints are alike, a block of them has the geometry of all, which then stays in the innermost cache.
+    // If all joints have the same frames and spans, those of one batch are kept and serve all. They then stay in the
+    // innermost cache.
     const double length = std::hypot(made.span[0][0], made.span[1][0], made.span[2][0]);
     struct Shared {
         std::vector<double>* column;
@@ -188,7 +190,8 @@ void JointPlan::buildKind(SceneStore& store, const JointKind& kind, Kind& made,
     }
 }
 
-// Where the two sides of subcontacts with deformable sides stand in the rows of MasonryZones.
+// Finds the places of both sides of subcontacts with deformable sides in the rows of MasonryZones: that of the node, or
+// that of a new dependent point.
 void JointPlan::buildPlaces(const JointKind& kind, Kind& made, std::vector<std::vector<Receivers::Item>>& atPlaces) {
     const int count = int(kind.shapes->joints.size()), points = kind.shapes->points;
     const int stride = int(made.body1.size());
@@ -224,7 +227,8 @@ void JointPlan::buildPlaces(const JointKind& kind, Kind& made, std::vector<std::
 
 // ---- a step -----------------------------------------------------------------------------------------------------
 
-// Takes what somebody moved; whether the bodies are where the plan can follow them: in the plane, if it is for the plane.
+// Takes from the host the bodies that somebody else has moved. Returns false if the plan is for a planar run and a body
+// has left the plane, or is no longer held in it.
 bool JointPlan::noticeBodies(SceneStore& store) {
     constexpr int piece = 64;
     auto& bodies = store.bodies;
@@ -233,7 +237,7 @@ bool JointPlan::noticeBodies(SceneStore& store) {
 #pragma omp parallel for schedule(static) reduction(&& : fits)
     for (int n = 0; n < pieces; ++n) {
         const int first = n * piece, beyond = std::min(bodies.size(), first + piece);
-        double aside = 0; // how far bodies are out of the plane
+        double aside = 0; // largest distance of a body from its plane [m]
         for (int b = first; b < beyond; ++b) {
             if (!joined_[b]) continue;
             bodies.noticePlace(b);
@@ -249,18 +253,18 @@ bool JointPlan::noticeBodies(SceneStore& store) {
         }
         const double turned =
             turnsInPlane(beyond - first, orientation, fromReference, &turn_[0][first], &turn_[1][first]);
-        fits = fits && aside < flat && turned < flat; // false for what is not finite, too
+        fits = fits && aside < flat && turned < flat; // also false if a number is not finite
     }
     return fits;
 }
 
-void JointPlan::advanceBlock(SceneStore& store, const JointKind& kind, const Kind& plan, int from, int n) {
+void JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const Kind& plan, int from, int n) {
     auto& shapes = *kind.shapes;
     auto& states = kind.states->columns;
     const auto& bodies = store.bodies;
     JointFrames frames;
     const int own = plan.alike ? 0 : from;
-    // in the plane complex numbers z + ix stand for places
+    // In a planar run the complex number z + ix stands for a place (see JointFrames.hpp).
     const double* const position[3] = {bodies.position[plane_ ? 2 : 0].data(), bodies.position[plane_ ? 0 : 1].data(),
                                        bodies.position[plane_ ? 1 : 2].data()};
     const double *turn[4], *frame1[4], *frame2[4], *span[3];
@@ -308,6 +312,7 @@ void JointPlan::advanceBlock(SceneStore& store, const JointKind& kind, const Kin
         (plane_ ? finishRigidInPlane : finishRigid)(n, frames, onJoints);
 }
 
+// Finds the displacements of all dependent points.
 void JointPlan::moveDependentPoints(const SceneStore& store) {
     double* rows = zones_->displacementRows();
     for (const auto& point : dependentPoints_) {
@@ -322,27 +327,34 @@ void JointPlan::moveDependentPoints(const SceneStore& store) {
     }
 }
 
+// Sums up for every body the forces and torques of its joints.
 void JointPlan::bringToBodies() {
     const int count = int(toBodies_.receivers.size());
 #pragma omp parallel for schedule(static)
     for (int r = 0; r < count; ++r) {
         Vector3r force = Vector3r::Zero(), torque = Vector3r::Zero();
-        for (int n = toBodies_.start[r]; n < toBodies_.start[r + 1]; ++n) {
-            const auto& item = toBodies_.items[n];
-            const double sign = item.second ? -1 : 1;
-            if (plane_) {
-                const double* on = &onJoints_[4 * item.source];
-                force[0] += sign * on[0];
-                force[2] += sign * on[1];
-                torque[1] += on[2 + item.second];
-            } else {
-                const double* on = &onJoints_[9 * item.source];
+        const auto* item = &toBodies_.items[toBodies_.start[r]];
+        const auto* beyond = item + (toBodies_.start[r + 1] - toBodies_.start[r]);
+        if (plane_) {
+            double x = 0, z = 0, aboutY = 0;
+            for (; item != beyond; ++item) {
+                const double* on = &onJoints_[4 * item->source];
+                const double sign = item->second ? -1 : 1;
+                x += sign * on[0];
+                z += sign * on[1];
+                aboutY += on[2 + item->second];
+            }
+            force = {x, 0, z};
+            torque = {0, aboutY, 0};
+        } else
+            for (; item != beyond; ++item) {
+                const double* on = &onJoints_[9 * item->source];
+                const double sign = item->second ? -1 : 1;
                 for (int d = 0; d < 3; ++d) {
                     force[d] += sign * on[d];
-                    torque[d] += on[3 + 3 * item.second + d];
+                    torque[d] += on[3 + 3 * item->second + d];
                 }
             }
-        }
         const int body = toBodies_.receivers[r];
         if (momentPlace_[body] >= 0) {
             for (int d = 0; d < 3; ++d)
@@ -354,6 +366,7 @@ void JointPlan::bringToBodies() {
     }
 }
 
+// Sums up for every node the forces of its subcontacts. Those at dependent points go on to their body or nodes.
 void JointPlan::bringToNodes(SceneStore& store) {
     double* forces = zones_->forceRows();
     const int count = int(toNodes_.receivers.size());
@@ -397,13 +410,14 @@ void JointPlan::advance(SceneStore& store) {
         noticeBodies(store);
     }
     if (zones_) moveDependentPoints(store);
-    const int count = int(blocks_.size());
+    const int count = int(batches_.size());
 #pragma omp parallel for schedule(static)
     for (int n = 0; n < count; ++n) {
-        const auto& kind = store.kinds[blocks_[n].kind];
-        const auto& plan = kinds_[blocks_[n].kind];
-        const int from = blocks_[n].from, left = int(kind.shapes->joints.size()) - from;
-        advanceBlock(store, kind, plan, from, std::min(most, left));
+        const auto& kind = store.kinds[batches_[n].kind];
+        const auto& plan = kinds_[batches_[n].kind];
+        const int from = batches_[n].from;
+        const int left = int(kind.shapes->joints.size()) - from;
+        advanceBatch(store, kind, plan, from, std::min(most, left));
     }
     const int bodies = store.bodies.size();
     forces_ = store.scene().forces().forces(bodies);

@@ -1,5 +1,6 @@
-// A step of all joints of a scene: jumps from the places of blocks and nodes, the law, forces on blocks and nodes. It
-// works on the columns of SceneStore; what it keeps itself follows from the scene and is made anew when that changes.
+// A step of all joints of a scene: it finds the jumps from the places of blocks and nodes, calls the law, and brings
+// the forces to blocks and nodes. The state is in the columns of SceneStore. What a plan keeps itself follows from the
+// scene, and is made anew when the scene has changed. See JointFrames for the arithmetic.
 #pragma once
 #include "SceneStore.hpp"
 
@@ -10,31 +11,35 @@ public:
     void advance(SceneStore&);
 
 private:
-    struct Kind {                      // of joints, beside their columns in the store
-        bool alike = false;            // the joints' axes in their blocks are the same, too: one value stands for all
-        int first = 0;                 // number of its first joint among those of all kinds
-        int firstPoint = 0;            // number of its first subcontact among those with deformable sides
-        std::vector<int> body1, body2; // of every joint
-        std::vector<double> frame1[4]; // the joints' axes in each block; in the plane cosine and sine of half angles
-        std::vector<double> frame2[4];
-        std::vector<double> span[3];     // from centre to centre in the reference state
-        std::vector<int> place1, place2; // of subcontacts with deformable sides, in the rows of MasonryZones
+    // What a kind of joints (see JointKind) needs beside its columns in the store.
+    struct Kind {
+        bool alike = false;              // whether frames and spans of all joints are the same, and kept once
+        int first = 0;                   // number of its first joint among those of all kinds
+        int firstPoint = 0;              // number of its first subcontact among those with deformable sides
+        std::vector<int> body1, body2;   // ids of every joint's bodies
+        std::vector<double> frame1[4];   // quaternion of the joint's axes in body 1; in a planar run cosine and sine of
+                                         // half the angle
+        std::vector<double> frame2[4];   // the same in body 2
+        std::vector<double> span[3];     // from centre to centre in the reference state, in the joint's axes [m]
+        std::vector<int> place1, place2; // of both sides of subcontacts with deformable sides, in MasonryZones' rows
     };
-    // A subcontact's side that has no node of its own: it moves with a rigid body, or between the nodes of a surface.
+    // Side of a subcontact that has no node of its own. It moves with a rigid body, or with the surface between nodes.
     struct DependentPoint {
-        int place;
-        int body; // -1 between nodes
-        Vector3r reference, local;
-        Attachment attachment;
+        int place;             // in the rows of MasonryZones
+        int body;              // the rigid body with which it moves; -1 if it moves with nodes
+        Vector3r reference;    // its place in the reference state, global axes [m]
+        Vector3r local;        // of a point on a rigid body: its place in the body's axes [m]
+        Attachment attachment; // of a point between nodes
     };
-    // Who receives what: for every receiver the numbers of what acts on it.
+    // For every body or node that joints act on, the list of what acts on it. Each receiver sums up its own list, in
+    // the same order with any number of threads.
     struct Receivers {
         struct Item {
-            int source;
-            bool second; // it acts on side 2, with the other sign
+            int source;  // number of a joint or of a subcontact
+            bool second; // whether the receiver is at side 2, where the force has the other sign
         };
-        std::vector<int> receivers;
-        std::vector<int> start; // of a receiver's items
+        std::vector<int> receivers; // ids of bodies or places of nodes, each with at least one item
+        std::vector<int> start;     // place of a receiver's first item; one more entry ends the last list
         std::vector<Item> items;
         void fill(const std::vector<std::vector<Item>>& lists);
     };
@@ -45,30 +50,34 @@ private:
     void buildKind(SceneStore&, const JointKind&, Kind&, std::vector<std::vector<Receivers::Item>>& atBodies);
     void buildPlaces(const JointKind&, Kind&, std::vector<std::vector<Receivers::Item>>& atPlaces);
     bool noticeBodies(SceneStore&);
-    void advanceBlock(SceneStore&, const JointKind&, const Kind&, int from, int count);
+    void advanceBatch(SceneStore&, const JointKind&, const Kind&, int from, int count);
     void moveDependentPoints(const SceneStore&);
     void bringToBodies();
     void bringToNodes(SceneStore&);
 
-    const SceneStore* store_ = nullptr; // for which the plan was made
-    long revision_ = -1;
-    bool plane_ = false; // all joints and motions lie in planes y = constant
+    const SceneStore* store_ = nullptr; // the store for which the plan was made
+    long revision_ = -1;                // the store's revision for which the plan was made
+    bool plane_ = false;                // whether the run is planar: all joints and motions lie in planes y = constant
     std::vector<Kind> kinds_;
-    struct Block { // joints that a thread takes at a time
-        int kind, from;
+    struct Batch {
+        int kind; // number of the kind to which its joints belong
+        int from; // number of its first joint within that kind
     };
-    std::vector<Block> blocks_;
-    std::vector<double> turn_[4];       // of all bodies: orientation; in the plane the half angle's cosine and sine
-    std::vector<double> referenceY_;    // of all bodies
-    std::vector<unsigned char> joined_; // whether a body has joints, and whether it is deformable
-    std::vector<int> momentPlace_;      // of deformable units in the rows of MasonryZones, else -1
-    MasonryZones* zones_ = nullptr;
+    std::vector<Batch> batches_;     // joints that a thread takes at a time
+    std::vector<double> turn_[4];    // planar runs only: cosine and sine of half the angle by which a body has turned
+    std::vector<double> referenceY_; // of all bodies [m]
+    std::vector<unsigned char> joined_; // whether a body has joints
+    std::vector<int> momentPlace_;      // of all bodies: place in MasonryZones' rows of moments; -1 if it is rigid
+    MasonryZones* zones_ = nullptr;     // null if no joint has a deformable side
     std::vector<DependentPoint> dependentPoints_;
-    Receivers toBodies_, toNodes_;
-    std::vector<double> onJoints_; // force on body 1, torques about both centres; deformable: moment on each rotation
-    std::vector<double> onPoints_; // force on side 1 of subcontacts with deformable sides
-    Vector3r* forces_ = nullptr;   // the host's, of the present step
-    Vector3r* torques_ = nullptr;
+    Receivers toBodies_; // what joints bring to bodies
+    Receivers toNodes_;  // what subcontacts bring to nodes and dependent points
+    // Scratch of a step. Of every joint between rigid bodies the force on body 1 [N] and the torques about both centres
+    // [N m]; of a joint with a deformable side only the moments on the rotations of both bodies [N m].
+    std::vector<double> onJoints_;
+    std::vector<double> onPoints_; // scratch: force on side 1 of every subcontact with deformable sides [N]
+    Vector3r* forces_ = nullptr;   // the host's forces of the present step [N], to which the joints add theirs
+    Vector3r* torques_ = nullptr;  // the host's torques of the present step [N m]
 };
 
 } // namespace masonry

@@ -40,14 +40,15 @@ std::string firstNotFinite(const yade::Scene& scene) {
 
 } // namespace
 
-// Looks every tenth step, and when time step or joints are others. The energy of motion m v-·v+ / 2 of a stable motion
-// lies between that of all work done and minus 1/(1 - r²) of it, at a share r of the limit; r is 0.995 for a hundred.
+// Looks every tenth step, and when the time step or the joints have changed. Let r be the time step over its limit. The
+// kinetic energy m v-·v+ / 2 of a stable elastic motion is at most the work done, and at least minus 1/(1 - r²) times
+// it. Even for r = 0.995 that factor is 100, so a larger kinetic energy means that the run is unstable.
 void MasonryEnergy::watchOver(SceneStore& store) {
     const bool tenth = scene->iter % 10 == 0;
     if (!tenth && scene->dt == checkedStep_ && store.revision() == checkedRevision_) return;
     checkedStep_ = scene->dt;
     checkedRevision_ = store.revision();
-    for (bool anew : {false, true}) { // masses may have changed
+    for (bool anew : {false, true}) { // the limit is found anew before a run is stopped: masses may have changed
         const auto limit = timeStepLimit(store, anew);
         if (scene->dt <= limit.dt) break;
         if (anew) throw std::runtime_error("unstable: " + masonry::described(store, limit));
@@ -69,7 +70,8 @@ void MasonryEnergy::watchOver(SceneStore& store) {
 
 namespace {
 
-double motionOf(SceneStore& store) { // energy of what is free to move [J]
+// Kinetic energy of all axes and nodes that are not blocked [J].
+double motionOf(SceneStore& store) {
     double twice = 0;
     auto* zones = store.zones;
     for (const auto& body : store.scene().bodies->body) {
@@ -109,14 +111,14 @@ void MasonryEnergy::action() {
     const EngineTurn turn(*scene, *this);
     if (!begun) countPresentMotion(turn.store());
     if (watch) watchOver(turn.store());
-    if (turn->integrator) return; // keeps them itself
+    if (turn->integrator) return; // MasonryIntegrator counts the energies of rigid bodies itself
     const Vector3r gravity = turn->gravity();
     const BodyDamping damping{turn->damping(), turn->hostIntegrator != nullptr, nullptr};
     auto& forces = scene->forces();
     forces.sync();
     beginStep();
     for (const auto& body : scene->bodies->body) {
-        if (!body || !body->state || (turn->zones && turn->zones->unitOf(body->id))) continue; // zones keep their own
+        if (!body || !body->state || (turn->zones && turn->zones->unitOf(body->id))) continue; // MasonryZones does
         const State& s = *body->state;
         fallen += s.mass * gravity.dot(s.pos - s.refPos);
         if (!isFreeOrMoves(s)) continue;
@@ -135,7 +137,7 @@ void MasonryEnergy::action() {
 py::dict MasonryEnergy::balance() {
     const BetweenSteps still;
     auto& store = SceneStore::present();
-    store.update(SceneStore::Look::AtJoints); // every row of a curve asks
+    store.update(SceneStore::Look::AtJoints); // a full look would take too long: every row of curve.csv calls this
     JointColumns::Sums joints{};
     for (const auto& kind : store.kinds) {
         const auto sums = kind.states->columns.energies(kind.shapes->area.data(), kind.shapes->alike);
@@ -152,8 +154,9 @@ py::dict MasonryEnergy::balance() {
     const double in = work + falls;
     const double out = moving + drag + inUnits + stored.tension + stored.shear + stored.compression + lost.sum();
     const double size = std::max(std::abs(work) + std::abs(falls), std::abs(out));
-    // What is dissipated cannot come back: a joint that opens or closes within a step takes the trapezoidal work of
-    // both stiffnesses, and a long undamped series of such steps makes energy, which damping or shorter steps prevent.
+    // Dissipated energies should never fall. They can: where a joint opens or closes within a step, the trapezoidal
+    // rule takes the mean of the tractions before and after, and the error is counted as dissipated, also where it is
+    // negative. A long undamped series of such steps makes energy. Damping or shorter steps prevent that.
     mostLost = mostLost.cwiseMax(lost);
     const double error = size > 0 ? (in - out) / size : 0;
     largestError = std::max(largestError, std::abs(error));

@@ -11,34 +11,38 @@ public:
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
         "Keeps the energy balance of a run: work of loads, prescribed motions and gravity = kinetic + elastic + "
-        "dissipated in the joints by mode + damping. MasonryIntegrator and MasonryZones keep what is theirs; for "
-        "NewtonIntegrator it stands directly before it and follows its equations. The balance closes to round-off and "
-        "the small terms of finite rotation. It also watches over the run: a time step above its limit, motion that "
-        "grows out of nothing and numbers that are not finite stop it with an error.";
+        "dissipated in the joints by mode + damping. MasonryIntegrator and MasonryZones count the energies of what "
+        "they "
+        "move. With NewtonIntegrator this engine must stand directly before it, and counts them by its equations. The "
+        "error of the balance is round-off and the small terms of finite rotation. It also watches over the run: a "
+        "time "
+        "step above its limit, motion that grows without work and numbers that are not finite stop it with an error.";
 
+    // See attributes() for the meaning and unit of each. Users set `watch` only.
     bool watch = true;
     bool begun = false;
     double largestError = 0;
     double largestMade = 0;
-    double largestInput = 0;              // most work of loads, prescribed motions and gravity so far [J]
-    Vector3r mostLost = Vector3r::Zero(); // most that balance() has seen dissipated in tension, shear, compression [J]
+    double largestInput = 0;
+    Vector3r mostLost = Vector3r::Zero();
 
     template <class Visit> static void attributes(Visit&& visit) {
         using E = MasonryEnergy;
         ledgerOfBodies<E>(visit);
-        visit(
-            "watch", &E::watch,
-            described("Whether an unstable run is stopped. Where it is not, a time step above criticalTimeStep() gives "
-                      "answers that look sound and are not: damping keeps what should blow up within bounds"));
+        visit("watch", &E::watch,
+              described(
+                  "Whether an unstable run is stopped. If it is not, a time step above criticalTimeStep() gives wrong "
+                  "results that look sound, because damping keeps the unstable motion within bounds"));
         visit("largestError", &E::largestError,
               number("-", "Largest error of the balance seen by balance(), relative to the work done"), ReadOnly);
         visit("largestMade", &E::largestMade,
-              number("-", "Most that dissipated energies have fallen below their largest values seen by balance(), "
+              number("-", "Largest fall of the dissipated energies below their largest values, as seen by balance(), "
                           "relative to the work done: energy made by joints that open or close within a step"),
               ReadOnly);
-        visit("mostLost", &E::mostLost, number("J", "Most dissipated so far by mode"), Hidden);
-        visit("largestInput", &E::largestInput, number("J", "Most work done so far"), Hidden);
-        visit("begun", &E::begun, described("Whether the energy of the first motion is counted"), Hidden);
+        visit("mostLost", &E::mostLost, number("J", "Largest dissipated energies seen by balance(), by mode"), Hidden);
+        visit("largestInput", &E::largestInput,
+              number("J", "Largest work of loads, prescribed motions and gravity so far"), Hidden);
+        visit("begun", &E::begun, described("Whether the kinetic energy at the first step has been counted"), Hidden);
     }
 
     template <class PyClass> static void extras(PyClass& cls) {
@@ -46,15 +50,19 @@ public:
                 "All energies of the last step [J]: external, gravity, kinetic, damping, elastic_ and dissipated_ "
                 "tension, shear, compression; and error, the balance's error relative to the work done [-].")
             .def("given", &MasonryEnergy::given,
-                 "Count the present motion as given from outside: to be called at once when velocities were set by "
-                 "hand after the first step.");
+                 "Count the kinetic energy of the present motion as work done from outside. Call this directly after "
+                 "setting velocities by hand, if the run has made a step before.");
     }
 
     void action() override;
 
 private:
-    struct Inventory { // what the engines of a scene keep, without the joints [J]
-        double work = 0, falls = 0, moving = 0, drag = 0, inUnits = 0;
+    struct Inventory {      // energies that the engines of a scene keep, without those of the joints [J]
+        double work = 0;    // of loads and prescribed motions
+        double falls = 0;   // work of gravity
+        double moving = 0;  // kinetic energy
+        double drag = 0;    // taken by damping
+        double inUnits = 0; // elastic energy of deformable units
     };
     Inventory inventory(const SceneStore&) const;
     py::dict balance();
@@ -63,7 +71,7 @@ private:
     void watchOver(SceneStore&);
 
     double checkedStep_ = 0;    // time step at the last check [s]
-    long checkedRevision_ = -1; // of the scene, at the last check
+    long checkedRevision_ = -1; // SceneStore::revision() at the last check
 };
 
 } // namespace masonry

@@ -3,6 +3,7 @@
 #include "MasonryLoad.hpp"
 #include "MasonryZones.hpp"
 #include "SceneStore.hpp"
+#include <cstdint>
 
 template class masonry::Adapter<masonry::MasonryIntegrator, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryIntegrator)
@@ -14,7 +15,7 @@ std::vector<std::string> MasonryIntegrator::problems() const {
     return {"dampingKind '" + dampingKind + "' must be 'combined' or 'local'"};
 }
 
-// Two vectors a body, as they are saved.
+// In saved files and checkpoints: two vectors for each body, force per mass and torque per inertia.
 std::vector<Vector3r> MasonryIntegrator::lastForces() {
     std::vector<Vector3r> all;
     for (std::size_t b = 0; b < last_[0].size(); ++b) {
@@ -41,7 +42,7 @@ void MasonryIntegrator::action() {
         if (combined()) column.resize(count, 0);
     for (auto* load : turn->loads)
         load->workBefore(scene->dt, bodies.state(load->body));
-    // Bodies whose energies are summed up together are the same whatever the number of threads.
+    // The pieces over which energies are summed up do not depend on the number of threads, so neither do the sums.
     constexpr int piece = RigidMotion::most;
     const int pieces = (count + piece - 1) / piece;
     std::vector<EnergyLedger> sums(pieces);
@@ -65,42 +66,44 @@ EnergyLedger MasonryIntegrator::advance(SceneStore& store, const Vector3r* force
     const bool thoroughly = scene->iter % 10 == 0;
     EnergyLedger sum;
     RigidMotion motion;
-    unsigned axes = 0, spinning = 0;
-    unsigned char moved[RigidMotion::most]; // bits in which a body is free or moves, if it is moved by the columns
+    unsigned axes = 0;
+    int spinning = 0;
+    std::uint32_t blocked[RigidMotion::most]; // State.blockedDOFs of a body that RigidMotion moves, else all six
     for (int i = 0; i < count; ++i) {
         const int b = first + i;
-        moved[i] = 0;
+        blocked[i] = 63;
+        motion.alpha[i] = 0;
         if (i + ahead < count && bodies.has(b + ahead)) bodies.prefetch(b + ahead);
         if (!bodies.has(b) || bodies.isUnit[b]) continue;
         thoroughly ? bodies.noticeAll(b) : bodies.notice(b);
-        double fall = 0;
-        for (int d = 0; d < 3; ++d)
-            if (gravity[d] != 0) fall += gravity[d] * (bodies.position[d][b] - bodies.referencePosition[d][b]);
-        sum.fallen += bodies.mass[b] * fall;
         if (bodies.spins(b))
             ++spinning;
-        else
-            axes |= moved[i] = (unsigned char)(bodies.axes(b));
+        else {
+            axes |= bodies.axes(b);
+            blocked[i] = bodies.blockedAxes(b);
+            motion.alpha[i] = bodies.isDamped(b) ? damping : 0;
+        }
     }
+    sum.fallen = weightsFallen(bodies, first, count);
     if (axes != 0) {
         const RigidMotion::Around around{scene->dt, {gravity[0], gravity[1], gravity[2]}, combined()};
-        double unused[RigidMotion::most] = {}; // local damping looks at no earlier forces
+        double unused[RigidMotion::most] = {}; // local damping does not use earlier forces
         double* last[6];
-        for (int i = 0; i < count; ++i)
-            motion.alpha[i] = bodies.isDamped(first + i) ? damping : 0;
         for (int d = 0; d < 6; ++d) {
             last[d] = combined() ? &last_[d][first] : unused;
             if (!(axes >> d & 1)) continue;
-            const Vector3r* on = d < 3 ? forces : torques;
+            const double* on = (d < 3 ? forces : torques)[first].data() + d % 3;
             for (int i = 0; i < count; ++i) {
-                motion.force[d][i] = on[first + i][d % 3];
-                motion.free[d][i] = moved[i] != 0 && !bodies.isBlocked(first + i, d);
+                motion.force[d][i] = on[3 * i];
+                motion.free[d][i] = blocked[i] >> d & 1 ? 0.0 : 1.0;
             }
         }
         motion.advance(bodies, last, first, count, around, axes);
         for (int i = 0; i < count; ++i) {
-            if (moved[i] == 0) continue;
-            bodies.give(first + i, axes);
+            const int b = first + i;
+            const bool mine = bodies.has(b) && !bodies.isUnit[b] && !bodies.spins(b) && bodies.axes(b) != 0;
+            if (!mine) continue;
+            bodies.give(b, axes);
             sum.external += motion.work[i];
             sum.damped += motion.damped[0][i];
             sum.pendingDamped += motion.damped[1][i];
@@ -108,13 +111,29 @@ EnergyLedger MasonryIntegrator::advance(SceneStore& store, const Vector3r* force
         }
         sum.pendingExternal = sum.external;
     }
-    for (int b = first; spinning > 0 && b < beyond; ++b) // after the others, whose columns carried theirs along
-        if (bodies.has(b) && !bodies.isUnit[b] && bodies.spins(b))
-            sum.add(turnFreely(store, forces[b], torques[b], b));
+    for (int b = first; spinning > 0 && b < beyond; ++b) {
+        if (!bodies.has(b) || bodies.isUnit[b] || !bodies.spins(b)) continue;
+        sum.add(turnFreely(store, forces[b], torques[b], b)); // last, because RigidMotion has written to its columns
+    }
     return sum;
 }
 
-// One body that is free to turn in space: the host's State holds its angular momentum, so the step is made there.
+// Work of gravity on rigid bodies since the reference state [J].
+double MasonryIntegrator::weightsFallen(const BodyColumns& bodies, int first, int count) const {
+    double falls[RigidMotion::most] = {}; // gravity times displacement
+    for (int d = 0; d < 3; ++d) {
+        if (gravity[d] == 0) continue;
+        const double g = gravity[d], *now = &bodies.position[d][first], *before = &bodies.referencePosition[d][first];
+        for (int i = 0; i < count; ++i)
+            falls[i] += g * (now[i] - before[i]);
+    }
+    double sum = 0;
+    for (int i = 0; i < count; ++i)
+        if (bodies.has(first + i) && !bodies.isUnit[first + i]) sum += bodies.mass[first + i] * falls[i];
+    return sum;
+}
+
+// The step is made in the host's State, because only that holds the angular momentum of the body.
 EnergyLedger MasonryIntegrator::turnFreely(SceneStore& store, const Vector3r& force, const Vector3r& torque, int body) {
     auto& s = store.bodies.state(body);
     BodyForces before{Vector3r::Zero(), Vector3r::Zero()};

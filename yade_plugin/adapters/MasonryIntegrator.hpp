@@ -4,6 +4,7 @@
 
 namespace masonry {
 
+class BodyColumns;
 class SceneStore;
 
 class MasonryIntegrator : public Adapter<MasonryIntegrator, yade::GlobalEngine>, public EnergyLedger {
@@ -11,9 +12,10 @@ public:
     static constexpr const char* className = "MasonryIntegrator";
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
-        "Moves the rigid bodies, in the equations of NewtonIntegrator (paper eqs. (1)-(3)) without what masonry does "
-        "not need (periodic cells, clumps, bounds for a collider), and keeps their energies. NewtonIntegrator and "
-        "MasonryEnergy stay as the reference.";
+        "Moves the rigid bodies by the equations of NewtonIntegrator (paper eqs. (1)-(3)) and counts their energies. "
+        "Leaves out what masonry does not need: periodic cells, clumps and bounds for a collider. NewtonIntegrator "
+        "with "
+        "MasonryEnergy remains as the reference.";
 
     double damping = 0.8;
     std::string dampingKind = "local";
@@ -25,7 +27,7 @@ public:
               number("-", "Damping constant alpha").atLeast(0).atMost(0.99).source("paper eq. (3): 0.8"));
         visit("dampingKind", &I::dampingKind,
               described("'local': -alpha |F| sgn(v), paper eq. (3); 'combined': alpha |F| (sgn(dF/dt) - sgn(v)) / 2, "
-                        "which calms what swings about a steady motion, too"));
+                        "which also calms vibration about a steady motion"));
         visit("gravity", &I::gravity, number("m/s²", "Gravity"));
         ledgerOfBodies<I>(visit);
         visit("last", computed(&I::lastForces, &I::setLastForces),
@@ -37,12 +39,16 @@ public:
 
 private:
     bool combined() const { return dampingKind == "combined"; }
+    // Makes a step of bodies `first` up to, but without, `beyond`, and gives their energies.
     EnergyLedger advance(SceneStore&, const Vector3r* forces, const Vector3r* torques, int first, int beyond);
+    // Makes a step of a body none of whose rotations is blocked.
+    double weightsFallen(const BodyColumns&, int first, int count) const;
     EnergyLedger turnFreely(SceneStore&, const Vector3r& force, const Vector3r& torque, int body);
     std::vector<Vector3r> lastForces();
     void setLastForces(const std::vector<Vector3r>&);
 
-    std::vector<double> last_[6]; // force per mass and torque per inertia of the last step, for combined damping
+    std::vector<double> last_[6]; // for combined damping: force per mass [m/s²] and torque per inertia [1/s²] of all
+                                  // bodies in the last step; empty until then
 };
 
 } // namespace masonry

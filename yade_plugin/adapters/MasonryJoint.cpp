@@ -7,7 +7,7 @@ namespace masonry {
 
 void MasonryJoint::postLoad() {
     if (!direction.allFinite()) throw std::invalid_argument("joint \"" + name + "\": direction must be finite numbers");
-    law_ = std::make_shared<const JointLaw>(*this); // refuses what is wrong
+    law_ = std::make_shared<const JointLaw>(*this); // throws std::invalid_argument for wrong properties
     ++changes;
 }
 

@@ -11,8 +11,8 @@ public:
     static constexpr const char* baseName = "Serializable";
     static constexpr const char* doc =
         "Properties of one kind of joint (bed, head, crack, support, or any name), shared by all joints of that kind. "
-        "Defaults: bed joint of the calcium-silicate walls (paper table 2); values that the paper does not give say "
-        "[decided]. Wrong values are refused with ValueError, all problems at once.";
+        "Defaults: bed joint of the calcium-silicate walls (paper table 2); the sources of values that the paper does "
+        "not give say [decided]. Wrong values raise one ValueError that names all problems.";
 
     std::string jointSet;
     Vector3r direction = Vector3r::Zero();
@@ -30,9 +30,10 @@ public:
     MasonryJoint() { postLoad(); }
     void postLoad();
 
+    // The law with these properties. It is made anew whenever a property is set.
     const std::shared_ptr<const JointLaw>& law() const { return law_; }
 
-    // Whether a joint between units of these joint sets, with that normal, is of this kind.
+    // Whether a joint with this unit normal, between units of these MasonryMat.jointSet, is of this kind.
     bool appliesTo(const std::string& set1, const std::string& set2, const Vector3r& normal) const;
 
     template <class PyClass> static void extras(PyClass& cls) {

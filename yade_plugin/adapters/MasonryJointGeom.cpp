@@ -39,7 +39,9 @@ void MasonryJointGeom::attach(const shared_ptr<MasonryZones>& all) {
     };
     std::vector<AtNode> atNodes;
     std::vector<Attachment> hung[2];
-    const int lead = units[0] ? 0 : 1; // node to node, areas the mean of both sides
+    // Every node of one side becomes a subcontact. Where both sides are deformable, its area is the mean of the areas
+    // of the two nodes that face each other.
+    const int lead = units[0] ? 0 : 1;
     for (const auto& [node, part] : nodes[lead]) {
         const Vector3r place = all->reference(*units[lead], node);
         AtNode point{r.axes().transpose() * (place - r.sides[0].position), part};
@@ -60,7 +62,7 @@ void MasonryJointGeom::attach(const shared_ptr<MasonryZones>& all) {
     const bool both = units[0] && units[1];
     const bool matching =
         !nodes[lead].empty() && atNodes.size() == nodes[lead].size() && (!both || nodes[0].size() == nodes[1].size());
-    if (!matching) { // the points of the grid hang between the nodes of each deformable side
+    if (!matching) { // the subcontacts of the grid move with the surface between the nodes of each deformable side
         for (int side = 0; side < 2; ++side)
             for (int p = 0; units[side] && p < home->points; ++p)
                 r.hung->sides[side].push_back(all->attach(*units[side], centre(p)));
@@ -102,7 +104,7 @@ shared_ptr<MasonryZones> MasonryJointGeom::zones() {
     return home && reference().hung ? reference().hung->zones : shared_ptr<MasonryZones>();
 }
 
-// Archives give the zones before the numbers: a joint with zones has a home from here on.
+// A file holds the zones before the record. They are kept in a home without subcontacts, which setRecord() replaces.
 void MasonryJointGeom::setZones(const shared_ptr<MasonryZones>& all) {
     home.reset();
     index = 0;
@@ -154,9 +156,13 @@ private:
 };
 
 void exchange(Numbers& n, JointReference& r) {
-    n(r.normal), n(r.tangent), n.list(r.polygon);
+    n(r.normal);
+    n(r.tangent);
+    n.list(r.polygon);
     for (auto& side : r.sides) {
-        n(side.body), n(side.position), n(side.orientation);
+        n(side.body);
+        n(side.position);
+        n(side.orientation);
     }
     std::vector<Attachment> none;
     for (int side = 0; side < 2; ++side)
@@ -175,7 +181,9 @@ std::vector<double> MasonryJointGeom::record() {
     for (int p = 0; p < count; ++p) {
         Vector3r offsetOfPoint = offset(p), jumpOfPoint = jump(p);
         double areaOfPoint = area(p);
-        n(offsetOfPoint), n(areaOfPoint), n(jumpOfPoint);
+        n(offsetOfPoint);
+        n(areaOfPoint);
+        n(jumpOfPoint);
     }
     return n.flat;
 }
@@ -192,7 +200,9 @@ void MasonryJointGeom::setRecord(const std::vector<double>& flat) {
     for (int p = 0; p < count; ++p) {
         Vector3r offsetOfPoint = Vector3r::Zero(), jumpOfPoint = Vector3r::Zero();
         double areaOfPoint = 0;
-        n(offsetOfPoint), n(areaOfPoint), n(jumpOfPoint);
+        n(offsetOfPoint);
+        n(areaOfPoint);
+        n(jumpOfPoint);
         made->setShape(p, 0, offsetOfPoint, areaOfPoint);
         made->setJump(p, 0, jumpOfPoint);
     }
@@ -226,11 +236,15 @@ py::list MasonryJointGeom::jumps() {
 
 // ---- one joint alone --------------------------------------------------------------------------------------------
 
-// Each body carries the joint's axes along. The mean of both is the frame of the joint, and `half` turns it to body 2's
-// place as its inverse does to body 1's. In that frame a point at offset a from body 1's centre shows the jump
-// between - half d + (half - half^T) a, with d from centre to centre in the reference state, and half - half^T =
-// 4 w [v ×] for the unit quaternion (w, v). Forces act at the middle of the jump and the axes turn with the mean
-// rotation: together this keeps both angular momentum and the power of the joint.
+// Each body carries the joint's axes along with it. The mean of the two rotations is the frame of the joint. The
+// rotation `half` leads from that frame to the axes carried by body 2, and its inverse to those carried by body 1. Let
+// d be the vector from centre to centre and a the offset of a subcontact from the centre of body 1, both in the
+// reference state, and `between` the present vector from centre to centre. In the joint's frame the jump at the
+// subcontact is
+//     between - half d + (half - half^T) a,
+// where half - half^T = 4 w [v ×] for the unit quaternion (w, v). Forces act at the middle of the jump, and the axes
+// turn with the mean rotation. Together this conserves the angular momentum, and the power of the forces is that of the
+// tractions on the jumps.
 void MasonryJointGeom::follow(const yade::State& state1, const yade::State& state2) {
     if (!step) step = std::make_unique<Step>();
     step->increments.resize(points());
@@ -247,7 +261,8 @@ void MasonryJointGeom::follow(const yade::State& state1, const yade::State& stat
 
     const Vector3r span = r.span();
     const Vector3r v = half.vec(), twist = 4 * half.w() * v, twice = 2 * v;
-    const Vector3r turned = twice.cross(span); // half d = d + w (2v × d) + v × (2v × d)
+    const Vector3r turned = twice.cross(span); // for half d = d + w (2v × d) + v × (2v × d)
+    // The part of the jump that is the same at all subcontacts.
     const Vector3r common = step->axes.transpose() * step->between - (span + half.w() * turned + v.cross(turned));
     const double shrink = 1 - 2 * v.squaredNorm();
     for (int p = 0; p < points(); ++p) {
@@ -258,7 +273,8 @@ void MasonryJointGeom::follow(const yade::State& state1, const yade::State& stat
     }
 }
 
-// The same frame, with each side's displacement from its nodes or, where it is rigid, from its body.
+// As follow(), in the same frame. The jump is the difference of the displacements of both sides, which come from the
+// nodes of a deformable side and from the body of a rigid one.
 void MasonryJointGeom::followDeformable(const yade::State& state1, const yade::State& state2) {
     const auto& r = reference();
     const Quaternionr by1 = state1.ori * r.frame(0);
@@ -280,7 +296,7 @@ void MasonryJointGeom::followDeformable(const yade::State& state1, const yade::S
         const Vector3r gap = u2 - u1, now = step->axes.transpose() * gap;
         step->increments[p] = now - jump(p);
         home->setJump(p, index, now);
-        // the arm at the rigid side, if there is one
+        // From the centre of the rigid body, if there is one.
         const Vector3r arm = r.rigid(0) ? Vector3r(place + u1 - state1.pos) : Vector3r(place + u2 - state2.pos);
         step->arms[p] = step->axes.transpose() * arm;
     }

@@ -9,8 +9,8 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
     static constexpr const char* baseName = "IGeom";
     static constexpr const char* doc =
         "Joint between two blocks: the polygon that their faces share in the reference state, divided into "
-        "subcontacts, and the displacement jumps across it. Small displacements: the joint lives to the end of the run "
-        "and turns with the mean rotation of its two blocks.";
+        "subcontacts, and the displacement jumps across it. Displacements are taken as small: a joint stays to the end "
+        "of the run, no new ones are found, and it turns with the mean rotation of its two blocks.";
 
     template <class Visit> static void attributes(Visit&& visit) {
         using G = MasonryJointGeom;
@@ -44,13 +44,15 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
                           "tangent, slide across it [m].");
     }
 
-    // The joint in the reference state, with `columns` by `rows` subcontacts on the polygon that two blocks share.
+    // Makes the joint in its reference state, with a grid of `columns` along the direction `along` by `rows` across it
+    // of subcontacts on the shared polygon.
     void define(const FaceContact&, const Vector3r& along, int columns, int rows, int body1, int body2,
                 const yade::State&, const yade::State&);
-    // Puts the subcontacts at the nodes of deformable sides where they match; else the grid's hang on their surfaces.
+    // For a joint with a deformable side. Puts the subcontacts at the nodes if those of a deformable side cover the
+    // polygon and, where both sides are deformable, match. Otherwise attaches the grid's subcontacts between the nodes.
     void attach(const shared_ptr<MasonryZones>&);
 
-    // Whether the joint was made by define() and still is where it was.
+    // Whether the joint was made by define() or loaded from a file.
     bool made() const { return home != nullptr; }
     const JointReference& reference() const { return home->joints[index]; }
     int points() const { return home ? home->points : 0; }
@@ -62,23 +64,25 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
     // A polygon around every subcontact in the reference state, for pictures.
     std::vector<Polygon> cells() const;
 
-    shared_ptr<JointShapes> home; // null in a joint that nothing has defined
-    int index = 0;                // of the joint in its home
+    shared_ptr<JointShapes> home; // null until define() or loading; SceneStore replaces it
+    int index = 0;                // number of the joint in its home
 
-    // One step of this joint alone, for the functors: filled by follow(), used up by the law's functor.
+    // Scratch of one step of this joint alone, for the functors. follow() fills it from the places of the blocks; the
+    // law's functor reads it, and adds moment and forces for MasonryZones.
     struct Step {
         yade::Matrix3r axes;                 // columns normal and tangents, turned with the mean of both blocks
-        Vector3r between = Vector3r::Zero(); // from the centre of body 1 to that of body 2
-        Vector3r moment = Vector3r::Zero();  // on the rotation of each deformable block [N m]
-        std::vector<Vector3r> increments;    // of the jumps [m], in the joint's axes
-        std::vector<Vector3r> arms;          // from the centre of body 1 to the middle of the jumps
+        Vector3r between = Vector3r::Zero(); // from the centre of body 1 to that of body 2, global axes [m]
+        Vector3r moment = Vector3r::Zero();  // on the rotation of each deformable block, global axes [N m]
+        std::vector<Vector3r> increments;    // change of the jumps in this step, in the joint's axes [m]
+        std::vector<Vector3r> arms;          // of the forces, from the centre of a rigid body, in the joint's axes [m]:
+                                             // of body 1, or of body 2 if body 1 is deformable
         std::vector<Vector3r> forces;        // on side 1 of a joint with a deformable side, global axes [N]
     };
-    std::unique_ptr<Step> step;
+    std::unique_ptr<Step> step; // null before the first step with functors
     void follow(const yade::State& state1, const yade::State& state2);
 
 private:
-    const JointShapes& shapes() const; // throws where the joint is gone, or was never made
+    const JointShapes& shapes() const; // throws std::runtime_error if the joint no longer exists or was never made
     Vector3r normal();
     Vector3r tangent();
     std::vector<Vector3r> polygon();

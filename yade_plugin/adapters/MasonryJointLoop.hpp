@@ -10,9 +10,10 @@ public:
     static constexpr const char* className = "MasonryJointLoop";
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
-        "All masonry joints in one pass: what InteractionLoop does with the functors of this plugin, which stay as the "
-        "reference, in columns and on all threads. A run is the same, bit for bit, with any number of threads. Stands "
-        "in InteractionLoop's place; new joints are made by masonry.connect().";
+        "A step of all masonry joints, in columns and on all threads. Stands in the place of InteractionLoop, which "
+        "does "
+        "the same with the functors of this plugin and remains as the reference. A run is the same, bit for bit, with "
+        "any number of threads. It makes no joints: masonry.connect() does.";
 
     shared_ptr<Ig2_Polyhedra_Polyhedra_MasonryJointGeom> geometry;
     shared_ptr<Ip2_MasonryMat_MasonryMat_MasonryJointPhys> physics;
@@ -26,7 +27,7 @@ public:
     void action() override;
 
 private:
-    JointPlan plan_; // nothing in it outlives a step but what follows from the scene
+    JointPlan plan_; // holds no state: all that it keeps from step to step follows from the scene
 };
 
 } // namespace masonry

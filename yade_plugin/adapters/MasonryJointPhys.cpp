@@ -13,7 +13,7 @@ void MasonryJointPhys::define(const shared_ptr<MasonryJoint>& kind, const Elasti
 
 shared_ptr<MasonryJoint> MasonryJointPhys::joint() { return home ? home->joint : shared_ptr<MasonryJoint>(); }
 
-// Archives give the property set before the numbers.
+// A file holds the property set before the record.
 void MasonryJointPhys::setJoint(const shared_ptr<MasonryJoint>& kind) {
     home.reset();
     loaded_ = kind;
@@ -26,7 +26,7 @@ Vector3r MasonryJointPhys::dissipated() {
     Vector3r sum = Vector3r::Zero();
     if (!home) return sum;
     home->check();
-    if (!home->inScene) SceneStore::present().update(); // a joint that was just made or loaded
+    if (!home->inScene) SceneStore::present().update(); // a new joint gets its areas only now
     for (int p = 0; home->shapes && p < points(); ++p) {
         const auto e = lost(p);
         sum += home->shapes->areaAt(p, index) * Vector3r(e.tension, e.shear, e.compression);
@@ -34,7 +34,8 @@ Vector3r MasonryJointPhys::dissipated() {
     return sum;
 }
 
-// The two stiffnesses, and of every subcontact its state and the energies that it dissipated by mode.
+// Holds the two stiffnesses [Pa/m], then of every subcontact the twelve numbers of its state and the energies
+// dissipated in tension, shear and compression [J/m²].
 std::vector<double> MasonryJointPhys::record() {
     if (!home) return {};
     home->check();

@@ -8,18 +8,18 @@ class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys> {
     static constexpr const char* className = "MasonryJointPhys";
     static constexpr const char* baseName = "IPhys";
     static constexpr const char* doc =
-        "State of a joint: the property set that it shares with others of its kind, the stiffness that it shows, and "
-        "what every subcontact remembers. Opening and tension are positive.";
+        "State of a joint: the property set that it shares with others of its kind, its stiffness, which includes that "
+        "of rigid units, and the state of every subcontact. Opening and tension are positive.";
 
     template <class Visit> static void attributes(Visit&& visit) {
         using P = MasonryJointPhys;
         visit("joint", computed(&P::joint, &P::setJoint), described("The MasonryJoint of this joint"), ReadOnly);
         visit("normalStiffness", computed(&P::normalStiffness),
-              number("Pa/m", "Normal stiffness shown: the joint's, in series with rigid units")
+              number("Pa/m", "Normal stiffness of the joint in series with its rigid units")
                   .source("yade_plugin/law/README.md, rigid units"),
               Shown);
         visit("shearStiffness", computed(&P::shearStiffness),
-              number("Pa/m", "Shear stiffness shown: the joint's, in series with rigid units")
+              number("Pa/m", "Shear stiffness of the joint in series with its rigid units")
                   .source("yade_plugin/law/README.md, rigid units"),
               Shown);
         visit("dissipated", computed(&P::dissipated),
@@ -35,21 +35,22 @@ class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys> {
     template <class PyClass> static void extras(PyClass& cls) {
         cls.add_property("stress", &MasonryJointPhys::stress,
                          "Per subcontact: normal stress and shear stress along and across the tangent [Pa].")
-            .add_property("opening", &MasonryJointPhys::opening, "Per subcontact: total opening [m], negative closed.")
+            .add_property("opening", &MasonryJointPhys::opening,
+                          "Per subcontact: total opening [m]; negative where the joint is closed.")
             .add_property("slip", &MasonryJointPhys::slip, "Per subcontact: accumulated plastic slip [m].")
             .add_property("damage", &MasonryJointPhys::damage,
                           "Per subcontact: damage in tension, shear and compression [-], 0 to 1.")
             .add_property("largest", &MasonryJointPhys::largest,
-                          "Per subcontact: largest opening, measured from the crushed and dilated place, and largest "
-                          "closure so far [m].")
+                          "Per subcontact: largest opening and largest closure so far [m]. The opening is measured "
+                          "from the place to which crushing and dilation have moved the surfaces.")
             .add_property(
                 "yielding", &MasonryJointPhys::yielding,
-                "Per subcontact: F1, F2 and F3 of the paper's eqs. (8) and (9), each over the sum of the sizes "
-                "of its terms and of the elastic stress of all jumps so far, whose round-off they carry [-]: at "
-                "most that above zero, -1 where it does not act.")
+                "Per subcontact: yield functions F1, F2 and F3 of the paper's eqs. (8) and (9) [-]. Each is divided by "
+                "the sum of the sizes of its terms and of the elastic stress of the largest jumps so far, so that it "
+                "exceeds zero by round-off only. -1: this yield function does not apply now.")
             .add_property(
                 "regime", &MasonryJointPhys::regime,
-                "Per subcontact: what acted in the last step: 'elastic', 'opening', 'slipping' or 'crushing'.");
+                "Per subcontact: its regime in the last step: 'elastic', 'opening', 'slipping' or 'crushing'.");
     }
 
     // Gives the joint a home of its own, in which nothing has happened.
@@ -60,10 +61,11 @@ class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys> {
     const JointLaw& law() const { return home->columns.law(); }
     const ElasticStiffness& stiffness() const { return home->columns.stiffness(); }
     JointState state(int point) const { return home->columns.get(point, index); }
-    Energies lost(int point) const { return home->columns.dissipated(point, index); } // [J/m²] so far
+    // Energies dissipated so far by mode [J/m²].
+    Energies lost(int point) const { return home->columns.dissipated(point, index); }
 
-    shared_ptr<JointStates> home; // null in a joint that nothing has defined
-    int index = 0;                // of the joint in its home
+    shared_ptr<JointStates> home; // null until define() or loading; SceneStore replaces it
+    int index = 0;                // number of the joint in its home
 
 private:
     shared_ptr<MasonryJoint> joint();
@@ -82,7 +84,7 @@ private:
     py::list yielding();
     py::list regime();
 
-    shared_ptr<MasonryJoint> loaded_; // between the two halves of loading
+    shared_ptr<MasonryJoint> loaded_; // while a file is loaded: the property set, which is read before the record
 };
 
 } // namespace masonry

@@ -25,8 +25,8 @@ void MasonryLoad::action() {
     total_ = force;
     auto& forces = scene->forces();
     if (driven) {
-        // The force R that gives the point its velocity after this step: d·(v + w x arm) = V with
-        // v' = v + dt (F + R d)/m + dt g, w' = w + dt I^-1 (T + arm x R d).
+        // R is the force along d that gives the point its velocity V after this step, d·(v' + w' × arm) = V, where
+        // v' = v + dt (F + R d) / m + dt g and w' = w + dt I^-1 (T + arm × R d).
         const Vector3r d = direction.normalized(), lever = arm_.cross(d), perMass = inverseMass(state);
         const yade::Matrix3r perInertia = inverseInertia(state);
         const Vector3r push = forces.getForceSingle(body) + total_ + state.mass * turn->gravity();

@@ -8,10 +8,10 @@ public:
     static constexpr const char* className = "MasonryLoad";
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
-        "Loads a rigid block at a point fixed to it: with a constant force, and, when driven, with a velocity of that "
-        "point in one direction, while the block stays free to rotate and to move otherwise. Stands after the "
-        "interaction loop and before the integrator. The block is taken out of the integrator's damping, so that the "
-        "velocity is met exactly; of two driven loads on one block that is true only if it cannot turn.";
+        "Loads a rigid block at a point fixed to it: with a constant force and, if it is driven, with a prescribed "
+        "velocity of that point in one direction. The block remains free to rotate and to move in other directions. "
+        "Stands after the loop of the joints and before the integrator. It switches off the damping of the block, so "
+        "that the velocity is exact; two driven loads on one block are exact only if the block cannot rotate.";
 
     int body = 0;
     Vector3r point = Vector3r::Zero();
@@ -33,9 +33,8 @@ public:
         visit("velocity", &L::velocity, number("m/s", "Velocity of the point along the direction"));
         visit("reaction", &L::reaction, number("N", "Force that the drive applies along the direction"), ReadOnly);
         visit("work", &L::work,
-              number("J",
-                     "Work done on the block by force and drive so far; kept by the engine that keeps the energies "
-                     "of rigid bodies"),
+              number("J", "Work done on the block by force and drive so far; counted by the engine that counts the "
+                          "energies of rigid bodies"),
               ReadOnly);
         visit("pendingWork", &L::pendingWork, number("J", "Work of the last step"), Hidden);
     }
@@ -48,15 +47,16 @@ public:
     std::vector<std::string> problems() const;
     void action() override;
 
-    // Half of a load's work is done with the velocity before the step and half with the one after, as in BodyStep.
+    // For the engine that counts energies. Half of a load's work is done with the velocity before the step, and half
+    // with the one after it, as in BodyStep.
     void workBefore(double dt, const yade::State&);
     void workAfter(double dt, const Vector3r& vel, const Vector3r& angVel);
 
 private:
-    Vector3r displacement() const; // of the point, since the reference state
+    Vector3r displacement() const; // of the point since the reference state [m]
 
-    Vector3r total_ = Vector3r::Zero(); // force of the present step
-    Vector3r arm_ = Vector3r::Zero();   // from the body's centre to the point in the present step
+    Vector3r total_ = Vector3r::Zero(); // force and reaction in the present step [N]
+    Vector3r arm_ = Vector3r::Zero();   // from the body's centre to the point in the present step [m]
 };
 
 } // namespace masonry

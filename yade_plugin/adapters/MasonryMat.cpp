@@ -12,7 +12,7 @@ using yade::State;
 
 shared_ptr<State> MasonryMat::newAssocState() const {
     constexpr int places = 64;
-    struct Shelf { // lives as long as a State on it
+    struct Shelf { // memory of many States, which is freed when the last of them is
         alignas(64) unsigned char memory[places][sizeof(State)];
     };
     static std::mutex mutex;

@@ -8,8 +8,9 @@ class MasonryMat : public Adapter<MasonryMat, yade::Material> {
     static constexpr const char* className = "MasonryMat";
     static constexpr const char* baseName = "Material";
     static constexpr const char* doc =
-        "Material of a masonry unit: what deforms between the joints. Its density is Material's [kg/m³]. Joints are "
-        "MasonryJoint objects, chosen per pair of units by Ip2_MasonryMat_MasonryMat_MasonryJointPhys.";
+        "Material of a masonry unit, which deforms elastically between the joints. Its density [kg/m³] is that of "
+        "Material. The properties of joints are in MasonryJoint objects; "
+        "Ip2_MasonryMat_MasonryMat_MasonryJointPhys chooses one for each pair of units.";
 
     double young = 4.8e9;
     double poisson = 0.16;
@@ -25,7 +26,8 @@ class MasonryMat : public Adapter<MasonryMat, yade::Material> {
         visit("jointSet", &M::jointSet, described("Name by which MasonryJoint.jointSet picks the joints of this unit"));
     }
 
-    template <class PyClass> static void extras(PyClass& cls) { // over the host's, which would not be checked
+    // Replaces the host's attribute `density`, which accepts any number.
+    template <class PyClass> static void extras(PyClass& cls) {
         cls.add_property(
             "density", +[](const MasonryMat& mat) { return mat.density; },
             +[](MasonryMat& mat, const py::object& value) { mat.set("density", value); },
@@ -40,7 +42,7 @@ class MasonryMat : public Adapter<MasonryMat, yade::Material> {
     }
     std::string title() const { return "MasonryMat \"" + label + "\""; }
 
-    // States of units stand beside each other in the memory, because every step reads and writes them all.
+    // Puts the States of units beside each other in memory, because every step reads and writes all of them.
     shared_ptr<yade::State> newAssocState() const override;
 
     double shearModulus() const { return young / (2 * (1 + poisson)); }

@@ -72,12 +72,14 @@ template <class Array> Array* column(vtkDataSetAttributes* data, const char* nam
     return array; // owned by `data`
 }
 
-// Displacement of a point given in the reference state, moved with a body; that of a deformable unit is its mean.
+// Displacement of a point of the reference state that moves with a body. For a deformable unit this is the rigid part
+// of the motion.
 Vector3r moved(const yade::State& s, const Vector3r& position, const Quaternionr& orientation, const Vector3r& point) {
     return s.pos + s.ori * orientation.conjugate() * (point - position) - point;
 }
 
-// Throws for a file that cannot be written, and leaves no part of it, so that there is room for what follows.
+// Throws std::runtime_error for a file that cannot be written. Removes what was written of it, so that a full disk has
+// room for the files that end a run.
 [[noreturn]] void failed(const std::string& path, int reason) {
     std::remove(path.c_str());
     throw std::runtime_error("cannot write " + path + ": " + (reason ? std::strerror(reason) : "no reason known"));
@@ -85,7 +87,7 @@ Vector3r moved(const yade::State& s, const Vector3r& position, const Quaternionr
 
 template <class Writer, class Data> void write(const std::string& path, Data* data) {
     errno = 0;
-    if (std::FILE* file = std::fopen(path.c_str(), "w")) // VTK would tell in many lines, and not the reason
+    if (std::FILE* file = std::fopen(path.c_str(), "w")) // VTK's own message is long and without the reason
         std::fclose(file);
     else
         failed(path, errno);
@@ -130,7 +132,7 @@ void MasonryVtkRecorder::action() {
     try {
         writeJoints(directory + "/" + frame("joints", times.size(), ".vtp"));
     } catch (...) {
-        std::remove(blocks.c_str()); // no half of a frame
+        std::remove(blocks.c_str()); // a frame is written whole or not at all
         throw;
     }
     times.push_back(scene->time);
@@ -197,7 +199,7 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
         const auto corners = shape->GetSurfaceTriangulation();
         for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
             block.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
-        vtkNew<vtkIdList> faces; // number of faces, then each face's count and corners
+        vtkNew<vtkIdList> faces; // number of faces, then for each face its number of corners and the corners
         faces->InsertNextId(block.triangles.size());
         for (const auto& t : block.triangles) {
             faces->InsertNextId(3);
@@ -289,7 +291,8 @@ void MasonryVtkRecorder::writeJoints(const std::string& path) {
 }
 
 void MasonryVtkRecorder::writeCollection(const std::string& name, const std::string& extension) const {
-    const auto path = directory + "/" + name + ".pvd", fresh = path + ".new"; // so that a full disk leaves the old one
+    const auto path = directory + "/" + name + ".pvd";
+    const auto fresh = path + ".new"; // renamed at the end, so that the old file stays if the disk is full
     std::ofstream out(fresh);
     out.precision(12);
     out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";

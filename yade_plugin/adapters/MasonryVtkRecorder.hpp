@@ -8,9 +8,10 @@ public:
     static constexpr const char* className = "MasonryVtkRecorder";
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
-        "Writes blocks.pvd and joints.pvd with their series for ParaView, a frame at every action: units in their "
-        "reference place, deformable ones as zones; subcontacts as cells. fields() says what the files hold; every "
-        "field carries its unit. Call it, or give it a period.";
+        "Writes blocks.pvd and joints.pvd with their series of files for ParaView, one frame at every action. Units "
+        "stand at their reference place, deformable ones are drawn as zones, and subcontacts are cells. fields() says "
+        "what the files hold, and every field carries its unit. Call the engine as a function for a frame, or set "
+        "stepPeriod.";
 
     std::string directory = ".";
     int stepPeriod = 0;
@@ -24,7 +25,8 @@ public:
         visit("kinds", &R::kinds, described("Names of the joints' kinds, in the order of their numbers in the files"),
               ReadOnly);
         visit("times", &R::times,
-              number("s", "Simulation times of the frames so far; given, the series goes on after them"));
+              number("s",
+                     "Simulation times of the frames so far; a new recorder that is given them continues the series"));
     }
 
     std::vector<std::string> problems() const;

@@ -32,8 +32,9 @@ std::vector<std::string> MasonryZones::problems() const {
 
 void MasonryZones::postLoad() {
     check();
-    if (!units_.empty()) // meshed again when needed: for other bodies, or other held directions
-        loaded_ = {displacements(), velocities(), lastForces()};
+    // Attributes have changed, so the bodies are divided anew by the next call of units(). The state is kept until
+    // then.
+    if (!units_.empty()) loaded_ = {displacements(), velocities(), lastForces()};
     units_.clear();
     batches_.clear();
     places_.clear();
@@ -58,7 +59,7 @@ std::vector<Vector3r> MasonryZones::listed(const std::vector<Row>& rows, const s
 
 void MasonryZones::take(const std::vector<Vector3r>& values, std::vector<Row>& rows, std::vector<Vector3r>& loaded) {
     if (units_.empty() || values.size() != places_.size()) {
-        if (!units_.empty()) postLoad(); // other nodes than these: units() tells
+        if (!units_.empty()) postLoad(); // units() then refuses the state of another number of nodes
         loaded = values;
         return;
     }
@@ -75,7 +76,8 @@ int MasonryZones::addDependentPoint() {
     return lanes * (int(displacements_.size()) - 3) + lane;
 }
 
-void MasonryZones::dropDependentPoints() { // they have no velocities
+// Dependent points have rows of displacements and forces only, so the rows of velocities show where they begin.
+void MasonryZones::dropDependentPoints() {
     displacements_.resize(velocities_.size());
     forces_.resize(velocities_.size());
     dependentPoints_ = 0;
@@ -153,7 +155,7 @@ void MasonryZones::mesh() {
     }
     for (int id : bodies) {
         auto& state = *all[id]->state;
-        state.blockedDOFs = 63; // the host's integrator leaves it alone
+        state.blockedDOFs = 63; // all axes, so that integrators of rigid bodies do not move it
         state.vel = state.angVel = Vector3r::Zero();
     }
     if (known == 0) {
@@ -164,7 +166,7 @@ void MasonryZones::mesh() {
         list->resize(next, Vector3r::Zero());
 }
 
-// Gives every node its place in the rows: congruent units stand side by side, one a lane.
+// Gives every node its place in the rows. Congruent units stand side by side, one in each lane.
 void MasonryZones::layOut() {
     batches_.clear();
     dependentPoints_ = 0;
@@ -198,7 +200,7 @@ void MasonryZones::layOut() {
         put(lastForces_, places_[node], loaded_.lastForces[node]);
     }
     loaded_ = {};
-    ++changes; // places are others
+    ++changes; // others have to look up the places again
 }
 
 const MasonryZones::Unit* MasonryZones::unitOf(int body) {
@@ -251,8 +253,10 @@ Vector3r MasonryZones::reference(const Unit& unit, int node) const {
 Attachment MasonryZones::attach(const Unit& unit, const Vector3r& point) const {
     const auto place = nearestOnSurface(unit.elasticity->mesh(), point - unit.centre);
     Attachment a;
-    for (int i = 0; i < 3; ++i)
-        a.nodes[i] = unit.firstNode + place.nodes[i], a.weights[i] = place.weights[i];
+    for (int i = 0; i < 3; ++i) {
+        a.nodes[i] = unit.firstNode + place.nodes[i];
+        a.weights[i] = place.weights[i];
+    }
     return a;
 }
 
@@ -302,7 +306,8 @@ double total(const Row& row) {
 
 } // namespace
 
-// Forces of the joints that the functors of an InteractionLoop have brought up to date.
+// Brings the forces of the joints to the nodes in a scene with InteractionLoop, whose functors have calculated them.
+// MasonryJointLoop does that itself.
 void MasonryZones::gatherFromFunctors(const SceneStore& store) {
     std::fill(forces_.begin(), forces_.end(), Row{});
     std::fill(moments_.begin(), moments_.end(), Row{});

@@ -15,15 +15,16 @@ public:
     static constexpr const char* className = "MasonryZones";
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
-        "Deformable units: blocks divided into tetrahedral zones of linear elastic material, masses at the nodes, "
-        "joints between nodes (paper §2, eqs. (1)-(7)). A unit stays one body with a Polyhedra shape, whose position "
-        "and orientation follow the centre of mass and the mean rotation; strains are small in axes that turn with the "
-        "unit. Stands after the interaction loop; the host's integrator leaves these bodies alone. Give it to "
-        "Ig2_Polyhedra_Polyhedra_MasonryJointGeom.zones before joints are made.";
+        "Deformable units: blocks divided into tetrahedral zones of linear elastic material, with their masses and "
+        "joints at the nodes (paper §2, eqs. (1)-(7)). A unit remains one body with a Polyhedra shape; its position "
+        "and orientation follow the centre of mass and the mean rotation. Strains are taken as small in axes that turn "
+        "with the unit. Stands after the loop of the joints; integrators of rigid bodies do not move these bodies. "
+        "Give "
+        "this engine to Ig2_Polyhedra_Polyhedra_MasonryJointGeom.zones before joints are made.";
 
     std::vector<int> bodies;
     std::vector<int> divisions{1, 1, 1};
-    std::vector<int> laidOut; // divisions and bodies for which the nodes were numbered
+    std::vector<int> laidOut; // the divisions and bodies for which the nodes were numbered; set by the engine itself
     double damping = 0.8;
     std::string dampingKind = "combined";
     std::string blocked;
@@ -40,12 +41,12 @@ public:
               Given);
         visit("damping", &Z::damping,
               number("-", "Damping constant alpha").atLeast(0).atMost(0.99).source("paper eq. (3): 0.8"));
-        visit(
-            "dampingKind", &Z::dampingKind,
-            described("'combined': alpha |F| (sgn(dF/dt) - sgn(v)) / 2, calms what swings about a steady motion, too; "
-                      "'local': -alpha |F| sgn(v), paper eq. (3), lets it swing and turns it into a drag"));
+        visit("dampingKind", &Z::dampingKind,
+              described(
+                  "'combined': alpha |F| (sgn(dF/dt) - sgn(v)) / 2, which also calms vibration about a steady motion; "
+                  "'local': -alpha |F| sgn(v), paper eq. (3), which leaves that vibration and resists the motion"));
         visit("blocked", &Z::blocked,
-              described("Directions in which the nodes are held, as 'y': a wall in its plane, in plane stress"));
+              described("Directions in which the nodes are held: 'y' for a wall loaded in its plane, in plane stress"));
         visit("gravity", &Z::gravity, number("m/s²", "Gravity"));
         visit("kinetic", &Z::kinetic, number("J", "Kinetic energy of the nodes"), ReadOnly);
         visit("elastic", &Z::elastic, number("J", "Elastic energy of the zones"), ReadOnly);
@@ -66,7 +67,7 @@ public:
             .def("referencePoint", &MasonryZones::referencePoint, py::args("body", "node"),
                  "Place of a node of a unit in the reference state [m].")
             .def("setVelocity", &MasonryZones::setVelocity, py::args("node", "velocity"),
-                 "Give a node a velocity [m/s], as a start.")
+                 "Set the velocity of a node [m/s] from which the next step starts.")
             .add_property("masses", &MasonryZones::masses, "Masses of all nodes [kg].");
     }
 
@@ -76,30 +77,34 @@ public:
 
     struct Unit {
         int body;
-        int firstNode;
-        int momentPlace; // in the rows of moments
-        std::shared_ptr<const BlockElasticity> elasticity;
-        Vector3r centre; // reference
-        Quaternionr orientation;
+        int firstNode;                                     // number of its first node; the others follow
+        int momentPlace;                                   // in the rows of moments
+        std::shared_ptr<const BlockElasticity> elasticity; // shared by congruent units
+        Vector3r centre;                                   // of the body in the reference state [m]
+        Quaternionr orientation;                           // of the body in the reference state
     };
-    const std::vector<Unit>& units(); // meshes the bodies when first asked
+    const std::vector<Unit>& units(); // divides the bodies into zones when first called
     const Unit* unitOf(int body);     // null for a rigid body
+    // Whether the nodes are held in direction 0, 1 or 2.
     bool holds(int direction) const { return blocked.find("xyz"[direction]) != std::string::npos; }
+    // Place of a node in the reference state, global axes [m].
     Vector3r reference(const Unit&, int node) const;
+    // How the point of the unit's surface nearest to `point` moves with the nodes.
     Attachment attach(const Unit&, const Vector3r& point) const;
-    // Nodes of a unit on a joint polygon with a third of the areas of the surface triangles around them; empty if those
-    // triangles do not make up the polygon.
+    // Nodes of a unit on a joint polygon, each with its share of the area [m²]: a third of every surface triangle on
+    // the polygon that has this node. Empty if those triangles do not cover the polygon.
     std::vector<std::pair<int, double>> nodesOn(const Unit&, const std::vector<Vector3r>& polygon,
                                                 const Vector3r& normal) const;
 
-    // The rows of numbers in which the state of the nodes lives: a node's three numbers stand at its place, one row
-    // apart. Dependent points have places behind those of the nodes; they move with a rigid body or between nodes.
+    // The rows in which the state of the nodes lives. The three components of a node are one row apart, the first at
+    // the node's place: rows()[place + d * lanes]. Dependent points are subcontacts' sides without a node of their own,
+    // which move with a rigid body or between nodes. JointPlan adds them; their places follow those of the nodes.
     int placeOf(int node) const { return places_[node]; }
     int addDependentPoint();
     void dropDependentPoints();
-    double* displacementRows() { return displacements_[0].lane; }
-    double* forceRows() { return forces_[0].lane; }
-    double* momentRows() { return moments_[0].lane; } // of joints on the rotation of the units
+    double* displacementRows() { return displacements_[0].lane; } // since the reference state [m]
+    double* forceRows() { return forces_[0].lane; }               // of joints in the present step [N]
+    double* momentRows() { return moments_[0].lane; }             // of joints on the rotation of the units [N m]
     Vector3r displacementOf(int node) const { return at(displacements_, places_[node]); }
     Vector3r velocityOf(int node) const { return at(velocities_, places_[node]); }
     Vector3r displacementAt(const Attachment& a) const {
@@ -110,15 +115,16 @@ public:
     }
 
 private:
-    std::vector<int> layout() const { // all that the numbers of the nodes hang on
+    // All that decides how the nodes are numbered: divisions, then bodies.
+    std::vector<int> layout() const {
         std::vector<int> all = divisions;
         all.insert(all.end(), bodies.begin(), bodies.end());
         return all;
     }
-    struct Batch { // of congruent units side by side
+    struct Batch { // congruent units, one in each lane of the rows
         const BlockElasticity* elasticity;
         int firstRow;
-        std::vector<int> units;
+        std::vector<int> units; // at most as many as there are lanes
     };
     static Vector3r at(const std::vector<Row>& rows, int place) {
         const double* v = rows[0].lane + place;
@@ -139,23 +145,24 @@ private:
     void setDisplacements(const std::vector<Vector3r>& values) { take(values, displacements_, loaded_.displacements); }
     void setVelocities(const std::vector<Vector3r>& values) { take(values, velocities_, loaded_.velocities); }
     void setLastForces(const std::vector<Vector3r>& values) { take(values, lastForces_, loaded_.lastForces); }
+    // Sets rows, or `loaded` while there are none for these values.
     void take(const std::vector<Vector3r>& values, std::vector<Row>& rows, std::vector<Vector3r>& loaded);
     py::tuple nodesOf(int body);
     Vector3r referencePoint(int body, int node);
     void setVelocity(int node, const Vector3r& velocity);
     py::list masses();
 
-    struct { // state of nodes that have no rows yet: it was just loaded
+    struct { // state of the nodes while there are no rows for it: after loading, and before the bodies are divided anew
         std::vector<Vector3r> displacements, velocities, lastForces;
     } loaded_;
     std::vector<Unit> units_;
-    std::vector<int> unitOfBody_;
-    std::vector<int> places_; // of all nodes
+    std::vector<int> unitOfBody_; // by the id of the body; -1 if it is rigid
+    std::vector<int> places_;     // of all nodes in the rows
     std::vector<Batch> batches_;
     std::vector<Row> displacements_, velocities_, forces_, lastForces_, moments_;
-    int dependentPoints_ = 0;
-    boost::weak_ptr<yade::Factorable> scene_; // in which the units were last moved
-    bool acted_ = false;
+    int dependentPoints_ = 0;                 // number of dependent points
+    boost::weak_ptr<yade::Factorable> scene_; // the scene in which the units were last moved
+    bool acted_ = false;                      // whether the units were ever moved
 };
 
 } // namespace masonry

@@ -28,11 +28,11 @@ namespace {
 struct Candidate {
     int id;
     KnownBlock block;
-    Vector3r low, high; // of the space in which it may touch others
-    std::vector<int> joined;
+    Vector3r low, high;      // corners of the box in which it may touch others [m]
+    std::vector<int> joined; // numbers of the candidates that share a face with it
 };
 
-// All blocks of the scene; std::invalid_argument with all that is wrong with them.
+// All blocks of the present scene. Throws std::invalid_argument that names all problems of these blocks.
 std::vector<Candidate> candidates(double tolerance) {
     if (!(tolerance > 0 && tolerance <= 0.01))
         throw std::invalid_argument("tolerance " + text(tolerance) + " must be above 0 and at most 0.01");
@@ -51,10 +51,13 @@ std::vector<Candidate> candidates(double tolerance) {
         if (away > tolerance * size)
             wrong.push_back("body " + std::to_string(body->id) + " lies " + text(1e3 * away) +
                             " mm from its reference place state.refPos, which addBlock() sets");
-        for (const auto& v : c.block.vertices)
-            c.low = c.low.cwiseMin(v), c.high = c.high.cwiseMax(v);
+        for (const auto& v : c.block.vertices) {
+            c.low = c.low.cwiseMin(v);
+            c.high = c.high.cwiseMax(v);
+        }
         const Vector3r margin = Vector3r::Constant(std::max(tolerance * size, 0.125 * c.block.thickness));
-        c.low -= margin, c.high += margin;
+        c.low -= margin;
+        c.high += margin;
         all.push_back(std::move(c));
     }
     if (!wrong.empty()) throw std::invalid_argument(firstOf(wrong));
@@ -66,9 +69,11 @@ std::vector<Candidate> candidates(double tolerance) {
 py::tuple neighbours(double tolerance) {
     auto all = candidates(tolerance);
     Vector3r low = Vector3r::Constant(HUGE_VAL), high = -low;
-    for (const auto& c : all)
-        low = low.cwiseMin(c.low), high = high.cwiseMax(c.low);
-    int axis; // along which the blocks are spread most
+    for (const auto& c : all) {
+        low = low.cwiseMin(c.low);
+        high = high.cwiseMax(c.low);
+    }
+    int axis; // the axis along which the blocks spread most; sorted by it, far blocks are never compared
     (high - low).maxCoeff(&axis);
     std::sort(all.begin(), all.end(), [axis](const auto& a, const auto& b) { return a.low[axis] < b.low[axis]; });
     using Pair = std::pair<int, int>;
@@ -80,14 +85,16 @@ py::tuple neighbours(double tolerance) {
             if ((two.low.array() > one.high.array()).any() || (one.low.array() > two.high.array()).any()) continue;
             if (coincidentFaces(one.block, two.block, tolerance)) {
                 pairs.emplace_back(std::minmax(one.id, two.id));
-                one.joined.push_back(int(j)), two.joined.push_back(int(i));
+                one.joined.push_back(int(j));
+                two.joined.push_back(int(i));
             } else if (const auto found = misfit(one.block, two.block, tolerance))
                 misfits.emplace_back(i, j, *found);
         }
     std::sort(pairs.begin(), pairs.end());
     std::vector<std::tuple<Pair, double, double>> gaps;
     for (const auto& [i, j, found] : misfits) {
-        const auto filled = [&, &others = all[j].joined, &middle = found.middle](int k) { // by a block joined to both
+        // Whether block k, which is joined to both, fills the gap between them, as a layer of mortar does.
+        const auto filled = [&, &others = all[j].joined, &middle = found.middle](int k) {
             return std::count(others.begin(), others.end(), k) &&
                    all[k].block.holds(middle, 1e-3 * all[k].block.thickness);
         };

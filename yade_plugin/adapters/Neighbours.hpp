@@ -5,13 +5,17 @@
 
 namespace masonry {
 
-// The block that a body's Polyhedra stands for at a place, in global axes.
+// The block with the shape of a Polyhedra at a position and orientation, in global axes.
 ConvexBlock blockOf(yade::Polyhedra&, const yade::Vector3r& position, const yade::Quaternionr& orientation);
 
-// Of the blocks of the scene: pairs (id1, id2) that share a face, the lower id first; pairs (id1, id2, gap, bound)
-// that nearly do, or overlap (gap below 0), and the gap that would be accepted [m]; the thinnest (id, thickness) and
-// the largest (id, diagonal) [m].
+// Looks at all blocks of the present scene, and gives a tuple of three lists. The lower id stands first in a pair.
+// - (id1, id2) of all pairs that share a face
+// - (id1, id2, gap, bound) of all pairs that nearly share one or that overlap: the gap, which is negative for an
+// overlap,
+//   and the largest gap that would be accepted [m]
+// - (id, thickness) of the thinnest block and (id, diagonal) of the largest [m]
 boost::python::tuple neighbours(double tolerance);
-boost::python::list touchingPairs(double tolerance); // the first of these
+// The first of these lists.
+boost::python::list touchingPairs(double tolerance);
 
 } // namespace masonry

@@ -39,7 +39,7 @@ void add(std::vector<std::string>& all, const std::vector<std::string>& more) {
     all.insert(all.end(), more.begin(), more.end());
 }
 
-// What is wrong with O.engines, in one sentence; empty if nothing is.
+// All that is wrong with O.engines, in one sentence; empty if nothing is.
 std::string problemOfEngines(const yade::Scene& scene, bool jointed) {
     std::vector<std::string> wrong;
     std::string loop, integrator;

@@ -7,23 +7,32 @@
 
 namespace masonry {
 
-struct BodyRecord { // with the forces of the last step, so that they can be read, and those that stay
-    Vector3r position, velocity, spin, momentum, force, torque, lasting, lastingTorque;
+// State of a body in a checkpoint.
+struct BodyRecord {
+    Vector3r position, velocity, spin, momentum;
+    Vector3r force, torque;          // of the last step, so that scripts can read them after loading
+    Vector3r lasting, lastingTorque; // the host's permanent force and torque
     Quaternionr orientation;
     double blocked, damped;
 };
 template <class F> void numbers(BodyRecord& b, F&& each) {
     for (auto* v : {&b.position, &b.velocity, &b.spin, &b.momentum, &b.force, &b.torque, &b.lasting, &b.lastingTorque})
         numbers(*v, each);
-    numbers(b.orientation, each), each(b.blocked), each(b.damped);
+    numbers(b.orientation, each);
+    each(b.blocked);
+    each(b.damped);
 }
 
-struct PointRecord { // of a joint
-    Vector3r jump, losses;
+// State of a subcontact in a checkpoint.
+struct PointRecord {
+    Vector3r jump;   // [m]
+    Vector3r losses; // energies dissipated in tension, shear and compression [J/m²]
     JointState state;
 };
 template <class F> void numbers(PointRecord& p, F&& each) {
-    numbers(p.jump, each), numbers(p.losses, each), numbers(p.state, each);
+    numbers(p.jump, each);
+    numbers(p.losses, each);
+    numbers(p.state, each);
 }
 
 template <> struct IsNumbers<BodyRecord> : std::true_type {};
@@ -49,8 +58,10 @@ void transferBodies(yade::Scene& scene, Transfer& to) {
         const int id = body->id;
         records.push_back({s.pos, s.vel, s.angVel, s.angMom, forces.getForce(id), forces.getTorque(id), none, none,
                            s.ori, double(s.blockedDOFs), double(s.isDamped)});
-        if (forces.getPermForceUsed())
-            records.back().lasting = forces.getPermForce(id), records.back().lastingTorque = forces.getPermTorque(id);
+        if (forces.getPermForceUsed()) {
+            records.back().lasting = forces.getPermForce(id);
+            records.back().lastingTorque = forces.getPermTorque(id);
+        }
     }
     to.several("bodies", records.data(), records.size());
     if (!to.back) return;
@@ -60,8 +71,13 @@ void transferBodies(yade::Scene& scene, Transfer& to) {
         const int id = bodies[i]->id;
         const auto& r = records[i];
         if (!(r.blocked >= 0 && r.blocked <= 63)) to.damaged("bodies");
-        s.pos = r.position, s.vel = r.velocity, s.angVel = r.spin, s.angMom = r.momentum, s.ori = r.orientation;
-        s.blockedDOFs = unsigned(r.blocked), s.isDamped = r.damped != 0;
+        s.pos = r.position;
+        s.vel = r.velocity;
+        s.angVel = r.spin;
+        s.angMom = r.momentum;
+        s.ori = r.orientation;
+        s.blockedDOFs = unsigned(r.blocked);
+        s.isDamped = r.damped != 0;
         forces.addForce(id, r.force - r.lasting);
         forces.addTorque(id, r.torque - r.lastingTorque);
         if (!r.lasting.isZero(0)) forces.setPermForce(id, r.lasting);
@@ -92,8 +108,10 @@ void transferJoints(const SceneStore& store, Transfer& to) {
 void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
     Transfer to(file, back);
     to.owner = "scene.";
-    to("step", scene.iter), to("time", scene.time), to("dt", scene.dt);
-    if (scene.iter < 0) to.damaged("step"); // the host would stop at an assertion
+    to("step", scene.iter);
+    to("time", scene.time);
+    to("dt", scene.dt);
+    if (scene.iter < 0) to.damaged("step"); // an assertion of the host would end the program
     transferBodies(scene, to);
     auto& store = SceneStore::of(scene);
     store.update();
@@ -106,11 +124,13 @@ void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
             own->transfer(to);
         }
     for (const auto& engine : scene.engines)
-        if (auto* zones = dynamic_cast<MasonryZones*>(engine.get())) zones->units(); // refuses other numbers of nodes
-    if (back) ++changes; // all engines look at everything anew
+        if (auto* zones = dynamic_cast<MasonryZones*>(engine.get()))
+            zones->units(); // refuses the state of another number of nodes
+    if (back) ++changes;    // all engines read the scene anew
 }
 
-// A fingerprint of a scene: a sum over what does not change in a run, by which the same scene is recognised.
+// A checksum of numbers and texts that do not change in a run. A checkpoint holds it, so that it is recognised whether
+// the scene into which it is loaded is the same.
 class Fingerprint {
 public:
     template <class... T> void operator()(const T&... values) { (add(values), ...); }
@@ -159,7 +179,8 @@ Checkpoint captured(yade::Scene& scene) {
             for (const auto& attachment : r.hung->sides[side])
                 joints(attachment);
     }
-    made.texts["blocks"] = blocks.text(), made.texts["joints"] = joints.text();
+    made.texts["blocks"] = blocks.text();
+    made.texts["joints"] = joints.text();
     std::vector<std::string> engines;
     for (const auto& engine : scene.engines)
         if (dynamic_cast<Stateful*>(engine.get())) engines.push_back(engine->getClassName());

@@ -1,18 +1,19 @@
-// The state of a scene as a checkpoint's bytes, and back into the same scene built anew.
+// Writes the state of a scene into the bytes of a checkpoint, and brings it back into the same scene that was built
+// again.
 #pragma once
 #include "host/Yade.hpp"
 
 namespace masonry {
 
-// The present scene's: time, motions and forces of all bodies, joints, and engines of this plugin; with a text of the
-// user's. Throws std::invalid_argument for a state that has left finite numbers.
+// The state of the present scene: time, motions and forces of all bodies, joints, and engines of this plugin; and a
+// text of the caller. Throws std::invalid_argument if a number of the state is not finite.
 boost::python::object saveScene(const std::string& extra);
 
-// Gives the present scene the state that was saved, and the user's text back. Throws std::invalid_argument, and leaves
-// the scene as it is, for bytes that are damaged or of another scene.
+// Sets the present scene to the state that was saved, and returns the caller's text. If the bytes are damaged or belong
+// to another scene, throws std::invalid_argument and leaves the scene as it is.
 std::string loadScene(const boost::python::object& bytes);
 
-// The user's text alone.
+// The caller's text alone. The scene is not changed.
 std::string savedText(const boost::python::object& bytes);
 
 } // namespace masonry

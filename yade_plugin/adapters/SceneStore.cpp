@@ -35,7 +35,7 @@ yade::Vector3r SceneStore::gravity() const {
     return integrator ? integrator->gravity : hostIntegrator ? hostIntegrator->gravity : yade::Vector3r(0, 0, 0);
 }
 
-// Whether they are others than before.
+// Returns whether the engines are others than before.
 bool SceneStore::readEngines() {
     const auto& present = scene_.engines;
     bool same = engines_.size() == present.size();
@@ -78,7 +78,7 @@ bool SceneStore::readEngines() {
 void SceneStore::update(Look look) {
     if (readEngines()) {
         checked_ = false;
-        seenChanges_ = -1; // other engines move the bodies
+        seenChanges_ = -1; // read anew, because other engines may move the bodies
     }
     bool sameBodies = true;
     if (look == Look::AtAll || (look == Look::InStep && seenStep_ != scene_.iter)) {
@@ -98,14 +98,14 @@ void SceneStore::update(Look look) {
     seenInteractions_ = scene_.interactions->currSize;
 }
 
-// Joints move into homes by kind; within a kind they keep the order of the host's container.
+// Moves all joints into common homes, one for each kind. Within a kind they keep the order of the host's container.
 void SceneStore::readJoints() {
     struct Group {
         ElasticStiffness k;
         std::vector<std::size_t> members;
     };
     using Key = std::tuple<const MasonryJoint*, int, bool>;
-    std::map<Key, std::multimap<double, std::size_t>> byStiffness; // groups by normal stiffness
+    std::map<Key, std::multimap<double, std::size_t>> byStiffness; // numbers of groups, sorted by normal stiffness
     std::vector<Group> groups;
     std::vector<JointView> found;
     const MasonryZones* zonesOfJoints = nullptr;
@@ -162,7 +162,9 @@ void SceneStore::readJoints() {
         kind.shapes->shareShapes();
         made.push_back(kind);
     }
-    for (auto& kind : kinds) // what still sees these was taken out of the scene, or is half of a broken joint
+    // A view that still has one of the old homes belongs to a joint that was taken out of the scene, or to one of which
+    // only one half is left. If there is one of the latter, the old homes stay readable, and checkScene() reports it.
+    for (auto& kind : kinds)
         kind.shapes->left = kind.states->left = !broken;
     kinds = std::move(made);
     joints = std::move(found);
@@ -173,7 +175,7 @@ void SceneStore::check() {
         throw std::invalid_argument("O.dt " + text(scene_.dt) + " s must be a finite number above 0");
     if (checked_) return;
     checkScene(*this);
-    if (zones) zones->units(); // meshed when nothing else is wrong
+    if (zones) zones->units(); // divides the bodies into zones when nothing else is wrong
     if (connected_.empty() && !joints.empty()) connected();
     checked_ = true;
 }

@@ -6,7 +6,8 @@ namespace masonry {
 
 namespace {
 
-// Lets other Python threads run while this one waits: the thread that it waits for may need the interpreter.
+// Releases Python's interpreter while this thread waits, because the thread for which it waits may need the
+// interpreter.
 class WithoutInterpreter {
 public:
     WithoutInterpreter() : state_(PyGILState_Check() ? PyEval_SaveThread() : nullptr) {}
@@ -27,9 +28,10 @@ StepGate& StepGate::instance() {
     return gate;
 }
 
-// The mutex is never held while the interpreter is waited for, or the other way round.
+// Never waits for the interpreter while it holds the mutex. A thread that holds the interpreter may be waiting for the
+// mutex, and the two would then wait for each other.
 template <class Ready> void StepGate::wait(std::unique_lock<std::mutex>& held, Ready&& ready) {
-    while (!ready()) { // again where somebody was quicker while the interpreter was taken back
+    while (!ready()) { // again, because another thread may have gone first while this one took the interpreter back
         held.unlock();
         {
             const WithoutInterpreter free;
@@ -66,7 +68,8 @@ void StepGate::lock() {
         ++waiting_;
         wait(held, [&] {
             if (depth_ > 0 || acting_) return false;
-            return !inStep_ || stepper_ == me || !runsInBackground(); // a step that an error ended never leaves
+            return !inStep_ || stepper_ == me ||
+                   !runsInBackground(); // a step that failed may never have called leave()
         });
         --waiting_;
         reader_ = me;

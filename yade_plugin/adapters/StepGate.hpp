@@ -1,5 +1,6 @@
-// Keeps Python's readers and the engines of a running scene apart, so that YADE's prompt is safe while O.run() works in
-// the background. Readers see the state after a whole step, and a step never begins while somebody reads.
+// Keeps Python and the engines of a running scene apart, so that attributes can be read and set at YADE's prompt while
+// O.run() works in the background. A reader waits until a step has ended, and a step waits until no reader is at work.
+// In these comments a reader is any thread that reads or changes attributes.
 #pragma once
 #include <condition_variable>
 #include <mutex>
@@ -11,12 +12,13 @@ class StepGate {
 public:
     static StepGate& instance();
 
-    // An engine begins and ends its action. `stepDone`: it is the last of its step that changes anything of ours.
+    // To be called at the beginning and at the end of an engine's action. `stepDone`: the last of this plugin's engines
+    // in the step has ended, or the step has failed.
     void enter();
     void leave(bool stepDone);
 
-    // Somebody outside the step reads or changes something. May be nested in one thread, and within a step of the same
-    // thread, as a PyRunner does.
+    // To be called before and after attributes are read or changed. May be nested in one thread. The thread that makes
+    // the step may also call them within the step, as the Python code of a PyRunner does.
     void lock();
     void unlock();
 
@@ -25,14 +27,15 @@ private:
 
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::thread::id stepper_, reader_; // the thread that made the last step; the one that reads now
-    bool acting_ = false;              // whether an engine is at work
-    bool inStep_ = false;              // whether a step has begun and has not ended
-    int depth_ = 0;                    // how often the reader has locked
-    int waiting_ = 0;                  // readers that wait
+    std::thread::id stepper_; // the thread that makes steps
+    std::thread::id reader_;  // the thread that reads now
+    bool acting_ = false;     // whether an engine is at work
+    bool inStep_ = false;     // whether a step has begun and has not ended
+    int depth_ = 0;           // how many times the reader has called lock() without unlock()
+    int waiting_ = 0;         // number of readers that wait
 };
 
-// The present thread reads or changes what belongs to a scene, while this exists.
+// While this exists, no step begins, and the present thread may read and change attributes.
 class BetweenSteps {
 public:
     BetweenSteps() { StepGate::instance().lock(); }

@@ -1,5 +1,5 @@
-// State on its way from a scene to a checkpoint or back, piece by piece in the same order. Values of fixed size travel
-// as plain numbers.
+// Moves the state of a scene into a checkpoint or back. The same code does both: it names every value, and the
+// direction decides which side is written. Values of a fixed size become plain numbers.
 #pragma once
 #include "files/Checkpoint.hpp"
 #include "host/Yade.hpp"
@@ -15,16 +15,28 @@ namespace masonry {
 using yade::Quaternionr;
 using yade::Vector3r;
 
-template <class T> struct IsNumbers : std::false_type {}; // types of fixed size that travel as plain numbers
+// Whether a type has a fixed number of numbers, and a function numbers() that visits them.
+template <class T> struct IsNumbers : std::false_type {};
 template <> struct IsNumbers<Vector3r> : std::true_type {};
 template <> struct IsNumbers<Quaternionr> : std::true_type {};
 template <> struct IsNumbers<TableRow> : std::true_type {};
 
 // Calls `each` with every number of a value, in a fixed order.
 template <class F> void numbers(double& value, F&& each) { each(value); }
-template <class F> void numbers(Vector3r& v, F&& each) { each(v[0]), each(v[1]), each(v[2]); }
-template <class F> void numbers(Quaternionr& q, F&& each) { each(q.w()), each(q.x()), each(q.y()), each(q.z()); }
-template <class F> void numbers(TableRow& r, F&& each) { each(r.ratio), each(r.damage); }
+template <class F> void numbers(Vector3r& v, F&& each) {
+    for (int d = 0; d < 3; ++d)
+        each(v[d]);
+}
+template <class F> void numbers(Quaternionr& q, F&& each) {
+    each(q.w());
+    each(q.x());
+    each(q.y());
+    each(q.z());
+}
+template <class F> void numbers(TableRow& r, F&& each) {
+    each(r.ratio);
+    each(r.damage);
+}
 template <class F> void numbers(JointState& s, F&& each) {
     double regime = double(s.regime);
     for (double* value :
@@ -42,7 +54,7 @@ template <class T> std::vector<double> flattened(std::vector<T>& values) {
     return flat;
 }
 
-// Whether the numbers make up whole values.
+// Makes values of numbers. Returns false, and leaves `values` alone, if the numbers do not make up whole values.
 template <class T> bool unflatten(const std::vector<double>& flat, std::vector<T>& values) {
     std::size_t width = 0, next = 0;
     T sample{};
@@ -56,8 +68,8 @@ template <class T> bool unflatten(const std::vector<double>& flat, std::vector<T
 
 class Transfer {
 public:
-    const bool back;   // to the scene
-    std::string owner; // whose state it is, before the names
+    const bool back;   // whether the state goes from the checkpoint to the scene
+    std::string owner; // stands before every name in the checkpoint, and says whose state it is
 
     Transfer(Checkpoint& file, bool back) : back(back), file_(file) {}
 
@@ -74,7 +86,8 @@ public:
             several(name, values.data(), values.size());
         }
     }
-    template <class T> void several(const std::string& name, T* values, std::size_t count) { // as many as the scene has
+    // As many values as the scene has. A checkpoint with another number of them is refused.
+    template <class T> void several(const std::string& name, T* values, std::size_t count) {
         auto& flat = file_.numbers[owner + name];
         flat.resize(back ? flat.size() : count * width<T>());
         if (flat.size() != count * width<T>()) damaged(name);
@@ -111,7 +124,7 @@ private:
     Checkpoint& file_;
 };
 
-// What has a state of its own for checkpoints.
+// Base of all objects that have a state of their own in checkpoints.
 struct Stateful {
     virtual ~Stateful() = default;
     virtual void transfer(Transfer&) = 0;

@@ -1,5 +1,5 @@
-// The one description of a property: unit, bounds, meaning, source. The check of a value, Python's docs, the hints
-// about units, files and run.json all read it.
+// The description of a property: unit, bounds, meaning, source. The check of a value, Python's documentation, the hints
+// about units, files and run.json all read this one description.
 #pragma once
 #include "common/Text.hpp"
 #include <algorithm>
@@ -16,21 +16,27 @@ struct Property {
     static constexpr double infinity = std::numeric_limits<double>::infinity();
 
     const char* meaning = "";
-    const char* unit = nullptr; // null: no number; "-": a number without a unit
+    const char* unit = nullptr; // null: the property is not a number; "-": a number without a unit
     const char* from = "";      // where the default or the equation comes from
     double low = -infinity, high = infinity;
     bool lowExcluded = false, highExcluded = false;
-    double usualLow = -infinity, usualHigh = infinity; // beyond these a value is probably given in `otherUnit`
+    double usualLow = -infinity, usualHigh = infinity; // a value outside of these is probably in `otherUnit`
     const char* otherUnit = "";
 
     constexpr Property above(double bound) const {
-        return changed([&](Property& p) { p.low = bound, p.lowExcluded = true; });
+        return changed([&](Property& p) {
+            p.low = bound;
+            p.lowExcluded = true;
+        });
     }
     constexpr Property atLeast(double bound) const {
         return changed([&](Property& p) { p.low = bound; });
     }
     constexpr Property below(double bound) const {
-        return changed([&](Property& p) { p.high = bound, p.highExcluded = true; });
+        return changed([&](Property& p) {
+            p.high = bound;
+            p.highExcluded = true;
+        });
     }
     constexpr Property atMost(double bound) const {
         return changed([&](Property& p) { p.high = bound; });
@@ -39,7 +45,11 @@ struct Property {
         return changed([&](Property& p) { p.from = where; });
     }
     constexpr Property usually(double lowest, double highest, const char* unitOtherwise) const {
-        return changed([&](Property& p) { p.usualLow = lowest, p.usualHigh = highest, p.otherUnit = unitOtherwise; });
+        return changed([&](Property& p) {
+            p.usualLow = lowest;
+            p.usualHigh = highest;
+            p.otherUnit = unitOtherwise;
+        });
     }
 
     bool isNumber() const { return unit != nullptr; }
@@ -54,7 +64,7 @@ struct Property {
         return joined(parts, " and ");
     }
 
-    // One sentence for the manual: "Young's modulus of the unit [Pa], above 0 (paper table 2)."
+    // One sentence for Python's documentation: "Young's modulus of the unit [Pa], above 0 (paper table 2)."
     std::string documentation() const {
         std::string all = meaning;
         if (isNumber()) all += std::string(" [") + unit + "]";
@@ -85,11 +95,13 @@ private:
 
 constexpr Property number(const char* unit, const char* meaning) {
     Property p;
-    p.unit = unit, p.meaning = meaning;
+    p.unit = unit;
+    p.meaning = meaning;
     return p;
 }
 
-constexpr Property described(const char* meaning) { // a text, a switch, a list or an object
+// For what is not a number: a text, a switch, a list or an object.
+constexpr Property described(const char* meaning) {
     Property p;
     p.meaning = meaning;
     return p;
@@ -107,12 +119,13 @@ inline std::string inWords(const std::string& name) {
     return words;
 }
 
-// The name nearest to a misspelt one by the number of letters that differ; empty if none is near.
+// The name that differs in the fewest letters from a misspelt one; empty if more than a third of its letters, and more
+// than two, differ.
 inline std::string nearestName(const std::string& wrong, const std::vector<std::string>& names) {
     std::string best;
     std::size_t least = std::max<std::size_t>(2, wrong.size() / 3) + 1;
     for (const auto& name : names) {
-        std::vector<std::size_t> row(name.size() + 1); // Levenshtein's distance, row by row
+        std::vector<std::size_t> row(name.size() + 1); // of the table of Levenshtein's distance
         std::iota(row.begin(), row.end(), std::size_t(0));
         for (std::size_t i = 0; i < wrong.size(); ++i) {
             std::size_t diagonal = row[0]++;
@@ -120,10 +133,14 @@ inline std::string nearestName(const std::string& wrong, const std::vector<std::
                 const bool same = std::tolower(static_cast<unsigned char>(wrong[i])) ==
                                   std::tolower(static_cast<unsigned char>(name[j]));
                 const std::size_t next = std::min({row[j + 1] + 1, row[j] + 1, diagonal + (same ? 0 : 1)});
-                diagonal = row[j + 1], row[j + 1] = next;
+                diagonal = row[j + 1];
+                row[j + 1] = next;
             }
         }
-        if (row.back() < least) least = row.back(), best = name;
+        if (row.back() < least) {
+            least = row.back();
+            best = name;
+        }
     }
     return best;
 }

@@ -1,4 +1,4 @@
-// Numbers as users write them, for messages.
+// Numbers and lists as text, for messages.
 #pragma once
 #include <cstdio>
 #include <string>
@@ -19,6 +19,7 @@ inline std::string joined(const std::vector<std::string>& parts, const char* sep
     return all;
 }
 
+// The first parts, one on a line, and how many more there are.
 inline std::string firstOf(std::vector<std::string> parts, std::size_t most = 10) {
     const std::size_t more = parts.size() > most ? parts.size() - most : 0;
     parts.resize(parts.size() - more);

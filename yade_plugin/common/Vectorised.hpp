@@ -1,6 +1,6 @@
-// How inner loops use the vector units. A marked function is compiled for several instruction sets, and the one that
-// the processor has is taken when the program starts. All give the same numbers, because the project is built without
-// contraction of products and sums.
+// How inner loops use the vector units of a processor. A function marked MASONRY_VECTORISED is compiled for several
+// instruction sets, and the program takes the best one that the processor has when it starts. All give the same
+// numbers, because the project is built without contraction of products and sums.
 #pragma once
 
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -12,7 +12,8 @@
 // A function that is compiled into its callers, so that it uses the instruction set of a vectorised one.
 #define MASONRY_INLINED [[gnu::always_inline]] inline
 
-// Stands before a loop whose turns do not depend on each other, which the compiler cannot know of several pointers.
+// Stands before a loop whose iterations do not depend on each other. The compiler cannot know that by itself, because
+// pointers might lead to the same memory.
 #if defined(__GNUC__) && !defined(__clang__)
 #define MASONRY_INDEPENDENT _Pragma("GCC ivdep")
 #else
@@ -21,9 +22,9 @@
 
 namespace masonry {
 
-constexpr int lanes = 8; // numbers side by side
+constexpr int lanes = 8; // how many numbers of a Row stand side by side
 
-struct alignas(64) Row { // of numbers side by side
+struct alignas(64) Row { // as many numbers as the widest vector units take at a time
     double lane[lanes];
 };
 

@@ -1,20 +1,20 @@
-// What bodies or nodes take and give in a run, one ledger for rigid and for deformable units.
+// The energies of bodies or nodes in a run. An engine keeps one ledger, for rigid or for deformable units.
 #pragma once
 
 namespace masonry {
 
-// Half of a step's work is done with the velocity before it, half with the velocity after it. The second half is
-// pending until the next step, so that all entries belong to the same instant.
-struct EnergyLedger {           // [J]
+// All entries are in J. Half of the work in a step is done with the velocity before it, half with the velocity after
+// it. The second half is pending until the next step, so that all other entries belong to the same instant.
+struct EnergyLedger {
     double external = 0;        // work of prescribed motions so far
     double damped = 0;          // taken by damping so far
-    double pendingExternal = 0; // of the last step, for the next
-    double pendingDamped = 0;
-    double kinetic = 0; // now
-    double fallen = 0;  // work of gravity since the reference state
-    double elastic = 0; // stored in deformable units now
+    double pendingExternal = 0; // second half of the last step's work, which the next step adds to `external`
+    double pendingDamped = 0;   // second half of what damping took in the last step
+    double kinetic = 0;         // present kinetic energy
+    double fallen = 0;          // work of gravity since the reference state
+    double elastic = 0;         // present elastic energy of deformable units
 
-    // Books what was pending, and forgets what belongs to the last instant.
+    // Adds what was pending, and sets the present energies to zero.
     void beginStep() {
         external += pendingExternal;
         damped += pendingDamped;

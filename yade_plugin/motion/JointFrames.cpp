@@ -6,14 +6,14 @@
 
 namespace masonry {
 
-// The equations of MasonryJointGeom::update, for many joints at a time. Columns of a block never overlap.
-
 namespace {
 
+// Finds the joint's frame and the rotation `half` from it to side 2.
 [[gnu::always_inline]] inline void align(int n, const int* body1, const int* body2, const double* const* q,
                                          const double* const* f1, const double* const* f2,
                                          JointFrames& __restrict out) {
     const double *qw = q[0], *qx = q[1], *qy = q[2], *qz = q[3];
+    // Suffix 1 and 2: the joint's axes as bodies 1 and 2 have carried them along.
     const double *aw = f1[0], *ax = f1[1], *ay = f1[2], *az = f1[3];
     const double *bw = f2[0], *bx = f2[1], *by = f2[2], *bz = f2[3];
 #pragma GCC ivdep
@@ -27,12 +27,19 @@ namespace {
         double x2 = qw[two] * bx[i] + qx[two] * bw[i] + qy[two] * bz[i] - qz[two] * by[i];
         double y2 = qw[two] * by[i] + qy[two] * bw[i] + qz[two] * bx[i] - qx[two] * bz[i];
         double z2 = qw[two] * bz[i] + qz[two] * bw[i] + qx[two] * by[i] - qy[two] * bx[i];
+        // A quaternion and its negative are the same rotation; take the one that is nearer.
         const double same = w1 * w2 + x1 * x2 + y1 * y2 + z1 * z2 < 0 ? -1.0 : 1.0;
-        w2 *= same, x2 *= same, y2 *= same, z2 *= same;
+        w2 *= same;
+        x2 *= same;
+        y2 *= same;
+        z2 *= same;
         double w = w1 + w2, x = x1 + x2, y = y1 + y2, z = z1 + z2;
         const double size = 1 / std::sqrt(w * w + x * x + y * y + z * z);
-        w *= size, x *= size, y *= size, z *= size;
-        out.w[i] = w * w2 + x * x2 + y * y2 + z * z2; // the half turn from the mean to side 2
+        w *= size;
+        x *= size;
+        y *= size;
+        z *= size;
+        out.w[i] = w * w2 + x * x2 + y * y2 + z * z2;
         out.v[0][i] = w * x2 - x * w2 - (y * z2 - z * y2);
         out.v[1][i] = w * y2 - y * w2 - (z * x2 - x * z2);
         out.v[2][i] = w * z2 - z * w2 - (x * y2 - y * x2);
@@ -59,10 +66,12 @@ MASONRY_VECTORISED void alignRigid(int n, const int* body1, const int* body2, co
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
         const double x = px[body2[i]] - px[body1[i]], y = py[body2[i]] - py[body1[i]], z = pz[body2[i]] - pz[body1[i]];
-        out.between[0][i] = x, out.between[1][i] = y, out.between[2][i] = z;
+        out.between[0][i] = x;
+        out.between[1][i] = y;
+        out.between[2][i] = z;
         const double v0 = out.v[0][i], v1 = out.v[1][i], v2 = out.v[2][i], w = out.w[i];
         const double t0 = 2 * (v1 * sz[i] - v2 * sy[i]), t1 = 2 * (v2 * sx[i] - v0 * sz[i]),
-                     t2 = 2 * (v0 * sy[i] - v1 * sx[i]); // half d = d + w (2v × d) + v × (2v × d)
+                     t2 = 2 * (v0 * sy[i] - v1 * sx[i]); // for half d = d + w (2v × d) + v × (2v × d)
         out.common[0][i] =
             out.axes[0][i] * x + out.axes[3][i] * y + out.axes[6][i] * z - (sx[i] + w * t0 + (v1 * t2 - v2 * t1));
         out.common[1][i] =
@@ -92,22 +101,29 @@ MASONRY_VECTORISED void jumpRigid(int n, const double* __restrict ax, const doub
         const double c0 = out.common[0][i], c1 = out.common[1][i], c2 = out.common[2][i];
         const double j0 = c0 + turn * (v1 * a2 - v2 * a1), j1 = c1 + turn * (v2 * a0 - v0 * a2),
                      j2 = c2 + turn * (v0 * a1 - v1 * a0);
-        out.step[0][i] = j0 - jx[i], out.step[1][i] = j1 - jy[i], out.step[2][i] = j2 - jz[i];
-        jx[i] = j0, jy[i] = j1, jz[i] = j2;
+        out.step[0][i] = j0 - jx[i];
+        out.step[1][i] = j1 - jy[i];
+        out.step[2][i] = j2 - jz[i];
+        jx[i] = j0;
+        jy[i] = j1;
+        jz[i] = j2;
         const double shrink = 1 - 2 * (v0 * v0 + v1 * v1 + v2 * v2), along = 2 * (v0 * a0 + v1 * a1 + v2 * a2);
-        out.arm[0][i] = shrink * a0 + along * v0 + 0.5 * c0; // half^T a + jump / 2
+        out.arm[0][i] =
+            shrink * a0 + along * v0 + 0.5 * c0; // half^T a + jump / 2, as forces act at the middle of the jump
         out.arm[1][i] = shrink * a1 + along * v1 + 0.5 * c1;
         out.arm[2][i] = shrink * a2 + along * v2 + 0.5 * c2;
     }
 }
 
-// The one place where stress meets area, and tension meets the host's forces: an open joint pulls body 1 on.
+// Multiplies stress by area. Tension is positive, so a joint in tension pulls body 1 along the normal.
 MASONRY_VECTORISED void pullRigid(int n, const double* area, const double* normal, const double* shearA,
                                   const double* shearB, JointFrames& __restrict out) {
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
         const double x = area[i] * normal[i], y = area[i] * shearA[i], z = area[i] * shearB[i];
-        out.force[0][i] += x, out.force[1][i] += y, out.force[2][i] += z;
+        out.force[0][i] += x;
+        out.force[1][i] += y;
+        out.force[2][i] += z;
         out.torque[0][i] += out.arm[1][i] * z - out.arm[2][i] * y;
         out.torque[1][i] += out.arm[2][i] * x - out.arm[0][i] * z;
         out.torque[2][i] += out.arm[0][i] * y - out.arm[1][i] * x;
@@ -124,7 +140,12 @@ MASONRY_VECTORISED void finishRigid(int n, const JointFrames& f, double* __restr
         const double fx = turned(f.force, 0), fy = turned(f.force, 1), fz = turned(f.force, 2);
         const double tx = turned(f.torque, 0), ty = turned(f.torque, 1), tz = turned(f.torque, 2);
         const double bx = f.between[0][i], by = f.between[1][i], bz = f.between[2][i];
-        out[0] = fx, out[1] = fy, out[2] = fz, out[3] = tx, out[4] = ty, out[5] = tz;
+        out[0] = fx; // on body 1
+        out[1] = fy;
+        out[2] = fz;
+        out[3] = tx;
+        out[4] = ty;
+        out[5] = tz;
         out[6] = by * fz - bz * fy - tx; // the arms of body 2 are shorter by `between`
         out[7] = bz * fx - bx * fz - ty;
         out[8] = bx * fy - by * fx - tz;
@@ -141,8 +162,12 @@ MASONRY_VECTORISED void jumpNodal(int n, const int* place1, const int* place2, c
         const double j0 = out.axes[0][i] * x + out.axes[3][i] * y + out.axes[6][i] * z;
         const double j1 = out.axes[1][i] * x + out.axes[4][i] * y + out.axes[7][i] * z;
         const double j2 = out.axes[2][i] * x + out.axes[5][i] * y + out.axes[8][i] * z;
-        out.step[0][i] = j0 - jx[i], out.step[1][i] = j1 - jy[i], out.step[2][i] = j2 - jz[i];
-        jx[i] = j0, jy[i] = j1, jz[i] = j2;
+        out.step[0][i] = j0 - jx[i];
+        out.step[1][i] = j1 - jy[i];
+        out.step[2][i] = j2 - jz[i];
+        jx[i] = j0;
+        jy[i] = j1;
+        jz[i] = j2;
     }
 }
 
@@ -161,7 +186,9 @@ MASONRY_VECTORISED void pullNodal(int n, const double* area, const double* norma
     }
 }
 
-// The moment on the rotation of each of the two blocks, as in the Law2 functor.
+// The jump is measured in axes that turn with the mean rotation of the two blocks. So the joint does work on that
+// rotation, too, and each block takes half of the moment. With it the two forces, which act apart by the jump, have no
+// resulting moment.
 MASONRY_VECTORISED void finishNodal(int n, const JointFrames& f, double* __restrict onJoints) {
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i)
@@ -174,7 +201,9 @@ MASONRY_VECTORISED void finishNodal(int n, const JointFrames& f, double* __restr
 MASONRY_VECTORISED double turnsInPlane(int n, const double* const* q, const double* const* r, double* cosine,
                                        double* sine) {
     const double *a = q[0], *b = q[1], *c = q[2], *d = q[3], *e = r[0], *f = r[1], *g = r[2], *h = r[3];
-    std::int64_t out = 0; // bits of the largest that lies out of the plane: positive numbers are ordered as their bits
+    // Bits of the largest part that is not about y. Positive numbers are ordered as their bits are. A comparison of
+    // bits also finds a NaN, and the compiler can vectorise it.
+    std::int64_t out = 0;
     MASONRY_INDEPENDENT
     for (int i = 0; i < n; ++i) {
         cosine[i] = a[i] * e[i] - b[i] * f[i] - c[i] * g[i] - d[i] * h[i];
@@ -205,12 +234,16 @@ namespace {
         const double c1 = cosine[one] * ac[i] - sine[one] * as[i], s1 = cosine[one] * as[i] + sine[one] * ac[i];
         double c2 = cosine[two] * bc[i] - sine[two] * bs[i], s2 = cosine[two] * bs[i] + sine[two] * bc[i];
         const double same = c1 * c2 + s1 * s2 < 0 ? -1.0 : 1.0;
-        c2 *= same, s2 *= same;
+        c2 *= same;
+        s2 *= same;
         double c = c1 + c2, s = s1 + s2;
         const double size = 1 / std::sqrt(c * c + s * s);
-        c *= size, s *= size;
-        out.w[i] = c * c2 + s * s2, out.v[2][i] = c * s2 - s * c2;
-        out.axes[0][i] = c * c - s * s, out.axes[1][i] = 2 * c * s;
+        c *= size;
+        s *= size;
+        out.w[i] = c * c2 + s * s2;
+        out.v[2][i] = c * s2 - s * c2;
+        out.axes[0][i] = c * c - s * s;
+        out.axes[1][i] = 2 * c * s;
     }
 }
 
@@ -226,7 +259,8 @@ MASONRY_VECTORISED void alignRigidInPlane(int n, const int* body1, const int* bo
         const double z = pz[body2[i]] - pz[body1[i]], x = px[body2[i]] - px[body1[i]];
         const double m = out.axes[0][i], k = out.axes[1][i], w = out.w[i], v = out.v[2][i];
         const double d0 = along[i], d1 = aside[i];
-        out.between[0][i] = z, out.between[1][i] = x;
+        out.between[0][i] = z;
+        out.between[1][i] = x;
         out.common[0][i] = m * z + k * x - (d0 - 2 * v * (w * d1 + v * d0));
         out.common[1][i] = m * x - k * z - (d1 + 2 * v * (w * d0 - v * d1));
         out.force[0][i] = out.force[1][i] = out.torque[2][i] = 0;
@@ -239,8 +273,10 @@ MASONRY_VECTORISED void jumpRigidInPlane(int n, const double* __restrict a0, con
     for (int i = 0; i < n; ++i) {
         const double twist = 4 * out.w[i] * out.v[2][i];
         const double n0 = out.common[0][i] - twist * a1[i], n1 = out.common[1][i] + twist * a0[i];
-        out.step[0][i] = n0 - j0[i], out.step[1][i] = n1 - j1[i];
-        j0[i] = n0, j1[i] = n1;
+        out.step[0][i] = n0 - j0[i];
+        out.step[1][i] = n1 - j1[i];
+        j0[i] = n0;
+        j1[i] = n1;
     }
 }
 
@@ -249,12 +285,14 @@ MASONRY_VECTORISED void pullRigidInPlane(int n, const double* area, const double
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
         const double x = area[i] * normal[i], y = area[i] * shear[i];
-        out.force[0][i] += x, out.force[1][i] += y;
+        out.force[0][i] += x;
+        out.force[1][i] += y;
         out.torque[2][i] += a0[i] * y - a1[i] * x;
     }
 }
 
-// The arms are those of finishRigid: the offsets shrunk by the half turn, and half of what all points' jumps share.
+// The arms are those of jumpRigid: 1 - 2 v² times the offset, plus half of the common part of the jump. Here v stands
+// across all offsets. Factor and common part are the same for all subcontacts, so they are applied to the sums.
 MASONRY_VECTORISED void finishRigidInPlane(int n, const JointFrames& f, double* __restrict onJoints) {
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
@@ -262,7 +300,9 @@ MASONRY_VECTORISED void finishRigidInPlane(int n, const JointFrames& f, double* 
         const double fz = m * f0 - k * f1, fx = m * f1 + k * f0;
         const double t = (1 - 2 * v * v) * f.torque[2][i] + 0.5 * (f.common[0][i] * f1 - f.common[1][i] * f0);
         double* out = onJoints + 4 * i;
-        out[0] = fx, out[1] = fz, out[2] = t;
+        out[0] = fx;
+        out[1] = fz;
+        out[2] = t;
         out[3] = f.between[0][i] * fx - f.between[1][i] * fz - t;
     }
 }
@@ -282,8 +322,10 @@ MASONRY_VECTORISED void jumpNodalInPlane(int n, const int* place1, const int* pl
         const int one = place1[i], two = place2[i];
         const double x = u[two] - u[one], z = u[two + 2 * lanes] - u[one + 2 * lanes];
         const double m = out.axes[0][i], k = out.axes[1][i], n0 = m * z + k * x, n1 = m * x - k * z;
-        out.step[0][i] = n0 - j0[i], out.step[1][i] = n1 - j1[i];
-        j0[i] = n0, j1[i] = n1;
+        out.step[0][i] = n0 - j0[i];
+        out.step[1][i] = n1 - j1[i];
+        j0[i] = n0;
+        j1[i] = n1;
     }
 }
 
@@ -293,7 +335,8 @@ MASONRY_VECTORISED void pullNodalInPlane(int n, const double* area, const double
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
         const double x = area[i] * normal[i], y = area[i] * shear[i], m = f.axes[0][i], k = f.axes[1][i];
-        onPoints[2 * i] = m * y + k * x, onPoints[2 * i + 1] = m * x - k * y;
+        onPoints[2 * i] = m * y + k * x;
+        onPoints[2 * i + 1] = m * x - k * y;
         f.torque[2][i] += j0[i] * y - j1[i] * x;
     }
 }

@@ -1,29 +1,47 @@
-// What many joints do between their blocks and the law, column by column for the vector units: displacement jumps from
-// the places of the blocks, and forces on the blocks from stresses. The equations are those of
-// MasonryJointGeom::update; columns start at the first of `n` joints, and never overlap.
+// The arithmetic of many joints between their blocks and the law, in columns for the vector units: displacement jumps
+// from the places of the blocks, and forces on the blocks from the stresses. The functions are called in the order
+// align, then for each subcontact jump, the law and pull, then finish. Columns begin at the first of `n` joints and
+// never overlap, except that orientations, positions and displacements are those of all bodies or nodes.
+//
+// Each body carries the joint's axes along with it. The mean of the two rotations is the frame of the joint; the
+// rotation `half` leads from that frame to the axes carried by body 2, and its inverse to those carried by body 1. With
+// d from centre to centre and a from the centre of body 1 to the subcontact, both in the reference state, and `between`
+// the present vector from centre to centre, the jump in the joint's frame is
+//     between - half d + (half - half^T) a,
+// where half - half^T = 4 w [v ×] for the unit quaternion (w, v). Forces act at the middle of the jump.
 #pragma once
 
 namespace masonry {
 
-struct JointFrames { // of some joints, as scratch in the innermost cache
-    static constexpr int most = 32;
-    double axes[9][most];       // normal and tangents as columns, row by row: turned with the mean of both blocks
-    double v[3][most], w[most]; // the half turn from that mean to block 2, as a quaternion
-    double between[3][most];    // from centre to centre
-    double common[3][most];     // of the jumps of all points
-    double step[3][most];       // change of the jump, for the law
-    double normalStress[most];  // from the law
-    double arm[3][most];        // of a point's force, from the centre of block 1
-    double force[3][most], torque[3][most]; // on block 1, sums over the points
+// Scratch of a batch of joints, small enough for the innermost cache. A column has one number for each joint.
+struct JointFrames {
+    static constexpr int most = 32; // largest number of joints in a batch
+    double axes[9][most];           // matrix whose columns are normal and tangents in the joint's frame, row by row;
+                                    // in a planar run 0 and 1 hold cosine and sine of the frame's angle
+    double v[3][most];              // vector part of the unit quaternion `half`; in a planar run only 2 is used
+    double w[most];                 // its scalar part
+    double between[3][most];        // from centre to centre, global axes [m]
+    double common[3][most];         // part of the jump that is the same at all subcontacts [m]
+    double step[3][most];           // change of the present subcontact's jump in this step, for the law [m]
+    double normalStress[most];      // at the present subcontact, from the law [Pa]
+    double arm[3][most];            // of the present subcontact's force, from the centre of block 1 [m]
+    double force[3][most];          // on block 1, sum over the subcontacts [N]
+    double torque[3][most];         // about the centre of block 1, sum over the subcontacts; of joints with deformable
+                                    // sides the moment of jumps and forces [N m]
 };
 
-// Turns of bodies from their reference orientations as rotations about y: cosine and sine of half angles, from the
-// orientations `q` and the inverse reference orientations `r`. Gives how far the turns are from that, at most.
+// For planar runs. Gives cosine and sine of half the angle by which each of `n` bodies has turned about y, from the
+// orientations `q` and the inverse reference orientations `r`. Returns the largest part of a rotation that is not about
+// y, as the sum of the sizes of the quaternion's x and z.
 double turnsInPlane(int n, const double* const* q, const double* const* r, double* cosine, double* sine);
 
-// Joints between rigid blocks. `turn` and `f1`, `f2`: quaternions of the blocks and of the joints' axes in each block;
-// `span`: from centre to centre in the reference state, in the joints' axes; `a`: a point's offset from the centre of
-// block 1 there. `onJoints`: per joint 9 numbers, force on block 1 and torques on both.
+// Joints between rigid blocks. The arguments are:
+// - `turn`: quaternions of the blocks; `f1`, `f2`: quaternions of the joints' axes in each block
+// - `span`: vector d from centre to centre in the reference state, in the joints' axes [m]
+// - `a0`, `a1`, `a2`: offset a of the present subcontact [m]; `j0`, `j1`, `j2`: its jump [m], which is brought up to
+// date
+// - `area` [m²] and the stresses of the present subcontact [Pa]
+// - `onJoints`: for each joint 9 numbers, force on block 1 [N] and torques about the centres of both blocks [N m]
 void alignRigid(int n, const int* body1, const int* body2, const double* const* position, const double* const* turn,
                 const double* const* f1, const double* const* f2, const double* const* span, JointFrames&);
 void jumpRigid(int n, const double* a0, const double* a1, const double* a2, double* j0, double* j1, double* j2,
@@ -32,8 +50,10 @@ void pullRigid(int n, const double* area, const double* normal, const double* sh
                JointFrames&);
 void finishRigid(int n, const JointFrames&, double* onJoints);
 
-// Joints with points that move by the displacements `u` at their places in the rows of MasonryZones. `onPoints`: per
-// point the force on side 1; of `onJoints` the moments on the rotation of each block are filled in.
+// Joints with a deformable side, whose subcontacts move by displacements `u` [m]. `place1` and `place2` say where in
+// `u` the two sides of the present subcontact stand; the three components are `lanes` numbers apart. `onPoints`
+// receives three numbers for each joint: the force on side 1 of the present subcontact, global axes [N]. Of `onJoints`
+// only the moments on the rotations of both blocks are set.
 void alignNodal(int n, const int* body1, const int* body2, const double* const* turn, const double* const* f1,
                 const double* const* f2, JointFrames&);
 void jumpNodal(int n, const int* place1, const int* place2, const double* u, double* j0, double* j1, double* j2,
@@ -42,10 +62,11 @@ void pullNodal(int n, const double* area, const double* normal, const double* sh
                const double* j0, const double* j1, const double* j2, JointFrames&, double* onPoints);
 void finishNodal(int n, const JointFrames&, double* onJoints);
 
-// The same where nothing leaves planes y = constant: places and forces are complex numbers z + ix, which a rotation
-// about y multiplies. `position` is z, x; `turn`, `f1`, `f2` are cosine and sine of half angles, and the joints' axes
-// are turned from normal z and tangent x. Per joint `onJoints` has 4 numbers, force x, z on block 1 and the torques
-// about y on both; `onPoints` has x, z.
+// The same for planar runs, in which nothing leaves planes y = constant. A place or force is the complex number z + ix,
+// and a rotation about y is a multiplication by a complex number. `position` holds z and x; `turn`, `f1` and `f2` hold
+// cosine and sine of half angles. The angle of a joint's frame is counted from normal z and tangent x. For each joint
+// `onJoints` has 4 numbers: force x and z on block 1 and the torques about y on both blocks; `onPoints` has the force x
+// and z.
 void alignRigidInPlane(int n, const int* body1, const int* body2, const double* const* position,
                        const double* const* turn, const double* const* f1, const double* const* f2,
                        const double* const* span, JointFrames&);

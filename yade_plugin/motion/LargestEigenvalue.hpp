@@ -9,34 +9,40 @@
 namespace masonry {
 
 struct LargestEigenvalue {
-    double bound = 0;     // at least the eigenvalue, and at most 2.1 % above it
-    Eigen::VectorXd mode; // of length one, in the upper part of the spectrum
+    double bound = 0;     // at least the largest eigenvalue, and at most 2.1 % above it
+    Eigen::VectorXd mode; // unit vector made of the modes with the highest eigenvalues
 };
 
-// `multiply(x, y)` makes y the operator's image of x. `moves` says which components are part of it.
+// `multiply(x, y)` sets y to the operator times x. `moves` says which components of the vectors can be other than zero;
+// `multiply` must leave the others at zero.
 //
-// From a start that is uniform on the sphere of n dimensions, k steps of Lanczos reach less than 1 - e of the largest
-// eigenvalue with a probability of at most 1.648 sqrt(n) exp(-sqrt(e) (2k - 1)), whatever the operator, and reach all
-// of it in n steps (Kuczyński and Woźniakowski 1992, doi 10.1137/0613066). So with e = 0.02 and k such
-// that the probability is 1e-12 the value reached over 1 - e is a bound; it takes some 120 steps. The start is the same
-// in every run, so that runs can be repeated.
+// Let the start vector be uniform on the sphere of n dimensions. After k steps of Lanczos the estimate is less than
+// 1 - e times the largest eigenvalue with a probability of at most 1.648 sqrt(n) exp(-sqrt(e) (2k - 1)), whatever the
+// operator; after n steps it is the eigenvalue (Kuczyński and Woźniakowski 1992, doi 10.1137/0613066). With e = 0.02,
+// and k so large that this probability is 1e-12, the estimate divided by 1 - e is taken as the bound. This takes some
+// 120 steps. The random numbers of the start vector are the same in every run, so that runs can be repeated.
 template <class Multiply> LargestEigenvalue largestEigenvalue(const std::vector<bool>& moves, Multiply&& multiply) {
-    constexpr double margin = 0.02, chance = 1e-12;
+    constexpr double margin = 0.02;
+    constexpr double chance = 1e-12;
     std::mt19937_64 dice(1);
     std::normal_distribution<> normal;
     LargestEigenvalue result;
     auto& mode = result.mode;
     mode.resize(moves.size());
     int count = 0;
-    for (std::size_t i = 0; i < moves.size(); ++i)
-        mode[i] = moves[i] ? ++count, normal(dice) : 0.0;
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+        mode[i] = 0;
+        if (!moves[i]) continue;
+        mode[i] = normal(dice);
+        ++count;
+    }
     if (count == 0) return result;
     mode.normalize();
 
     const int enough = int(std::ceil(0.5 + 0.5 * std::log(1.648 * std::sqrt(count) / chance) / std::sqrt(margin)));
-    std::vector<double> diagonal, beside; // of the tridiagonal matrix that stands for the operator
+    std::vector<double> diagonal, beside; // entries of the tridiagonal matrix that Lanczos makes of the operator
     Eigen::VectorXd now = mode, before = Eigen::VectorXd::Zero(mode.size()), next = before;
-    double top = 0; // of its eigenvalues, by Gershgorin
+    double top = 0; // bound of that matrix's eigenvalues by Gershgorin's circles
     while (int(diagonal.size()) < std::min(count, enough)) {
         multiply(now, next);
         if (!beside.empty()) next -= beside.back() * before;
@@ -45,13 +51,14 @@ template <class Multiply> LargestEigenvalue largestEigenvalue(const std::vector<
         const double last = beside.empty() ? 0 : beside.back();
         beside.push_back(next.norm());
         top = std::max(top, diagonal.back() + last + beside.back());
-        if (!(beside.back() > 1e-14 * top)) break; // nothing else can be reached
+        if (!(beside.back() > 1e-14 * top)) break; // the next vector is round-off only: the matrix is complete
         before.swap(now);
         now = next / beside.back();
     }
     if (!(top > 0) || !std::isfinite(top))
         throw std::invalid_argument("largest eigenvalue: the operator is no matrix of finite numbers with one above 0");
-    const auto isAbove = [&](double value) { // all eigenvalues: whether all pivots are negative
+    // A value lies above all eigenvalues of the matrix if the matrix minus the value has negative pivots only.
+    const auto isAbove = [&](double value) {
         double pivot = -1;
         for (std::size_t k = 0; k < diagonal.size() && pivot < 0; ++k)
             pivot = diagonal[k] - value - (k > 0 ? beside[k - 1] * beside[k - 1] / pivot : 0);
@@ -62,7 +69,9 @@ template <class Multiply> LargestEigenvalue largestEigenvalue(const std::vector<
         (isAbove(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
     result.bound = int(diagonal.size()) < enough ? high : high / (1 - margin);
 
-    for (int i = 0; i < enough; ++i) { // the vectors of Lanczos are not kept, and powers are enough for the mode
+    // The vectors of Lanczos are not kept. The mode only has to show which part is stiffest, and power iteration is
+    // enough for that.
+    for (int i = 0; i < enough; ++i) {
         multiply(mode, next);
         mode = next.normalized();
     }

@@ -51,13 +51,16 @@ void RigidMotion::move(int n, double dt, const double* __restrict velocity, doub
         position[i] += dt * velocity[i];
 }
 
-// By the rotation vector. The series are exact to the last digit up to a thousandth; hardly anything turns faster.
+// Turns the orientations by the rotation vector dt times spin. For half angles up to a thousandth the series are exact
+// to the last digit. Faster bodies, which are rare, take the functions of the library.
 MASONRY_VECTORISED
 void RigidMotion::turn(int n, double dt, const double* const* spin, double* const* orientation) {
     const double *wx = spin[0], *wy = spin[1], *wz = spin[2];
     double *q0 = orientation[0], *q1 = orientation[1], *q2 = orientation[2], *q3 = orientation[3];
-    double cosine[most], sinc[most], angle2[most]; // of half the angle
-    std::int64_t quick = 0; // how many turn too quickly for the series
+    double cosine[most];    // cosine of half the angle
+    double sinc[most];      // sine of half the angle over half the angle
+    double angle2[most];    // square of half the angle
+    std::int64_t quick = 0; // number of bodies that turn too fast for the series
     for (int i = 0; i < n; ++i) {
         const double h2 = 0.25 * dt * dt * (wx[i] * wx[i] + wy[i] * wy[i] + wz[i] * wz[i]);
         cosine[i] = 1 - h2 * (0.5 - h2 / 24);

@@ -1,41 +1,44 @@
-// A step of many rigid blocks with restrained rotation, column by column for the vector units: paper eqs. (1) to (3),
-// and the energies that belong to them.
+// A step of many rigid blocks that have a blocked rotation, in columns for the vector units: paper eqs. (1) to (3), and
+// the energies that belong to them.
 #pragma once
 #include <vector>
 
 namespace masonry {
 
-struct RigidColumns {                   // of all bodies
+// State of all bodies of a scene. The row of a body is its id.
+struct RigidColumns {
     std::vector<double> position[3];    // [m]
     std::vector<double> orientation[4]; // w, x, y, z
-    std::vector<double> velocity[6];    // velocity [m/s] and angular velocity [1/s]
+    std::vector<double> velocity[6];    // velocity [m/s], then angular velocity [1/s]
     std::vector<double> mass;           // [kg]
     std::vector<double> inertia[3];     // about the global axes [kg m²]
 
     void resize(int count);
 };
 
-struct RigidMotion { // of some bodies that stand beside each other, with what a step needs in the innermost cache
-    static constexpr int most = 64;
+// Input, output and scratch of a step of bodies with neighbouring ids, small enough for the innermost cache.
+struct RigidMotion {
+    static constexpr int most = 64; // largest number of bodies
     struct Around {
-        double dt;
-        double gravity[3];
-        bool combined; // kind of damping
+        double dt;         // time step [s]
+        double gravity[3]; // [m/s²]
+        bool combined;     // whether damping is combined or local
     };
-    double alpha[most];     // damping constant
-    double free[6][most];   // 0 where a translation or rotation is blocked, or the body is moved elsewhere
-    double force[6][most];  // force and torque
-    double kinetic[most];   // out [J]
-    double work[most];      // out: half the work of prescribed motions in the step [J]
-    double damped[2][most]; // out: taken by damping, by the velocity before and after [J]
+    double alpha[most];     // input: damping constant of each body [-]
+    double free[6][most];   // input: 0 in blocked axes and for bodies that are not moved here, else 1
+    double force[6][most];  // input: force [N] and torque [N m]
+    double kinetic[most];   // output: kinetic energy [J]
+    double work[most];      // output: half of the work of prescribed motions in the step [J]
+    double damped[2][most]; // output: energy taken by damping with the velocity before and after the step [J]
 
-    // Takes bodies first..first+n on by a step. `last`: of these bodies, force per mass and torque per inertia in the
-    // step before, for combined damping. `axes`: bits of the translations and rotations in which anything is free or
-    // moves.
+    // Makes a step of bodies `first` to `first + n - 1`. `last` holds their force per mass [m/s²] and torque per
+    // inertia [1/s²] of the step before, and receives those of this step; local damping does not use them. `axes` has
+    // one bit for each translation and rotation in which any of the bodies is free or has a velocity; the others are
+    // left out.
     void advance(RigidColumns&, double* const* last, int first, int n, const Around&, unsigned axes);
 
 private:
-    struct Axis { // one degree of freedom of the bodies
+    struct Axis { // columns of one translation or rotation; `inert` is the mass or the inertia
         const double *inert, *alpha, *free, *force;
         double *velocity, *last;
     };
