@@ -18,7 +18,7 @@ def run(steps):
 
 
 def bits(interactions):
-    """All that a run can be told by, as bytes."""
+    """All numbers in which two runs could differ, as bytes."""
     values = [O.iter, O.time, O.dt, *energy().values()]
     for b in O.bodies:
         values += [*O.forces.f(b.id, True), *O.forces.t(b.id, True), *b.state.vel]
@@ -61,7 +61,7 @@ def test_a_scene_built_anew_goes_on_bit_for_bit(case, functors, tmp_path):
 
     loadCheckpoint(
         path
-    )  # back, in a scene that has run, and on without a look at anything
+    )  # loaded into a scene that has run on, which then continues without being read first
     run(200)
     assert bits(interactions) == end
 
@@ -123,7 +123,9 @@ def test_a_checkpoint_of_blocks_of_another_material_is_refused(tmp_path):
     run(5)
     saveCheckpoint(path)
     panel(False, "deformable")
-    O.bodies[1].mat.young *= 1.01  # no mass and no stiffness of a joint hangs on it
+    O.bodies[
+        1
+    ].mat.young *= 1.01  # neither masses nor stiffnesses of joints change with it
     with pytest.raises(ValueError, match="is of another scene: its blocks are others"):
         loadCheckpoint(path)
 
@@ -159,7 +161,7 @@ def test_a_damaged_file_is_refused_in_words(saved):
 
 
 def sealed(data, name, change):
-    """A checkpoint with one of its arrays or texts changed, and the right sum."""
+    """A checkpoint with one of its arrays or texts changed, and a checksum that fits."""
     at = data.index(name.encode())
     size = struct.unpack("<Q", data[at - 8 : at])[0]
     at += len(name)

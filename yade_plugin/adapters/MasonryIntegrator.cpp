@@ -108,8 +108,8 @@ EnergyLedger MasonryIntegrator::advance(SceneStore& store, const Vector3r* force
         }
         sum.pendingExternal = sum.external;
     }
-    for (int b = first; spinning > 0 && b < beyond;
-         ++b) // last, because RigidMotion has also written to the rows of these bodies
+    // Last, because RigidMotion has also written to the rows of these bodies.
+    for (int b = first; spinning > 0 && b < beyond; ++b)
         if (bodies.has(b) && !bodies.isUnit[b] && bodies.spins(b)) sum.add(turnFreely(store, forces[b], torques[b], b));
     return sum;
 }
