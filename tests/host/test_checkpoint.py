@@ -123,9 +123,8 @@ def test_a_checkpoint_of_blocks_of_another_material_is_refused(tmp_path):
     run(5)
     saveCheckpoint(path)
     panel(False, "deformable")
-    O.bodies[
-        1
-    ].mat.young *= 1.01  # neither masses nor stiffnesses of joints change with it
+    # Neither masses nor the stiffnesses of joints change with it.
+    O.bodies[1].mat.young *= 1.01
     with pytest.raises(ValueError, match="is of another scene: its blocks are others"):
         loadCheckpoint(path)
 

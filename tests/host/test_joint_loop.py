@@ -115,9 +115,8 @@ def test_the_loop_gives_the_functors_run(case):
         # knows it.
         tolerance = 1e-4 if name == "error" else 1e-6 * size
         assert balances[1][name] == pytest.approx(value, abs=tolerance), name
-    assert (
-        one["damage"].max(axis=0).min() > 0.01
-    )  # joints have opened, slipped and crushed
+    # Joints have opened, slipped and crushed.
+    assert one["damage"].max(axis=0).min() > 0.01
     for name in one:
         size = np.abs(one[name]).max()
         assert np.abs(one[name] - other[name]).max() < 1e-8 * size, name
@@ -136,10 +135,8 @@ def test_a_body_moves_as_with_the_hosts_integrator(blocked, damping):
         s = O.bodies[body].state
         s.blockedDOFs = blocked
         s.vel, s.angVel = Vector3(0.5, -0.1, 0.2), Vector3(0, 3, 0)
-        if blocked in (
-            "",
-            "x",
-        ):  # the host turns a body whose rotations are free by its angular momentum
+        # The host turns a body whose rotations are free by its angular momentum.
+        if blocked in ("", "x"):
             s.angMom = Vector3(0.03, 0.02, -0.01)
         O.dt = 1e-3
         around = dict(damping=damping, gravity=(0, 0, -9.81))
@@ -177,7 +174,8 @@ def test_damping_takes_energy_in_every_step_whatever_the_force(blocked, kind):
         O.forces.setPermT(body, Vector3(*0.05 * push[3:]))
         O.step()
         O.forces.reset(resetAll=True)
-        O.step()  # the second half of a step's work is counted at the beginning of the next step
+        # The second half of a step's work is counted at the beginning of the next step.
+        O.step()
         taken.append(integrator.damped)
     assert np.all(np.diff(taken) >= 0) and taken[-1] > 0
 
@@ -292,7 +290,8 @@ def test_arrays_made_anew_in_every_step_change_nothing():
         interactions = panel(False, blocks="deformable", halves=False)
         for _ in range(100):
             if anew:
-                MasonryJoint()  # after any new joint the plan and its arrays are made anew
+                # After any new joint the plan and its arrays are made anew.
+                MasonryJoint()
             O.step()
         runs.append(state(interactions))
     for name, values in runs[0].items():

@@ -300,7 +300,8 @@ def test_a_block_whose_joint_is_erased_in_the_middle_of_a_run_falls_freely(
     stack(count=3, damping=0, functors=functors)
     steps(50)
     O.interactions.erase(1, 2)
-    O.interactions.eraseNonReal()  # until now YADE has only noted that they are to be erased
+    # Until now YADE has only noted that the interaction is to be erased.
+    O.interactions.eraseNonReal()
     before = O.bodies[2].state.vel[2]
     steps(100)
     fall = O.bodies[2].state.vel[2] - before

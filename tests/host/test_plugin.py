@@ -261,9 +261,8 @@ def test_a_pair_that_no_joint_fits_is_named(scene):
 
 def test_rigid_units_are_lumped_in_series(scene):
     phys = pair().phys
-    assert phys.normalStiffness == pytest.approx(
-        5.04e10, rel=1e-3
-    )  # law/README.md, rigid units
+    # See yade_plugin/law/README.md, rigid units.
+    assert phys.normalStiffness == pytest.approx(5.04e10, rel=1e-3)
     assert phys.shearStiffness == pytest.approx(2.17e10, rel=2e-3)
 
 

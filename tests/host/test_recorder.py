@@ -29,9 +29,8 @@ def written(folder, name):
     }
     corners, types = [], []
     for n in range(data.GetNumberOfCells()):
-        cell = data.GetCell(
-            n
-        )  # VTK gives the same object for every cell, with other contents
+        # VTK gives the same object for every cell, with other contents.
+        cell = data.GetCell(n)
         corners.append([cell.GetPointId(i) for i in range(cell.GetNumberOfPoints())])
         types.append(cell.GetCellType())
     return (

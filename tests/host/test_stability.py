@@ -69,7 +69,8 @@ def test_a_time_step_above_its_limit_is_refused_and_named(scene, blocks, functor
         else:
             O.run(1000, run == "run")
             O.wait()
-            O.step()  # if YADE has only printed the error of the run, the next step raises it
+            # If YADE has only printed the error of the run, the next step raises it.
+            O.step()
     assert O.iter == there and O.bodies[0].state.pos.norm() < 1
     O.dt = 0.99 * criticalTimeStep()[0]
     O.run(100, True)
