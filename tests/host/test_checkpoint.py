@@ -59,9 +59,8 @@ def test_a_scene_built_anew_goes_on_bit_for_bit(case, functors, tmp_path):
     assert bits(interactions) == end
     assert state(interactions)["damage"].max(axis=0).min() > 0.01
 
-    loadCheckpoint(
-        path
-    )  # loaded into a scene that has run on, which then continues without being read first
+    # Loaded into a scene that has run on, which then continues without being read first.
+    loadCheckpoint(path)
     run(200)
     assert bits(interactions) == end
 

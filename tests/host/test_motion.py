@@ -65,9 +65,8 @@ def test_damping_takes_its_share_of_a_blocks_torque(scene, blocked, kind):
     s = O.bodies[body].state
     s.blockedDOFs = blocked
     inertia = Vector3(s.inertia)
-    if not set(blocked) & set(
-        "XYZ"
-    ):  # a block whose rotations are free is turned by its angular momentum
+    # A block whose rotations are free is turned by its angular momentum.
+    if not set(blocked) & set("XYZ"):
         s.inertia = Vector3(inertia[1], inertia[1], inertia[1])
         s.angMom = Vector3(0, 5 * inertia[1], 0)
     s.angVel = Vector3(0, 5, 0)
@@ -104,9 +103,8 @@ def test_damping_takes_its_share_of_the_weight_of_nodes(scene, kind):
 
 
 def steps(count):
-    for _ in range(
-        count
-    ):  # O.run(count, True) may end before it waits, and then only prints an error
+    # O.run(count, True) may end before it waits, and then only prints an error.
+    for _ in range(count):
         O.step()
 
 
@@ -274,9 +272,8 @@ def test_one_couplet_of_seventy_that_is_one_per_cent_other_keeps_its_own_numbers
                 np.array([list(b.state.pos) for b in O.bodies]),
             )
         )
-        for (
-            i
-        ) in joints:  # elastic: the stress is the jump times the joint's own stiffness
+        # Elastic: the stress is the jump times the joint's own stiffness.
+        for i in joints:
             for stress, jump in zip(i.phys.stress, i.geom.jumps):
                 assert stress[0] == pytest.approx(
                     i.phys.normalStiffness * jump[0], rel=1e-9, abs=1e-3

@@ -3,12 +3,13 @@
 import math
 import os
 import random
+import re
 import subprocess
 import sys
 
 import pytest
 import yade
-from conftest import BUILD
+from conftest import BUILD, ROOT
 from masonry import (
     MasonryJoint,
     MasonryLoad,
@@ -152,6 +153,38 @@ def test_numbers_say_their_unit_and_default():
                 getattr(cls(), attribute), float
             ):
                 assert "[" in value.__doc__ and "Default: " in value.__doc__, attribute
+
+
+def test_every_member_of_the_joint_properties_is_described_once():
+    """Adding a property is its member and its description: none is forgotten, none is described twice."""
+    header = open(
+        os.path.join(ROOT, "yade_plugin", "law", "JointProperties.hpp")
+    ).read()
+    struct = header[header.index("struct JointProperties {") :]
+    struct = struct[: struct.index("\n};")]
+    member = r"^    (?:double|bool|std::string|std::vector<TableRow>) (\w+)(?: = .*)?;"
+    members = re.findall(member, struct, re.MULTILINE)
+    described = [p["name"] for p in MasonryJoint.properties()]
+    assert len(members) > 20
+    assert sorted(described) == sorted([*members, "jointSet", "direction"])
+    assert set(described) == set(MasonryJoint().dict())
+
+
+@pytest.mark.parametrize("name", classes)
+def test_the_description_of_an_attribute_is_what_its_docs_say(name):
+    cls = getattr(yade.wrapper, name)
+    told = cls.properties()
+    assert len({p["name"] for p in told}) == len(told)
+    for p in told:
+        doc = getattr(cls, p["name"]).__doc__
+        assert doc.startswith(p["meaning"]) and len(p["meaning"]) > 3
+        assert not p["unit"] or f"[{p['unit']}]" in doc
+        assert not p["source"] or p["source"] in doc
+        assert p["low"] <= p["high"] and p["usual_low"] <= p["usual_high"]
+        value = getattr(cls(), p["name"])
+        if isinstance(value, float):
+            assert p["unit"], p["name"]
+            assert p["low"] <= value <= p["high"], p["name"]
 
 
 def test_wrong_attributes_are_refused_and_change_nothing():
@@ -330,9 +363,8 @@ def test_free_vibration_keeps_its_energy(scene):
             + b["elastic_compression"]
             + b["elastic_shear"]
         )
-        assert total == pytest.approx(
-            start, rel=2e-3
-        )  # the trapezoidal rule does not count the first half step
+        # The trapezoidal rule does not count the first half step.
+        assert total == pytest.approx(start, rel=2e-3)
     assert b["damping"] == b["dissipated_shear"] == 0
 
 

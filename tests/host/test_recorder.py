@@ -8,6 +8,7 @@ import references
 from masonry import MasonryVtkRecorder
 from test_joint_loop import CASES, panel
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkDataArray
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 from yade import O, Quaternion, Vector3
 from yade.wrapper import MasonryZones
@@ -115,9 +116,8 @@ def test_a_cell_of_a_joint_lies_around_its_subcontact_and_has_its_area(frame):
         whole = 0.0
         for centre in i.geom.centres:
             points = [Vector3(*places[p]) for p in corners[row]]
-            assert all(
-                abs((p - centre).dot(i.geom.normal)) < 1e-9 for p in points
-            )  # in the plane of the joint
+            # In the plane of the joint.
+            assert all(abs((p - centre).dot(i.geom.normal)) < 1e-9 for p in points)
             middle = sum(points, Vector3.Zero) / len(points)
             doubled = sum(
                 (
@@ -234,3 +234,25 @@ def test_stresses_of_zones_are_those_of_a_brick_that_is_pressed(scene, tmp_path,
         assert np.abs(there - expected).max() < 0.01 * pressure
         assert np.abs(np.sort(principal) - [-pressure, 0, 0]).max() < 0.01 * pressure
     assert np.abs(cells["stress"][~own]).max() == 0
+
+
+def test_every_column_is_described_and_says_its_unit(frame):
+    _, folder, _ = frame
+    described = MasonryVtkRecorder.fields()
+    seen = set()
+    for name, kind, ending in (
+        ("joints", vtkXMLPolyDataReader, "vtp"),
+        ("blocks", vtkXMLUnstructuredGridReader, "vtu"),
+    ):
+        reader = kind()
+        reader.SetFileName(str(folder / f"{name}_0000.{ending}"))
+        reader.Update()
+        data = reader.GetOutput()
+        for columns in (data.GetCellData(), data.GetPointData()):
+            for n in range(columns.GetNumberOfArrays()):
+                column = columns.GetArray(n)
+                unit = column.GetInformation().Get(vtkDataArray.UNITS_LABEL())
+                about = described[column.GetName()]
+                assert f"[{unit}]" in about if unit else "[" not in about
+                seen.add(column.GetName())
+    assert seen == set(described)

@@ -21,9 +21,8 @@ def energy():
 
 
 def steps(count):
-    for _ in range(
-        count
-    ):  # O.run(count, True) may end before it waits, and then only prints an error
+    # O.run(count, True) may end before it waits, and then only prints an error.
+    for _ in range(count):
         O.step()
 
 

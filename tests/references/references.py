@@ -122,9 +122,8 @@ def state():
         x for rows in (*points.values(), *motions.values()) for r in rows for x in r
     ]
     behind += [x for values in numbers.values() for x in values]
-    packed = struct.pack(
-        f"{len(behind)}d", *(x + 0.0 for x in behind)
-    )  # + 0.0 turns -0.0 into 0.0
+    # + 0.0 turns -0.0 into 0.0.
+    packed = struct.pack(f"{len(behind)}d", *(x + 0.0 for x in behind))
     return numbers, hashlib.sha256(packed).hexdigest()[:16]
 
 

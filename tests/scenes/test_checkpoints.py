@@ -219,9 +219,8 @@ def test_a_full_disk_is_told_and_the_run_goes_on(scene, tmp_path, at, capsys):
     assert said in capsys.readouterr().err
     assert seen["before"] == seen["after"]
     assert files(tmp_path / "full") == files(tmp_path / "whole")
-    assert (
-        readCheckpoint(kept)["at"]["memory"]["moved"] > 0.25
-    )  # the disk has room again
+    # The disk has room again.
+    assert readCheckpoint(kept)["at"]["memory"]["moved"] > 0.25
 
 
 @pytest.mark.parametrize("lost", ["curve.csv", "joints_0001.vtp", "run.json.new"])

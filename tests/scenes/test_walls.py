@@ -44,9 +44,8 @@ def squat(tmp_path_factory):
 
 def test_the_squat_wall_peaks_between_friction_and_the_cracked_section(squat):
     run = readRun(squat)
-    assert (
-        92.0 * 0.99 <= run["peak_base_shear_kN"] <= 130.6 * 0.99
-    )  # validation/README.md, for 3.96 of 4.00 m
+    # validation/README.md, for 3.96 of 4.00 m.
+    assert 92.0 * 0.99 <= run["peak_base_shear_kN"] <= 130.6 * 0.99
     assert 1 < run["displacement_at_peak_mm"] < 4
     assert (
         run["units"] == 1224
@@ -92,9 +91,8 @@ def test_the_squat_wall_leaves_what_is_promised(squat):
     curve = readCurve(squat)
     assert list(run["columns"]) == list(curve)
     assert {"time_s", "displacement_mm", "base_shear_kN", "vertical_mm"} <= set(curve)
-    assert (
-        0.005 < np.max(np.diff(curve["displacement_mm"])) <= 0.02
-    )  # at least one row every 0.02 mm
+    # At least one row every 0.02 mm.
+    assert 0.005 < np.max(np.diff(curve["displacement_mm"])) <= 0.02
     total = lambda columns: sum(np.array(curve[c]) for c in columns)
     stored = [c for c in curve if c.startswith(("elastic_", "dissipated_"))]
     assert np.allclose(total(ENERGY_IN), total(ENERGY_OUT) + total(stored), rtol=1e-6)
@@ -129,9 +127,8 @@ def test_frames_show_units_and_subcontacts_with_their_state(squat):
 def test_the_squat_wall_cracks_along_its_diagonal(squat):
     joints = readFrame(squat, "joints")
     centres = np.array([joints["points"][c].mean(axis=0) for c in joints["cells"]])
-    opened = (np.abs(joints["normal"][:, 0]) > 0.5) & (
-        joints["opening"] > 0.05e-3
-    )  # head joints
+    # Head joints.
+    opened = (np.abs(joints["normal"][:, 0]) > 0.5) & (joints["opening"] > 0.05e-3)
     course = np.floor(centres[opened, 2] / 0.081).astype(int)
     steps = sorted(set(course))
     assert len(steps) > 17  # more than half of the courses

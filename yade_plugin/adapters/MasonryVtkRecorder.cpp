@@ -14,6 +14,8 @@
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkIdList.h>
+#include <vtkInformation.h>
+#include <vtkInformationStringKey.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -30,10 +32,42 @@ namespace masonry {
 
 namespace {
 
-template <class Array> Array* column(vtkDataSetAttributes* data, const char* name, int components = 1) {
+struct Field { // a column of numbers in the files
+    const char* name;
+    int components;
+    Property about;
+};
+
+const Field fields[] = {
+    {"displacement", 3, number("m", "Displacement since the reference state, in which the points stand")},
+    {"velocity", 3, number("m/s", "Velocity")},
+    {"body", 1, described("Id of the unit's body")},
+    {"stress", 6, number("Pa", "Stress of a zone of a deformable unit: xx, yy, zz, xy, yz, xz; zero in rigid units")},
+    {"principal_stress", 3, number("Pa", "Principal stresses of a zone, the smallest first")},
+    {"opening", 1, number("m", "Total opening of a subcontact; negative where it is closed")},
+    {"slip", 1, number("m", "Accumulated plastic slip of a subcontact")},
+    {"slide", 3, number("m", "Slide of a subcontact since the reference state")},
+    {"normal", 3, described("Unit normal of the joint in the reference state, from its first body to its second")},
+    {"normal_stress", 1, number("Pa", "Normal stress, positive in tension")},
+    {"shear_stress", 1, number("Pa", "Size of the shear stress")},
+    {"damage_tension", 1, number("-", "Damage in tension, 0 to 1")},
+    {"damage_shear", 1, number("-", "Damage in shear, 0 to 1")},
+    {"damage_compression", 1, number("-", "Damage in compression, 0 to 1")},
+    {"crushing", 1, number("m", "Plastic closure of a subcontact")},
+    {"area", 1, number("m²", "Area of a subcontact")},
+    {"joint_dissipated", 3, number("J", "Energy that the whole joint dissipated in tension, shear and compression")},
+    {"regime", 1, described("Regime in the last step: 0 elastic, 1 opening, 2 slipping, 3 crushing")},
+    {"kind", 1, described("Number of the joint's kind in `kinds`")},
+    {"bodies", 2, described("Ids of the two bodies of the joint")},
+};
+
+template <class Array> Array* column(vtkDataSetAttributes* data, const char* name) {
+    const auto field = std::find_if(std::begin(fields), std::end(fields),
+                                    [&](const Field& f) { return std::strcmp(f.name, name) == 0; });
     vtkNew<Array> array;
     array->SetName(name);
-    array->SetNumberOfComponents(components);
+    array->SetNumberOfComponents(field->components);
+    if (field->about.isNumber()) array->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), field->about.unit);
     data->AddArray(array);
     return array; // owned by `data`
 }
@@ -82,6 +116,13 @@ std::vector<std::string> MasonryVtkRecorder::problems() const {
     return wrong;
 }
 
+py::dict MasonryVtkRecorder::fieldsOfFiles() {
+    py::dict all;
+    for (const auto& field : fields)
+        all[field.name] = field.about.documentation();
+    return all;
+}
+
 bool MasonryVtkRecorder::isActivated() { return stepPeriod > 0 && scene->iter % stepPeriod == 0; }
 
 void MasonryVtkRecorder::action() {
@@ -107,11 +148,11 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
     vtkNew<vtkUnstructuredGrid> grid;
     vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
-    auto* displacement = column<vtkDoubleArray>(grid->GetPointData(), "displacement", 3);
-    auto* velocity = column<vtkDoubleArray>(grid->GetPointData(), "velocity", 3);
+    auto* displacement = column<vtkDoubleArray>(grid->GetPointData(), "displacement");
+    auto* velocity = column<vtkDoubleArray>(grid->GetPointData(), "velocity");
     auto* ids = column<vtkIntArray>(grid->GetCellData(), "body");
-    auto* stress = column<vtkDoubleArray>(grid->GetCellData(), "stress", 6);
-    auto* principal = column<vtkDoubleArray>(grid->GetCellData(), "principal_stress", 3);
+    auto* stress = column<vtkDoubleArray>(grid->GetCellData(), "stress");
+    auto* principal = column<vtkDoubleArray>(grid->GetCellData(), "principal_stress");
     const double none[6] = {};
     std::set<int> deformable;
     for (const auto& engine : scene->engines) {
@@ -179,20 +220,23 @@ void MasonryVtkRecorder::writeJoints(const std::string& path) {
     vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
     vtkNew<vtkCellArray> cells;
-    auto* displacement = column<vtkDoubleArray>(data->GetPointData(), "displacement", 3);
+    auto* displacement = column<vtkDoubleArray>(data->GetPointData(), "displacement");
     auto* values = data->GetCellData();
-    auto *opening = column<vtkDoubleArray>(values, "opening"), *slip = column<vtkDoubleArray>(values, "slip");
-    auto *slide = column<vtkDoubleArray>(values, "slide", 3), *normal = column<vtkDoubleArray>(values, "normal", 3);
-    auto *normalStress = column<vtkDoubleArray>(values, "normal_stress"),
-         *shearStress = column<vtkDoubleArray>(values, "shear_stress");
-    auto *tension = column<vtkDoubleArray>(values, "damage_tension"),
-         *shear = column<vtkDoubleArray>(values, "damage_shear"),
-         *compression = column<vtkDoubleArray>(values, "damage_compression"),
-         *crushing = column<vtkDoubleArray>(values, "crushing");
+    auto* opening = column<vtkDoubleArray>(values, "opening");
+    auto* slip = column<vtkDoubleArray>(values, "slip");
+    auto* slide = column<vtkDoubleArray>(values, "slide");
+    auto* normal = column<vtkDoubleArray>(values, "normal");
+    auto* normalStress = column<vtkDoubleArray>(values, "normal_stress");
+    auto* shearStress = column<vtkDoubleArray>(values, "shear_stress");
+    auto* tension = column<vtkDoubleArray>(values, "damage_tension");
+    auto* shear = column<vtkDoubleArray>(values, "damage_shear");
+    auto* compression = column<vtkDoubleArray>(values, "damage_compression");
+    auto* crushing = column<vtkDoubleArray>(values, "crushing");
     auto* area = column<vtkDoubleArray>(values, "area");
-    auto* lost = column<vtkDoubleArray>(values, "joint_dissipated", 3);
-    auto *regime = column<vtkIntArray>(values, "regime"), *kind = column<vtkIntArray>(values, "kind"),
-         *ids = column<vtkIntArray>(values, "bodies", 2);
+    auto* lost = column<vtkDoubleArray>(values, "joint_dissipated");
+    auto* regime = column<vtkIntArray>(values, "regime");
+    auto* kind = column<vtkIntArray>(values, "kind");
+    auto* ids = column<vtkIntArray>(values, "bodies");
 
     auto& store = SceneStore::of(*scene);
     store.update();

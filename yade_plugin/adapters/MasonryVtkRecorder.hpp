@@ -9,11 +9,9 @@ public:
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
         "Writes blocks.pvd and joints.pvd with their series of files for ParaView, one frame at every action. Units "
-        "stand at their reference place, with displacement [m] and velocity [m/s]; deformable ones are drawn as zones "
-        "with stress (xx, yy, zz, xy, yz, xz) and principal stresses [Pa]. Subcontacts are cells with opening and slip "
-        "[m], normal and shear stress [Pa], the three damages [-], regime (0 elastic, 1 opening, 2 slipping, 3 "
-        "crushing), kind and displacement [m]. Kinds are numbered in the order of `kinds`. Call the engine as a "
-        "function for a frame, or set stepPeriod.";
+        "stand at their reference place, and deformable ones are drawn as zones; subcontacts are cells. fields() tells "
+        "what the files hold; every field carries its unit. Call the engine as a function for a frame, or set "
+        "stepPeriod.";
 
     std::string directory = ".";
     int stepPeriod = 0;
@@ -38,10 +36,14 @@ public:
 
     template <class PyClass> static void extras(PyClass& cls) {
         cls.def("collect", &MasonryVtkRecorder::collect,
-                "Write blocks.pvd and joints.pvd alone, for the frames of `times`.");
+                "Write blocks.pvd and joints.pvd alone, for the frames of `times`.")
+            .def("fields", &MasonryVtkRecorder::fieldsOfFiles,
+                 "What the files hold: a dict of name -> meaning with unit.")
+            .staticmethod("fields");
     }
 
 private:
+    static py::dict fieldsOfFiles();
     void writeBlocks(const std::string& path) const;
     void writeJoints(const std::string& path);
     void writeCollection(const std::string& name, const std::string& extension) const;

@@ -211,6 +211,7 @@ const MasonryZones::Unit* MasonryZones::unitOf(int body) {
 
 py::tuple MasonryZones::nodesOf(int body) {
     const BetweenSteps still;
+    checkAlive();
     const auto* unit = unitOf(body);
     if (!unit) throw std::invalid_argument("body " + std::to_string(body) + " is no deformable unit");
     return py::make_tuple(unit->firstNode, unit->firstNode + int(unit->elasticity->masses().size()));
@@ -218,6 +219,7 @@ py::tuple MasonryZones::nodesOf(int body) {
 
 Vector3r MasonryZones::referencePoint(int body, int node) {
     const BetweenSteps still;
+    checkAlive();
     const auto* unit = unitOf(body);
     if (!unit || node < unit->firstNode || node - unit->firstNode >= int(unit->elasticity->masses().size()))
         throw std::invalid_argument("body " + std::to_string(body) + " has no node " + std::to_string(node));
@@ -236,6 +238,7 @@ void MasonryZones::setVelocity(int node, const Vector3r& velocity) {
 
 py::list MasonryZones::masses() {
     const BetweenSteps still;
+    checkAlive();
     py::list all;
     for (const auto& unit : units())
         for (double mass : unit.elasticity->masses())
@@ -343,28 +346,33 @@ void MasonryZones::action() {
     const int count = int(batches_.size());
     std::vector<NodeSums> sums(count);
     std::vector<Row> energies(count);
-#pragma omp parallel for schedule(static)
-    for (int b = 0; b < count; ++b) {
-        thread_local std::vector<Row> scratch;
-        const auto& batch = batches_[b];
-        const auto matrix = batch.elasticity->matrix();
-        const int row = batch.firstRow;
-        Row present{}, turned[9];
-        std::fill_n(present.lane, batch.units.size(), 1.0);
-        scratch.resize(std::size_t(6) * matrix.nodeCount);
-        addBlockForces(matrix, &displacements_[row], &moments_[3 * b], &forces_[row], turned, &energies[b],
-                       scratch.data());
-        moveBlocks(matrix, motion, present, &displacements_[row], &velocities_[row], &forces_[row], &lastForces_[row],
-                   sums[b]);
-        for (std::size_t lane = 0; lane < batch.units.size(); ++lane) {
-            const auto& unit = units_[batch.units[lane]];
-            Matrix3 rotation;
-            for (int i = 0; i < 9; ++i)
-                rotation(i / 3, i % 3) = turned[i].lane[lane];
-            Vector3r place;
-            for (int d = 0; d < 3; ++d)
-                place[d] = unit.centre[d] + sums[b].moved[d].lane[lane] / batch.elasticity->mass();
-            turn->bodies.setPlace(unit.body, place, Quaternionr(rotation) * unit.orientation);
+    std::size_t most = 0; // largest number of nodes of a unit
+    for (const auto& batch : batches_)
+        most = std::max(most, batch.elasticity->masses().size());
+#pragma omp parallel
+    {
+        std::vector<Row> scratch(6 * most);
+#pragma omp for schedule(static)
+        for (int b = 0; b < count; ++b) {
+            const auto& batch = batches_[b];
+            const auto matrix = batch.elasticity->matrix();
+            const int row = batch.firstRow;
+            Row present{}, turned[9];
+            std::fill_n(present.lane, batch.units.size(), 1.0);
+            addBlockForces(matrix, &displacements_[row], &moments_[3 * b], &forces_[row], turned, &energies[b],
+                           scratch.data());
+            moveBlocks(matrix, motion, present, &displacements_[row], &velocities_[row], &forces_[row],
+                       &lastForces_[row], sums[b]);
+            for (std::size_t lane = 0; lane < batch.units.size(); ++lane) {
+                const auto& unit = units_[batch.units[lane]];
+                Matrix3 rotation;
+                for (int i = 0; i < 9; ++i)
+                    rotation(i / 3, i % 3) = turned[i].lane[lane];
+                Vector3r place;
+                for (int d = 0; d < 3; ++d)
+                    place[d] = unit.centre[d] + sums[b].moved[d].lane[lane] / batch.elasticity->mass();
+                turn->bodies.setPlace(unit.body, place, Quaternionr(rotation) * unit.orientation);
+            }
         }
     }
     beginStep();

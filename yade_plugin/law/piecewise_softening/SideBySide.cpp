@@ -123,29 +123,34 @@ struct Scratch { // of subcontacts side by side, for one step
     Mask open[most], asks[most], regime[most];
 };
 
-} // namespace
+// The step of the subcontacts that wait, in the parts of JointLaw::advance. All work on the columns that begin at the
+// first of them. What happens to none is not calculated; tables and exponentials are looked up one by one, for those
+// that need them.
+struct SideBySide {
+    const Equations& e;
+    const Columns& columns;
+    TableRows* rows;
+    const Jumps& jumps;
+    const Mask* waits;
+    int count;
+};
 
-// One step of the subcontacts that wait: what JointLaw::advance does for one. What has happened to none is not
-// calculated. Tables and exponentials are looked up one by one, for those that need them.
-MASONRY_VECTORISED
-void advanceSideBySide(const Equations& given, const SofteningTable& tension, const SofteningTable& shear,
-                       const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* waits,
-                       int count, double* normalStress) {
-    const Equations e = given;
-    Scratch s;
+// 1, opening. Tells whether a crack of one tears further.
+MASONRY_INLINED Mask openAll(const SideBySide& all, const SofteningTable& tension, Scratch& s) {
+    const Equations e = all.e;
+    const Columns& columns = all.columns;
+    const Jumps& jumps = all.jumps;
+    const Mask* waits = all.waits;
+    const int count = all.count;
     double* opening = columns[Columns::Opening];
     double* shearStressA = columns[Columns::ShearStressA];
     double* shearStressB = columns[Columns::ShearStressB];
     double* largestOpening = columns[Columns::LargestOpening];
-    double* largestClosure = columns[Columns::LargestClosure];
     double* irreversible = columns[Columns::Irreversible];
     double* tensionDamage = columns[Columns::TensionDamage];
     double* shearDamage = columns[Columns::ShearDamage];
-    double* slip = columns[Columns::Slip];
     double* intact = columns[Columns::Intact];
     double* secant = columns[Columns::Secant];
-
-    // 1, opening
     Mask tears = 0;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
@@ -175,7 +180,7 @@ void advanceSideBySide(const Equations& given, const SofteningTable& tension, co
             s.ratio[i] = e.tensionRatio(s.elastic[i]);
         for (int i = 0; i < count; ++i) {
             if (!s.asks[i]) continue;
-            const double damage = tension.damage(s.ratio[i], rows[i].tension);
+            const double damage = tension.damage(s.ratio[i], all.rows[i].tension);
             if (!(damage > s.tensionDamage[i])) continue;
             s.tensionDamage[i] = damage;
             s.regime[i] = Mask(Regime::Opening);
@@ -186,8 +191,15 @@ void advanceSideBySide(const Equations& given, const SofteningTable& tension, co
             s.secant[i] = e.secant(s.intact[i], s.farthest[i]);
         }
     }
+    return tears;
+}
 
-    // 2, Coulomb slip
+// 2, Coulomb slip. Tells whether one slides.
+MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& shear, Scratch& s) {
+    const Equations e = all.e;
+    const Mask* waits = all.waits;
+    const int count = all.count;
+    const double* slip = all.columns[Columns::Slip];
     Mask slides = 0;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
@@ -207,7 +219,7 @@ void advanceSideBySide(const Equations& given, const SofteningTable& tension, co
         }
         for (int i = 0; i < count; ++i) {
             if (!s.asks[i] || !(s.shearDamage[i] < 1)) continue;
-            const double damage = shear.damage(s.ratio[i], rows[i].shear);
+            const double damage = shear.damage(s.ratio[i], all.rows[i].shear);
             if (damage > s.shearDamage[i]) s.shearDamage[i] = damage;
         }
         for (int i = 0; e.tanPsi > 0 && e.delta > 0 && i < count; ++i)
@@ -225,8 +237,16 @@ void advanceSideBySide(const Equations& given, const SofteningTable& tension, co
             s.regime[i] = slid.slides ? Mask(Regime::Slipping) : s.regime[i];
         }
     }
+    return slides;
+}
 
-    // 3, cap
+// 3, cap. Tells whether one crushes or hardens.
+MASONRY_INLINED Mask crushAll(const SideBySide& all, Scratch& s) {
+    const Equations e = all.e;
+    const Columns& columns = all.columns;
+    const Mask* waits = all.waits;
+    const int count = all.count;
+    const double* largestClosure = columns[Columns::LargestClosure];
     Mask crushes = 0;
     const double limit = e.curve.limit(e.stretch);
     const double closing = e.cap ? -1 : 0; // how closure counts
@@ -269,51 +289,76 @@ void advanceSideBySide(const Equations& given, const SofteningTable& tension, co
         }
     } else
         crushes = 0;
+    return crushes;
+}
 
-    // the new state and what was lost; s.closure and s.dilation become what the state has grown by
-    if (crushes || (slides && e.tanPsi > 0)) {
-        double* crushing = columns[Columns::Crushing];
-        double* dilation = columns[Columns::Dilation];
-        MASONRY_INDEPENDENT
-        for (int i = 0; i < count; ++i) {
-            const double oldCrushing = crushing[i];
-            const double oldDilation = dilation[i];
-            const double old = irreversible[i];
-            const double newCrushing = oldCrushing + s.closure[i];
-            const double newDilation = oldDilation + s.dilation[i];
-            const double now = newCrushing - newDilation;
-            s.closure[i] = newCrushing - oldCrushing;
-            s.dilation[i] = newDilation - oldDilation;
-            s.elastic[i] = s.total[i] + now;
-            crushing[i] = waits[i] ? newCrushing : oldCrushing;
-            dilation[i] = waits[i] ? newDilation : oldDilation;
-            irreversible[i] = waits[i] ? now : old;
-        }
+// The irreversible parts of the opening; s.closure and s.dilation become what they have grown by.
+MASONRY_INLINED void keepIrreversible(const SideBySide& all, Scratch& s) {
+    const Columns& columns = all.columns;
+    const Mask* waits = all.waits;
+    const int count = all.count;
+    double* irreversible = columns[Columns::Irreversible];
+    double* crushing = columns[Columns::Crushing];
+    double* dilation = columns[Columns::Dilation];
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        const double oldCrushing = crushing[i];
+        const double oldDilation = dilation[i];
+        const double old = irreversible[i];
+        const double newCrushing = oldCrushing + s.closure[i];
+        const double newDilation = oldDilation + s.dilation[i];
+        const double now = newCrushing - newDilation;
+        s.closure[i] = newCrushing - oldCrushing;
+        s.dilation[i] = newDilation - oldDilation;
+        s.elastic[i] = s.total[i] + now;
+        crushing[i] = waits[i] ? newCrushing : oldCrushing;
+        dilation[i] = waits[i] ? newDilation : oldDilation;
+        irreversible[i] = waits[i] ? now : old;
     }
-    if (crushes || slides) {
-        double* lostShear = columns[Columns::LostShear];
-        double* lostCompression = columns[Columns::LostCompression];
-        MASONRY_INDEPENDENT
-        for (int i = 0; i < count; ++i) {
-            const double a = s.left[i] * (s.share[i] * s.trialA[i]);
-            const double b = s.left[i] * (s.share[i] * s.trialB[i]);
-            const double meanNormal = 0.5 * (s.oldStiffness[i] * s.before[i] + s.sigma[i]);
-            const double meanShear =
-                Equations::meanShear(shearStressA[i], shearStressB[i], a, b, s.trialA[i], s.trialB[i], s.size[i]);
-            const bool slips = s.slip[i] + s.crushingSlip[i] > 0;
-            const double inShear = meanShear * s.slip[i] + meanNormal * s.dilation[i];
-            const double inCrushing = meanShear * s.crushingSlip[i];
-            const double oldSlip = slip[i];
-            const double oldShear = lostShear[i];
-            const double oldCompression = lostCompression[i];
-            const double newSlip = oldSlip + s.slip[i] + s.crushingSlip[i];
-            const double newShear = oldShear + (slips ? inShear : 0);
-            const double newCompression = oldCompression + ((slips ? inCrushing : 0) - meanNormal * s.closure[i]);
-            slip[i] = waits[i] ? newSlip : oldSlip;
-            lostShear[i] = waits[i] ? newShear : oldShear;
-            lostCompression[i] = waits[i] ? newCompression : oldCompression;
-        }
+}
+
+// Slip, and what was lost in shear and compression.
+MASONRY_INLINED void keepSlip(const SideBySide& all, Scratch& s) {
+    const Columns& columns = all.columns;
+    const Mask* waits = all.waits;
+    const int count = all.count;
+    double* slip = columns[Columns::Slip];
+    const double* shearStressA = columns[Columns::ShearStressA];
+    const double* shearStressB = columns[Columns::ShearStressB];
+    double* lostShear = columns[Columns::LostShear];
+    double* lostCompression = columns[Columns::LostCompression];
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        const double a = s.left[i] * (s.share[i] * s.trialA[i]);
+        const double b = s.left[i] * (s.share[i] * s.trialB[i]);
+        const double meanNormal = 0.5 * (s.oldStiffness[i] * s.before[i] + s.sigma[i]);
+        const double meanShear =
+            Equations::meanShear(shearStressA[i], shearStressB[i], a, b, s.trialA[i], s.trialB[i], s.size[i]);
+        const bool slips = s.slip[i] + s.crushingSlip[i] > 0;
+        const double inShear = meanShear * s.slip[i] + meanNormal * s.dilation[i];
+        const double inCrushing = meanShear * s.crushingSlip[i];
+        const double oldSlip = slip[i];
+        const double oldShear = lostShear[i];
+        const double oldCompression = lostCompression[i];
+        const double newSlip = oldSlip + s.slip[i] + s.crushingSlip[i];
+        const double newShear = oldShear + (slips ? inShear : 0);
+        const double newCompression = oldCompression + ((slips ? inCrushing : 0) - meanNormal * s.closure[i]);
+        slip[i] = waits[i] ? newSlip : oldSlip;
+        lostShear[i] = waits[i] ? newShear : oldShear;
+        lostCompression[i] = waits[i] ? newCompression : oldCompression;
     }
+}
+
+// Openings and stresses, and what was lost in tension.
+MASONRY_INLINED void keepStresses(const SideBySide& all, Scratch& s, double* normalStress) {
+    const Columns& columns = all.columns;
+    const Mask* waits = all.waits;
+    const int count = all.count;
+    double* opening = columns[Columns::Opening];
+    double* shearStressA = columns[Columns::ShearStressA];
+    double* shearStressB = columns[Columns::ShearStressB];
+    double* largestOpening = columns[Columns::LargestOpening];
+    double* largestClosure = columns[Columns::LargestClosure];
     Mask tore = 0;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
@@ -341,22 +386,50 @@ void advanceSideBySide(const Equations& given, const SofteningTable& tension, co
         for (int i = 0; i < count; ++i)
             lostTension[i] += waits[i] ? s.torn[i] : 0;
     }
-    if (tears || slides) {
-        double* reach = columns[Columns::Reach];
-        MASONRY_INDEPENDENT
-        for (int i = 0; i < count; ++i) {
-            const double oldTension = tensionDamage[i];
-            const double oldShear = shearDamage[i];
-            const double oldIntact = intact[i];
-            const double oldSecant = secant[i];
-            const double oldReach = reach[i];
-            tensionDamage[i] = waits[i] ? s.tensionDamage[i] : oldTension;
-            shearDamage[i] = waits[i] ? s.shearDamage[i] : oldShear;
-            intact[i] = waits[i] ? s.intact[i] : oldIntact;
-            secant[i] = waits[i] ? s.secant[i] : oldSecant;
-            reach[i] = waits[i] ? e.reach(s.intact[i], s.farthest[i]) : oldReach;
-        }
+}
+
+// Damage, and what follows from it.
+MASONRY_INLINED void keepDamage(const SideBySide& all, Scratch& s) {
+    const Equations e = all.e;
+    const Columns& columns = all.columns;
+    const Mask* waits = all.waits;
+    const int count = all.count;
+    double* tensionDamage = columns[Columns::TensionDamage];
+    double* shearDamage = columns[Columns::ShearDamage];
+    double* intact = columns[Columns::Intact];
+    double* secant = columns[Columns::Secant];
+    double* reach = columns[Columns::Reach];
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        const double oldTension = tensionDamage[i];
+        const double oldShear = shearDamage[i];
+        const double oldIntact = intact[i];
+        const double oldSecant = secant[i];
+        const double oldReach = reach[i];
+        tensionDamage[i] = waits[i] ? s.tensionDamage[i] : oldTension;
+        shearDamage[i] = waits[i] ? s.shearDamage[i] : oldShear;
+        intact[i] = waits[i] ? s.intact[i] : oldIntact;
+        secant[i] = waits[i] ? s.secant[i] : oldSecant;
+        reach[i] = waits[i] ? e.reach(s.intact[i], s.farthest[i]) : oldReach;
     }
+}
+
+} // namespace
+
+MASONRY_VECTORISED
+void advanceSideBySide(const Equations& given, const SofteningTable& tension, const SofteningTable& shear,
+                       const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* waits,
+                       int count, double* normalStress) {
+    const Equations e = given;
+    const SideBySide all{e, columns, rows, jumps, waits, count};
+    Scratch s;
+    const Mask tears = openAll(all, tension, s);
+    const Mask slides = slideAll(all, shear, s);
+    const Mask crushes = crushAll(all, s);
+    if (crushes || (slides && e.tanPsi > 0)) keepIrreversible(all, s);
+    if (crushes || slides) keepSlip(all, s);
+    keepStresses(all, s, normalStress);
+    if (tears || slides) keepDamage(all, s);
     for (int i = 0; i < count; ++i) {
         const Regime old = regime[i];
         regime[i] = waits[i] ? Regime(s.regime[i]) : old;
