@@ -62,7 +62,7 @@ def test_the_squat_wall_peaks_between_friction_and_the_cracked_section(squat):
 
 
 def documented():
-    """The keys of run.json that its module lists."""
+    """The keys of run.json that the docstring of the module results lists."""
     return set(re.findall(r"``(\w+)``", results.__doc__))
 
 
@@ -107,7 +107,8 @@ def test_frames_show_units_and_subcontacts_with_their_state(squat):
     blocks, joints = readFrame(squat, "blocks"), readFrame(squat, "joints")
     assert len(blocks["cells"]) == 1226 and len(joints["cells"]) == 9800
     assert blocks["displacement"][:, 0].max() == pytest.approx(4e-3, rel=0.02)
-    assert np.abs(blocks["displacement"][:, 1]).max() < 1e-12  # in its plane
+    # No displacement out of the plane of the wall.
+    assert np.abs(blocks["displacement"][:, 1]).max() < 1e-12
     assert joints["area"].sum() == pytest.approx(
         2450 * 0 + 35 * 3.96 * 0.102 + 34 * 35 * 0.081 * 0.102, rel=1e-9
     )
@@ -239,7 +240,7 @@ def test_before_it_cracks_a_mirrored_push_gives_the_mirrored_force(scene, tmp_pa
             O.step()
         forces.append(base(model)[0])
     assert abs(forces[0]) > 500
-    # local damping switches on the sign of velocities that are round-off at rest, so mirrored runs part a little
+    # Local damping depends on the sign of velocities, which are round-off at rest. So mirrored runs differ a little.
     assert forces[0] == pytest.approx(-forces[1], rel=2e-3)
 
 

@@ -77,10 +77,12 @@ EnergyLedger MasonryIntegrator::advance(SceneStore& store, const Vector3r* force
         for (int d = 0; d < 3; ++d)
             if (gravity[d] != 0) fall += gravity[d] * (bodies.position[d][b] - bodies.referencePosition[d][b]);
         sum.fallen += bodies.mass[b] * fall;
-        if (bodies.spins(b))
+        if (bodies.spins(b)) {
             ++spinning;
-        else
-            axes |= moved[i] = (unsigned char)(bodies.axes(b));
+            continue;
+        }
+        moved[i] = (unsigned char)(bodies.axes(b));
+        axes |= moved[i];
     }
     if (axes != 0) {
         const RigidMotion::Around around{scene->dt, {gravity[0], gravity[1], gravity[2]}, combined()};
