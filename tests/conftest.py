@@ -22,9 +22,8 @@ TOGETHER = ["programs", "targets", "squat"]  # fixtures that many tests share
 sys.path.insert(1, "/usr/lib/x86_64-linux-gnu/yade-double/py")  # as /usr/bin/yade does
 sys.path.insert(1, os.path.join(ROOT, "tests", "references"))
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # as /usr/bin/yade does
-with contextlib.redirect_stdout(
-    None
-):  # YADE tells its version, which would stand after pytest's closing line
+# YADE tells its version, which would stand after pytest's closing line.
+with contextlib.redirect_stdout(None):
     import yade
     import yade.config
 

@@ -1,7 +1,7 @@
 // Joint polygons and subcontacts of convex blocks, in any orientation.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "blocks/BlockElasticity.hpp"
-#include "blocks/BlockLanes.cpp" // for its loops of every instruction set, which nobody else sees
+#include "blocks/BlockLanes.cpp" // the source, because its loops for each instruction set are local to it
 #include "motion/LargestEigenvalue.hpp"
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -40,7 +40,8 @@ Eigen::Isometry3d randomMotion(std::mt19937& dice) {
 
 const Point brick(0.22, 0.102, 0.081);
 
-// Approx adds 1 to the size of the numbers unless it is told another scale: no area of a brick would ever differ.
+// doctest's Approx takes 1 plus the size of the numbers as their scale unless another is set. The areas of a brick,
+// which are much smaller than 1 m², would then never differ.
 doctest::Approx within(double value, double relative) {
     return doctest::Approx(value).epsilon(relative).scale(value == 0 ? 1 : 0);
 }
@@ -129,7 +130,7 @@ TEST_CASE("blocks that overlap or nearly share a face are told by how much, in a
         {lower, box({0, 0, 0.082}, brick), 1e-3},
         {lower, box({0.2, 0, 0.1}, brick), 0.019}, // a tenth of the face, a quarter of the thickness
         {lower, box({0, 0, 0.080}, brick), -1e-3},
-        {lower, lower, -0.081}, // at the same place: out along the shortest way
+        {lower, lower, -0.081}, // both at the same place: the shortest way to separate them is the height
         {lower, box({0.05, 0.02, 0.02}, {0.02, 0.02, 0.02}), -0.04},
         {lower, moved(lower, tilt), 0.22 * std::sin(0.02)}, // opens from an edge to the other
         {moved(bar, onEdge), crossed(-2e-3), -2e-3},
@@ -146,7 +147,7 @@ TEST_CASE("blocks that overlap or nearly share a face are told by how much, in a
             }
         }
     }
-    // what stands far apart, or meets along an edge or at a corner is none
+    // blocks that are far apart, or touch along an edge or at a corner, are no misfit
     for (const Point& corner :
          {Point(0, 0, 0.103), Point(0.22, 0, 0.081), Point(0.22, 0.102, 0.081), Point(0.221, 0, 0.082)})
         CHECK_FALSE(misfit(lower, box(corner, brick)));
@@ -223,7 +224,7 @@ struct Forces {
     double energy;
 };
 
-// Of one block among others that are at rest or moved otherwise.
+// Forces, rotation and energy of one block in a batch, beside others that are at rest or moved in another way.
 Forces forcesOf(const BlockElasticity& e, const std::vector<Point>& u, const Point& moment = Point::Zero()) {
     constexpr int mine = 3;
     std::vector<Row> all(3 * u.size()), f(all.size(), Row{}), scratch(2 * all.size());
@@ -314,7 +315,8 @@ TEST_CASE("rigid motions of any size give no force and show their rotation") {
             std::vector<Point> u(n);
             for (std::size_t i = 0; i < n; ++i)
                 u[i] = motion * e.mesh().nodes[i] - e.mesh().nodes[i];
-            // far turns start Newton's iteration far away, but at a rotation it is already exact
+            // After a large rotation Newton's iteration starts far from its solution; at a pure rotation the result is
+            // exact.
             const Matrix3 r = e.rotation(u.data());
             CHECK((r - motion.rotation()).norm() < 1e-11);
             const auto result = forcesOf(e, u);
@@ -439,7 +441,7 @@ TEST_CASE("a moment on a block is forces without resultant that do its work on t
         sum += force, about += (e.mesh().nodes[i] + u[i]).cross(force), work += force.dot(du[i]);
         plus[i] += 0.5 * du[i], minus[i] -= 0.5 * du[i];
     }
-    CHECK(sum.norm() < 1e-3); // round-off of forces of 1e8 N a unit of strain
+    CHECK(sum.norm() < 1e-3); // N; round-off, as the zones carry 1e8 N at unit strain
     CHECK((about - moment).norm() < 1e-3);
     const Eigen::AngleAxisd turn(Matrix3(e.rotation(plus.data()) * e.rotation(minus.data()).transpose()));
     CHECK(work == within(moment.dot(turn.angle() * turn.axis()), 1e-3));
@@ -538,7 +540,8 @@ TEST_CASE("the bound of the largest eigenvalue lies within 2.1 % above it, for a
     std::mt19937 dice(19);
     std::normal_distribution<> normal;
     for (int n : {1, 2, 5, 40, 118, 300}) {
-        for (double power : {0.0, 0.1, 1.0, 8.0, 100.0}) { // from clustered at the top to far apart
+        // from eigenvalues that crowd below the largest to some that are far apart
+        for (double power : {0.0, 0.1, 1.0, 8.0, 100.0}) {
             const double largest = 7 * std::pow(1e3, std::min(power, 5.0));
             Eigen::MatrixXd random(n, n);
             for (double& value : random.reshaped())
@@ -548,7 +551,7 @@ TEST_CASE("the bound of the largest eigenvalue lies within 2.1 % above it, for a
             for (int i = 0; i < n; ++i)
                 values[i] = largest * std::pow((i + 1.0) / n, power);
             const Eigen::MatrixXd matrix = q * values.asDiagonal() * q.transpose();
-            std::vector<bool> moves(n + 3, true); // three that do not
+            std::vector<bool> moves(n + 3, true); // three components do not move
             moves[0] = moves[n / 2 + 1] = moves[n + 2] = false;
             const auto multiply = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
                 Eigen::VectorXd inner(n);

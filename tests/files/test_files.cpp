@@ -1,4 +1,4 @@
-// Checkpoints come back to the last bit, and nothing but a whole one is taken for one.
+// A checkpoint that is written and read is the same to the last bit, and bytes that are not a whole one are refused.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "files/Checkpoint.hpp"
 #include <cmath>

@@ -1,4 +1,5 @@
-// Any bytes are refused in words or taken, and what is taken comes back the same.
+// Any bytes must be refused with an error or read as a checkpoint, which must then be the same after writing and
+// reading.
 #include "files/Checkpoint.hpp"
 #include <stdexcept>
 
@@ -19,6 +20,6 @@ void read(std::string_view bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
     read(bytes);
-    read(Checkpoint::sealed(bytes)); // so that the records are reached, too
+    read(Checkpoint::sealed(bytes)); // with a checksum that fits, so that the records are read, too
     return 0;
 }

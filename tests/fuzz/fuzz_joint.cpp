@@ -1,4 +1,5 @@
-// Any numbers are refused in words or make a joint whose tables and law keep what they promise.
+// Takes the properties of a joint from any bytes. They must be refused with an error, or give a joint whose tables and
+// law fulfil what PROMISE() checks here.
 #include "law/piecewise_softening/JointLaw.hpp"
 #include <cstdint>
 #include <cstdio>
@@ -17,11 +18,12 @@ namespace {
     std::abort();
 }
 
-class Dice { // takes what it gives from the bytes
+// Draws numbers from the bytes of the fuzzer.
+class Dice {
 public:
     Dice(const std::uint8_t* data, std::size_t size) : at_(data), left_(size) {}
     std::uint8_t byte() { return left_ ? (--left_, *at_++) : 0; }
-    double raw() { // any double there is
+    double raw() { // any bit pattern of a double
         double value = 0;
         unsigned char bytes[sizeof value];
         for (auto& b : bytes)
@@ -30,9 +32,9 @@ public:
         return value;
     }
     double factor() { return std::exp2(std::int8_t(byte()) / 4.0); } // 2^-32 to 2^32
-    bool wild() const { return wild_; }                              // whether any number was beyond that
+    bool wild() const { return wild_; } // whether a number drawn was outside of these sizes
 
-    double about(double usual) { // often as it is, often another size, seldom anything
+    double about(double usual) { // often the usual number, often another size of it, seldom any double
         const int kind = byte() % 8;
         if (kind == 7) return wild_ = true, raw();
         return kind < 4 ? usual : usual * factor();

@@ -52,7 +52,7 @@ def blocks(*places, size=BRICK):
 
 
 def laid(*places, size=BRICK, **settings):
-    """Those bricks and the engines, without joints."""
+    """Bricks as blocks() places them, and the engines, without joints."""
     blocks(*places, size=size)
     engines([MasonryJoint()], **settings)
 
@@ -67,7 +67,7 @@ def joined(steps=3, **settings):
 
 
 def deformable(steps=3, bodies=(1,)):
-    """Those bricks, the upper one deformable."""
+    """Two bricks with their engines, the upper one deformable."""
     joined(steps, zones=MasonryZones(bodies=list(bodies)))
 
 
@@ -76,27 +76,27 @@ def zones():
 
 
 def reorder(change):
-    """The engines of two bricks, changed."""
+    """Two bricks whose engines are changed."""
     joined()
     O.engines = change(O.engines)
 
 
 def loaded(**settings):
-    """Two joined bricks and a load, which is only looked at in a step."""
+    """Two joined bricks and a load, which is only checked in a step."""
     joined(0, loads=[MasonryLoad(body=1, point=(0.11, 0.051, 0.162))])
     for name, value in settings.items():
         setattr(O.engines[2], name, value)
 
 
 def state(body, **settings):
-    """Two bricks, laid, one with another state."""
+    """Two bricks with their engines; the state of one is changed."""
     laid()
     for name, value in settings.items():
         setattr(O.bodies[body].state, name, value)
 
 
 def foreign(material):
-    """A brick of ours, and on it one that YADE's own function made."""
+    """A brick that addBlock() made, and on it one that YADE's own function made."""
     addBlock(box(), mat())
     corners = [Vector3(*c) for c in box(z=BRICK[2])]
     O.bodies.append(polyhedra_utils.polyhedra(material, v=corners))
@@ -115,7 +115,7 @@ def turned(degrees):
 
 
 def assign(thing, name, value):
-    """Give an attribute a value; where that is refused, the old one stays."""
+    """Set an attribute. If that is refused, the attribute must keep its old value."""
     before = repr(getattr(thing, name))
     try:
         setattr(thing, name, value)
@@ -132,7 +132,7 @@ def update(thing, **values):
 
 
 def script(name, *words):
-    """A scene of scripts/ with its options, in this process; what it says, if it ends with status 2, is the error."""
+    """Run a scene of scripts/ with its options in this process. What it prints before ending with status 2 is the error."""
     said, argv = io.StringIO(), sys.argv
     sys.argv = [os.path.join(ROOT, "scripts", name + ".py"), *words]
     try:
@@ -166,7 +166,7 @@ def files(run="{}", curve="time_s,base_shear_kN\r\n0,1\r\n1,2\r\n", **others):
 
 
 def read(act, *words, **content):
-    """What reads a run, on a folder with these files; its error is what it says at the end with status 2."""
+    """Run a program that reads results on a folder with these files. What it prints before status 2 is the error."""
     if content:
         files(**content)
     said = io.StringIO()
@@ -646,7 +646,7 @@ CURVE = "time_s,displacement_mm,base_shear_kN,top_shear_kN\r\n0,0,1,1\r\n1,1,2,2
 
 
 def snapshot():
-    """All that a refused input must leave as it was."""
+    """All numbers that a refused input must leave as they were."""
     return repr(
         (
             O.iter,
@@ -697,7 +697,7 @@ def test_at_least_a_hundred_and_fifty_inputs_are_tried():
     assert sum(map(len, CASES.values())) >= 150
 
 
-# -- what may be meant, and what is fine ------------------------------------------------------------------------------
+# -- what is unusual, and what is accepted ----------------------------------------------------------------------------
 
 
 def joint(**changes):
@@ -792,7 +792,7 @@ def tiles():
 
 
 def mortar():
-    """Bricks with layers of mortar of 5 mm, which are blocks of their own."""
+    """Bricks with layers of mortar 5 mm thick between them, which are blocks, too."""
     for column in range(4):
         for course in range(6):
             x, z = 0.22 * column, 0.086 * course

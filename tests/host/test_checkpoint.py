@@ -18,7 +18,7 @@ def run(steps):
 
 
 def bits(interactions):
-    """All that a run can be told by, as bytes."""
+    """All numbers in which two runs could differ, as bytes."""
     values = [O.iter, O.time, O.dt, *energy().values()]
     for b in O.bodies:
         values += [*O.forces.f(b.id, True), *O.forces.t(b.id, True), *b.state.vel]
@@ -59,9 +59,8 @@ def test_a_scene_built_anew_goes_on_bit_for_bit(case, functors, tmp_path):
     assert bits(interactions) == end
     assert state(interactions)["damage"].max(axis=0).min() > 0.01
 
-    loadCheckpoint(
-        path
-    )  # back, in a scene that has run, and on without a look at anything
+    # Loaded into a scene that has run on, which then continues without being read first.
+    loadCheckpoint(path)
     run(200)
     assert bits(interactions) == end
 
@@ -123,7 +122,8 @@ def test_a_checkpoint_of_blocks_of_another_material_is_refused(tmp_path):
     run(5)
     saveCheckpoint(path)
     panel(False, "deformable")
-    O.bodies[1].mat.young *= 1.01  # no mass and no stiffness of a joint hangs on it
+    # Neither masses nor the stiffnesses of joints change with it.
+    O.bodies[1].mat.young *= 1.01
     with pytest.raises(ValueError, match="is of another scene: its blocks are others"):
         loadCheckpoint(path)
 
@@ -159,7 +159,7 @@ def test_a_damaged_file_is_refused_in_words(saved):
 
 
 def sealed(data, name, change):
-    """A checkpoint with one of its arrays or texts changed, and the right sum."""
+    """A checkpoint with one of its arrays or texts changed, and a checksum that fits."""
     at = data.index(name.encode())
     size = struct.unpack("<Q", data[at - 8 : at])[0]
     at += len(name)

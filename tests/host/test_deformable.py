@@ -121,7 +121,7 @@ def deflection(cells, length=0.4, section=0.05):
 
 @pytest.mark.slow
 def test_a_cantilever_s_deflection_converges_to_theory(scene):
-    # constant-strain zones are too stiff in bending, by a share that falls with the square of their size
+    # Zones of constant strain are too stiff in bending. The relative error falls with the square of their size.
     coarse, fine = 1 / deflection(1) - 1, 1 / deflection(2) - 1
     assert 0 < fine < 1
     assert coarse / fine > 2.5  # order 2: a factor of 4
@@ -315,13 +315,13 @@ def test_the_stiffness_of_a_pair_is_that_of_bricks_and_joint_in_series(scene):
     pull(load, -2e-6, 0.02)
     area = BRICK[0] * BRICK[1]
     series = area / (2 * BRICK[2] / E + 1 / elastic.normalStiffness)
-    # the plates hold the ends of the bricks sideways, which can only stiffen them, by a little of nu²
+    # The plates hold the ends of the bricks sideways. That can only make them stiffer, by a part of nu².
     assert 1 < hold(load) / (series * load.displacement()[2]) < 1 + 2 * NU**2
 
 
 @pytest.mark.slow
 def test_local_damping_drags_a_moving_unit_and_combined_does_not(scene):
-    """The force on the drive above that in the joint: what damping adds while two bricks are pressed steadily."""
+    """The force of the drive minus that in the joint: what damping adds while two bricks are pressed steadily."""
     drag = {}
     for kind in ("local", "combined"):
         load = couplet(True, MasonryJoint(name="bed", elastic=True))
@@ -351,7 +351,7 @@ def test_a_deformable_run_saved_in_the_middle_goes_on_the_same(
     go = lambda: [(O.step(), energy())[1] for _ in range(500)][-1]
     there = go()
     O.load(path)
-    # the host finds the centre of a block anew when it loads it, so the nodes move by round-off
+    # The host calculates the centre of a block again when it loads a scene, so the nodes move by round-off.
     assert go() == pytest.approx(there, rel=1e-6, abs=1e-8)
 
 

@@ -73,7 +73,7 @@ def energy():
 
 
 def state(interactions):
-    """Everything that a run can be told by: stresses, jumps, damages, energies and places, each over its own size."""
+    """All that must agree between two runs: stresses, jumps, damages, energies and places, each over its own size."""
     columns = {
         "stress": [s for i in interactions for s in i.phys.stress],
         "jump": [j for i in interactions for j in i.geom.jumps],
@@ -99,7 +99,8 @@ CASES = {
 
 @pytest.mark.parametrize("case", CASES)
 def test_the_loop_gives_the_functors_run(case):
-    # Without damping, which switches on the sign of round-off. What remains grows slowly from 1e-16.
+    # Without damping, because damping depends on the sign of velocities that may be round-off. The differences that
+    # remain start at 1e-16 and grow slowly.
     runs, balances = [], []
     for functors in (True, False):
         interactions = panel(functors, **CASES[case])
@@ -110,10 +111,12 @@ def test_the_loop_gives_the_functors_run(case):
     one, other = runs
     size = max(abs(v) for v in balances[0].values())
     for name, value in balances[0].items():
-        # MasonryEnergy only foresees the spin of a body that is free to turn in space; MasonryIntegrator knows it
+        # MasonryEnergy only predicts the angular velocity of a body that is free to turn in space. MasonryIntegrator
+        # knows it.
         tolerance = 1e-4 if name == "error" else 1e-6 * size
         assert balances[1][name] == pytest.approx(value, abs=tolerance), name
-    assert one["damage"].max(axis=0).min() > 0.01  # opened, slipped and crushed
+    # Joints have opened, slipped and crushed.
+    assert one["damage"].max(axis=0).min() > 0.01
     for name in one:
         size = np.abs(one[name]).max()
         assert np.abs(one[name] - other[name]).max() < 1e-8 * size, name
@@ -132,7 +135,8 @@ def test_a_body_moves_as_with_the_hosts_integrator(blocked, damping):
         s = O.bodies[body].state
         s.blockedDOFs = blocked
         s.vel, s.angVel = Vector3(0.5, -0.1, 0.2), Vector3(0, 3, 0)
-        if blocked in ("", "x"):  # the host turns a free body by its momentum
+        # The host turns a body whose rotations are free by its angular momentum.
+        if blocked in ("", "x"):
             s.angMom = Vector3(0.03, 0.02, -0.01)
         O.dt = 1e-3
         around = dict(damping=damping, gravity=(0, 0, -9.81))
@@ -147,7 +151,8 @@ def test_a_body_moves_as_with_the_hosts_integrator(blocked, damping):
             O.step()
         s = O.bodies[body].state
         ends.append([*s.pos, *s.vel, *s.angVel, *s.ori])
-    # where a velocity changes its sign, ours stops at zero and the host's damping pushes it past, in one step each
+    # Where a velocity changes its sign, our damping stops at zero and the host's goes beyond zero. Each such step makes
+    # a difference.
     tolerance = 2e-3 if damping else 1e-9
     assert ends[0] == pytest.approx(ends[1], rel=tolerance, abs=tolerance)
     assert np.abs(ends[0]).max() > 0.5
@@ -169,7 +174,8 @@ def test_damping_takes_energy_in_every_step_whatever_the_force(blocked, kind):
         O.forces.setPermT(body, Vector3(*0.05 * push[3:]))
         O.step()
         O.forces.reset(resetAll=True)
-        O.step()  # the other half of the work is done when the next step begins
+        # The second half of a step's work is counted at the beginning of the next step.
+        O.step()
         taken.append(integrator.damped)
     assert np.all(np.diff(taken) >= 0) and taken[-1] > 0
 
@@ -207,7 +213,7 @@ def test_damping_calms_everything_up_to_the_undamped_limit_of_the_time_step(
 
 
 def test_combined_damping_calms_what_swings_about_a_steady_motion_and_local_does_not():
-    """A block on an elastic joint behind one that moves steadily: its velocity swings but keeps its sign."""
+    """A block is pulled on an elastic joint by one that moves steadily. Its velocity vibrates but keeps its sign."""
     swing = {}
     for kind in ("local", "combined"):
         O.reset()
@@ -278,13 +284,14 @@ def test_a_property_changed_in_the_middle_of_a_run_is_followed():
 
 
 def test_arrays_made_anew_in_every_step_change_nothing():
-    """Meshes that do not match, so that places for guests are made anew, too."""
+    """The meshes do not match, so that the places of dependent points are made anew, too."""
     runs = []
     for anew in (False, True):
         interactions = panel(False, blocks="deformable", halves=False)
         for _ in range(100):
             if anew:
-                MasonryJoint()  # any new joint has the arrays made anew
+                # After any new joint the plan and its arrays are made anew.
+                MasonryJoint()
             O.step()
         runs.append(state(interactions))
     for name, values in runs[0].items():

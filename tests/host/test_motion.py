@@ -1,4 +1,4 @@
-"""What damping, drives, prescribed places and unlike neighbours do to a step: numbers that follow by hand."""
+"""Damping, drives, prescribed places and neighbours of another kind, against numbers that follow by hand."""
 
 import math
 
@@ -25,9 +25,9 @@ def brick(**kw):
 
 # -- damping ---------------------------------------------------------------------------------------------------------
 
-#: Force over that of the first step, and what damping takes of it over alpha times its size, against a motion along it.
-#: Local damping takes the whole share; combined takes nothing while the force grows, half of a steady one, all of one
-#: that falls.
+#: For a motion along the force: the force over that of the first step, and what damping takes of it over alpha times
+#: its size. Local damping takes all of that. Combined damping takes nothing while the force grows, half of it while the
+#: force is steady, and all of it while the force falls.
 HISTORY = {
     "local": [(1, 1), (2, 1), (2, 1), (1.5, 1), (0.5, 1)],
     "combined": [(1, 0), (2, 0), (2, 0.5), (1.5, 1), (0.5, 1)],
@@ -65,9 +65,8 @@ def test_damping_takes_its_share_of_a_blocks_torque(scene, blocked, kind):
     s = O.bodies[body].state
     s.blockedDOFs = blocked
     inertia = Vector3(s.inertia)
-    if not set(blocked) & set(
-        "XYZ"
-    ):  # a block that is free to turn moves by its momentum
+    # A block whose rotations are free is turned by its angular momentum.
+    if not set(blocked) & set("XYZ"):
         s.inertia = Vector3(inertia[1], inertia[1], inertia[1])
         s.angMom = Vector3(0, 5 * inertia[1], 0)
     s.angVel = Vector3(0, 5, 0)
@@ -104,9 +103,8 @@ def test_damping_takes_its_share_of_the_weight_of_nodes(scene, kind):
 
 
 def steps(count):
-    for _ in range(
-        count
-    ):  # O.run(count, True) may end before it waits, and then only prints an error
+    # O.run(count, True) may end before it waits, and then only prints an error.
+    for _ in range(count):
         O.step()
 
 
@@ -134,9 +132,8 @@ def test_a_run_finds_by_itself_that_more_damping_makes_its_time_step_too_long(
     O.dt = 0.97 * criticalTimeStep()[0]
     steps(20)
     damped = zones or next(e for e in O.engines if e.label == "integrator")
-    damped.damping = (
-        0.8  # nobody asks for the limit, which falls by the square root of 1.8
-    )
+    # Changed without asking for the limit, which falls by the square root of 1.8.
+    damped.damping = 0.8
     with pytest.raises(RuntimeError, match="unstable: the time step is"):
         steps(20)
 
@@ -147,7 +144,7 @@ def test_a_run_finds_by_itself_that_a_lighter_block_makes_its_time_step_too_long
     steps(20)
     O.bodies[3].state.mass *= 0.5
     O.bodies[3].state.inertia *= 0.5
-    O.dt *= 0.9999  # a new time step is looked at at once
+    O.dt *= 0.9999  # a new time step is checked in the next step
     with pytest.raises(RuntimeError, match="unstable"):
         steps(120)
 
@@ -212,7 +209,8 @@ def test_a_load_that_is_dead_does_no_work(scene):
 
 # -- joints that are nearly alike ------------------------------------------------------------------------------------
 
-#: What the last couplet of seventy has one per cent more of: it is far behind the first that are taken together.
+#: The property of which the last of seventy couplets has one per cent more. Its joint is in another batch than the
+#: first ones.
 UNLIKE = {
     "stiffness": dict(young=4.8e9 * 1.01),
     "length": dict(size=(UNIT[0] * 1.01, *UNIT[1:])),
@@ -222,7 +220,7 @@ UNLIKE = {
 
 
 def couplets(other, functors, turn, joint=None):
-    """Seventy couplets apart from each other, the last a little other; every upper brick is thrown."""
+    """Seventy separate couplets, of which the last differs a little. Every upper brick gets a velocity."""
     O.reset()
     dice = np.random.default_rng(5)
     for number in range(70):
@@ -274,11 +272,8 @@ def test_one_couplet_of_seventy_that_is_one_per_cent_other_keeps_its_own_numbers
                 np.array([list(b.state.pos) for b in O.bodies]),
             )
         )
-        for (
-            i
-        ) in (
-            joints
-        ):  # elastic: the stress is stiffness times jump, of each joint's own stiffness
+        # Elastic: the stress is the jump times the joint's own stiffness.
+        for i in joints:
             for stress, jump in zip(i.phys.stress, i.geom.jumps):
                 assert stress[0] == pytest.approx(
                     i.phys.normalStiffness * jump[0], rel=1e-9, abs=1e-3
@@ -286,7 +281,8 @@ def test_one_couplet_of_seventy_that_is_one_per_cent_other_keeps_its_own_numbers
                 assert stress[1] == pytest.approx(
                     i.phys.shearStiffness * jump[1], rel=1e-9, abs=1e-3
                 )
-    # what is left is round-off of places 17 m away, 2e-15 m, times stiffness: 1e-4 of some 1e3 Pa
+    # The round-off of places 17 m from the origin is 2e-15 m. Times the stiffness that is 1e-4 of stresses of some
+    # 1e3 Pa.
     for one, same in zip(*ends):
         assert np.abs(one - same).max() < 1e-6 * np.abs(one).max()
 
@@ -301,7 +297,8 @@ def test_a_block_whose_joint_is_erased_in_the_middle_of_a_run_falls_freely(
     stack(count=3, damping=0, functors=functors)
     steps(50)
     O.interactions.erase(1, 2)
-    O.interactions.eraseNonReal()  # YADE only asks for it before
+    # Until now YADE has only noted that the interaction is to be erased.
+    O.interactions.eraseNonReal()
     before = O.bodies[2].state.vel[2]
     steps(100)
     fall = O.bodies[2].state.vel[2] - before
@@ -366,7 +363,8 @@ def test_a_rotation_that_is_freed_in_a_planar_run_is_followed(scene):
         O.step()
     s = O.bodies[3].state
     s.blockedDOFs = ""
-    next(e for e in O.engines if e.label == "energy").watch = False  # torque by hand
+    # The torque is set by hand, and its work is not counted.
+    next(e for e in O.engines if e.label == "energy").watch = False
     O.forces.setPermT(3, Vector3(5, 0, 0))
     for _ in range(50):
         O.step()

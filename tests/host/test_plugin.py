@@ -294,7 +294,8 @@ def test_a_pair_that_no_joint_fits_is_named(scene):
 
 def test_rigid_units_are_lumped_in_series(scene):
     phys = pair().phys
-    assert phys.normalStiffness == pytest.approx(5.04e10, rel=1e-3)  # law/README.md, rigid units
+    # See yade_plugin/law/README.md, rigid units.
+    assert phys.normalStiffness == pytest.approx(5.04e10, rel=1e-3)
     assert phys.shearStiffness == pytest.approx(2.17e10, rel=2e-3)
 
 
@@ -335,7 +336,7 @@ def test_forces_and_torques_of_a_joint_balance(scene):
     f = [O.forces.f(i, True) for i in (0, 1)]
     t = [O.forces.t(i, True) for i in (0, 1)]
     arm = [O.bodies[i].state.pos for i in (0, 1)]
-    # the last step moved the bodies after the forces were found; that shift is all that may remain
+    # The bodies moved at the end of the last step, after the forces were found. No other difference may remain.
     moved = O.bodies[1].state.vel.norm() * O.dt
     assert f[0].norm() > 10
     assert (f[0] + f[1]).norm() < 1e-9 * f[0].norm()
@@ -362,9 +363,8 @@ def test_free_vibration_keeps_its_energy(scene):
             + b["elastic_compression"]
             + b["elastic_shear"]
         )
-        assert total == pytest.approx(
-            start, rel=2e-3
-        )  # the first half step is not in the trapezoidal work
+        # The trapezoidal rule does not count the first half step.
+        assert total == pytest.approx(start, rel=2e-3)
     assert b["damping"] == b["dissipated_shear"] == 0
 
 
@@ -400,7 +400,7 @@ def test_a_driven_point_keeps_its_velocity_while_the_block_turns(scene):
 
 
 def swing(fraction):
-    """Largest excursion of a brick bouncing on an elastic joint, over the start's, after many steps."""
+    """Largest displacement of a brick that bounces on an elastic joint after many steps, over that at the start."""
     O.reset()
     pair(joints=[MasonryJoint(elastic=True)], damping=0)
     O.bodies[1].state.blockedDOFs = "xyXYZ"
@@ -435,7 +435,8 @@ def test_the_time_step_bound_holds_with_damping(scene, damping, fraction):
     O.dt = fraction * criticalTimeStep()[0]
     weight, phys = O.bodies[1].state.mass * 9.81, O.interactions[0, 1].phys
     sag = weight / (0.22 * 0.102 * phys.normalStiffness)
-    # leapfrog's swing about the static place has the amplitude sag / sqrt(1 - fraction²); damping takes from it
+    # In the leapfrog scheme the vibration about the static place has the amplitude sag / sqrt(1 - fraction²). Damping
+    # makes it smaller.
     swing = 1.05 * sag / math.sqrt(1 - fraction**2)
     for _ in range(5000):
         O.step()

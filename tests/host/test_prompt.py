@@ -1,4 +1,4 @@
-"""What a user does at the prompt, while a scene runs or is gone, ends in an answer or in an error, never in a crash.
+"""What a user does at the prompt while a scene runs, or after it has ended, gives an answer or an error, never a crash.
 
 Most of it runs in a YADE of its own, so that a crash is a failed test and not the end of pytest.
 """
@@ -38,7 +38,7 @@ def bits(interactions):
 
 
 def inYade(code, threads=1, timeout=120):
-    """Run a program in a YADE of its own; what it printed. Fails if it ends in any other way than by itself."""
+    """Run a program in a YADE of its own and return what it printed. Fails if the process crashes or does not end."""
     folders = [HERE, os.path.join(HERE, "..", "references"), os.path.join(HERE, "..")]
     env = dict(
         os.environ,
@@ -297,7 +297,7 @@ assert O.iter == 400
 for name, values in state(interactions).items():
     assert np.isfinite(values).all(), name
     size = np.abs(values).max()
-    # on two threads the host's own loop sums forces in another order in every run
+    # On two threads the host's own loop sums forces in an order that differs from run to run.
     assert {threads} > 1 or np.abs(values - whole[name]).max() <= 1e-8 * size, name
 """,
         threads,

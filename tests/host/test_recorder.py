@@ -30,7 +30,8 @@ def written(folder, name):
     }
     corners, types = [], []
     for n in range(data.GetNumberOfCells()):
-        cell = data.GetCell(n)  # one object of VTK stands for all cells in turn
+        # VTK gives the same object for every cell, with other contents.
+        cell = data.GetCell(n)
         corners.append([cell.GetPointId(i) for i in range(cell.GetNumberOfPoints())])
         types.append(cell.GetCellType())
     return (
@@ -60,7 +61,7 @@ def test_every_column_of_the_joints_is_that_of_python(frame):
     joints = [O.interactions[i.id1, i.id2] for i in O.interactions]
     rows = [(i, n) for i in joints for n in range(len(i.geom.areas))]
     assert len(cells["area"]) == len(rows)
-    once = {}  # one reading of each attribute of each joint
+    once = {}  # each attribute of each joint is read once only, because that is slow
 
     def of(i, part, name):
         key = (i.id1, i.id2, name)
@@ -90,8 +91,8 @@ def test_every_column_of_the_joints_is_that_of_python(frame):
         size = np.abs(here).max()
         assert size > 0, name
         assert np.abs(there - here).max() <= 1e-12 * size, name
-    # What Python tells only together: sigma = kn (opening + crushing - dilation) of a closed joint, and dilation is at
-    # most dilatancy times slip.
+    # Python does not show crushing and dilation by themselves. Of a closed joint they follow from sigma = kn (opening +
+    # crushing - dilation), where the dilation is at most dilatancy times slip.
     crushed = cells["crushing"]
     assert crushed.min() >= 0 and crushed.max() > 0
     for k, (i, _) in enumerate(rows):
@@ -115,9 +116,8 @@ def test_a_cell_of_a_joint_lies_around_its_subcontact_and_has_its_area(frame):
         whole = 0.0
         for centre in i.geom.centres:
             points = [Vector3(*places[p]) for p in corners[row]]
-            assert all(
-                abs((p - centre).dot(i.geom.normal)) < 1e-9 for p in points
-            )  # in the plane of the joint
+            # In the plane of the joint.
+            assert all(abs((p - centre).dot(i.geom.normal)) < 1e-9 for p in points)
             middle = sum(points, Vector3.Zero) / len(points)
             doubled = sum(
                 (

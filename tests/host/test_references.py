@@ -1,14 +1,15 @@
 """Short runs against the stored numbers of the build that made them; tests/references/references.py says what they are.
 
-What is stored comes from a build that summed in another order: energies of joints one after another and not kind by
-kind, plastic closure and dilation one after the other and not as their difference, and in the functors the normal
-stress kept and not found from the opening. So numbers may differ by round-off, and by what round-off grows to once
-joints slide and crack, where a sign decides:
+The stored numbers come from a build that calculated in another order. It summed the energies of joints one after
+another, and not kind by kind; it applied plastic closure and dilation one after the other, and not as their difference;
+and its functors stored the normal stress, which is now found from the opening. So numbers may differ by round-off.
+Round-off grows once joints slide and crack, because its sign then decides what happens. The tolerances are relative to
+the size of a quantity:
 
-- ROUND_OFF, as long as nothing has grown: of every quantity over its size;
-- PEAK, of the largest reaction at any time;
-- CRACKED, at later instants. Velocities are then noise about zero, and subcontacts
-  at a strength are in one regime or the other.
+- ROUND_OFF for every quantity, as long as round-off has not grown;
+- PEAK for the largest reaction at any time;
+- CRACKED for every quantity at later instants. Velocities are then noise about zero, and subcontacts at a strength may
+  be in one regime or the other.
 """
 
 import os
@@ -20,7 +21,8 @@ import references
 FOLDER = references.FOLDER
 
 ROUND_OFF, PEAK, CRACKED = 1e-9, 2e-4, 0.02
-NOISE = 10  # velocities and spins are that much nearer to round-off, being small differences of large numbers
+# Factor on the tolerance of velocities, which are small differences of large numbers and so nearer to round-off.
+NOISE = 10
 
 #: Run -> how many of its instants lie before round-off has grown; None: all of them.
 QUIET = {

@@ -21,9 +21,8 @@ def energy():
 
 
 def steps(count):
-    for _ in range(
-        count
-    ):  # O.run(count, True) may end before it waits, and then only prints an error
+    # O.run(count, True) may end before it waits, and then only prints an error.
+    for _ in range(count):
         O.step()
 
 
@@ -69,7 +68,8 @@ def test_a_time_step_above_its_limit_is_refused_and_named(scene, blocks, functor
         else:
             O.run(1000, run == "run")
             O.wait()
-            O.step()  # YADE only prints the error of a run that nobody waited for in time
+            # If YADE has only printed the error of the run, the next step raises it.
+            O.step()
     assert O.iter == there and O.bodies[0].state.pos.norm() < 1
     O.dt = 0.99 * criticalTimeStep()[0]
     O.run(100, True)
@@ -112,7 +112,7 @@ def test_the_limit_follows_joints_and_damping(scene, blocks):
 
 @pytest.mark.parametrize("blocks", ["rigid", "deformable"])
 def test_motion_out_of_nothing_is_seen_within_a_hundred_steps(scene, blocks):
-    """A brick that loses its mass behind the engines' back."""
+    """A brick whose mass a script divides by 1000 in the middle of a run. No engine is told of that."""
     rigid = max(panel(blocks, damping=0, rigidLast=True))
     O.run(20, True)
     O.bodies[rigid].state.mass /= 1000
@@ -174,7 +174,7 @@ def test_a_body_without_mass_is_named(scene):
 
 
 def pair(joint, functors, damping=0.0):
-    """A fixed brick, and one on it whose motion is prescribed or, where it is set free, its own."""
+    """A fixed brick, and one on it whose motion is prescribed, except in directions that a test sets free."""
     mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
     for k in (0, 1):
         addBlock(corners((0, 0, k * UNIT[2]), (*UNIT[:2], (k + 1) * UNIT[2])), mat)
@@ -194,10 +194,10 @@ def move(distance, direction, steps=4000):
 
 
 def perArea(**expected):
-    """Hold the energies over the joint's area [J/m²] against expected ones; all others are zero."""
+    """Compare the energies over the joint's area [J/m²] with the expected ones; all that are not given must be zero."""
     b = energy().balance()
     size = max(expected.values())
-    # a prescribed velocity that jumps under load misses half a step's work
+    # where a prescribed velocity jumps under load, half of a step's work is not counted
     assert abs(b.pop("error")) < 1e-3
     for name, value in b.items():
         assert value / AREA == pytest.approx(
@@ -247,7 +247,8 @@ def test_a_joint_that_slides_dissipates_its_fracture_energy_and_friction(
     slide = 60e-3
     move(slide, (1, 0, 0), 60000)
     peak, friction = 0.11e6 + 0.43 * pressure, 0.43 * pressure
-    # GfII grows with the peak (law/README.md, softening tables); the bricks in series store and give back; friction works over the slip
+    # GfII grows with the peak (law/README.md, softening tables). The bricks in series store energy and give it back.
+    # Friction does work over the slip.
     series = (
         0.5
         * (peak**2 - friction**2)

@@ -1,4 +1,5 @@
-// Cost of the law a subcontact and step, in columns and one by one: a build of its own, not a test.
+// Measures the time that the law takes for one subcontact and one step, in columns and one by one. It is a program of
+// its own and not a test:
 //   cmake -S . -B build -DMASONRY_BENCHMARKS=ON && make -C build benchmark_law && build/benchmark_law
 #include "law/piecewise_softening/JointColumns.hpp"
 #include <algorithm>
@@ -12,12 +13,12 @@ constexpr int joints = 816, points = 12; // as many subcontacts as COMP-4 has
 constexpr int size = joints * points;
 constexpr int most = JointColumns::most;
 
-// Jumps that keep subcontacts in one regime, after a jump that brings them there.
+// The first jump brings subcontacts into a regime; the jumps after it keep them there.
 struct Regime {
     const char* name;
     Jump before, jump;
     bool turns;           // whether the jump changes its sign with every step
-    int every = 1;        // which joints move: all, or every so many; the others rest
+    int every = 1;        // every how many joints one moves; the others are at rest
     double dilatancy = 0; // [-]
 };
 const Jump press{-1e-6, {}}; // to 0.34 MPa

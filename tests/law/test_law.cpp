@@ -59,7 +59,8 @@ struct Path {
     double lost() const { return dissipated.tension + dissipated.shear + dissipated.compression; }
 };
 
-// Approx adds 1 to the size of the numbers unless it is told another scale: nothing in metres would ever differ.
+// doctest's Approx takes 1 plus the size of the numbers as their scale unless another is set. Numbers in metres, which
+// are much smaller than 1, would then never differ.
 doctest::Approx within(double value, double relative) {
     return doctest::Approx(value).epsilon(relative).scale(value == 0 ? 1 : 0);
 }
@@ -219,7 +220,9 @@ TEST_CASE("a slipping joint with dilatancy opens by tan(psi) per slip, and decay
 
 TEST_CASE("dilatancy dies away with the slip and ends at tan(psi) over its decay") {
     JointProperties q = bed;
-    q.dilatancy = 0.2, q.dilatancyDecay = 2000, q.cap = false; // what it presses is 33 MPa
+    q.dilatancy = 0.2;
+    q.dilatancyDecay = 2000;
+    q.cap = false; // without it, because dilatancy causes a pressure of 33 MPa
     Path p(q);
     p.move({0, {3e-3, 0}}, 20000);
     const double s = p.state.slip;
@@ -355,7 +358,7 @@ TEST_CASE("refusals name the joint, the value with its unit and the bound, all a
         {[](P& p) { p.dilatancyDecay = -1; }, "dilatancy decay -1 1/m must be at least 0"},
         {[](P& p) { p.modeIFractureEnergy = 0; }, "mode I fracture energy 0 J/m² must be above 0"},
         {[](P& p) { p.modeIIFractureEnergy = -1; }, "mode II fracture energy -1 J/m² must be above 0"},
-        {[](P& p) { p.tensileStrength = 1e-160; }, // its square is no number, and 0/0 in the table was none either
+        {[](P& p) { p.tensileStrength = 1e-160; }, // its square is 0, and 0/0 in the table is not a number
          "mode I strength 1e-160 Pa, stiffness 3.352e+11 Pa/m and fracture energy 16 J/m² are too far apart for an "
          "exponential table"},
         {[](P& p) { p.compressiveStrength = 0; }, "compressive strength 0 Pa must be above 0"},
@@ -460,7 +463,7 @@ TEST_CASE("on a million random steps no yield surface is passed, nothing heals a
             scale = std::max(scale, stress + path.k.normal * size);
             work += std::abs(path.work);
             bool fine = std::isfinite(stress + s.opening + s.crushing + s.dilation + s.slip + path.lost());
-            const auto f = path.law.yield(path.k, s); // round-off of the trial stress, not of the strength
+            const auto f = path.law.yield(path.k, s); // its round-off is that of the trial stress, not of the strength
             fine &= f.tension <= 1e-12 * scale && f.slip <= 1e-12 * scale && f.cap <= 1e-11 * scale * scale;
             fine &= s.tensionDamage >= old.tensionDamage && s.shearDamage >= old.shearDamage && s.slip >= old.slip &&
                     s.crushing >= old.crushing && s.dilation >= old.dilation &&
@@ -511,7 +514,7 @@ TEST_CASE("turning the slide turns the shear stress") {
 
 TEST_CASE("crushing under shear adds the lost shear over ks to the slip") {
     JointProperties p;
-    p.cohesion = 100e6; // so that nothing but the cap acts
+    p.cohesion = 100e6; // so large that only the cap acts
     Path path(p);
     const Jump jump{-1e-3, {2e-5, 0}};
     path.step(jump);
@@ -528,7 +531,8 @@ namespace {
 
 std::shared_ptr<const JointLaw> lawOf(const JointProperties& p) { return std::make_shared<const JointLaw>(p); }
 
-// What differs between a subcontact that the law for one has moved and the same in columns; empty if nothing does.
+// What differs between a subcontact after the law for one subcontact and the same one after the law in columns; empty
+// if nothing does.
 std::string difference(const Path& path, double normalStress, const JointState& s, const Energies& lost) {
     const auto& one = path.state;
     std::string all;
@@ -553,7 +557,7 @@ std::string difference(const Path& path, double normalStress, const JointState& 
     return all;
 }
 
-// Subcontacts in columns beside the same ones, each moved by the law for one.
+// Subcontacts in columns, and the same ones each moved by the law for one subcontact.
 struct Twins {
     JointColumns columns;
     std::vector<Path> paths;
@@ -666,7 +670,7 @@ TEST_CASE("in columns whole blocks open, slip, dilate and crush as the law for o
                  {"dilating less and less", {-1e-6, {}}, {0, {1e-7, 2e-8}}, 0.2, 3e3, Regime::Slipping},
                  {"crushing", {-1e-5, {}}, {-1e-5, {1e-7, 0}}, 0, 0, Regime::Crushing}};
     for (const auto& c : cases)
-        for (int every : {1, 4}) { // all joints of a block, or so many of them
+        for (int every : {1, 4}) { // all joints move, or one of four
             JointProperties p;
             p.dilatancy = c.dilatancy;
             p.dilatancyDecay = c.decay;
@@ -734,7 +738,7 @@ TEST_CASE("energies of columns are those of the subcontacts times their areas, w
                     columns.advanceOne(point, j, {(j < 16 ? 1e-9 : 1e-6) * dice.between(-2, 1), {j * 1e-9, -j * 1e-9}});
         for (bool alike : {false, true}) {
             const int row = alike ? JointColumns::most : columns.stride();
-            std::vector<double> area(std::size_t(points) * row, 1e300); // in the padding, too
+            std::vector<double> area(std::size_t(points) * row, 1e300); // also in the padding, which must not be summed
             for (int point = 0; point < points; ++point)
                 for (int j = 0; j < joints; ++j)
                     area[point * row + j % row] = 1e-3 * (1 + point) * (1 + (alike ? j % row : j));
@@ -824,7 +828,7 @@ TEST_CASE("every property is described once, with a meaning, a unit and a source
         }
     });
     CHECK(names.size() == 24);
-    CHECK(bytes + 16 >= sizeof(JointProperties)); // no member is left out; what else there is, is the switches' padding
+    CHECK(bytes + 16 >= sizeof(JointProperties)); // no member is left out; the rest is the padding after the switches
     CHECK(names.count("compressiveFractureEnergy") == 1);
 }
 

@@ -82,7 +82,7 @@ def test_a_module_imports_only_those_above_it(module):
 
 
 def test_no_circle_of_imports():
-    """Follows from the order; here it is looked for by itself, so that a wrong order cannot hide one."""
+    """This follows from the order of the modules. It is tested separately, in case the order given here is wrong."""
     graph = {
         module: {
             ownModule(name)

@@ -182,7 +182,7 @@ def test_a_preset_stands_for_its_options_and_keeps_its_promise(name):
         (["--damping", "0.5", "--divisions", "3"], ["divisions", "damping"]),
         (["--set", "bed.cohesion=1e5"], ["set"]),
         (["--crack-surfaces", "off"], ["crack_surfaces"]),
-        (["--rate", "50", "--crack-surfaces", "on"], []),  # as it is anyway
+        (["--rate", "50", "--crack-surfaces", "on"], []),  # the preset's own values
     ],
 )
 def test_an_option_beside_a_preset_wins_and_drops_the_promise(words, dropped):
@@ -273,7 +273,7 @@ def test_rows_that_a_full_disk_takes_stay_whole(tmp_path):
     if process == 0:
         os._exit(0 if child() else 1)
     assert os.waitpid(process, 0)[1] == 0
-    # as many lines of 5 bytes as fit after the first 3
+    # As many lines of 5 bytes as fit after the first 3.
     assert results.readCurve(folder)["a_mm"] == [1] * 3 + [3] * 17
 
 
@@ -287,9 +287,10 @@ def test_dynamic_imbalance_is_the_share_of_the_force_that_does_not_arrive():
     assert curves.dynamicImbalance(drag, base) == pytest.approx(0.25 / 1.25, rel=1e-9)
     swing = [b + 0.25 * (-1) ** i for i, b in enumerate(base)]
     assert curves.dynamicImbalance(swing, base) == pytest.approx(0.25 / 1.25, rel=1e-9)
-    start = [b + 0.25 * (b < 0.4) for b in base]  # that it swings at first is no harm
+    # A vibration at the start must not count.
+    start = [b + 0.25 * (b < 0.4) for b in base]
     assert curves.dynamicImbalance(start, base) == 0
-    after = base + [0.2] * 100  # nor what it does when it breaks
+    after = base + [0.2] * 100  # what follows after it breaks must not count either
     assert curves.dynamicImbalance(base + [0.9] * 100, after) == 0
     stuck = [0.1 * b for b in base]
     assert curves.dynamicImbalance(base, stuck) == pytest.approx(

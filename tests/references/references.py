@@ -1,4 +1,4 @@
-"""Short runs whose numbers are stored, so that a rewrite of the internals can be held against them.
+"""Short runs whose numbers are stored, so that a rewrite of the internals can be compared with them.
 
     yade -n -x tests/references/references.py             # compares all runs with what is stored
     yade -n -x tests/references/references.py --write     # makes the stored files anew, with the plugin that is imported
@@ -8,7 +8,7 @@ A run is a scene and its stages. After each stage the state is read through the 
 of loads, forces on the base, energies, two bodies, sums and extremes over all joints, and a fingerprint of every number
 of every joint, body and node. Time steps are written down here and not taken from criticalTimeStep(), so that a change
 of the limit in its last digit changes the limit alone. The numbers are those of glibc 2.36 on a processor with FMA
-(glibc takes other polynomials without it) and hang on no number of threads.
+(glibc uses other polynomials without it). They do not depend on the number of threads.
 """
 
 import hashlib
@@ -71,12 +71,12 @@ def step(count):
 
 
 def spread(rows):
-    """Sum, smallest and largest of every column. The sum is rounded once, so the order of the rows is no matter."""
+    """Sum, smallest and largest of every column. The sum is rounded once, so the order of the rows does not matter."""
     return [f(column) for column in zip(*rows) for f in (math.fsum, min, max)]
 
 
 def state():
-    """All that is stored of an instant: quantity -> list of numbers; and the fingerprint of what stands behind them."""
+    """What is stored of an instant: quantity -> list of numbers; and a fingerprint of all numbers of the state."""
     joints = sorted(O.interactions.all(), key=lambda i: (i.id1, i.id2))
     points = {
         "stress [Pa]": [s for i in joints for s in i.phys.stress],
@@ -122,7 +122,8 @@ def state():
         x for rows in (*points.values(), *motions.values()) for r in rows for x in r
     ]
     behind += [x for values in numbers.values() for x in values]
-    packed = struct.pack(f"{len(behind)}d", *(x + 0.0 for x in behind))  # no -0.0
+    # + 0.0 turns -0.0 into 0.0.
+    packed = struct.pack(f"{len(behind)}d", *(x + 0.0 for x in behind))
     return numbers, hashlib.sha256(packed).hexdigest()[:16]
 
 
@@ -292,7 +293,7 @@ def kinds():
 
 
 def couplets(dt, turn=STRAIGHT, damping=0.6, kind="local"):
-    """For every kind of joint a brick on it, and on the brick, by an elastic joint, a block driven up and along."""
+    """One stack for every kind of joint: two bricks with this joint, and a driven block on them with an elastic one."""
     inPlane = turn == STRAIGHT
     mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
     offered, drives = kinds(), []
@@ -386,7 +387,7 @@ def tilted(dt, turn=STRAIGHT, rows=1, deformable=False, about=(0, 1, 0), rate=2.
 
 
 def flying(dt, kind="local", damping=0.1):
-    """A brick that spins about no axis of its own, and a pair that spins until its joint breaks."""
+    """A brick that spins about none of its principal axes, and a pair that spins until its joint breaks."""
     mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
     for low in ((0, 0, 0), (0, 0, HEIGHT), (1, 0, 0)):
         high = [a + b for a, b in zip(low, (LENGTH, THICKNESS, HEIGHT))]
@@ -420,7 +421,7 @@ def otherEngines():
 
 
 def outOfThePlane():
-    """A planar run that goes on in space."""
+    """A run that is planar at first, and then leaves the plane."""
     for body in (5, 9):
         O.bodies[body].state.pos += Vector3(0, 2e-6, 0)
         O.bodies[body].state.blockedDOFs = ""
@@ -444,10 +445,10 @@ class Run:
     build: callable  # takes the keywords
     stages: list  # (instant, steps to it, what is changed before them)
     keywords: dict
-    through: str = (
-        ""  # what the scene goes through after its second stage: "checkpoint" or "file"
+    through: str = ""  # after its second stage the scene is saved and loaded: by "checkpoint" or "file"
+    like: str = (
+        ""  # name of the run whose stored numbers this one must give; empty: its own
     )
-    like: str = ""  # the run whose stored numbers it must give; its own if empty
 
 
 def run(build, stages, through="", like="", **keywords):
@@ -582,7 +583,7 @@ def write(name, instants):
 
 
 def stored(name):
-    """As go() gives it."""
+    """The stored instants of a run, in the form in which go() gives them."""
     with open(pathOf(name)) as f:
         instants = json.load(f)["instants"]
     return {
@@ -599,7 +600,7 @@ def stored(name):
 
 
 def sizes(instants):
-    """Largest number of every quantity in a run; an error of a balance is a share, so its size is 1."""
+    """Largest number of every quantity in a run. The error of a balance is relative already, so its size is 1."""
     largest = {}
     for numbers, _ in instants.values():
         for quantity, values in numbers.items():
@@ -609,7 +610,7 @@ def sizes(instants):
 
 
 def differences(name, instants):
-    """(instant, quantity, difference over the size of the quantity) of all that is not, bit for bit, what is stored."""
+    """All that differs in any bit from the stored numbers: (instant, quantity, difference over the quantity's size)."""
     before, found = stored(name), []
     if list(before)[: len(instants)] != list(instants):
         return [("all", "instants", math.inf)]

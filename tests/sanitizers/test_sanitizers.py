@@ -75,10 +75,12 @@ def test_memory_and_arithmetic_are_sound_in(programs, ring):
 
 
 def test_no_two_threads_race(tmp_path):
-    """The panels of test_joint_loop.py on two threads. GCC's OpenMP runtime hides from ThreadSanitizer what waits for
-    what, and every loop would be reported. Clang's runtime, which has the same entry points, takes its place, and its
-    tool Archer tells. The host's own code is not instrumented, so only races in which ours has a part can be seen.
-    A thread of Python then reads joints, energies and nodes beside a run in the background.
+    """The panels of test_joint_loop.py on two threads; then a Python thread reads joints, energies and nodes while a run
+    works in the background.
+
+    ThreadSanitizer does not see where threads wait for each other in GCC's OpenMP runtime, and would report every loop.
+    So Clang's runtime, which has the same entry points, takes its place, and its tool Archer reports these waits. The
+    host's own code is not instrumented, so only races in which code of this plugin has a part are found.
     """
     if not os.path.exists(ARCHER):
         pytest.skip(ARCHER + " is missing (apt-get install libomp-14-dev)")

@@ -1,4 +1,4 @@
-"""Runs that are killed, interrupted or refused by the disk, and taken up again: the curve is that of a whole run."""
+"""Runs that are killed, interrupted or stopped by a full disk, and resumed. Their curve must be that of a whole run."""
 
 import os
 import random
@@ -16,7 +16,7 @@ from small import SMALL, carryOut, parsed, scene as runScript
 
 
 def files(folder):
-    """What a resumed run must leave as a whole one does, to the byte."""
+    """Contents of the files that a resumed run and a whole one must have in common, byte for byte."""
     wanted = (".csv", ".vtu", ".vtp", ".pvd")
     names = sorted(n for n in os.listdir(folder) if n.endswith(wanted))
     return {n: open(os.path.join(folder, n), "rb").read() for n in names}
@@ -53,7 +53,7 @@ def test_a_wall_killed_ten_times_leaves_the_curve_of_a_whole_run(runScene, tmp_p
         while stamp() == before or readCheckpoint(kept)["at"]["steps"] < moment:
             assert process.poll() is None
             time.sleep(0.005)
-        time.sleep(dice.uniform(0, 0.05))  # within a write, or between two
+        time.sleep(dice.uniform(0, 0.05))  # at any moment, also while a file is written
         process.kill()
         assert process.wait() == -signal.SIGKILL
     assert start().wait() == 0
@@ -219,9 +219,8 @@ def test_a_full_disk_is_told_and_the_run_goes_on(scene, tmp_path, at, capsys):
     assert said in capsys.readouterr().err
     assert seen["before"] == seen["after"]
     assert files(tmp_path / "full") == files(tmp_path / "whole")
-    assert (
-        readCheckpoint(kept)["at"]["memory"]["moved"] > 0.25
-    )  # the disk has room again
+    # The disk has room again.
+    assert readCheckpoint(kept)["at"]["memory"]["moved"] > 0.25
 
 
 @pytest.mark.parametrize("lost", ["curve.csv", "joints_0001.vtp", "run.json.new"])
@@ -253,7 +252,7 @@ def test_a_run_whose_results_cannot_be_written_goes_on_when_there_is_room(
 
 
 def test_a_row_waits_for_a_fifth_of_a_second_at_most(scene, tmp_path, at):
-    """While steps are slow every row is written at once, while they are quick several together."""
+    """While steps are slow, every row is written at once; while they are fast, several rows are written together."""
     seen = []
 
     def look(run):
@@ -314,7 +313,7 @@ def broken(scene, tmp_path, at):
 
 
 def refused(out, *words, wall=SMALL):
-    """The status of a refusal, which must leave the folder as it is."""
+    """Exit status of a run that is refused. The refusal must not change the folder."""
     everything = {n: open(out / n, "rb").read() for n in os.listdir(out)}
     try:
         status = run(out, *words, wall=wall, resume=True)

@@ -42,9 +42,8 @@ def test_joints_and_units_in_series_give_back_the_masonry(
     joint, young = model.joints["bed"].normalStiffness, 20.2e9
     assert 8 / joint + 1.2 / young == pytest.approx(1.2 / 4.068e9, rel=1e-9)
     own = 2600 * 9.81 * 1.2 / 2  # mean stress of the wall's weight [Pa]
-    expected = (0.875e6 + own) * (
-        9 / joint + 1.2 / young
-    )  # nine joints, two outer ones
+    # Nine joints, two outer ones.
+    expected = (0.875e6 + own) * (9 / joint + 1.2 / young)
     assert -loaded == pytest.approx(expected, rel=tolerance)
 
 

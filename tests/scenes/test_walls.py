@@ -44,9 +44,8 @@ def squat(tmp_path_factory):
 
 def test_the_squat_wall_peaks_between_friction_and_the_cracked_section(squat):
     run = readRun(squat)
-    assert (
-        92.0 * 0.99 <= run["peak_base_shear_kN"] <= 130.6 * 0.99
-    )  # validation/README.md, for 3.96 of 4.00 m
+    # validation/README.md, for 3.96 of 4.00 m.
+    assert 92.0 * 0.99 <= run["peak_base_shear_kN"] <= 130.6 * 0.99
     assert 1 < run["displacement_at_peak_mm"] < 4
     assert (
         run["units"] == 1224
@@ -63,7 +62,7 @@ def test_the_squat_wall_peaks_between_friction_and_the_cracked_section(squat):
 
 
 def documented():
-    """The keys of run.json that its module lists."""
+    """The keys of run.json that the docstring of the module results lists."""
     return set(re.findall(r"``(\w+)``", results.__doc__))
 
 
@@ -92,9 +91,8 @@ def test_the_squat_wall_leaves_what_is_promised(squat):
     curve = readCurve(squat)
     assert list(run["columns"]) == list(curve)
     assert {"time_s", "displacement_mm", "base_shear_kN", "vertical_mm"} <= set(curve)
-    assert (
-        0.005 < np.max(np.diff(curve["displacement_mm"])) <= 0.02
-    )  # at least one row every 0.02 mm
+    # At least one row every 0.02 mm.
+    assert 0.005 < np.max(np.diff(curve["displacement_mm"])) <= 0.02
     total = lambda columns: sum(np.array(curve[c]) for c in columns)
     stored = [c for c in curve if c.startswith(("elastic_", "dissipated_"))]
     assert np.allclose(total(ENERGY_IN), total(ENERGY_OUT) + total(stored), rtol=1e-6)
@@ -109,7 +107,8 @@ def test_frames_show_units_and_subcontacts_with_their_state(squat):
     blocks, joints = readFrame(squat, "blocks"), readFrame(squat, "joints")
     assert len(blocks["cells"]) == 1226 and len(joints["cells"]) == 9800
     assert blocks["displacement"][:, 0].max() == pytest.approx(4e-3, rel=0.02)
-    assert np.abs(blocks["displacement"][:, 1]).max() < 1e-12  # in its plane
+    # No displacement out of the plane of the wall.
+    assert np.abs(blocks["displacement"][:, 1]).max() < 1e-12
     assert joints["area"].sum() == pytest.approx(
         2450 * 0 + 35 * 3.96 * 0.102 + 34 * 35 * 0.081 * 0.102, rel=1e-9
     )
@@ -129,9 +128,8 @@ def test_frames_show_units_and_subcontacts_with_their_state(squat):
 def test_the_squat_wall_cracks_along_its_diagonal(squat):
     joints = readFrame(squat, "joints")
     centres = np.array([joints["points"][c].mean(axis=0) for c in joints["cells"]])
-    opened = (np.abs(joints["normal"][:, 0]) > 0.5) & (
-        joints["opening"] > 0.05e-3
-    )  # head joints
+    # Head joints.
+    opened = (np.abs(joints["normal"][:, 0]) > 0.5) & (joints["opening"] > 0.05e-3)
     course = np.floor(centres[opened, 2] / 0.081).astype(int)
     steps = sorted(set(course))
     assert len(steps) > 17  # more than half of the courses
@@ -242,7 +240,7 @@ def test_before_it_cracks_a_mirrored_push_gives_the_mirrored_force(scene, tmp_pa
             O.step()
         forces.append(base(model)[0])
     assert abs(forces[0]) > 500
-    # local damping switches on the sign of velocities that are round-off at rest, so mirrored runs part a little
+    # Local damping depends on the sign of velocities, which are round-off at rest. So mirrored runs differ a little.
     assert forces[0] == pytest.approx(-forces[1], rel=2e-3)
 
 

@@ -17,16 +17,12 @@ void BodyColumns::read(const yade::Scene& scene) {
     bodies_.assign(count, nullptr);
     states_.assign(count, nullptr);
     for (int b = 0; b < count; ++b) {
+        seen_[b].blocked = 63; // as long as there is no body with this id
         if (!all[b]) continue;
         bodies_[b] = all[b].get();
         states_[b] = all[b]->state;
-        if (states_[b])
-            take(b);
-        else
-            seen_[b].blocked = 63;
+        if (states_[b]) take(b);
     }
-    for (int b = 0; b < count; ++b)
-        if (!states_[b]) seen_[b].blocked = 63; // there is no body with this id
 }
 
 bool BodyColumns::fits(const yade::Scene& scene, bool thoroughly) const {

@@ -32,7 +32,7 @@ namespace masonry {
 
 namespace {
 
-struct Field { // of the files
+struct Field { // a column of numbers in the files
     const char* name;
     int components;
     Property about;
@@ -44,7 +44,7 @@ const Field fields[] = {
     {"body", 1, described("Id of the unit's body")},
     {"stress", 6, number("Pa", "Stress of a zone of a deformable unit: xx, yy, zz, xy, yz, xz; zero in rigid units")},
     {"principal_stress", 3, number("Pa", "Principal stresses of a zone, the smallest first")},
-    {"opening", 1, number("m", "Total opening of a subcontact, negative closed")},
+    {"opening", 1, number("m", "Total opening of a subcontact; negative where it is closed")},
     {"slip", 1, number("m", "Accumulated plastic slip of a subcontact")},
     {"slide", 3, number("m", "Slide of a subcontact since the reference state")},
     {"normal", 3, described("Unit normal of the joint in the reference state, from its first body to its second")},
@@ -56,7 +56,7 @@ const Field fields[] = {
     {"crushing", 1, number("m", "Plastic closure of a subcontact")},
     {"area", 1, number("m²", "Area of a subcontact")},
     {"joint_dissipated", 3, number("J", "Energy that the whole joint dissipated in tension, shear and compression")},
-    {"regime", 1, described("What acted in the last step: 0 elastic, 1 opening, 2 slipping, 3 crushing")},
+    {"regime", 1, described("Regime in the last step: 0 elastic, 1 opening, 2 slipping, 3 crushing")},
     {"kind", 1, described("Number of the joint's kind in `kinds`")},
     {"bodies", 2, described("Ids of the two bodies of the joint")},
 };

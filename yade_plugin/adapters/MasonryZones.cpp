@@ -346,7 +346,7 @@ void MasonryZones::action() {
     const int count = int(batches_.size());
     std::vector<NodeSums> sums(count);
     std::vector<Row> energies(count);
-    std::size_t most = 0; // nodes of a batch
+    std::size_t most = 0; // largest number of nodes of a unit
     for (const auto& batch : batches_)
         most = std::max(most, batch.elasticity->masses().size());
 #pragma omp parallel

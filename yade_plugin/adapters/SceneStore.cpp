@@ -14,10 +14,27 @@
 
 namespace masonry {
 
+namespace {
+
+// Holds the interpreter while it exists, in whatever thread.
+class WithInterpreter {
+public:
+    WithInterpreter() : state_(PyGILState_Ensure()) {}
+    ~WithInterpreter() { PyGILState_Release(state_); }
+    WithInterpreter(const WithInterpreter&) = delete;
+    WithInterpreter& operator=(const WithInterpreter&) = delete;
+
+private:
+    PyGILState_STATE state_;
+};
+
+} // namespace
+
 SceneStore::SceneStore(yade::Scene& scene) : scene_(scene), life_(scene.shared_from_this()) {}
 
 SceneStore& SceneStore::of(yade::Scene& scene) {
-    static std::vector<std::unique_ptr<SceneStore>> all;
+    // Never destroyed: what it holds may belong to Python, which ends first.
+    static auto& all = *new std::vector<std::unique_ptr<SceneStore>>;
     for (auto& store : all)
         if (&store->scene_ == &scene && !store->gone()) return *store;
     all.erase(std::remove_if(all.begin(), all.end(), [](const auto& store) { return store->gone(); }), all.end());
@@ -87,6 +104,7 @@ void SceneStore::update(Look look) {
     }
     if (sameBodies && seenChanges_ == changes && seenInteractions_ == scene_.interactions->currSize) return;
     checked_ = false;
+    const WithInterpreter python; // property sets that nothing refers to any more are given back to Python
     readJoints();
     bodies.read(scene_);
     if (zones)

@@ -68,8 +68,8 @@ void StepGate::lock() {
         ++waiting_;
         wait(held, [&] {
             if (depth_ > 0 || acting_) return false;
-            return !inStep_ || stepper_ == me ||
-                   !runsInBackground(); // a step that failed may never have called leave()
+            // A step that failed may never have called leave(), so it is not waited for once the run has ended.
+            return !inStep_ || stepper_ == me || !runsInBackground();
         });
         --waiting_;
         reader_ = me;

@@ -76,7 +76,10 @@ public:
     template <class T> void operator()(const std::string& name, T& value) {
         if constexpr (std::is_same<T, std::string>::value) {
             auto& text = file_.texts[owner + name];
-            back ? value = text : text = value;
+            if (back)
+                value = text;
+            else
+                text = value;
         } else if constexpr (plain<T>())
             several(name, &value, 1);
     }
@@ -95,7 +98,10 @@ public:
         for (std::size_t i = 0; i < count; ++i)
             each(values[i], [&](double& number) {
                 auto& kept = flat[next++];
-                back ? number = kept : kept = number;
+                if (back)
+                    number = kept;
+                else
+                    kept = number;
             });
     }
     [[noreturn]] void damaged(const std::string& name) const {

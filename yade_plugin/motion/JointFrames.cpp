@@ -108,8 +108,8 @@ MASONRY_VECTORISED void jumpRigid(int n, const double* __restrict ax, const doub
         jy[i] = j1;
         jz[i] = j2;
         const double shrink = 1 - 2 * (v0 * v0 + v1 * v1 + v2 * v2), along = 2 * (v0 * a0 + v1 * a1 + v2 * a2);
-        out.arm[0][i] =
-            shrink * a0 + along * v0 + 0.5 * c0; // half^T a + jump / 2, as forces act at the middle of the jump
+        // half^T a + jump / 2, as forces act at the middle of the jump
+        out.arm[0][i] = shrink * a0 + along * v0 + 0.5 * c0;
         out.arm[1][i] = shrink * a1 + along * v1 + 0.5 * c1;
         out.arm[2][i] = shrink * a2 + along * v2 + 0.5 * c2;
     }

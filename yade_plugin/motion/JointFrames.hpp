@@ -13,10 +13,11 @@
 
 namespace masonry {
 
-// Scratch of a batch of joints, small enough for the innermost cache. A column has one number for each joint.
+// Scratch of a batch of joints, small enough for the innermost cache. A column has one number for each joint. Vectors
+// without another remark are in the joint's frame.
 struct JointFrames {
     static constexpr int most = 32; // largest number of joints in a batch
-    double axes[9][most];           // matrix whose columns are normal and tangents in the joint's frame, row by row;
+    double axes[9][most];           // matrix whose columns are the frame's normal and tangents, row by row;
                                     // in a planar run 0 and 1 hold cosine and sine of the frame's angle
     double v[3][most];              // vector part of the unit quaternion `half`; in a planar run only 2 is used
     double w[most];                 // its scalar part
