@@ -67,6 +67,7 @@ def programs():
     return build("address,undefined,float-cast-overflow", "address", "rings")
 
 
+@pytest.mark.xdist_group("address")  # one build for all three
 @pytest.mark.parametrize("ring", ["law", "blocks", "files"])
 def test_memory_and_arithmetic_are_sound_in(programs, ring):
     program = os.path.join(programs, "test_" + ring)
