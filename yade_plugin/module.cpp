@@ -86,6 +86,11 @@ py::tuple criticalTimeStep() {
     return py::make_tuple(limit.dt, limit.id1, limit.id2);
 }
 
+void gather() {
+    const BetweenSteps still;
+    SceneStore::present().update();
+}
+
 void connected() {
     const BetweenSteps still;
     auto& store = SceneStore::present();
@@ -134,6 +139,7 @@ static void registerAll() {
         "(dt, id1, id2): the stable time step [s] under the damping of O.engines, at most 1.1 % below the limit, and "
         "the pair of bodies whose joint sets it (twice the same for a deformable unit). Ask again after changing "
         "joints, masses, blocked motions or damping.");
+    py::def("gather", &gather, "Move the joints that are there into their columns. For connect().");
     py::def(
         "connected", &connected,
         "Tell the plugin that all blocks have their joints. A block that is added later and has no joint is then an "

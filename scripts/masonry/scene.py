@@ -5,10 +5,11 @@ import math
 from yade import O, Vector3, polyhedra_utils, utils
 from yade.wrapper import *
 
-from ._masonry import connected, neighbours
+from ._masonry import connected, gather, neighbours
 
 #: A body that is thinner than this share of its length is no block.
 THINNEST = 1e-6
+
 
 def properties(cls):
     """The plugin's description of the properties of one of its classes: a list of dicts.
@@ -294,6 +295,7 @@ def _pairs(tolerance, allowGaps):
 def _connect(pairs, physics, rule):
     """Make the joints of all pairs, or none of them. Returns the interactions and the MasonryJoint objects."""
     made, problems, joints = [], [], {id(j): j for j in physics.joints}
+    due = 256
     try:
         for id1, id2 in pairs:
             try:
@@ -302,6 +304,11 @@ def _connect(pairs, physics, rule):
                 problems.append(str(error))
                 continue
             made.append(interaction)
+            if (
+                len(made) == due
+            ):  # what joints leave when they move into columns is free for the next ones
+                gather()
+                due += 256 + due // 4
             if rule:
                 bodies = O.bodies[interaction.id1], O.bodies[interaction.id2]
                 joint = rule(*bodies, interaction.geom)
