@@ -17,7 +17,6 @@ from yade import wrapper
 
 HERE = os.path.dirname(__file__)
 
-#: Promises that commit 0e9b866 does not keep; every later build must.
 BEGIN = """
 import sys
 sys.path.insert(1, "/usr/lib/x86_64-linux-gnu/yade-double/py")

@@ -11,6 +11,10 @@ yade -n -x [-j THREADS] validation/benchmark/benchmark.py --push wall_comp4 --un
 
 runs a scene with its options, in a process of its own, and prints the mean cost of a step over its whole push, and of a
 row of curve.csv. Two builds of the plugin are compared by PYTHONPATH.
+
+yade -n -x validation/benchmark/benchmark.py --wide 224 224
+
+builds one wall of so many courses and half units, and prints what its set-up and a step take and its memory.
 """
 
 import json
@@ -33,7 +37,8 @@ import studies  # noqa: E402
 OUT = os.path.join("results", "benchmark")
 BLOCKS = brickwork.runningBond(34, 36)
 PUSH = sys.argv[1:2] == ["--push"]
-STEPS = int(sys.argv[1]) if len(sys.argv) > 1 and not PUSH else 500
+WIDE = sys.argv[1:2] == ["--wide"]
+STEPS = int(sys.argv[1]) if len(sys.argv) > 1 and not (PUSH or WIDE) else 500
 
 
 def cost(steps):
@@ -83,11 +88,13 @@ def resident():
 
 
 def wide(courses, halfUnits):
-    """Cost of a step of a wall as laid.
+    """Cost of a step of a wall as laid, and of its set-up.
 
-    :returns: seconds a step, subcontacts, and bytes a half brick of YADE's bodies and of our joints
+    :returns: seconds a step, subcontacts, and a dict: bytes a half brick of YADE's bodies and of our joints, and seconds
+        of set-up with the first step
     """
     O.reset()
+    began = time.perf_counter()
     unit, joints = materials.calciumSilicateUnit(), materials.calciumSilicateJoints()
     before = resident()
     for b in brickwork.runningBond(courses, halfUnits):
@@ -102,6 +109,7 @@ def wide(courses, halfUnits):
     memory = {
         "body, B": (bodies - before) / count,
         "joints, B": (resident() - bodies) / count,
+        "set-up, s": time.perf_counter() - began,
     }
     return cost(max(1, STEPS * 1000 // count)), contacts, memory
 
@@ -242,5 +250,10 @@ def wholePush(name, *words):
 
 if PUSH:
     wholePush(*sys.argv[2:])
+elif WIDE:
+    seconds, contacts, more = wide(*map(int, sys.argv[2:4]))
+    print(f"{1e6 * seconds:.0f} µs a step, {contacts} subcontacts")
+    for name, value in more.items():
+        print(f"{name:12} {value:.1f}")
 else:
     compare()

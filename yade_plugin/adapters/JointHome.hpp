@@ -27,8 +27,8 @@ struct Home {
     }
 };
 
-// How a subcontact moves with the surface of a deformable unit: by the weighted mean of three of its nodes. Nodes
-// behind a weight of zero do not count. A subcontact at a node has the weights 1, 0, 0.
+// How a subcontact moves with the surface of a deformable unit: by the weighted mean of three of its nodes. A subcontact
+// at a node has the weights 1, 0, 0.
 struct Attachment {
     std::array<int, 3> nodes{0, 0, 0};      // numbers in the lists of MasonryZones
     std::array<double, 3> weights{1, 0, 0}; // their sum is 1
