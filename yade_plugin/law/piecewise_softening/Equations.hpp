@@ -21,6 +21,8 @@ struct Equations {                               // with the numbers of a kind o
     double Cn = 0;                               // [Pa]
     CompressionCurve curve;
     double stretch = 0;           // [m/Pa] 1/kn - 1/ownKn
+    double normalShift = 0;       // [-] the same over 1/ownKn, and the same of ks: what lumped units add to the ratio
+    double shearShift = 0;        //     at the peak
     double smallestFcSquared = 0; // [Pa²] below this the cap cannot act
     bool cap = false;             // whether the joint can crush
     bool elastic = false;         // whether no strength is ever reached
@@ -35,16 +37,31 @@ struct Equations {                               // with the numbers of a kind o
         return 1 - coupled(tensionDamage, shearDamage);
     }
 
-    // Displacement ratio in tension, eq. (12), beyond the peak with the joint's own stiffness.
-    MASONRY_INLINED double tensionRatio(double elasticOpening) const {
-        return 1 + (elasticOpening - onset) * ownKn / ft;
+    // Where a table is read: at the displacement ratio, and how far its rows move for lumped units (SofteningTable).
+    struct Reading {
+        double ratio, shift; // [-]
+    };
+
+    // In tension, eq. (12), at an elastic opening that was never as large. Only ft (1 - d_t)(1 - d_s) stretches units.
+    MASONRY_INLINED Reading tensionReading(double elasticOpening, double shearDamage) const {
+        return {elasticOpening * ownKn / ft, (1 - shearDamage) * normalShift};
     }
 
-    // Displacement ratio in shear, eqs. (13)-(15), with u = s + |tau|/ks [decided], under the trial stress `size`.
-    MASONRY_INLINED double shearRatio(double size, double sigma, double slip) const {
+    // Whether shear damage makes lumped units give opening back to the joint, which was open before: at the largest
+    // opening so far the table of tension is then read anew. Otherwise the stress would jump when it is passed
+    // [decided].
+    MASONRY_INLINED bool relaxes(double largestOpening) const { return (normalShift > 0) & (largestOpening > 0); }
+
+    // In shear, eqs. (13)-(15), with u = s + |tau|/ks [decided], under the trial stress `size`. The share of the peak
+    // that is left when the bond is lost, residual cohesion and friction, moves all rows alike.
+    MASONRY_INLINED Reading shearReading(double size, double sigma, double elasticOpening, double slip,
+                                         double tensionDamage) const {
         const double peak = cp - sigma * tanPhiP;
-        const double ratio = 1 + (slip + (size - peak) / ks) * ownKs / peak;
-        return peak > 0 ? ratio : HUGE_VAL;
+        const double rest = residualCohesion(elasticOpening) - (sigma < 0 ? sigma : 0) * tanPhiR;
+        const double share = (rest < peak ? rest : peak) / peak;
+        const double ratio = (slip + size / ks) * ownKs / peak - share * shearShift;
+        const double shift = (1 - tensionDamage) * (1 - share) * shearShift;
+        return {peak > 0 ? ratio : HUGE_VAL, peak > 0 ? shift : 0};
     }
 
     // ---- 1, opening ----------------------------------------------------------------------------------------------
@@ -87,9 +104,18 @@ struct Equations {                               // with the numbers of a kind o
 
     MASONRY_INLINED double friction(double intact) const { return tanPhiR + (tanPhiP - tanPhiR) * intact; } // eq. (17b)
 
+    // Residual cohesion at an elastic opening: faces that do not touch have none. It fades while the joint opens by
+    // cr/kn, because a loss at once would be a jump of the stress [decided].
+    MASONRY_INLINED double residualCohesion(double elasticOpening) const {
+        const double fading = cr - kn * elasticOpening;
+        const double open = fading > 0 ? fading : 0;
+        return open < cr ? open : cr;
+    }
+
     // Strength of slip, eqs. (16), (17a), never below zero.
-    MASONRY_INLINED double slipStrength(double intact, double sigma) const {
-        const double cohesion = cr + (cp - cr) * intact;
+    MASONRY_INLINED double slipStrength(double intact, double sigma, double elasticOpening) const {
+        const double rest = residualCohesion(elasticOpening);
+        const double cohesion = rest + (cp - rest) * intact;
         const double strength = cohesion - sigma * friction(intact);
         return strength > 0 ? strength : 0;
     }
@@ -104,8 +130,9 @@ struct Equations {                               // with the numbers of a kind o
         double share;    // [-] of the trial shear stress that is left
     };
     // Return from the trial shear stress `size` to the strength, eqs. (8b), (9).
-    MASONRY_INLINED Slid slide(double size, double sigma, double intact, double dilatancy) const {
-        const double strength = slipStrength(intact, sigma);
+    MASONRY_INLINED Slid slide(double size, double sigma, double elasticOpening, double intact,
+                               double dilatancy) const {
+        const double strength = slipStrength(intact, sigma, elasticOpening);
         const bool slides = size > strength;
         const double excess = (size - strength) / (ks + kn * friction(intact) * dilatancy);
         const double slip = slides ? excess : 0;
@@ -116,29 +143,35 @@ struct Equations {                               // with the numbers of a kind o
 
     // ---- 3, cap --------------------------------------------------------------------------------------------------
 
-    // The side of eq. (8c) that stresses make.
+    // The side of eq. (8c) that stresses make. A tensile stress counts as none: what the cap leaves of the shear stress
+    // at sigma = 0, fc/sqrt(Css), is the most that an open joint carries, too. So it does not jump when a joint closes
+    // [decided].
     MASONRY_INLINED double capStress(double sigma, double tauSquared) const {
-        return Cnn * sigma * sigma + Css * tauSquared + Cn * sigma;
+        const double pressed = sigma < 0 ? sigma : 0;
+        return Cnn * pressed * pressed + Css * tauSquared + Cn * pressed;
     }
 
     struct Crushed {
         bool crushes;
-        double share;   // [-] of the stresses that is left
+        double share;   // [-] of the shear stress and of a compressive stress that is left
+        double sigma;   // [Pa] normal stress after it
         double closure; // [m] plastic closure of the step
         double slip;    // [m] plastic slip of the step
     };
     // Radial return to eq. (8c) with the strength fc.
     MASONRY_INLINED Crushed crush(double sigma, double tauSquared, double fc) const {
-        const double quadratic = Cnn * sigma * sigma + Css * tauSquared;
-        const double linear = Cn * sigma;
-        const bool crushes = (sigma < 0) & (quadratic + linear > fc * fc);
+        const double pressed = sigma < 0 ? sigma : 0;
+        const double quadratic = Cnn * pressed * pressed + Css * tauSquared;
+        const double linear = Cn * pressed;
+        const bool crushes = quadratic + linear > fc * fc;
         const double root = std::sqrt(linear * linear + 4 * quadratic * fc * fc);
         const double positive = 2 * fc * fc / (linear + root);     // the same root of quadratic x² + linear x = fc²,
         const double negative = (root - linear) / (2 * quadratic); // each where it does not cancel
         const double scale = linear > 0 ? positive : negative;
-        const double closure = (sigma * scale - sigma) / kn;
+        const double closure = (pressed * scale - pressed) / kn;
         const double slip = (1 - scale) * std::sqrt(tauSquared) / ks;
-        return {crushes, crushes ? scale : 1, crushes ? closure : 0, crushes ? slip : 0};
+        const double left = sigma < 0 ? sigma * scale : sigma;
+        return {crushes, crushes ? scale : 1, crushes ? left : sigma, crushes ? closure : 0, crushes ? slip : 0};
     }
 
     // ---- energy --------------------------------------------------------------------------------------------------

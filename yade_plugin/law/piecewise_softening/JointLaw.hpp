@@ -28,6 +28,8 @@ public:
         e.ks = k.shear;
         e.onset = e.elastic ? HUGE_VAL : e.ft / k.normal;
         e.stretch = stretch(k);
+        e.normalShift = e.stretch * e.ownKn;
+        e.shearShift = (1 / k.shear - 1 / e.ownKs) * e.ownKs;
         return e;
     }
 
@@ -53,7 +55,8 @@ public:
         }
         if (moved.tears) {
             s.largestOpening = moved.farthest;
-            const double damage = tension_.damage(e.tensionRatio(moved.elastic));
+            const auto at = e.tensionReading(moved.elastic, s.shearDamage);
+            const double damage = tension_.damage(at.ratio, at.shift);
             if (damage > s.tensionDamage) {
                 s.tensionDamage = damage;
                 s.regime = Regime::Opening;
@@ -70,15 +73,20 @@ public:
         double slip = 0;
         double dilation = 0;
         s.shearStress = trial;
-        if (size > e.slipStrength(intact, s.normalStress)) {
-            const double damage = shear_.damage(e.shearRatio(size, s.normalStress, s.slip));
+        if (size > e.slipStrength(intact, s.normalStress, moved.elastic)) {
+            const auto at = e.shearReading(size, s.normalStress, moved.elastic, s.slip, s.tensionDamage);
+            const double damage = shear_.damage(at.ratio, at.shift);
             const bool weaker = damage > s.shearDamage;
             if (weaker) {
                 s.shearDamage = damage;
+                if (e.relaxes(s.largestOpening)) { // the units give back what the bond has lost
+                    const auto reopened = e.tensionReading(s.largestOpening, damage);
+                    s.tensionDamage = std::max(s.tensionDamage, tension_.damage(reopened.ratio, reopened.shift));
+                }
                 intact = Equations::intact(s.tensionDamage, s.shearDamage);
             }
             const bool dilates = !moved.open && e.tanPsi > 0;
-            const auto slid = e.slide(size, s.normalStress, intact, dilates ? e.dilatancy(s.slip) : 0);
+            const auto slid = e.slide(size, s.normalStress, moved.elastic, intact, dilates ? e.dilatancy(s.slip) : 0);
             if (slid.slides) {
                 const double before = s.dilation;
                 slip = slid.slip;
@@ -98,15 +106,15 @@ public:
         // 3, cap
         double crushingSlip = 0;
         double closure = 0;
-        if (e.cap && s.normalStress < 0) {
-            s.largestClosure = std::max(s.largestClosure, -s.opening);
+        if (e.cap) {
+            if (s.normalStress < 0) s.largestClosure = std::max(s.largestClosure, -s.opening);
             const double tau2 = s.shearStress.a * s.shearStress.a + s.shearStress.b * s.shearStress.b;
             if (e.capStress(s.normalStress, tau2) > e.smallestFcSquared) {
                 const double fc = e.curve.strength(s.largestClosure, e.stretch);
                 const auto crushed = e.crush(s.normalStress, tau2, fc);
                 if (crushed.crushes) {
                     const double before = s.crushing;
-                    s.normalStress *= crushed.share;
+                    s.normalStress = crushed.sigma;
                     s.crushing += crushed.closure;
                     closure = s.crushing - before;
                     crushingSlip = crushed.slip;
@@ -149,19 +157,23 @@ public:
     }
     double limitClosure(const ElasticStiffness& k) const { return own_.curve.limit(stretch(k)); }
 
-    // The yield functions at a state; at most zero after every step. F3 is -1 where the cap does not act, all are where
-    // no strength is ever reached.
+    // The yield functions at a state; at most zero after every step. F3 is -1 without a cap, all are where no strength
+    // is ever reached.
     struct Yield {
         double tension, slip, cap; // [Pa], [Pa], [Pa²]
     };
     Yield yield(const ElasticStiffness& k, const JointState& s) const;
+
+    // What is wrong with this joint between rigid units that make it show the stiffness k: a softening branch that
+    // would snap back. A sentence each. `distance` [m] is that of the units' centroids, so far as it is lumped into k.
+    std::vector<std::string> snapsBack(const ElasticStiffness& k, double distance) const;
 
     static double coupled(const JointState& s) { // d_ts, eq. (10)
         return Equations::coupled(s.tensionDamage, s.shearDamage);
     }
 
 private:
-    double stretch(const ElasticStiffness& k) const { return 1 / k.normal - 1 / p_.normalStiffness; }
+    double stretch(const ElasticStiffness& k) const { return 1 / k.normal - 1 / p_.normalStiffness; } // [m/Pa]
 
     JointProperties p_;
     SofteningTable tension_, shear_;
