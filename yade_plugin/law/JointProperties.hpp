@@ -141,30 +141,30 @@ template <class Visit> void JointProperties::describe(Visit&& visit) {
     visit("cyclic", &P::cyclic,
           described("Whether the joint follows the cyclic law, which is made for loads that come back, and not the "
                     "paper's law")
-              .source("law/README.md, The cyclic law"));
+              .source("law/cyclic_softening/README.md"));
     visit("shearStiffnessLoss", &P::shearStiffnessLoss,
           number("-", "Share omega_m of the shear stiffness that a joint without bond has lost; 0: it slips only")
               .atLeast(0)
               .atMost(0.99)
-              .source("[decided]: law/README.md, The cyclic law"));
+              .source("[decided]: law/cyclic_softening/README.md"));
     visit("compressionStiffnessLoss", &P::compressionStiffnessLoss,
           number("-", "Share rho of what crushing makes irreversible that is lost stiffness, and not plastic closure")
               .atLeast(0)
               .atMost(0.99)
-              .source("[decided]: law/README.md, The cyclic law"));
+              .source("[decided]: law/cyclic_softening/README.md"));
     visit("bondLossByCrushing", &P::bondLossByCrushing,
           number("-", "Share chi of the bond that a wholly crushed joint has lost")
               .atLeast(0)
               .atMost(1)
-              .source("[decided]: law/README.md, The cyclic law"));
+              .source("[decided]: law/cyclic_softening/README.md"));
     visit("initialClosingStiffness", &P::initialClosingStiffness,
           number("Pa/m", "Normal stiffness kn0 of a dry joint without stress; 0: joints close with kn, not on a curve")
               .atLeast(0)
-              .source("law/README.md, The cyclic law; no default, it is measured"));
+              .source("law/cyclic_softening/README.md; no default, it is measured"));
     visit("closureLimit", &P::closureLimit,
           number("m", "Closure cm at which the curve of a dry joint would be vertical")
               .atLeast(0)
-              .source("law/README.md, The cyclic law; no default, it is measured"));
+              .source("law/cyclic_softening/README.md; no default, it is measured"));
 }
 
 // Stiffness that a joint shows: its own, or in series with the rigid units at both sides.

@@ -5,6 +5,8 @@
 #include "JointState.hpp"
 #include "SofteningTable.hpp"
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace masonry {
 
@@ -31,6 +33,10 @@ public:
     virtual Yield yield(const ElasticStiffness&, const JointState&) const = 0;
     // Compression damage dc, eq. (21).
     virtual double compressionDamage(const ElasticStiffness&, const JointState&) const = 0;
+
+    // What is wrong with this joint between rigid units that make it show the stiffness k: a softening branch that
+    // would snap back. A sentence each. `distance` [m] is that of the units' centroids, so far as it is lumped into k.
+    virtual std::vector<std::string> snapsBack(const ElasticStiffness& k, double distance) const = 0;
 
     // Columns for the states of joints of this kind. The law must be held by a shared pointer.
     virtual std::unique_ptr<LawColumns> columns(const ElasticStiffness&, int joints, int points) const = 0;

@@ -47,6 +47,11 @@ struct Equations {                               // with the numbers of a kind o
         return {elasticOpening * ownKn / ft, (1 - shearDamage) * normalShift};
     }
 
+    // Whether shear damage makes lumped units give opening back to the joint, which was open before: at the largest
+    // opening so far the table of tension is then read anew. Otherwise the stress would jump when it is passed
+    // [decided].
+    MASONRY_INLINED bool relaxes(double largestOpening) const { return (normalShift > 0) & (largestOpening > 0); }
+
     // Share of the peak strength of slip that is left when the bond is lost: residual cohesion and friction.
     template <class T> MASONRY_INLINED T restOfPeak(const T& peak, const T& sigma, const T& elasticOpening) const {
         const T rest = residualCohesion(elasticOpening) - smaller(sigma, T{}) * tanPhiR;

@@ -81,6 +81,10 @@ public:
             const bool weaker = damage > s.shearDamage;
             if (weaker) {
                 s.shearDamage = damage;
+                if (e.relaxes(s.largestOpening)) { // the units give back what the bond has lost
+                    const auto reopened = e.tensionReading(s.largestOpening, damage);
+                    s.tensionDamage = std::max(s.tensionDamage, tension_.damage(reopened.ratio, reopened.shift));
+                }
                 intact = Equations::intact(s.tensionDamage, s.shearDamage);
             }
             const bool dilates = !moved.open && e.tanPsi > 0;
@@ -158,9 +162,7 @@ public:
 
     std::unique_ptr<LawColumns> columns(const ElasticStiffness& k, int joints, int points) const override;
 
-    // What is wrong with this joint between rigid units that make it show the stiffness k: a softening branch that
-    // would snap back. A sentence each. `distance` [m] is that of the units' centroids, so far as it is lumped into k.
-    std::vector<std::string> snapsBack(const ElasticStiffness& k, double distance) const;
+    std::vector<std::string> snapsBack(const ElasticStiffness& k, double distance) const override;
 
     static double coupled(const JointState& s) { // d_ts, eq. (10)
         return Equations::coupled(s.tensionDamage, s.shearDamage);

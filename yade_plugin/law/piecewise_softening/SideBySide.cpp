@@ -178,7 +178,8 @@ MASONRY_INLINED Mask openAll(const SideBySide& all, const SofteningTable& tensio
 }
 
 // 2, Coulomb slip. Tells whether one slides.
-MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& shear, Scratch& s) {
+MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& tension, const SofteningTable& shear,
+                              Scratch& s) {
     const Equations e = all.e;
     const Mask* waits = all.waits;
     const int count = all.count;
@@ -205,7 +206,12 @@ MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& shear
         for (int i = 0; i < count; ++i) {
             if (!s.asks[i] || !(s.shearDamage[i] < 1)) continue;
             const double damage = shear.damage(s.ratio[i], s.shift[i], all.rows[i].shear);
-            if (damage > s.shearDamage[i]) s.shearDamage[i] = damage;
+            if (!(damage > s.shearDamage[i])) continue;
+            s.shearDamage[i] = damage;
+            if (!e.relaxes(s.farthest[i])) continue;
+            const auto reopened = e.tensionReading(s.farthest[i], damage);
+            const double torn = tension.damage(reopened.ratio, reopened.shift, all.rows[i].tension);
+            s.tensionDamage[i] = std::max(s.tensionDamage[i], torn);
         }
         for (int i = 0; e.tanPsi > 0 && e.delta > 0 && i < count; ++i)
             if (s.asks[i] && !s.open[i]) s.dilatancy[i] = e.dilatancy(slip[i]);
@@ -409,7 +415,7 @@ void advanceSideBySide(const Equations& given, const SofteningTable& tension, co
     const SideBySide all{e, columns, rows, jumps, waits, count};
     Scratch s;
     const Mask tears = openAll(all, tension, s);
-    const Mask slides = slideAll(all, shear, s);
+    const Mask slides = slideAll(all, tension, shear, s);
     const Mask crushes = crushAll(all, s);
     if (crushes || (slides && e.tanPsi > 0)) keepIrreversible(all, s);
     if (crushes || slides) keepSlip(all, s);
