@@ -986,7 +986,7 @@ TEST_CASE("every property is described once, with a meaning, a unit and a source
         }
     });
     CHECK(names.size() == 30);
-    CHECK(bytes + 24 >= sizeof(JointProperties)); // three switches stand before numbers // no member is left out; the rest is the padding after the switches
+    CHECK(bytes + 24 >= sizeof(JointProperties)); // no member is left out; the rest is the padding after three switches
     CHECK(names.count("compressiveFractureEnergy") == 1);
 }
 
