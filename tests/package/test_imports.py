@@ -15,6 +15,7 @@ WITHOUT_YADE = [
     "brickwork",
     "columns",
     "curves",
+    "loops",
     "presets",
     "results",
     "figures",
