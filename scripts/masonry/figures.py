@@ -108,7 +108,7 @@ def curve(directory):
             (at, peak),
             textcoords="offset points",
             xytext=(6, 8) if peak >= 0 else (-6, -14),
-            ha="right" if looped and at > 0 or peak < 0 and at > 0 else "left",
+            ha="right" if looped and at > 0 else "left",
         )
     top.set_ylabel("shear [kN]")
     top.set_title(run["title"])
