@@ -6,7 +6,7 @@ Import it from a YADE script (or after ``import yade``)::
 
 The classes that it registers in YADE (``masonry.classes``) are also in ``yade.wrapper``; ``help()`` is their manual.
 Without YADE only the modules work that read results: :mod:`masonry.results`, :mod:`masonry.figures`,
-:mod:`masonry.measure`, and :mod:`masonry.presets`.
+:mod:`masonry.measure`, :mod:`masonry.loops`, and :mod:`masonry.presets`.
 """
 
 import sys

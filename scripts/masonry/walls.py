@@ -12,9 +12,17 @@ from typing import Callable
 from yade import O, Vector3
 from yade.wrapper import MasonryJoint, MasonryLoad, MasonryMat
 
-from . import brickwork, columns, materials
-from .curves import dynamicImbalance, initialStiffness
-from .loading import IMBALANCE, ROW_EVERY, tooFast
+from . import brickwork, columns, history, materials
+from .curves import cycleNumbers, dampedShare, dynamicImbalance, initialStiffness
+from .loading import (
+    DAMPED,
+    IMBALANCE,
+    ROW_EVERY,
+    frameSpacing,
+    tooDamped,
+    tooFast,
+    wayLength,
+)
 from .model import Model, drawFigures
 from .scene import addBlock
 
@@ -103,6 +111,8 @@ class WallModel(Model):
 
     def __init__(self, wall, args, functors=False):
         self.wall, self.title, self.functors = wall, wall.title, functors
+        if args.history:
+            self.columns = columns.WALL_LOOPS
         unit = wall.unitMaterial()
         joints = wall.joints(brittle=args.joints == "brittle")
         if not isinstance(unit, MasonryMat):
@@ -122,6 +132,8 @@ class WallModel(Model):
             0,
             0,
         )  # displacement of the top when the push began, along it and up [m]
+        #: Point of the history that the drive is going to: its number, from 1, and its displacement [mm].
+        self.aim = 0, 0.0
 
     # -- what is built --------------------------------------------------------------------------------------------
 
@@ -226,6 +238,7 @@ class WallModel(Model):
             orientation,
             self._upright,
             -up,
+            *self.aim,
         )
 
     # -- what comes out -------------------------------------------------------------------------------------------
@@ -234,9 +247,10 @@ class WallModel(Model):
         args = self.args
         nodes = len(self.zones.displacements) if self.zones else 0
         frame = 50 * self.subcontacts + 150 * len(O.bodies) + 100 * nodes
-        frames = 0 if args.no_vtk else args.until / args.vtk_every + 2
+        way, row = wayLength(args), 250
+        frames = 0 if args.no_vtk else way / frameSpacing(args) + 2
         least = 400e3 + frame * min(frames, 2)  # figures, first and last frame
-        return least, least + frame * frames + 250 * args.until / ROW_EVERY
+        return least, least + frame * frames + row * way / ROW_EVERY
 
     def describe(self):
         wall = self.wall
@@ -252,12 +266,16 @@ class WallModel(Model):
             "measure_height_m": wall.measureHeight,
             "load_line_fixed": wall.loadLineFixed,
         }
-        return dict(super().describe(), wall=measures)
+        told = dict(super().describe(), wall=measures)
+        if self.args.history:
+            told["history"] = history.describe(self.args.history)
+        return told
 
     def summary(self, column):
         shear, moved = column("base_shear_kN"), column("displacement_mm")
         at = max(range(len(shear)), key=shear.__getitem__)
         imbalance = dynamicImbalance(column("top_shear_kN"), shear)
+        found = self._loops(column) if self.args.history else {}
         return dict(
             peak_base_shear_kN=shear[at],
             displacement_at_peak_mm=moved[at],
@@ -266,14 +284,38 @@ class WallModel(Model):
             initial_stiffness_kN_per_mm=initialStiffness(moved, shear),
             dynamic_imbalance=imbalance,
             too_fast=imbalance > IMBALANCE,
+            **found,
+        )
+
+    def _loops(self, column):
+        """What the summary of a wall that follows a history has, too."""
+        shear, moved = column("base_shear_kN"), column("displacement_mm")
+        at = min(range(len(shear)), key=shear.__getitem__)
+        return dict(
+            negative_peak_base_shear_kN=shear[at],
+            displacement_at_negative_peak_mm=moved[at],
+            damped_share=dampedShare(column),
+            cycles=cycleNumbers(column),
         )
 
     def report(self, run):
         if run["too_fast"]:
             yield tooFast(self.args, run["dynamic_imbalance"])
-        yield (
-            f"{self.wall.name}: peak {run['peak_base_shear_kN']:.1f} kN at {run['displacement_at_peak_mm']:.2f} mm, "
+        peak = f"{run['peak_base_shear_kN']:.1f} kN at {run['displacement_at_peak_mm']:.2f} mm"
+        end = (
             f"{run['base_shear_end_kN']:.1f} kN at {run['displacement_end_mm']:.2f} mm"
+        )
+        if not self.args.history:
+            yield f"{self.wall.name}: peak {peak}, {end}"
+            return
+        if run["damped_share"] > DAMPED:
+            yield tooDamped(self.args, run["damped_share"])
+        other = (
+            f"{run['negative_peak_base_shear_kN']:.1f} kN at "
+            f"{run['displacement_at_negative_peak_mm']:.2f} mm"
+        )
+        yield (
+            f"{self.wall.name}: {len(run['cycles'])} cycles, peaks {peak} and {other}, {end}"
         )
 
     def draw(self, directory):
