@@ -114,15 +114,17 @@ class WallModel(Model):
         if args.history:
             self.columns = columns.WALL_LOOPS
         unit = wall.unitMaterial()
-        joints = wall.joints(brittle=args.joints == "brittle")
         if not isinstance(unit, MasonryMat):
             raise ValueError(f"wall {wall.name}: unitMaterial() gave {unit!r}")
+        joints = wall.joints(brittle=args.joints == "brittle")
         if not isinstance(joints, dict) or not all(
             isinstance(joint, MasonryJoint) for joint in joints.values()
         ):
             raise ValueError(
                 f"wall {wall.name}: joints() must give a dict of MasonryJoint by name, gave {joints!r}"
             )
+        if args.joints == "cyclic":
+            materials.makeCyclic(joints)
         self.halves = args.crack_surfaces == "on"
         problems = []
         if self.halves and "crack" not in joints:
