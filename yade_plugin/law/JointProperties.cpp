@@ -88,6 +88,14 @@ std::vector<std::string> JointProperties::problems() const {
         found.push_back("dilatancy " + text(dilatancy) +
                         " must be below (1 - shear stiffness loss)·ks/(friction·kn) = " + text(steepest) +
                         " in the cyclic law");
+    if (cyclic && cap && capLinear < 0)
+        found.push_back("cap linear " + text(capLinear) + " Pa must be at least 0 in the cyclic law");
+    if (cyclic && cap && compressionStiffnessLoss > 0 && (capNormal != 1 || capLinear != 0))
+        found.push_back("cap normal " + text(capNormal) + " and cap linear " + text(capLinear) +
+                        " Pa must be 1 and 0 in the cyclic law, or compression stiffness loss " +
+                        text(compressionStiffnessLoss) +
+                        " must be 0: how much of a closure is irreversible is only known "
+                        "for a cap whose strength under pure closure is that of the compression curve");
     if (cyclic && initialClosingStiffness > 0) {
         if (initialClosingStiffness >= normalStiffness)
             found.push_back("initial closing stiffness " + text(initialClosingStiffness) +

@@ -36,14 +36,10 @@ struct CyclicEquations : Equations {
         return smaller<T>(secant<T>(left, largestOpening), closing);
     }
 
-    // Pressure at which pure closure is on the cap.
-    template <class T> MASONRY_INLINED T pressureOnCap(const T& fc) const {
-        return (Cn + root(T(Cn * Cn + (4 * Cnn) * fc * fc))) / (2 * Cnn);
-    }
-    // Normal stiffness of a closed subcontact that has crushed up to kappa, where the cap's strength is fc.
+    // Normal stiffness of a closed subcontact that has crushed up to kappa, where the cap's strength is fc. Where rho
+    // is not zero, fc is the pressure at which pure closure is on the cap.
     template <class T> MASONRY_INLINED T closingStiffness(const T& kappa, const T& fc) const {
-        const T pressure = pressureOnCap(fc);
-        const T share = 1 - pressure / (ownKn * (kappa - pressure * stretch)); // of kappa that is irreversible
+        const T share = 1 - fc / (ownKn * (kappa - fc * stretch)); // of the joint's own closure that is irreversible
         const T weakened = 1 / (1 / ((1 - rho * share) * ownKn) + stretch);
         return choose((share > 0) & (kappa > limitClosure()), weakened, all<T>(kn));
     }

@@ -1,5 +1,6 @@
 #include "CyclicLaw.hpp"
 #include "CyclicColumns.hpp"
+#include "common/Text.hpp"
 
 namespace masonry {
 
@@ -91,6 +92,17 @@ Yield CyclicLaw::yield(const ElasticStiffness& k, const JointState& s) const {
             std::sqrt(tauSquared) - e.slipStrength(follows.intact, s.normalStress, w), -1};
     if (e.cap) f.cap = e.capStress(std::fmin(s.normalStress, 0), tauSquared) - follows.strength * follows.strength;
     return f;
+}
+
+std::vector<std::string> CyclicLaw::snapsBack(const ElasticStiffness& k, double distance) const {
+    auto found = paper_.snapsBack(k, distance);
+    const auto e = equations(k);
+    const double steepest = e.shearStiffness(e.omegaM) / (e.tanPhiP * e.kn);
+    if (e.tanPsi > 0 && !(e.tanPsi < steepest))
+        found.push_back("dilatancy " + text(e.tanPsi) + " must be below " + text(steepest) +
+                        ", shear stiffness over friction times normal stiffness, both with those of the rigid units in "
+                        "series: a joint that slides back would fall by itself");
+    return found;
 }
 
 std::unique_ptr<LawColumns> CyclicLaw::columns(const ElasticStiffness& k, int joints, int points) const {

@@ -36,9 +36,7 @@ public:
         return paper_.compressionDamage(k, s);
     }
 
-    std::vector<std::string> snapsBack(const ElasticStiffness& k, double distance) const override {
-        return paper_.snapsBack(k, distance);
-    }
+    std::vector<std::string> snapsBack(const ElasticStiffness& k, double distance) const override;
 
     std::unique_ptr<LawColumns> columns(const ElasticStiffness& k, int joints, int points) const override;
 
