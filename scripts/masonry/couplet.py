@@ -29,7 +29,9 @@ class CoupletModel(Model):
     columns = columns.COUPLET
 
     def __init__(self, args):
-        joints = materials.calciumSilicateJoints(brittle=args.joints == "brittle")
+        joints = materials.calciumSilicateJoints(
+            brittle=args.joints == "brittle", stiffness=args.joint_stiffness
+        )
         super().__init__(args, materials.calciumSilicateUnit(), joints)
         bed, stress = joints["bed"], -1e6 * args.normal_stress
         crushes = bed.cap and not bed.elastic and stress >= bed.compressiveStrength

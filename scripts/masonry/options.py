@@ -235,6 +235,13 @@ def parser(description, until, rate=USUAL["rate"]):
         help="the full law, or brittle Coulomb slip",
     )
     p.add_argument(
+        "--joint-stiffness",
+        choices=["joint", "masonry"],
+        default="joint",
+        help="joints of calcium-silicate masonry: stiffness by the paper's eq. (26), or that with which the masonry has "
+        "the moduli of its table 2",
+    )
+    p.add_argument(
         "--set",
         metavar="JOINT.PROPERTY=VALUE",
         type=_setting,
