@@ -29,7 +29,9 @@ class CoupletModel(Model):
     columns = columns.COUPLET
 
     def __init__(self, args):
-        joints = materials.calciumSilicateJoints(brittle=args.joints == "brittle")
+        joints = materials.calciumSilicateJoints(
+            brittle=args.joints == "brittle", stiffness=args.joint_stiffness
+        )
         if args.joints == "cyclic":
             materials.makeCyclic(joints)
         super().__init__(args, materials.calciumSilicateUnit(), joints)

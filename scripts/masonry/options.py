@@ -265,6 +265,13 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         help="the paper's law, brittle Coulomb slip, or the cyclic law, which is made for loads that come back",
     )
     p.add_argument(
+        "--joint-stiffness",
+        choices=["joint", "masonry"],
+        default="joint",
+        help="joints of calcium-silicate masonry: stiffness by the paper's eq. (26), or that with which the masonry has "
+        "the moduli of its table 2",
+    )
+    p.add_argument(
         "--set",
         metavar="JOINT.PROPERTY=VALUE",
         type=_setting,

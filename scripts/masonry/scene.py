@@ -302,7 +302,8 @@ def _connect(pairs, physics, rule):
             try:
                 interaction = utils.createInteraction(id1, id2)
             except ValueError as error:
-                problems.append(str(error))
+                if str(error) not in problems:  # joints of a kind are refused alike
+                    problems.append(str(error))
                 continue
             made.append(interaction)
             if (

@@ -5,6 +5,7 @@ The walls of the paper (see yade_plugin/law/README.md) are tested like this, in 
 
 import os
 from dataclasses import dataclass
+from inspect import signature
 from math import inf
 from numbers import Real
 from typing import Callable
@@ -14,6 +15,7 @@ from yade.wrapper import MasonryJoint, MasonryLoad, MasonryMat
 
 from . import brickwork, columns, history, materials
 from .curves import cycleNumbers, dampedShare, dynamicImbalance, initialStiffness
+from .errors import Refused
 from .loading import (
     DAMPED,
     IMBALANCE,
@@ -50,7 +52,8 @@ class Wall:
     #: Whether the vertical load keeps its line in space, as over rollers; else it rides on the loading block.
     loadLineFixed: bool = False
     unitMaterial: Callable = materials.calciumSilicateUnit  # makes the MasonryMat
-    #: Makes the dict of MasonryJoint by name; it is called with brittle=True or brittle=False.
+    #: Makes the dict of MasonryJoint by name; it is called with brittle=True or brittle=False, and with
+    #: stiffness="masonry" if --joint-stiffness asks for that, which is refused if the function has no such argument.
     joints: Callable = materials.calciumSilicateJoints
 
     def __post_init__(self):
@@ -114,9 +117,16 @@ class WallModel(Model):
         if args.history:
             self.columns = columns.WALL_LOOPS
         unit = wall.unitMaterial()
+        variant = dict(brittle=args.joints == "brittle")
+        if args.joint_stiffness != "joint":
+            if "stiffness" not in signature(wall.joints).parameters:
+                raise Refused(
+                    f"--joint-stiffness {args.joint_stiffness}: the joints of this wall have no such variant"
+                )
+            variant.update(stiffness=args.joint_stiffness)
+        joints = wall.joints(**variant)
         if not isinstance(unit, MasonryMat):
             raise ValueError(f"wall {wall.name}: unitMaterial() gave {unit!r}")
-        joints = wall.joints(brittle=args.joints == "brittle")
         if not isinstance(joints, dict) or not all(
             isinstance(joint, MasonryJoint) for joint in joints.values()
         ):

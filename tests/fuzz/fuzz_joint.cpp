@@ -58,6 +58,25 @@ private:
     bool wild_ = false;
 };
 
+// Wherever lumped units move the rows to, damage never falls and both ways of reading agree.
+void check(const SofteningTable& table, double shift) {
+    double before = 0, highest = 0;
+    std::int32_t hint = 0;
+    const auto at = [&](double ratio) {
+        if (!(ratio >= highest)) return;
+        highest = ratio;
+        const double damage = table.damage(ratio, shift);
+        PROMISE(damage >= before - 1e-12 && damage >= 0 && damage <= 1);
+        PROMISE(table.damage(ratio, shift, hint) == damage);
+        before = std::max(before, damage);
+    };
+    for (const auto& row : table.rows())
+        for (double part : {0.5, 1., 1.5})
+            at(row.ratio * part + shift * (1 - row.damage));
+    at(HUGE_VAL);
+    if (!table.rows().empty()) PROMISE(before == table.rows().back().damage);
+}
+
 void check(const SofteningTable& table) {
     double before = 0, highest = 0;
     std::int32_t hint = 0;
@@ -66,7 +85,7 @@ void check(const SofteningTable& table) {
         highest = ratio;
         const double damage = table.damage(ratio);
         PROMISE(damage >= before && damage <= 1);
-        PROMISE(table.damage(ratio, hint) == damage);
+        PROMISE(table.damage(ratio, 0, hint) == damage);
         before = damage;
     };
     for (std::size_t i = 0; i < table.rows().size(); ++i) {
@@ -97,7 +116,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     p.elastic = dice.byte() % 8 == 7, p.cap = dice.byte() % 2;
     p.tensionTable = dice.table(), p.shearTable = dice.table();
     for (const auto* rows : {&p.tensionTable, &p.shearTable})
-        if (SofteningTable::problems(*rows).empty()) check(SofteningTable(*rows));
+        if (SofteningTable::problems(*rows).empty()) {
+            const SofteningTable table(*rows);
+            check(table), check(table, dice.factor()), check(table, std::min(0.999999 / table.steepest(), 1e12));
+        }
 
     const auto problems = p.problems();
     std::unique_ptr<JointLaw> law;
@@ -111,6 +133,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check(law->tension()), check(law->shear());
     const double softer = 1 / (1 + std::abs(dice.factor()));
     const ElasticStiffness k{p.normalStiffness * softer, p.shearStiffness * softer};
+    const Equations equations = law->equations(k);
+    check(law->tension(), equations.normalShift), check(law->shear(), equations.shearShift);
+    for (const auto& sentence : law->snapsBack(k, 0.1))
+        PROMISE(!sentence.empty());
     JointState state;
     for (int step = 0; step < 24; ++step) {
         const auto jump = [&] { return (dice.byte() - 127) * 1e-6 * dice.factor(); };
