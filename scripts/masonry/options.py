@@ -198,7 +198,8 @@ def parser(description, until, rate=USUAL["rate"]):
         metavar="N",
         type=lambda t: _count(t, 100),
         default=USUAL["subcontacts"],
-        help="points along each joint of rigid units",
+        help="points along each joint of rigid units, at its ends and between them (Gauss-Lobatto); from three on rocking and "
+        "rotational stiffness are exact, and a step costs in proportion",
     )
     p.add_argument(
         "--damping",

@@ -1,4 +1,5 @@
 #include "MasonryJointGeom.hpp"
+#include "blocks/JointPoints.hpp"
 #include <algorithm>
 
 template class masonry::Adapter<masonry::MasonryJointGeom, yade::IGeom>;
