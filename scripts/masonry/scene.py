@@ -135,7 +135,7 @@ def engines(
         stiffness is exact; with two it is three times too large; with one, a joint does not resist rotation. More than
         three follow the progress of a crack or of crushing along a joint more finely. A step costs in proportion to
         all subcontacts, that is, subcontacts times rows
-    :param rows: rows of subcontacts across a joint, at the points of Gauss and Lobatto, too; None: chosen for every joint
+    :param rows: rows of subcontacts across a joint, at the points of Gauss and Lobatto, too; None or 0: chosen for every joint
         when it is made. It gets one row, in the middle, if its two blocks can turn about one and the same of the global
         axes only, and if that axis lies in the joint: blocks of a wall in its plane, and fixed bodies. That is exact
         there. Every other joint gets three rows. So block degrees of freedom before ``connect()``, and free none later.
@@ -175,8 +175,6 @@ def engines(
     integrator = made(
         lambda: MasonryIntegrator(damping=damping, gravity=gravity, label="integrator")
     )
-    if rows is not None and rows == 0:
-        problems.append("engines: rows 0 must be 1 to 1000, or None to choose them")
     counts = {"subcontacts": subcontacts, "rows": rows}
     geometry = made(
         lambda: Ig2_Polyhedra_Polyhedra_MasonryJointGeom(

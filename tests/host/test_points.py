@@ -177,11 +177,6 @@ def test_what_is_asked_for_goes_before_what_the_freedom_says(scene):
     assert len(pointsOf("xYZ", inPlane=True).centres) == 9
 
 
-def test_no_rows_at_all_are_refused(scene):
-    with pytest.raises(ValueError, match="rows 0 must be 1 to 1000, or None"):
-        engines([dry()], rows=0)
-
-
 # -- blocks that tip -------------------------------------------------------------------------------------------------
 
 WIDTH, HEIGHT, DEPTH = 0.25, 1.0, 0.4
@@ -268,7 +263,7 @@ def arch(voussoirs, thickness, embrace=180.0, friction=0.9, inPlane=True):
         )
         if n in (-1, voussoirs):
             fix(body)
-    engines([dry(stiffness=1e11, friction=friction)], damping=DAMPING)
+    engines([dry(stiffness=2e10, friction=friction)], damping=DAMPING)
     connect()
 
 
@@ -279,11 +274,11 @@ def test_a_semicircular_arch_needs_the_thickness_of_limit_analysis(
 ):
     # The least thickness over mean radius by a linear programme of rigid blocks (static theorem).
     arch(voussoirs, share * least)
-    assert falls(Vector3.Zero, beyond=0.01) == (share < 1)
+    assert falls(Vector3.Zero, beyond=0.003) == (share < 1)
 
 
 @pytest.mark.parametrize("share", [0.99, 1.01])
 def test_an_arch_bears_the_horizontal_acceleration_of_limit_analysis(scene, share):
     # 0.3736 g by the same programme; Oppenheim (1992) gives 0.37 g for this arch.
     arch(7, 0.15, embrace=157.5, friction=0.7)
-    assert falls(Vector3(share * 0.3736 * G, 0, 0), beyond=0.01) == (share > 1)
+    assert falls(Vector3(share * 0.3736 * G, 0, 0), beyond=0.003) == (share > 1)
