@@ -184,8 +184,8 @@ def parser(description, until, rate=USUAL["rate"]):
         metavar="N",
         type=lambda t: _count(t, 10),
         default=USUAL["divisions"],
-        help="cells of a deformable half brick along its length, and as many along its height; its joints have a point "
-        "at every node",
+        help="cells of a deformable half brick along its length, and as many along its height; along the face of a cell its "
+        "joints have points at both ends and in the middle",
     )
     p.add_argument(
         "--damping-kind",

@@ -124,6 +124,34 @@ def test_the_rotational_stiffness_is_that_of_the_whole_joint_from_three_points_o
     assert -moment / angle == pytest.approx(factor * true, rel=1e-6)
 
 
+@pytest.mark.parametrize("functors", [False, True], ids=["loop", "functors"])
+@pytest.mark.parametrize("divisions", [(1, 1, 1), (2, 1, 1), (3, 2, 2)])
+@pytest.mark.parametrize(
+    "blocked, about", [("y", (0, 1, 0)), ("", (0, 1, 0)), ("", (1, 0, 0))]
+)
+def test_the_rotational_stiffness_on_a_deformable_unit_is_true_on_any_mesh(
+    scene, blocked, about, divisions, functors
+):
+    length, thickness, height, k = 0.22, 0.102, 0.081, 1e10
+    base = box((0, 0, -height), (length, thickness, height), mat())
+    unit = MasonryMat(young=1e10, poisson=0.2, density=DENSITY)
+    brick = box((0, 0, 0), (length, thickness, height), unit)
+    fix(base)
+    zones = MasonryZones(bodies=[brick], divisions=divisions, blocked=blocked)
+    engines([elastic(k)], gravity=(0, 0, 0), zones=zones, functors=functors)
+    connect()
+    O.dt = 1e-12
+    angle = 1e-7
+    turn = Quaternion(Vector3(*about), angle)
+    state, foot = O.bodies[base].state, Vector3(length / 2, thickness / 2, 0)
+    state.pos, state.ori = foot + turn * (state.pos - foot), turn * state.ori
+    O.step()
+    moment = O.forces.t(base).dot(Vector3(*about))
+    extent = length if about == (0, 1, 0) else thickness
+    true = k * length * thickness * extent**2 / 12
+    assert -moment / angle == pytest.approx(true, rel=1e-6)
+
+
 # -- how many points -------------------------------------------------------------------------------------------------
 
 

@@ -50,8 +50,9 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
     // across it on the shared polygon (see subdivide()).
     void define(const FaceContact&, const Vector3r& along, int columns, int rows, int body1, int body2,
                 const yade::State&, const yade::State&);
-    // For a joint with a deformable side. Puts the subcontacts at the nodes if those of a deformable side cover the
-    // polygon and, where both sides are deformable, match. Otherwise attaches the grid's subcontacts between the nodes.
+    // For a joint with a deformable side, whose subcontacts move with the surface between nodes. If the nodes of a
+    // deformable side cover the polygon and, where both sides are deformable, match, the subcontacts are the points of
+    // the cells' faces (see MasonryZones::cover); else they remain those of define().
     void attach(const shared_ptr<MasonryZones>&);
 
     // Whether the joint was made by define() or loaded from a file.

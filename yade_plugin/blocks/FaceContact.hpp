@@ -1,5 +1,5 @@
-// Joints between convex blocks. Where two faces coincide, the blocks share a joint; its shape is a polygon. This is pure
-// geometry: all points are in one common coordinate system [m].
+// Joints between convex blocks. Where two faces coincide, the blocks share a joint; its shape is a polygon. This is
+// pure geometry: all points are in one common coordinate system [m].
 #pragma once
 #include <Eigen/Core>
 #include <array>
