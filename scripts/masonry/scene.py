@@ -117,8 +117,8 @@ def engines(
     joints,
     damping=0.8,
     gravity=(0, 0, -9.81),
-    subcontacts=4,
-    rows=1,
+    subcontacts=None,
+    rows=None,
     inPlane=False,
     loads=(),
     zones=None,
@@ -130,8 +130,17 @@ def engines(
     :param damping: Cundall's local damping of rigid units [-]; the paper's eq. (3) has 0.8 (the paper: see
         yade_plugin/law/README.md)
     :param gravity: [m/s²]
-    :param subcontacts: how many there are along a joint
-    :param rows: rows of subcontacts across a joint; one is enough for a wall that stays in its plane
+    :param subcontacts: how many there are along a joint; None: 3. They are the points of Gauss and Lobatto, so the ends
+        of a joint are points, and a block rocks about its edge at the true moment. From three on the elastic rotational
+        stiffness is exact; with two it is three times too large; with one, a joint does not resist rotation. More than
+        three follow the progress of a crack or of crushing along a joint more finely. A step costs in proportion to
+        all subcontacts, that is, subcontacts times rows
+    :param rows: rows of subcontacts across a joint, at the points of Gauss and Lobatto, too; None or 0: chosen for every joint
+        when it is made. It gets one row, in the middle, if its two blocks can turn about one and the same of the global
+        axes only, and if that axis lies in the joint: blocks of a wall in its plane, and fixed bodies. That is exact
+        there. Every other joint gets three rows. So block degrees of freedom before ``connect()``, and free none later.
+        One row where blocks are free in space would leave a joint without stiffness out of its plane
+    :param inPlane: the rows follow each other along y, also where the blocks' freedom does not say so
     :param loads: MasonryLoad engines
     :param zones: MasonryZones of the deformable units, if there are any
     :param functors: YADE's InteractionLoop and NewtonIntegrator, the slow reference, instead of MasonryJointLoop and
@@ -166,10 +175,10 @@ def engines(
     integrator = made(
         lambda: MasonryIntegrator(damping=damping, gravity=gravity, label="integrator")
     )
+    counts = {"subcontacts": subcontacts, "rows": rows}
     geometry = made(
         lambda: Ig2_Polyhedra_Polyhedra_MasonryJointGeom(
-            subcontacts=subcontacts,
-            rows=rows,
+            **{name: n for name, n in counts.items() if n is not None},
             rowDirection=(0, 1, 0) if inPlane else (0, 0, 0),
         )
     )

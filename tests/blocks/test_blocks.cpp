@@ -2,6 +2,7 @@
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "blocks/BlockElasticity.hpp"
 #include "blocks/BlockLanes.cpp" // the source, because its loops for each instruction set are local to it
+#include "blocks/JointPoints.hpp"
 #include "motion/LargestEigenvalue.hpp"
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -170,7 +171,51 @@ TEST_CASE("blocks that are not convex, or wind the wrong way, are refused") {
     CHECK_THROWS_WITH(divide(tetrahedron, {1, 1, 1}), "block has an inverted zone: not convex, or without volume");
 }
 
-TEST_CASE("subcontact areas add up and their first moment is the polygon's, for any polygon and division") {
+TEST_CASE("the rule of Gauss and Lobatto has the ends, and is exact to degree 2n - 3 and no further") {
+    const auto three = gaussLobatto(3), four = gaussLobatto(4);
+    CHECK(three.weights[0] == within(1. / 6, 1e-15));
+    CHECK(three.weights[1] == within(2. / 3, 1e-15));
+    CHECK(four.weights[0] == within(1. / 12, 1e-15));
+    CHECK(four.weights[1] == within(5. / 12, 1e-15));
+    CHECK(four.places[1] == within(0.5 - 0.5 / std::sqrt(5.), 1e-15));
+    for (int n : {2, 3, 4, 5, 6, 7, 8, 11, 16, 33, 100, 1000}) {
+        CAPTURE(n);
+        const auto rule = gaussLobatto(n);
+        REQUIRE(int(rule.places.size()) == n);
+        CHECK(rule.places.front() == 0);
+        CHECK(rule.places.back() == 1);
+        for (int i = 0; i < n; ++i) {
+            CHECK(rule.weights[i] > 0);
+            if (i > 0) CHECK(rule.places[i] > rule.places[i - 1]);
+        }
+        const auto error = [&](int degree) { // of the integral of (2x - 1) to the power of the degree
+            double sum = 0;
+            for (int i = 0; i < n; ++i)
+                sum += rule.weights[i] * std::pow(2 * rule.places[i] - 1, degree);
+            return std::abs(sum - (degree % 2 ? 0.0 : 1.0 / (degree + 1)));
+        };
+        for (int degree = 0; degree <= 2 * n - 3; ++degree)
+            CHECK(error(degree) < 1e-12);
+        if (n < 8) CHECK(error(2 * n - 2) > 1e-5); // beyond, the error at this degree drowns in round-off
+    }
+}
+
+TEST_CASE("the rotational stiffness of a row is the true one from three points on, and three times as large with two") {
+    const Polygon rectangle{{0, 0, 0}, {0.3, 0, 0}, {0.3, 0.1, 0}, {0, 0.1, 0}};
+    const auto stiffness = [&](int n) { // for a stiffness of 1 N/m³, about the middle [N m]
+        double sum = 0;
+        for (const auto& s : subdivide(rectangle, Point::UnitZ(), Point::UnitX(), n, 1))
+            sum += s.area * std::pow(s.centre.x() - 0.15, 2);
+        return sum;
+    };
+    const double exact = 0.3 * 0.1 * 0.3 * 0.3 / 12;
+    CHECK(stiffness(1) == 0);
+    CHECK(stiffness(2) == within(3 * exact, 1e-12));
+    for (int n : {3, 4, 5, 16, 99})
+        CHECK(stiffness(n) == within(exact, 1e-12));
+}
+
+TEST_CASE("subcontacts keep the area and the moments of any convex polygon, and lie on it") {
     std::mt19937 dice(2);
     std::uniform_real_distribution<> u(0, 1);
     for (int trial = 0; trial < 300; ++trial) {
@@ -181,40 +226,111 @@ TEST_CASE("subcontact areas add up and their first moment is the polygon's, for 
         Polygon polygon;
         for (double a : angles)
             polygon.push_back(motion * Point(0.3 * std::cos(a), 0.1 * std::sin(a), 0));
-        const Point normal = motion.rotation().col(2);
+        const Point normal = motion.rotation().col(2), direction = longestEdge(polygon);
+        const Point middle = centroid(polygon, normal);
         const double whole = area(polygon, normal);
-        for (int along : {1, 2, 5})
-            for (int across : {1, 3}) {
+        Matrix3 second = Matrix3::Zero(); // moments about the centroid, exact by the middles of the edges of triangles
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            const Point a = polygon[i] - middle, b = polygon[(i + 1) % polygon.size()] - middle;
+            const double third = a.cross(b).dot(normal) / 6;
+            for (const Point& p : {Point(a / 2), Point(b / 2), Point((a + b) / 2)})
+                second += third * p * p.transpose();
+        }
+        for (int along : {1, 2, 3, 5, 6})
+            for (int across : {1, 2, 3, 4}) {
+                CAPTURE(polygon.size());
+                CAPTURE(along);
+                CAPTURE(across);
                 double sum = 0;
                 Point moment = Point::Zero();
-                for (const auto& s : subdivide(polygon, normal, longestEdge(polygon), along, across))
-                    sum += s.area, moment += s.area * s.centre;
+                Matrix3 moments = Matrix3::Zero();
+                const auto points = subdivide(polygon, normal, direction, along, across);
+                for (std::size_t n = 0; n < points.size(); ++n) {
+                    const auto& [centre, part] = points[n];
+                    CHECK(part > 0);
+                    sum += part;
+                    moment += part * centre;
+                    moments += part * (centre - middle) * (centre - middle).transpose();
+                    for (std::size_t i = 0; i < polygon.size(); ++i) {
+                        const Point edge = polygon[(i + 1) % polygon.size()] - polygon[i];
+                        CHECK(edge.normalized().cross(centre - polygon[i]).dot(normal) > -1e-9);
+                    }
+                    for (std::size_t other = 0; other < n; ++other)
+                        CHECK((points[other].centre - centre).norm() > 1e-6); // no point stands twice
+                }
                 CHECK(sum == within(whole, 1e-9));
-                CHECK((moment / sum - centroid(polygon, normal)).norm() < 1e-9);
+                CHECK((moment / sum - middle).norm() < 1e-9);
+                if (along >= 3 && across == 1)
+                    CHECK(direction.dot(moments * direction) == within(direction.dot(second * direction), 1e-8));
+                const bool least = along >= 2 && across >= 2; // a polygon that is no parallelogram has more points then
+                if (least) CHECK((moments - second).norm() < 1e-9 * second.norm());
+                for (const auto& corner : polygon)
+                    if (least)
+                        CHECK(std::any_of(points.begin(), points.end(),
+                                          [&](const auto& s) { return (s.centre - corner).norm() < 1e-9; }));
             }
     }
 }
 
-TEST_CASE("a row of four subcontacts stands at the middle of the quarters") {
-    const auto contact =
-        coincidentFaces(box(Point::Zero(), {0.11, 0.102, 0.081}), box({0, 0, 0.081}, {0.11, 0.102, 0.081}));
-    REQUIRE(contact);
-    const auto row = subdivide(contact->polygon, contact->normal, Point::UnitX(), 4, 1);
-    REQUIRE(row.size() == 4);
-    for (int i = 0; i < 4; ++i) {
-        CHECK((row[i].centre - Point(0.11 * (i + 0.5) / 4, 0.051, 0.081)).norm() < 1e-12);
-        CHECK(row[i].area == within(0.11 * 0.102 / 4, 1e-9));
+TEST_CASE("a face has three points along and three across at its edges and middles, in the order of a grid") {
+    std::mt19937 dice(3);
+    for (int trial = 0; trial < 50; ++trial) {
+        const auto motion = randomMotion(dice);
+        const Point size(0.22, 0.102, 0.081);
+        const auto contact =
+            coincidentFaces(moved(box(Point::Zero(), size), motion), moved(box({0, 0, 0.081}, size), motion));
+        REQUIRE(contact);
+        const double share[3] = {1. / 6, 2. / 3, 1. / 6};
+        const auto grid = subdivide(contact->polygon, contact->normal, motion.rotation().col(0), 3, 3);
+        const auto row = subdivide(contact->polygon, contact->normal, motion.rotation().col(0), 3, 1);
+        REQUIRE(grid.size() == 9);
+        REQUIRE(row.size() == 3);
+        for (int i = 0; i < 3; ++i) {
+            CHECK((row[i].centre - motion * Point(0.11 * i, 0.051, 0.081)).norm() < 1e-9);
+            CHECK(row[i].area == within(0.22 * 0.102 * share[i], 1e-9));
+            for (int j = 0; j < 3; ++j) {
+                CHECK((grid[3 * i + j].centre - motion * Point(0.11 * i, 0.051 * j, 0.081)).norm() < 1e-9);
+                CHECK(grid[3 * i + j].area == within(0.22 * 0.102 * share[i] * share[j], 1e-9));
+            }
+        }
     }
 }
 
-TEST_CASE("cells nearest to the subcontacts of a face are the cells of its grid") {
-    const auto contact = coincidentFaces(box(Point::Zero(), brick), box({0, 0, 0.081}, brick));
-    REQUIRE(contact);
-    std::vector<Point> centres;
-    for (const auto& s : subdivide(contact->polygon, contact->normal, Point::UnitX(), 4, 2))
-        centres.push_back(s.centre);
-    for (const auto& cell : nearestCells(contact->polygon, centres)) {
-        CHECK(area(cell, contact->normal) == within(0.22 * 0.102 / 8, 1e-9));
+TEST_CASE("a parallelogram may have two points along, other quadrilaterals have at least three each way") {
+    const Polygon sheared{{0, 0, 0}, {0.2, 0, 0}, {0.25, 0.1, 0}, {0.05, 0.1, 0}};
+    const Polygon trapezoid{{0, 0, 0}, {0.2, 0, 0}, {0.15, 0.1, 0}, {0.05, 0.1, 0}};
+    CHECK(subdivide(sheared, Point::UnitZ(), Point::UnitX(), 2, 2).size() == 4);
+    CHECK(subdivide(trapezoid, Point::UnitZ(), Point::UnitX(), 2, 2).size() == 9);
+    CHECK(subdivide(trapezoid, Point::UnitZ(), Point::UnitX(), 4, 2).size() == 12);
+}
+
+TEST_CASE("cells nearest to the subcontacts of a face cover it, and each holds its point") {
+    std::mt19937 dice(4);
+    std::uniform_real_distribution<> u(0, 1);
+    for (int corners = 3; corners < 8; ++corners) {
+        Polygon polygon;
+        for (int i = 0; i < corners; ++i) {
+            const double angle = 2 * M_PI * (i + 0.8 * u(dice)) / corners;
+            polygon.push_back({0.3 * std::cos(angle), 0.1 * std::sin(angle), 0});
+        }
+        for (int across : {1, 3}) {
+            std::vector<Point> points;
+            for (const auto& s : subdivide(polygon, Point::UnitZ(), Point::UnitX(), 4, across))
+                points.push_back(s.centre);
+            double sum = 0;
+            const auto cells = nearestCells(polygon, points);
+            for (std::size_t n = 0; n < cells.size(); ++n) {
+                REQUIRE(cells[n].size() > 2);
+                const double part = area(cells[n], Point::UnitZ());
+                CHECK(part > 0);
+                sum += part;
+                for (std::size_t i = 0; i < cells[n].size(); ++i) {
+                    const Point edge = cells[n][(i + 1) % cells[n].size()] - cells[n][i];
+                    CHECK(edge.cross(points[n] - cells[n][i]).z() > -1e-12);
+                }
+            }
+            CHECK(sum == within(area(polygon, Point::UnitZ()), 1e-9));
+        }
     }
 }
 

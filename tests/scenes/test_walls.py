@@ -50,7 +50,7 @@ def test_the_squat_wall_peaks_between_friction_and_the_cracked_section(squat):
     assert (
         run["units"] == 1224
         and run["joint_count"] == 2450
-        and run["subcontacts"] == 9800
+        and run["subcontacts"] == 7350
     )
     assert run["joints_by_kind"] == {
         "bed": 1188,
@@ -105,7 +105,7 @@ def test_frames_show_units_and_subcontacts_with_their_state(squat):
         == 5
     )
     blocks, joints = readFrame(squat, "blocks"), readFrame(squat, "joints")
-    assert len(blocks["cells"]) == 1226 and len(joints["cells"]) == 9800
+    assert len(blocks["cells"]) == 1226 and len(joints["cells"]) == 7350
     assert blocks["displacement"][:, 0].max() == pytest.approx(4e-3, rel=0.02)
     # No displacement out of the plane of the wall.
     assert np.abs(blocks["displacement"][:, 1]).max() < 1e-12

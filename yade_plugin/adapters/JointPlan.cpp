@@ -94,12 +94,14 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
         if (store.bodies.has(b)) store.bodies.noticeAll(b);
     plane_ = mayBePlane && liesInPlane(store);
     if (plane_) dropStressOutOfPlane(store);
-    dependentPoints_.clear();
+    onBodies_.clear();
+    betweenNodes_.clear();
     batches_.clear();
     kinds_.assign(store.kinds.size(), Kind());
 
     const int count = store.bodies.size();
     std::vector<std::vector<Receivers::Item>> atBodies(count), atPlaces;
+    std::map<std::array<double, 6>, int> known; // places of points between nodes
     int joints = 0, points = 0;
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
         const auto& kind = store.kinds[k];
@@ -111,7 +113,7 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
         for (int from = 0; from < int(kind.shapes->joints.size()); from += most)
             batches_.push_back({int(k), from});
         buildKind(store, kind, kinds_[k], atBodies);
-        if (kind.hung) buildPlaces(kind, kinds_[k], atPlaces);
+        if (kind.hung) buildPlaces(kind, kinds_[k], atPlaces, known);
     }
     referenceY_.assign(count, 0);
     momentPlace_.assign(count, -1);
@@ -128,6 +130,7 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
     onPoints_.assign(std::size_t(plane_ ? 2 : 3) * points, 0);
     toBodies_.fill(atBodies);
     toNodes_.fill(atPlaces);
+    shareOut();
     store_ = &store;
     revision_ = store.revision();
 }
@@ -191,37 +194,63 @@ void JointPlan::buildKind(SceneStore& store, const JointKind& kind, Kind& made,
 }
 
 // Finds the places of both sides of subcontacts with deformable sides in the rows of MasonryZones: that of the node, or
-// that of a new dependent point.
-void JointPlan::buildPlaces(const JointKind& kind, Kind& made, std::vector<std::vector<Receivers::Item>>& atPlaces) {
+// that of a dependent point. Sides that move with the same nodes by the same weights share one.
+void JointPlan::buildPlaces(const JointKind& kind, Kind& made, std::vector<std::vector<Receivers::Item>>& atPlaces,
+                            std::map<std::array<double, 6>, int>& known) {
     const int count = int(kind.shapes->joints.size()), points = kind.shapes->points;
     const int stride = int(made.body1.size());
     made.place1.assign(std::size_t(stride) * points, 0);
     made.place2 = made.place1;
+    const auto placeOf = [&](const JointReference& r, int side, const Vector3r& reference, int p) {
+        const auto& hung = r.hung->sides[side];
+        if (hung.empty()) {
+            const auto& from = r.sides[side];
+            const Vector3r local = from.orientation.conjugate() * (reference - from.position);
+            onBodies_.push_back({zones_->addDependentPoint(), from.body, reference, local});
+            return onBodies_.back().place;
+        }
+        const auto& a = hung[p];
+        if (a.weights[0] == 1) return zones_->placeOf(a.nodes[0]);
+        std::array<double, 6> key;
+        std::array<int, 3> nodes;
+        for (int n = 0; n < 3; ++n) {
+            nodes[n] = zones_->placeOf(a.nodes[n]);
+            key[n] = a.weights[n] != 0 ? nodes[n] : -1;
+            key[3 + n] = std::round(1e9 * a.weights[n]);
+        }
+        if (const auto at = known.find(key); at != known.end()) return at->second;
+        betweenNodes_.push_back({zones_->addDependentPoint(), nodes, a.weights});
+        return known[key] = betweenNodes_.back().place;
+    };
     for (int j = 0; j < count; ++j) {
         const auto& r = kind.shapes->joints[j];
-        for (int p = 0; p < points; ++p)
+        for (int p = 0; p < points; ++p) {
+            const Vector3r reference = r.sides[0].position + r.axes() * kind.shapes->offsetAt(p, j);
             for (int side = 0; side < 2; ++side) {
-                const auto& hung = r.hung->sides[side];
-                int place;
-                if (!hung.empty() && hung[p].weights[0] == 1)
-                    place = zones_->placeOf(hung[p].nodes[0]);
-                else {
-                    const auto& from = r.sides[side];
-                    const Vector3r reference = r.sides[0].position + r.axes() * kind.shapes->offsetAt(p, j);
-                    DependentPoint point{zones_->addDependentPoint(), -1, reference, Vector3r::Zero(), {}};
-                    if (hung.empty()) {
-                        point.body = from.body;
-                        point.local = from.orientation.conjugate() * (reference - from.position);
-                    } else
-                        point.attachment = hung[p];
-                    dependentPoints_.push_back(point);
-                    place = point.place;
-                }
-                const int i = p * stride + j;
+                const int place = placeOf(r, side, reference, p), i = p * stride + j;
                 (side ? made.place2 : made.place1)[i] = place;
                 if (int(atPlaces.size()) <= place) atPlaces.resize(place + 1);
                 atPlaces[place].push_back({made.firstPoint + i, side == 1});
             }
+        }
+    }
+}
+
+// Lists for every node the points between nodes that it carries a part of.
+void JointPlan::shareOut() {
+    std::map<int, std::vector<std::pair<int, double>>> lists;
+    for (const auto& point : betweenNodes_)
+        for (int n = 0; n < 3; ++n)
+            if (point.weights[n] != 0) lists[point.nodes[n]].push_back({point.place, point.weights[n]});
+    shares_ = {};
+    shares_.start.push_back(0);
+    for (const auto& [node, list] : lists) {
+        shares_.nodes.push_back(node);
+        for (const auto& [point, weight] : list) {
+            shares_.points.push_back(point);
+            shares_.weights.push_back(weight);
+        }
+        shares_.start.push_back(int(shares_.points.size()));
     }
 }
 
@@ -312,16 +341,23 @@ void JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const Kin
         (plane_ ? finishRigidInPlane : finishRigid)(n, frames, onJoints);
 }
 
-// Finds the displacements of all dependent points.
+// Finds the displacements of all dependent points. In a planar run nothing moves along y.
 void JointPlan::moveDependentPoints(const SceneStore& store) {
     double* rows = zones_->displacementRows();
-    for (const auto& point : dependentPoints_) {
-        Vector3r moved;
-        if (point.body >= 0) {
-            const auto& s = store.bodies.state(point.body);
-            moved = s.pos + s.ori * point.local - point.reference;
-        } else
-            moved = zones_->displacementAt(point.attachment);
+    const int count = int(betweenNodes_.size()), next = plane_ ? 2 : 1;
+#pragma omp parallel for schedule(static)
+    for (int n = 0; n < count; ++n) {
+        const auto& point = betweenNodes_[n];
+        for (int d = 0; d < 3; d += next) {
+            const double* at = rows + d * lanes;
+            rows[point.place + d * lanes] = point.weights[0] * at[point.nodes[0]] +
+                                            point.weights[1] * at[point.nodes[1]] +
+                                            point.weights[2] * at[point.nodes[2]];
+        }
+    }
+    for (const auto& point : onBodies_) {
+        const auto& s = store.bodies.state(point.body);
+        const Vector3r moved = s.pos + s.ori * point.local - point.reference;
         for (int d = 0; d < 3; ++d)
             rows[point.place + d * lanes] = moved[d];
     }
@@ -389,17 +425,20 @@ void JointPlan::bringToNodes(SceneStore& store) {
         for (int d = 0; d < 3; ++d)
             (forces + toNodes_.receivers[r])[d * lanes] = sum[d];
     }
-    for (const auto& point : dependentPoints_) {
+    const int sharing = int(shares_.nodes.size()), next = plane_ ? 2 : 1;
+#pragma omp parallel for schedule(static)
+    for (int n = 0; n < sharing; ++n)
+        for (int d = 0; d < 3; d += next) {
+            double sum = forces[shares_.nodes[n] + d * lanes];
+            for (int i = shares_.start[n]; i < shares_.start[n + 1]; ++i)
+                sum += shares_.weights[i] * forces[shares_.points[i] + d * lanes];
+            forces[shares_.nodes[n] + d * lanes] = sum;
+        }
+    for (const auto& point : onBodies_) {
         const double* on = forces + point.place;
         const Vector3r force(on[0], on[lanes], on[2 * lanes]);
-        if (point.body >= 0) {
-            forces_[point.body] += force;
-            torques_[point.body] += (store.bodies.state(point.body).ori * point.local).cross(force);
-        } else
-            for (int i = 0; i < 3; ++i)
-                for (int d = 0; d < 3; ++d)
-                    forces[zones_->placeOf(point.attachment.nodes[i]) + d * lanes] +=
-                        point.attachment.weights[i] * force[d];
+        forces_[point.body] += force;
+        torques_[point.body] += (store.bodies.state(point.body).ori * point.local).cross(force);
     }
 }
 

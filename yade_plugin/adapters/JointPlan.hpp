@@ -3,6 +3,8 @@
 // scene, and is made anew when the scene has changed. See JointFrames for the arithmetic.
 #pragma once
 #include "SceneStore.hpp"
+#include <array>
+#include <map>
 
 namespace masonry {
 
@@ -23,13 +25,25 @@ private:
         std::vector<double> span[3];     // from centre to centre in the reference state, in the joint's axes [m]
         std::vector<int> place1, place2; // of both sides of subcontacts with deformable sides, in MasonryZones' rows
     };
-    // Side of a subcontact that has no node of its own. It moves with a rigid body, or with the surface between nodes.
-    struct DependentPoint {
-        int place;             // in the rows of MasonryZones
-        int body;              // the rigid body with which it moves; -1 if it moves with nodes
-        Vector3r reference;    // its place in the reference state, global axes [m]
-        Vector3r local;        // of a point on a rigid body: its place in the body's axes [m]
-        Attachment attachment; // of a point between nodes
+    // Side of subcontacts that has no node of its own. It moves with a rigid body, or with the surface between nodes.
+    struct PointOnBody {
+        int place; // in the rows of MasonryZones
+        int body;
+        Vector3r reference; // its place in the reference state, global axes [m]
+        Vector3r local;     // its place in the body's axes [m]
+    };
+    struct PointBetweenNodes {
+        int place;                     // in the rows of MasonryZones
+        std::array<int, 3> nodes;      // places of nodes in these rows
+        std::array<double, 3> weights; // of these nodes; their sum is 1
+    };
+    // What dependent points bring to a node: `weights` times the forces at `points`. Each node sums up its own list, in
+    // the same order with any number of threads.
+    struct NodeShares {
+        std::vector<int> nodes; // places in the rows of MasonryZones
+        std::vector<int> start; // of a node's list in the two columns; one more entry ends the last list
+        std::vector<int> points;
+        std::vector<double> weights;
     };
     // For every body or node that joints act on, the list of what acts on it. Each receiver sums up its own list, in
     // the same order with any number of threads.
@@ -48,9 +62,11 @@ private:
     bool liesInPlane(const SceneStore&) const;
     void dropStressOutOfPlane(SceneStore&);
     void buildKind(SceneStore&, const JointKind&, Kind&, std::vector<std::vector<Receivers::Item>>& atBodies);
-    void buildPlaces(const JointKind&, Kind&, std::vector<std::vector<Receivers::Item>>& atPlaces);
+    void buildPlaces(const JointKind&, Kind&, std::vector<std::vector<Receivers::Item>>& atPlaces,
+                     std::map<std::array<double, 6>, int>& known);
     bool noticeBodies(SceneStore&);
     void advanceBatch(SceneStore&, const JointKind&, const Kind&, int from, int count);
+    void shareOut();
     void moveDependentPoints(const SceneStore&);
     void bringToBodies();
     void bringToNodes(SceneStore&);
@@ -69,7 +85,9 @@ private:
     std::vector<unsigned char> joined_; // whether a body has joints
     std::vector<int> momentPlace_;      // of all bodies: place in MasonryZones' rows of moments; -1 if it is rigid
     MasonryZones* zones_ = nullptr;     // null if no joint has a deformable side
-    std::vector<DependentPoint> dependentPoints_;
+    std::vector<PointOnBody> onBodies_;
+    std::vector<PointBetweenNodes> betweenNodes_;
+    NodeShares shares_;  // of the points between nodes
     Receivers toBodies_; // what joints bring to bodies
     Receivers toNodes_;  // what subcontacts bring to nodes and dependent points
     // Scratch of a step. Of every joint between rigid bodies the force on body 1 [N] and the torques about both centres

@@ -1,4 +1,5 @@
 #include "MasonryJointGeom.hpp"
+#include "blocks/JointPoints.hpp"
 #include <algorithm>
 
 template class masonry::Adapter<masonry::MasonryJointGeom, yade::IGeom>;
@@ -28,53 +29,34 @@ void MasonryJointGeom::attach(const shared_ptr<MasonryZones>& all) {
     if (!units[0] && !units[1]) return;
     r.hung = std::make_shared<JointReference::Hung>();
     r.hung->zones = all;
-    using Nodes = std::vector<std::pair<int, double>>;
-    Nodes nodes[2];
+    std::optional<MasonryZones::Covered> covers[2];
     for (int side = 0; side < 2; ++side)
-        if (units[side]) nodes[side] = all->nodesOn(*units[side], r.polygon, r.normal);
-    const double close = 1e-3 * (r.polygon[2] - r.polygon[0]).norm();
-    struct AtNode {
-        Vector3r offset;
-        double area;
-    };
-    std::vector<AtNode> atNodes;
-    std::vector<Attachment> hung[2];
-    // Every node of one side becomes a subcontact. Where both sides are deformable, its area is the mean of the areas
-    // of the two nodes that face each other.
+        if (units[side]) covers[side] = all->cover(*units[side], r.polygon, r.normal, r.tangent);
     const int lead = units[0] ? 0 : 1;
-    for (const auto& [node, part] : nodes[lead]) {
-        const Vector3r place = all->reference(*units[lead], node);
-        AtNode point{r.axes().transpose() * (place - r.sides[0].position), part};
-        Attachment mine;
-        mine.nodes.fill(node);
-        hung[lead].push_back(mine);
-        if (units[0] && units[1]) {
-            const auto twin = std::find_if(nodes[1].begin(), nodes[1].end(), [&](const auto& other) {
-                return (all->reference(*units[1], other.first) - place).norm() < close;
+    bool matching = covers[lead].has_value();
+    if (units[0] && units[1]) {
+        const double close = 1e-3 * (r.polygon[2] - r.polygon[0]).norm();
+        matching = matching && covers[1] && covers[0]->nodes.size() == covers[1]->nodes.size();
+        for (std::size_t n = 0; matching && n < covers[0]->nodes.size(); ++n) {
+            const Vector3r place = all->reference(*units[0], covers[0]->nodes[n]);
+            matching = std::any_of(covers[1]->nodes.begin(), covers[1]->nodes.end(), [&](int other) {
+                return (all->reference(*units[1], other) - place).norm() < close;
             });
-            if (twin == nodes[1].end()) break;
-            point.area = 0.5 * (part + twin->second);
-            mine.nodes.fill(twin->first);
-            hung[1].push_back(mine);
         }
-        atNodes.push_back(point);
     }
-    const bool both = units[0] && units[1];
-    const bool matching =
-        !nodes[lead].empty() && atNodes.size() == nodes[lead].size() && (!both || nodes[0].size() == nodes[1].size());
-    if (!matching) { // the subcontacts of the grid move with the surface between the nodes of each deformable side
-        for (int side = 0; side < 2; ++side)
-            for (int p = 0; units[side] && p < home->points; ++p)
-                r.hung->sides[side].push_back(all->attach(*units[side], centre(p)));
-        return;
+    if (matching) {
+        const auto& points = covers[lead]->points;
+        const shared_ptr<JointShapes> moved(new JointShapes(1, int(points.size())));
+        moved->joints[0] = r;
+        for (std::size_t p = 0; p < points.size(); ++p)
+            moved->setShape(int(p), 0, r.axes().transpose() * (points[p].centre - r.sides[0].position), points[p].area);
+        home = moved;
+        index = 0;
     }
-    std::move(std::begin(hung), std::end(hung), std::begin(r.hung->sides));
-    const shared_ptr<JointShapes> moved(new JointShapes(1, int(atNodes.size())));
-    moved->joints[0] = r;
-    for (std::size_t p = 0; p < atNodes.size(); ++p)
-        moved->setShape(int(p), 0, atNodes[p].offset, atNodes[p].area);
-    home = moved;
-    index = 0;
+    auto& hung = *home->joints[index].hung;
+    for (int side = 0; side < 2; ++side)
+        for (int p = 0; units[side] && p < home->points; ++p)
+            hung.sides[side].push_back(all->attach(*units[side], centre(p)));
 }
 
 std::vector<Polygon> MasonryJointGeom::cells() const {

@@ -36,20 +36,23 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
 
     template <class PyClass> static void extras(PyClass& cls) {
         cls.add_property("centres", &MasonryJointGeom::centres,
-                         "Centres of the subcontacts in the reference state [m].")
+                         "Points of the subcontacts in the reference state [m]; those at the rim of a joint lie on its "
+                         "edges.")
             .add_property("areas", &MasonryJointGeom::areas,
-                          "Areas of the subcontacts [m²]; they add up to the polygon's.")
+                          "Areas of the subcontacts [m²], the weights of their points in sums; they add up to the "
+                          "polygon's.")
             .add_property("jumps", &MasonryJointGeom::jumps,
                           "Displacement jump at each subcontact since the reference state: opening, slide along the "
                           "tangent, slide across it [m].");
     }
 
-    // Makes the joint in its reference state, with a grid of `columns` along the direction `along` by `rows` across it
-    // of subcontacts on the shared polygon.
+    // Makes the joint in its reference state, with `columns` of subcontacts along the direction `along` by `rows`
+    // across it on the shared polygon (see subdivide()).
     void define(const FaceContact&, const Vector3r& along, int columns, int rows, int body1, int body2,
                 const yade::State&, const yade::State&);
-    // For a joint with a deformable side. Puts the subcontacts at the nodes if those of a deformable side cover the
-    // polygon and, where both sides are deformable, match. Otherwise attaches the grid's subcontacts between the nodes.
+    // For a joint with a deformable side, whose subcontacts move with the surface between nodes. If the nodes of a
+    // deformable side cover the polygon and, where both sides are deformable, match, the subcontacts are the points of
+    // the cells' faces (see MasonryZones::cover); else they remain those of define().
     void attach(const shared_ptr<MasonryZones>&);
 
     // Whether the joint was made by define() or loaded from a file.
@@ -59,9 +62,10 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom> {
     double area(int point) const { return home->areaAt(point, index); }
     Vector3r jump(int point) const { return home->jumpAt(point, index); }
     Vector3r offset(int point) const { return home->offsetAt(point, index); }
-    // Centre of a subcontact in the reference state, global axes [m].
+    // Point of a subcontact in the reference state, global axes [m].
     Vector3r centre(int point) const { return reference().sides[0].position + reference().axes() * offset(point); }
-    // A polygon around every subcontact in the reference state, for pictures.
+    // A polygon around every subcontact in the reference state, for pictures: the part of the joint that is nearest to
+    // its point. Its area is not that of the subcontact.
     std::vector<Polygon> cells() const;
 
     shared_ptr<JointShapes> home; // null until define() or loading; SceneStore replaces it

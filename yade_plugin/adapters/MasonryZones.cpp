@@ -251,17 +251,26 @@ Vector3r MasonryZones::reference(const Unit& unit, int node) const {
 }
 
 Attachment MasonryZones::attach(const Unit& unit, const Vector3r& point) const {
-    const auto place = nearestOnSurface(unit.elasticity->mesh(), point - unit.centre);
+    auto place = nearestOnSurface(unit.elasticity->mesh(), point - unit.centre);
+    // Round-off leaves a point on an edge or at a node a little weight on the other nodes. The largest weight comes
+    // first.
+    double sum = 0;
+    std::array<int, 3> order{0, 1, 2};
+    std::sort(order.begin(), order.end(), [&](int i, int j) { return place.weights[i] > place.weights[j]; });
+    for (double& weight : place.weights) {
+        if (weight < 1e-9) weight = 0;
+        sum += weight;
+    }
     Attachment a;
     for (int i = 0; i < 3; ++i) {
-        a.nodes[i] = unit.firstNode + place.nodes[i];
-        a.weights[i] = place.weights[i];
+        a.nodes[i] = unit.firstNode + place.nodes[order[i]];
+        a.weights[i] = place.weights[order[i]] / sum;
     }
     return a;
 }
 
-std::vector<std::pair<int, double>> MasonryZones::nodesOn(const Unit& unit, const std::vector<Vector3r>& polygon,
-                                                          const Vector3r& normal) const {
+std::optional<MasonryZones::Covered> MasonryZones::cover(const Unit& unit, const std::vector<Vector3r>& polygon,
+                                                         const Vector3r& normal, const Vector3r& along) const {
     const auto& mesh = unit.elasticity->mesh();
     const double size = (polygon[2] - polygon[0]).norm(), whole = area(polygon, normal);
     const auto inside = [&](const Vector3r& p) {
@@ -272,24 +281,47 @@ std::vector<std::pair<int, double>> MasonryZones::nodesOn(const Unit& unit, cons
                 return false;
         return true;
     };
-    std::vector<std::pair<int, double>> found;
+    const auto place = [&](int node) { return Vector3r(unit.centre + mesh.nodes[node]); };
+    const Vector3r across = normal.cross(along);
+    bool held = false; // whether the nodes are held in the direction across
+    for (int d = 0; d < 3; ++d)
+        held = held || (holds(d) && across.cross(Vector3r::Unit(d)).norm() < 1e-6);
+    Covered found;
     double sum = 0;
-    for (const auto& t : mesh.triangles) {
-        Vector3r c[3];
-        bool on = true;
-        for (int i = 0; i < 3; ++i)
-            on &= inside(c[i] = unit.centre + mesh.nodes[t[i]]);
-        if (!on) continue;
-        const double part = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]).norm();
+    const auto add = [&](const Subcontact& point) {
+        const auto at = std::find_if(found.points.begin(), found.points.end(), [&](const Subcontact& other) {
+            return (other.centre - point.centre).norm() < 1e-6 * size;
+        });
+        if (at == found.points.end())
+            found.points.push_back(point);
+        else
+            at->area += point.area;
+    };
+    for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
+        const auto& t = mesh.triangles[n];
+        if (!std::all_of(t.begin(), t.end(), [&](int node) { return inside(place(node)); })) continue;
+        const Vector3r a = place(t[0]), b = place(t[1]), c = place(t[2]);
+        const double part = 0.5 * (b - a).cross(c - a).norm();
         sum += part;
-        for (int node : t) {
-            const int number = unit.firstNode + node;
-            auto at = std::find_if(found.begin(), found.end(), [&](const auto& f) { return f.first == number; });
-            if (at == found.end()) at = found.insert(found.end(), {number, 0.0});
-            at->second += part / 3;
+        for (int node : t)
+            if (const int number = unit.firstNode + node;
+                std::find(found.nodes.begin(), found.nodes.end(), number) == found.nodes.end())
+                found.nodes.push_back(number);
+        if (held && !mesh.cellFaces.empty()) {
+            if (n % 2 != 0) continue; // the first half of a face stands for both
+            Polygon face;
+            for (int node : mesh.cellFaces[n / 2])
+                face.push_back(place(node));
+            if ((face[1] - face[0]).cross(face[2] - face[1]).dot(normal) < 0) std::reverse(face.begin(), face.end());
+            for (const auto& point : subdivide(face, normal, along, 3, 1))
+                add(point);
+        } else {
+            for (const auto& corner : {a, b, c})
+                add({corner, part / 12});
+            add({(a + b + c) / 3, 0.75 * part});
         }
     }
-    if (std::abs(sum - whole) > 1e-3 * whole) found.clear();
+    if (std::abs(sum - whole) > 1e-3 * whole) return std::nullopt;
     return found;
 }
 

@@ -2,7 +2,9 @@
 #include "JointHome.hpp"
 #include "Ledger.hpp"
 #include "blocks/BlockElasticity.hpp"
+#include "blocks/JointPoints.hpp"
 #include <memory>
+#include <optional>
 
 namespace masonry {
 
@@ -91,10 +93,19 @@ public:
     Vector3r reference(const Unit&, int node) const;
     // How the point of the unit's surface nearest to `point` moves with the nodes.
     Attachment attach(const Unit&, const Vector3r& point) const;
-    // Nodes of a unit on a joint polygon, each with its share of the area [m²]: a third of every surface triangle on
-    // the polygon that has this node. Empty if those triangles do not cover the polygon.
-    std::vector<std::pair<int, double>> nodesOn(const Unit&, const std::vector<Vector3r>& polygon,
-                                                const Vector3r& normal) const;
+    // Whether the nodes on a joint polygon and the triangles between them cover it. If they do, sets the numbers of
+    // these nodes, and the points where the law of a joint is followed, with their shares of the area:
+    // - Where the nodes are held across the joint, as in a wall loaded in its plane: on every face of a cell the three
+    //   points of gaussLobatto along the joint, in the middle of the cell's thickness.
+    // - Elsewhere: the corners of every triangle, with 1/12 of its area each, and its centroid, with 3/4.
+    // Displacements are linear on a triangle, so both rules give a joint its true elastic rotational stiffness. Points
+    // at the nodes alone, with a third of every triangle each, would make the face of one cell three times too stiff.
+    struct Covered {
+        std::vector<int> nodes;
+        std::vector<Subcontact> points;
+    };
+    std::optional<Covered> cover(const Unit&, const std::vector<Vector3r>& polygon, const Vector3r& normal,
+                                 const Vector3r& along) const;
 
     // The rows in which the state of the nodes lives. The three components of a node are one row apart, the first at
     // the node's place: rows()[place + d * lanes]. Dependent points are subcontacts' sides without a node of their own,

@@ -124,11 +124,12 @@ BlockMesh divide(const ConvexBlock& block, const std::array<int, 3>& divisions, 
                             // and blocks laid in courses meet with equal triangles.
                             const std::array<int, 3> halves[2][2] = {{{q[0], q[1], q[2]}, {q[0], q[2], q[3]}},
                                                                      {{q[1], q[2], q[3]}, {q[1], q[3], q[0]}}};
+                            const bool atSurface = cell[axis] == (side ? last[axis] : 0);
                             for (const auto& t : halves[odd]) {
                                 addZone(centre, {t[0], t[2], t[1]});
-                                const bool atSurface = cell[axis] == (side ? last[axis] : 0);
                                 if (atSurface) mesh.triangles.push_back(t);
                             }
+                            if (atSurface) mesh.cellFaces.push_back({q[0], q[1], q[2], q[3]});
                         }
                 }
     }

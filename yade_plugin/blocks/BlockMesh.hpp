@@ -8,6 +8,9 @@ struct BlockMesh {
     std::vector<Point> nodes;                  // places of the nodes [m]
     std::vector<std::array<int, 4>> zones;     // nodes of each zone, in an order that makes its volume positive
     std::vector<std::array<int, 3>> triangles; // nodes of each triangle of the surface, counter-clockwise from outside
+    // Nodes around each face of a cell on the surface, counter-clockwise from outside. Triangles 2 i and 2 i + 1
+    // are the halves of face i. Empty if the block is no hexahedron.
+    std::vector<std::array<int, 4>> cellFaces;
 };
 
 // Divides a block into zones.

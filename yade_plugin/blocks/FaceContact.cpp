@@ -229,39 +229,6 @@ Point centroid(const Polygon& p, const Point& normal) {
     return p[0] + moment / twice;
 }
 
-std::vector<Subcontact> subdivide(const Polygon& polygon, const Point& normal, const Point& direction, int along,
-                                  int across) {
-    const Point axes[2] = {direction, normal.cross(direction)};
-    const int counts[2] = {along, across};
-    double low[2], step[2];
-    for (int d = 0; d < 2; ++d) {
-        low[d] = polygon[0].dot(axes[d]);
-        double high = low[d];
-        for (const auto& p : polygon) {
-            low[d] = std::min(low[d], p.dot(axes[d]));
-            high = std::max(high, p.dot(axes[d]));
-        }
-        step[d] = (high - low[d]) / counts[d];
-    }
-    const double smallest = 1e-9 * area(polygon, normal);
-    std::vector<Subcontact> cells;
-    for (int i = 0; i < along; ++i)
-        for (int j = 0; j < across; ++j) {
-            const int at[2] = {i, j};
-            Polygon cell = polygon;
-            // Cells at the rim are not cut on their outer side: the polygon bounds them there.
-            for (int d = 0; d < 2 && cell.size() > 2; ++d) {
-                if (at[d] > 0) cell = cut(cell, (low[d] + at[d] * step[d]) * axes[d], axes[d]);
-                if (at[d] + 1 < counts[d] && cell.size() > 2)
-                    cell = cut(cell, (low[d] + (at[d] + 1) * step[d]) * axes[d], -axes[d]);
-            }
-            if (cell.size() < 3) continue;
-            const double size = area(cell, normal);
-            if (size > smallest) cells.push_back({centroid(cell, normal), size}); // smaller ones are round-off
-        }
-    return cells;
-}
-
 std::vector<Polygon> nearestCells(const Polygon& polygon, const std::vector<Point>& points) {
     std::vector<Polygon> cells;
     for (const auto& mine : points) {

@@ -1,5 +1,5 @@
-// Joints between convex blocks. Where two faces coincide, the blocks share a joint; its shape is a polygon, which is
-// divided into subcontacts. This is pure geometry: all points are in one common coordinate system [m].
+// Joints between convex blocks. Where two faces coincide, the blocks share a joint; its shape is a polygon. This is
+// pure geometry: all points are in one common coordinate system [m].
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -60,25 +60,14 @@ struct Misfit {
 // a hundredth of the smaller face, and they are no further apart than a quarter of the thinner block.
 std::optional<Misfit> misfit(const KnownBlock& one, const KnownBlock& two, double tolerance = 1e-4);
 
-// A part of a joint, to which the joint law is applied at one point.
-struct Subcontact {
-    Point centre;
-    double area; // [m²]
-};
-
 double area(const Polygon&, const Point& normal); // [m²]
 Point centroid(const Polygon&, const Point& normal);
-
-// Subcontacts of a joint. A grid covers the polygon, with `along` cells in the given direction (a unit vector in the
-// plane of the joint) and `across` cells at right angles to it. Each subcontact is the part of a cell that lies inside
-// the polygon, so that their areas add up to the area of the polygon.
-std::vector<Subcontact> subdivide(const Polygon&, const Point& normal, const Point& direction, int along, int across);
 
 // Divides a polygon, for pictures: for each given point, the part of the polygon that is nearer to it than to all other
 // points.
 std::vector<Polygon> nearestCells(const Polygon&, const std::vector<Point>& points);
 
-// Unit vector along the longest edge of a polygon; where no other direction is asked for, `subdivide` gets this one.
+// Unit vector along the longest edge of a polygon.
 Point longestEdge(const Polygon&);
 
 } // namespace masonry
