@@ -59,7 +59,8 @@ def _readList(text):
         try:
             amplitude = _number(number)
         except ValueError:
-            problems.append(f"'{piece}' is no amplitude in mm such as 2 or 2x3")
+            other = ", and no file has this name" if piece == text else ""
+            problems.append(f"'{piece}' is no amplitude in mm such as 2 or 2x3{other}")
             continue
         if not LEAST <= amplitude <= MOST:
             problems.append(

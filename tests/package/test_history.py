@@ -82,6 +82,7 @@ def test_any_text_is_refused_in_words_or_is_a_history(text):
         ),
         ("1x9000,2x2000", ["11000 cycles are more than 10000"]),
         ("-1,2", ["'-1': the amplitude must be"]),
+        ("loops", ["'loops' is no amplitude in mm such as 2 or 2x3, and no file has"]),
         ("nowhere.csv", ["cannot read nowhere.csv: No such file"]),
     ],
 )
