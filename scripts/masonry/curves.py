@@ -4,9 +4,6 @@ import math
 
 from . import loops
 
-#: Displacements [mm] within which a wall that follows a history is said to be at zero. A history's amplitudes are larger.
-AT_ZERO = 0.015
-
 
 def dynamicImbalance(top, base):
     """How much of the force of a push does not arrive at its base [-]: 0 if all does, 1 and more if none does.
@@ -47,7 +44,7 @@ def initialStiffness(displacement, force):
     return products / spread if spread > 0 else 0.0
 
 
-def cycleNumbers(column):
+def cycleNumbers(column, threshold):
     """Numbers of every cycle of a wall that follows a history: a list of dicts, for run.json.
 
     They are those of :class:`masonry.loops.Cycle`, None in place of NaN, with the base shear as the force. In place of
@@ -56,6 +53,7 @@ def cycleNumbers(column):
     ``dissipated_J``, what the joints dissipated; and ``damped_J``, what damping took.
 
     :param column: function of the name of a column of curve.csv that gives its values
+    :param threshold: as of :mod:`masonry.loops` [mm]
     """
     moved, base = column("displacement_mm"), column("base_shear_kN")
     if not moved:
@@ -66,7 +64,7 @@ def cycleNumbers(column):
     ]
     dissipated = [sum(values) for values in zip(*modes)]
     found = []
-    for cycle in loops.cycles(moved, base, AT_ZERO):
+    for cycle in loops.cycles(moved, base, threshold):
         start, end = cycle.start, cycle.end
         grown = lambda values: float(
             loops.stretch(values, start, end)[[0, -1]] @ [-1, 1]

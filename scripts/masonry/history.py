@@ -15,6 +15,8 @@ import os
 from collections import namedtuple
 
 LEAST, MOST = 0.02, 1000.0  # [mm] bounds of an amplitude; a row of curve.csv is 0.01 mm
+AT_ZERO = 0.015  # [mm] within which a wall is at zero: more than a history misses, less than any amplitude
+NOISE = 0.01  # of the largest displacement of a file: smaller excursions may be noise of the measurement
 CYCLES = 10000  # that a list of amplitudes may have
 COLUMN = "displacement_mm"  # of a file
 TOLD = 10  # problems that are told one by one
@@ -59,7 +61,8 @@ def _readList(text):
         try:
             amplitude = _number(number)
         except ValueError:
-            problems.append(f"'{piece}' is no amplitude in mm such as 2 or 2x3")
+            other = ", and no file has this name" if piece == text else ""
+            problems.append(f"'{piece}' is no amplitude in mm such as 2 or 2x3{other}")
             continue
         if not LEAST <= amplitude <= MOST:
             problems.append(
@@ -180,6 +183,13 @@ def turns(points):
     return sum(one != other for one, other in zip(ways, ways[1:]))
 
 
+def noise(history):
+    """Displacement [mm] up to which an excursion is none: the threshold of :mod:`masonry.loops` for the wall's curve."""
+    if "file" not in history:
+        return AT_ZERO
+    return max(AT_ZERO, NOISE * max(map(abs, history["points_mm"])))
+
+
 def extends(new, old):
     """Whether a history begins with all points of another one."""
     return new["points_mm"][: len(old["points_mm"])] == old["points_mm"]
@@ -194,4 +204,5 @@ def describe(history):
         points=len(points),
         turning_points=turns(points),
         path_mm=pathLength(points),
+        noise_mm=noise(history),
     )

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from yade import O, Vector3
 
 from .errors import Refused
-from .history import aim, pathLength
+from .history import aim, pathLength, turns
 from .progress import say
 
 RAMP = 0.02  # [s] in which loads and velocities grow: some ten periods of a wave through the height of a wall
@@ -92,7 +92,6 @@ class Pushing:
     """What :func:`push` remembers. Pairs are of the negative and of the positive side, and positive outwards."""
 
     origin: list = None  # displacement of the loading block when the push began, along it and up [m]
-    began: float = 0.0  # time then [s]
     now: float = 0.0  # time of the last row [s]
     moved: float = 0.0  # displacement there [mm]
     passed: int = 0  # points of the history that lie behind
@@ -103,9 +102,7 @@ class Pushing:
     peaks: list = (0.0, 0.0)  # largest base shear so far [kN]
     peaksAt: list = (0.0, 0.0)  # displacement there [mm]
     reach: list = (0.0, 0.0)  # farthest turning point so far [mm]
-    nextFrame: float = (
-        0.0  # length of the way at which the next ParaView frame is due [mm]
-    )
+    nextFrame: float = 0.0  # length of the way up to the next ParaView frame [mm]
 
     def travelled(self, way):
         """Length of the way so far [mm]."""
@@ -176,9 +173,8 @@ def push(run, model):
     every = max(1, int(ROW_EVERY / (args.rate * O.dt)))
     model.aim = at.passed + 1, goals[at.passed].displacement
     if at.origin is None:
-        at.origin, at.began = list(model.topDisplacement()), O.time
-        at.now = at.since = at.began
-        model.origin = at.origin
+        at.origin = model.origin = list(model.topDisplacement())
+        at.now = at.since = O.time
         at.moved = 1e3 * run.record().along
         run.frame()
         at.nextFrame = spacing
@@ -243,6 +239,12 @@ def _pace(at, goal, rate, growing, every):
 def wayLength(args):
     """How far the drive goes in all, there and back [mm]."""
     return pathLength(args.history["points_mm"]) if args.history else args.until
+
+
+def rowCount(args):
+    """How many rows of curve.csv a push has, about. A turn takes as long as the way at full speed in a ramp."""
+    turning = turns(args.history["points_mm"]) if args.history else 0
+    return (wayLength(args) + turning * args.rate * ramp(args)) / ROW_EVERY
 
 
 def frameSpacing(args):

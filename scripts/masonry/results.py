@@ -39,7 +39,7 @@ A wall has these, too:
 A wall that follows a history has these, too:
 
 - ``history``: ``text``, what the option said; ``points``, how many points it has; ``turning_points``, how often it turns;
-  ``path_mm``, the length of the way; of a list ``amplitudes_mm``, pairs of an amplitude [mm] and its number of cycles;
+  ``path_mm``, the length of the way; ``noise_mm``, up to which an excursion is no half cycle; of a list ``amplitudes_mm``, pairs of an amplitude [mm] and its number of cycles;
   of a file its path ``file`` and the fingerprint ``sha256`` of its contents
 - ``negative_peak_base_shear_kN``, ``displacement_at_negative_peak_mm``: the smallest force, which is the peak of the
   other side

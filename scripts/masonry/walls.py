@@ -19,8 +19,8 @@ from .errors import Refused
 from .loading import (
     DAMPED,
     IMBALANCE,
-    ROW_EVERY,
     frameSpacing,
+    rowCount,
     tooDamped,
     tooFast,
     wayLength,
@@ -259,10 +259,9 @@ class WallModel(Model):
         args = self.args
         nodes = len(self.zones.displacements) if self.zones else 0
         frame = 50 * self.subcontacts + 150 * len(O.bodies) + 100 * nodes
-        way, row = wayLength(args), 250
-        frames = 0 if args.no_vtk else way / frameSpacing(args) + 2
+        frames = 0 if args.no_vtk else wayLength(args) / frameSpacing(args) + 2
         least = 400e3 + frame * min(frames, 2)  # figures, first and last frame
-        return least, least + frame * frames + row * way / ROW_EVERY
+        return least, least + frame * frames + 250 * rowCount(args)
 
     def describe(self):
         wall = self.wall
@@ -307,7 +306,7 @@ class WallModel(Model):
             negative_peak_base_shear_kN=shear[at],
             displacement_at_negative_peak_mm=moved[at],
             damped_share=dampedShare(column),
-            cycles=cycleNumbers(column),
+            cycles=cycleNumbers(column, history.noise(self.args.history)),
         )
 
     def report(self, run):

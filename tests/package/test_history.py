@@ -32,6 +32,7 @@ def test_an_amplitude_is_a_cycle_to_either_side_and_back():
         "points": 15,
         "turning_points": 10,
         "path_mm": 4 * (1 + 3 * 2 + 4),
+        "noise_mm": 0.015,
     }
 
 
@@ -82,6 +83,7 @@ def test_any_text_is_refused_in_words_or_is_a_history(text):
         ),
         ("1x9000,2x2000", ["11000 cycles are more than 10000"]),
         ("-1,2", ["'-1': the amplitude must be"]),
+        ("loops", ["'loops' is no amplitude in mm such as 2 or 2x3, and no file has"]),
         ("nowhere.csv", ["cannot read nowhere.csv: No such file"]),
     ],
 )
@@ -128,6 +130,8 @@ def test_a_file_gives_its_displacements_and_leaves_other_columns_alone(tmp_path)
     told = history.describe(found)
     assert (told["points"], told["turning_points"], told["path_mm"]) == (3, 1, 2)
     assert "points_mm" not in told
+    assert told["noise_mm"] == 0.015
+    assert history.noise(dict(found, points_mm=[0, -40, 3])) == 0.4  # 1 % of 40 mm
 
 
 @pytest.mark.parametrize(

@@ -51,28 +51,33 @@ def test_the_wall_turns_at_its_amplitudes_and_ends_at_zero(
 
 
 def test_a_measured_history_with_noise_is_followed_through_its_turns(scene, tmp_path):
-    dice = np.random.default_rng(5)
-    smooth = 0.6 * np.sin(np.linspace(0, 3 * np.pi, 80)) * np.linspace(0.3, 1, 80)
-    points = np.round(smooth + dice.normal(0, 0.015, len(smooth)), 3)
+    turns = [0.1, -0.05, 0.3, 0.27, 0.5, 0.1, 0.13, -0.4, -0.36, -0.5, 0.02, 0]
+    points = [0.0]
+    for (
+        turn
+    ) in (
+        turns
+    ):  # each is approached in five stretches, with a step back of 0.002 mm after each of them
+        for way in np.linspace(points[-1], turn, 6)[1:]:
+            points += [way, way - 0.002 * np.sign(turn - points[-1])]
+        points[-1] = turn
+    points = np.round(points, 6)
     path = tmp_path / "measured.csv"
     path.write_text("displacement_mm\n" + "".join(f"{p}\n" for p in points))
     words = ["--no-vtk", "--history", str(path), "--rate", "20"]
     assert run(tmp_path / "out", *words) == 0
     data = curve(tmp_path / "out")
     moved = data["displacement_mm"]
-    wanted = points[loops.turningPoints(points, 0.01)]
-    assert history.turns(list(points)) > 20
-    found = moved[loops.turningPoints(moved, 0.005)]
-    for threshold in (0.01, 0.05):
-        wanted = points[loops.turningPoints(points, threshold)][1:]
-        found = moved[loops.turningPoints(moved, threshold)][1:]
-        assert found == pytest.approx(wanted, abs=0.005)
+    found = moved[loops.turningPoints(moved, 0.01)]
+    assert found == pytest.approx([0, *turns], abs=0.005)
     # Every row goes to a point of the file, and the points come in turn.
     assert (data["target_mm"] == points[data["point"].astype(int) - 1]).all()
-    assert set(np.diff(data["point"])) >= {0, 1} and np.diff(data["point"]).min() == 0
-    assert data["point"][-1] == len(points)
+    assert data["point"][0] == 1 and data["point"][-1] >= len(points) - 1
+    assert np.diff(data["point"]).min() == 0 and np.diff(data["point"]).max() < 4
     told = readRun(str(tmp_path / "out"))
-    assert told["history"]["points"] == 80 and told["options"]["history"] == str(path)
+    assert told["history"]["points"] == len(points) == 121
+    assert told["history"]["turning_points"] > 50
+    assert told["options"]["history"] == str(path)
 
 
 def test_the_velocity_changes_evenly_where_the_drive_turns(scene, tmp_path):
@@ -118,8 +123,8 @@ def test_run_json_tells_the_history_and_the_cycles(looped):
     assert told["history"]["path_mm"] == pytest.approx(4 * 3.1)
     assert told["options"]["history"] == "0.1,0.5x2,2" and not told["collapsed"]
     shear = data["base_shear_kN"]
-    assert told["peak_base_shear_kN"] == shear.max()
-    assert told["negative_peak_base_shear_kN"] == shear.min() < 0
+    assert told["peak_base_shear_kN"] == pytest.approx(shear.max(), rel=1e-8)
+    assert told["negative_peak_base_shear_kN"] == pytest.approx(shear.min(), rel=1e-8)
     assert told["displacement_at_negative_peak_mm"] < 0
     cycles = told["cycles"]
     amplitudes = [cycle["amplitude_mm"] for cycle in cycles]
@@ -253,7 +258,7 @@ def test_loops_interrupted_anywhere_leave_the_curve_of_a_whole_run(
     assert run(tmp_path / "whole", *words, wall=wall) == 0
     out, points, resume = tmp_path / "broken", [], False
     while True:
-        at(61 if points else 3, interrupt)
+        at(211 if points else 3, interrupt)
         status = run(out, *([] if resume else words), wall=wall, resume=resume)
         if status == 0:
             break
@@ -261,18 +266,19 @@ def test_loops_interrupted_anywhere_leave_the_curve_of_a_whole_run(
         memory = readCheckpoint(str(out / "run.checkpoint"))["at"]["memory"]
         points.append(memory.get("passed", 0))
         resume = True
-    assert len(set(points)) > 5
+    assert len(set(points)) > 3
     assert files(out) == files(tmp_path / "whole")
 
 
 def test_a_wall_killed_in_its_third_half_cycle_goes_on_bit_for_bit(runScene, tmp_path):
-    words = ["--history", "0.5,1x2", "--rate", "20", "--vtk-every", "0.5"]
+    words = ["--history", "0.5,1", "--rate", "40", "--vtk-every", "0.5"]
     _, whole = runScene("wall_dry", *words)
     out = tmp_path / "killed"
     kept = str(out / "run.checkpoint")
     scene = os.path.join(ROOT, "scripts", "wall_dry.py")
-    command = ["yade", "-n", "-x", scene, "--checkpoint-every", "0.0005"]
-    process = subprocess.Popen([*command, *words, "--out", str(out)])
+    command = ["yade", "-n", "-x", scene]
+    often = ["--checkpoint-every", "0.002"]
+    process = subprocess.Popen([*command, *words, *often, "--out", str(out)])
 
     def passed():
         there = os.path.exists(kept)
@@ -284,7 +290,8 @@ def test_a_wall_killed_in_its_third_half_cycle_goes_on_bit_for_bit(runScene, tmp
     process.kill()
     assert process.wait() == -signal.SIGKILL
     assert passed() == 3
-    assert subprocess.run([*command, "--resume", str(out)]).returncode == 0
+    again = ["--resume", str(out), "--checkpoint-every", "5"]
+    assert subprocess.run([*command, *again]).returncode == 0
     assert files(out) == files(whole)  # with the last frame, which is the final state
     one, other = readRun(whole), readRun(str(out))
     assert len(other["resumed_at_s"]) == 1
