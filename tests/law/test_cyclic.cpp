@@ -76,7 +76,9 @@ doctest::Approx within(double value, double relative) {
 // ---- monotonic: the paper's law -------------------------------------------------------------------------------------
 
 TEST_CASE("cyclic: pulled open, or sheared under constant normal stress, a joint follows the paper's law to 1e-6") {
-    for (const auto& p : {cyclic(), lossy()})
+    JointProperties smooth = lossy(); // friction softens, too
+    smooth.residualFriction = 0.3;
+    for (const auto& p : {cyclic(), lossy(), smooth})
         for (double sigma : {0.0, -0.1e6, -0.5e6, 0.05e6}) {
             const bool pulled = sigma > 0;
             Path path(p);
@@ -231,6 +233,22 @@ TEST_CASE("cyclic: cycles of slip without cohesion take 4 tau (a - tau/ks) each"
     }
 }
 
+TEST_CASE("cyclic: a cracked joint reaches its friction at the same slide, however much stiffness it may lose") {
+    JointProperties p = cyclic();
+    p.shearStiffnessLoss = 0.9;
+    Path path(p);
+    path.move({5e-3, {}}, 5000);
+    CHECK(path.state.tensionDamage == 1);
+    path.press(-0.5e6);
+    double slide = 0;
+    path.move({0, {4e-6, 0}}, 400, [&] {
+        slide += 1e-8;
+        CHECK(path.state.shearStress.a == within(std::min(p.shearStiffness * slide, 0.43 * 0.5e6), 1e-6));
+    });
+    CHECK(path.state.slip < 1e-18); // so far all of it is lost stiffness
+    CHECK(path.state.shearStiffnessLoss == within(1 - 0.215e6 / (p.shearStiffness * 4e-6), 1e-6));
+}
+
 TEST_CASE("cyclic: 0.1 nm of yielding under a smaller normal stress than before moves the stress by ks·0.1 nm") {
     const auto p = cyclic();
     Path path(p);
@@ -377,6 +395,7 @@ TEST_CASE("cyclic: slip on the cap hardens and softens it, too") {
     double peak = 0;
     path.move({0, {8e-3, 0}}, 20000, [&] { peak = std::max(peak, length(path.state.shearStress)); });
     CHECK(path.state.capDisplacement > 1e-3);
+    CHECK(path.state.slip == within(8e-3 - path.state.shearStress.a / path.k.shear, 1e-6));
     CHECK(peak < 7.55e6 / 3);                            // Css is 9
     CHECK(length(path.state.shearStress) <= 0.5 * peak); // it has softened
     CHECK(path.state.largestClosure > path.law.compression().middleClosure);
