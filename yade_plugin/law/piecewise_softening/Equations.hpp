@@ -114,7 +114,9 @@ struct Equations {                               // with the numbers of a kind o
 
     // Strength of slip, eqs. (16), (17a), never below zero.
     MASONRY_INLINED double slipStrength(double intact, double sigma, double elasticOpening) const {
-        const double rest = residualCohesion(elasticOpening);
+        return slipStrengthWith(residualCohesion(elasticOpening), intact, sigma);
+    }
+    MASONRY_INLINED double slipStrengthWith(double rest, double intact, double sigma) const {
         const double cohesion = rest + (cp - rest) * intact;
         const double strength = cohesion - sigma * friction(intact);
         return strength > 0 ? strength : 0;
