@@ -89,7 +89,7 @@ private:
         return row < slopes_.size() && position(row, shift) <= ratio && ratio < position(row + 1, shift);
     }
     double within(std::size_t row, double ratio, double shift) const { // never rounded up beyond the next row
-        const double slope = slopes_[row] / (1 - shift * slopes_[row]);
+        const double slope = shift == 0 ? slopes_[row] : slopes_[row] / (1 - shift * slopes_[row]);
         return std::min(rows_[row].damage + slope * (ratio - position(row, shift)), rows_[row + 1].damage);
     }
 

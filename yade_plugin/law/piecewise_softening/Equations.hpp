@@ -117,7 +117,9 @@ struct Equations {                               // with the numbers of a kind o
 
     // Strength of slip, eqs. (16), (17a), never below zero.
     template <class T> MASONRY_INLINED T slipStrength(const T& intact, const T& sigma, const T& elasticOpening) const {
-        const T rest = residualCohesion(elasticOpening);
+        return slipStrengthWith<T>(residualCohesion(elasticOpening), intact, sigma);
+    }
+    template <class T> MASONRY_INLINED T slipStrengthWith(const T& rest, const T& intact, const T& sigma) const {
         const T cohesion = rest + (cp - rest) * intact;
         return larger<T>(cohesion - sigma * friction(intact), T{});
     }

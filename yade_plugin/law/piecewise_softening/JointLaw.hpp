@@ -31,7 +31,7 @@ public:
         e.onset = e.elastic ? HUGE_VAL : e.ft / k.normal;
         e.stretch = stretch(k);
         e.normalShift = e.stretch * e.ownKn;
-        e.shearShift = (1 / k.shear - 1 / e.ownKs) * e.ownKs;
+        e.shearShift = std::max(0.0, 1 / k.shear - 1 / e.ownKs) * e.ownKs;
         return e;
     }
 
@@ -169,7 +169,8 @@ public:
     }
 
 private:
-    double stretch(const ElasticStiffness& k) const { return 1 / k.normal - 1 / p_.normalStiffness; } // [m/Pa]
+    // [m/Pa] what lumped units add; nothing where properties were changed to ones softer than what the joint shows
+    double stretch(const ElasticStiffness& k) const { return std::max(0.0, 1 / k.normal - 1 / p_.normalStiffness); }
 
     JointProperties p_;
     SofteningTable tension_, shear_;

@@ -15,7 +15,7 @@ namespace {
 
 // The law where no strength is passed: eqs. (6), (7), the secant of eq. (11), and the three conditions of eq. (8).
 // Tells which subcontacts need more, which then are as before, and how many they are.
-template <bool spatial, bool yielded>
+template <bool spatial, bool yielded, bool residual>
 MASONRY_INLINED Mask stayElasticAs(const Equations& given, const Consequences& ofAll, const Columns& columns,
                                    std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* waits) {
     const Equations e = given;
@@ -50,7 +50,8 @@ MASONRY_INLINED Mask stayElasticAs(const Equations& given, const Consequences& o
         const double a = oldA + e.ks * jumps.slideA[i];
         const double b = spatial ? oldB + e.ks * jumps.slideB[i] : 0;
         const double tauSquared = a * a + b * b;
-        const double strength = e.slipStrength(bond, sigma, moved.elastic);
+        const double rest = residual ? e.residualCohesion(moved.elastic) : 0; // most joints have none
+        const double strength = e.slipStrengthWith(rest, bond, sigma);
         const double crushing = e.capStress(sigma, tauSquared);
         const double closure = sigma < 0 ? closing * moved.total : 0;
         const double hardens = closest > limit ? closest : limit;
@@ -68,6 +69,13 @@ MASONRY_INLINED Mask stayElasticAs(const Equations& given, const Consequences& o
         waiting += elastic ? 0 : 1;
     }
     return waiting;
+}
+
+template <bool spatial, bool yielded>
+MASONRY_INLINED Mask stayElasticAs(const Equations& e, const Consequences& ofAll, const Columns& columns,
+                                   std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* waits) {
+    return e.cr > 0 ? stayElasticAs<spatial, yielded, true>(e, ofAll, columns, at, count, jumps, normalStress, waits)
+                    : stayElasticAs<spatial, yielded, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
 }
 
 } // namespace
