@@ -172,6 +172,7 @@ TEST_CASE("cyclic: what is written into columns is read from them") {
          {&s.opening, &s.crushing, &s.dilation, &s.slip, &s.largestOpening, &s.largestClosure, &s.shearStress.a,
           &s.shearStress.b, &s.plasticSlip.a, &s.plasticSlip.b, &s.shearSoftening, &s.capDisplacement})
         *number = 1e-4 * ++value;
+    s.opening = 1e-3;
     s.tensionDamage = 0.25;
     s.shearDamage = 0.5;
     s.shearStiffnessLoss = 0.125;
