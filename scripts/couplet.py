@@ -7,7 +7,7 @@ from masonry import couplet, options
 from masonry.loading import drive
 from masonry.run import Run
 
-parser = options.parser(__doc__, until=2, rate=2)
+parser = options.parser(__doc__, until=2, rate=2, loops=False)
 parser.add_argument(
     "--path", choices=couplet.PATHS, default="shear", help="what the driven block does"
 )

@@ -13,7 +13,7 @@ Column = namedtuple("Column", "name meaning value")
 class WallReading(
     namedtuple(
         "WallReading",
-        "time along up baseShear topShear energy orientation reference sunk",
+        "time along up baseShear topShear energy orientation reference sunk point target",
     )
 ):
     """What a wall reads, for a row.
@@ -25,6 +25,7 @@ class WallReading(
     - ``energy``: the energy balance [J]
     - ``orientation`` of the loading block, and ``reference``, the inverse of that in which it was built: quaternions
     - ``sunk``: displacement of the loading block downwards since the wall was built [m]
+    - ``point``: number of the point of a history that the drive is going to, from 1; ``target``: its displacement [mm]
     """
 
     __slots__ = ()
@@ -103,6 +104,17 @@ WALL = [
         lambda r: 1e3 * r.rotation,
     ),
     *BALANCE,
+]
+
+#: Of a wall that follows a history.
+WALL_LOOPS = [
+    *WALL,
+    Column(
+        "point",
+        "number of the point of the history that the drive is going to, from 1 [-]",
+        lambda r: r.point,
+    ),
+    Column("target_mm", "displacement of this point [mm]", lambda r: r.target),
 ]
 
 COUPLET = [

@@ -1,16 +1,22 @@
 """Stages of a test. Each is a function of a run and a model; what it must remember is a dataclass of its own."""
 
+import math
 from dataclasses import dataclass
 
 from yade import O, Vector3
 
 from .errors import Refused
+from .history import aim, pathLength
 from .progress import say
 
 RAMP = 0.02  # [s] in which loads and velocities grow: some ten periods of a wave through the height of a wall
 SETTLING = 0.5  # local damping of deformable units before the push: with more they creep to rest, with less they swing
 REST = 5e-3  # of the vertical load: what may be missing at the base when a wall is said to be at rest
 ROW_EVERY = 0.01  # [mm] of a push between rows of curve.csv
+ARRIVED = 2e-3  # [mm] from a turning point of a history at which the drive turns: what is left of the way takes it there
+FRAMES = (
+    200  # for ParaView along a history, beside those at its turning points and zeros
+)
 IMBALANCE = 0.1  # a push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more
 ROWS = 2000  # of curve.csv while a block is driven over a distance
 
@@ -82,63 +88,165 @@ def settle(run, model):
 
 @dataclass
 class Pushing:
-    """What :func:`push` remembers."""
+    """What :func:`push` remembers. Pairs are of the negative and of the positive side, and positive outwards."""
 
     origin: list = None  # displacement of the loading block when the push began, along it and up [m]
     began: float = 0.0  # time then [s]
-    moved: float = 0.0  # displacement since then [mm]
-    peak: float = 0.0  # largest base shear so far [kN]
-    peakAt: float = 0.0  # displacement there [mm]
-    nextFrame: float = 0.0  # displacement at which the next ParaView frame is due [mm]
+    now: float = 0.0  # time of the last row [s]
+    moved: float = 0.0  # displacement there [mm]
+    passed: int = 0  # points of the history that lie behind
+    last: float = 0.0  # displacement of the last of them [mm]
+    path: float = 0.0  # length of the way to there [mm]
+    since: float = 0.0  # time from which the velocity grows [s]
+    growth: float = 0.0  # velocity then, along the present way, over the full one [-]
+    peaks: list = (0.0, 0.0)  # largest base shear so far [kN]
+    peaksAt: list = (0.0, 0.0)  # displacement there [mm]
+    reach: list = (0.0, 0.0)  # farthest turning point so far [mm]
+    nextFrame: float = (
+        0.0  # length of the way at which the next ParaView frame is due [mm]
+    )
+
+    def travelled(self, way):
+        """Length of the way so far [mm]."""
+        return self.path + way * (self.moved - self.last)
+
+    def note(self, shear):
+        """Keep the peaks, with the base shear of the last row [kN]."""
+        for side, sign in enumerate((-1, 1)):
+            if sign * shear > self.peaks[side]:
+                self.peaks = _exchanged(self.peaks, side, sign * shear)
+                self.peaksAt = _exchanged(self.peaksAt, side, sign * self.moved)
+
+    def hasLost(self, way, shear):
+        """Whether the wall is farther out than ever before, and has lost its force [kN] there."""
+        side, out = way > 0, way * self.moved
+        beyond = out > self.reach[side] and out > self.peaksAt[side] + 1
+        return beyond and way * shear < 0.2 * self.peaks[side]
+
+    def passOn(self, goals):
+        """Go on to the first point that is not reached yet. Returns whether there is one, and whether the drive turns."""
+        turned = False
+        while True:
+            goal = goals[self.passed]
+            brakes = goal.brake is not None
+            near = brakes and abs(goal.brake - goal.displacement) <= ARRIVED
+            if goal.way * (goal.displacement - self.moved) > (ARRIVED if near else 0):
+                return True, turned
+            if self.passed + 1 == len(goals):
+                return False, turned
+            self.path = self.path + abs(goal.displacement - self.last)
+            self.passed, self.last = self.passed + 1, goal.displacement
+            if goals[self.passed].way != goal.way:
+                side, out = goal.way > 0, goal.way * goal.displacement
+                self.reach = _exchanged(self.reach, side, max(self.reach[side], out))
+                self.growth, turned = -self.growth, True
+
+
+def _exchanged(pair, side, value):
+    """A pair with another value on one side. A checkpoint may hold the old pair, which stays as it is."""
+    return [pair[0], value] if side else [value, pair[1]]
 
 
 def push(run, model):
-    """Drive the loading block sideways at a steady velocity, to ``--until`` or to collapse, with rows and frames.
+    """Drive the loading block sideways, to ``--until`` or along ``--history``, with rows and frames.
 
-    A wall has collapsed if the loading block has come down by half a course, or if a millimetre after the peak less than
-    a fifth of it is left.
+    The drive moves at ``--rate``. When it begins and where the history turns, its velocity changes evenly in time, from
+    rest to ``--rate`` within :func:`ramp`. It brakes by the displacement that curve.csv has, so the wall turns within
+    0.01 mm of the history's turning points. Points at which the history does not turn are passed at full speed, and so
+    is the end, unless it is that of a file.
+
+    Rows are 0.01 mm apart at full speed; where the drive is slower, the time between them is the same or less.
+    ParaView frames are :func:`frameSpacing` of the way apart. Those of a history are also at its turning points and where
+    it passes through zero, unless the frame before is less than half of this away.
+
+    A wall has collapsed if the loading block has come down by half a course, or if less than a fifth of the peak of a
+    side is left, a millimetre or more beyond that peak and farther out than the wall has turned before. So a loop that
+    unloads is no collapse.
     """
     args, at = run.args, run.stage("push", Pushing())
     if at is None or run.collapsed:
         return
-    if not args.until > at.moved:
+    if not args.history and not args.until > at.moved:
         raise Refused(
             f"--until {args.until:g}: the run is at {at.moved:.2f} mm already"
         )
+    goals, whole, spacing = aim(args), wayLength(args), frameSpacing(args)
     load, growing = model.loads["push"], ramp(args)
     every = max(1, int(ROW_EVERY / (args.rate * O.dt)))
+    model.aim = at.passed + 1, goals[at.passed].displacement
     if at.origin is None:
         at.origin, at.began = list(model.topDisplacement()), O.time
+        at.now = at.since = at.began
         model.origin = at.origin
         at.moved = 1e3 * run.record().along
         run.frame()
-        at.nextFrame = args.vtk_every
+        at.nextFrame = spacing
     model.origin = at.origin
     model.damp(args.damping, args.damping_kind)
-    detail = lambda: f"{at.moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
-    now, stretch, velocity = O.time, every * O.dt, None
-    while at.moved < args.until and not run.collapsed:
-        growth = min(1.0, (now - at.began + stretch) / growing)
-        if velocity != args.rate * 1e-3 * growth:
-            velocity = load.velocity = args.rate * 1e-3 * growth
+
+    def detail():
+        if not args.history:
+            return f"{at.moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
+        return f"{way:.1f} of {whole:g} mm, at {at.moved:6.2f} mm  {shear:7.2f} kN"
+
+    velocity, goesOn = None, True
+    while goesOn:
+        goal = goals[at.passed]
+        model.aim = at.passed + 1, goal.displacement
+        growth, steps = _pace(at, goal, args.rate, growing, every)
+        if velocity != goal.way * args.rate * 1e-3 * growth:
+            velocity = load.velocity = goal.way * args.rate * 1e-3 * growth
         model.keepLoadLine()
-        run.advance(every)
+        run.advance(steps)
         reading = run.record()
-        now, at.moved = reading.time, 1e3 * reading.along
-        shear = 1e-3 * reading.baseShear
-        if shear > at.peak:
-            at.peak, at.peakAt = shear, at.moved
-        lost = at.moved > at.peakAt + 1 and shear < 0.2 * at.peak
-        run.collapsed = lost or model.hasSunk(reading.sunk)
-        run.show(max(0, at.moved / args.until), detail)
-        goesOn = at.moved < args.until and not run.collapsed
-        if goesOn and at.moved >= at.nextFrame:
+        before = at.moved
+        at.now, at.moved = reading.time, 1e3 * reading.along
+        shear, way = 1e-3 * reading.baseShear, at.travelled(goal.way)
+        at.note(shear)
+        run.collapsed = at.hasLost(goal.way, shear) or model.hasSunk(reading.sunk)
+        if args.history:
+            at.since, at.growth = at.now, growth
+        run.show(max(0, way / whole), detail)
+        goesOn, turned = at.passOn(goals)
+        goesOn = goesOn and not run.collapsed
+        early = args.history and (turned or before * at.moved < 0)
+        if goesOn and way >= at.nextFrame - (spacing / 2 if early else 0):
             run.frame()
-            at.nextFrame += args.vtk_every
+            at.nextFrame = (way if early else at.nextFrame) + spacing
     run.show(1, detail, final=True)
     run.flush()
     if run.collapsed:
         say(f"the wall has collapsed at {at.moved:.2f} mm")
+
+
+def _pace(at, goal, rate, growing, every):
+    """Velocity of the drive over the full one, and for how many steps it holds, from what a push remembers.
+
+    The velocity grows evenly to the full one, but is not more than what can be braked before the next turn: √(2·a·s) at
+    the distance s with the deceleration a.
+
+    :param rate: full velocity [mm/s]
+    :param growing: time in which the velocity grows from 0 to the full one [s]
+    :param every: how many steps are between rows at full speed
+    """
+    growth = min(1.0, at.growth + (at.now - at.since + every * O.dt) / growing)
+    if goal.brake is None:
+        return growth, every
+    distance = max(0.0, goal.way * (goal.brake - at.moved))
+    growth = min(growth, math.sqrt(2 * distance / (rate * growing)))
+    if growth <= 0:
+        return growth, every
+    return growth, max(1, min(every, int(distance / (rate * growth * O.dt))))
+
+
+def wayLength(args):
+    """How far the drive goes in all, there and back [mm]."""
+    return pathLength(args.history["points_mm"]) if args.history else args.until
+
+
+def frameSpacing(args):
+    """Length of the way between ParaView frames, which is at least ``--vtk-every`` [mm]."""
+    return max(args.vtk_every, wayLength(args) / FRAMES if args.history else 0)
 
 
 def tooFast(args, imbalance):

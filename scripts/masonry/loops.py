@@ -68,11 +68,12 @@ def _noise(threshold):
 
 
 def turningPoints(displacement, threshold=0.0):
-    """Rows at which a curve turns: an array that begins with row 0.
+    """Rows at which a curve turns: an array, between whose rows the displacement changes by more than the threshold.
 
     A maximum counts once the displacement has fallen by more than the threshold below it, a minimum once it has risen by
-    more. The last row of the array is the extreme of the last swing: the last row of the curve, or one from which the
-    curve has turned back by no more than the threshold. A curve that never leaves the threshold has row 0 alone.
+    more. The first row of the array is where the first swing begins: row 0, or one that is not more than the threshold
+    away from it. The last one is where the last swing ends: the last row of the curve, or one from which the curve has
+    turned back by no more than the threshold. A curve without such a swing has row 0 alone.
 
     :param displacement: [mm]
     :param threshold: [mm], 0 or more
@@ -86,12 +87,14 @@ def turningPoints(displacement, threshold=0.0):
         if downwards and x < moved[low]:
             low = row
         if upwards and moved[high] - x > threshold:
-            if not downwards:
-                rows.append(high)
+            if downwards:
+                rows.clear()
+            rows.append(high)
             upwards, downwards, low = False, True, row
         elif downwards and x - moved[low] > threshold:
-            if not upwards:
-                rows.append(low)
+            if upwards:
+                rows.clear()
+            rows.append(low)
             upwards, downwards, high = True, False, row
     if upwards != downwards:
         rows.append(high if upwards else low)
@@ -102,8 +105,9 @@ def halfCycles(displacement, threshold, zero=0.0):
     """Excursions to either side that go beyond the threshold: a list of :class:`HalfCycle` that alternate in side.
 
     A half cycle ends at the last passage through zero before the displacement goes beyond the threshold on the other
-    side. The last one is complete if the curve ends within the threshold of zero. The first one is complete if it begins
-    within the threshold of zero.
+    side. The first one is complete if the curve begins within the threshold of zero or passes through zero before it. The
+    last one is complete if the curve ends within the threshold of zero; it then ends at the last passage through zero,
+    or at the last row if there is none.
 
     :param displacement: [mm]
     :param threshold: [mm], 0 or more
@@ -111,28 +115,37 @@ def halfCycles(displacement, threshold, zero=0.0):
     """
     moved = _curve(displacement) - zero
     _noise(threshold)
+    last = len(moved) - 1
     starts, sides = [], []
     beyond = np.flatnonzero(np.abs(moved) > threshold)
     for row in beyond[np.diff(np.sign(moved[beyond]), prepend=0) != 0]:
-        side = 1 if moved[row] > 0 else -1
-        before = np.flatnonzero(side * moved[:row] <= 0)
-        start = 0.0
-        if len(before):
-            at = int(before[-1])
-            start = at + float(moved[at] / (moved[at] - moved[at + 1]))
-        starts.append(start)
-        sides.append(side)
-    last = len(moved) - 1
+        sides.append(1 if moved[row] > 0 else -1)
+        starts.append(_lastPassage(moved[: row + 1]))
     found = []
     for n, (start, side) in enumerate(zip(starts, sides)):
-        isLast = n + 1 == len(starts)
-        end = float(last) if isLast else starts[n + 1]
+        begins = start is not None or abs(moved[0]) <= threshold
+        start = start or 0.0
+        ends, end = True, starts[n + 1] if n + 1 < len(starts) else None
+        if end is None:
+            ends, end = abs(moved[last]) <= threshold, float(last)
+            passage = _lastPassage(moved)
+            if ends and passage is not None and passage > beyond[-1]:
+                end = passage
         rows = slice(math.ceil(start), math.floor(end) + 1)
         extreme = rows.start + int(np.argmax(side * moved[rows]))
-        begins = n > 0 or start > 0 or abs(moved[0]) <= threshold
-        ends = not isLast or abs(moved[last]) <= threshold
         found.append(HalfCycle(start, end, extreme, side, bool(begins and ends)))
     return found
+
+
+def _lastPassage(moved):
+    """The last place at which displacements pass through zero or leave it, or None; at zero itself the last row."""
+    if moved[-1] == 0:
+        return float(len(moved) - 1)
+    other = np.flatnonzero(np.sign(moved) != np.sign(moved[-1]))
+    if not len(other):
+        return None
+    at = int(other[-1])
+    return at + float(moved[at] / (moved[at] - moved[at + 1]))
 
 
 def stretch(values, start, end):

@@ -6,6 +6,7 @@ import os
 import re
 import sys
 
+from . import history
 from .checkpoints import readProgress
 from .errors import Refused
 from .presets import HARMLESS, PRESETS, USUAL, asOption
@@ -20,7 +21,7 @@ UNITS = {
 }
 
 #: Options that can be changed when a run is resumed.
-FREE = {"until", "checkpoint_every", "vtk_every", "no_vtk"}
+FREE = {"until", "history", "checkpoint_every", "vtk_every", "no_vtk"}
 
 
 def number(text, low=-math.inf, high=math.inf, above=False):
@@ -65,6 +66,13 @@ def _setting(text):
     return joint, attribute, value
 
 
+def _history(text):
+    try:
+        return history.parse(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
 def _folder(text):
     if not text.strip():
         raise argparse.ArgumentTypeError("must not be empty")
@@ -83,9 +91,9 @@ class Parser(argparse.ArgumentParser):
         super().__init__(allow_abbrev=False, **settings)
         self.problems = []
         self.free = set(FREE)
-        # argparse knows no exponents: -5e-1 would be an option
+        # argparse knows no exponents and no lists: -5e-1 and -1,2x3 would be options
         self._negative_number_matcher = re.compile(
-            r"-(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$|-(inf|nan)$", re.IGNORECASE
+            r"-(\d+\.?\d*|\.\d+)(e[+-]?\d+)?([x,].*)?$|-(inf|nan)$", re.IGNORECASE
         )
 
     def parse_known_args(self, args=None, namespace=None):
@@ -114,6 +122,8 @@ class Parser(argparse.ArgumentParser):
         given = {name: value for name, value in given.items() if value is not None}
         usual = {**vars(super().parse_args([])), **PRESETS.get(found.preset, {})}
         vars(found).update(usual, **given)
+        if found.history:
+            found.until = None
         found.overrides = [
             name
             for name, value in given.items()
@@ -136,16 +146,26 @@ class Parser(argparse.ArgumentParser):
             for name, value in known.items()
             if name not in self.free and getattr(given, name) != value
         ]
+        old = known.get("history")
+        if old and given.until is not None:
+            fixed.append(f"--history is {old['text']}, without --until")
+        elif given.history and not old:
+            fixed.append(f"--until is {known['until']}, without --history")
+        elif old and not history.extends(given.history, old):
+            fixed.append(
+                f"--history is {old['text']}, and another one must begin with all its points"
+            )
         if fixed:
             self.exit(2, f"--resume: a run goes on as it began: {', '.join(fixed)}\n")
         return given
 
 
-def parser(description, until, rate=USUAL["rate"]):
+def parser(description, until, rate=USUAL["rate"], loops=True):
     """A parser with the common options, to which a scene adds its own.
 
     :param until: default displacement to stop at [mm]
     :param rate: default loading rate [mm/s]
+    :param loops: whether the scene has ``--history``; its value is None in all others
     """
     p = Parser(
         prog="yade " + os.path.basename(sys.argv[0]),
@@ -159,13 +179,23 @@ def parser(description, until, rate=USUAL["rate"]):
         help="blocks, divisions, subcontacts, rate and damping with a promise of error and time; "
         "an option given beside it wins, and drops the promise",
     )
-    p.add_argument(
+    end = p.add_mutually_exclusive_group()
+    end.add_argument(
         "--until",
         metavar="MM",
         type=mm,
         default=until,
         help="displacement to stop at [mm]",
     )
+    p.set_defaults(history=None)
+    if loops:
+        end.add_argument(
+            "--history",
+            metavar="SPEC",
+            type=_history,
+            help="loops in place of --until: amplitudes in mm with repeats, as 1,2x3,4, each cycle 0, +A, -A, 0; or a "
+            "CSV file with a column displacement_mm",
+        )
     p.add_argument(
         "--rate",
         metavar="MM_PER_S",
@@ -264,14 +294,14 @@ def parser(description, until, rate=USUAL["rate"]):
         type=_folder,
         default=None,
         help="go on from the checkpoint in this folder of results, with the options of its run; only --until, "
-        "--checkpoint-every, --vtk-every and --no-vtk can be changed",
+        "--checkpoint-every, --vtk-every and --no-vtk can be changed, and --history can be extended",
     )
     p.add_argument(
         "--vtk-every",
         metavar="MM",
         type=mm,
         default=1.0,
-        help="displacement between ParaView frames [mm]",
+        help="displacement between ParaView frames [mm]; with --history the path between them",
     )
     p.add_argument(
         "--no-vtk",

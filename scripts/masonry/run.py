@@ -375,7 +375,7 @@ class Run:
         at, model, run = self.at, self.model, self.results.run
         run.update(
             scene=self.name,
-            options=dict(vars(self.args)),
+            options=self._options(),
             option_units=UNITS,
             preset=self.preset,
             columns=meanings(model.columns),
@@ -407,6 +407,13 @@ class Run:
             perStep = at.seconds["steps"] / at.steps
             run["microseconds_per_step"] = 1e6 * perStep
             run["nanoseconds_per_subcontact_step"] = 1e9 * perStep / model.subcontacts
+
+    def _options(self):
+        """The options, with a history as the user wrote it."""
+        options = dict(vars(self.args))
+        if options.get("history"):
+            options["history"] = options["history"]["text"]
+        return options
 
     def _stages(self):
         ends = [*self.at.stages[1:], ["", self.at.steps, self.at.seconds["steps"]]]

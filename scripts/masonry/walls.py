@@ -14,7 +14,7 @@ from yade.wrapper import MasonryJoint, MasonryLoad, MasonryMat
 
 from . import brickwork, columns, materials
 from .curves import dynamicImbalance, initialStiffness
-from .loading import IMBALANCE, ROW_EVERY, tooFast
+from .loading import IMBALANCE, ROW_EVERY, frameSpacing, tooFast, wayLength
 from .model import Model, drawFigures
 from .scene import addBlock
 
@@ -103,6 +103,8 @@ class WallModel(Model):
 
     def __init__(self, wall, args, functors=False):
         self.wall, self.title, self.functors = wall, wall.title, functors
+        if args.history:
+            self.columns = columns.WALL_LOOPS
         unit = wall.unitMaterial()
         joints = wall.joints(brittle=args.joints == "brittle")
         if not isinstance(unit, MasonryMat):
@@ -122,6 +124,8 @@ class WallModel(Model):
             0,
             0,
         )  # displacement of the top when the push began, along it and up [m]
+        #: Point of the history that the drive is going to: its number, from 1, and its displacement [mm].
+        self.aim = 0, 0.0
 
     # -- what is built --------------------------------------------------------------------------------------------
 
@@ -226,6 +230,7 @@ class WallModel(Model):
             orientation,
             self._upright,
             -up,
+            *self.aim,
         )
 
     # -- what comes out -------------------------------------------------------------------------------------------
@@ -234,9 +239,10 @@ class WallModel(Model):
         args = self.args
         nodes = len(self.zones.displacements) if self.zones else 0
         frame = 50 * self.subcontacts + 150 * len(O.bodies) + 100 * nodes
-        frames = 0 if args.no_vtk else args.until / args.vtk_every + 2
+        way, row = wayLength(args), 250
+        frames = 0 if args.no_vtk else way / frameSpacing(args) + 2
         least = 400e3 + frame * min(frames, 2)  # figures, first and last frame
-        return least, least + frame * frames + 250 * args.until / ROW_EVERY
+        return least, least + frame * frames + row * way / ROW_EVERY
 
     def describe(self):
         wall = self.wall

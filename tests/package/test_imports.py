@@ -16,6 +16,7 @@ WITHOUT_YADE = [
     "columns",
     "curves",
     "loops",
+    "history",
     "presets",
     "results",
     "figures",

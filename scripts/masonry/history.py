@@ -1,0 +1,190 @@
+"""Displacement histories: what ``--history`` may say, and the points that the drive goes to. This module needs no YADE.
+
+A history is a dict that JSON can hold. ``text`` is what the user wrote, and ``points_mm`` are displacements [mm] that are
+reached in turn, from 0 on, in straight lines. Beside these there are
+
+- ``amplitudes_mm`` of a list of amplitudes: pairs of an amplitude [mm] and how often it is repeated; or
+- ``file`` and ``sha256`` of a file: its path, and the fingerprint of its contents.
+"""
+
+import csv
+import hashlib
+import io
+import math
+import os
+from collections import namedtuple
+
+LEAST, MOST = 0.02, 1000.0  # [mm] bounds of an amplitude; a row of curve.csv is 0.01 mm
+CYCLES = 10000  # that a list of amplitudes may have
+COLUMN = "displacement_mm"  # of a file
+TOLD = 10  # problems that are told one by one
+
+#: A point of a history: its displacement [mm]; the way to it, 1 or -1; and the displacement at which the drive turns or
+#: stops next, for which it brakes, or None if it does not [mm].
+Target = namedtuple("Target", "displacement way brake")
+
+
+def parse(text):
+    """The history that a text stands for: amplitudes as in ``1,2x3,4``, or the path of a CSV file.
+
+    An amplitude A is one cycle 0 → +A → -A → 0, and ``Ax3`` is three of them. A file has a column ``displacement_mm``.
+
+    :raises ValueError: with all problems
+    """
+    if not text.strip():
+        raise ValueError(
+            "must be amplitudes in mm such as 1,2x3,4, or the path of a CSV file"
+        )
+    named = os.sep in text or text.lower().endswith(".csv")
+    return _readFile(text) if named or os.path.isfile(text) else _readList(text)
+
+
+def _refuse(problems):
+    if problems:
+        more = [f"and {len(problems) - TOLD} more"] if len(problems) > TOLD else []
+        raise ValueError("; ".join([*problems[:TOLD], *more]))
+
+
+def _readList(text):
+    problems, amplitudes = [], []
+    for piece in text.split(","):
+        number, times, count = piece.strip().partition("x")
+        try:
+            amplitude = float(number)
+        except ValueError:
+            problems.append(f"'{piece}' is no amplitude in mm such as 2 or 2x3")
+            continue
+        if not LEAST <= amplitude <= MOST:
+            problems.append(
+                f"'{piece}': the amplitude must be from {LEAST:g} to {MOST:g} mm"
+            )
+        if times and not (count.isdecimal() and count.isascii() and int(count) >= 1):
+            problems.append(
+                f"'{piece}': the number of cycles must be a whole number, at least 1"
+            )
+        elif not problems:
+            amplitudes.append([amplitude, int(count) if times else 1])
+    whole = sum(repeats for _, repeats in amplitudes)
+    if whole > CYCLES:
+        problems.append(f"{whole} cycles are more than {CYCLES}")
+    _refuse(problems)
+    points = [p for a, repeats in amplitudes for p in repeats * (a, -a, 0.0)]
+    return {"text": text, "amplitudes_mm": amplitudes, "points_mm": points}
+
+
+def _readFile(path):
+    try:
+        with open(path, "rb") as f:
+            data = f.read()
+        content = data.decode("utf-8-sig")
+    except OSError as error:
+        raise ValueError(f"cannot read {path}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise ValueError(f"cannot read {path}: it is no text in UTF-8") from None
+    lines = csv.reader(io.StringIO(content, newline=""))
+    try:
+        points = _column(lines, path)
+    except csv.Error as error:
+        raise ValueError(f"{path}, line {lines.line_num}: {error}") from None
+    fingerprint = hashlib.sha256(data).hexdigest()
+    return {
+        "text": path,
+        "file": os.path.abspath(path),
+        "sha256": fingerprint,
+        "points_mm": points,
+    }
+
+
+def _column(lines, path):
+    """The displacements of a file [mm], from its lines as lists of texts."""
+    heads = [head.strip() for head in next(lines, [])]
+    if heads.count(COLUMN) != 1:
+        found = ", ".join(heads) or "nothing"
+        raise ValueError(
+            f"{path}: its first line must name one column {COLUMN}, it has {found}"
+        )
+    at, problems, points = heads.index(COLUMN), [], []
+    for line in lines:
+        if not line:
+            continue
+        text = line[at].strip() if at < len(line) else ""
+        try:
+            value = float(text)
+        except ValueError:
+            problems.append(f"{path}, line {lines.line_num}: '{text}' is not a number")
+            continue
+        if not abs(value) <= MOST:
+            problems.append(
+                f"{path}, line {lines.line_num}: {text} mm must be from {-MOST:g} to {MOST:g} mm"
+            )
+        points.append(value)
+    _refuse(problems)
+    if len(points) < 2:
+        raise ValueError(
+            f"{path}: it has {len(points)} displacements, a history needs two at least"
+        )
+    if max(map(abs, points)) < LEAST:
+        raise ValueError(f"{path}: no displacement is {LEAST:g} mm or more")
+    return points
+
+
+def targets(points, stops=False):
+    """The points of a history as the drive sees them: a list of :class:`Target`.
+
+    A point that repeats the one before lies on the same way.
+
+    :param points: displacements [mm]
+    :param stops: whether the drive brakes for the last point
+    """
+    ways, last = [], 0.0
+    for point in points:
+        same = ways[-1] if ways else 1
+        ways.append(1 if point > last else -1 if point < last else same)
+        last = point
+    found, brake = [], points[-1] if stops else None
+    for n in reversed(range(len(points))):
+        if n + 1 < len(points) and ways[n] != ways[n + 1]:
+            brake = points[n]
+        found.append(Target(points[n], ways[n], brake))
+    return found[::-1]
+
+
+def pathLength(points):
+    """Length of the way through some points from 0 on [mm]."""
+    return sum(abs(b - a) for a, b in zip([0.0, *points], points))
+
+
+def aim(args):
+    """The targets of a run: those of ``--history``, or one at ``--until``.
+
+    The drive stops at the end of a file. At the end of a list of amplitudes and of a push it does not brake, because
+    both go on the same way if the run is resumed and extended.
+
+    :param args: the options of :func:`masonry.options.parser`
+    """
+    if args.history:
+        return targets(args.history["points_mm"], "file" in args.history)
+    return targets([args.until])
+
+
+def turns(points):
+    """How often the drive turns."""
+    ways = [target.way for target in targets(points)]
+    return sum(one != other for one, other in zip(ways, ways[1:]))
+
+
+def extends(new, old):
+    """Whether a history begins with all points of another one."""
+    return new["points_mm"][: len(old["points_mm"])] == old["points_mm"]
+
+
+def describe(history):
+    """What run.json says of a history: the dict without its points, but with their number and the length of the way."""
+    points = history["points_mm"]
+    told = {name: value for name, value in history.items() if name != "points_mm"}
+    return dict(
+        told,
+        points=len(points),
+        turning_points=turns(points),
+        path_mm=pathLength(points),
+    )
