@@ -12,6 +12,7 @@ repairs it.
 
 import argparse
 import csv
+import functools
 import glob
 import os
 from collections import namedtuple
@@ -193,6 +194,7 @@ def pieces(wall):
     ]
 
 
+@functools.lru_cache(None)
 def curve(wall):
     """Whole measured curve: displacements [mm], forces [kN], and the number of the piece of every row."""
     found = pieces(wall)
@@ -207,11 +209,12 @@ def history(wall):
     These are the turning points of the measured curve, reversals of less than ``THRESHOLD`` left out, and its last row.
     The rows between are not needed: they lie on the way from one turning point to the next.
     """
-    moved, _, _ = curve(wall)
-    points = moved[loops.turningPoints(moved, THRESHOLD)]
+    moved = np.append(0.0, curve(wall)[0])  # the test began at rest
+    points = moved[loops.turningPoints(moved, THRESHOLD)][1:]
     return points if points[-1] == moved[-1] else np.append(points, moved[-1])
 
 
+@functools.lru_cache(None)
 def cycles(wall):
     """Cycles of a wall with their numbers: a list of :class:`Measured`.
 
