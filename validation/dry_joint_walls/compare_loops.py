@@ -29,7 +29,14 @@ import measured  # noqa: E402
 import studies  # noqa: E402
 
 KINDS = ("support", "bed", "head")  # of joints
-RANGES = ((1.5, 6), (6, 9), (9, 12.5), (12.5, 17), (17, 45))  # of amplitudes [mm]
+RANGES = (
+    (1, 5),
+    (5, 7.5),
+    (7.5, 9.5),
+    (9.5, 12),
+    (12, 17),
+    (17, 46),
+)  # of amplitudes [mm]
 RATE = 20  # [mm/s]
 COLOURS = {"softening": "tab:blue", "cyclic": "tab:red"}
 

@@ -196,8 +196,11 @@ def pieces(wall):
 
 @functools.lru_cache(None)
 def curve(wall):
-    """Whole measured curve: displacements [mm], forces [kN], and the number of the piece of every row."""
-    found = pieces(wall)
+    """Whole measured curve: displacements [mm], forces [kN], and the number of the piece of every row.
+
+    The first row is the wall at rest, (0, 0) of piece -1. The files begin at the first negative turning point.
+    """
+    found = [(-1, np.zeros((1, 2))), *pieces(wall)]
     points = np.concatenate([points for _, points in found])
     numbers = np.concatenate([np.full(len(p), number) for number, p in found])
     return points[:, 0], points[:, 1], numbers
@@ -209,7 +212,7 @@ def history(wall):
     These are the turning points of the measured curve, reversals of less than ``THRESHOLD`` left out, and its last row.
     The rows between are not needed: they lie on the way from one turning point to the next.
     """
-    moved = np.append(0.0, curve(wall)[0])  # the test began at rest
+    moved = curve(wall)[0]
     points = moved[loops.turningPoints(moved, THRESHOLD)][1:]
     return points if points[-1] == moved[-1] else np.append(points, moved[-1])
 
