@@ -12,6 +12,7 @@ the law itself. ``figures.py`` draws them.
 import argparse
 import csv
 import os
+import sys
 
 from masonry import MasonryJoint, addBlock, brickwork, criticalTimeStep, engines
 from masonry import connect, materials
@@ -20,7 +21,7 @@ from masonry.options import applySettings
 from yade import O, Vector3
 from yade.wrapper import MasonryLoad
 
-HERE = os.path.dirname(os.path.abspath(__file__))
+HERE = os.path.dirname(os.path.abspath(sys.argv[0]))  # in YADE, __file__ is YADE
 RESULTS = os.path.join(os.path.dirname(os.path.dirname(HERE)), "results")
 UNIT = (0.220, 0.102, 0.081)  # [m] length, thickness, height of a block
 AREA = UNIT[0] * UNIT[1]  # [m²] of the joint
@@ -53,7 +54,9 @@ class Joint:
         length, thickness, height = UNIT
         lower, upper = [
             addBlock(
-                brickwork.corners((0, 0, z), (length, thickness, z + height)), rigid
+                brickwork.corners((0, 0, z), (length, thickness, z + height)),
+                rigid,
+                inPlane=True,
             )
             for z in (-height, 0.0)
         ]
@@ -62,7 +65,12 @@ class Joint:
         top = dict(body=upper, point=(length / 2, thickness / 2, height), driven=True)
         self.vertical = MasonryLoad(label="vertical", direction=(0, 0, 1), **top)
         self.lateral = MasonryLoad(label="lateral", direction=(1, 0, 0), **top)
-        engines([joint], gravity=(0, 0, 0), loads=[self.vertical, self.lateral])
+        engines(
+            [joint],
+            gravity=(0, 0, 0),
+            inPlane=True,
+            loads=[self.vertical, self.lateral],
+        )
         connect()
         self.interaction = O.interactions[lower, upper]
         O.dt = 0.8 * criticalTimeStep()[0]
@@ -73,10 +81,13 @@ class Joint:
         return sum(a * v for a, v in zip(areas, values)) / sum(areas)
 
     def read(self):
-        """Append a row: means over the joint, in the units of COLUMNS. Returns it."""
+        """Append a row: means over the joint, in the units of COLUMNS. Returns it.
+
+        The jumps are those that the stresses were calculated from; the loads have moved on by a time step.
+        """
         phys = self.interaction.phys
-        opening = self.vertical.displacement()[2]
-        slide = self.lateral.displacement()[0]
+        opening = self.mean(phys.opening)
+        slide = self.mean(jump[1] for jump in self.interaction.geom.jumps)
         normal, shear = (self.mean(s[i] for s in phys.stress) for i in (0, 1))
         self.rows.append((1e3 * opening, 1e3 * slide, 1e-6 * normal, 1e-6 * shear))
         return self.rows[-1]
@@ -95,8 +106,9 @@ class Joint:
     def press(self, stress):
         """Close the joint elastically to a normal stress [Pa], then hold that by the force."""
         if stress:
+            # slowly: the block has no damping, and would swing on the joint
             self.drive(
-                self.vertical, stress / self.interaction.phys.normalStiffness, 20
+                self.vertical, stress / self.interaction.phys.normalStiffness, 400
             )
         self.vertical.driven = False
         self.vertical.force = Vector3(0, 0, stress * AREA)
