@@ -16,5 +16,5 @@ wall = walls.Wall(
 with Run(wall.name, args) as run:
     model = run.build(walls.WallModel(wall, args))  # bricks between two blocks
     settle(run, model)  # gravity and precompression, until the wall is at rest
-    push(run, model)  # the upper block to the right, a row every 0.01 mm
+    push(run, model)  # the upper block to --until or along --history, a row every 0.01 mm
 raise SystemExit(run.status)

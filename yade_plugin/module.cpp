@@ -1,6 +1,7 @@
 // The Python module masonry._masonry. When it is imported it checks whether it fits the running YADE, and registers its
 // classes there.
 #include "adapters/CriticalTimeStep.hpp"
+#include "adapters/Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening.hpp"
 #include "adapters/Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening.hpp"
 #include "adapters/MasonryEnergy.hpp"
 #include "adapters/MasonryIntegrator.hpp"
@@ -111,6 +112,7 @@ static void registerAll() {
     enroll<MasonryJointPhys>(names);
     enroll<Ig2_Polyhedra_Polyhedra_MasonryJointGeom>(names);
     enroll<Ip2_MasonryMat_MasonryMat_MasonryJointPhys>(names);
+    enroll<Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening>(names);
     enroll<Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening>(names);
     enroll<MasonryZones>(names);
     enroll<MasonryJointLoop>(names);

@@ -30,6 +30,8 @@ class CoupletModel(Model):
 
     def __init__(self, args):
         joints = materials.calciumSilicateJoints(brittle=args.joints == "brittle")
+        if args.joints == "cyclic":
+            materials.makeCyclic(joints)
         super().__init__(args, materials.calciumSilicateUnit(), joints)
         bed, stress = joints["bed"], -1e6 * args.normal_stress
         crushes = bed.cap and not bed.elastic and stress >= bed.compressiveStrength

@@ -2,6 +2,11 @@
 
 import math
 
+from . import loops
+
+#: Displacements [mm] within which a wall that follows a history is said to be at zero. A history's amplitudes are larger.
+AT_ZERO = 0.015
+
 
 def dynamicImbalance(top, base):
     """How much of the force of a push does not arrive at its base [-]: 0 if all does, 1 and more if none does.
@@ -40,3 +45,52 @@ def initialStiffness(displacement, force):
     spread = sum((d - meanD) ** 2 for d, _ in points)
     products = sum((d - meanD) * (f - meanF) for d, f in points)
     return products / spread if spread > 0 else 0.0
+
+
+def cycleNumbers(column):
+    """Numbers of every cycle of a wall that follows a history: a list of dicts, for run.json.
+
+    They are those of :class:`masonry.loops.Cycle`, None in place of NaN, with the base shear as the force. In place of
+    ``start`` and ``end`` there is ``rows``, the first and the last row of curve.csv, from 0. Beside them there are, of the
+    same stretch [J]: ``top_work_J``, the work of the force that drives the loading block over the same displacement;
+    ``dissipated_J``, what the joints dissipated; and ``damped_J``, what damping took.
+
+    :param column: function of the name of a column of curve.csv that gives its values
+    """
+    moved, base = column("displacement_mm"), column("base_shear_kN")
+    if not moved:
+        return []
+    top, damping = column("top_shear_kN"), column("damping_J")
+    modes = [
+        column(f"dissipated_{mode}_J") for mode in ("tension", "shear", "compression")
+    ]
+    dissipated = [sum(values) for values in zip(*modes)]
+    found = []
+    for cycle in loops.cycles(moved, base, AT_ZERO):
+        start, end = cycle.start, cycle.end
+        grown = lambda values: float(
+            loops.stretch(values, start, end)[[0, -1]] @ [-1, 1]
+        )
+        numbers = {
+            name: None if math.isnan(value) else value
+            for name, value in cycle._asdict().items()
+        }
+        numbers.pop("start"), numbers.pop("end")
+        found.append(
+            dict(
+                rows=[math.ceil(start), math.floor(end)],
+                **numbers,
+                top_work_J=loops.work(moved, top, start, end),
+                dissipated_J=grown(dissipated),
+                damped_J=grown(damping),
+            )
+        )
+    return found
+
+
+def dampedShare(column):
+    """Of what joints and damping have taken since the first row, the share of damping [-]; 0 if nothing was taken."""
+    grown = lambda name: column(name)[-1] - column(name)[0]
+    damped = max(0.0, grown("damping_J"))
+    lost = sum(grown(f"dissipated_{m}_J") for m in ("tension", "shear", "compression"))
+    return damped / (damped + lost) if damped + lost > 0 else 0.0

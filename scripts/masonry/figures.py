@@ -15,6 +15,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 
+from . import loops
 from .errors import Refused
 from .results import filesOf, onFolder, readCurve, readRun
 
@@ -66,39 +67,59 @@ def _save(figure, path, dpi):
 
 
 def curve(directory):
-    """Draw curve.png: the base shear and, below it, the energies over the displacement."""
+    """Draw curve.png: the base shear and, below it, the energies over the displacement.
+
+    Loops have axes through zero and their envelope in bold, and their energies are drawn over the length of the way.
+    """
     run, data = readRun(directory), readCurve(directory)
-    x = data["displacement_mm"]
+    looped, x = "history" in run, np.array(data["displacement_mm"])
     figure, (top, bottom) = plt.subplots(
-        2, 1, figsize=(7, 7), sharex=True, height_ratios=[3, 2]
+        2, 1, figsize=(7, 7), sharex=not looped, height_ratios=[3, 2]
     )
-    top.plot(x, data["base_shear_kN"], color="black", lw=1.2, label="base")
+    base = np.array(data["base_shear_kN"])
+    top.plot(x, base, color="black", lw=0.7 if looped else 1.2, label="base")
     top.plot(
         x,
         data["top_shear_kN"],
         color="tab:orange",
-        lw=0.6,
+        lw=0.4 if looped else 0.6,
         label="loaded point",
         zorder=1,
     )
-    top.plot(
-        run["displacement_at_peak_mm"],
-        run["peak_base_shear_kN"],
-        "o",
-        color="tab:red",
-        ms=5,
-    )
-    top.annotate(
-        f"{run['peak_base_shear_kN']:.1f} kN at {run['displacement_at_peak_mm']:.2f} mm",
-        (run["displacement_at_peak_mm"], run["peak_base_shear_kN"]),
-        textcoords="offset points",
-        xytext=(6, 8),
-    )
+    peaks = [(run["displacement_at_peak_mm"], run["peak_base_shear_kN"])]
+    if looped:
+        for rows, label in zip(loops.envelope(x), ("envelope", None)):
+            top.plot(x[rows], base[rows], color="tab:blue", lw=1.8, label=label)
+        peaks.append(
+            (
+                run["displacement_at_negative_peak_mm"],
+                run["negative_peak_base_shear_kN"],
+            )
+        )
+        top.axhline(0, color="0.3", lw=0.8, zorder=0)
+        top.axvline(0, color="0.3", lw=0.8, zorder=0)
+        top.margins(y=0.12)
+    else:
+        top.set_ylim(0, 1.15 * run["peak_base_shear_kN"])
+    for at, peak in peaks:
+        top.plot(at, peak, "o", color="tab:red", ms=5)
+        top.annotate(
+            f"{peak:.1f} kN at {at:.2f} mm",
+            (at, peak),
+            textcoords="offset points",
+            xytext=(6, 8) if peak >= 0 else (-6, -14),
+            ha="right" if looped and at > 0 else "left",
+        )
     top.set_ylabel("shear [kN]")
-    top.set_ylim(0, 1.15 * run["peak_base_shear_kN"])
     top.set_title(run["title"])
     top.legend(loc="lower right")
     top.grid(alpha=0.3)
+    displacement = (
+        f"displacement {run['wall']['measure_height_m']:.3g} m above the base [mm]"
+    )
+    if looped:
+        top.set_xlabel(displacement)
+    over = np.append(0, np.cumsum(np.abs(np.diff(x)))) if looped else x
     start = {k: data[k][0] for k in data if k.endswith("_J")}
     since = lambda name: np.array(data[name + "_J"]) - start[name + "_J"]
     work = since("external") + since("gravity")
@@ -116,10 +137,10 @@ def curve(directory):
         ("damping", since("damping")),
     ]
     for name, values in stack:
-        bottom.plot(x, values, lw=1, label=name)
-    bottom.plot(x, work, color="black", lw=1, ls="--", label="work done")
+        bottom.plot(over, values, lw=1, label=name)
+    bottom.plot(over, work, color="black", lw=1, ls="--", label="work done")
     bottom.set_xlabel(
-        f"displacement {run['wall']['measure_height_m']:.3g} m above the base [mm]"
+        "length of the way there and back [mm]" if looped else displacement
     )
     bottom.set_ylabel("energy since the push began [J]")
     bottom.legend(fontsize=8)

@@ -39,6 +39,13 @@ def parse(text):
     return _readFile(text) if named or os.path.isfile(text) else _readList(text)
 
 
+def _number(text):
+    """The number that a text stands for. Python's own 1_000 is none. Raises ValueError."""
+    if "_" in text:
+        raise ValueError(text)
+    return float(text)
+
+
 def _refuse(problems):
     if problems:
         more = [f"and {len(problems) - TOLD} more"] if len(problems) > TOLD else []
@@ -50,7 +57,7 @@ def _readList(text):
     for piece in text.split(","):
         number, times, count = piece.strip().partition("x")
         try:
-            amplitude = float(number)
+            amplitude = _number(number)
         except ValueError:
             problems.append(f"'{piece}' is no amplitude in mm such as 2 or 2x3")
             continue
@@ -81,7 +88,7 @@ def _readFile(path):
         raise ValueError(f"cannot read {path}: {error.strerror}") from None
     except UnicodeDecodeError:
         raise ValueError(f"cannot read {path}: it is no text in UTF-8") from None
-    lines = csv.reader(io.StringIO(content, newline=""))
+    lines = csv.reader(io.StringIO(content, newline=""), strict=True)
     try:
         points = _column(lines, path)
     except csv.Error as error:
@@ -109,7 +116,7 @@ def _column(lines, path):
             continue
         text = line[at].strip() if at < len(line) else ""
         try:
-            value = float(text)
+            value = _number(text)
         except ValueError:
             problems.append(f"{path}, line {lines.line_num}: '{text}' is not a number")
             continue

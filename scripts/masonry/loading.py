@@ -18,6 +18,7 @@ FRAMES = (
     200  # for ParaView along a history, beside those at its turning points and zeros
 )
 IMBALANCE = 0.1  # a push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more
+DAMPED = 0.1  # of what loops lose: a larger share of damping is a warning, because the loops are too fat by it
 ROWS = 2000  # of curve.csv while a block is driven over a distance
 
 
@@ -256,6 +257,15 @@ def tooFast(args, imbalance):
     return (
         f"warning: the push is too fast: {100 * imbalance:.0f} % of the force does not reach the base, "
         f"more than {100 * IMBALANCE:.0f} % spoil the peak; {cure} would do"
+    )
+
+
+def tooDamped(args, share):
+    """The warning of loops that lose much by damping, which grows with the rate."""
+    slower = float(f"{args.rate * DAMPED / share:.2g}")
+    return (
+        f"warning: damping, not the wall, took {100 * share:.0f} % of what the loops lost; more than "
+        f"{100 * DAMPED:.0f} % spoil the work of the cycles; try --rate {slower:g}"
     )
 
 

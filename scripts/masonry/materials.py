@@ -68,6 +68,12 @@ def calciumSilicateJoints(brittle=False):
     return _byName([support, bed, head, crack], brittle)
 
 
+def makeCyclic(joints):
+    """Let all joints of a dict follow the cyclic law."""
+    for joint in joints.values():
+        joint.cyclic = True
+
+
 def _byName(joints, brittle):
     """Joints as a dict by name. If ``brittle``, those that are not elastic become brittle Coulomb slip joints."""
     if brittle:

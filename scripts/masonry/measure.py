@@ -2,6 +2,8 @@
 
 ``/usr/bin/python3 -m masonry.measure results/wall_comp4`` prints them, with units in the names. Walls are pushed to the
 right: the compressed corners are the toe at the bottom right and the top left, and a diagonal crack falls to the right.
+Of a wall that follows a history the numbers of cracks and crushing are those of the way to the right, and once more, with
+``_mirrored`` at the end of the name, those of the way to the left. It has a table of its cycles, too.
 This module needs no YADE.
 """
 
@@ -12,6 +14,7 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 
+from . import loops
 from .figures import CRACK, readFrame
 from .results import filesOf, onFolder, readCurve, readRun
 
@@ -209,19 +212,58 @@ def wallNumbers(directory):
     run, curve = readRun(directory), readCurve(directory)
     shear, moved = curve["base_shear_kN"], curve["displacement_mm"]
     at = int(np.argmax(shear))
-    numbers = {
-        "top_less_base_shear_kN": curve["top_shear_kN"][at] - shear[at],
-        "push_work_J": float(np.trapz(shear, moved)),
-    }
-    numbers.update(force(moved, shear))
+    numbers = {"top_less_base_shear_kN": curve["top_shear_kN"][at] - shear[at]}
+    if "history" in run:
+        numbers.update(loopNumbers(run, moved, shear))
+    else:
+        numbers["push_work_J"] = float(np.trapz(shear, moved))
+        numbers.update(force(moved, shear))
     if glob.glob(os.path.join(directory, "joints_*.vtp")):
         grid = lambda number: layOut(
             readFrame(directory, "joints", number), run["wall"]
         )
         bed, upright = grid(-1)
         numbers.update(diagonal(bed, upright), **flexure(bed), **crushing(bed))
+        if "history" in run:
+            bed, upright = mirrored(bed), mirrored(upright)
+            other = {**diagonal(bed, upright), **crushing(bed)}
+            numbers.update((name + "_mirrored", v) for name, v in other.items())
         atPeak = diagonal(*grid(frameAt(directory, curve["time_s"][at])))
         numbers["diagonal_reach_at_peak"] = atPeak["diagonal_reach"]
+    return numbers
+
+
+def mirrored(joints):
+    """The joints of :func:`layOut` of a wall that is seen from behind: what fell to the right falls to the left."""
+    return {name: values[:, ::-1] for name, values in joints.items()}
+
+
+def loopNumbers(run, displacement, shear):
+    """Numbers of loops, from run.json and from displacements [mm] and forces [kN].
+
+    - cycle_count: whole cycles; cycle_work_J: work of all of them; loop_work_J: work of the whole curve
+    - largest_amplitude_mm: of a cycle; largest_damping, smallest_damping [-]: the ratio of equivalent viscous damping
+    - force_drop, drop_at_mm: as of a push, along the envelope of the positive side; force_drop_negative,
+      drop_at_negative_mm: along that of the negative side, as positive numbers
+    """
+    cycles = run["cycles"]
+    numbers = {
+        "cycle_count": len(cycles),
+        "cycle_work_J": sum(cycle["work_J"] for cycle in cycles),
+        "loop_work_J": loops.work(displacement, shear),
+    }
+    damping = [c["damping"] for c in cycles if c["damping"] is not None]
+    if damping:
+        numbers["largest_amplitude_mm"] = max(c["amplitude_mm"] for c in cycles)
+        numbers["largest_damping"] = max(damping)
+        numbers["smallest_damping"] = min(damping)
+    moved, forces = np.array(displacement), np.array(shear)
+    sides = (("", 1), ("_negative", -1))
+    for rows, (name, side) in zip(loops.envelope(displacement), sides):
+        if len(rows) and (side * forces[rows]).max() > 0:
+            found = force(side * moved[rows], side * forces[rows])
+            numbers["force_drop" + name] = found["force_drop"]
+            numbers[f"drop_at{name}_mm"] = found["drop_at_mm"]
     return numbers
 
 
@@ -261,10 +303,43 @@ def measure(directory):
     return numbers
 
 
+#: Columns of the table of cycles: the head, the key in run.json, and the format of the numbers.
+TABLE = (
+    ("from mm", "smallest_mm", ".3f"),
+    ("to mm", "largest_mm", ".3f"),
+    ("from kN", "smallest_kN", ".2f"),
+    ("to kN", "largest_kN", ".2f"),
+    ("work J", "work_J", ".2f"),
+    ("kN/mm", "stiffness_kN_per_mm", ".2f"),
+    ("damping", "damping", ".3f"),
+    ("left + mm", "residual_positive_mm", ".3f"),
+    ("left - mm", "residual_negative_mm", ".3f"),
+    ("joints J", "dissipated_J", ".2f"),
+    ("damped J", "damped_J", ".2f"),
+)
+
+
+def cycleTable(cycles):
+    """The cycles of run.json as lines of a table: displacement and base shear from and to, work at the base, secant
+    stiffness, equivalent damping, residual displacements, and what joints and damping took.
+    """
+    yield " cycle" + "".join(f"{head:>11}" for head, _, _ in TABLE)
+    for n, cycle in enumerate(cycles, 1):
+        texts = (
+            "-" if cycle[key] is None else format(cycle[key], kind)
+            for _, key, kind in TABLE
+        )
+        yield f"{n:6}" + "".join(f"{text:>11}" for text in texts)
+
+
 def show(directory):
-    """Print all numbers of a run."""
+    """Print all numbers of a run, and a table of its cycles if there are any."""
     for name, value in measure(directory).items():
         print(f"{name:34} {value:.6g}")
+    cycles = readRun(directory).get("cycles")
+    if cycles:
+        with filesOf(directory):
+            print("\n".join(["", *cycleTable(cycles)]))
 
 
 if __name__ == "__main__":

@@ -260,9 +260,9 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     )
     p.add_argument(
         "--joints",
-        choices=["softening", "brittle"],
+        choices=["softening", "brittle", "cyclic"],
         default="softening",
-        help="the full law, or brittle Coulomb slip",
+        help="the paper's law, brittle Coulomb slip, or the cyclic law, which is made for loads that come back",
     )
     p.add_argument(
         "--set",

@@ -36,6 +36,16 @@ A wall has these, too:
 - ``dynamic_imbalance``: as of :func:`masonry.curves.dynamicImbalance` [-]; ``too_fast``: whether it is more than a push
   may have
 
+A wall that follows a history has these, too:
+
+- ``history``: ``text``, what the option said; ``points``, how many points it has; ``turning_points``, how often it turns;
+  ``path_mm``, the length of the way; of a list ``amplitudes_mm``, pairs of an amplitude [mm] and its number of cycles;
+  of a file its path ``file`` and the fingerprint ``sha256`` of its contents
+- ``negative_peak_base_shear_kN``, ``displacement_at_negative_peak_mm``: the smallest force, which is the peak of the
+  other side
+- ``cycles``: a list with the numbers of every whole cycle, as :func:`masonry.curves.cycleNumbers` finds them
+- ``damped_share``: as of :func:`masonry.curves.dampedShare` [-]
+
 A couplet has these, too:
 
 - ``peak_normal_stress_MPa``, ``peak_compressive_stress_MPa``, ``peak_shear_stress_MPa``: largest means over the joint

@@ -249,12 +249,13 @@ def connect(rule=None, tolerance=1e-4, allowGaps=False):
 
 
 def _functorLoop(geometry, physics):
-    return InteractionLoop(
-        [geometry],
-        [physics],
-        [Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening()],
-        label="joints",
+    cyclic = any(joint.cyclic and not joint.elastic for joint in physics.joints)
+    law = (
+        Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening
+        if cyclic
+        else Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening
     )
+    return InteractionLoop([geometry], [physics], [law()], label="joints")
 
 
 def _pairs(tolerance, allowGaps):

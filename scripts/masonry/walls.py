@@ -12,9 +12,17 @@ from typing import Callable
 from yade import O, Vector3
 from yade.wrapper import MasonryJoint, MasonryLoad, MasonryMat
 
-from . import brickwork, columns, materials
-from .curves import dynamicImbalance, initialStiffness
-from .loading import IMBALANCE, ROW_EVERY, frameSpacing, tooFast, wayLength
+from . import brickwork, columns, history, materials
+from .curves import cycleNumbers, dampedShare, dynamicImbalance, initialStiffness
+from .loading import (
+    DAMPED,
+    IMBALANCE,
+    ROW_EVERY,
+    frameSpacing,
+    tooDamped,
+    tooFast,
+    wayLength,
+)
 from .model import Model, drawFigures
 from .scene import addBlock
 
@@ -106,15 +114,17 @@ class WallModel(Model):
         if args.history:
             self.columns = columns.WALL_LOOPS
         unit = wall.unitMaterial()
-        joints = wall.joints(brittle=args.joints == "brittle")
         if not isinstance(unit, MasonryMat):
             raise ValueError(f"wall {wall.name}: unitMaterial() gave {unit!r}")
+        joints = wall.joints(brittle=args.joints == "brittle")
         if not isinstance(joints, dict) or not all(
             isinstance(joint, MasonryJoint) for joint in joints.values()
         ):
             raise ValueError(
                 f"wall {wall.name}: joints() must give a dict of MasonryJoint by name, gave {joints!r}"
             )
+        if args.joints == "cyclic":
+            materials.makeCyclic(joints)
         self.halves = args.crack_surfaces == "on"
         problems = []
         if self.halves and "crack" not in joints:
@@ -258,12 +268,16 @@ class WallModel(Model):
             "measure_height_m": wall.measureHeight,
             "load_line_fixed": wall.loadLineFixed,
         }
-        return dict(super().describe(), wall=measures)
+        told = dict(super().describe(), wall=measures)
+        if self.args.history:
+            told["history"] = history.describe(self.args.history)
+        return told
 
     def summary(self, column):
         shear, moved = column("base_shear_kN"), column("displacement_mm")
         at = max(range(len(shear)), key=shear.__getitem__)
         imbalance = dynamicImbalance(column("top_shear_kN"), shear)
+        found = self._loops(column) if self.args.history else {}
         return dict(
             peak_base_shear_kN=shear[at],
             displacement_at_peak_mm=moved[at],
@@ -272,14 +286,38 @@ class WallModel(Model):
             initial_stiffness_kN_per_mm=initialStiffness(moved, shear),
             dynamic_imbalance=imbalance,
             too_fast=imbalance > IMBALANCE,
+            **found,
+        )
+
+    def _loops(self, column):
+        """What the summary of a wall that follows a history has, too."""
+        shear, moved = column("base_shear_kN"), column("displacement_mm")
+        at = min(range(len(shear)), key=shear.__getitem__)
+        return dict(
+            negative_peak_base_shear_kN=shear[at],
+            displacement_at_negative_peak_mm=moved[at],
+            damped_share=dampedShare(column),
+            cycles=cycleNumbers(column),
         )
 
     def report(self, run):
         if run["too_fast"]:
             yield tooFast(self.args, run["dynamic_imbalance"])
-        yield (
-            f"{self.wall.name}: peak {run['peak_base_shear_kN']:.1f} kN at {run['displacement_at_peak_mm']:.2f} mm, "
+        peak = f"{run['peak_base_shear_kN']:.1f} kN at {run['displacement_at_peak_mm']:.2f} mm"
+        end = (
             f"{run['base_shear_end_kN']:.1f} kN at {run['displacement_end_mm']:.2f} mm"
+        )
+        if not self.args.history:
+            yield f"{self.wall.name}: peak {peak}, {end}"
+            return
+        if run["damped_share"] > DAMPED:
+            yield tooDamped(self.args, run["damped_share"])
+        other = (
+            f"{run['negative_peak_base_shear_kN']:.1f} kN at "
+            f"{run['displacement_at_negative_peak_mm']:.2f} mm"
+        )
+        yield (
+            f"{self.wall.name}: {len(run['cycles'])} cycles, peaks {peak} and {other}, {end}"
         )
 
     def draw(self, directory):

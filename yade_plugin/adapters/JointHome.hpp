@@ -5,7 +5,7 @@
 #pragma once
 #include "MasonryJoint.hpp"
 #include "blocks/FaceContact.hpp"
-#include "law/piecewise_softening/JointColumns.hpp"
+#include "law/LawColumns.hpp"
 #include "motion/JointFrames.hpp"
 #include <boost/weak_ptr.hpp>
 
@@ -27,8 +27,8 @@ struct Home {
     }
 };
 
-// How a subcontact moves with the surface of a deformable unit: by the weighted mean of three of its nodes. A subcontact
-// at a node has the weights 1, 0, 0.
+// How a subcontact moves with the surface of a deformable unit: by the weighted mean of three of its nodes. A
+// subcontact at a node has the weights 1, 0, 0.
 struct Attachment {
     std::array<int, 3> nodes{0, 0, 0};      // numbers in the lists of MasonryZones
     std::array<double, 3> weights{1, 0, 0}; // their sum is 1
@@ -132,17 +132,17 @@ inline bool sameButRoundOff(double a, double b, double scale) { return std::abs(
 // State of the law in joints that share properties and stiffness.
 struct JointStates : Home {
     JointStates(const shared_ptr<MasonryJoint>& kind, const ElasticStiffness& k, int joints, int points)
-        : joint(kind), columns(kind->law(), k, joints, points) {}
+        : joint(kind), columns(kind->law()->columns(k, joints, points)) {}
 
     shared_ptr<MasonryJoint> joint; // the property set of these joints
-    JointColumns columns;
+    std::unique_ptr<LawColumns> columns;
     shared_ptr<JointShapes> shapes; // of the same joints in the same order; null before they belong to a scene
 
     // Copies joint number `other` of another home into place `number` of this one.
     void take(int number, const JointStates& from, int other) {
-        for (int p = 0; p < columns.points(); ++p) {
-            columns.set(p, number, from.columns.get(p, other));
-            columns.setDissipated(p, number, from.columns.dissipated(p, other));
+        for (int p = 0; p < columns->points(); ++p) {
+            columns->set(p, number, from.columns->get(p, other));
+            columns->setDissipated(p, number, from.columns->dissipated(p, other));
         }
     }
 };

@@ -78,7 +78,7 @@ void JointPlan::dropStressOutOfPlane(SceneStore& store) {
             auto s = joint.phys->state(p);
             if (s.shearStress.b == 0) continue;
             s.shearStress.b = 0;
-            joint.phys->home->columns.set(p, joint.phys->index, s);
+            joint.phys->home->columns->set(p, joint.phys->index, s);
         }
 }
 
@@ -260,7 +260,7 @@ bool JointPlan::noticeBodies(SceneStore& store) {
 
 void JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const Kind& plan, int from, int n) {
     auto& shapes = *kind.shapes;
-    auto& states = kind.states->columns;
+    auto& states = *kind.states->columns;
     const auto& bodies = store.bodies;
     JointFrames frames;
     const int own = plan.alike ? 0 : from;

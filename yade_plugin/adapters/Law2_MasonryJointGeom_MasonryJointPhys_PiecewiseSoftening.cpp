@@ -1,53 +1,15 @@
 #include "Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening.hpp"
+#include "JointFunctor.hpp"
 
 template class masonry::Adapter<masonry::Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening, yade::LawFunctor>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening)
 
 namespace masonry {
 
-bool Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening::go(shared_ptr<yade::IGeom>& ig,
-                                                                   shared_ptr<yade::IPhys>& ip,
+bool Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening::go(shared_ptr<yade::IGeom>& geom,
+                                                                   shared_ptr<yade::IPhys>& phys,
                                                                    yade::Interaction* interaction) {
-    auto& geom = static_cast<MasonryJointGeom&>(*ig);
-    auto& phys = static_cast<MasonryJointPhys&>(*ip);
-    // A joint that connect() did not make is left out here: the loop is parallel, where an exception would end the
-    // program. The next engine of this plugin reports it (SceneCheck).
-    if (!geom.made() || !geom.step || geom.points() != phys.points()) return true;
-    auto& step = *geom.step;
-    const auto& r = geom.reference();
-    const bool hung = r.hung != nullptr;
-    Vector3r force = Vector3r::Zero(), torque = Vector3r::Zero(), moment = Vector3r::Zero();
-    for (int p = 0; p < phys.points(); ++p) {
-        const auto& by = step.increments[p];
-        phys.home->columns.advanceOne(p, phys.index, {by[0], {by[1], by[2]}});
-        const auto s = phys.state(p);
-        // Tension is positive, so a joint in tension pulls body 1 along the normal.
-        const Vector3r pull = Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) * geom.area(p);
-        force += pull;
-        torque += step.arms[p].cross(pull);
-        if (hung) { // MasonryZones brings these forces to the nodes
-            step.forces[p] = step.axes * pull;
-            moment += geom.jump(p).cross(pull);
-        }
-    }
-    force = step.axes * force;
-    torque = step.axes * torque;
-    // The jump between nodes is measured in axes that turn with the mean rotation of the two blocks. So the joint does
-    // work on that rotation, too, and each block takes half of the moment. With it the two forces, which act apart by
-    // the jump, have no resulting moment.
-    step.moment = 0.5 * (step.axes * moment);
-    auto& forces = scene->forces();
-    if (r.rigid(0)) {
-        forces.addForce(interaction->id1, force);
-        forces.addTorque(interaction->id1, torque + step.moment);
-    }
-    if (r.rigid(1)) {
-        forces.addForce(interaction->id2, -force);
-        // The arms lead from body 1, so those of body 2 are shorter by `between`. If body 1 is deformable, the arms
-        // lead from body 2 already.
-        const Vector3r onBody2 = hung ? Vector3r(step.moment - torque) : Vector3r(step.between.cross(force) - torque);
-        forces.addTorque(interaction->id2, onBody2);
-    }
+    advanceJoint(*scene, *geom, *phys, *interaction, false);
     return true;
 }
 

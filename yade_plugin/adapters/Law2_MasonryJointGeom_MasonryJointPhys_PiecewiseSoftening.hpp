@@ -1,6 +1,5 @@
 #pragma once
-#include "MasonryJointGeom.hpp"
-#include "MasonryJointPhys.hpp"
+#include "Adapter.hpp"
 
 namespace masonry {
 
@@ -12,7 +11,8 @@ public:
     static constexpr const char* doc =
         "The joint law of the paper at every subcontact, one joint at a time: tension cut-off, Coulomb slip and "
         "elliptical cap with piecewise linear softening (paper §3). Its parameters are those of the MasonryJoint "
-        "objects. MasonryJointLoop is the fast way through the same law and the same columns.";
+        "objects, of which none may be cyclic. MasonryJointLoop is the fast way through the same law and the same "
+        "columns.";
 
     template <class Visit> static void attributes(Visit&&) {}
 

@@ -138,9 +138,9 @@ py::dict MasonryEnergy::balance() {
     const BetweenSteps still;
     auto& store = SceneStore::present();
     store.update(SceneStore::Look::AtJoints); // a full look would take too long: every row of curve.csv calls this
-    JointColumns::Sums joints{};
+    LawColumns::Sums joints{};
     for (const auto& kind : store.kinds) {
-        const auto sums = kind.states->columns.energies(kind.shapes->area.data(), kind.shapes->alike);
+        const auto sums = kind.states->columns->energies(kind.shapes->area.data(), kind.shapes->alike);
         joints.stored.tension += sums.stored.tension;
         joints.stored.shear += sums.stored.shear;
         joints.stored.compression += sums.stored.compression;

@@ -1,4 +1,5 @@
 #include "MasonryJoint.hpp"
+#include "law/piecewise_softening/JointLaw.hpp"
 
 template class masonry::Adapter<masonry::MasonryJoint, yade::Serializable>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJoint)
@@ -7,7 +8,7 @@ namespace masonry {
 
 void MasonryJoint::postLoad() {
     if (!direction.allFinite()) throw std::invalid_argument("joint \"" + name + "\": direction must be finite numbers");
-    law_ = std::make_shared<const JointLaw>(*this); // throws std::invalid_argument for wrong properties
+    law_ = Law::of(*this); // throws std::invalid_argument for wrong properties
     ++changes;
 }
 

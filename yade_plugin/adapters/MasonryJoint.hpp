@@ -1,6 +1,6 @@
 #pragma once
 #include "Adapter.hpp"
-#include "law/piecewise_softening/JointLaw.hpp"
+#include "law/Law.hpp"
 #include <memory>
 
 namespace masonry {
@@ -31,7 +31,7 @@ public:
     void postLoad();
 
     // The law with these properties. It is made anew whenever a property is set.
-    const std::shared_ptr<const JointLaw>& law() const { return law_; }
+    const std::shared_ptr<const Law>& law() const { return law_; }
 
     // Whether a joint with this unit normal, between units of these MasonryMat.jointSet, is of this kind.
     bool appliesTo(const std::string& set1, const std::string& set2, const Vector3r& normal) const;
@@ -51,7 +51,7 @@ private:
     py::dict softening() const;
     shared_ptr<MasonryJoint> brittle() const;
 
-    std::shared_ptr<const JointLaw> law_;
+    std::shared_ptr<const Law> law_;
 };
 
 } // namespace masonry

@@ -34,7 +34,7 @@ Vector3r MasonryJointPhys::dissipated() {
     return sum;
 }
 
-// Holds the two stiffnesses [Pa/m], then of every subcontact the twelve numbers of its state and the energies
+// Holds the two stiffnesses [Pa/m], then of every subcontact the seventeen numbers of its state and the energies
 // dissipated in tension, shear and compression [J/m²].
 std::vector<double> MasonryJointPhys::record() {
     if (!home) return {};
@@ -50,7 +50,7 @@ std::vector<double> MasonryJointPhys::record() {
 }
 
 void MasonryJointPhys::setRecord(const std::vector<double>& flat) {
-    constexpr std::size_t width = 12 + 3;
+    constexpr std::size_t width = 17 + 3;
     if (flat.empty()) return;
     const bool whole = flat.size() >= 2 && (flat.size() - 2) % width == 0;
     if (!whole || !loaded_ || !(flat[0] > 0) || !(flat[1] > 0))
@@ -65,8 +65,8 @@ void MasonryJointPhys::setRecord(const std::vector<double>& flat) {
         numbers(s, [&](double& value) { value = *next++; });
         const Energies e{next[0], next[1], next[2]};
         next += 3;
-        home->columns.set(p, 0, s);
-        home->columns.setDissipated(p, 0, e);
+        home->columns->set(p, 0, s);
+        home->columns->setDissipated(p, 0, e);
     }
 }
 

@@ -57,12 +57,12 @@ class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys> {
     void define(const shared_ptr<MasonryJoint>&, const ElasticStiffness&, int points);
 
     bool made() const { return home != nullptr; }
-    int points() const { return home ? home->columns.points() : 0; }
-    const JointLaw& law() const { return home->columns.law(); }
-    const ElasticStiffness& stiffness() const { return home->columns.stiffness(); }
-    JointState state(int point) const { return home->columns.get(point, index); }
+    int points() const { return home ? home->columns->points() : 0; }
+    const Law& law() const { return home->columns->law(); }
+    const ElasticStiffness& stiffness() const { return home->columns->stiffness(); }
+    JointState state(int point) const { return home->columns->get(point, index); }
     // Energies dissipated so far by mode [J/m²].
-    Energies lost(int point) const { return home->columns.dissipated(point, index); }
+    Energies lost(int point) const { return home->columns->dissipated(point, index); }
 
     shared_ptr<JointStates> home; // null until define() or loading; SceneStore replaces it
     int index = 0;                // number of the joint in its home

@@ -98,7 +98,7 @@ void transferJoints(const SceneStore& store, Transfer& to) {
     auto next = records.begin();
     for (const auto& joint : store.joints)
         for (int p = 0; p < joint.geom->points(); ++p) {
-            auto& states = joint.phys->home->columns;
+            auto& states = *joint.phys->home->columns;
             joint.geom->home->setJump(p, joint.geom->index, next->jump);
             states.set(p, joint.phys->index, next->state);
             states.setDissipated(p, joint.phys->index, {next->losses[0], next->losses[1], next->losses[2]});

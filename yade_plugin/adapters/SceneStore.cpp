@@ -1,4 +1,5 @@
 #include "SceneStore.hpp"
+#include "JointFunctor.hpp"
 #include "MasonryEnergy.hpp"
 #include "MasonryIntegrator.hpp"
 #include "MasonryJointGeom.hpp"
@@ -191,6 +192,14 @@ void SceneStore::readJoints() {
 void SceneStore::check() {
     if (!(scene_.dt > 0 && std::isfinite(scene_.dt)))
         throw std::invalid_argument("O.dt " + text(scene_.dt) + " s must be a finite number above 0");
+    if (strayed.load().body1 >= 0) {
+        const auto joint = strayed.exchange({});
+        throw std::invalid_argument("the joint of bodies " + std::to_string(joint.body1) + " and " +
+                                    std::to_string(joint.body2) +
+                                    " follows another law than the Law2 functor of InteractionLoop: cyclic joints need "
+                                    "Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening, others "
+                                    "Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening");
+    }
     if (checked_) return;
     checkScene(*this);
     if (zones) zones->units(); // divides the bodies into zones when nothing else is wrong

@@ -41,7 +41,8 @@ template <class F> void numbers(JointState& s, F&& each) {
     double regime = double(s.regime);
     for (double* value :
          {&s.opening, &s.crushing, &s.dilation, &s.slip, &s.largestOpening, &s.largestClosure, &s.tensionDamage,
-          &s.shearDamage, &s.normalStress, &s.shearStress.a, &s.shearStress.b, &regime})
+          &s.shearDamage, &s.normalStress, &s.shearStress.a, &s.shearStress.b, &s.plasticSlip.a, &s.plasticSlip.b,
+          &s.shearSoftening, &s.shearStiffnessLoss, &s.capDisplacement, &regime})
         each(*value);
     if (!(regime >= 0 && regime <= 3)) throw std::invalid_argument("saved file is damaged at the regime of a joint");
     s.regime = Regime(int(regime));

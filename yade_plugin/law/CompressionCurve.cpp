@@ -9,7 +9,8 @@ CompressionCurve::CompressionCurve(double kn, double fcp, double elasticLimitRat
       middle(0.5 * (1 + residualRatio) * fcp),
       residual(residualRatio * fcp),
       limitClosure(elasticLimit / kn),
-      peakClosure(peakRatio * fcp / kn) {         // eq. (19)
+      peakClosure(peakRatio * fcp / kn), // eq. (19)
+      fractureEnergy(Gc) {
     const double kappa = peakClosure * peak;      // eq. (25)
     const double xi = peakClosure * residual;     // eq. (25)
     const double elastic = fcp * fcp / (18 * kn); // the elastic triangle, with fel = fcp/3

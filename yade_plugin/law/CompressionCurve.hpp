@@ -10,6 +10,7 @@ struct CompressionCurve {
     double elasticLimit = 0, peak = 0, middle = 0, residual = 0; // [Pa] fel, fcp, fcm, fcr
     double limitClosure = 0, peakClosure = 0, middleClosure = 0; // [m] uel, ucp, ucm
     double softeningRatio = 0;                                   // [-] m, eq. (24)
+    double fractureEnergy = 0;                                   // [J/m²] Gc
 
     CompressionCurve() = default;
     CompressionCurve(double normalStiffness, double peakStrength, double elasticLimitRatio, double residualRatio,
@@ -19,8 +20,10 @@ struct CompressionCurve {
     static double smallestFractureEnergy(double normalStiffness, double peakStrength, double elasticLimitRatio,
                                          double residualRatio, double peakRatio);
 
-    // In what follows `stretch` = 1/kn* - 1/kn [m/Pa] is what lumped units add to the elastic closure: it moves the
-    // elastic limit and the peak by their own elastic parts (law/README.md, Rigid units).
+    // In what follows `stretch` = 1/kn* - 1/kn [m/Pa] is what lumped units add to the elastic closure. Every point of
+    // the curve moves by the elastic part at its own stress, u* = u + fc(u)·stretch (law/README.md, Rigid units).
+    // Closures u are those of joint and units together. The equations for u* are solved in closed form but for the
+    // tail.
 
     // Strength [Pa] at the largest closure u [m].
     MASONRY_INLINED double strength(double u, double stretch = 0) const {
@@ -30,23 +33,46 @@ struct CompressionCurve {
     // Closure at which the joint begins to harden [m].
     MASONRY_INLINED double limit(double stretch) const { return limitClosure + elasticLimit * stretch; }
 
-    // The strength up to ucm, without branches, so that it is found for several subcontacts at a time.
+    // The strength up to ucm, without branches, so that it is found for several subcontacts at a time. Both parts are
+    // roots of a quadratic equation, written so that nothing cancels.
     MASONRY_INLINED double upToMiddle(double u, double stretch) const {
         const double start = limit(stretch);
         const double top = peakAt(stretch);
-        const double hardening = (u - start) / (top - start); // eq. (18), with the peak at ucp [decided]
-        const double softening = (u - top) / width();         // eqs. (20), (21), second row
-        const double beforePeak = elasticLimit + (peak - elasticLimit) * std::sqrt(hardening * (2 - hardening));
-        const double afterPeak = peak + (middle - peak) * softening * softening;
-        return u <= start ? elasticLimit : u < top ? beforePeak : afterPeak;
+        const bool hardens = u < top;
+        // eq. (18), with the peak at ucp [decided]: a x + b sqrt(x (2 - x)) = v
+        const double a = peakClosure - limitClosure;
+        const double b = stretch * (peak - elasticLimit);
+        const double v = u - start;
+        // eqs. (20), (21), second row: w = W xi - A xi²
+        const double W = width();
+        const double A = stretch * (peak - middle);
+        const double w = u - top;
+        const double inside = hardens ? b * b + 2 * a * v - v * v : W * W - 4 * A * w;
+        const double root = std::sqrt(inside > 0 ? inside : 0);
+        const double fraction = (hardens ? v * v : 2 * w) / (hardens ? a * v + b * b + b * root : W + root);
+        const double beforePeak = elasticLimit + (peak - elasticLimit) * std::sqrt(fraction * (2 - fraction));
+        const double afterPeak = peak + (middle - peak) * fraction * fraction;
+        return u <= start ? elasticLimit : hardens ? beforePeak : afterPeak;
     }
 
     // The strength beyond ucm, eqs. (20), (21), third row.
-    MASONRY_INLINED bool isBeyondMiddle(double u, double stretch) const { return u - peakAt(stretch) >= width(); }
+    MASONRY_INLINED bool isBeyondMiddle(double u, double stretch) const { return u - peakAt(stretch) >= fall(stretch); }
     double beyondMiddle(double u, double stretch) const {
-        const double slope = 2 * (middle - peak) / width(); // eq. (22)
-        const double beyond = u - peakAt(stretch) - width();
-        return residual + (middle - residual) * std::exp(slope * beyond / (middle - residual));
+        const double alpha = 2 * (middle - peak) / width(); // eq. (22)
+        const double height = middle - residual;
+        const double beyond = u - peakAt(stretch) - (width() - stretch * (peak - middle));
+        // own - stretch height (1 - exp(alpha own / height)) = beyond, a convex function of the own closure beyond ucm.
+        // Newton's method comes down to its largest root from the right.
+        double own = beyond + stretch * height;
+        double left = std::exp(alpha * own / height);
+        for (int i = 0; i < 100; ++i) {
+            const double excess = own - stretch * height * (1 - left) - beyond;
+            const double next = own - excess / (1 + stretch * alpha * left);
+            if (!(next < own)) break;
+            own = next;
+            left = std::exp(alpha * own / height);
+        }
+        return residual + height * left;
     }
 
     // Compression damage dc of eqs. (20), (21).
@@ -54,9 +80,23 @@ struct CompressionCurve {
         return u <= peakAt(stretch) ? 0 : 1 - strength(u, stretch) / peak;
     }
 
+    // Steepest fall of the strength [Pa/m], which is at ucm: |alpha| of eq. (22). From stretch = 1/steepest() on the
+    // softening branch snaps back: the units give back more than the joint closes. The strength then drops at once.
+    double steepest() const { return 2 * (peak - middle) / width(); }
+
+    // Gc [J/m²] of the curve that is this one but for a larger ucm, which it falls `gentler` times as slowly to.
+    double fractureEnergyOf(double gentler) const {
+        return fractureEnergy + (gentler - 1) * width() * (peak + residual); // eq. (24)
+    }
+
 private:
     MASONRY_INLINED double peakAt(double stretch) const { return peakClosure + peak * stretch; }
     MASONRY_INLINED double width() const { return middleClosure - peakClosure; }
+    // From the peak to where the tail takes over [m]: ucm, or where the parabola snaps back before.
+    MASONRY_INLINED double fall(double stretch) const {
+        const double A = stretch * (peak - middle);
+        return 2 * A <= width() ? width() - A : width() * width() / (4 * A);
+    }
 };
 
 } // namespace masonry

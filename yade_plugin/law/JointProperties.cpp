@@ -39,6 +39,7 @@ std::vector<std::string> JointProperties::problems() const {
     if (name.empty()) found.push_back("name must not be empty");
     bool acts = true;
     bool capIsBounded = false; // whether all numbers of the cap are within their own bounds
+    bool isCyclic = false;     // whether the visit has come to the properties of the cyclic law
     describe([&](const char* called, auto member, const Property& description) {
         using Value = std::decay_t<decltype(this->*member)>;
         if constexpr (std::is_same_v<Value, bool>) {
@@ -46,6 +47,10 @@ std::vector<std::string> JointProperties::problems() const {
             if (member == &P::cap) {
                 if (!cap) acts = false;
                 capIsBounded = normalStiffness > 0; // what follows are the cap's
+            }
+            if (member == &P::cyclic) {
+                isCyclic = true;
+                acts = cyclic && !elastic;
             }
         }
         if constexpr (std::is_same_v<Value, double>) {
@@ -55,7 +60,7 @@ std::vector<std::string> JointProperties::problems() const {
             const auto problem = description.problem(inWords(called), this->*member);
             if (problem.empty()) return;
             found.push_back(problem);
-            capIsBounded = false;
+            if (!isCyclic) capIsBounded = false;
         }
         if constexpr (std::is_same_v<Value, std::vector<TableRow>>)
             if (acts) checkTable(found, inWords(called), this->*member);
@@ -75,6 +80,30 @@ std::vector<std::string> JointProperties::problems() const {
                             " without cohesion: give a shear table, no exponential one follows from zero cohesion");
         checkExponential(found, "mode II", cohesion, shearStiffness, modeIIFractureEnergy);
     }
+
+    // From here on a joint that slides back would fall by itself: it loses pressure, and with it strength, faster than
+    // its shear stress falls.
+    const double steepest = (1 - shearStiffnessLoss) * shearStiffness / (friction * normalStiffness);
+    if (cyclic && dilatancy > 0 && friction > 0 && !(dilatancy < steepest))
+        found.push_back("dilatancy " + text(dilatancy) +
+                        " must be below (1 - shear stiffness loss)·ks/(friction·kn) = " + text(steepest) +
+                        " in the cyclic law");
+    if (cyclic && initialClosingStiffness > 0) {
+        if (initialClosingStiffness >= normalStiffness)
+            found.push_back("initial closing stiffness " + text(initialClosingStiffness) +
+                            " Pa/m must be below the normal stiffness " + text(normalStiffness) +
+                            " Pa/m, that of the closed joint");
+        if (tensileStrength > 0)
+            found.push_back("tensile strength " + text(tensileStrength) +
+                            " Pa must be 0 for a joint that closes on a curve: it is a dry joint");
+        if (!(closureLimit > 0))
+            found.push_back("closure limit " + text(closureLimit) +
+                            " m must be above 0 where there is an initial closing stiffness");
+        if (cap && compressionStiffnessLoss > 0)
+            found.push_back("compression stiffness loss " + text(compressionStiffnessLoss) +
+                            " must be 0 for a joint that closes on a curve");
+    } else if (cyclic && closureLimit > 0)
+        found.push_back("closure limit " + text(closureLimit) + " m needs an initial closing stiffness above 0");
 
     if (!cap || !capIsBounded) return found;
     const double smallest = CompressionCurve::smallestFractureEnergy(

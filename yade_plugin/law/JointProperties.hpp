@@ -37,8 +37,15 @@ struct JointProperties {
     double capShear = 9;
     double capLinear = 0;
 
+    bool cyclic = false;
+    double shearStiffnessLoss = 0;
+    double compressionStiffnessLoss = 0.5;
+    double bondLossByCrushing = 1;
+    double initialClosingStiffness = 0;
+    double closureLimit = 0;
+
     // Calls visit(name, member, description) for every property. A switch stands before the properties that it
-    // switches: those after `elastic` do not act if it is on, those after `cap` do not act if it is off.
+    // switches: those after `elastic` do not act if it is on, those after `cap` and `cyclic` do not act if it is off.
     template <class Visit> static void describe(Visit&& visit);
 
     // Everything that is wrong, one sentence each, in the user's words; empty if all is well. Properties that do not
@@ -130,6 +137,34 @@ template <class Visit> void JointProperties::describe(Visit&& visit) {
               .source("paper eq. (8c); value [decided]: law/README.md, Parameters"));
     visit("capLinear", &P::capLinear,
           number("Pa", "Constant Cn of the cap").source("paper eq. (8c); value [decided]: law/README.md, Parameters"));
+
+    visit("cyclic", &P::cyclic,
+          described("Whether the joint follows the cyclic law, which is made for loads that come back, and not the "
+                    "paper's law")
+              .source("law/cyclic_softening/README.md"));
+    visit("shearStiffnessLoss", &P::shearStiffnessLoss,
+          number("-", "Share omega_m of the shear stiffness that a joint without bond has lost; 0: it slips only")
+              .atLeast(0)
+              .atMost(0.99)
+              .source("[decided]: law/cyclic_softening/README.md"));
+    visit("compressionStiffnessLoss", &P::compressionStiffnessLoss,
+          number("-", "Share rho of what crushing makes irreversible that is lost stiffness, and not plastic closure")
+              .atLeast(0)
+              .atMost(0.99)
+              .source("[decided]: law/cyclic_softening/README.md"));
+    visit("bondLossByCrushing", &P::bondLossByCrushing,
+          number("-", "Share chi of the bond that a wholly crushed joint has lost")
+              .atLeast(0)
+              .atMost(1)
+              .source("[decided]: law/cyclic_softening/README.md"));
+    visit("initialClosingStiffness", &P::initialClosingStiffness,
+          number("Pa/m", "Normal stiffness kn0 of a dry joint without stress; 0: joints close with kn, not on a curve")
+              .atLeast(0)
+              .source("law/cyclic_softening/README.md; no default, it is measured"));
+    visit("closureLimit", &P::closureLimit,
+          number("m", "Closure cm at which the curve of a dry joint would be vertical")
+              .atLeast(0)
+              .source("law/cyclic_softening/README.md; no default, it is measured"));
 }
 
 // Stiffness that a joint shows: its own, or in series with the rigid units at both sides.

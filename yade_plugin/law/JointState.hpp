@@ -21,12 +21,17 @@ struct JointState {
     double dilation = 0;       // [m] ud, dilatant opening, >= 0
     double slip = 0;           // [m] s, accumulated plastic slip, >= 0
     double largestOpening = 0; // [m] of the elastic opening
-    double largestClosure = 0; // [m] of the total closure
+    double largestClosure = 0; // [m] of the total closure; of the cyclic law kappa, which counts slip on the cap, too
     double tensionDamage = 0;  // [-] d_t
     double shearDamage = 0;    // [-] d_s
     double normalStress = 0;   // [Pa] sigma
     Shear shearStress;         // [Pa] tau
     Regime regime = Regime::Elastic;
+    // of the cyclic law alone
+    Shear plasticSlip;             // [m] p, plastic slip as a vector
+    double shearSoftening = 0;     // [-] r, displacement ratio of the shear table less 1
+    double shearStiffnessLoss = 0; // [-] omega
+    double capDisplacement = 0;    // [m] pi, accumulated plastic displacement on the cap
 };
 
 struct Energies { // [J/m²] by mode; what a step dissipates is its work less the stored energy, so that a balance closes

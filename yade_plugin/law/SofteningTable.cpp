@@ -1,12 +1,41 @@
 #include "SofteningTable.hpp"
 #include "common/Text.hpp"
 #include <cmath>
+#include <limits>
 
 namespace masonry {
 
 SofteningTable::SofteningTable(std::vector<TableRow> rows) : rows_(std::move(rows)) {
-    for (std::size_t i = 0; i + 1 < rows_.size(); ++i)
-        slopes_.push_back((rows_[i + 1].damage - rows_[i].damage) / (rows_[i + 1].ratio - rows_[i].ratio));
+    constexpr double roundOff = 8 * std::numeric_limits<double>::epsilon(); // of a position, over ratio + shift
+    double largest = HUGE_VAL;
+    for (std::size_t i = 0; i + 1 < rows_.size(); ++i) {
+        const double apart = rows_[i + 1].ratio - rows_[i].ratio;
+        const double lost = rows_[i + 1].damage - rows_[i].damage;
+        slopes_.push_back(lost / apart);
+        largest = std::min(largest, (apart * (1 - 1e-9) - roundOff * rows_[i + 1].ratio) / (lost + roundOff));
+    }
+    largestShift_ = std::max(largest, 0.0); // without a shift the rows rise as they are given
+}
+
+double SofteningTable::damageAfterDrops(double ratio, double shift) const {
+    std::size_t row = 0;
+    while (row + 1 < rows_.size() && !(ratio < position(row + 1, shift)))
+        ++row;
+    if (row + 1 == rows_.size()) return rows_.back().damage;
+    const double from = position(row, shift);
+    const double share = (ratio - from) / (position(row + 1, shift) - from);
+    const double damage = rows_[row].damage + share * (rows_[row + 1].damage - rows_[row].damage);
+    return std::min(damage, rows_[row + 1].damage);
+}
+
+double SofteningTable::steepest() const {
+    double steepest = 0;
+    for (std::size_t i = 0; i < slopes_.size(); ++i) {
+        const bool drops =
+            rows_[i + 1].ratio - rows_[i].ratio <= 1e-3 * (1 + 1e-9) && rows_[i + 1].damage - rows_[i].damage >= 0.1;
+        if (!drops) steepest = std::max(steepest, slopes_[i]);
+    }
+    return steepest;
 }
 
 std::vector<std::string> SofteningTable::problems(const std::vector<TableRow>& rows) {
@@ -43,6 +72,21 @@ std::vector<TableRow> SofteningTable::exponential(double decay, int segments) {
         rows.push_back({1 + x / decay, i == segments ? 1 : 1 - std::exp(-x)});
     }
     return rows;
+}
+
+// Areas are over strength times displacement at the peak. The triangle before the peak has 1/2; where it would take
+// more than half of all, softening has the other half.
+std::vector<TableRow> SofteningTable::exponentialOf(double strength, double stiffness, double fractureEnergy) {
+    if (strength == 0) return brittle();
+    const double whole = stiffness * fractureEnergy / (strength * strength);
+    return exponential(1 / (whole >= 1 ? whole - 0.5 : 0.5 * whole));
+}
+
+double SofteningTable::fractureEnergyOf(double strength, double stiffness, double fractureEnergy, double gentler) {
+    const double unit = strength * strength / stiffness;
+    const double whole = fractureEnergy / unit;
+    const double softening = gentler * (whole >= 1 ? whole - 0.5 : 0.5 * whole);
+    return unit * (softening >= 0.5 ? softening + 0.5 : 2 * softening);
 }
 
 } // namespace masonry

@@ -28,32 +28,56 @@ public:
     // Strength is lost at the first yield: the usual Coulomb slip law.
     static std::vector<TableRow> brittle() { return {{1, 0}, {1 + 1e-6, 1}}; }
 
+    // The exponential table that takes the fracture energy [J/m²], the elastic energy at the peak included, of a joint
+    // with this strength [Pa] and own stiffness [Pa/m]; law/README.md, Softening. Zero strength has nothing to soften.
+    static std::vector<TableRow> exponentialOf(double strength, double stiffness, double fractureEnergy);
+    // The fracture energy [J/m²] with which that table falls `gentler` times as slowly.
+    static double fractureEnergyOf(double strength, double stiffness, double fractureEnergy, double gentler);
+
+    // In what follows `shift` [-] is what lumped units add to the ratio at the peak: a row stands at ratio +
+    // shift (1 - damage), because it moves by the elastic part at its own strength (law/README.md, Rigid units). It is
+    // at least 0, and may differ from call to call. Where a row then stands before an earlier one, the softening snaps
+    // back; the damage rises at once to where the table goes on.
+
     // Linear between rows; past the last one its damage stays [decided].
-    double damage(double ratio) const {
-        if (rows_.empty() || !(ratio > 1)) return 0;
-        if (ratio >= rows_.back().ratio) return rows_.back().damage;
-        return within(rowOf(ratio), ratio);
+    double damage(double ratio, double shift = 0) const {
+        if (rows_.empty() || !(ratio > 1 + shift)) return 0;
+        if (!rises(shift)) return damageAfterDrops(ratio, shift);
+        if (ratio >= position(rows_.size() - 1, shift)) return rows_.back().damage;
+        return within(rowOf(ratio, shift), ratio, shift);
     }
 
     // The same for a ratio near the last one: `row` is where that was found, and is brought up to date.
-    double damage(double ratio, std::int32_t& row) const {
-        if (ratio > 1 && isWithin(std::size_t(row), ratio)) return within(std::size_t(row), ratio);
-        if (rows_.empty() || !(ratio > 1)) return 0;
-        if (ratio >= rows_.back().ratio) return rows_.back().damage;
+    double damage(double ratio, double shift, std::int32_t& row) const {
+        if (rows_.empty() || !(ratio > 1 + shift)) return 0;
+        if (!rises(shift)) return damageAfterDrops(ratio, shift);
+        if (isWithin(std::size_t(row), ratio, shift)) return within(std::size_t(row), ratio, shift);
+        if (ratio >= position(rows_.size() - 1, shift)) return rows_.back().damage;
         const std::size_t next = std::size_t(row) + 1;
-        row = std::int32_t(isWithin(next, ratio) ? next : rowOf(ratio));
-        return within(std::size_t(row), ratio);
+        row = std::int32_t(isWithin(next, ratio, shift) ? next : rowOf(ratio, shift));
+        return within(std::size_t(row), ratio, shift);
     }
 
+    // Steepest rise of damage with the ratio but for brittle drops, that is rows at most 1e-3 apart between which a
+    // tenth of the strength or more is lost. Softening snaps back where this times the shift reaches 1.
+    double steepest() const;
+
     const std::vector<TableRow>& rows() const { return rows_; }
+    double lastRatio() const { return rows_.empty() ? 1 : rows_.back().ratio; } // beyond which damage stays
 
 private:
-    std::size_t rowOf(double ratio) const { // the row at or before a ratio between 1 and the last row
+    double position(std::size_t row, double shift) const { return rows_[row].ratio + shift * (1 - rows_[row].damage); }
+    // Whether every row stands beyond the one before, also in numbers with round-off.
+    bool rises(double shift) const { return shift <= largestShift_; }
+    double damageAfterDrops(double ratio, double shift) const;
+
+    // The row at or before a ratio between the positions of the first and the last row.
+    std::size_t rowOf(double ratio, double shift) const {
         std::size_t low = 0;
-        std::size_t span = rows_.size() - 1; // rows_[low].ratio <= ratio < rows_[low + span].ratio
+        std::size_t span = rows_.size() - 1; // position(low) <= ratio < position(low + span)
         while (span > 1) {
             const std::size_t half = span / 2;
-            if (rows_[low + half].ratio <= ratio) {
+            if (position(low + half, shift) <= ratio) {
                 low += half;
                 span -= half;
             } else
@@ -61,15 +85,17 @@ private:
         }
         return low;
     }
-    bool isWithin(std::size_t row, double ratio) const {
-        return row < slopes_.size() && rows_[row].ratio <= ratio && ratio < rows_[row + 1].ratio;
+    bool isWithin(std::size_t row, double ratio, double shift) const {
+        return row < slopes_.size() && position(row, shift) <= ratio && ratio < position(row + 1, shift);
     }
-    double within(std::size_t row, double ratio) const { // never rounded up beyond the next row
-        return std::min(rows_[row].damage + slopes_[row] * (ratio - rows_[row].ratio), rows_[row + 1].damage);
+    double within(std::size_t row, double ratio, double shift) const { // never rounded up beyond the next row
+        const double slope = slopes_[row] / (1 - shift * slopes_[row]);
+        return std::min(rows_[row].damage + slope * (ratio - position(row, shift)), rows_[row + 1].damage);
     }
 
     std::vector<TableRow> rows_;
     std::vector<double> slopes_;
+    double largestShift_ = 0; // up to which rises() holds
 };
 
 } // namespace masonry

@@ -2,7 +2,7 @@
 // JointColumns for several side by side: therefore they choose between values and have no branches. They are numbered
 // as in the paper; law/README.md says them in words.
 #pragma once
-#include "common/Vectorised.hpp"
+#include "common/Pack.hpp"
 #include "law/CompressionCurve.hpp"
 #include "law/JointState.hpp"
 #include <cmath>
@@ -21,6 +21,8 @@ struct Equations {                               // with the numbers of a kind o
     double Cn = 0;                               // [Pa]
     CompressionCurve curve;
     double stretch = 0;           // [m/Pa] 1/kn - 1/ownKn
+    double normalShift = 0;       // [-] the same over 1/ownKn, and the same of ks: what lumped units add to the ratio
+    double shearShift = 0;        //     at the peak
     double smallestFcSquared = 0; // [Pa²] below this the cap cannot act
     bool cap = false;             // whether the joint can crush
     bool elastic = false;         // whether no strength is ever reached
@@ -28,23 +30,43 @@ struct Equations {                               // with the numbers of a kind o
     // ---- softening -----------------------------------------------------------------------------------------------
 
     // Damage of the bond d_ts, eq. (10), and what the bond has left.
-    MASONRY_INLINED static double coupled(double tensionDamage, double shearDamage) {
+    template <class T> MASONRY_INLINED static T coupled(const T& tensionDamage, const T& shearDamage) {
         return tensionDamage + shearDamage - tensionDamage * shearDamage;
     }
-    MASONRY_INLINED static double intact(double tensionDamage, double shearDamage) {
+    template <class T> MASONRY_INLINED static T intact(const T& tensionDamage, const T& shearDamage) {
         return 1 - coupled(tensionDamage, shearDamage);
     }
 
-    // Displacement ratio in tension, eq. (12), beyond the peak with the joint's own stiffness.
-    MASONRY_INLINED double tensionRatio(double elasticOpening) const {
-        return 1 + (elasticOpening - onset) * ownKn / ft;
+    // Where a table is read: at the displacement ratio, and how far its rows move for lumped units (SofteningTable).
+    struct Reading {
+        double ratio, shift; // [-]
+    };
+
+    // In tension, eq. (12), at an elastic opening that was never as large. Only ft (1 - d_t)(1 - d_s) stretches units.
+    MASONRY_INLINED Reading tensionReading(double elasticOpening, double shearDamage) const {
+        return {elasticOpening * ownKn / ft, (1 - shearDamage) * normalShift};
     }
 
-    // Displacement ratio in shear, eqs. (13)-(15), with u = s + |tau|/ks [decided], under the trial stress `size`.
-    MASONRY_INLINED double shearRatio(double size, double sigma, double slip) const {
+    // Whether shear damage makes lumped units give opening back to the joint, which was open before: at the largest
+    // opening so far the table of tension is then read anew. Otherwise the stress would jump when it is passed
+    // [decided].
+    MASONRY_INLINED bool relaxes(double largestOpening) const { return (normalShift > 0) & (largestOpening > 0); }
+
+    // Share of the peak strength of slip that is left when the bond is lost: residual cohesion and friction.
+    template <class T> MASONRY_INLINED T restOfPeak(const T& peak, const T& sigma, const T& elasticOpening) const {
+        const T rest = residualCohesion(elasticOpening) - smaller(sigma, T{}) * tanPhiR;
+        return smaller(rest, peak) / peak;
+    }
+
+    // In shear, eqs. (13)-(15), with u = s + |tau|/ks [decided], under the trial stress `size`. What is left without
+    // bond moves all rows alike.
+    MASONRY_INLINED Reading shearReading(double size, double sigma, double elasticOpening, double slip,
+                                         double tensionDamage) const {
         const double peak = cp - sigma * tanPhiP;
-        const double ratio = 1 + (slip + (size - peak) / ks) * ownKs / peak;
-        return peak > 0 ? ratio : HUGE_VAL;
+        const double share = restOfPeak(peak, sigma, elasticOpening);
+        const double ratio = (slip + size / ks) * ownKs / peak - share * shearShift;
+        const double shift = (1 - tensionDamage) * (1 - share) * shearShift;
+        return {peak > 0 ? ratio : HUGE_VAL, peak > 0 ? shift : 0};
     }
 
     // ---- 1, opening ----------------------------------------------------------------------------------------------
@@ -68,9 +90,8 @@ struct Equations {                               // with the numbers of a kind o
 
     // Stiffness of an open subcontact, eq. (11): the secant to the softened strength at the largest opening, which
     // closes at the origin and never pushes [decided].
-    MASONRY_INLINED double secant(double intact, double largestOpening) const {
-        const double weakened = ft * intact / largestOpening;
-        return weakened < kn ? weakened : kn;
+    template <class T> MASONRY_INLINED T secant(const T& intact, const T& largestOpening) const {
+        return smaller<T>(ft * intact / largestOpening, all<T>(kn));
     }
     MASONRY_INLINED double stiffness(double elasticOpening, double secant) const {
         return elasticOpening > 0 ? secant : kn;
@@ -78,20 +99,27 @@ struct Equations {                               // with the numbers of a kind o
 
     // Elastic opening up to which no damage grows and the secant stays what it is; a little below the softened
     // strength, so that rounding cannot tell.
-    MASONRY_INLINED double reach(double intact, double largestOpening) const {
-        const double whole = onset * intact * (1 - 1e-15);
-        return whole > largestOpening ? whole : largestOpening;
+    template <class T> MASONRY_INLINED T reach(const T& intact, const T& largestOpening) const {
+        return larger<T>(onset * intact * (1 - 1e-15), largestOpening);
     }
 
     // ---- 2, Coulomb slip -----------------------------------------------------------------------------------------
 
-    MASONRY_INLINED double friction(double intact) const { return tanPhiR + (tanPhiP - tanPhiR) * intact; } // eq. (17b)
+    template <class T> MASONRY_INLINED T friction(const T& intact) const { // eq. (17b)
+        return tanPhiR + (tanPhiP - tanPhiR) * intact;
+    }
+
+    // Residual cohesion at an elastic opening: faces that do not touch have none. It fades while the joint opens by
+    // cr/kn, because a loss at once would be a jump of the stress [decided].
+    template <class T> MASONRY_INLINED T residualCohesion(const T& elasticOpening) const {
+        return smaller<T>(larger<T>(cr - kn * elasticOpening, T{}), all<T>(cr));
+    }
 
     // Strength of slip, eqs. (16), (17a), never below zero.
-    MASONRY_INLINED double slipStrength(double intact, double sigma) const {
-        const double cohesion = cr + (cp - cr) * intact;
-        const double strength = cohesion - sigma * friction(intact);
-        return strength > 0 ? strength : 0;
+    template <class T> MASONRY_INLINED T slipStrength(const T& intact, const T& sigma, const T& elasticOpening) const {
+        const T rest = residualCohesion(elasticOpening);
+        const T cohesion = rest + (cp - rest) * intact;
+        return larger<T>(cohesion - sigma * friction(intact), T{});
     }
 
     MASONRY_INLINED double dilatancy(double slip) const { return tanPsi * std::exp(-delta * slip); }
@@ -104,8 +132,9 @@ struct Equations {                               // with the numbers of a kind o
         double share;    // [-] of the trial shear stress that is left
     };
     // Return from the trial shear stress `size` to the strength, eqs. (8b), (9).
-    MASONRY_INLINED Slid slide(double size, double sigma, double intact, double dilatancy) const {
-        const double strength = slipStrength(intact, sigma);
+    MASONRY_INLINED Slid slide(double size, double sigma, double elasticOpening, double intact,
+                               double dilatancy) const {
+        const double strength = slipStrength(intact, sigma, elasticOpening);
         const bool slides = size > strength;
         const double excess = (size - strength) / (ks + kn * friction(intact) * dilatancy);
         const double slip = slides ? excess : 0;
@@ -116,29 +145,39 @@ struct Equations {                               // with the numbers of a kind o
 
     // ---- 3, cap --------------------------------------------------------------------------------------------------
 
-    // The side of eq. (8c) that stresses make.
-    MASONRY_INLINED double capStress(double sigma, double tauSquared) const {
-        return Cnn * sigma * sigma + Css * tauSquared + Cn * sigma;
+    // The side of eq. (8c) that stresses make. A tensile stress counts as none: what the cap leaves of the shear stress
+    // at sigma = 0, fc/sqrt(Css), is the most that an open joint carries, too. So it does not jump when a joint closes
+    // [decided].
+    template <class T> MASONRY_INLINED T capStress(const T& sigma, const T& tauSquared) const {
+        const T pressed = smaller(sigma, T{});
+        return Cnn * pressed * pressed + Css * tauSquared + Cn * pressed;
     }
 
     struct Crushed {
         bool crushes;
-        double share;   // [-] of the stresses that is left
+        double share;   // [-] of the shear stress and of a compressive stress that is left
+        double sigma;   // [Pa] normal stress after it
         double closure; // [m] plastic closure of the step
         double slip;    // [m] plastic slip of the step
     };
+    // Share of stresses outside eq. (8c) with the strength fc that a radial return leaves.
+    template <class T> MASONRY_INLINED T capShare(const T& pressed, const T& tauSquared, const T& fc) const {
+        const T quadratic = Cnn * pressed * pressed + Css * tauSquared;
+        const T linear = Cn * pressed;
+        const T inner = masonry::root(T(linear * linear + 4.0 * quadratic * fc * fc));
+        const T positive = 2.0 * fc * fc / (linear + inner);     // the same root of quadratic x² + linear x = fc²,
+        const T negative = (inner - linear) / (2.0 * quadratic); // each where it does not cancel
+        return choose(linear > 0, positive, negative);
+    }
     // Radial return to eq. (8c) with the strength fc.
     MASONRY_INLINED Crushed crush(double sigma, double tauSquared, double fc) const {
-        const double quadratic = Cnn * sigma * sigma + Css * tauSquared;
-        const double linear = Cn * sigma;
-        const bool crushes = (sigma < 0) & (quadratic + linear > fc * fc);
-        const double root = std::sqrt(linear * linear + 4 * quadratic * fc * fc);
-        const double positive = 2 * fc * fc / (linear + root);     // the same root of quadratic x² + linear x = fc²,
-        const double negative = (root - linear) / (2 * quadratic); // each where it does not cancel
-        const double scale = linear > 0 ? positive : negative;
-        const double closure = (sigma * scale - sigma) / kn;
+        const double pressed = sigma < 0 ? sigma : 0;
+        const bool crushes = capStress(sigma, tauSquared) > fc * fc;
+        const double scale = capShare(pressed, tauSquared, fc);
+        const double closure = (pressed * scale - pressed) / kn;
         const double slip = (1 - scale) * std::sqrt(tauSquared) / ks;
-        return {crushes, crushes ? scale : 1, crushes ? closure : 0, crushes ? slip : 0};
+        const double left = sigma < 0 ? sigma * scale : sigma;
+        return {crushes, crushes ? scale : 1, crushes ? left : sigma, crushes ? closure : 0, crushes ? slip : 0};
     }
 
     // ---- energy --------------------------------------------------------------------------------------------------
@@ -153,8 +192,9 @@ struct Equations {                               // with the numbers of a kind o
     // plus the plastic ones. The mean stress on the plastic ones is dissipated, in shear along the trial stress; the
     // elastic parts of shear and of closed joints are stored exactly; what remains of the elastic opening is the damage
     // in tension, and that is nothing where the stiffness stays.
-    MASONRY_INLINED static double meanShear(double oldA, double oldB, double newA, double newB, double trialA,
-                                            double trialB, double trialSize) {
+    template <class T>
+    MASONRY_INLINED static T meanShear(const T& oldA, const T& oldB, const T& newA, const T& newB, const T& trialA,
+                                       const T& trialB, const T& trialSize) {
         return 0.5 * ((oldA + newA) * trialA + (oldB + newB) * trialB) / trialSize;
     }
     MASONRY_INLINED static double lostInTension(double oldStiffness, double newStiffness, double oldSigma,

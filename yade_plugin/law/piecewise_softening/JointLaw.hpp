@@ -2,23 +2,25 @@
 // coupled softening (eqs. (10)-(17)), hardening and softening in compression (eqs. (18)-(25)). law/README.md states it.
 #pragma once
 #include "Equations.hpp"
-#include "law/JointProperties.hpp"
-#include "law/JointState.hpp"
-#include "law/SofteningTable.hpp"
+#include "law/Columns.hpp"
+#include "law/Law.hpp"
 #include <algorithm>
 #include <cmath>
 
 namespace masonry {
 
-class JointLaw {
+class JointLaw : public Law {
 public:
+    using Equations = masonry::Equations;
+    static constexpr int columnCount = Columns::ofPaper;
+
     // Throws std::invalid_argument with all problems of the properties at once.
     explicit JointLaw(const JointProperties& properties);
 
-    const JointProperties& properties() const { return p_; }
-    const CompressionCurve& compression() const { return own_.curve; }
-    const SofteningTable& tension() const { return tension_; }
-    const SofteningTable& shear() const { return shear_; }
+    const JointProperties& properties() const override { return p_; }
+    const CompressionCurve& compression() const override { return own_.curve; }
+    const SofteningTable& tension() const override { return tension_; }
+    const SofteningTable& shear() const override { return shear_; }
 
     // The equations for a joint that shows the stiffness k, its own or lumped with rigid units. Softening and crushing
     // displacements stay those of the joint itself (law/README.md, Rigid units).
@@ -28,6 +30,8 @@ public:
         e.ks = k.shear;
         e.onset = e.elastic ? HUGE_VAL : e.ft / k.normal;
         e.stretch = stretch(k);
+        e.normalShift = e.stretch * e.ownKn;
+        e.shearShift = (1 / k.shear - 1 / e.ownKs) * e.ownKs;
         return e;
     }
 
@@ -53,7 +57,8 @@ public:
         }
         if (moved.tears) {
             s.largestOpening = moved.farthest;
-            const double damage = tension_.damage(e.tensionRatio(moved.elastic));
+            const auto at = e.tensionReading(moved.elastic, s.shearDamage);
+            const double damage = tension_.damage(at.ratio, at.shift);
             if (damage > s.tensionDamage) {
                 s.tensionDamage = damage;
                 s.regime = Regime::Opening;
@@ -70,15 +75,20 @@ public:
         double slip = 0;
         double dilation = 0;
         s.shearStress = trial;
-        if (size > e.slipStrength(intact, s.normalStress)) {
-            const double damage = shear_.damage(e.shearRatio(size, s.normalStress, s.slip));
+        if (size > e.slipStrength(intact, s.normalStress, moved.elastic)) {
+            const auto at = e.shearReading(size, s.normalStress, moved.elastic, s.slip, s.tensionDamage);
+            const double damage = shear_.damage(at.ratio, at.shift);
             const bool weaker = damage > s.shearDamage;
             if (weaker) {
                 s.shearDamage = damage;
+                if (e.relaxes(s.largestOpening)) { // the units give back what the bond has lost
+                    const auto reopened = e.tensionReading(s.largestOpening, damage);
+                    s.tensionDamage = std::max(s.tensionDamage, tension_.damage(reopened.ratio, reopened.shift));
+                }
                 intact = Equations::intact(s.tensionDamage, s.shearDamage);
             }
             const bool dilates = !moved.open && e.tanPsi > 0;
-            const auto slid = e.slide(size, s.normalStress, intact, dilates ? e.dilatancy(s.slip) : 0);
+            const auto slid = e.slide(size, s.normalStress, moved.elastic, intact, dilates ? e.dilatancy(s.slip) : 0);
             if (slid.slides) {
                 const double before = s.dilation;
                 slip = slid.slip;
@@ -98,15 +108,15 @@ public:
         // 3, cap
         double crushingSlip = 0;
         double closure = 0;
-        if (e.cap && s.normalStress < 0) {
-            s.largestClosure = std::max(s.largestClosure, -s.opening);
+        if (e.cap) {
+            if (s.normalStress < 0) s.largestClosure = std::max(s.largestClosure, -s.opening);
             const double tau2 = s.shearStress.a * s.shearStress.a + s.shearStress.b * s.shearStress.b;
             if (e.capStress(s.normalStress, tau2) > e.smallestFcSquared) {
                 const double fc = e.curve.strength(s.largestClosure, e.stretch);
                 const auto crushed = e.crush(s.normalStress, tau2, fc);
                 if (crushed.crushes) {
                     const double before = s.crushing;
-                    s.normalStress *= crushed.share;
+                    s.normalStress = crushed.sigma;
                     s.crushing += crushed.closure;
                     closure = s.crushing - before;
                     crushingSlip = crushed.slip;
@@ -138,8 +148,7 @@ public:
         return s.normalStress > 0 ? Energies{normal, shear, 0} : Energies{0, shear, normal};
     }
 
-    // Compression damage dc, eq. (21).
-    double compressionDamage(const ElasticStiffness& k, const JointState& s) const {
+    double compressionDamage(const ElasticStiffness& k, const JointState& s) const override {
         return own_.cap ? own_.curve.damage(s.largestClosure, stretch(k)) : 0;
     }
 
@@ -149,19 +158,18 @@ public:
     }
     double limitClosure(const ElasticStiffness& k) const { return own_.curve.limit(stretch(k)); }
 
-    // The yield functions at a state; at most zero after every step. F3 is -1 where the cap does not act, all are where
-    // no strength is ever reached.
-    struct Yield {
-        double tension, slip, cap; // [Pa], [Pa], [Pa²]
-    };
-    Yield yield(const ElasticStiffness& k, const JointState& s) const;
+    Yield yield(const ElasticStiffness& k, const JointState& s) const override;
+
+    std::unique_ptr<LawColumns> columns(const ElasticStiffness& k, int joints, int points) const override;
+
+    std::vector<std::string> snapsBack(const ElasticStiffness& k, double distance) const override;
 
     static double coupled(const JointState& s) { // d_ts, eq. (10)
         return Equations::coupled(s.tensionDamage, s.shearDamage);
     }
 
 private:
-    double stretch(const ElasticStiffness& k) const { return 1 / k.normal - 1 / p_.normalStiffness; }
+    double stretch(const ElasticStiffness& k) const { return 1 / k.normal - 1 / p_.normalStiffness; } // [m/Pa]
 
     JointProperties p_;
     SofteningTable tension_, shear_;

@@ -9,27 +9,6 @@ constexpr int most = Columns::most;
 
 } // namespace
 
-// ---- joints without strength ---------------------------------------------------------------------------------------
-
-MASONRY_VECTORISED
-void advanceElastic(double kn, double ks, const Columns& columns, std::size_t at, int count, const Jumps& jumps,
-                    double* normalStress) {
-    double* opening = columns[Columns::Opening] + at;
-    double* shearStressA = columns[Columns::ShearStressA] + at;
-    double* shearStressB = columns[Columns::ShearStressB] + at;
-    const double* irreversible = columns[Columns::Irreversible] + at;
-    MASONRY_INDEPENDENT
-    for (int i = 0; i < count; ++i) {
-        opening[i] += jumps.opening[i];
-        normalStress[i] = kn * (opening[i] + irreversible[i]);
-        shearStressA[i] += ks * jumps.slideA[i];
-    }
-    if (jumps.plane) return;
-    MASONRY_INDEPENDENT
-    for (int i = 0; i < count; ++i)
-        shearStressB[i] += ks * jumps.slideB[i];
-}
-
 // ---- subcontacts that stay elastic ---------------------------------------------------------------------------------
 
 namespace {
@@ -71,8 +50,8 @@ MASONRY_INLINED Mask stayElasticAs(const Equations& given, const Consequences& o
         const double a = oldA + e.ks * jumps.slideA[i];
         const double b = spatial ? oldB + e.ks * jumps.slideB[i] : 0;
         const double tauSquared = a * a + b * b;
-        const double strength = e.slipStrength(bond, sigma);
-        const double crushing = sigma < 0 ? e.capStress(sigma, tauSquared) : 0;
+        const double strength = e.slipStrength(bond, sigma, moved.elastic);
+        const double crushing = e.capStress(sigma, tauSquared);
         const double closure = sigma < 0 ? closing * moved.total : 0;
         const double hardens = closest > limit ? closest : limit;
         // a subcontact that opens with one stiffness and closes with another loses energy
@@ -114,7 +93,8 @@ struct Scratch { // of subcontacts side by side, for one step
     double before[most], elastic[most], farthest[most]; // [m] see Equations::Opened
     double oldStiffness[most], newStiffness[most];      // [Pa/m] of the elastic opening
     double trialA[most], trialB[most], size[most];      // [Pa] trial shear stress
-    double ratio[most], tensionDamage[most], shearDamage[most], intact[most], secant[most], dilatancy[most];
+    double ratio[most], shift[most];                    // see Equations::Reading
+    double tensionDamage[most], shearDamage[most], intact[most], secant[most], dilatancy[most];
     double sigma[most];                                   // [Pa]
     double share[most], slip[most], dilation[most];       // see Equations::Slid
     double closest[most], fc[most];                       // [m], [Pa]
@@ -176,11 +156,14 @@ MASONRY_INLINED Mask openAll(const SideBySide& all, const SofteningTable& tensio
     }
     if (tears) {
         MASONRY_INDEPENDENT
-        for (int i = 0; i < count; ++i)
-            s.ratio[i] = e.tensionRatio(s.elastic[i]);
+        for (int i = 0; i < count; ++i) {
+            const auto at = e.tensionReading(s.elastic[i], s.shearDamage[i]);
+            s.ratio[i] = at.ratio;
+            s.shift[i] = at.shift;
+        }
         for (int i = 0; i < count; ++i) {
             if (!s.asks[i]) continue;
-            const double damage = tension.damage(s.ratio[i], all.rows[i].tension);
+            const double damage = tension.damage(s.ratio[i], s.shift[i], all.rows[i].tension);
             if (!(damage > s.tensionDamage[i])) continue;
             s.tensionDamage[i] = damage;
             s.regime[i] = Mask(Regime::Opening);
@@ -195,7 +178,8 @@ MASONRY_INLINED Mask openAll(const SideBySide& all, const SofteningTable& tensio
 }
 
 // 2, Coulomb slip. Tells whether one slides.
-MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& shear, Scratch& s) {
+MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& tension, const SofteningTable& shear,
+                              Scratch& s) {
     const Equations e = all.e;
     const Mask* waits = all.waits;
     const int count = all.count;
@@ -205,7 +189,7 @@ MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& shear
     for (int i = 0; i < count; ++i) {
         s.newStiffness[i] = e.stiffness(s.elastic[i], s.secant[i]);
         s.sigma[i] = s.newStiffness[i] * s.elastic[i];
-        s.asks[i] = s.size[i] > e.slipStrength(s.intact[i], s.sigma[i]) ? waits[i] : 0;
+        s.asks[i] = s.size[i] > e.slipStrength(s.intact[i], s.sigma[i], s.elastic[i]) ? waits[i] : 0;
         s.share[i] = 1;
         s.slip[i] = 0;
         s.dilation[i] = 0;
@@ -214,13 +198,20 @@ MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& shear
     if (slides) {
         MASONRY_INDEPENDENT
         for (int i = 0; i < count; ++i) {
-            s.ratio[i] = e.shearRatio(s.size[i], s.sigma[i], slip[i]);
+            const auto at = e.shearReading(s.size[i], s.sigma[i], s.elastic[i], slip[i], s.tensionDamage[i]);
+            s.ratio[i] = at.ratio;
+            s.shift[i] = at.shift;
             s.dilatancy[i] = s.open[i] ? 0 : e.tanPsi;
         }
         for (int i = 0; i < count; ++i) {
             if (!s.asks[i] || !(s.shearDamage[i] < 1)) continue;
-            const double damage = shear.damage(s.ratio[i], all.rows[i].shear);
-            if (damage > s.shearDamage[i]) s.shearDamage[i] = damage;
+            const double damage = shear.damage(s.ratio[i], s.shift[i], all.rows[i].shear);
+            if (!(damage > s.shearDamage[i])) continue;
+            s.shearDamage[i] = damage;
+            if (!e.relaxes(s.farthest[i])) continue;
+            const auto reopened = e.tensionReading(s.farthest[i], damage);
+            const double torn = tension.damage(reopened.ratio, reopened.shift, all.rows[i].tension);
+            s.tensionDamage[i] = std::max(s.tensionDamage[i], torn);
         }
         for (int i = 0; e.tanPsi > 0 && e.delta > 0 && i < count; ++i)
             if (s.asks[i] && !s.open[i]) s.dilatancy[i] = e.dilatancy(slip[i]);
@@ -229,7 +220,7 @@ MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& shear
             s.intact[i] = Equations::intact(s.tensionDamage[i], s.shearDamage[i]);
             s.secant[i] = e.secant(s.intact[i], s.farthest[i]);
             s.newStiffness[i] = e.stiffness(s.elastic[i], s.secant[i]);
-            const auto slid = e.slide(s.size[i], s.sigma[i], s.intact[i], s.dilatancy[i]);
+            const auto slid = e.slide(s.size[i], s.sigma[i], s.elastic[i], s.intact[i], s.dilatancy[i]);
             s.sigma[i] = s.open[i] ? s.newStiffness[i] * s.elastic[i] : slid.sigma;
             s.share[i] = slid.share;
             s.slip[i] = slid.slip;
@@ -256,7 +247,7 @@ MASONRY_INLINED Mask crushAll(const SideBySide& all, Scratch& s) {
         const double b = s.share[i] * s.trialB[i];
         const double closest = largestClosure[i];
         const double closure = s.sigma[i] < 0 ? closing * s.total[i] : 0;
-        const bool passes = (s.sigma[i] < 0) & (e.capStress(s.sigma[i], a * a + b * b) > e.smallestFcSquared);
+        const bool passes = e.capStress(s.sigma[i], a * a + b * b) > e.smallestFcSquared;
         s.closest[i] = closure > closest ? closure : closest;
         s.left[i] = 1;
         s.closure[i] = 0;
@@ -280,7 +271,7 @@ MASONRY_INLINED Mask crushAll(const SideBySide& all, Scratch& s) {
             const double b = s.share[i] * s.trialB[i];
             const double old = capSquared[i];
             const auto crushed = e.crush(s.sigma[i], a * a + b * b, s.fc[i]);
-            s.sigma[i] *= crushed.share;
+            s.sigma[i] = crushed.sigma;
             s.left[i] = crushed.share;
             s.closure[i] = crushed.closure;
             s.crushingSlip[i] = crushed.slip;
@@ -424,7 +415,7 @@ void advanceSideBySide(const Equations& given, const SofteningTable& tension, co
     const SideBySide all{e, columns, rows, jumps, waits, count};
     Scratch s;
     const Mask tears = openAll(all, tension, s);
-    const Mask slides = slideAll(all, shear, s);
+    const Mask slides = slideAll(all, tension, shear, s);
     const Mask crushes = crushAll(all, s);
     if (crushes || (slides && e.tanPsi > 0)) keepIrreversible(all, s);
     if (crushes || slides) keepSlip(all, s);
@@ -465,19 +456,14 @@ MASONRY_INLINED void addEnergiesAs(double kn, double ks, const Columns& columns,
 } // namespace
 
 MASONRY_VECTORISED
-void addEnergies(double kn, double ks, const Columns& columns, const std::uint8_t* yielded, int joints, int stride,
-                 const double* area, bool alike, int point, LaneSums& sums) {
-    for (int from = 0; from < joints; from += lanes) {
-        const std::size_t at = std::size_t(point) * stride + from;
-        const double* of = alike ? area + point * most + from % most : area + at;
-        const int count = joints - from < lanes ? joints - from : lanes; // padding does not count
-        if (yielded[from / lanes])
-            count == lanes ? addEnergiesAs<true>(kn, ks, columns, at, lanes, of, sums)
-                           : addEnergiesAs<true>(kn, ks, columns, at, count, of, sums);
-        else
-            count == lanes ? addEnergiesAs<false>(kn, ks, columns, at, lanes, of, sums)
-                           : addEnergiesAs<false>(kn, ks, columns, at, count, of, sums);
-    }
+void addEnergies(const Equations& e, const Columns& columns, std::size_t at, int count, bool yielded,
+                 const double* area, LaneSums& sums) {
+    if (yielded)
+        count == lanes ? addEnergiesAs<true>(e.kn, e.ks, columns, at, lanes, area, sums)
+                       : addEnergiesAs<true>(e.kn, e.ks, columns, at, count, area, sums);
+    else
+        count == lanes ? addEnergiesAs<false>(e.kn, e.ks, columns, at, lanes, area, sums)
+                       : addEnergiesAs<false>(e.kn, e.ks, columns, at, count, area, sums);
 }
 
 } // namespace masonry

@@ -2,62 +2,57 @@
 // function uses the vector units, and tells the same numbers as the law for one to the last bit.
 #pragma once
 #include "Equations.hpp"
+#include "law/Columns.hpp"
 #include "law/SofteningTable.hpp"
-#include <cstddef>
-#include <cstdint>
 
 namespace masonry {
-
-using Mask = std::int64_t; // a switch as wide as the numbers beside it, for the vector units
-
-struct Columns {                    // side by side in memory
-    static constexpr int most = 32; // subcontacts that are advanced at a time
-
-    enum Column { // what is kept of a subcontact
-        Opening,  // these are JointState's
-        ShearStressA,
-        ShearStressB,
-        LargestOpening,
-        LargestClosure,
-        Crushing, // from here on nothing is written before a subcontact nearby yields
-        Dilation,
-        Slip,
-        TensionDamage,
-        ShearDamage,
-        LostTension, // [J/m²] dissipated so far
-        LostShear,
-        LostCompression,
-        Irreversible, // [m] crushing less dilation; this and what comes below follow from the above
-        Intact,       // [-] 1 - d_ts
-        Secant,       // [Pa/m] stiffness of the open subcontact
-        Reach,        // [m] elastic opening up to which no damage grows and the secant stays
-        CapSquared,   // [Pa²] square of the cap's strength
-        count
-    };
-
-    double* first = nullptr;
-    std::size_t pitch = 0; // from a column to the next
-
-    double* operator[](int column) const { return first + column * pitch; }
-    Columns from(std::size_t at) const { return {first + at, pitch}; }
-};
 
 struct Consequences { // what the columns Irreversible to CapSquared hold, of one subcontact
     double irreversible = 0, intact = 0, secant = 0, reach = 0, capSquared = 0;
 };
 
-struct TableRows { // where the tables were read last
-    std::int32_t tension, shear;
-};
+inline double normalStress(const Equations& e, const Columns& columns, std::size_t i, bool yielded) {
+    if (!yielded) return e.kn * columns[Columns::Opening][i];
+    const double elastic = columns[Columns::Opening][i] + columns[Columns::Irreversible][i];
+    return e.stiffness(elastic, columns[Columns::Secant][i]) * elastic;
+}
 
-struct Jumps { // increments of a step, in columns [m]
-    const double *opening, *slideA, *slideB;
-    bool plane; // whether shear stresses along b are zero and stay so
-};
+inline Consequences consequences(const Equations& e, const JointState& s) {
+    const double intact = Equations::intact(s.tensionDamage, s.shearDamage);
+    const double fc = e.cap ? e.curve.strength(s.largestClosure, e.stretch) : HUGE_VAL;
+    return {s.crushing - s.dilation, intact, e.secant(intact, s.largestOpening), e.reach(intact, s.largestOpening),
+            fc * fc};
+}
 
-// One step of joints without strength.
-void advanceElastic(double kn, double ks, const Columns& columns, std::size_t at, int count, const Jumps& jumps,
-                    double* normalStress);
+inline void keep(const Consequences& c, const Columns& columns, std::size_t i) {
+    columns[Columns::Irreversible][i] = c.irreversible;
+    columns[Columns::Intact][i] = c.intact;
+    columns[Columns::Secant][i] = c.secant;
+    columns[Columns::Reach][i] = c.reach;
+    columns[Columns::CapSquared][i] = c.capSquared;
+}
+
+inline bool neverYielded(const Equations& e, const JointState& s) {
+    const bool whole = s.crushing == 0 && s.dilation == 0 && s.slip == 0 && s.tensionDamage == 0 && s.shearDamage == 0;
+    const double limit = e.cap ? e.curve.limit(e.stretch) : HUGE_VAL;
+    return whole && s.largestOpening <= e.reach(1.0, 0.0) && s.largestClosure <= limit;
+}
+
+inline void write(const Equations&, const Columns& columns, std::size_t i, const JointState& s) {
+    columns[Columns::Crushing][i] = s.crushing;
+    columns[Columns::Dilation][i] = s.dilation;
+    columns[Columns::Slip][i] = s.slip;
+    columns[Columns::TensionDamage][i] = s.tensionDamage;
+    columns[Columns::ShearDamage][i] = s.shearDamage;
+}
+
+inline void read(const Equations&, const Columns& columns, std::size_t i, JointState& s) {
+    s.crushing = columns[Columns::Crushing][i];
+    s.dilation = columns[Columns::Dilation][i];
+    s.slip = columns[Columns::Slip][i];
+    s.tensionDamage = columns[Columns::TensionDamage][i];
+    s.shearDamage = columns[Columns::ShearDamage][i];
+}
 
 // One step of the subcontacts that stay elastic in it. The others stay as they were and are marked in `waits`; gives
 // how many they are. If none of all has ever yielded, `neverYielded` is what holds for all of them, and their columns
@@ -70,13 +65,8 @@ void advanceSideBySide(const Equations& equations, const SofteningTable& tension
                        const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* waits,
                        int count, double* normalStress);
 
-struct LaneSums { // of lanes, so that the order of adding is the same with any vector unit
-    double storedTension[lanes] = {}, storedShear[lanes] = {}, storedCompression[lanes] = {};
-    double lostTension[lanes] = {}, lostShear[lanes] = {}, lostCompression[lanes] = {};
-};
-
-// Adds the energies of the joints at a point; `yielded` tells of every eight joints whether one has ever yielded.
-void addEnergies(double kn, double ks, const Columns& columns, const std::uint8_t* yielded, int joints, int stride,
-                 const double* area, bool alike, int point, LaneSums& sums);
+// Adds the energies of up to eight joints at a point; `yielded` tells whether one of them has ever yielded.
+void addEnergies(const Equations& equations, const Columns& columns, std::size_t at, int count, bool yielded,
+                 const double* area, LaneSums& sums);
 
 } // namespace masonry

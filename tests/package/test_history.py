@@ -1,0 +1,207 @@
+"""Displacement histories: what the option may say, what is refused, and where the drive brakes."""
+
+import hashlib
+import json
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from masonry import history, options, presets
+from masonry.history import Target
+
+amplitude = st.floats(history.LEAST, history.MOST)
+pieces = st.lists(st.tuples(amplitude, st.integers(1, 20)), min_size=1, max_size=8)
+
+
+def parse(*words):
+    return options.parser("a wall", until=12).parse_args(words)
+
+
+# -- amplitudes -------------------------------------------------------------------------------------------------------
+
+
+def test_an_amplitude_is_a_cycle_to_either_side_and_back():
+    found = history.parse("1,2x3,4")
+    twice = [2, -2, 0]
+    assert found["points_mm"] == [1, -1, 0, *twice, *twice, *twice, 4, -4, 0]
+    assert found["amplitudes_mm"] == [[1, 1], [2, 3], [4, 1]]
+    assert history.describe(found) == {
+        "text": "1,2x3,4",
+        "amplitudes_mm": [[1, 1], [2, 3], [4, 1]],
+        "points": 15,
+        "turning_points": 10,
+        "path_mm": 4 * (1 + 3 * 2 + 4),
+    }
+
+
+@given(pieces)
+def test_any_list_of_amplitudes_is_read_as_it_was_written(wanted):
+    text = ",".join(f"{a!r}x{n}" if n > 1 else f" {a!r}" for a, n in wanted)
+    found = history.parse(text)
+    assert found["amplitudes_mm"] == [[a, n] for a, n in wanted]
+    points, cycles = found["points_mm"], sum(n for _, n in wanted)
+    assert len(points) == 3 * cycles and points[-1] == 0
+    assert max(points) == -min(points) == max(a for a, _ in wanted)
+    assert history.turns(points) == 2 * cycles
+    assert json.loads(json.dumps(found)) == found
+
+
+@given(st.text("0123456789.,x+-einfa ", max_size=30))
+@settings(max_examples=500)
+def test_any_text_is_refused_in_words_or_is_a_history(text):
+    try:
+        found = history.parse(text)
+    except ValueError as refused:
+        message = str(refused)
+        assert message.startswith(("'", "must be amplitudes in mm")) or "cycles" in message  # fmt: skip
+        assert all(piece in text for piece in message.split("'")[1::2])
+    else:
+        assert all(map(math.isfinite, found["points_mm"]))
+        assert history.pathLength(found["points_mm"]) >= 4 * history.LEAST
+
+
+@pytest.mark.parametrize(
+    "text, messages",
+    [
+        ("", ["must be amplitudes in mm such as 1,2x3,4, or the path of a CSV file"]),
+        (
+            "1,,x3,2x0,-1,0,two,nan,2x1.5,2001,1x",
+            [
+                "'' is no amplitude in mm such as 2 or 2x3",
+                "'x3' is no amplitude",
+                "'2x0': the number of cycles must be a whole number, at least 1",
+                "'-1': the amplitude must be from 0.02 to 1000 mm",
+                "'0': the amplitude must be",
+                "'two' is no amplitude",
+                "'nan': the amplitude must be",
+                "'2x1.5': the number of cycles",
+                "'2001': the amplitude must be",
+                "'1x': the number of cycles",
+            ],
+        ),
+        ("1x9000,2x2000", ["11000 cycles are more than 10000"]),
+        ("-1,2", ["'-1': the amplitude must be"]),
+        ("nowhere.csv", ["cannot read nowhere.csv: No such file"]),
+    ],
+)
+def test_wrong_pieces_are_told_at_once(capsys, text, messages):
+    with pytest.raises(SystemExit) as refused:
+        parse("--history", text)
+    assert refused.value.code == 2
+    error = capsys.readouterr().err
+    assert all(message in error for message in messages)
+    assert error.count("argument --history: ") == 1
+
+
+def test_a_history_takes_the_place_of_until(capsys):
+    assert parse().history is None and parse().until == 12
+    args = parse("--history", "2")
+    assert args.until is None and args.history["points_mm"] == [2, -2, 0]
+    with pytest.raises(SystemExit):
+        parse("--history", "2", "--until", "3")
+    assert "not allowed with argument" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        options.parser("two bricks", until=2, loops=False).parse_args(["--history", "2"])  # fmt: skip
+    assert "unrecognized arguments: --history" in capsys.readouterr().err
+
+
+def test_a_preset_promises_nothing_for_a_history():
+    args = parse("--preset", "fast", "--history", "2")
+    preset = presets.presetOf(args, "wall_comp4")
+    assert preset["promise"] is None and preset["overrides"] == ["history"]
+
+
+# -- files --------------------------------------------------------------------------------------------------------------
+
+
+def test_a_file_gives_its_displacements_and_leaves_other_columns_alone(tmp_path):
+    path = tmp_path / "measured.csv"
+    data = (
+        "\ufefftime_s, displacement_mm ,note\r\n0,0,start\r\n1,0.5,\r\n\r\n2,-1e0,x\r\n"
+    )
+    path.write_bytes(data.encode())
+    found = parse("--history", str(path)).history
+    assert found["points_mm"] == [0, 0.5, -1]
+    assert found["file"] == str(path)
+    assert found["sha256"] == hashlib.sha256(data.encode()).hexdigest()
+    told = history.describe(found)
+    assert (told["points"], told["turning_points"], told["path_mm"]) == (3, 1, 2)
+    assert "points_mm" not in told
+
+
+@pytest.mark.parametrize(
+    "content, message",
+    [
+        ("", "must name one column displacement_mm, it has nothing"),
+        ("a,b\n1,2\n", "must name one column displacement_mm, it has a, b"),
+        ("displacement_mm,displacement_mm\n1,2\n", "must name one column"),
+        ("displacement_mm\n", "it has 0 displacements, a history needs two at least"),
+        ("displacement_mm\n1\n", "it has 1 displacements"),
+        ("displacement_mm\n1\n\ntwo\n3\n[mm]\n", "line 4: 'two' is not a number; "),
+        ("displacement_mm\n1\n\ntwo\n3\n[mm]\n", "line 6: '[mm]' is not a number"),
+        ("a,displacement_mm\n1,2\n3\n4,5\n", "line 3: '' is not a number"),
+        ("displacement_mm\n1\nnan\n", "line 3: nan mm must be from -1000 to 1000 mm"),
+        ("displacement_mm\n1\n-inf\n", "line 3: -inf mm must be"),
+        ("displacement_mm\n1\n2e3\n", "line 3: 2e3 mm must be"),
+        ("displacement_mm\n0\n0.01\n", "no displacement is 0.02 mm or more"),
+        ('displacement_mm\n1\n"2\n', "unexpected end of data"),
+        ("displacement_mm\n1\n1_0\n", "line 3: '1_0' is not a number"),
+        (b"displacement_mm\n\xff\n", "it is no text in UTF-8"),
+        (b"displacement_mm\n1\n\x00\n", "line 3"),
+    ],
+)
+def test_a_file_that_is_no_history_is_refused(tmp_path, content, message):
+    path = tmp_path / "h.csv"
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    with pytest.raises(ValueError) as refused:
+        history.parse(str(path))
+    assert message in str(refused.value) and str(path) in str(refused.value)
+    assert len(str(refused.value).splitlines()) == 1
+
+
+def test_no_more_than_ten_problems_of_a_file_are_told(tmp_path):
+    path = tmp_path / "h.csv"
+    path.write_text("displacement_mm\n" + "x\n" * 5000)
+    with pytest.raises(ValueError, match="line 11: 'x' is not a number; and 4990 more"):
+        history.parse(str(path))
+
+
+# -- the way of the drive -----------------------------------------------------------------------------------------------
+
+
+def test_the_drive_brakes_where_it_turns_and_passes_the_rest():
+    found = history.targets([1, -1, 0, 2, -2, 0])
+    ways, brakes = [1, -1, 1, 1, -1, 1], [1, -1, 2, 2, -2, None]
+    points = [1, -1, 0, 2, -2, 0]
+    assert found == [Target(*three) for three in zip(points, ways, brakes)]
+    assert history.targets([1, 2, 2, 1.5], True) == [
+        Target(1, 1, 2),
+        Target(2, 1, 2),
+        Target(2, 1, 2),
+        Target(1.5, -1, 1.5),
+    ]
+
+
+@given(st.lists(st.sampled_from([-2.0, -1.0, 0.0, 1.0, 2.0]), min_size=1, max_size=30))
+def test_the_drive_brakes_for_the_next_extreme_on_its_way(points):
+    found = history.targets(points, stops=True)
+    assert [t.displacement for t in found] == points
+    for n, target in enumerate(found):
+        run = [t for t in found[n:] if t.way == target.way]
+        ahead = next((i for i in range(n, len(found)) if found[i].way != target.way), None)  # fmt: skip
+        last = found[(ahead or len(found)) - 1]
+        assert target.brake == last.displacement and run
+        assert target.way * (target.brake - target.displacement) >= 0
+
+
+@given(pieces, pieces)
+def test_a_history_is_extended_only_by_appending(old, more):
+    write = lambda wanted: ",".join(f"{a!r}x{n}" for a, n in wanted)
+    first, longer = history.parse(write(old)), history.parse(write(old + more))
+    assert history.extends(longer, first) and history.extends(first, first)
+    assert not history.extends(first, longer)
+    amplitude = old[-1][0]
+    other = amplitude / 2 if amplitude > 1 else 2 * amplitude
+    changed = history.parse(write([*old[:-1], (other, old[-1][1]), *more]))
+    assert not history.extends(changed, first)

@@ -1,0 +1,349 @@
+"""Walls that follow a history: where they turn, what they leave, how they collapse, and how they are taken up again."""
+
+import os
+import re
+import signal
+import subprocess
+import time
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from masonry import figures, history, loading, loops, measure, readCheckpoint, results
+from masonry.results import readCurve, readRun
+from masonry.walls import Wall
+from small import SMALL, carryOut, parsed
+from test_checkpoints import CANTILEVER, at, files, interrupt, refused, run
+
+LOOPS = ["--history", "0.1,0.25x2", "--rate", "40", "--vtk-every", "0.1"]
+
+
+def curve(folder):
+    return {name: np.array(v) for name, v in readCurve(str(folder)).items()}
+
+
+# -- where the drive goes ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "wall, words",
+    [
+        (SMALL, "--rate 40"),
+        (SMALL, "--rate 2 --density-scaling 100"),
+        (SMALL, "--rate 300"),
+        (SMALL, "--rate 40 --blocks deformable"),
+        (CANTILEVER, "--rate 40"),
+        (CANTILEVER, "--rate 150"),
+    ],
+    ids=lambda value: getattr(value, "loadHeight", str(value)),
+)
+def test_the_wall_turns_at_its_amplitudes_and_ends_at_zero(
+    scene, tmp_path, wall, words
+):
+    words = ["--no-vtk", "--history", "0.1,0.3x2,1", *words.split()]
+    assert run(tmp_path, *words, wall=wall) == 0
+    moved = curve(tmp_path)["displacement_mm"]
+    turns = moved[loops.turningPoints(moved, 0.05)]
+    wanted = [0, 0.1, -0.1, 0.3, -0.3, 0.3, -0.3, 1, -1, 0]
+    assert turns == pytest.approx(wanted, abs=0.01)
+    assert np.abs(np.diff(moved)).max() <= 0.0101  # ROW_EVERY
+    assert moved[-1] == pytest.approx(0, abs=0.01)
+
+
+def test_a_measured_history_with_noise_is_followed_through_its_turns(scene, tmp_path):
+    dice = np.random.default_rng(5)
+    smooth = 0.6 * np.sin(np.linspace(0, 3 * np.pi, 80)) * np.linspace(0.3, 1, 80)
+    points = np.round(smooth + dice.normal(0, 0.015, len(smooth)), 3)
+    path = tmp_path / "measured.csv"
+    path.write_text("displacement_mm\n" + "".join(f"{p}\n" for p in points))
+    words = ["--no-vtk", "--history", str(path), "--rate", "20"]
+    assert run(tmp_path / "out", *words) == 0
+    data = curve(tmp_path / "out")
+    moved = data["displacement_mm"]
+    wanted = points[loops.turningPoints(points, 0.01)]
+    assert history.turns(list(points)) > 20
+    found = moved[loops.turningPoints(moved, 0.005)]
+    for threshold in (0.01, 0.05):
+        wanted = points[loops.turningPoints(points, threshold)][1:]
+        found = moved[loops.turningPoints(moved, threshold)][1:]
+        assert found == pytest.approx(wanted, abs=0.005)
+    # Every row goes to a point of the file, and the points come in turn.
+    assert (data["target_mm"] == points[data["point"].astype(int) - 1]).all()
+    assert set(np.diff(data["point"])) >= {0, 1} and np.diff(data["point"]).min() == 0
+    assert data["point"][-1] == len(points)
+    told = readRun(str(tmp_path / "out"))
+    assert told["history"]["points"] == 80 and told["options"]["history"] == str(path)
+
+
+def test_the_velocity_changes_evenly_where_the_drive_turns(scene, tmp_path):
+    words = ["--no-vtk", "--history", "1", "--rate", "40"]
+    assert run(tmp_path, *words) == 0
+    data = curve(tmp_path)
+    speed = np.diff(data["displacement_mm"]) / np.diff(data["time_s"])
+    assert np.abs(speed).max() < 40.1
+    middle = (data["time_s"][1:] + data["time_s"][:-1]) / 2
+    change = np.diff(speed) / np.diff(middle)
+    even = 40 / loading.RAMP  # [mm/s²]
+    # A row near a turn is a step or two long, so that its speed is known less well than those of others.
+    assert np.percentile(np.abs(change), 99) < 1.2 * even
+    assert (np.abs(change) < 1.6 * even).all()
+
+
+def test_a_push_is_the_history_of_one_point(scene, tmp_path):
+    assert run(tmp_path / "push", "--no-vtk", "--until", "1", "--rate", "20") == 0
+    assert run(tmp_path / "loop", "--no-vtk", "--history", "1", "--rate", "20") == 0
+    push, loop = curve(tmp_path / "push"), curve(tmp_path / "loop")
+    # before it is at its full speed, a loop adds the velocity up, a push multiplies: equal but for round-off
+    rows = np.flatnonzero(push["displacement_mm"] < 1 - 20 * loading.RAMP / 2)
+    assert len(rows) > 80 and set(loop) - set(push) == {"point", "target_mm"}
+    for name in ("time_s", "displacement_mm", "base_shear_kN"):
+        assert loop[name][rows] == pytest.approx(push[name][rows], rel=1e-6, abs=1e-6)
+
+
+# -- what a run leaves --------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def looped(tmp_path_factory):
+    """The small wall, cracked in loops."""
+    out = tmp_path_factory.mktemp("looped")
+    assert run(out, "--history", "0.1,0.5x2,2", "--rate", "100") == 0
+    return out
+
+
+def test_run_json_tells_the_history_and_the_cycles(looped):
+    told, data = readRun(str(looped)), curve(looped)
+    assert not set(told) - set(re.findall(r"``(\w+)``", results.__doc__))
+    assert told["history"]["amplitudes_mm"] == [[0.1, 1], [0.5, 2], [2.0, 1]]
+    assert told["history"]["path_mm"] == pytest.approx(4 * 3.1)
+    assert told["options"]["history"] == "0.1,0.5x2,2" and not told["collapsed"]
+    shear = data["base_shear_kN"]
+    assert told["peak_base_shear_kN"] == shear.max()
+    assert told["negative_peak_base_shear_kN"] == shear.min() < 0
+    assert told["displacement_at_negative_peak_mm"] < 0
+    cycles = told["cycles"]
+    amplitudes = [cycle["amplitude_mm"] for cycle in cycles]
+    assert amplitudes == pytest.approx([0.1, 0.5, 0.5, 2], abs=0.01)
+    whole = loops.work(data["displacement_mm"], shear)
+    assert sum(c["work_J"] for c in cycles) == pytest.approx(whole, rel=0.01)
+    lost = sum(data[f"dissipated_{m}_J"][-1] for m in ("tension", "shear", "compression"))  # fmt: skip
+    lost -= sum(data[f"dissipated_{m}_J"][0] for m in ("tension", "shear", "compression"))  # fmt: skip
+    assert sum(c["dissipated_J"] for c in cycles) == pytest.approx(lost, rel=0.01)
+    assert lost > 10  # it is cracked, not elastic
+    assert told["energy_balance_error"] < 1e-6
+    for cycle, one, other in zip(cycles, [0, 6, 9, 12], [3, 9, 12, 15]):
+        rows = slice(*cycle["rows"])
+        assert cycle["largest_kN"] == pytest.approx(shear[rows].max(), rel=1e-3)
+        assert cycle["rows"][0] < cycle["rows"][1] < len(shear)
+
+
+def test_what_the_drive_puts_into_a_cycle_is_lost_or_stored(looped):
+    """The loading block of the small wall does not turn, so the drive works over the displacement of curve.csv."""
+    told, data = readRun(str(looped)), curve(looped)
+    vertical = 0.5e6 * SMALL.area  # [N] that the top course feels
+    for cycle in told["cycles"]:
+        first, last = cycle["rows"]
+        grown = lambda name: data[name][last] - data[name][first]
+        stored = sum(grown(n) for n in data if n.startswith("elastic_"))
+        lifted = vertical * grown("vertical_mm") * 1e-3 - grown("gravity_J")
+        spent = cycle["dissipated_J"] + cycle["damped_J"] + stored + lifted
+        spent += grown("kinetic_J")
+        assert cycle["top_work_J"] == pytest.approx(spent, rel=0.03, abs=0.05)
+
+
+def test_figures_and_measures_show_both_sides(looped, monkeypatch, capsys):
+    shown = []
+    monkeypatch.setattr(figures, "_save", lambda figure, *_: shown.append(figure))
+    figures.draw(str(looped))
+    data = curve(looped)
+    top = shown[0].axes[0]
+    for bounds, name in ((top.get_xlim(), "displacement_mm"), (top.get_ylim(), "base_shear_kN")):  # fmt: skip
+        assert bounds[0] < data[name].min() < 0 < data[name].max() < bounds[1]
+    lines = {line.get_label(): line for line in top.lines}
+    assert lines["envelope"].get_linewidth() > lines["base"].get_linewidth()
+    assert len(shown) == 2  # and cracks.png
+
+    numbers = measure.measure(str(looped))
+    assert numbers["cycle_count"] == 4 and numbers["largest_amplitude_mm"] > 1.99
+    assert 0 <= numbers["force_drop"] < 1 and 0 <= numbers["force_drop_negative"] < 1
+    assert "push_work_J" not in numbers
+    for name in ("diagonal_reach", "crushed_volume_cm3"):
+        assert np.isfinite(numbers[name + "_mirrored"])
+    assert numbers["crushed_volume_cm3_mirrored"] == numbers["crushed_volume_cm3"]
+    measure.show(str(looped))
+    table = capsys.readouterr().out.split(" cycle ")[1].splitlines()
+    assert len(table) == 5 and table[4].split()[0] == "4"
+
+
+def test_frames_stand_at_turning_points_and_zeros(looped):
+    data = curve(looped)
+    pvd = open(os.path.join(looped, "joints.pvd")).read()
+    times = [float(t) for t in re.findall(r'timestep="([^"]+)"', pvd)]
+    at = np.interp(times, data["time_s"], data["displacement_mm"])
+    # --vtk-every 1: the swings of 0.1 mm have no frame of their own, those of 2 mm have three a side
+    for place, count in ((2, 1), (-2, 1), (0, 2)):
+        assert (np.abs(at - place) < 0.012).sum() >= count
+    way = np.interp(times, data["time_s"], np.append(0, np.cumsum(np.abs(np.diff(data["displacement_mm"])))))  # fmt: skip
+    assert np.diff(way)[:-1].min() >= 0.49 and len(times) < 20
+
+
+def test_the_number_of_frames_is_bounded():
+    long = parsed("--history", "10x50", "--vtk-every", "0.1")
+    assert loading.frameSpacing(long) == 2000 / loading.FRAMES
+    assert loading.frameSpacing(parsed("--until", "1000", "--vtk-every", "0.1")) == 0.1
+
+
+def test_loops_that_damping_makes_fat_are_a_warning(runScene):
+    words = ["--history", "0.5", "--rate", "100", "--no-vtk"]
+    process, out = runScene("wall_comp1", *words)
+    assert readRun(out)["damped_share"] > 0.5
+    assert "damping, not the wall, took" in process.stdout
+    assert "1 cycles, peaks" in process.stdout
+
+
+# -- collapse -----------------------------------------------------------------------------------------------------------
+
+
+def test_a_loop_that_unloads_is_no_collapse_and_a_lost_side_is_one():
+    at = loading.Pushing()
+
+    def row(moved, shear, way):
+        at.moved = moved
+        at.note(shear)
+        return at.hasLost(way, shear)
+
+    goals = history.targets([5, -5, 8, -8])
+    assert not row(5, 100, 1)
+    at.passOn(goals)
+    assert not row(3, 1, -1) and not row(-2, -60, -1) and not row(-5, -60, -1)
+    at.passOn(goals)
+    assert not row(4.9, 5, 1)  # less than a fifth, but within what was reached before
+    assert row(6.1, 19, 1) and not row(6.1, 21, 1)
+    assert not row(5.9, 19, 1)  # not a millimetre beyond the peak
+    at.moved = 8
+    at.passOn(goals)
+    assert not row(-4, -1, -1)
+    assert row(-6.1, -11, -1) and not row(-6.1, -13, -1)
+
+
+def test_a_wall_that_loses_its_force_in_a_loop_ends_the_run(scene, tmp_path):
+    """Without friction and with brittle bond the small wall slides on a bed joint as soon as the bond is gone."""
+    bare = ["residualCohesion=0", "friction=0", "residualFriction=0", "tensileStrength=1e4"]  # fmt: skip
+    words = [f"--set={name}.{value}" for name in ("bed", "head") for value in bare]
+    words += ["--joints", "brittle", "--no-vtk", "--rate", "40"]
+    assert run(tmp_path / "loop", *words, "--history", "0.02x2,3") == 0
+    told = readRun(str(tmp_path / "loop"))
+    assert told["collapsed"] and told["displacement_end_mm"] < 3
+    assert run(tmp_path / "back", *words, "--history", "0.02x2,0.5x3") == 0
+    assert not readRun(str(tmp_path / "back"))["collapsed"]
+
+
+# -- checkpoints --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "wall, blocks",
+    [(SMALL, "rigid"), (SMALL, "deformable"), (CANTILEVER, "rigid")],
+    ids=["rigid", "deformable", "cantilever"],
+)
+def test_loops_interrupted_anywhere_leave_the_curve_of_a_whole_run(
+    scene, tmp_path, at, wall, blocks
+):
+    words = [*LOOPS, "--blocks", blocks]
+    assert run(tmp_path / "whole", *words, wall=wall) == 0
+    out, points, resume = tmp_path / "broken", [], False
+    while True:
+        at(61 if points else 3, interrupt)
+        status = run(out, *([] if resume else words), wall=wall, resume=resume)
+        if status == 0:
+            break
+        assert status == 130
+        memory = readCheckpoint(str(out / "run.checkpoint"))["at"]["memory"]
+        points.append(memory.get("passed", 0))
+        resume = True
+    assert len(set(points)) > 5
+    assert files(out) == files(tmp_path / "whole")
+
+
+def test_a_wall_killed_in_its_third_half_cycle_goes_on_bit_for_bit(runScene, tmp_path):
+    words = ["--history", "0.5,1x2", "--rate", "20", "--vtk-every", "0.5"]
+    _, whole = runScene("wall_dry", *words)
+    out = tmp_path / "killed"
+    kept = str(out / "run.checkpoint")
+    scene = os.path.join(ROOT, "scripts", "wall_dry.py")
+    command = ["yade", "-n", "-x", scene, "--checkpoint-every", "0.0005"]
+    process = subprocess.Popen([*command, *words, "--out", str(out)])
+
+    def passed():
+        there = os.path.exists(kept)
+        return readCheckpoint(kept)["at"]["memory"].get("passed", 0) if there else 0
+
+    while passed() < 3:  # +0.5, -0.5 and 0 mm are behind
+        assert process.poll() is None
+        time.sleep(0.005)
+    process.kill()
+    assert process.wait() == -signal.SIGKILL
+    assert passed() == 3
+    assert subprocess.run([*command, "--resume", str(out)]).returncode == 0
+    assert files(out) == files(whole)  # with the last frame, which is the final state
+    one, other = readRun(whole), readRun(str(out))
+    assert len(other["resumed_at_s"]) == 1
+    for name in ("cycles", "history", "steps", "negative_peak_base_shear_kN"):
+        assert one[name] == other[name]
+
+
+def test_a_finished_history_can_be_extended(scene, tmp_path):
+    words = ["--rate", "40", "--no-vtk"]
+    assert run(tmp_path / "whole", "--history", "0.1,0.5,0.6", *words) == 0
+    assert run(tmp_path / "parts", "--history", "0.1,0.5", *words) == 0
+    longer = ["--history", "0.1,0.5x1,0.6"]
+    assert run(tmp_path / "parts", *longer, resume=True) == 0
+    # Before 0 mm the drive does not brake for 0.6 mm yet, so that both runs are the same to the last bit.
+    assert files(tmp_path / "parts") == files(tmp_path / "whole")
+    told = readRun(str(tmp_path / "parts"))
+    assert len(told["cycles"]) == 3 and told["options"]["history"] == longer[1]
+
+
+def test_a_file_can_be_extended_and_need_not_be_there_to_go_on(scene, tmp_path, at):
+    path = tmp_path / "h.csv"
+    path.write_text("displacement_mm\n0\n0.2\n-0.1\n")
+    words = ["--history", str(path), "--rate", "40", "--no-vtk"]
+    assert run(tmp_path / "whole", *words) == 0
+    at(70, interrupt)
+    assert run(tmp_path / "out", *words) == 130
+    path.unlink()
+    assert run(tmp_path / "out", resume=True) == 0
+    assert files(tmp_path / "out") == files(tmp_path / "whole")
+    path.write_text("displacement_mm\n0\n0.2\n-0.1\n0.15\n")
+    assert run(tmp_path / "out", "--history", str(path), resume=True) == 0
+    moved = curve(tmp_path / "out")["displacement_mm"]
+    turns = moved[loops.turningPoints(moved, 0.01)]
+    assert turns == pytest.approx([0, 0.2, -0.1, 0.15], abs=0.005)
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        ("--history 0.1", "--history is 0.1,0.25x2, and another one must begin with"),
+        ("--history 0.1,0.3x2", "must begin with all its points"),
+        ("--until 2", "--history is 0.1,0.25x2, without --until"),
+        ("--rate 10", "--rate is 40.0"),
+    ],
+)
+def test_another_history_is_refused_and_changes_nothing(
+    scene, tmp_path, at, capsys, words, message
+):
+    out = tmp_path / "broken"
+    at(70, interrupt)
+    assert run(out, *LOOPS) == 130
+    assert refused(out, *words.split()) == 2
+    error = capsys.readouterr().err
+    assert message in error and len(error.splitlines()) == 1
+
+
+def test_a_push_cannot_become_a_history(scene, tmp_path, at, capsys):
+    at(70, interrupt)
+    assert run(tmp_path / "push", "--until", "0.3", "--rate", "40") == 130
+    assert refused(tmp_path / "push", "--history", "0.3") == 2
+    error = capsys.readouterr().err
+    assert "--until is 0.3, without --history" in error

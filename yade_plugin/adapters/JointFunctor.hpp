@@ -1,0 +1,19 @@
+// What the functors of the joint laws share: a step of one joint in the host's InteractionLoop.
+#pragma once
+#include "Adapter.hpp"
+#include <atomic>
+
+namespace masonry {
+
+// Bodies of a joint that a functor of another law was called for. The loop is parallel, where an exception would end
+// the program: SceneStore::check() reports it.
+struct StrayedJoint {
+    int body1 = -1, body2 = -1;
+};
+extern std::atomic<StrayedJoint> strayed;
+
+// Advances a joint by its jumps and brings its forces to both blocks. A joint whose property `cyclic` is not that of
+// the functor is left out and noted in `strayed`.
+void advanceJoint(yade::Scene&, yade::IGeom&, yade::IPhys&, const yade::Interaction&, bool cyclic);
+
+} // namespace masonry

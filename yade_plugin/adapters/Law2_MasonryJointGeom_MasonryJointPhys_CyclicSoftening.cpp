@@ -1,0 +1,16 @@
+#include "Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening.hpp"
+#include "JointFunctor.hpp"
+
+template class masonry::Adapter<masonry::Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening, yade::LawFunctor>;
+BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening)
+
+namespace masonry {
+
+bool Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening::go(shared_ptr<yade::IGeom>& geom,
+                                                                shared_ptr<yade::IPhys>& phys,
+                                                                yade::Interaction* interaction) {
+    advanceJoint(*scene, *geom, *phys, *interaction, true);
+    return true;
+}
+
+} // namespace masonry

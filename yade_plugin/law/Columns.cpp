@@ -1,0 +1,24 @@
+#include "Columns.hpp"
+
+namespace masonry {
+
+MASONRY_VECTORISED
+void advanceElastic(double kn, double ks, const Columns& columns, std::size_t at, int count, const Jumps& jumps,
+                    double* normalStress) {
+    double* opening = columns[Columns::Opening] + at;
+    double* shearStressA = columns[Columns::ShearStressA] + at;
+    double* shearStressB = columns[Columns::ShearStressB] + at;
+    const double* irreversible = columns[Columns::Irreversible] + at;
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        opening[i] += jumps.opening[i];
+        normalStress[i] = kn * (opening[i] + irreversible[i]);
+        shearStressA[i] += ks * jumps.slideA[i];
+    }
+    if (jumps.plane) return;
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i)
+        shearStressB[i] += ks * jumps.slideB[i];
+}
+
+} // namespace masonry
