@@ -92,13 +92,17 @@ class Joint:
         self.rows.append((1e3 * opening, 1e3 * slide, 1e-6 * normal, 1e-6 * shear))
         return self.rows[-1]
 
+    def advance(self, steps):
+        for _ in range(steps):
+            O.step()
+
     def drive(self, load, target, rows, until=lambda row: False):
         """Move along the direction of a load to a displacement [m], in so many rows, or until a row says so."""
         axis = 2 if load is self.vertical else 0
         distance = target - load.displacement()[axis]
         load.velocity = distance / (rows * self.steps * O.dt)
         for _ in range(rows):
-            O.run(self.steps, True)
+            self.advance(self.steps)
             if until(self.read()):
                 break
         load.velocity = 0
@@ -112,7 +116,7 @@ class Joint:
             )
         self.vertical.driven = False
         self.vertical.force = Vector3(0, 0, stress * AREA)
-        O.run(20 * self.steps, True)
+        self.advance(20 * self.steps)
         self.rows.clear()
         self.read()
 
