@@ -5,7 +5,8 @@
 // Rigid blocks in running bond, small displacements, explicit steps. Joints have no tension and no cohesion; their
 // points are the middles of equal parts. Closed: the hyperbola kn0 c / (1 - c/cm) up to the tangent kn, straight from
 // there; the elasticity of the blocks is in series. Shear: spring and Coulomb friction. Loads as in
-// scripts/wall_dry.py: the vertical load keeps its line, the top is driven 1.325 m above the base.
+// scripts/wall_dry.py: the vertical load keeps its line, the top is driven 1.325 m above the base, directly or through
+// a spring.
 //
 // plain_wall NAME=VALUE ... < turning points [mm]; SI units but for level [kN], rate [mm/s] and every [mm].
 #include <algorithm>
@@ -41,8 +42,9 @@ struct Point {
 };
 
 std::map<std::string, double> options = {
-    {"level", 175}, {"kn", 34e9},  {"kn0", 0},      {"cm", 0},        {"ks", 13.6e9},        {"friction", 0.65},
-    {"rate", 50},   {"points", 8}, {"every", 0.05}, {"damping", 0.8}, {"closingFriction", 0}};
+    {"level", 175},         {"kn", 34e9}, {"kn0", 0},    {"cm", 0},       {"ks", 13.6e9},
+    {"friction", 0.65},     {"rate", 50}, {"points", 8}, {"every", 0.05}, {"damping", 0.8},
+    {"closingFriction", 0}, {"rig", 0}}; // stiffness of a spring between the drive and the top [N/m]; 0: none
 
 // Pressure of a closed point [Pa]: the joint's curve in series with the blocks.
 double pressure(double closure, double softness) {
@@ -141,7 +143,9 @@ int main(int count, char** words) {
         fastest = std::max({fastest, stiff[i] / blocks[i].mass, turning[i] / blocks[i].inertia});
     const double dt = 0.8 / std::sqrt(fastest);
 
+    const double rig = options["rig"];
     double load = 0, velocity = 0, damping = 0.7;
+    double drive = 0, pull = 0; // displacement [m] of the drive and its force [N]
     const double friction = options["friction"], closing = options["closingFriction"];
     const auto step = [&] {
         for (Block& b : blocks) {
@@ -175,6 +179,9 @@ int main(int count, char** words) {
             b.force[1] -= fz;
             b.force[2] -= fz * p.bx - fx * p.bz;
         }
+        drive += velocity * dt;
+        pull = rig > 0 ? rig * (drive - blocks[top].at[0]) : -blocks[top].force[0];
+        if (rig > 0) blocks[top].force[0] += pull;
         const auto sign = [](double x) { return (x > 0) - (x < 0); };
         for (int i = 0; i < base; ++i) {
             Block& b = blocks[i];
@@ -185,7 +192,7 @@ int main(int count, char** words) {
                 b.before[d] = b.force[d];
                 b.velocity[d] += f / (d == 2 ? b.inertia : b.mass) * dt;
             }
-            if (i == top) b.velocity[0] = velocity;
+            if (i == top && rig <= 0) b.velocity[0] = velocity;
             for (int d = 0; d < 3; ++d)
                 b.at[d] += b.velocity[d] * dt;
         }
@@ -198,20 +205,20 @@ int main(int count, char** words) {
         step();
     }
     damping = options["damping"];
-    const double zero = blocks[top].at[0], rate = options["rate"] * 1e-3, ramp = 0.02;
+    const double rate = options["rate"] * 1e-3, ramp = 0.02;
     double last = 0, now = 0;
     std::printf("displacement_mm,force_kN\n0,0\n");
     for (double target : targets) {
         const double way = target > now ? 1 : -1;
         for (double time = dt;; time += dt) {
-            const double left = (target - blocks[top].at[0] + zero) * way;
+            const double left = (target - drive) * way;
             if (left < 1e-9) break;
             const double brake = std::max(0.02 * rate, std::sqrt(2 * rate / ramp * left));
             velocity = way * std::min({rate * std::min(1.0, time / ramp), brake, left / dt});
             step();
-            const double moved = blocks[top].at[0] - zero;
+            const double moved = drive;
             if (std::abs(moved - last) * 1e3 >= options["every"]) {
-                std::printf("%.5f,%.4f\n", moved * 1e3, blocks[top].force[0] * -1e-3);
+                std::printf("%.5f,%.4f\n", moved * 1e3, pull * 1e-3);
                 last = moved;
             }
         }

@@ -37,6 +37,7 @@ VARIANTS = {
     "closing curve": {**CURVE},
     "blind": {**CURVE, "ks": _blind["shearStiffness"], "friction": _blind["friction"]},
     "closing curve, ks 4": {**CURVE, "ks": 4e9},
+    "closing curve, rig 37 kN/mm": {**CURVE, "rig": 37e6},
     "linear, ks 1.3": {"ks": 1.3e9},
     "linear, kn 10": {"kn": 10e9},
     "linear, friction 0.5": {"friction": 0.5},
