@@ -1,0 +1,73 @@
+"""Numbers and figures of the walls in cycles, from curves whose answers are known."""
+
+import os
+import sys
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+sys.path.insert(0, os.path.join(ROOT, "validation", "cyclic"))
+import figures  # noqa: E402
+import walls  # noqa: E402
+
+STIFFNESS, STRENGTH = 10.0, 20.0  # [kN/mm], [kN]
+MONOTONIC = np.array([[0.0, 2.0, 50.0], [0.0, 20.0, 20.0]])
+
+
+def slider(amplitudes, repeats=2, negative=1.0):
+    """Loops of a spring and a slider in series; in the negative direction the slider has another strength."""
+    corners = [0.0]
+    for a in amplitudes:
+        corners += repeats * [a, -a, 0.0]
+    moved = np.concatenate(
+        [np.linspace(a, b, 2001)[:-1] for a, b in zip(corners, corners[1:])] + [[0.0]]
+    )
+    force, slip = [], 0.0
+    for x in moved:
+        trial = STIFFNESS * (x - slip)
+        f = min(max(trial, -negative * STRENGTH), STRENGTH)
+        slip = x - f / STIFFNESS
+        force.append(f)
+    return moved, np.array(force)
+
+
+def test_an_ideal_slider_has_its_closed_form():
+    """Work 4 F (A - F/K) a cycle that begins where the one before ended, stiffness F/A, damping 2/π (1 - F/(K A))."""
+    found = walls.numbers(*slider([1, 4, 10]), MONOTONIC)
+    assert [n.repeat for n in found] == [0, 1, 0, 1, 0, 1]
+    assert [n.stiffness for n in found] == pytest.approx(
+        [1, 1, 0.5, 0.5, 0.2, 0.2], rel=1e-6
+    )
+    assert [n.positive for n in found] == pytest.approx(6 * [1], abs=1e-9)
+    assert [n.negative for n in found] == pytest.approx(6 * [1], abs=1e-9)
+    second = found[-1].cycle
+    assert second.work_J == pytest.approx(4 * STRENGTH * (10 - 2), rel=1e-3)
+    assert second.damping == pytest.approx(2 / np.pi * (1 - 0.2), rel=1e-3)
+    assert second.residual_positive_mm == pytest.approx(8, abs=1e-2)
+
+
+def test_what_one_direction_lost_is_seen_in_the_other():
+    found = walls.numbers(*slider([10], negative=0.7), MONOTONIC)
+    assert found[0].positive == pytest.approx(1)
+    assert found[0].negative == pytest.approx(0.7)
+    assert walls.tableRows("comp4", "cyclic", found)[0][7] == "0.70"
+
+
+def test_beyond_the_monotonic_curve_there_is_no_number():
+    found = walls.numbers(*slider([60], repeats=1), MONOTONIC)
+    assert np.isnan(found[0].positive)
+
+
+def test_figures_are_drawn(tmp_path):
+    curves = {"softening": slider([1, 4]), "cyclic": slider([1, 4], negative=0.8)}
+    walls.drawLoops("comp1", MONOTONIC, curves, tmp_path / "loops.png")
+    found = {"comp1": {k: walls.numbers(*c, MONOTONIC) for k, c in curves.items()}}
+    walls.drawDegradation(found, tmp_path / "degradation.png")
+    for name in ("loops.png", "degradation.png"):
+        assert (tmp_path / name).stat().st_size > 5000
+
+
+def test_a_figure_of_no_path_is_refused(tmp_path):
+    with pytest.raises(FileNotFoundError, match="no path of joint.py"):
+        figures.draw(tmp_path, tmp_path / "joint.png")
