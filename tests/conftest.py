@@ -64,7 +64,8 @@ class CppCase(pytest.Item):
 
 
 def pytest_collect_file(parent, file_path):
-    if file_path.suffix == ".cpp" and file_path.name.startswith("test_"):
+    ring = file_path.parent.name  # one program for all files of a ring
+    if file_path.name == f"test_{ring}.cpp":
         return Cpp.from_parent(parent, path=file_path)
 
 

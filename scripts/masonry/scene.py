@@ -241,7 +241,7 @@ def connect(rule=None, tolerance=1e-4, allowGaps=False):
         raise ValueError(
             f"{type(loop).__name__} has no geometry or no physics: call masonry.engines()"
         )
-    before = geometry.tolerance
+    before, pairs = geometry.tolerance, []
     geometry.tolerance = tolerance
     try:
         pairs, sizes = _pairs(tolerance, allowGaps)
@@ -249,6 +249,10 @@ def connect(rule=None, tolerance=1e-4, allowGaps=False):
             # YADE makes interactions with the functors of an InteractionLoop: one stands in for a moment
             O.engines = [_functorLoop(geometry, physics)]
         made, joints = _connect(pairs, physics, rule)
+    except ValueError:
+        if pairs:  # a value in another unit may be the reason
+            _warn(pairs, physics.joints, sizes, engines)
+        raise
     finally:
         O.engines = engines
         geometry.tolerance = before

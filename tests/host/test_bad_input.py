@@ -759,11 +759,14 @@ HINTS = [
 
 
 @pytest.mark.parametrize("act, hints", HINTS)
-def test_what_may_be_a_slip_is_told_and_done(
+def test_what_may_be_a_slip_is_told(
     scene, act, hints, tmp_path, monkeypatch, capsys
 ):
     monkeypatch.chdir(tmp_path)
-    act()
+    try:
+        act()
+    except ValueError as error:  # what does not fit the size of the units is refused
+        assert "snap back" in str(error)
     said = capsys.readouterr().out
     for hint in [hints] if isinstance(hints, str) else hints:
         assert any(
@@ -817,7 +820,7 @@ def wythes():
 
 
 @pytest.mark.parametrize(
-    "build", [lambda: arch(12), lambda: arch(150), tiles, mortar, wythes]
+    "build", [lambda: arch(16), lambda: arch(150), tiles, mortar, wythes]
 )
 def test_scenes_that_fit_are_joined_without_a_word(scene, build, capsys):
     joints = build()
@@ -872,7 +875,7 @@ def test_the_command_line_ends_with_status_2_and_leaves_what_is_there(
     "name, words, most, lost",
     [
         ("couplet", ["--no-vtk"], 100e3, "curve.csv"),  # in the middle of the run
-        ("wall_comp0a", ["--until", "0.1"], 186e3, "joints_0001.vtp"),
+        ("wall_comp0a", ["--until", "0.1"], 150e3, "joints_0001.vtp"),
         ("wall_comp0a", ["--until", "0.05", "--no-vtk"], 60e3, "curve.png"),
     ],
 )

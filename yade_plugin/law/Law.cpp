@@ -1,6 +1,6 @@
 #include "Law.hpp"
-#include "cyclic_softening/CyclicLaw.hpp"
-#include "piecewise_softening/JointLaw.hpp"
+#include "law/cyclic_softening/CyclicLaw.hpp"
+#include "law/piecewise_softening/JointLaw.hpp"
 
 namespace masonry {
 
