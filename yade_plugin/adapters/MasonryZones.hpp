@@ -17,8 +17,11 @@ public:
     static constexpr const char* className = "MasonryZones";
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
-        "Deformable units: blocks divided into tetrahedral zones of linear elastic material, with their masses and "
-        "joints at the nodes (paper §2, eqs. (1)-(7)). A unit remains one body with a Polyhedra shape; its position "
+        "Deformable units: blocks divided into tetrahedral zones of linear elastic material, with their masses at the "
+        "nodes (paper §2, eqs. (1)-(7)). Their joints act at points of the faces of cells and move with the nodes "
+        "around them: three along every face, in the middle of its thickness, where the unit is held across the joint, "
+        "else the corners and the centroid of each of its two triangles. A unit remains one body with a Polyhedra "
+        "shape; its position "
         "and orientation follow the centre of mass and the mean rotation. Strains are taken as small in axes that turn "
         "with the unit. Stands after the loop of the joints; integrators of rigid bodies do not move these bodies. "
         "Give "
