@@ -67,20 +67,17 @@ void MasonryZones::take(const std::vector<Vector3r>& values, std::vector<Row>& r
         put(rows, places_[node], values[node]);
 }
 
-int MasonryZones::addDependentPoint() {
-    const int row = int(displacements_.size()), lane = dependentPoints_++ % lanes;
-    if (lane == 0) {
-        displacements_.resize(row + 3, Row{});
-        forces_.resize(row + 3, Row{});
-    }
-    return lanes * (int(displacements_.size()) - 3) + lane;
+int MasonryZones::addDependentRows() {
+    const int row = int(displacements_.size());
+    displacements_.resize(row + 3, Row{});
+    forces_.resize(row + 3, Row{});
+    return lanes * row;
 }
 
 // Dependent points have rows of displacements and forces only, so the rows of velocities show where they begin.
-void MasonryZones::dropDependentPoints() {
+void MasonryZones::dropDependentRows() {
     displacements_.resize(velocities_.size());
     forces_.resize(velocities_.size());
-    dependentPoints_ = 0;
 }
 
 // ---- units ------------------------------------------------------------------------------------------------------
@@ -169,7 +166,6 @@ void MasonryZones::mesh() {
 // Gives every node its place in the rows. Congruent units stand side by side, one in each lane.
 void MasonryZones::layOut() {
     batches_.clear();
-    dependentPoints_ = 0;
     places_.assign(loaded_.displacements.size(), 0);
     std::vector<const BlockElasticity*> kinds; // in the order in which they were met
     for (const auto& unit : units_)

@@ -112,10 +112,10 @@ public:
 
     // The rows in which the state of the nodes lives. The three components of a node are one row apart, the first at
     // the node's place: rows()[place + d * lanes]. Dependent points are subcontacts' sides without a node of their own,
-    // which move with a rigid body or between nodes. JointPlan adds them; their places follow those of the nodes.
+    // which move with a rigid body or between nodes. JointPlan adds rows for them, which follow those of the nodes.
     int placeOf(int node) const { return places_[node]; }
-    int addDependentPoint();
-    void dropDependentPoints();
+    int addDependentRows(); // returns the place of the first lane
+    void dropDependentRows();
     double* displacementRows() { return displacements_[0].lane; } // since the reference state [m]
     double* forceRows() { return forces_[0].lane; }               // of joints in the present step [N]
     double* momentRows() { return moments_[0].lane; }             // of joints on the rotation of the units [N m]
@@ -174,7 +174,6 @@ private:
     std::vector<int> places_;     // of all nodes in the rows
     std::vector<Batch> batches_;
     std::vector<Row> displacements_, velocities_, forces_, lastForces_, moments_;
-    int dependentPoints_ = 0;                 // number of dependent points
     boost::weak_ptr<yade::Factorable> scene_; // the scene in which the units were last moved
     bool acted_ = false;                      // whether the units were ever moved
 };
