@@ -305,12 +305,15 @@ std::optional<MasonryZones::Covered> MasonryZones::cover(const Unit& unit, const
                 found.nodes.push_back(number);
         if (held && !mesh.cellFaces.empty()) {
             if (n % 2 != 0) continue; // the first half of a face stands for both
-            Polygon face;
-            for (int node : mesh.cellFaces[n / 2])
-                face.push_back(place(node));
-            if ((face[1] - face[0]).cross(face[2] - face[1]).dot(normal) < 0) std::reverse(face.begin(), face.end());
-            for (const auto& point : subdivide(face, normal, along, 3, 1))
-                add(point);
+            const auto& face = mesh.cellFaces[n / 2];
+            const auto& half = mesh.triangles[n + 1];
+            const double both = 2 * part;
+            for (int node : t) // the ends of the diagonal
+                if (std::find(half.begin(), half.end(), node) != half.end()) add({place(node), both / 6});
+            const auto edge = [&](int i) { return Vector3r(place(face[(i + 1) % 4]) - place(face[i % 4])); };
+            const int first = std::abs(edge(0).dot(along)) > std::abs(edge(1).dot(along)) ? 0 : 1;
+            for (int i : {first, first + 2}) // the edges along the joint
+                add({place(face[i % 4]) + 0.5 * edge(i), both / 3});
         } else {
             for (const auto& corner : {a, b, c})
                 add({corner, part / 12});
