@@ -214,8 +214,8 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         metavar="N",
         type=lambda t: _count(t, 10),
         default=USUAL["divisions"],
-        help="cells of a deformable half brick along its length, and as many along its height; along the face of a cell its "
-        "joints have points at both ends and in the middle",
+        help="cells of a deformable half brick along its length, and as many along its height; a joint has points at both "
+        "ends and in the middle of every cell's face",
     )
     p.add_argument(
         "--damping-kind",
@@ -228,8 +228,8 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         metavar="N",
         type=lambda t: _count(t, 100),
         default=USUAL["subcontacts"],
-        help="points along each joint of rigid units, at its ends and between them (Gauss-Lobatto); from three on rocking and "
-        "rotational stiffness are exact, and a step costs in proportion",
+        help="points along each joint of rigid units, at its ends and between them (Gauss-Lobatto); from three on rocking "
+        "and rotational stiffness are exact, and a step costs in proportion",
     )
     p.add_argument(
         "--damping",

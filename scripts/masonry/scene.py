@@ -135,11 +135,12 @@ def engines(
         stiffness is exact; with two it is three times too large; with one, a joint does not resist rotation. More than
         three follow the progress of a crack or of crushing along a joint more finely. A step costs in proportion to
         all subcontacts, that is, subcontacts times rows
-    :param rows: rows of subcontacts across a joint, at the points of Gauss and Lobatto, too; None or 0: chosen for every joint
-        when it is made. It gets one row, in the middle, if its two blocks can turn about one and the same of the global
-        axes only, and if that axis lies in the joint: blocks of a wall in its plane, and fixed bodies. That is exact
-        there. Every other joint gets three rows. So block degrees of freedom before ``connect()``, and free none later.
-        One row where blocks are free in space would leave a joint without stiffness out of its plane
+    :param rows: rows of subcontacts across a joint, at the points of Gauss and Lobatto, too; None or 0: chosen for every
+        joint when it is made. It gets one row, in the middle, if its two blocks can turn about one and the same of the
+        global axes only, and if that axis lies in the joint: blocks of a wall in its plane, and fixed bodies. That is
+        exact there. Every other joint gets three rows. So block degrees of freedom before ``connect()``, and free none
+        later. One row where blocks are free in space would leave a joint without stiffness out of its plane; two rows make
+        it three times too stiff there
     :param inPlane: the rows follow each other along y, also where the blocks' freedom does not say so
     :param loads: MasonryLoad engines
     :param zones: MasonryZones of the deformable units, if there are any

@@ -399,7 +399,21 @@ TEST_CASE("zones fill a block, their surface closes, and the masses add up") {
         }
         CHECK(closed.norm() < 1e-15);
         CHECK(flux == within(3 * brick.prod(), 1e-9));
+        REQUIRE(mesh.triangles.size() == 2 * mesh.cellFaces.size());
+        for (std::size_t n = 0; n < mesh.triangles.size(); ++n) { // two triangles are the halves of a cell's face
+            const auto &t = mesh.triangles[n], &other = mesh.triangles[n ^ 1];
+            const auto& face = mesh.cellFaces[n / 2];
+            for (int node : face)
+                CHECK(std::count(t.begin(), t.end(), node) + std::count(other.begin(), other.end(), node) > 0);
+            const auto outward = [&](const auto& corners) {
+                return Point((mesh.nodes[corners[1]] - mesh.nodes[corners[0]])
+                                 .cross(mesh.nodes[corners[2]] - mesh.nodes[corners[1]])
+                                 .normalized());
+            };
+            CHECK((outward(t) - outward(face)).norm() < 1e-9);
+        }
     }
+    CHECK(elastic(prism(), {1, 1, 1}).mesh().cellFaces.empty());
     const auto e = elastic(prism(), {1, 1, 1});
     CHECK(e.mass() == within(1800 * 0.5 * 0.2 * 0.1 * 0.1, 1e-9));
 }

@@ -53,7 +53,7 @@ def frequency(length, cells):
     """First longitudinal frequency of the bar, from its free vibration [Hz]."""
     O.reset()
     zones, unit = bar(length, cells, damping=0)
-    assert O.dt < 1e-7  # small enough that the error is the zones'
+    O.dt = min(O.dt, 1e-7)  # small enough that the error is the zones'
     for number in range(*zones.nodesOf(unit)):
         z = zones.referencePoint(unit, number)[2]
         zones.setVelocity(

@@ -88,7 +88,7 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
         if (kind.hung) zones_ = kind.shapes->joints[0].hung->zones.get();
     if (zones_) {
         zones_->units();
-        zones_->dropDependentPoints();
+        zones_->dropDependentRows();
     }
     for (int b = 0; b < store.bodies.size(); ++b)
         if (store.bodies.has(b)) store.bodies.noticeAll(b);
@@ -194,7 +194,8 @@ void JointPlan::buildKind(SceneStore& store, const JointKind& kind, Kind& made,
 }
 
 // Finds the places of both sides of subcontacts with deformable sides in the rows of MasonryZones: that of the node, or
-// that of a dependent point. Sides that move with the same nodes by the same weights share one.
+// that of a dependent point. Sides that move with the same nodes by the same weights share one. Those of congruent
+// units stand in the lanes of the same rows, as their nodes do, so that they are calculated side by side.
 void JointPlan::buildPlaces(const JointKind& kind, Kind& made, std::vector<std::vector<Receivers::Item>>& atPlaces,
                             std::map<std::array<double, 6>, int>& known) {
     const int count = int(kind.shapes->joints.size()), points = kind.shapes->points;
@@ -206,21 +207,27 @@ void JointPlan::buildPlaces(const JointKind& kind, Kind& made, std::vector<std::
         if (hung.empty()) {
             const auto& from = r.sides[side];
             const Vector3r local = from.orientation.conjugate() * (reference - from.position);
-            onBodies_.push_back({zones_->addDependentPoint(), from.body, reference, local});
-            return onBodies_.back().place;
+            const bool newRows = onBodies_.size() % lanes == 0;
+            const int place = newRows ? zones_->addDependentRows() : onBodies_.back().place + 1;
+            onBodies_.push_back({place, from.body, reference, local});
+            return place;
         }
         const auto& a = hung[p];
         if (a.weights[0] == 1) return zones_->placeOf(a.nodes[0]);
+        const int lane = zones_->placeOf(a.nodes[0]) % lanes; // that of the unit
         std::array<double, 6> key;
         std::array<int, 3> nodes;
         for (int n = 0; n < 3; ++n) {
-            nodes[n] = zones_->placeOf(a.nodes[n]);
+            nodes[n] = zones_->placeOf(a.nodes[n]) - lane;
             key[n] = a.weights[n] != 0 ? nodes[n] : -1;
             key[3 + n] = std::round(1e9 * a.weights[n]);
         }
-        if (const auto at = known.find(key); at != known.end()) return at->second;
-        betweenNodes_.push_back({zones_->addDependentPoint(), nodes, a.weights});
-        return known[key] = betweenNodes_.back().place;
+        auto at = known.find(key);
+        if (at == known.end()) {
+            at = known.emplace(key, zones_->addDependentRows()).first;
+            betweenNodes_.push_back({at->second, nodes, a.weights});
+        }
+        return at->second + lane;
     };
     for (int j = 0; j < count; ++j) {
         const auto& r = kind.shapes->joints[j];
@@ -348,11 +355,18 @@ void JointPlan::moveDependentPoints(const SceneStore& store) {
 #pragma omp parallel for schedule(static)
     for (int n = 0; n < count; ++n) {
         const auto& point = betweenNodes_[n];
+        const bool two = point.weights[2] == 0;
         for (int d = 0; d < 3; d += next) {
-            const double* at = rows + d * lanes;
-            rows[point.place + d * lanes] = point.weights[0] * at[point.nodes[0]] +
-                                            point.weights[1] * at[point.nodes[1]] +
-                                            point.weights[2] * at[point.nodes[2]];
+            double* to = rows + point.place + d * lanes;
+            const double *a = rows + point.nodes[0] + d * lanes, *b = rows + point.nodes[1] + d * lanes,
+                         *c = rows + point.nodes[2] + d * lanes;
+            const double u = point.weights[0], v = point.weights[1], w = point.weights[2];
+            if (two)
+                for (int lane = 0; lane < lanes; ++lane)
+                    to[lane] = u * a[lane] + v * b[lane];
+            else
+                for (int lane = 0; lane < lanes; ++lane)
+                    to[lane] = u * a[lane] + v * b[lane] + w * c[lane];
         }
     }
     for (const auto& point : onBodies_) {
@@ -429,10 +443,16 @@ void JointPlan::bringToNodes(SceneStore& store) {
 #pragma omp parallel for schedule(static)
     for (int n = 0; n < sharing; ++n)
         for (int d = 0; d < 3; d += next) {
-            double sum = forces[shares_.nodes[n] + d * lanes];
-            for (int i = shares_.start[n]; i < shares_.start[n + 1]; ++i)
-                sum += shares_.weights[i] * forces[shares_.points[i] + d * lanes];
-            forces[shares_.nodes[n] + d * lanes] = sum;
+            double sum[lanes];
+            double* to = forces + shares_.nodes[n] + d * lanes;
+            std::copy_n(to, lanes, sum);
+            for (int i = shares_.start[n]; i < shares_.start[n + 1]; ++i) {
+                const double* from = forces + shares_.points[i] + d * lanes;
+                const double weight = shares_.weights[i];
+                for (int lane = 0; lane < lanes; ++lane)
+                    sum[lane] += weight * from[lane];
+            }
+            std::copy_n(sum, lanes, to);
         }
     for (const auto& point : onBodies_) {
         const double* on = forces + point.place;

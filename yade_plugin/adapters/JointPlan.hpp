@@ -32,15 +32,17 @@ private:
         Vector3r reference; // its place in the reference state, global axes [m]
         Vector3r local;     // its place in the body's axes [m]
     };
-    struct PointBetweenNodes {
-        int place;                     // in the rows of MasonryZones
-        std::array<int, 3> nodes;      // places of nodes in these rows
-        std::array<double, 3> weights; // of these nodes; their sum is 1
+    // Sides between the same nodes of congruent units, one unit in each lane, as the nodes stand. Places are those of
+    // the first lane.
+    struct PointsBetweenNodes {
+        int place;
+        std::array<int, 3> nodes;
+        std::array<double, 3> weights; // of the nodes; their sum is 1
     };
-    // What dependent points bring to a node: `weights` times the forces at `points`. Each node sums up its own list, in
-    // the same order with any number of threads.
+    // What points between nodes bring to the nodes of congruent units: `weights` times the forces at `points`. Every
+    // node sums up its own list, in the same order with any number of threads. Places are those of the first lane.
     struct NodeShares {
-        std::vector<int> nodes; // places in the rows of MasonryZones
+        std::vector<int> nodes;
         std::vector<int> start; // of a node's list in the two columns; one more entry ends the last list
         std::vector<int> points;
         std::vector<double> weights;
@@ -86,7 +88,7 @@ private:
     std::vector<int> momentPlace_;      // of all bodies: place in MasonryZones' rows of moments; -1 if it is rigid
     MasonryZones* zones_ = nullptr;     // null if no joint has a deformable side
     std::vector<PointOnBody> onBodies_;
-    std::vector<PointBetweenNodes> betweenNodes_;
+    std::vector<PointsBetweenNodes> betweenNodes_;
     NodeShares shares_;  // of the points between nodes
     Receivers toBodies_; // what joints bring to bodies
     Receivers toNodes_;  // what subcontacts bring to nodes and dependent points

@@ -67,20 +67,17 @@ void MasonryZones::take(const std::vector<Vector3r>& values, std::vector<Row>& r
         put(rows, places_[node], values[node]);
 }
 
-int MasonryZones::addDependentPoint() {
-    const int row = int(displacements_.size()), lane = dependentPoints_++ % lanes;
-    if (lane == 0) {
-        displacements_.resize(row + 3, Row{});
-        forces_.resize(row + 3, Row{});
-    }
-    return lanes * (int(displacements_.size()) - 3) + lane;
+int MasonryZones::addDependentRows() {
+    const int row = int(displacements_.size());
+    displacements_.resize(row + 3, Row{});
+    forces_.resize(row + 3, Row{});
+    return lanes * row;
 }
 
 // Dependent points have rows of displacements and forces only, so the rows of velocities show where they begin.
-void MasonryZones::dropDependentPoints() {
+void MasonryZones::dropDependentRows() {
     displacements_.resize(velocities_.size());
     forces_.resize(velocities_.size());
-    dependentPoints_ = 0;
 }
 
 // ---- units ------------------------------------------------------------------------------------------------------
@@ -169,7 +166,6 @@ void MasonryZones::mesh() {
 // Gives every node its place in the rows. Congruent units stand side by side, one in each lane.
 void MasonryZones::layOut() {
     batches_.clear();
-    dependentPoints_ = 0;
     places_.assign(loaded_.displacements.size(), 0);
     std::vector<const BlockElasticity*> kinds; // in the order in which they were met
     for (const auto& unit : units_)
@@ -309,12 +305,15 @@ std::optional<MasonryZones::Covered> MasonryZones::cover(const Unit& unit, const
                 found.nodes.push_back(number);
         if (held && !mesh.cellFaces.empty()) {
             if (n % 2 != 0) continue; // the first half of a face stands for both
-            Polygon face;
-            for (int node : mesh.cellFaces[n / 2])
-                face.push_back(place(node));
-            if ((face[1] - face[0]).cross(face[2] - face[1]).dot(normal) < 0) std::reverse(face.begin(), face.end());
-            for (const auto& point : subdivide(face, normal, along, 3, 1))
-                add(point);
+            const auto& face = mesh.cellFaces[n / 2];
+            const auto& half = mesh.triangles[n + 1];
+            const double both = 2 * part;
+            for (int node : t) // the ends of the diagonal
+                if (std::find(half.begin(), half.end(), node) != half.end()) add({place(node), both / 6});
+            const auto edge = [&](int i) { return Vector3r(place(face[(i + 1) % 4]) - place(face[i % 4])); };
+            const int first = std::abs(edge(0).dot(along)) > std::abs(edge(1).dot(along)) ? 0 : 1;
+            for (int i : {first, first + 2}) // the edges along the joint
+                add({place(face[i % 4]) + 0.5 * edge(i), both / 3});
         } else {
             for (const auto& corner : {a, b, c})
                 add({corner, part / 12});

@@ -17,12 +17,15 @@ public:
     static constexpr const char* className = "MasonryZones";
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
-        "Deformable units: blocks divided into tetrahedral zones of linear elastic material, with their masses and "
-        "joints at the nodes (paper §2, eqs. (1)-(7)). A unit remains one body with a Polyhedra shape; its position "
-        "and orientation follow the centre of mass and the mean rotation. Strains are taken as small in axes that turn "
-        "with the unit. Stands after the loop of the joints; integrators of rigid bodies do not move these bodies. "
-        "Give "
-        "this engine to Ig2_Polyhedra_Polyhedra_MasonryJointGeom.zones before joints are made.";
+        "Deformable units: blocks divided into tetrahedral zones of linear elastic material, with their masses at the "
+        "nodes (paper §2, eqs. (1)-(7)). Their joints act at points of the faces of cells, between which displacements "
+        "are those of the faces' triangles: three along every face where the unit is held across the joint, else the "
+        "corners and the centroid of each triangle. A unit remains one body with a Polyhedra shape; its position and "
+        "orientation follow the centre of mass and the mean rotation. Strains are taken as small in axes that turn "
+        "with "
+        "the unit. Stands after the loop of the joints; integrators of rigid bodies do not move these bodies. Give "
+        "this "
+        "engine to Ig2_Polyhedra_Polyhedra_MasonryJointGeom.zones before joints are made.";
 
     std::vector<int> bodies;
     std::vector<int> divisions{1, 1, 1};
@@ -95,11 +98,14 @@ public:
     Attachment attach(const Unit&, const Vector3r& point) const;
     // Whether the nodes on a joint polygon and the triangles between them cover it. If they do, sets the numbers of
     // these nodes, and the points where the law of a joint is followed, with their shares of the area:
-    // - Where the nodes are held across the joint, as in a wall loaded in its plane: on every face of a cell the three
-    //   points of gaussLobatto along the joint, in the middle of the cell's thickness.
+    // - Where the nodes are held across the joint, as in a wall loaded in its plane: on every face of a cell the two
+    // ends
+    //   of the diagonal between its triangles, with 1/6 of its area each, and the middles of its two edges along the
+    //   joint, with 1/3 each. Along the joint these are the points of gaussLobatto(3).
     // - Elsewhere: the corners of every triangle, with 1/12 of its area each, and its centroid, with 3/4.
-    // Displacements are linear on a triangle, so both rules give a joint its true elastic rotational stiffness. Points
-    // at the nodes alone, with a third of every triangle each, would make the face of one cell three times too stiff.
+    // Displacements are linear on a triangle, so both rules give a joint its true elastic rotational stiffness, and
+    // under a uniform stress every node gets a third of each of its triangles, as the zones need it. Points at the
+    // nodes alone would make the face of one cell three times too stiff against rotation.
     struct Covered {
         std::vector<int> nodes;
         std::vector<Subcontact> points;
@@ -109,10 +115,10 @@ public:
 
     // The rows in which the state of the nodes lives. The three components of a node are one row apart, the first at
     // the node's place: rows()[place + d * lanes]. Dependent points are subcontacts' sides without a node of their own,
-    // which move with a rigid body or between nodes. JointPlan adds them; their places follow those of the nodes.
+    // which move with a rigid body or between nodes. JointPlan adds rows for them, which follow those of the nodes.
     int placeOf(int node) const { return places_[node]; }
-    int addDependentPoint();
-    void dropDependentPoints();
+    int addDependentRows(); // returns the place of the first lane
+    void dropDependentRows();
     double* displacementRows() { return displacements_[0].lane; } // since the reference state [m]
     double* forceRows() { return forces_[0].lane; }               // of joints in the present step [N]
     double* momentRows() { return moments_[0].lane; }             // of joints on the rotation of the units [N m]
@@ -171,7 +177,6 @@ private:
     std::vector<int> places_;     // of all nodes in the rows
     std::vector<Batch> batches_;
     std::vector<Row> displacements_, velocities_, forces_, lastForces_, moments_;
-    int dependentPoints_ = 0;                 // number of dependent points
     boost::weak_ptr<yade::Factorable> scene_; // the scene in which the units were last moved
     bool acted_ = false;                      // whether the units were ever moved
 };
