@@ -759,9 +759,7 @@ HINTS = [
 
 
 @pytest.mark.parametrize("act, hints", HINTS)
-def test_what_may_be_a_slip_is_told(
-    scene, act, hints, tmp_path, monkeypatch, capsys
-):
+def test_what_may_be_a_slip_is_told(scene, act, hints, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     try:
         act()

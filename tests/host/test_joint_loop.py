@@ -14,7 +14,13 @@ UNIT = (0.22, 0.102, 0.081)
 
 
 def panel(
-    functors, blocks="rigid", halves=True, turn=Quaternion.Identity, damping=0, size=4
+    functors,
+    blocks="rigid",
+    halves=True,
+    turn=Quaternion.Identity,
+    damping=0,
+    size=4,
+    **properties,
 ):
     """A small panel that is pressed and torn at once, so that joints open, slip and crush within some hundred steps."""
     O.reset()
@@ -39,6 +45,7 @@ def panel(
         compressiveFractureEnergy=3000,
         dilatancy=0.1,
         residualFriction=0.3,
+        **properties,
     )
     zones = (
         MasonryZones(bodies=bricks, damping=damping, divisions=[1, 1, 1])
@@ -89,6 +96,12 @@ def state(interactions):
 CASES = {
     "rigid": {},
     "rigid in space": dict(turn=Quaternion(Vector3(1, 2, 0.5).normalized(), 0.7)),
+    "cyclic": dict(cyclic=True, shearStiffnessLoss=0.3),
+    "cyclic in space": dict(
+        cyclic=True,
+        dilatancyDecay=100,
+        turn=Quaternion(Vector3(1, 2, 0.5).normalized(), 0.7),
+    ),
     "deformable": dict(blocks="deformable"),
     "deformable, meshes that do not match": dict(blocks="deformable", halves=False),
     "deformable in space": dict(

@@ -1,9 +1,6 @@
 """Short runs against the stored numbers of the build that made them; tests/references/references.py says what they are.
 
-The stored numbers come from a build that calculated in another order. It summed the energies of joints one after
-another, and not kind by kind; it applied plastic closure and dilation one after the other, and not as their difference;
-and its functors stored the normal stress, which is now found from the opening. So numbers may differ by round-off.
-Round-off grows once joints slide and crack, because its sign then decides what happens. The tolerances are relative to
+A build that calculates in another order may differ from the stored numbers by round-off. Round-off grows once joints slide and crack, because its sign then decides what happens. The tolerances are relative to
 the size of a quantity:
 
 - ROUND_OFF for every quantity, as long as round-off has not grown;
@@ -51,6 +48,9 @@ QUIET = {
     "collapse_space": None,
     "collapse_deformable": None,
     "changes": 2,
+    "cyclic": 1,
+    "cyclic_functors": 1,
+    "cyclic_resumed": 1,
 }
 
 
@@ -85,7 +85,7 @@ def test_every_run_has_its_tolerance_and_its_file():
     files = {os.path.basename(references.pathOf(name)) for name in references.RUNS}
     there = {f for f in os.listdir(FOLDER) if f.endswith(".json")}
     assert files == there
-    assert sum(os.path.getsize(os.path.join(FOLDER, f)) for f in there) < 200e3
+    assert sum(os.path.getsize(os.path.join(FOLDER, f)) for f in there) < 250e3
 
 
 @pytest.mark.slow

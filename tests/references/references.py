@@ -166,6 +166,7 @@ def wall(
     damping=0.6,
     kind="local",
     functors=False,
+    cyclic=False,
     pressure=0.12e6,
     held=True,
 ):
@@ -201,6 +202,8 @@ def wall(
         ),
     ]
     crack = MasonryJoint(name="crack", tensileStrength=0.2e6, cohesion=0.4e6, cap=False)
+    for joint in (*joints, crack) if cyclic else ():
+        joint.cyclic, joint.shearStiffnessLoss = True, 0.3
     load = MasonryLoad(
         body=top,
         point=turn * Vector3(0.4 * length, THICKNESS / 3, height),
@@ -314,7 +317,7 @@ def couplets(dt, turn=STRAIGHT, damping=0.6, kind="local"):
         offered,
         damping=damping,
         gravity=turn * Vector3(0, 0, -9.81),
-        rows=1 if inPlane else 2,
+        rows=None,
         inPlane=inPlane,
         loads=drives,
     )
@@ -392,7 +395,7 @@ def flying(dt, kind="local", damping=0.1):
     for low in ((0, 0, 0), (0, 0, HEIGHT), (1, 0, 0)):
         high = [a + b for a, b in zip(low, (LENGTH, THICKNESS, HEIGHT))]
         addBlock(box(low, high, TURN), mat)
-    engines([MasonryJoint()], damping=damping, rows=2)
+    engines([MasonryJoint()], damping=damping, rows=None)
     engine(MasonryIntegrator).dampingKind = kind
     connect()
     for body, spin in ((0, (3, 1, -2)), (1, (-4, 2, 1)), (2, (3, -14, 5))):
@@ -455,8 +458,8 @@ def run(build, stages, through="", like="", **keywords):
     return Run(build, stages, keywords, through, like)
 
 
-SPACE = dict(turn=TURN, rows=2)
-RIGID, ZONED = 2.5e-5, 8e-6  # time steps of the walls [s]
+SPACE = dict(turn=TURN, rows=None)
+RIGID, ZONED = 2.5e-5, 7e-6  # time steps of the walls [s]
 UNLIKE = dict(deformable=True, halves=False, divisions=(2, 1, 1), kind="combined")
 RUNS = {
     "rigid": run(wall, PUSH, dt=RIGID, halfUnits=8, courses=5),
@@ -520,6 +523,18 @@ RUNS = {
         rate=8.0,
     ),
     "changes": run(wall, CHANGES, dt=RIGID),
+    "cyclic": run(wall, PUSH, dt=RIGID, cyclic=True, halfUnits=8, courses=5),
+    "cyclic_functors": run(wall, SHORT, dt=RIGID, cyclic=True, functors=True),
+    "cyclic_resumed": run(
+        wall,
+        PUSH,
+        "checkpoint",
+        "cyclic",
+        dt=RIGID,
+        cyclic=True,
+        halfUnits=8,
+        courses=5,
+    ),
 }
 
 

@@ -1,0 +1,161 @@
+"""The cyclic law in YADE: files, properties, and scenes of two laws."""
+
+import math
+
+import pytest
+from masonry import (
+    MasonryJoint,
+    MasonryLoad,
+    MasonryMat,
+    addBlock,
+    connect,
+    criticalTimeStep,
+    engines,
+    loadCheckpoint,
+    saveCheckpoint,
+)
+from yade import O
+
+CYCLIC = dict(cyclic=True, shearStiffnessLoss=0.3)
+
+
+def stack(joint, functors=False):
+    """Three bricks on each other; the middle one is free, the top one is driven along x."""
+    mat = MasonryMat(young=4.8e9, poisson=0.16, density=1800)
+    ids = []
+    for level in range(3):
+        corners = [
+            (x, y, 0.081 * level + z)
+            for x in (0, 0.22)
+            for y in (0, 0.102)
+            for z in (0, 0.081)
+        ]
+        ids.append(addBlock(corners, mat, inPlane=True))
+    O.bodies[ids[0]].state.blockedDOFs = "xyzXYZ"
+    load = MasonryLoad(
+        body=ids[2],
+        point=(0.11, 0.051, 0.243),
+        force=(0, 0, -2e3),
+        direction=(1, 0, 0),
+        driven=True,
+        velocity=0.02,
+        label="push",
+    )
+    joints = joint if isinstance(joint, list) else [joint]
+    engines(joints, loads=[load], functors=functors, damping=0.3)
+    connect()
+    O.dt = 0.5 * criticalTimeStep()[0]
+    return load
+
+
+def states():
+    return [
+        (i.phys.stress, i.phys.slip, i.phys.damage, i.phys.opening)
+        for i in O.interactions.all()
+    ]
+
+
+def flat(value):
+    if isinstance(value, (list, tuple)) or hasattr(value, "norm"):
+        return [number for part in value for number in flat(part)]
+    return [value]
+
+
+def sway(load, steps=3000, turns=4):
+    for turn in range(turns):
+        load.velocity = 0.02 * (-1) ** turn
+        O.run(steps, True)
+
+
+def test_cycles_take_energy_and_the_balance_closes(scene):
+    load = stack(MasonryJoint(name="bed", **CYCLIC))
+    sway(load)
+    energy = next(e for e in O.engines if hasattr(e, "balance")).balance()
+    assert energy["dissipated_shear"] > 0
+    assert abs(energy["error"]) < 1e-6
+
+
+def test_a_run_goes_on_from_a_checkpoint_bit_for_bit(scene, tmp_path):
+    load = stack(MasonryJoint(name="bed", **CYCLIC))
+    sway(load, 1000, 3)
+    file = str(tmp_path / "run.checkpoint")
+    saveCheckpoint(file)
+    O.run(1500, True)
+    whole = states()
+    O.reset()
+    stack(MasonryJoint(name="bed", **CYCLIC))
+    loadCheckpoint(file)
+    O.run(1500, True)
+    assert states() == whole
+
+
+def test_a_scene_that_was_saved_goes_on(scene, tmp_path):
+    load = stack(MasonryJoint(name="bed", **CYCLIC))
+    sway(load, 1000, 3)
+    file = str(tmp_path / "scene.yade.gz")
+    O.save(file)
+    before = states()
+    O.reset()
+    O.load(file)
+    assert states() == before
+    assert all(i.phys.joint.cyclic for i in O.interactions.all())
+
+
+def test_an_elastic_joint_may_stand_beside_cyclic_ones_under_the_functors(scene):
+    joints = [
+        MasonryJoint(name="bed", direction=(0, 0, 1), **CYCLIC),
+        MasonryJoint(name="other", elastic=True),
+    ]
+    load = stack(joints, functors=True)
+    sway(load, 100, 1)
+    assert any(abs(value) > 0 for value in flat(states()))
+
+
+def test_a_functor_of_another_law_is_told(scene):
+    stack(MasonryJoint(name="bed"), functors=True)
+    next(iter(O.interactions.all())).phys.joint.cyclic = True
+    with pytest.raises(Exception, match="follows another law.*CyclicSoftening"):
+        O.run(5, True)
+
+
+def test_a_joint_can_change_its_law_between_steps(scene):
+    load = stack(MasonryJoint(name="bed"))
+    sway(load, 500, 2)
+    joint = next(iter(O.interactions.all())).phys.joint
+    damage = [i.phys.damage for i in O.interactions.all()]
+    joint.cyclic = True
+    sway(load, 500, 2)
+    for old, interaction in zip(damage, O.interactions.all()):
+        for before, now in zip(flat(old), flat(interaction.phys.damage)):
+            assert now >= before - 1e-12
+    assert all(math.isfinite(value) for value in flat(states()))
+
+
+@pytest.mark.parametrize(
+    "properties, message",
+    [
+        (
+            dict(shearStiffnessLoss=1),
+            "shear stiffness loss 1 must be 0 to 0.99",
+        ),
+        (
+            dict(initialClosingStiffness=1e12, tensileStrength=0),
+            "initial closing stiffness 1e.12 Pa/m must be below the normal stiffness",
+        ),
+        (
+            dict(initialClosingStiffness=1e10, closureLimit=1e-4),
+            "tensile strength 100000 Pa must be 0 for a joint that closes on a curve",
+        ),
+        (
+            dict(closureLimit=1e-4),
+            "closure limit 0.0001 m needs an initial closing stiffness",
+        ),
+        (dict(dilatancy=0.43, shearStiffness=1e10), "dilatancy 0.43 must be below"),
+        (dict(capNormal=2), "cap normal 2 and cap linear 0 Pa must be 1 and 0"),
+        (dict(capLinear=-1e4), "cap linear -10000 Pa must be at least 0"),
+    ],
+)
+def test_what_the_law_cannot_follow_is_refused(properties, message):
+    with pytest.raises(ValueError, match=message):
+        MasonryJoint(cyclic=True, **properties)
+    MasonryJoint(**{k: v for k, v in properties.items() if k != "shearStiffnessLoss"})
