@@ -12,19 +12,27 @@ using Pack = double __attribute__((vector_size(64)));
 using PackMask = std::int64_t __attribute__((vector_size(64))); // what comparing two packs gives
 
 MASONRY_INLINED bool any(bool m) { return m; }
-MASONRY_INLINED bool any(const PackMask& m) {
-    std::int64_t some = 0;
-    for (int i = 0; i < lanes; ++i)
-        some |= m[i];
-    return some != 0;
+MASONRY_INLINED bool any(const PackMask& m) { // by halves, which stay in the vector units
+    using Four = std::int64_t __attribute__((vector_size(32)));
+    using Two = std::int64_t __attribute__((vector_size(16)));
+    Four half[2];
+    std::memcpy(half, &m, sizeof m);
+    const Four four = half[0] | half[1];
+    Two quarter[2];
+    std::memcpy(quarter, &four, sizeof four);
+    const Two two = quarter[0] | quarter[1];
+    return (two[0] | two[1]) != 0;
 }
 
 MASONRY_INLINED double root(double x) { return std::sqrt(x); }
-MASONRY_INLINED Pack root(const Pack& x) {
-    Pack y;
+MASONRY_INLINED Pack root(const Pack& x) { // in memory, where the compiler sees a loop for the vector units
+    alignas(64) double y[lanes];
+    std::memcpy(y, &x, sizeof x);
     for (int i = 0; i < lanes; ++i)
-        y[i] = std::sqrt(x[i]);
-    return y;
+        y[i] = std::sqrt(y[i]);
+    Pack z;
+    std::memcpy(&z, y, sizeof z);
+    return z;
 }
 
 // One number in all places.

@@ -74,44 +74,70 @@ MASONRY_INLINED Mask stayElasticOn(const CyclicEquations& e, const CyclicConsequ
                     : stayElasticAs<spatial, yielded, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
 }
 
+// What is looked up one by one. These functions are not compiled into their callers, which would become too large for
+// the processor's cache of instructions. The numbers stand in memory, where each can be reached.
+struct Asked {
+    alignas(64) double at[lanes], shift[lanes], found[lanes];
+    alignas(64) Mask asks[lanes];
+};
+
+[[gnu::noinline]] void readTable(const SofteningTable& table, std::int32_t TableRows::*row, TableRows* rows, Asked& a) {
+    for (int i = 0; i < lanes; ++i)
+        if (a.asks[i]) a.found[i] = larger<double>(a.found[i], table.damage(a.at[i], a.shift[i], rows[i].*row));
+}
+[[gnu::noinline]] void readCurve(const CyclicEquations& e, Asked& a) {
+    for (int i = 0; i < lanes; ++i)
+        if (a.asks[i]) a.found[i] = e.curve.strength(a.at[i], e.stretch);
+}
+[[gnu::noinline]] void readDecay(const CyclicEquations& e, Asked& a) {
+    for (int i = 0; i < lanes; ++i)
+        if (a.asks[i]) a.found[i] = e.dilatancy(a.at[i]);
+}
+[[gnu::noinline]] void readEnergy(const CyclicEquations& e, Asked& a) {
+    for (int i = 0; i < lanes; ++i)
+        if (a.asks[i]) a.found[i] = e.storedNormal(a.at[i], a.shift[i]);
+}
+
 struct LookAtEight {
     const CyclicEquations& e;
     const SofteningTable &tensionTable, &shearTable;
     TableRows* rows;
     PackMask waits; // the others are not looked up
 
+    MASONRY_INLINED Asked asked(const Pack& found, const Pack& at, const Pack& shift, const PackMask& asks) const {
+        Asked a;
+        store(a.at, at);
+        store(a.shift, shift);
+        store(a.found, found);
+        const PackMask both = asks & waits;
+        std::memcpy(a.asks, &both, sizeof both);
+        return a;
+    }
     MASONRY_INLINED Pack tension(const Pack& damage, const Pack& ratio, const Pack& shift, const PackMask& asks) const {
-        Pack found = damage;
-        for (int i = 0; i < lanes; ++i)
-            if (asks[i] & waits[i])
-                found[i] = larger<double>(damage[i], tensionTable.damage(ratio[i], shift[i], rows[i].tension));
-        return found;
+        Asked a = asked(damage, ratio, shift, asks);
+        readTable(tensionTable, &TableRows::tension, rows, a);
+        return load(a.found);
     }
     MASONRY_INLINED Pack shear(const Pack& damage, const Pack& ratio, const Pack& shift, const PackMask& asks) const {
-        Pack found = damage;
-        for (int i = 0; i < lanes; ++i)
-            if (asks[i] & waits[i])
-                found[i] = larger<double>(damage[i], shearTable.damage(ratio[i], shift[i], rows[i].shear));
-        return found;
+        Asked a = asked(damage, ratio, shift, asks);
+        readTable(shearTable, &TableRows::shear, rows, a);
+        return load(a.found);
     }
     double lastRatio() const { return shearTable.lastRatio() - 1; }
     MASONRY_INLINED Pack strength(const Pack& fc, const Pack& kappa, const PackMask& asks) const {
-        Pack found = fc;
-        for (int i = 0; i < lanes; ++i)
-            if (asks[i] & waits[i]) found[i] = e.curve.strength(kappa[i], e.stretch);
-        return found;
+        Asked a = asked(fc, kappa, kappa, asks);
+        readCurve(e, a);
+        return load(a.found);
     }
     MASONRY_INLINED Pack decay(const Pack& slip, const PackMask& asks) const {
-        Pack found{};
-        for (int i = 0; i < lanes; ++i)
-            if (asks[i] & waits[i]) found[i] = e.dilatancy(slip[i]);
-        return found;
+        Asked a = asked(Pack{}, slip, slip, asks);
+        readDecay(e, a);
+        return load(a.found);
     }
     MASONRY_INLINED Pack normalEnergy(const Pack& sigma, const Pack& w) const {
-        Pack found{};
-        for (int i = 0; i < lanes; ++i)
-            if (waits[i]) found[i] = e.storedNormal(sigma[i], w[i]);
-        return found;
+        Asked a = asked(Pack{}, sigma, w, waits);
+        readEnergy(e, a);
+        return load(a.found);
     }
 };
 
@@ -170,35 +196,47 @@ void advanceSideBySide(const CyclicEquations& given, const SofteningTable& tensi
         p.closing = load(c[Columns::ClosingStiffness]);
         p.shearing = load(c[Columns::ShearStiffness]);
         p.left = load(c[Columns::Intact]);
-        p.normalStress =
-            e.normal<Pack>(p.opening + load(c[Columns::Irreversible]), load(c[Columns::Secant]), p.closing);
+        p.secant = load(c[Columns::Secant]);
+        p.hardening = load(c[Columns::SquaredHardening]);
+        p.normalStress = e.normal<Pack>(p.opening + load(c[Columns::Irreversible]), p.secant, p.closing);
         const auto out =
             advance<Pack>(e, LookAtEight{e, tension, shear, rows + from, mask}, p, opening, slideA, slideB);
+        // what did not happen to one of them changes no column
         put(c[Columns::Opening], p.opening, mask);
-        put(c[Columns::Crushing], p.crushing, mask);
-        put(c[Columns::Dilation], p.dilation, mask);
-        put(c[Columns::Slip], p.slip, mask);
-        put(c[Columns::LargestOpening], p.largestOpening, mask);
-        put(c[Columns::LargestClosure], p.largestClosure, mask);
-        put(c[Columns::TensionDamage], p.tensionDamage, mask);
-        put(c[Columns::ShearDamage], p.shearDamage, mask);
         put(c[Columns::ShearStressA], p.shearA, mask);
         put(c[Columns::ShearStressB], p.shearB, mask);
-        put(c[Columns::PlasticSlipA], p.plasticA, mask);
-        put(c[Columns::PlasticSlipB], p.plasticB, mask);
-        put(c[Columns::ShearSoftening], p.shearSoftening, mask);
-        put(c[Columns::ShearStiffnessLoss], p.shearStiffnessLoss, mask);
-        put(c[Columns::CapDisplacement], p.capDisplacement, mask);
-        put(c[Columns::Irreversible], p.crushing - p.dilation, mask);
-        put(c[Columns::Intact], p.left, mask);
-        put(c[Columns::Secant], e.opened<Pack>(p.left, p.largestOpening, p.closing), mask);
-        put(c[Columns::Reach], e.reach<Pack>(p.left, p.largestOpening), mask);
-        put(c[Columns::CapSquared], p.strength * p.strength, mask);
-        put(c[Columns::ShearStiffness], p.shearing, mask);
-        put(c[Columns::ClosingStiffness], p.closing, mask);
-        if (e.cap) put(c[Columns::SquaredHardening], e.squaredHardening(p.largestClosure, p.capDisplacement), mask);
+        if (out.tore | out.dilated) {
+            put(c[Columns::LargestOpening], p.largestOpening, mask);
+            put(c[Columns::TensionDamage], p.tensionDamage, mask);
+            put(c[Columns::ShearDamage], p.shearDamage, mask);
+            put(c[Columns::Intact], p.left, mask);
+            put(c[Columns::Secant], p.secant, mask);
+            put(c[Columns::Reach], e.reach<Pack>(p.left, p.largestOpening), mask);
+        }
+        if (out.slid) {
+            put(c[Columns::Slip], p.slip, mask);
+            put(c[Columns::PlasticSlipA], p.plasticA, mask);
+            put(c[Columns::PlasticSlipB], p.plasticB, mask);
+            put(c[Columns::ShearSoftening], p.shearSoftening, mask);
+            put(c[Columns::LostShear], load(c[Columns::LostShear]) + out.lostShear, mask);
+            if (e.omegaM > 0) {
+                put(c[Columns::ShearStiffnessLoss], p.shearStiffnessLoss, mask);
+                put(c[Columns::ShearStiffness], p.shearing, mask);
+            }
+        }
+        if (out.crushed) {
+            put(c[Columns::LargestClosure], p.largestClosure, mask);
+            put(c[Columns::CapDisplacement], p.capDisplacement, mask);
+            put(c[Columns::CapSquared], p.strength * p.strength, mask);
+            put(c[Columns::ClosingStiffness], p.closing, mask);
+            put(c[Columns::SquaredHardening], p.hardening, mask);
+        }
+        if (out.crushed | out.dilated) {
+            put(c[Columns::Crushing], p.crushing, mask);
+            put(c[Columns::Dilation], p.dilation, mask);
+            put(c[Columns::Irreversible], p.crushing - p.dilation, mask);
+        }
         put(c[Columns::LostTension], load(c[Columns::LostTension]) + out.lostTension, mask);
-        put(c[Columns::LostShear], load(c[Columns::LostShear]) + out.lostShear, mask);
         put(c[Columns::LostCompression], load(c[Columns::LostCompression]) + out.lostCompression, mask);
         for (int i = 0; i < many; ++i) {
             if (!mask[i]) continue;

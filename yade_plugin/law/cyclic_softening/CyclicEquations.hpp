@@ -86,12 +86,12 @@ struct CyclicEquations : Equations {
         return choose(kappa > peakClosure, 1 - chi * (1 - fc / curve.peak), all<T>(1));
     }
 
-    // Displacement that crushing counts in pure closure, beside what is plastic: that of the effective stresses.
+    // Square of the displacement Q that crushing counts beside what is plastic.
     template <class T> MASONRY_INLINED T onCap(const T& w, const T& sigma, const T& tauSquared) const {
         const T closed = smaller(curved ? sigma / kn : w, T{});
-        return root(closed * closed + (shearWeight / (kn * kn)) * tauSquared);
+        return closed * closed + (shearWeight / (kn * kn)) * tauSquared;
     }
-    // The square of what onCap() may be before the cap hardens or softens further; a little less, so that rounding
+    // The square of Q that there may be before the cap hardens or softens further; a little less, so that rounding
     // cannot tell.
     template <class T> MASONRY_INLINED T squaredHardening(const T& kappa, const T& capDisplacement) const {
         const T most = larger(kappa, all<T>(limitClosure())) - capDisplacement;

@@ -49,11 +49,17 @@ CyclicEquations CyclicLaw::equations(const ElasticStiffness& k) const {
 
 Energies CyclicLaw::advance(const CyclicEquations& e, JointState& s, const Jump& jump) const {
     const auto follows = consequences(e, s);
-    CyclicPoint<double> p{s.opening,        s.crushing,           s.dilation,        s.slip,
-                          s.largestOpening, s.largestClosure,     s.tensionDamage,   s.shearDamage,
-                          s.shearStress.a,  s.shearStress.b,      s.plasticSlip.a,   s.plasticSlip.b,
-                          s.shearSoftening, s.shearStiffnessLoss, s.capDisplacement, s.normalStress,
-                          follows.strength, follows.closing,      follows.shearing,  follows.intact};
+    CyclicPoint<double> p{s.opening,         s.crushing,
+                          s.dilation,        s.slip,
+                          s.largestOpening,  s.largestClosure,
+                          s.tensionDamage,   s.shearDamage,
+                          s.shearStress.a,   s.shearStress.b,
+                          s.plasticSlip.a,   s.plasticSlip.b,
+                          s.shearSoftening,  s.shearStiffnessLoss,
+                          s.capDisplacement, s.normalStress,
+                          follows.strength,  follows.closing,
+                          follows.shearing,  follows.intact,
+                          follows.secant,    follows.squaredHardening};
     const auto out =
         masonry::advance<double>(e, Look{e, tension(), shear()}, p, jump.opening, jump.slide.a, jump.slide.b);
     s = {p.opening,
