@@ -52,7 +52,8 @@ def wall(case):
 
 def couplet(case):
     """curves.png: the four paths, both block models, over the closed forms of a joint alone: yade_plugin/law/README.md."""
-    kn, ft, cp, mu, GfI, GfII = 3.352e11, 0.1e6, 0.11e6, 0.43, 16, 160
+    kn, ks, ft, cp, mu = 3.352e11, 1.445e11, 0.1e6, 0.11e6, 0.43
+    GfI, GfII = 16 - ft**2 / (2 * kn), 160 - cp**2 / (2 * ks)  # after the peak
     fcp, fel, fcr, Gc = 7.55e6, 0.3 * 7.55e6, 0.2 * 7.55e6, 15000
     ucp, uel, fcm = 68.5 * fcp / kn, fel / kn, 0.5 * (fcp + fcr)
     kappa, xi = ucp * fcp, ucp * fcr

@@ -496,7 +496,7 @@ TEST_CASE("refusals name the joint, the value with its unit and the bound, all a
     CHECK(refused([](P&) {}) == "accepted");
     CHECK(refused([](P& p) { p.compressiveFractureEnergy = 12000; }) ==
           "joint \"bed\": compressive fracture energy 12000 J/m² is too small for peak ratio 68.5 (needs at least "
-          "12208 J/m²)");
+          "12208 J/m², more between rigid units, or a peak ratio of at most 67.33)");
     CHECK(refused([](P& p) { p.compressiveFractureEnergy = 12208; }) == "accepted");
     CHECK(refused([](P& p) { p.name = "", p.tensileStrength = -1; }) ==
           "joint \"\": name must not be empty\njoint \"\": tensile strength -1 Pa must be at least 0");

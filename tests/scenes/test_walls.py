@@ -161,7 +161,7 @@ def test_help_prints_the_options_without_running(tmp_path):
     "words, message",
     [
         (["--dt-fraction", "2"], "2 must be at least 0.001 and at most 1"),
-        (["--set", "bed.compressiveFractureEnergy=12000"], "needs at least 12208 J/m²"),
+        (["--set", "bed.compressiveFractureEnergy=12000"], "needs at least 12208 J/m², more between rigid units"),
         (["--set", "glue.cohesion=1"], "no joint 'glue'"),
         (
             ["--divisions", "2", "--damping-kind", "combined"],

@@ -116,10 +116,14 @@ std::vector<std::string> JointProperties::problems() const {
     if (!cap || !capIsBounded) return found;
     const double smallest = CompressionCurve::smallestFractureEnergy(
         normalStiffness, compressiveStrength, elasticLimitRatio, residualStrengthRatio, peakRatio);
+    const double without = CompressionCurve::smallestFractureEnergy(normalStiffness, compressiveStrength,
+                                                                    elasticLimitRatio, residualStrengthRatio, 0);
+    const double largest = peakRatio * (compressiveFractureEnergy - without) / (smallest - without);
     if (!(compressiveFractureEnergy > smallest)) // eq. (24): m <= 1 has no meaning
-        found.push_back("compressive fracture energy " + text(compressiveFractureEnergy) +
-                        " J/m² is too small for peak ratio " + text(peakRatio) + " (needs at least " +
-                        text(std::ceil(smallest)) + " J/m²)");
+        found.push_back(
+            "compressive fracture energy " + text(compressiveFractureEnergy) + " J/m² is too small for peak ratio " +
+            text(peakRatio) + " (needs at least " + text(std::ceil(smallest)) + " J/m², more between rigid units" +
+            (largest < 1 ? "" : ", or a peak ratio of at most " + text(std::floor(100 * largest) / 100)) + ")");
     return found;
 }
 

@@ -143,27 +143,34 @@ template <class Visit> void JointProperties::describe(Visit&& visit) {
                     "paper's law")
               .source("law/cyclic_softening/README.md"));
     visit("shearStiffnessLoss", &P::shearStiffnessLoss,
-          number("-", "Share omega_m of the shear stiffness that a joint without bond has lost; 0: it slips only")
+          number("-",
+                 "Share omega_m of the shear stiffness that a joint without bond has lost; 0: it slips only. Acts if "
+                 "cyclic is on")
               .atLeast(0)
               .atMost(0.99)
               .source("[decided]: law/cyclic_softening/README.md"));
     visit("compressionStiffnessLoss", &P::compressionStiffnessLoss,
-          number("-", "Share rho of what crushing makes irreversible that is lost stiffness, and not plastic closure")
+          number("-",
+                 "Share rho of what crushing makes irreversible that is lost stiffness, and not plastic closure. Acts "
+                 "if cyclic is on")
               .atLeast(0)
               .atMost(0.99)
               .source("[decided]: law/cyclic_softening/README.md"));
     visit("bondLossByCrushing", &P::bondLossByCrushing,
-          number("-", "Share chi of the bond that a wholly crushed joint has lost")
+          number("-", "Share chi of the bond that a wholly crushed joint has lost. Acts if cyclic is on")
               .atLeast(0)
               .atMost(1)
               .source("[decided]: law/cyclic_softening/README.md"));
     visit("initialClosingStiffness", &P::initialClosingStiffness,
-          number("Pa/m", "Normal stiffness kn0 of a dry joint without stress; 0: joints close with kn, not on a curve")
+          number("Pa/m",
+                 "Normal stiffness kn0 of a dry joint without stress; 0: joints close with kn, not on a curve. Acts "
+                 "if cyclic is on")
               .atLeast(0)
               .source("law/cyclic_softening/README.md; no default, it is measured"));
     visit("closureLimit", &P::closureLimit,
-          number("m", "Closure cm at which the curve of a dry joint would be vertical")
+          number("m", "Closure cm at which the curve of a dry joint would be vertical. Acts if cyclic is on")
               .atLeast(0)
+              .usually(1e-7, 0.01, "mm")
               .source("law/cyclic_softening/README.md; no default, it is measured"));
 }
 
