@@ -10,6 +10,15 @@ from ._masonry import connected, gather, neighbours
 #: A body that is thinner than this share of its length is no block.
 THINNEST = 1e-6
 
+#: Properties of a MasonryJoint that only the cyclic law reads.
+CYCLIC_ONLY = (
+    "shearStiffnessLoss",
+    "compressionStiffnessLoss",
+    "bondLossByCrushing",
+    "initialClosingStiffness",
+    "closureLimit",
+)
+
 
 def properties(cls):
     """The plugin's description of the properties of one of its classes: a list of dicts.
@@ -212,7 +221,8 @@ def connect(rule=None, tolerance=1e-4, allowGaps=False):
 
     Blocks that lie in each other are refused, and those that miss a shared face by less than a quarter of their
     thickness; the message has the gap. A scene without any joint is refused, too, and one that has its joints already.
-    Nothing changes then. Values that look like those of another unit and blocks without joints are printed as warnings.
+    Nothing changes then. Values that look like those of another unit, blocks without joints, and properties of the
+    cyclic law in joints that do not follow it are printed as warnings.
 
     :param rule: function (body1, body2, geom) that returns a MasonryJoint, or None to leave the choice to direction and
         joint set
@@ -345,7 +355,7 @@ def _connect(pairs, physics, rule):
 
 
 def _warn(pairs, joints, sizes, engines):
-    """Print warnings of what looks like a mistake: other units, blocks without joints, divisions without effect."""
+    """Print warnings of what looks like a mistake: other units, blocks without joints, properties without effect."""
     (thin, thickness), (large, size) = sizes
     hints = []
     if thickness < 1e-3:
@@ -363,6 +373,14 @@ def _warn(pairs, joints, sizes, engines):
                     f'{type(thing).__name__} "{name}": {p["name"]} {value:g} {p["unit"]}: is it in {p["unit"]}, '
                     f'not {p["other_unit"]}?'
                 )
+    usual = MasonryJoint()
+    for joint in joints:
+        idle = [n for n in CYCLIC_ONLY if getattr(joint, n) != getattr(usual, n)]
+        if idle and (joint.elastic or not joint.cyclic):
+            why = "is elastic" if joint.elastic else "is not cyclic"
+            hints.append(
+                f'MasonryJoint "{joint.name}" {why}: no effect of {", ".join(idle)}'
+            )
     integrator = next(
         (e for e in engines if isinstance(e, (MasonryIntegrator, NewtonIntegrator))),
         None,

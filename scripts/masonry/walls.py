@@ -36,24 +36,36 @@ class Wall:
     """A wall in running bond, and how it is held and loaded. Impossible ones raise ValueError, with all problems.
 
     The wall stands on a fixed block, and carries a loading block that is pressed down and pushed sideways.
+
+    :param name: of its folder of results
+    :param title: of its figures
+    :param halfUnits: length of the wall in half units, an even number
+    :param precompression: mean vertical stress that the top course feels [Pa], 0 or above
+    :param loadHeight: height above the base at which the loading block is pushed [m]; the block is free to turn then,
+        and the wall is a cantilever. None: the block is pushed as a whole and cannot turn, and the wall is double
+        clamped
+    :param courses: number of courses
+    :param unit: length, thickness and height of a unit, with its joints [m]
+    :param measureHeight: height above the base of the displacement in curve.csv [m]; None: the top of the masonry
+    :param loadLineFixed: whether the vertical load keeps its line in space, as over rollers; else it rides on the
+        loading block
+    :param unitMaterial: function that makes the MasonryMat of the units
+    :param joints: function that makes the dict of MasonryJoint by name: ``support`` for the joints of the fixed and of
+        the loading block, ``bed``, ``head``, and ``crack`` if units can crack in half. It is called with
+        ``brittle=True`` or ``brittle=False``, and with ``stiffness="masonry"`` if --joint-stiffness asks for that, which
+        is refused if the function has no such argument
     """
 
-    name: str  # of its folder of results
-    title: str  # of its figures
-    halfUnits: int  # length, in half units; even
-    precompression: float  # mean vertical stress that the top course feels [Pa], 0 or above
-    #: Height above the base at which the loading block is pushed [m]; the block is free to turn then, and the wall is a
-    #: cantilever. None: the block is pushed as a whole and cannot turn, and the wall is double clamped.
+    name: str
+    title: str
+    halfUnits: int
+    precompression: float
     loadHeight: float = None
     courses: int = 34
-    unit: tuple = (0.220, 0.102, 0.081)  # length, thickness, height, with joints [m]
-    #: Height above the base of the displacement in curve.csv [m]; None: the top of the masonry.
+    unit: tuple = (0.220, 0.102, 0.081)
     measureHeight: float = None
-    #: Whether the vertical load keeps its line in space, as over rollers; else it rides on the loading block.
     loadLineFixed: bool = False
-    unitMaterial: Callable = materials.calciumSilicateUnit  # makes the MasonryMat
-    #: Makes the dict of MasonryJoint by name; it is called with brittle=True or brittle=False, and with
-    #: stiffness="masonry" if --joint-stiffness asks for that, which is refused if the function has no such argument.
+    unitMaterial: Callable = materials.calciumSilicateUnit
     joints: Callable = materials.calciumSilicateJoints
 
     def __post_init__(self):
