@@ -170,7 +170,7 @@ template <class Visit> void JointProperties::describe(Visit&& visit) {
     visit("closureLimit", &P::closureLimit,
           number("m", "Closure cm at which the curve of a dry joint would be vertical. Acts if cyclic is on")
               .atLeast(0)
-              .usually(1e-7, 0.01, "mm")
+              .usually(0, 0.01, "mm")
               .source("law/cyclic_softening/README.md; no default, it is measured"));
 }
 
