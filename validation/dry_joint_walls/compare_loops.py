@@ -37,6 +37,7 @@ RANGES = (
     (12, 17),
     (17, 46),
 )  # of amplitudes [mm]
+POINTS = 6  # along a joint; the peak is within 1 % of that with 16, in a third of the time
 RATE = 20  # [mm/s]
 COLOURS = {"softening": "tab:blue", "cyclic": "tab:red"}
 
@@ -57,7 +58,7 @@ def options(wall, joints, rate):
         for name, value in BLIND["properties"].items():
             for kind in KINDS:
                 words += ["--set", f"{kind}.{name}={value:g}"]
-    return [*words, "--no-vtk"]
+    return [*words, "--subcontacts", str(POINTS), "--no-vtk"]
 
 
 def folder(wall, joints, results):
