@@ -36,7 +36,9 @@ def test_joints_and_units_in_series_give_back_the_masonry(
     wall = Wall(
         name="w", title="", halfUnits=10, courses=8, precompression=0.875e6, **GRANITE
     )
-    words = ["--crack-surfaces", "off", "--blocks", blocks]
+    # Of one cell, the corners that lie on no diagonal of a face are held too loosely: the wall is 2.3 % too soft.
+    finer = ["--divisions", "2"] if blocks == "deformable" else []
+    words = ["--crack-surfaces", "off", "--blocks", blocks, *finer]
     _, model = settled(tmp_path, *words, wall=wall)
     loaded = model.topDisplacement()[1]
     joint, young = model.joints["bed"].normalStiffness, 20.2e9
