@@ -289,7 +289,7 @@ def test_a_wall_killed_in_its_third_half_cycle_goes_on_bit_for_bit(runScene, tmp
         time.sleep(0.005)
     process.kill()
     assert process.wait() == -signal.SIGKILL
-    assert passed() == 3
+    assert passed() >= 3
     again = ["--resume", str(out), "--checkpoint-every", "5"]
     assert subprocess.run([*command, *again]).returncode == 0
     assert files(out) == files(whole)  # with the last frame, which is the final state
