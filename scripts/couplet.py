@@ -1,15 +1,20 @@
 """Two bricks and one bed joint: opening, shear under constant normal stress, closure, or closure and then shear.
 
-A fixed block holds the lower brick, a driven one that does not turn the upper.
+A fixed block holds the lower brick, a driven one that does not turn the upper. The closed forms for these paths are in
+yade_plugin/law/README.md (yield surfaces, softening tables, compression).
 """
 
-from masonry import couplet, options
-from masonry.loading import drive
-from masonry.run import Run
+from masonry import Scene, bricks, described, materials, options
+from yade import O
+
+LENGTH, THICKNESS, HEIGHT = UNIT = (0.220, 0.102, 0.081)  # [m] of a brick
 
 parser = options.parser(__doc__, until=2, rate=2, loops=False)
 parser.add_argument(
-    "--path", choices=couplet.PATHS, default="shear", help="what the driven block does"
+    "--path",
+    choices=["opening", "shear", "closure", "closure-shear"],
+    default="shear",
+    help="what the driven block does",
 )
 parser.add_argument(
     "--normal-stress",
@@ -28,16 +33,27 @@ parser.add_argument(
 parser.free.remove("until")  # the velocity and the rows follow from it
 args = parser.parse_args()
 
-with Run("couplet", args) as run:
-    model = run.build(couplet.CoupletModel(args))
-    if args.path == "opening":
-        drive(run, model, "vertical", args.until * 1e-3)
-    if args.path == "closure":
-        drive(run, model, "vertical", -args.until * 1e-3)
-    if args.path == "closure-shear":
-        drive(run, model, "vertical", -args.closure * 1e-3)
-        drive(run, model, "lateral", args.until * 1e-3)
-    if args.path == "shear":
-        couplet.press(run, model, args.normal_stress * 1e6)
-        drive(run, model, "lateral", args.until * 1e-3)
-raise SystemExit(run.status)
+scene = Scene(
+    "couplet",
+    bricks.stack(2, UNIT),
+    materials.calciumSilicate(),
+    gravity=0,
+    columns=["time_s", *described.OF_JOINTS, "normal_force_kN", "shear_force_kN"],
+    arguments=args,
+)
+base = scene.platen("bottom", height=HEIGHT)
+point = LENGTH / 2, THICKNESS / 2, 2 * HEIGHT
+top = scene.platen("top", upTo=3 * HEIGHT, point=point, drive="zx")
+bed = scene.joint(0, 1, name="")
+carried = lambda i: 1e-3 * O.forces.f(base.body, True)[i]
+scene.column("normal_force_kN", "force on the fixed block, upwards [kN]", lambda: carried(2))  # fmt: skip
+scene.column("shear_force_kN", "force on it along the slide [kN]", lambda: carried(0))
+if args.path in ("opening", "closure"):
+    scene.drive(top, z=args.until if args.path == "opening" else -args.until)
+if args.path == "closure-shear":
+    scene.drive(top, z=-args.closure)
+    scene.drive(top, x=args.until)
+if args.path == "shear":
+    scene.pressJoint(top, bed, args.normal_stress * 1e6)
+    scene.drive(top, x=args.until)
+scene.finish()

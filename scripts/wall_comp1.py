@@ -1,21 +1,19 @@
 """TUD-COMP-1: slender calcium-silicate wall, cantilever, 0.70 MPa. Tables 1 and 2 of the paper."""
 
-from masonry import options, walls
-from masonry.loading import push, settle
-from masonry.run import Run
+from masonry import Scene, bricks, columns, materials
 
-args = options.parser(__doc__, until=40).parse_args()
-
-wall = walls.Wall(
-    name="wall_comp1",
+scene = Scene(
+    "wall_comp1",
+    bricks.Wall(1.1, 2.754),
+    materials.calciumSilicate(),
     title="TUD-COMP-1: 1.1 × 2.76 m, cantilever, 0.70 MPa",
-    halfUnits=10,
-    precompression=0.70e6,  # [Pa] on the top course
-    loadHeight=3.19,  # [m] above the base: shear ratio × width
+    columns=columns.names(columns.PUSH),
+    until=40,  # [mm], where --until says nothing else
 )
-
-with Run(wall.name, args) as run:
-    model = run.build(walls.WallModel(wall, args))  # bricks between two blocks
-    settle(run, model)  # gravity and precompression, until the wall is at rest
-    push(run, model)  # the upper block to --until or along --history
-raise SystemExit(run.status)
+scene.platen("bottom")
+# pushed at its upper side: shear ratio × width above the base
+top = scene.platen("top", rotation="free", upTo=3.19, recorded=2.754, drive="x")
+scene.press(top, 0.70e6)  # [Pa] on the top course
+scene.settle(damping="local", record=False)
+scene.push(top)  # to --until or along --history
+scene.finish()

@@ -1,24 +1,22 @@
 """TUD-COMP-6: squat calcium-silicate wall, cantilever, 0.50 MPa. Tables 1 and 2 of the paper.
 
-The wall is 4.0 m long, 18.18 units; it is built of 36 half units, 3.96 m.
+The wall is 4.0 m long, 18.18 units; it is built of 18 units, 3.96 m.
 """
 
-from masonry import options, walls
-from masonry.loading import push, settle
-from masonry.run import Run
+from masonry import Scene, bricks, columns, materials
 
-args = options.parser(__doc__, until=25).parse_args()
-
-wall = walls.Wall(
-    name="wall_comp6",
+scene = Scene(
+    "wall_comp6",
+    bricks.Wall(3.96, 2.754),
+    materials.calciumSilicate(),
     title="TUD-COMP-6: 4.0 × 2.76 m, cantilever, 0.50 MPa",
-    halfUnits=36,
-    precompression=0.50e6,  # [Pa] on the top course
-    loadHeight=3.20,  # [m] above the base: shear ratio × width
+    columns=columns.names(columns.PUSH),
+    until=25,  # [mm], where --until says nothing else
 )
-
-with Run(wall.name, args) as run:
-    model = run.build(walls.WallModel(wall, args))  # bricks between two blocks
-    settle(run, model)  # gravity and precompression, until the wall is at rest
-    push(run, model)  # the upper block to --until or along --history
-raise SystemExit(run.status)
+scene.platen("bottom")
+# pushed at its upper side: shear ratio × width above the base
+top = scene.platen("top", rotation="free", upTo=3.20, recorded=2.754, drive="x")
+scene.press(top, 0.50e6)  # [Pa] on the top course
+scene.settle(damping="local", record=False)
+scene.push(top)  # to --until or along --history
+scene.finish()

@@ -3,11 +3,7 @@
 The vertical load is what the top course feels. The granite blocks do not crack.
 """
 
-from functools import partial
-
-from masonry import materials, options, walls
-from masonry.loading import push, settle
-from masonry.run import Run
+from masonry import Scene, bricks, columns, materials, options
 
 BLOCK = (0.200, 0.200, 0.150)  # [m] length, thickness, height
 LOAD_HEIGHT = 1.325  # [m] above the base; displacements refer to it, too
@@ -32,22 +28,20 @@ parser.add_argument(
 parser.set_defaults(crack_surfaces="off", subcontacts=6)
 args = parser.parse_args()
 
-wall = walls.Wall(
-    name="wall_dry",
+scene = Scene(
+    "wall_dry",
+    bricks.Wall(1.0, 1.2, BLOCK),
+    materials.dryGranite(args.level, BLOCK[2]),
     title=f"Dry-joint granite wall, 1.0 × 1.2 m, cantilever, {args.level} kN",
-    halfUnits=10,
-    courses=8,
-    unit=BLOCK,
-    precompression=args.level * 1e3 / (1.0 * BLOCK[1]),  # [Pa] on the top course
-    loadHeight=LOAD_HEIGHT,
-    measureHeight=LOAD_HEIGHT,
-    loadLineFixed=args.load_line == "fixed",
-    unitMaterial=materials.graniteUnit,
-    joints=partial(materials.dryGraniteJoints, args.level, BLOCK[2]),
+    columns=columns.names(columns.PUSH),
+    arguments=args,
 )
-
-with Run(wall.name, args) as run:
-    model = run.build(walls.WallModel(wall, args))  # stones between two blocks
-    settle(run, model)  # gravity and precompression, until the wall is at rest
-    push(run, model)  # the upper block to --until or along --history
-raise SystemExit(run.status)
+scene.platen("bottom")
+top = scene.platen(
+    "top", rotation="free", upTo=LOAD_HEIGHT, recorded=LOAD_HEIGHT, drive="x"
+)
+stress = args.level * 1e3 / (1.0 * BLOCK[1])  # [Pa] on the top course
+scene.press(top, stress, riding=args.load_line == "riding")
+scene.settle(damping="local", record=False)
+scene.push(top)  # to --until or along --history
+scene.finish()

@@ -92,6 +92,19 @@ def pytest_collection_modifyitems(items):
     )
 
 
+def pytest_terminal_summary(terminalreporter):
+    """Tests that were not run, and why, just before the closing line, which counts them among the others."""
+    reasons = {}
+    for report in terminalreporter.stats.get("skipped", []):
+        told = (
+            report.longrepr[-1] if isinstance(report.longrepr, tuple) else "no reason"
+        )
+        told = told.removeprefix("Skipped: ")
+        reasons[told] = reasons.get(told, 0) + 1
+    for told, count in reasons.items():
+        terminalreporter.write_line(f"NOT RUN: {count} test{'s' * (count > 1)}: {told}", yellow=True)  # fmt: skip
+
+
 @pytest.fixture
 def scene():
     """An empty YADE scene, left empty."""

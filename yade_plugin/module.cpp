@@ -1,8 +1,14 @@
 // The Python module masonry._masonry. When it is imported it checks whether it fits the running YADE, and registers its
 // classes there.
 #include "adapters/CriticalTimeStep.hpp"
+#include "adapters/Gl1_MasonryBlock.hpp"
+#include "adapters/Gl1_MasonryJointPhys.hpp"
+#include "adapters/GlExtra_MasonryLegend.hpp"
+#include "adapters/Ig2_MasonryBlock_Polyhedra_MasonryJointGeom.hpp"
+#include "adapters/Ig2_Polyhedra_Polyhedra_MasonryJointGeom.hpp"
 #include "adapters/Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening.hpp"
 #include "adapters/Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening.hpp"
+#include "adapters/MasonryBlock.hpp"
 #include "adapters/MasonryEnergy.hpp"
 #include "adapters/MasonryIntegrator.hpp"
 #include "adapters/MasonryJointLoop.hpp"
@@ -107,13 +113,21 @@ static void registerAll() {
 
     std::vector<std::string> names;
     enroll<MasonryMat>(names);
+    enroll<MasonryBlock>(names);
     enroll<MasonryJoint>(names);
     enroll<MasonryJointGeom>(names);
     enroll<MasonryJointPhys>(names);
-    enroll<Ig2_Polyhedra_Polyhedra_MasonryJointGeom>(names);
+    enroll<Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom>(names);
+    if (host::has("Polyhedra")) {
+        enroll<Ig2_MasonryBlock_Polyhedra_MasonryJointGeom>(names);
+        enroll<Ig2_Polyhedra_Polyhedra_MasonryJointGeom>(names);
+    }
     enroll<Ip2_MasonryMat_MasonryMat_MasonryJointPhys>(names);
     enroll<Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening>(names);
     enroll<Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening>(names);
+    enroll<Gl1_MasonryBlock>(names);
+    enroll<Gl1_MasonryJointPhys>(names);
+    enroll<GlExtra_MasonryLegend>(names);
     enroll<MasonryZones>(names);
     enroll<MasonryJointLoop>(names);
     enroll<MasonryLoad>(names);
@@ -121,6 +135,7 @@ static void registerAll() {
     enroll<MasonryIntegrator>(names);
     enroll<MasonryVtkRecorder>(names);
     Singleton<yade::Omega>::instance().buildDynlibDatabase(names);
+    yade::OpenGLRenderer::initDone = false;
 
     py::list classes;
     for (const auto& name : names)
@@ -134,8 +149,8 @@ static void registerAll() {
         "of "
         "the largest block. Gaps and sizes in m.");
     py::def("touchingPairs", &touchingPairs, (py::arg("tolerance") = 1e-4),
-            "Pairs (id1, id2) of bodies whose Polyhedra share a face; tolerance as in "
-            "Ig2_Polyhedra_Polyhedra_MasonryJointGeom.");
+            "Pairs (id1, id2) of blocks that share a face; tolerance as in "
+            "Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom.");
     py::def(
         "criticalTimeStep", &criticalTimeStep,
         "(dt, id1, id2): the stable time step [s] under the damping of O.engines, at most 1.1 % below the limit, and "

@@ -5,10 +5,12 @@
 """
 
 import json
+import math
 import os
 
 from ._masonry import loadScene, savedText, saveScene
 from .errors import Refused
+from .results import readWhole
 
 NAME = "run.checkpoint"  # in the folder of a run
 
@@ -60,12 +62,20 @@ def readCheckpoint(path):
 
 
 def _read(path, textOf):
-    with open(path, "rb") as f:
-        data = f.read()
     try:
-        return json.loads(textOf(data))
+        return json.loads(textOf(readWhole(path, _size)))
     except ValueError as error:
         raise ValueError(f"{path} {error}") from None
+    except MemoryError:
+        raise ValueError(f"{path} is too large for the memory") from None
+
+
+def _size(head):
+    """Bytes of a checkpoint that begins like this; of another file, so many as are needed to say that it is none."""
+    title, end, number = head.partition(b"\n")
+    if len(number) < 8:
+        return len(head)
+    return len(title + end) + 8 + int.from_bytes(number[:8], "little")
 
 
 def readProgress(directory):
@@ -81,9 +91,37 @@ def readProgress(directory):
         told = readCheckpoint(path)
     except (OSError, ValueError) as error:
         raise Refused(f"--resume: {error}") from None
-    known = dict(scene=str, options=dict, at=dict, rows=list, seconds=float)
-    if not isinstance(told, dict) or any(
-        not isinstance(told.get(key), kind) for key, kind in known.items()
+    like = dict(scene="", options={}, at={}, rows=[], script=[], seconds=0.0)
+    if (
+        not isinstance(told, dict)
+        or not all(alike(told.get(key), value) for key, value in like.items())
+        or not all(alike(row, [0.0] * len(row)) for row in told["rows"])
+        or not all(isinstance(word, str) for word in told["script"])
     ):
         raise Refused(f"--resume: {path} was not left by a run in stages")
     return told
+
+
+def alike(value, example):
+    """Whether a value that JSON gave is of the kind of another one.
+
+    An int is a counter, from 0 on; a float is any finite number; a list or tuple has as many values, each of the kind of its
+    counterpart, and an empty one stands for any list; None stands for None and for a list of finite numbers.
+    """
+    if example is None:
+        return value is None or (
+            isinstance(value, list) and alike(value, [0.0] * len(value))
+        )
+    if isinstance(example, (list, tuple)):
+        return isinstance(value, list) and (
+            not example
+            or len(value) == len(example)
+            and all(map(alike, value, example))
+        )
+    if isinstance(example, (bool, str, dict)):
+        return isinstance(value, type(example))
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return False
+    if isinstance(example, int):
+        return isinstance(value, int) and 0 <= value < 2**63
+    return abs(value) < math.inf

@@ -10,38 +10,20 @@ from collections import namedtuple
 Column = namedtuple("Column", "name meaning value")
 
 
-class WallReading(
-    namedtuple(
-        "WallReading",
-        "time along up baseShear topShear energy orientation reference sunk point target",
-    )
-):
-    """What a wall reads, for a row.
-
-    - ``time`` since it was built [s]
-    - ``along`` and ``up``: displacement of the loading block since the push began, along the push and upwards [m]
-    - ``baseShear``: force of the wall on the fixed block, along the push [N]
-    - ``topShear``: force that drives the loading block [N]
-    - ``energy``: the energy balance [J]
-    - ``orientation`` of the loading block, and ``reference``, the inverse of that in which it was built: quaternions
-    - ``sunk``: displacement of the loading block downwards since the wall was built [m]
-    - ``point``: number of the point of a history that the drive is going to, from 1; ``target``: its displacement [mm]
-    """
-
-    __slots__ = ()
-
-    @property
-    def rotation(self):
-        """Rotation of the loading block about the axis across the wall [rad]."""
-        axis, angle = (self.orientation * self.reference).toAxisAngle()
-        return angle * axis[1]
-
-
-#: What a couplet reads: time since it was built [s]; means over its bed joint of opening and slide [m] and of normal and
-#: shear stress [Pa]; force of the couplet on the fixed block, upwards and along the slide [N]; the energy balance [J].
-CoupletReading = namedtuple(
-    "CoupletReading",
-    "time opening slide normalStress shearStress normalForce shearForce energy",
+#: What a structure reads, for a row.
+#:
+#: - ``time`` since it was built [s]
+#: - ``along`` and ``up``: displacement of the pushed point since the push began, along the push and upwards [m]
+#: - ``baseShear``: force of the structure on what is held, along the push [N]
+#: - ``topShear``: force that drives the pushed point [N]
+#: - ``energy``: the energy balance [J]
+#: - ``rotation`` of the pushed block [rad]
+#: - ``sunk``: displacement of the pushed point downwards since the structure was built [m]
+#: - ``point``: number of the point of a history that the drive is going to, from 1; ``target``: its displacement [mm]
+#: - ``values``: numbers of every other column by its name
+Reading = namedtuple(
+    "Reading",
+    "time along up baseShear topShear energy rotation sunk point target values",
 )
 
 #: Energies by their name in the balance, and what each is.
@@ -76,76 +58,44 @@ BALANCE += [
     )
 ]
 
-WALL = [
-    Column("time_s", "time since the wall was built [s]", lambda r: r.time),
+#: Of a push.
+PUSH = [
+    Column("time_s", "time since the scene was built [s]", lambda r: r.time),
     Column(
         "displacement_mm",
-        "displacement along the push since the push began, at the measure height above the base [mm]",
+        "displacement of the pushed point along the push, since that began [mm]",
         lambda r: 1e3 * r.along,
     ),
     Column(
         "base_shear_kN",
-        "force of the wall on the fixed block below it, along the push [kN]",
+        "force of the structure on all that is held, along the push [kN]",
         lambda r: 1e-3 * r.baseShear,
     ),
     Column(
         "top_shear_kN",
-        "force that drives the loading block [kN]",
+        "force that drives the pushed point [kN]",
         lambda r: 1e-3 * r.topShear,
     ),
     Column(
         "vertical_mm",
-        "upward displacement at the measure height since the push began [mm]",
+        "upward displacement of the pushed point since the push began [mm]",
         lambda r: 1e3 * r.up,
     ),
     Column(
         "rotation_mrad",
-        "rotation of the loading block about the axis across the wall [mrad]",
+        "rotation of the pushed block, about y in a plane, else its angle [mrad]",
         lambda r: 1e3 * r.rotation,
     ),
-    *BALANCE,
 ]
 
-#: Of a wall that follows a history.
-WALL_LOOPS = [
-    *WALL,
+#: Of a push that follows a history.
+HISTORY = [
     Column(
         "point",
         "number of the point of the history that the drive is going to, from 1 [-]",
         lambda r: r.point,
     ),
     Column("target_mm", "displacement of this point [mm]", lambda r: r.target),
-]
-
-COUPLET = [
-    Column("time_s", "time since the couplet was built [s]", lambda r: r.time),
-    Column(
-        "opening_mm",
-        "mean opening of the bed joint, negative if it closes [mm]",
-        lambda r: 1e3 * r.opening,
-    ),
-    Column("slide_mm", "mean slide of the bed joint [mm]", lambda r: 1e3 * r.slide),
-    Column(
-        "normal_stress_MPa",
-        "mean normal stress of the bed joint, positive in tension [MPa]",
-        lambda r: 1e-6 * r.normalStress,
-    ),
-    Column(
-        "shear_stress_MPa",
-        "mean shear stress of the bed joint, along the slide [MPa]",
-        lambda r: 1e-6 * r.shearStress,
-    ),
-    Column(
-        "normal_force_kN",
-        "force of the couplet on the fixed block below it, upwards [kN]",
-        lambda r: 1e-3 * r.normalForce,
-    ),
-    Column(
-        "shear_force_kN",
-        "force of the couplet on the fixed block, along the slide [kN]",
-        lambda r: 1e-3 * r.shearForce,
-    ),
-    *BALANCE,
 ]
 
 

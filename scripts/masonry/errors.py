@@ -11,3 +11,7 @@ class Interrupted(Exception):
 
 class Unwritable(Exception):
     """A file of the results cannot be written, for example since the disk is full."""
+
+
+class Collapsed(Exception):
+    """The structure has fallen, as the message says; the run ends in order."""

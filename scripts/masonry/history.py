@@ -138,15 +138,16 @@ def _column(lines, path):
     return points
 
 
-def targets(points, stops=False):
+def targets(points, stops=False, start=0.0):
     """The points of a history as the drive sees them: a list of :class:`Target`.
 
     A point that repeats the one before lies on the same way.
 
     :param points: displacements [mm]
     :param stops: whether the drive brakes for the last point
+    :param start: where the way begins [mm]
     """
-    ways, last = [], 0.0
+    ways, last = [], start
     for point in points:
         same = ways[-1] if ways else 1
         ways.append(1 if point > last else -1 if point < last else same)
@@ -159,22 +160,23 @@ def targets(points, stops=False):
     return found[::-1]
 
 
-def pathLength(points):
-    """Length of the way through some points from 0 on [mm]."""
-    return sum(abs(b - a) for a, b in zip([0.0, *points], points))
+def pathLength(points, start=0.0):
+    """Length of the way through some points from a start on [mm]."""
+    return sum(abs(b - a) for a, b in zip([start, *points], points))
 
 
-def aim(args):
+def aim(args, start=0.0):
     """The targets of a run: those of ``--history``, or one at ``--until``.
 
     The drive stops at the end of a file. At the end of a list of amplitudes and of a push it does not brake, because
     both go on the same way if the run is resumed and extended.
 
     :param args: the options of :func:`masonry.options.parser`
+    :param start: where the way begins [mm]
     """
     if args.history:
-        return targets(args.history["points_mm"], "file" in args.history)
-    return targets([args.until])
+        return targets(args.history["points_mm"], "file" in args.history, start)
+    return targets([args.until], start=start)
 
 
 def turns(points):

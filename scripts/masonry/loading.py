@@ -1,17 +1,15 @@
-"""Stages of a test. Each is a function of a run and a model; what it must remember is a dataclass of its own."""
+"""How a target is pushed and driven: functions of a run; what each must remember is a dataclass of its own."""
 
 import math
 from dataclasses import dataclass
 
-from yade import O, Vector3
+from yade import O
 
-from .errors import Refused
+from .errors import Collapsed, Refused
 from .history import aim, pathLength, turns
-from .progress import say
 
 RAMP = 0.02  # [s] in which loads and velocities grow: some ten periods of a wave through the height of a wall
-SETTLING = 0.5  # local damping of deformable units before the push: with more they creep to rest, with less they swing
-REST = 5e-3  # of the vertical load: what may be missing at the base when a wall is said to be at rest
+REST = 5e-3  # of the load: what may be missing at the supports of a structure that is said to be at rest
 ROW_EVERY = 0.01  # [mm] of a push between rows of curve.csv
 ARRIVED = 2e-3  # [mm] from a turning point of a history at which the drive turns: what is left of the way takes it there
 FRAMES = (
@@ -27,63 +25,6 @@ def ramp(args):
     return RAMP * args.density_scaling**0.5
 
 
-# -- settle -----------------------------------------------------------------------------------------------------------
-
-
-@dataclass
-class Settling:
-    """What :func:`settle` remembers."""
-
-    done: int = 0  # steps so far
-    quiet: int = 0  # checks in a row that found the wall at rest
-
-
-def settle(run, model):
-    """Gravity, and a vertical load that grows smoothly, until a wall is at rest.
-
-    The precompression is what the top course feels: the weight of the loading block is part of it. At rest the base
-    carries what is above it but for the share REST, and hardly anything moves; the damping of the push takes the rest.
-    """
-    at = run.stage("settle", Settling())
-    if at is None:
-        return
-    vertical, base = model.loads["vertical"], model.blocks["base"]
-    weight = model.weight()
-    force = model.verticalForce()
-    if model.zones:
-        model.damp(min(SETTLING, run.args.damping), "local")
-    growing = int(ramp(run.args) / O.dt)
-    most = int(10 * ramp(run.args) / O.dt)
-    while at.done < most and at.quiet < 3:
-        x = min(1, (at.done + 100) / growing)
-        vertical.force = Vector3(0, 0, -force * x * x * (3 - 2 * x))
-        run.advance(100)
-        at.done += 100
-        energy = model.energy.balance()
-        elastic = (
-            energy["elastic_compression"]
-            + energy["elastic_shear"]
-            + energy["elastic_tension"]
-            + energy["elastic_units"]
-        )
-        carried = O.forces.f(base, True)[2]
-        missing = 1 + carried / (weight - vertical.force[2])
-        moving = abs(energy["kinetic"])
-        rests = abs(missing) < REST and moving < 1e-5 * elastic
-        at.quiet = at.quiet + 1 if rests and x == 1 else 0
-        run.show(
-            at.done / most,
-            lambda: f"unbalanced {100 * missing:+.2f} %, kinetic/elastic {moving / elastic:.1e}",
-            at.quiet == 3,
-        )
-        if model.hasSunk():
-            run.collapsed = True
-            say("the wall has collapsed before the push")
-            return
-    if at.quiet < 3:
-        say(f"note: the wall is not quite at rest after {run.at.steps} steps")
-
-
 # -- push -------------------------------------------------------------------------------------------------------------
 
 
@@ -96,6 +37,9 @@ class Pushing:
     moved: float = 0.0  # displacement there [mm]
     passed: int = 0  # points of the history that lie behind
     last: float = 0.0  # displacement of the last of them [mm]
+    start: float = (
+        0.0  # displacement when it began, if it counts from an earlier push [mm]
+    )
     path: float = 0.0  # length of the way to there [mm]
     since: float = 0.0  # time from which the velocity grows [s]
     growth: float = 0.0  # velocity then, along the present way, over the full one [-]
@@ -114,6 +58,10 @@ class Pushing:
             if sign * shear > self.peaks[side]:
                 self.peaks = _exchanged(self.peaks, side, sign * shear)
                 self.peaksAt = _exchanged(self.peaksAt, side, sign * self.moved)
+
+    def retreats(self, way, whole):
+        """Whether the wall is a tenth of the whole way [mm], and 1 mm at least, behind where it turned or began."""
+        return self.path - self.travelled(way) > max(1.0, 0.1 * whole)
 
     def hasLost(self, way, shear):
         """Whether the wall is farther out than ever before, and has lost its force [kN] there."""
@@ -145,7 +93,7 @@ def _exchanged(pair, side, value):
     return [pair[0], value] if side else [value, pair[1]]
 
 
-def push(run, model):
+def push(run, model, name, args, began, goOn=False):
     """Drive the loading block sideways, to ``--until`` or along ``--history``, with rows and frames.
 
     The drive moves at ``--rate``. When it begins and where the history turns, its velocity changes evenly in time, from
@@ -157,23 +105,39 @@ def push(run, model):
     ParaView frames are :func:`frameSpacing` of the way apart. Those of a history are also at its turning points and where
     it passes through zero, unless the frame before is less than half of this away.
 
-    A wall has collapsed if the loading block has come down by half a course, or if less than a fifth of the peak of a
-    side is left, a millimetre or more beyond that peak and farther out than the wall has turned before. So a loop that
-    unloads is no collapse.
+    A wall has collapsed if the loading block has come down by half a course, if less than a fifth of the peak of a side
+    is left, a millimetre or more beyond that peak and farther out than the wall has turned before, or if it moves against
+    its push by a tenth of the way, a millimetre or more. So a loop that unloads is no collapse.
+
+    :param name: of the stage
+    :param args: the options of the run, with the ``until``, ``history`` and ``rate`` of this push
+    :param began: under this name the run keeps where the push began
+    :param goOn: whether displacements count from where an earlier push of that name began
+    :raises Collapsed: with what was seen
     """
-    args, at = run.args, run.stage("push", Pushing())
-    if at is None or run.collapsed:
+    at = run.stage(name, Pushing())
+    if at is None:
         return
+    first, origin = at.origin is None, at.origin
+    if first:
+        origin = here = list(model.topDisplacement())
+        if goOn:
+            origin = run.at.origins[began]
+            at.moved = at.last = at.start = 1e3 * (here[0] - origin[0])
     if not args.history and not args.until > at.moved:
         raise Refused(
             f"--until {args.until:g}: the run is at {at.moved:.2f} mm already"
         )
-    goals, whole, spacing = aim(args), wayLength(args), frameSpacing(args)
+    goals = aim(args, at.start)
+    whole, spacing = wayLength(args, at.start), frameSpacing(args)
+    if at.passed >= len(goals):
+        raise Refused(f"--resume: its history has {at.passed} points and more")
     load, growing = model.loads["push"], ramp(args)
     every = max(1, int(ROW_EVERY / (args.rate * O.dt)))
     model.aim = at.passed + 1, goals[at.passed].displacement
-    if at.origin is None:
-        at.origin = model.origin = list(model.topDisplacement())
+    if first:
+        at.origin = model.origin = origin
+        run.at.origins = {**run.at.origins, began: origin}
         at.now = at.since = O.time
         at.moved = 1e3 * run.record().along
         run.frame()
@@ -200,20 +164,26 @@ def push(run, model):
         at.now, at.moved = reading.time, 1e3 * reading.along
         shear, way = 1e-3 * reading.baseShear, at.travelled(goal.way)
         at.note(shear)
-        run.collapsed = at.hasLost(goal.way, shear) or model.hasSunk(reading.sunk)
+        how = None
+        if at.hasLost(goal.way, shear):
+            how = "less than a fifth of the peak of its force is left"
+        elif model.hasSunk(reading.sunk):
+            how = "the pushed point has come down by half a course"
+        elif at.retreats(goal.way, whole):
+            how = "it moves against its push"
         if args.history:
             at.since, at.growth = at.now, growth
         run.show(max(0, way / whole), detail)
         goesOn, turned = at.passOn(goals)
-        goesOn = goesOn and not run.collapsed
+        goesOn = goesOn and not how
         early = args.history and (turned or before * at.moved < 0)
         if goesOn and way >= at.nextFrame - (spacing / 2 if early else 0):
             run.frame()
             at.nextFrame = (way if early else at.nextFrame) + spacing
     run.show(1, detail, final=True)
     run.flush()
-    if run.collapsed:
-        say(f"the wall has collapsed at {at.moved:.2f} mm")
+    if how:
+        raise Collapsed(f"at {at.moved:.2f} mm {how}")
 
 
 def _pace(at, goal, rate, growing, every):
@@ -236,9 +206,10 @@ def _pace(at, goal, rate, growing, every):
     return growth, max(1, min(every, int(distance / (rate * growth * O.dt))))
 
 
-def wayLength(args):
-    """How far the drive goes in all, there and back [mm]."""
-    return pathLength(args.history["points_mm"]) if args.history else args.until
+def wayLength(args, start=0.0):
+    """How far the drive goes in all from a displacement on, there and back [mm]."""
+    points = args.history["points_mm"] if args.history else [args.until]
+    return pathLength(points, start)
 
 
 def rowCount(args):
@@ -282,22 +253,22 @@ class Driving:
     done: int = 0  # steps so far
 
 
-def drive(run, model, name, distance):
+def drive(run, load, name, distance):
     """Drive a load over a distance at ``--rate``, with rows. Other loads keep what they do.
 
     The rows are closer together at the beginning, where the peaks are.
 
-    :param name: label of the load
-    :param distance: along the direction of the load [m]
+    :param load: a MasonryLoad that is driven
+    :param name: of the stage
+    :param distance: function that gives the displacement along the direction of the load [m]
     """
     at = run.stage(name, Driving())
     if at is None:
         return
-    load = model.loads[name]
     if not at.length:
-        speed = run.args.rate * 1e-3
-        at.length = max(ROWS, int(abs(distance) / (speed * O.dt)))
-        load.velocity = distance / (at.length * O.dt)
+        speed, way = run.args.rate * 1e-3, distance()
+        at.length = max(ROWS, int(abs(way) / (speed * O.dt)))
+        load.velocity = way / (at.length * O.dt)
     marks = {round(at.length * (i / ROWS) ** 2) for i in range(1, ROWS + 1)}
     for mark in sorted(marks):
         if mark <= at.done:
@@ -305,6 +276,6 @@ def drive(run, model, name, distance):
         run.advance(mark - at.done)
         at.done = mark
         reading = run.record()
-        run.show(at.done / at.length, lambda: model.brief(reading))
+        run.show(at.done / at.length, lambda: f"{reading.time:.4f} s")
     run.flush()
     load.velocity = 0

@@ -4,9 +4,231 @@ The paper: see yade_plugin/law/README.md.
 """
 
 import math
+from dataclasses import dataclass, field
 
 from yade import Vector3
 from yade.wrapper import MasonryJoint, MasonryMat
+
+from .errors import Refused
+
+#: A joint whose normal is steeper than this is a bed joint: 45 degrees.
+STEEP = math.cos(math.radians(45))
+
+
+@dataclass
+class Masonry:
+    """Bricks and joints of a structure, and which joint a pair of blocks gets.
+
+    A pair of blocks gets the joint ``support`` if one of them is a platen, ``crack`` if they are pieces of one brick, else
+    ``bed`` or ``head``. It is a bed joint if its normal is less than 45 degrees off the vertical. Joints between two parts
+    of a structure, such as the wythes of a wall, get ``collar`` if there is one. Without ``head`` all are bed joints.
+
+    :param unit: MasonryMat of the bricks
+    :param joints: dict of MasonryJoint by these names; ``bed`` must be there, ``support`` is made if it is missing, linear
+        elastic with the stiffness of the bed joint
+    :param units: dict of MasonryMat by the ``kind`` of a block, for example ``{"lintel": concrete}``; other kinds are of
+        the unit
+    :param softer: function without arguments that gives the same with ``--joint-stiffness masonry``
+    :param choose: function (block1, block2, geom) of your own, of the records of two bricks or None for a platen; it
+        returns the name of a joint, or None for the rule above
+    """
+
+    unit: MasonryMat
+    joints: dict
+    units: dict = field(default_factory=dict)
+    softer: object = None
+    choose: object = None
+    #: What :meth:`vary` was told: joint, property, function and step.
+    varied: list = field(default_factory=list)
+
+    def __post_init__(self):
+        problems = []
+        if not isinstance(self.unit, MasonryMat):
+            problems.append(f"masonry: unit must be a MasonryMat, got {self.unit!r}")
+        for kind, mat in self.units.items():
+            if not isinstance(mat, MasonryMat):
+                problems.append(
+                    f"masonry: unit {kind!r} must be a MasonryMat, got {mat!r}"
+                )
+        wrong = [
+            name
+            for name, joint in self.joints.items()
+            if not isinstance(joint, MasonryJoint)
+        ]
+        if wrong:
+            problems.append(f"masonry: joints must be MasonryJoint, not {wrong}")
+        elif "bed" not in self.joints:
+            problems.append("masonry: there must be a joint 'bed'")
+        if problems:
+            raise ValueError("\n".join(problems))
+        if "support" not in self.joints:
+            bed = self.joints["bed"]
+            self.joints["support"] = MasonryJoint(
+                name="support",
+                elastic=True,
+                normalStiffness=bed.normalStiffness,
+                shearStiffness=bed.shearStiffness,
+            )
+
+    def vary(self, name, value, step=0.01):
+        """Let a property change from place to place. Returns the same masonry.
+
+        Values are rounded to steps of a share, so that many joints are of one kind and cost no more than uniform ones.
+
+        :param name: joint and property, for example ``"bed.cohesion"``, or a list of these that change alike. Strengths are
+            tied to each other: the tensile strength must be at most cohesion over friction
+        :param value: function of the x, y and z [m] of a joint's middle that gives a factor on the property [-];
+            :mod:`masonry.fields` has random ones
+        :param step: width of the steps, relative to the value; at most half of it is the error of rounding
+        """
+        for one in [name] if isinstance(name, str) else name:
+            joint, dot, attribute = one.partition(".")
+            if joint not in self.joints or not hasattr(self.joints[joint], attribute):
+                raise ValueError(
+                    f"vary: no property {one!r}; joints are {', '.join(self.joints)}, help(MasonryJoint) lists properties"
+                )
+            if not callable(value):
+                raise ValueError(
+                    f"vary {one}: value must be a function of x, y, z, got {value!r}"
+                )
+            if not 0 < step < 1:
+                raise ValueError(f"vary {one}: step {step} must be above 0, below 1")
+            self.varied.append((joint, attribute, value, step))
+        return self
+
+    def variant(self, args):
+        """A copy for the options ``--joints`` and ``--joint-stiffness``; this one stays as it is."""
+        source = self
+        if args.joint_stiffness != "joint":
+            if not self.softer:
+                raise Refused(
+                    f"--joint-stiffness {args.joint_stiffness}: the joints of this masonry have no such variant"
+                )
+            source = self.softer()
+        copies = {name: _copied(joint) for name, joint in source.joints.items()}
+        if args.joints == "brittle":
+            copies = _byName([*copies.values()], True)
+        if args.joints == "cyclic":
+            makeCyclic(copies)
+        units = {kind: _copied(mat) for kind, mat in source.units.items()}
+        return Masonry(
+            _copied(source.unit), copies, units, None, self.choose, self.varied
+        )
+
+    def rule(self, model):
+        """The rule of :func:`masonry.scene.connect` for a :class:`masonry.structure.Structure`."""
+        blocks = dict(zip(model.ids, model.scene.bricks))
+
+        def rule(one, two, geom):
+            first, second = blocks.get(one.id), blocks.get(two.id)
+            name = self.choose and self.choose(first, second, geom)
+            if name and name not in self.joints:
+                raise ValueError(
+                    f"choose gave {name!r} for bodies {one.id} and {two.id}; there are {', '.join(self.joints)}"
+                )
+            name = name or self._kind(first, second, geom.normal)
+            joint = self.joints[name]
+            return self._at(name, joint, geom) if self.varied else joint
+
+        return rule
+
+    def _kind(self, first, second, normal):
+        if first is None or second is None:
+            return "support"
+        if first.brick == second.brick and "crack" in self.joints:
+            return "crack"
+        if first.part != second.part and "collar" in self.joints:
+            return "collar"
+        steep = abs(normal[2]) > STEEP or "head" not in self.joints
+        return "bed" if steep else "head"
+
+    def _at(self, name, joint, geom):
+        """The joint of a kind with the properties that it has at a place."""
+        changes, centres = {}, geom.centres
+        centre = [sum(c[i] for c in centres) / len(centres) for i in range(3)]
+        for kind, attribute, value, step in self.varied:
+            if kind == name:
+                factor = float(value(*centre))
+                if not 0 < factor < math.inf:
+                    raise ValueError(
+                        f"vary {kind}.{attribute}: the factor at {centre} m must be above 0, got {factor}"
+                    )
+                wide = math.log1p(step)
+                changes[attribute] = round(math.log(factor) / wide)
+        if not any(changes.values()):
+            return joint
+        key = name, tuple(sorted(changes.items()))
+        if key not in self._made:
+            steps = {a: s for k, a, _, s in self.varied if k == name}
+            own = _copied(joint)
+            values = {
+                a: getattr(joint, a) * (1 + steps[a]) ** n for a, n in changes.items()
+            }
+            try:
+                own.updateAttrs(values)
+            except ValueError as error:
+                place = ", ".join(f"{v:.3g}" for v in centre)
+                raise ValueError(f"vary: at ({place}) m: {error}") from None
+            self._made[key] = own
+        return self._made[key]
+
+    _made = property(lambda self: self.__dict__.setdefault("_kept", {}))
+
+
+def _copied(thing):
+    """Another material or joint with the same attributes."""
+    return type(thing)(**{k: v for k, v in thing.dict().items() if k != "id"})
+
+
+def calciumSilicate(stiffness="joint"):
+    """Calcium-silicate masonry of the TUD-COMP walls, for :class:`masonry.stages.Scene`.
+
+    :param stiffness: as of :func:`calciumSilicateJoints`
+    """
+    return Masonry(
+        calciumSilicateUnit(),
+        calciumSilicateJoints(stiffness=stiffness),
+        softer=lambda: calciumSilicate("masonry"),
+    )
+
+
+def dryGranite(level, height):
+    """Granite blocks with dry joints, for :class:`masonry.stages.Scene`. Parameters as of :func:`dryGraniteJoints`."""
+    return Masonry(graniteUnit(), dryGraniteJoints(level, height))
+
+
+def dry(
+    friction=0.7,
+    normalStiffness=5e9,
+    shearStiffness=None,
+    density=2600,
+    young=20e9,
+    poisson=0.2,
+):
+    """Stones with dry joints that do not crush: no tension, no cohesion, Coulomb friction without dilatancy.
+
+    :param friction: [-]; 0.7 is usual for rough stone
+    :param normalStiffness: of the joints [Pa/m]; shear stiffness None: 0.4 of it
+    :param density: of the stones [kg/m³]; ``young`` [Pa] and ``poisson`` [-] count for deformable stones. Rigid ones have
+        them lumped into the joints
+    """
+    ks = 0.4 * normalStiffness if shearStiffness is None else shearStiffness
+    joints = [
+        MasonryJoint(
+            name=name,
+            normalStiffness=normalStiffness,
+            shearStiffness=ks,
+            tensileStrength=0,
+            cohesion=0,
+            friction=friction,
+            residualFriction=friction,
+            cap=False,
+        )
+        for name in ("bed", "support")
+    ]
+    unit = MasonryMat(label="stone", young=young, poisson=poisson, density=density)
+    return Masonry(unit, _byName(joints, brittle=False))
+
 
 BED_DIRECTION, HEAD_DIRECTION = Vector3(0, 0, 1), Vector3(1, 0, 0)
 
@@ -34,7 +256,8 @@ CALCIUM_SILICATE_MASONRY = {"bed": 3174e6, "head": 2212e6}
 def calciumSilicateJoints(brittle=False, stiffness="joint"):
     """Support, bed, head and crack joints of the calcium-silicate walls, as a dict by name.
 
-    Pairs of units get the first of support, bed and head that fits; the crack joint is for the halves of one brick.
+    Pairs of units get the first of support, bed and head that fits. The crack joint is for the halves of one brick, and
+    no pair of units gets it by itself: its joint set is one that no unit has, so it needs a rule of :func:`connect`.
 
     Strengths, friction, compressive fracture energy and peak ratio are those of the paper's table 2. Stiffnesses follow
     from its eq. (26) with a mortar 10 mm thick.
@@ -71,6 +294,7 @@ def calciumSilicateJoints(brittle=False, stiffness="joint"):
     # before kn of the bed joint changes
     crack = MasonryJoint(
         name="crack",
+        jointSet="within one brick",
         normalStiffness=10 * bed.normalStiffness,
         shearStiffness=10 * bed.shearStiffness,
         tensileStrength=1.5e6,

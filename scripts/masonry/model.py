@@ -9,7 +9,7 @@ from yade.wrapper import MasonryMat, MasonryZones
 from ._masonry import criticalTimeStep
 from .errors import Unwritable
 from .options import check, units
-from .scene import connect, engines
+from .scene import connect, engine, engines
 
 GRAVITY = 9.81  # [m/s²]
 
@@ -58,10 +58,6 @@ class Model:
         """Bytes that a run writes at least, and those that it will probably write."""
         return 1e6, 1e6
 
-    def brief(self, reading):
-        """A reading in few words, for the terminal."""
-        return f"{reading.time:.4f} s"
-
     def summary(self, column):
         """Entries of run.json that follow from the rows; ``column`` is a function of a name that gives its values."""
         return {}
@@ -70,8 +66,15 @@ class Model:
         """Lines to print at the end, from the entries of run.json."""
         return []
 
+    def leave(self, directory):
+        """Write what the model has beside rows and frames, if it has anything."""
+
     def draw(self, directory):
-        """Draw the figures of a run that has ended, if the model has any."""
+        """Draw the figures of a run that has ended, in a program of its own. Raises Unwritable if that fails."""
+        # -P: nothing of the present folder is run
+        command = [sys.executable, "-P", "-m", "masonry.figures", directory]
+        if subprocess.run(command).returncode:
+            raise Unwritable("the figures are not drawn")
 
     # -- what is the same for all ---------------------------------------------------------------------------------
 
@@ -84,6 +87,7 @@ class Model:
         gravity=0.0,
         rule=None,
         functors=False,
+        plane=True,
     ):
         """Make engines, joints and the time step, when all blocks are there.
 
@@ -94,6 +98,7 @@ class Model:
         :param gravity: downwards [m/s²]
         :param rule: as of :func:`masonry.scene.connect`
         :param functors: as of :func:`masonry.scene.engines`
+        :param plane: whether blocks move in the x-z plane only
         """
         args = self.args
         self.loads = {load.label: load for load in loads}
@@ -103,7 +108,7 @@ class Model:
                 divisions=list(divisions),
                 damping=args.damping,
                 dampingKind=damping,
-                blocked="y",
+                blocked="y" if plane else "",
                 label="zones",
             )
         engines(
@@ -111,13 +116,13 @@ class Model:
             damping=args.damping,
             gravity=(0, 0, -gravity),
             subcontacts=args.subcontacts,
-            inPlane=True,
+            inPlane=plane,
             loads=loads,
             zones=self.zones,
             functors=functors,
+            dampingKind="local" if functors else damping,
         )
-        byLabel = {engine.label: engine for engine in O.engines}
-        self.energy, self.integrator = byLabel["energy"], byLabel["integrator"]
+        self.energy, self.integrator = engine("energy"), engine("integrator")
         self.damp(args.damping, damping)
         self.interactions = connect(rule)
         self.limit = criticalTimeStep()[0]
@@ -157,9 +162,3 @@ class Model:
             joints_by_kind=kinds,
             subcontacts=self.subcontacts,
         )
-
-
-def drawFigures(directory):
-    """Draw the figures of a wall's run, in a program of its own. Raises Unwritable if that fails."""
-    if subprocess.run([sys.executable, "-m", "masonry.figures", directory]).returncode:
-        raise Unwritable("the figures are not drawn")

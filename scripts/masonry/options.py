@@ -7,9 +7,9 @@ import re
 import sys
 
 from . import history
-from .checkpoints import readProgress
+from .checkpoints import alike, readProgress
 from .errors import Refused
-from .presets import HARMLESS, PRESETS, USUAL, asOption
+from .presets import BOUND, HARMLESS, PRESETS, USUAL, asOption
 from .scene import properties
 
 #: Units of the options that have one.
@@ -76,6 +76,10 @@ def _history(text):
 def _folder(text):
     if not text.strip():
         raise argparse.ArgumentTypeError("must not be empty")
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not UTF-8") from None
     return text
 
 
@@ -131,12 +135,54 @@ class Parser(argparse.ArgumentParser):
         ]
         return found
 
+    def _checkKnown(self, known, folder):
+        """Refuse options of a checkpoint that this scene could not have had."""
+        names = {action.dest for action in self._actions} | set(self._defaults)
+        wrong = [asOption(name) for name in known if name not in names | {"overrides"}]
+        beside = known.get("overrides")
+        if not (isinstance(beside, list) and all(isinstance(n, str) for n in beside)):
+            wrong.append("what stands beside a preset")
+        for action in self._actions:
+            name, value = action.dest, known.get(action.dest)
+            if name in ("help", "out", "resume"):
+                continue
+            if name not in known:
+                wrong.append(f"no {asOption(name)}")
+            elif not self._couldBe(action, value):
+                wrong.append(f"{asOption(name)} {value!r}")
+        if wrong:
+            raise Refused(
+                f"--resume: {folder} was left by another scene or version: {', '.join(wrong)}"
+            )
+
+    def _couldBe(self, action, value):
+        if value is None:
+            return action.dest == "until" or action.default is None
+        if action.choices:
+            return value in action.choices
+        if action.nargs == 0:
+            return isinstance(value, bool)
+        if action.dest == "set":
+            return isinstance(value, list) and all(
+                alike(setting, ["", "", ""]) for setting in value
+            )
+        if action.dest == "history":
+            points = value.get("points_mm") if isinstance(value, dict) else None
+            return bool(points) and alike(points, None) and alike(value.get("text"), "")
+        try:
+            return not isinstance(value, (list, dict, bool)) and (
+                action.type is None or action.type(str(value)) == value
+            )
+        except argparse.ArgumentTypeError:
+            return False
+
     def _resumed(self, args, folder):
         try:
             known = readProgress(folder)["options"]
+            self._checkKnown(known, folder)
         except Refused as refused:
             self.exit(2, f"{refused}\n")
-        known["set"] = [tuple(setting) for setting in known.get("set", [])]
+        known["set"] = [tuple(setting) for setting in known["set"]]
         known["out"] = folder
         start = argparse.Namespace(**{**known, "set": []})
         given = super().parse_args(args, start)
@@ -175,9 +221,9 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     mm = lambda text: number(text, 0, 1000, above=True)
     p.add_argument(
         "--preset",
-        choices=list(PRESETS),
+        choices=[BOUND, *PRESETS],
         help="blocks, divisions, subcontacts, rate and damping with a promise of error and time; "
-        "an option given beside it wins, and drops the promise",
+        "an option given beside it wins, and drops the promise; bound is limit analysis alone, without a run",
     )
     end = p.add_mutually_exclusive_group()
     end.add_argument(
@@ -310,6 +356,11 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         type=mm,
         default=1.0,
         help="displacement between ParaView frames [mm]; with --history the path between them",
+    )
+    p.add_argument(
+        "--quick",
+        action="store_true",
+        help="a tenth of every displacement and time, and wide brackets, to see whether the scene works",
     )
     p.add_argument(
         "--no-vtk",

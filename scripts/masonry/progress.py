@@ -4,6 +4,12 @@ import contextlib
 import sys
 import time
 
+# A terminal or a log that has no ³ or µ shows their numbers; that is no reason to stop a run either.
+for _stream in (sys.stdout, sys.stderr):
+    with contextlib.suppress(AttributeError, ValueError, OSError):
+        if _stream.errors in ("strict", "surrogateescape"):
+            _stream.reconfigure(errors="backslashreplace")
+
 
 def say(text, stream=None):
     """Print a text. A terminal that is gone or a log that is full is no reason to stop a run."""

@@ -23,83 +23,342 @@
 - ``collapsed``: whether what was built has fallen; ``interrupted``: whether Ctrl-C or SIGTERM ended the run
 - ``resumed_at_s``: the times in the scene at which the run was taken up from a checkpoint
 - ``error``: what ended the run, if an error did
+- ``files``: names of the files that the run may have written, with * for a number; the next run in this folder replaces
+  these and no others
+- ``figure``: what curve.png shows, a dict; only a run that has it can be drawn:
 
-A wall has these, too:
+  - ``x`` and ``y``: ``{"column": "displacement_mm", "label": "displacement of the top [mm]"}``, and a list of such dicts,
+    the first of which is drawn in bold; columns are those of curve.csv, and x can be ``time_s``
+  - ``y_label``: of the axis, with the unit in brackets
+  - ``looped``: whether x goes there and back, which is drawn with axes through zero and with the envelope; else false
+  - ``marks``: a list of ``{"x": 2.6, "y": 115.2, "text": "115.2 kN at 2.60 mm"}``, points to show; may be left out
+  - ``bounds``: a list of ``{"y": 117.0, "text": "limit analysis, upper bound"}``, horizontal lines; may be left out
 
-- ``wall``: ``length_m``, ``height_m``, ``thickness_m``, ``courses``, ``half_units`` (the length, in half units),
-  ``unit_m`` (length, thickness and height of a unit), ``precompression_Pa``, ``load_height_m`` (height of the push
-  above the base, None if the loading block cannot turn), ``measure_height_m`` (height of the displacement above the
-  base) and ``load_line_fixed`` (whether the vertical load keeps its line in space)
+- ``parts``: a dict of name -> list of body ids, for cracks.png, which has a panel for every part; may be left out, and
+  all blocks are one part then
+- ``views``: a dict of part -> direction of sight (x, y, z), for parts that shall not be seen as
+  :func:`masonry.figures.viewOf` chooses; may be left out
+- ``reference_body``: id of a body whose displacement is taken off all others in cracks.png, as that of a ground that is
+  shaken; may be left out
+
+- ``ended``: how the last stage ended: ``at rest``, ``moving``, ``done`` or ``collapsed``
+- ``collapse``: what has fallen, and how far; None if nothing has
+- ``held``: names of the platens and bricks that are held
+
+A run that pushes, leans or tilts has these, if limit analysis (:mod:`masonry.limit`) applies:
+
+- ``bounds``: a list with what it found for every load: ``load`` and ``unit``; ``factor``, the largest one; ``exact``, whether
+  rigid blocks carry just that, else it is an upper bound; ``open_joints_slip``, a lower factor at which a mechanism with open
+  head joints gives way, or None; ``dilates``, whether joints that slip open; ``joints``, how many
+  ``opens``, ``slides`` and ``crushes``; ``powers``, which share of the mechanism's power each strength takes [-]; ``facets``
+  of the friction cones in space, and the ``facet_error`` they leave [-]; or a ``note``, why there is none. With --preset
+  bound also ``without_dilatancy``, the factor of a collapse in which joints slip without opening, and whether it has
+  ``without_dilatancy_settled``
+  The process that finds the bound draws its mechanism at its end, so a run that was killed and resumed has no picture of it
+- ``bound_base_shear_kN``, ``negative_bound_base_shear_kN``: of the first push, and of the way back; ``bound_acceleration``:
+  of the first lean, horizontal over vertical
+
+A run with a push has these, too:
+
 - ``peak_base_shear_kN``, ``displacement_at_peak_mm``: the largest force at the base, and where it is reached
 - ``base_shear_end_kN``, ``displacement_end_mm``: the last row
 - ``initial_stiffness_kN_per_mm``: as :func:`masonry.curves.initialStiffness` fits it
 - ``dynamic_imbalance``: as of :func:`masonry.curves.dynamicImbalance` [-]; ``too_fast``: whether it is more than a push
   may have
+- ``wall``, of a whole wall in running bond in the x-z plane that a platen pushes: ``length_m``, ``height_m``,
+  ``thickness_m``, ``courses``, ``half_units`` (the length, in half units), ``unit_m`` (length, thickness and height of a
+  unit), ``precompression_Pa``, ``load_height_m`` (height of the push above the base, None if the platen cannot turn),
+  ``measure_height_m`` (height of the displacement above the base) and ``load_line_fixed`` (whether the vertical load
+  keeps its line in space)
 
-A wall that follows a history has these, too:
+A run that follows a history has these, too:
 
 - ``history``: ``text``, what the option said; ``points``, how many points it has; ``turning_points``, how often it turns;
-  ``path_mm``, the length of the way; ``noise_mm``, up to which an excursion is no half cycle; of a list ``amplitudes_mm``, pairs of an amplitude [mm] and its number of cycles;
-  of a file its path ``file`` and the fingerprint ``sha256`` of its contents
+  ``path_mm``, the length of the way; ``noise_mm``, up to which an excursion is no half cycle; of a list
+  ``amplitudes_mm``, pairs of an amplitude [mm] and its number of cycles; of a file its path ``file`` and the fingerprint
+  ``sha256`` of its contents
 - ``negative_peak_base_shear_kN``, ``displacement_at_negative_peak_mm``: the smallest force, which is the peak of the
   other side
 - ``cycles``: a list with the numbers of every whole cycle, as :func:`masonry.curves.cycleNumbers` finds them
 - ``damped_share``: as of :func:`masonry.curves.dampedShare` [-]
 
-A couplet has these, too:
+A run that records the means of a joint has these, with its name before them if it has one:
 
 - ``peak_normal_stress_MPa``, ``peak_compressive_stress_MPa``, ``peak_shear_stress_MPa``: largest means over the joint
 - ``end_normal_stress_MPa``, ``end_shear_stress_MPa``: the last row
 - ``dissipated_tension_J_per_m2``, ``dissipated_shear_J_per_m2``, ``dissipated_compression_J_per_m2``: energy that the
-  bed joint dissipated, over its area
+  joint dissipated, over its area
 """
 
 import contextlib
 import csv
+import errno
+import fcntl
 import json
 import math
 import os
 import re
 import shutil
+import socket
+import stat
 import sys
 import time
 
 from .errors import Refused, Unwritable
 from .progress import say
 
-#: Names of the files that a run leaves.
+#: Files that a run writes, and those that are drawn of it; * is a number.
+FILES = [
+    "curve.csv",
+    "curve.png",
+    "cracks.png",
+    "run.json",
+    "run.checkpoint",
+    "view.pvsm",
+    "blocks.pvd",
+    "joints.pvd",
+    "mechanism.png",
+    "mechanism_blocks.vtu",
+    "mechanism_joints.vtu",
+    "blocks_*.vtu",
+    "joints_*.vtp",
+]
 OURS = re.compile(
-    r"((blocks|joints)(_\d+\.vt[up]|\.pvd)|curve\.(csv|png)|cracks\.png|run\.(json|checkpoint))(\.new)?"
+    "(%s)(\\.new)?" % "|".join(re.escape(f).replace(r"\*", r"\d+") for f in FILES)
 )
+LOCK = "run.lock"  # in the folder of a run while it goes on, and after it was killed
+NO_LOCKS = {errno.ENOLCK, errno.EOPNOTSUPP, errno.ENOSYS}  # of the file system
+
+
+def readWhole(path, sizeOf=None):
+    """The bytes of a file. Raises OSError for what is no file, too: a pipe never ends, and a device has no end.
+
+    :param sizeOf: function of the first 64 bytes that gives how many the file should have; of a longer one, which may be
+        an endless hole, one byte more is read
+    """
+    number = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    with open(number, "rb") as f:
+        if not stat.S_ISREG(os.fstat(number).st_mode):
+            raise OSError(errno.EINVAL, "it is no regular file", path)
+        head = f.read(64)
+        if not sizeOf:
+            return head + f.read()
+        return head + f.read(max(0, sizeOf(head) + 1 - len(head)))
+
+
+class Lock:
+    """Keeps a folder for one run. The system takes the lock from a process that ends, however it ends.
+
+    The file ``run.lock`` says who holds it. It stays after a kill, and then says that the files beside it are those of a
+    run. Where the file system has no locks, its text alone counts.
+
+    :param directory: folder, which must be there
+    :param scene: name of the scene that runs
+    :raises Refused: if another run holds the folder; the message names its host and process
+    :raises OSError: if the folder cannot be written
+    """
+
+    _held = {}  # by this process: file by path
+
+    def __init__(self, directory, scene):
+        self.path = os.path.join(os.path.realpath(directory), LOCK)
+        # A scene of this process that did not finish is gone: YADE has one at a time.
+        if self.path in Lock._held:
+            Lock._held[self.path].release()
+        self._file = self._open()
+        try:
+            #: whether the files in the folder are those of a run: it was killed, or it is this one
+            self.ours = bool(self._file.read())
+            told = {
+                "scene": scene,
+                "host": socket.gethostname(),
+                "process": os.getpid(),
+            }
+            self._file.seek(0)
+            self._file.truncate()
+            self._file.write(json.dumps(told).encode())
+            self._file.flush()
+        except BaseException:
+            self._file.close()
+            raise
+        Lock._held[self.path] = self
+
+    def _open(self):
+        """The file, locked. Another run may remove it between two of our calls; then there is a new one."""
+        while True:
+            how = os.O_RDWR | os.O_CREAT | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC
+            file = open(os.open(self.path, how, 0o644), "r+b", buffering=0)
+            try:
+                if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+                    raise OSError(errno.EINVAL, f"{LOCK} is no regular file")
+                try:
+                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                except BlockingIOError:
+                    self._refuse(file.read())
+                except OSError as error:
+                    if error.errno not in NO_LOCKS:
+                        raise
+                    self._trust(file.read())
+                    file.seek(0)
+                with contextlib.suppress(FileNotFoundError):
+                    if os.path.samestat(os.fstat(file.fileno()), os.stat(self.path)):
+                        return file
+            except BaseException:
+                file.close()
+                raise
+            file.close()
+
+    def _trust(self, text):
+        """Refuse a folder by the text of its lock alone, if the run that wrote it may be alive."""
+        told = _object(text)
+        if told.get("host") == socket.gethostname():
+            try:
+                os.kill(told.get("process"), 0)
+            except PermissionError:
+                pass  # it is alive, and another user's
+            except (OSError, TypeError, OverflowError):
+                return
+        if told:
+            self._refuse(text)
+
+    def _refuse(self, text):
+        told = _object(text)
+        who = (
+            "another run"
+            if not told
+            else "a run of {scene} on host {host}, process {process},".format_map(
+                {"scene": "?", "host": "?", "process": "?", **told}
+            )
+        )
+        raise Refused(
+            f"{who} is writing to {os.path.dirname(self.path)}: wait for its end, or name another folder with --out; "
+            f"if it is gone, remove {LOCK} there"
+        )
+
+    def release(self):
+        """Let others have the folder. The file goes, unless it must say whose files the others are."""
+        if Lock._held.get(self.path) is self:
+            del Lock._held[self.path]
+        if self._file.closed:
+            return
+        folder = os.path.dirname(self.path)
+        with contextlib.suppress(OSError):
+            names = [name for name in os.listdir(folder) if OURS.fullmatch(name)]
+            if not (self.ours and names) or _recorded(folder):
+                os.remove(self.path)
+        self._file.close()
+
+
+def _object(data):
+    """The JSON object in some bytes, or an empty one."""
+    try:
+        told = json.loads(data)
+    except ValueError:
+        told = None
+    return told if isinstance(told, dict) else {}
+
+
+def _recorded(directory):
+    """run.json of a folder, if a run of ours left it; else an empty dict."""
+    try:
+        told = _object(readWhole(os.path.join(directory, "run.json")))
+    except OSError:
+        return {}
+    return told if isinstance(told.get("columns"), dict) and "scene" in told else {}
 
 
 class Results:
     """The folder of a run, while it is written. A folder that cannot be written is refused at once.
 
+    Files of an earlier run stay until this one has something in their place: :meth:`begin` removes them. Files of these
+    names that no run has left are refused.
+
     :param directory: folder, made if it is missing
     :param columns: names of the columns of curve.csv
     :param resumed: whether to leave everything as it is, until :meth:`takeUp`
+    :param scene: name of the scene, for others that want the folder
     """
 
-    def __init__(self, directory, columns, resumed=False):
-        self.directory = os.path.abspath(directory)
+    def __init__(self, directory, columns, resumed=False, scene=""):
+        try:
+            self.directory = os.path.abspath(directory)
+        except OSError as error:  # the present folder was removed
+            raise Refused(f"--out: no folder {directory}: {error.strerror}") from None
         self.columns, self.rows, self.run = list(columns), [], {}
         self._line = ",".join(["%.9g"] * len(self.columns)) + "\r\n"
+        self._file = None  # curve.csv
         self.started = time.perf_counter()
+        self._lock, self._made = None, False
         try:
-            os.makedirs(self.directory, exist_ok=True)
-            # files of an earlier run would be taken for those of this one
-            for name in [] if resumed else os.listdir(self.directory):
-                if OURS.fullmatch(name):
-                    os.remove(os.path.join(self.directory, name))
-            self._file = open(self.path("curve.csv"), "ab", buffering=0)
-            if not resumed:
-                self._write(self._head())
-                os.fsync(self._file.fileno())
-        except OSError as error:
+            self.directory.encode()
+            self._made = not resumed and not os.path.isdir(self.directory)
+            if self._made:
+                os.makedirs(self.directory)
+            self._lock = Lock(self.directory, scene)
+            #: names of the files of an earlier run, which are still there
+            self.earlier = [] if resumed else self._earlier()
+        except (OSError, ValueError) as error:
+            self.release()
+            if isinstance(error, Refused):
+                raise
+            if isinstance(error, UnicodeEncodeError):
+                why = "its name is not UTF-8"
+            else:
+                why = getattr(error, "strerror", None) or error
+            raise Refused(f"--out: cannot write to {self.directory}: {why}") from None
+
+    def _earlier(self):
+        names = sorted(n for n in os.listdir(self.directory) if OURS.fullmatch(n))
+        if not names or self._lock.ours:
+            return names
+        told, strange = _recorded(self.directory), names
+        if told:
+            head = ",".join(told["columns"]).encode()
+            strange = [n for n in names if n == "curve.csv" and not self._begins(head)]
+        if strange:
             raise Refused(
-                f"--out: cannot write to {self.directory}: {error.strerror}"
+                f"--out: {self.directory} holds {', '.join(strange[:5])}{' and more' * (len(strange) > 5)}, which no run "
+                "has left there: move that away, or name another folder"
+            )
+        return names
+
+    def _begins(self, head):
+        try:
+            return readWhole(self.path("curve.csv")).splitlines()[:1] == [head]
+        except OSError:
+            return False
+
+    @property
+    def begun(self):
+        """Whether files are written."""
+        return self._file is not None
+
+    def begin(self):
+        """From now on files are written. Those of an earlier run go. Raises Unwritable if the disk refuses."""
+        if self.begun:
+            return
+        self._lock.ours = True
+        try:
+            # files of an earlier run would be taken for those of this one; run.json says whose they are, and goes last
+            for name in sorted(self.earlier, key="run.json".__eq__):
+                with contextlib.suppress(FileNotFoundError):
+                    os.remove(self.path(name))
+            self.earlier = []
+            self._file = open(self.path("curve.csv"), "ab", buffering=0)
+            self._write(self._head())
+            os.fsync(self._file.fileno())
+        except OSError as error:
+            raise Unwritable(
+                f"cannot write to {self.directory}: {error.strerror}"
             ) from None
+
+    def release(self):
+        """Let other runs have the folder; one that was made for nothing goes."""
+        if self._lock:
+            self._lock.release()
+        if self._made and not self.begun:
+            with contextlib.suppress(OSError, ValueError):
+                os.rmdir(self.directory)
 
     def path(self, name):
         return os.path.join(self.directory, name)
@@ -113,8 +372,11 @@ class Results:
             number = re.fullmatch(r"(?:blocks|joints)_(\d+)\.vt[up]", name)
             if number and int(number[1]) >= frames:
                 os.remove(self.path(name))
+        self._lock.ours = True
+        self._file = open(self.path("curve.csv"), "ab", buffering=0)
         self._file.truncate(0)
         self._write(self._head())
+        self.rows.clear()
         self.append(rows)
         self.started -= seconds
 
@@ -125,6 +387,9 @@ class Results:
         :raises FloatingPointError: if a number is not finite; its row and those after it are left out
         :raises Unwritable: if the disk refuses; what fits is kept, in whole lines, and ``rows`` has all of them
         """
+        if not rows:
+            return
+        self.begin()
         fine = 0
         while fine < len(rows) and all(map(math.isfinite, rows[fine])):
             fine += 1
@@ -157,6 +422,9 @@ class Results:
     def checkRoom(self, least, likely):
         """Refuse a folder without room for ``least`` bytes, and warn of one without room for ``likely`` bytes."""
         free = shutil.disk_usage(self.directory).free
+        for name in self.earlier:  # these make room
+            with contextlib.suppress(OSError):
+                free += os.lstat(self.path(name)).st_size
         told = f"{self.directory} has {1e-6 * free:.1f} MB free, this run writes"
         if free < least:
             raise Refused(f"--out: {told} at least {1e-6 * least:.1f} MB")
@@ -174,7 +442,8 @@ class Results:
 
     def close(self):
         """Close curve.csv and write run.json, whole or not at all. Raises Unwritable if the disk refuses."""
-        self.run["wall_clock_s"] = round(self.seconds(), 3)
+        self.begin()
+        self.run.update(wall_clock_s=round(self.seconds(), 3), files=FILES)
         self._file.close()
         path = self.path("run.json")
         try:
@@ -191,8 +460,7 @@ class Results:
 def _read(path):
     """Text of a file of a run."""
     try:
-        with open(path, newline="") as f:
-            return f.read()
+        return readWhole(path).decode()
     except OSError as error:
         raise Refused(f"cannot read {path}: {error.strerror}") from None
     except UnicodeDecodeError:

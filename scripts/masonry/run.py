@@ -11,8 +11,8 @@ A scene reads like this, with any model and any stages::
 A stage is a function that steps by :meth:`Run.advance` alone. What it must know to go on after a checkpoint is a
 dataclass that it gives to :meth:`Run.stage`. In a run that is resumed, stages that were over are left out. The stage in
 which the checkpoint was made is entered with the scene and its memory as they were right after the steps of an
-``advance``, and its first ``advance`` does nothing. So a stage changes its memory after it has advanced, and what it
-does before it advances may be done twice.
+``advance``, and its first ``advance`` takes the steps that were left, or none. So a stage changes its memory after it has
+advanced, and what it does before it advances may be done twice.
 """
 
 import os
@@ -27,18 +27,21 @@ from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
 from ._masonry import commit
-from .checkpoints import NAME, loadCheckpoint, readProgress, saveCheckpoint
+from .checkpoints import NAME, alike, loadCheckpoint, readProgress, saveCheckpoint
 from .columns import meanings, names
-from .errors import Interrupted, Refused, Unwritable
+from .errors import Collapsed, Interrupted, Refused, Unwritable
 from .options import UNITS
+from .plotting import live
 from .presets import presetNote, presetOf
 from .progress import Progress, say
 from .results import Results
 
 PARTS = "setup", "steps", "rows", "frames"  # of a run's time
 OFF = 0.01  # of the work done: a larger error of the energy balance is a warning
+COLLAPSE = "collapsed:"  # how MasonryEnergy begins its message when a block has fallen
 FLUSH_EVERY = 0.2  # [s] of wall-clock time: rows are on the disk after it
 SHOW_EVERY = 0.05  # [s] of wall-clock time: what is shown on the terminal is not older
+LOOK_EVERY = 0.5  # [s] of wall-clock time: within slow steps a checkpoint that is due waits no longer
 
 
 @dataclass
@@ -49,10 +52,13 @@ class Place:
     stage: str = ""  # its name
     memory: dict = field(default_factory=dict)  # what the stage must know to go on
     steps: int = 0  # taken so far
+    left: int = 0  # of the present advance that are not taken yet
     #: Of every stage so far: its name, and the steps and their seconds of wall-clock time before it.
     stages: list = field(default_factory=list)
     seconds: dict = field(default_factory=lambda: dict.fromkeys(PARTS, 0.0))
     frames: list = field(default_factory=list)  # times of the ParaView frames [s]
+    origins: dict = field(default_factory=dict)  # where pushes began, by their name
+    bounds: dict = field(default_factory=dict)  # what limit analysis found, by the load
     resumed: list = field(default_factory=list)  # times at which it was taken up [s]
 
 
@@ -60,8 +66,12 @@ class Run:
     """A run in stages; the module says how to use it.
 
     At the end of its block it finishes in order, whatever ended it, and ``status`` is the exit status of the scene: 0 at
-    the end, 1 if a file cannot be written, 2 for refused input, 130 after Ctrl-C or SIGTERM. An error of the stages
-    goes on to the caller when the results are finished.
+    the end, 1 if a file cannot be written or if the structure has fallen in the stage ``settle``, before its test began, 2
+    for refused input, 130 after Ctrl-C or SIGTERM. An error of the stages goes on to the caller when the results are
+    finished.
+
+    Results of an earlier run in the folder are replaced when there is a first row or frame, or at the end. A run that is
+    interrupted or fails before leaves them as they are.
 
     :param name: name of the scene; its results go to ``results/<name>`` if the options do not say otherwise
     :param args: the options of :func:`masonry.options.parser`
@@ -76,6 +86,7 @@ class Run:
         self._goesOn = False  # whether this run has advanced
         self._entered = 0  # number of the stage that was entered last
         self._memory = SimpleNamespace()  # of that stage
+        self._live = None  # adds a row to yade.plot
         self._readings = []  # that are no rows of curve.csv yet
         self._safe = None  # what a checkpoint keeps, None while steps are taken
         self._now = now = time.perf_counter()  # [s] at the end of the last steps
@@ -90,17 +101,18 @@ class Run:
     def build(self, model):
         """Open the folder, build the model in YADE, and load the checkpoint of a run that is resumed. Returns the model.
 
-        Files of a run that is resumed are left as they are until the run goes on.
+        No file is written yet.
 
         :param model: a :class:`masonry.model.Model`
         """
         args = self.args
-        if args.resume:
-            self._readProgress()
         self.model, columns = model, names(model.columns)
         self._values = [column.value for column in model.columns]
+        self._live = live(columns)
         folder = args.out or os.path.join("results", self.name)
-        self.results = Results(folder, columns, bool(args.resume))
+        self.results = Results(folder, columns, bool(args.resume), self.name)
+        if args.resume:
+            self._readProgress()
         for number in (signal.SIGINT, signal.SIGTERM):
             self._handlers[number] = signal.signal(number, self._interrupt)
         self.preset = presetOf(args, self.name)
@@ -124,10 +136,15 @@ class Run:
             raise Refused(
                 f"--resume: {self.args.resume} holds a run of {told['scene']}, this is {self.name}"
             )
-        try:
-            self.at = Place(**told["at"])
-        except TypeError as error:
-            raise _otherVersion(error) from None
+        self.at = _restored(Place(), told["at"])
+        at = self.at
+        if not (
+            set(at.seconds) == set(PARTS)
+            and all(alike(seconds, 0.0) for seconds in at.seconds.values())
+            and all(alike(stage, ["", 0, 0.0]) for stage in at.stages)
+            and alike(at.frames + at.resumed, None)
+        ):
+            raise _otherVersion("the counters of the run")
 
     def _load(self):
         width = len(self.model.columns)
@@ -137,6 +154,7 @@ class Run:
             loadCheckpoint(self.results.path(NAME))
         except (ValueError, TypeError, OSError) as error:
             raise Refused(f"--resume: {error}") from None
+        self.results.rows += self._told["rows"]
         self.at.resumed.append(O.time)
         for what, now in self._host().items():
             if self._told.get(what) != now:
@@ -149,12 +167,16 @@ class Run:
         """From here on files are written; those of a run that is resumed are cut back to its checkpoint."""
         if self._told:
             try:
+                if (
+                    self.at.left
+                ):  # what the stage did before it advanced was done before these steps
+                    loadCheckpoint(self.results.path(NAME))
                 self.results.takeUp(
                     self._told["rows"], len(self.at.frames), self._told["seconds"]
                 )
                 if self.at.frames:
                     self._recorder.collect()
-            except (TypeError, OSError, RuntimeError, Unwritable) as error:
+            except (TypeError, OSError, RuntimeError, Unwritable, ValueError) as error:
                 raise Refused(f"--resume: {error}") from None
         self._goesOn = True
 
@@ -173,10 +195,7 @@ class Run:
         if self._entered == self.at.number:
             if self.at.stage != name:
                 raise _otherVersion(f"stage '{self.at.stage}'")
-            try:
-                memory = type(memory)(**self.at.memory)
-            except TypeError as error:
-                raise _otherVersion(error) from None
+            memory = _restored(memory, self.at.memory)
         else:
             self.at.number, self.at.stage = self._entered, name
             before = [name, self.at.steps, self.at.seconds["steps"]]
@@ -184,32 +203,69 @@ class Run:
         self._memory = memory
         return memory
 
-    def advance(self, steps):
-        """Take time steps, then leave a checkpoint if one is due. Raises Interrupted after Ctrl-C and SIGTERM."""
+    def advance(self, steps, one=None):
+        """Take time steps, and leave a checkpoint if one is due.
+
+        Ctrl-C and SIGTERM are obeyed after the present step. A checkpoint is made after the last step, and between steps
+        only if they are slow, see LOOK_EVERY.
+
+        Raises Interrupted after Ctrl-C and SIGTERM, and Collapsed if a block has fallen (help(MasonryEnergy)).
+
+        :param steps: how many
+        :param one: function that makes one step, of its number in this call, from 0; None: YADE makes it
+        """
         at = self.at
         if self._goesOn or not self._told:
-            self._goesOn, self._safe = True, None
-            step, began = O.step, time.perf_counter()
-            for _ in range(steps):
-                step()
-            self._now = time.perf_counter()
-            at.seconds["steps"] += self._now - began
-            at.steps += steps
-        else:  # the scene of a checkpoint is that after the steps
+            self._goesOn, at.left = True, steps
+        else:  # the scene of a checkpoint is that after some of the steps or all
+            if at.left > steps:
+                raise _otherVersion(f"{at.left} of {steps} steps are left")
             self._goOn()
+        while True:
+            self._take(steps, one)
+            self._keepSafe()
+            if self._now - self._saved > 60 * self.args.checkpoint_every:
+                self.checkpoint()
+            if self.interrupted:
+                raise Interrupted()
+            if not at.left:
+                return
+
+    def _take(self, steps, one):
+        """Take steps that are left of an advance, for some time, or until the user interrupts."""
+        at, step = self.at, O.step
+        number, self._safe = steps - at.left, None
+        now = began = time.perf_counter()
+        try:
+            while number < steps and not self.interrupted:
+                one(number) if one else step()
+                number += 1
+                now = time.perf_counter()
+                if now - began > LOOK_EVERY:
+                    break
+        except RuntimeError as error:
+            before, collapsed, told = str(error).partition(COLLAPSE)
+            if not collapsed:
+                raise
+            raise Collapsed(told.strip()) from None
+        self._now = now
+        at.seconds["steps"] += now - began
+        at.steps += number - (steps - at.left)
+        at.left = steps - number
+
+    def _keepSafe(self):
+        """Note what a checkpoint of this moment keeps, beside the scene."""
+        at = self.at
         rows = len(self.results.rows) + len(self._readings)
         self._safe = rows, {
             "number": at.number,
             "stage": at.stage,
             "memory": vars(self._memory).copy(),
             "steps": at.steps,
+            "left": at.left,
             "stages": at.stages,
             "frames": at.frames,
         }
-        if self._now - self._saved > 60 * self.args.checkpoint_every:
-            self.checkpoint()
-        if self.interrupted:
-            raise Interrupted()
 
     def record(self):
         """Read the model for a row of curve.csv. Returns the reading.
@@ -236,6 +292,8 @@ class Run:
         ]
         self._readings.clear()
         self.results.append(rows)
+        for row in rows if self._live else []:
+            self._live(row)
         self._flushed = time.perf_counter()
         self.at.seconds["rows"] += self._flushed - began
 
@@ -243,6 +301,7 @@ class Run:
         """Write a frame for ParaView, if the user wants any."""
         if self.vtk:
             self.flush()
+            self.results.begin()
             began = time.perf_counter()
             try:
                 self.vtk()
@@ -280,8 +339,9 @@ class Run:
             return False
         self.flush()
         rows, place = self._safe
-        if len(self.results.rows) < rows:
+        if len(self.results.rows) < rows or self.results.earlier:
             return False
+        self.results.begin()
         told = dict(
             scene=self.name,
             options={
@@ -291,6 +351,7 @@ class Run:
             },
             at={**vars(self.at), **place},
             rows=self.results.rows[:rows],
+            script=getattr(self, "script", []),
             seconds=self.results.seconds(),
             **self._host(),
         )
@@ -300,8 +361,9 @@ class Run:
             saveCheckpoint(path, told)
             return True
         except (OSError, ValueError) as error:
+            stays = "; an earlier one stays" if os.path.exists(path) else ""
             say(
-                f"warning: no checkpoint could be written to {path}: {error}; an earlier one stays",
+                f"warning: no checkpoint could be written to {path}: {error}{stays}",
                 sys.stderr,
             )
             return False
@@ -315,6 +377,8 @@ class Run:
         try:
             return self._end(error)
         finally:
+            if self.results:
+                self.results.release()
             for number, handler in self._handlers.items():
                 signal.signal(number, handler)
 
@@ -332,6 +396,8 @@ class Run:
                 print(error, file=sys.stderr)
                 self.status = 2
             return self.status == 2
+        if error and not isinstance(error, Collapsed) and self.results.earlier:
+            return self._leaveEarlier(error)
         stopped = []
         try:
             self.flush()
@@ -343,32 +409,55 @@ class Run:
             say("\ninterrupted: what was computed is kept")
         elif isinstance(error, Unwritable):
             stopped.append(error)
+        elif isinstance(error, Collapsed):
+            self.fall(str(error))
         elif error:
             self.results.run["error"] = str(error)
             self.checkpoint()
-            self.finish()
+            self._finish()
             raise error
         kept = self.checkpoint()
         try:
-            self.finish()
+            self._finish()
         except Unwritable as unwritable:
             stopped.append(unwritable)
         for text in dict.fromkeys(map(str, stopped)):
             say(f"{text}; what was written before is kept", sys.stderr)
         if kept and (stopped or self.interrupted):
             say(f"--resume {self.results.directory} goes on from here")
-        self.status = 1 if stopped else 130 if self.interrupted else 0
+        fell = self.collapsed and self.at.stage == "settle"
+        self.status = 1 if stopped or fell else 130 if self.interrupted else 0
         return True
 
-    def finish(self):
+    def _leaveEarlier(self, error):
+        """End without results, so that those of an earlier run stay. Returns whether the error is dealt with."""
+        self.status = 130 if isinstance(error, Interrupted) else 1
+        say(
+            f"note: {'interrupted' if self.status == 130 else 'ended'} before there was a row: nothing of this run is kept, "
+            f"and {self.results.directory} still has the results of an earlier one"
+        )
+        if isinstance(error, Unwritable):
+            say(str(error), sys.stderr)
+        return isinstance(error, (Interrupted, Unwritable))
+
+    def fall(self, told):
+        """Note that the structure has fallen."""
+        self.collapsed = True
+        self.results.run["collapse"] = told
+        say(f"collapsed: {told}")
+
+    def _finish(self):
         """Write the last frame and run.json, which is written even if there is no room for the frame, and report."""
         try:
-            if self.results.rows:
-                self.frame()
+            try:
+                if self.results.rows:
+                    self.frame()
+            finally:
+                self._describe()
+                self.results.close()
+            self._report()
         finally:
-            self._describe()
-            self.results.close()
-        self._report()
+            self.model.leave(self.results.directory)
 
     def _describe(self):
         """Fill run.json; the docstring of :mod:`masonry.results` lists its keys."""
@@ -427,7 +516,7 @@ class Run:
         if self.results.rows:
             self.model.draw(self.results.directory)
         off, made = run.get("energy_balance_error", 0), run.get("energy_made", 0)
-        if max(off, made) > OFF:
+        if made > OFF or (off > OFF and not self.model.energy.warned):
             say(
                 f"warning: the energy balance is off by {100 * off:.1f} % of the work done, and joints that open or "
                 f"close within a step made {100 * made:.1f} % of it: a smaller --dt-fraction or --rate or more --damping "
@@ -446,3 +535,12 @@ class Run:
 
 def _otherVersion(why):
     return Refused(f"--resume: of another version of the plugin: {why}")
+
+
+def _restored(example, values):
+    """A dataclass object with the values of a checkpoint. Raises Refused if these are not of the kind of the example's."""
+    before = vars(example)
+    wrong = [n for n, value in values.items() if n not in before or not alike(value, before[n])]  # fmt: skip
+    if wrong:
+        raise _otherVersion(f"its {', '.join(wrong)}")
+    return type(example)(**{**before, **values})

@@ -2,22 +2,22 @@
 
 import math
 
-from yade import O, Vector3, polyhedra_utils, utils
+from yade import Body, O, Vector3, utils
 from yade.wrapper import *
 
 from ._masonry import connected, gather, neighbours
 
+#: The functor that makes joints of blocks. Its subclasses do so where a block is one of YADE's own Polyhedra.
+_GEOMETRY = Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom
+
+#: What a NewtonIntegrator needs to turn bodies as MasonryIntegrator does. YADE 2025 has several algorithms of rotation
+#: and takes another one by default; YADE 2023 has this one only.
+ROTATION = {"exactAsphericalRot": True}
+if hasattr(NewtonIntegrator, "rotAlgorithm"):
+    ROTATION["rotAlgorithm"] = "Fincham1992"
+
 #: A body that is thinner than this share of its length is no block.
 THINNEST = 1e-6
-
-#: Properties of a MasonryJoint that only the cyclic law reads.
-CYCLIC_ONLY = (
-    "shearStiffnessLoss",
-    "compressionStiffnessLoss",
-    "bondLossByCrushing",
-    "initialClosingStiffness",
-    "closureLimit",
-)
 
 
 def properties(cls):
@@ -38,15 +38,22 @@ def _refuse(problems, hint=None, most=10):
         )
 
 
-def _vector(value, what, problems):
-    """Three finite numbers as a Vector3; else None, and a line in ``problems``."""
+def vector(value, what, problems=None):
+    """Three finite numbers as a Vector3.
+
+    :param what: begins the sentence that refuses anything else
+    :param problems: list to which that sentence is added, and None returned; None: it is raised as ValueError
+    """
     try:
-        vector = Vector3(*value)
-        if len(value) == 3 and math.isfinite(vector.norm()):
-            return vector
+        found = Vector3(*value)
+        if len(value) == 3 and math.isfinite(found.norm()):
+            return found
     except Exception:  # Boost.Python's ArgumentError has no name in Python
         pass
-    problems.append(f"{what} must be three finite numbers, got {value}")
+    told = f"{what} must be three finite numbers, got {value}"
+    if problems is None:
+        raise ValueError(told)
+    problems.append(told)
 
 
 def _extent(points):
@@ -68,7 +75,7 @@ def addBlock(vertices, material, inPlane=False, color=(0.75, 0.7, 0.65)):
     problems = []
     if not isinstance(material, MasonryMat):
         problems.append(f"block: material must be a MasonryMat, got {material}")
-    color = _vector(color, "block: color", problems)
+    color = vector(color, "block: color", problems)
     try:
         vertices = list(vertices)
     except TypeError:
@@ -78,7 +85,7 @@ def addBlock(vertices, material, inPlane=False, color=(0.75, 0.7, 0.65)):
         if len(vertices) < 4:
             problems.append(f"block: needs at least 4 corners, got {len(vertices)}")
     points = [
-        _vector(v, f"block: corner {n} [m]", problems) for n, v in enumerate(vertices)
+        vector(v, f"block: corner {n} [m]", problems) for n, v in enumerate(vertices)
     ]
     if not problems:
         length, thickness = _extent(points)
@@ -91,12 +98,15 @@ def addBlock(vertices, material, inPlane=False, color=(0.75, 0.7, 0.65)):
                 f"block: {length:g} m is too small to be told so far from the origin, corner 0 at {vertices[0]} m"
             )
     _refuse(problems)
-    body = polyhedra_utils.polyhedra(material, v=points, color=color)
-    state = material.newAssocState()  # beside those of the other blocks
-    for name in ("mass", "inertia", "pos", "ori"):
-        setattr(state, name, getattr(body.state, name))
-    body.state = state
-    hull = body.shape.v
+    shape, centroid, orientation = MasonryBlock.around(points)
+    shape.color = color
+    body = Body(shape=shape, material=material)
+    body.aspherical = True
+    body.state = state = material.newAssocState()  # beside those of the other blocks
+    state.mass = material.density * shape.volume
+    state.inertia = material.density * shape.inertia
+    state.pos, state.ori = centroid, orientation
+    hull = shape.v
     for n, p in enumerate(points if len(hull) < len(points) else []):
         if p in points[:n]:
             problems.append(f"block: corner {n} {vertices[n]} m is given twice")
@@ -132,12 +142,16 @@ def engines(
     loads=(),
     zones=None,
     functors=False,
+    dampingKind=None,
 ):
     """Fill O.engines for a masonry scene: joints, loads, energy balance and integration. There is no collider.
 
+    The engines have labels, by which ``masonry.engine(label)`` finds them: ``joints`` the MasonryJointLoop, ``energy``
+    the MasonryEnergy, ``integrator`` the MasonryIntegrator; loads and zones keep their own.
+
     :param joints: MasonryJoint objects; a pair of units takes the first that fits
-    :param damping: Cundall's local damping of rigid units [-]; the paper's eq. (3) has 0.8 (the paper: see
-        yade_plugin/law/README.md)
+    :param damping: damping constant of rigid units [-], 0 for motion in real time; the paper's eq. (3) has 0.8 (the
+        paper: see yade_plugin/law/README.md)
     :param gravity: [m/s²]
     :param subcontacts: how many there are along a joint; None: 3. They are the points of Gauss and Lobatto, so the ends
         of a joint are points, and a block rocks about its edge at the true moment. From three on the elastic rotational
@@ -155,8 +169,19 @@ def engines(
     :param zones: MasonryZones of the deformable units, if there are any
     :param functors: YADE's InteractionLoop and NewtonIntegrator, the slow reference, instead of MasonryJointLoop and
         MasonryIntegrator
+    :param dampingKind: ``"combined"`` or ``"local"``; None: combined, and local with functors, because NewtonIntegrator
+        knows no other. Combined damping takes energy from vibration and hardly brakes a steady motion. Local damping is
+        the paper's eq. (3); it holds back what moves steadily, so a mechanism that turns slowly seems stronger than it is
     """
     problems = []
+    kinds = ("local",) if functors else ("combined", "local")
+    if dampingKind not in (None, *kinds):
+        problems.append(
+            f"engines: dampingKind must be {' or '.join(kinds)}"
+            + (" with functors" if functors else "")
+            + f", got {dampingKind!r}"
+        )
+        dampingKind = None
 
     def made(make):
         try:
@@ -183,11 +208,16 @@ def engines(
     if zones is not None and not isinstance(zones, MasonryZones):
         problems.append(f"engines: zones must be a MasonryZones or None, got {zones!r}")
     integrator = made(
-        lambda: MasonryIntegrator(damping=damping, gravity=gravity, label="integrator")
+        lambda: MasonryIntegrator(
+            damping=damping,
+            dampingKind=dampingKind or kinds[0],
+            gravity=gravity,
+            label="integrator",
+        )
     )
     counts = {"subcontacts": subcontacts, "rows": rows}
     geometry = made(
-        lambda: Ig2_Polyhedra_Polyhedra_MasonryJointGeom(
+        lambda: Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom(
             **{name: n for name, n in counts.items() if n is not None},
             rowDirection=(0, 1, 0) if inPlane else (0, 0, 0),
         )
@@ -202,8 +232,8 @@ def engines(
         integrator = NewtonIntegrator(
             damping=damping,
             gravity=integrator.gravity,
-            exactAsphericalRot=True,
             label="integrator",
+            **ROTATION,
         )
     else:
         loop = MasonryJointLoop(geometry=geometry, physics=physics, label="joints")
@@ -214,6 +244,33 @@ def engines(
         MasonryEnergy(label="energy"),
         integrator,
     ] + ([zones] if zones else [])
+
+
+def engine(label):
+    """The engine of O.engines with this label. Raises ValueError, with the labels that there are."""
+    found = {e.label: e for e in O.engines if e.label}
+    if label not in found:
+        raise ValueError(
+            f"no engine has the label {label!r}; there are {', '.join(found) or 'none'}"
+        )
+    return found[label]
+
+
+def advance(steps):
+    """Take time steps, in this thread, as fast as the engines go. Ctrl-C stops between two steps.
+
+    YADE's ``O.run(steps, True)`` waits for another thread and looks every 40 ms whether it has finished, so short runs
+    are mostly waiting, and Ctrl-C waits for its end.
+
+    :param steps: how many, a whole number from 0 on
+    """
+    if isinstance(steps, bool) or not isinstance(steps, int) or steps < 0:
+        raise ValueError(
+            f"advance: steps must be a whole number from 0 on, got {steps!r}"
+        )
+    step = O.step
+    for _ in range(steps):
+        step()
 
 
 def connect(rule=None, tolerance=1e-4, allowGaps=False):
@@ -246,15 +303,18 @@ def connect(rule=None, tolerance=1e-4, allowGaps=False):
             d.functors[0] if d.functors else None
             for d in (loop.geomDispatcher, loop.physDispatcher)
         )
+        functors = loop.geomDispatcher.functors
     else:
         geometry, physics = loop.geometry, loop.physics
+        functors = [geometry]
     if geometry is None or physics is None:
         raise ValueError(
             f"{type(loop).__name__} has no geometry or no physics: call masonry.engines()"
         )
     before, pairs = geometry.tolerance, []
-    geometry.tolerance = tolerance
     try:
+        for functor in functors:
+            functor.tolerance = tolerance
         pairs, sizes = _pairs(tolerance, allowGaps)
         if not isinstance(loop, InteractionLoop):
             # YADE makes interactions with the functors of an InteractionLoop: one stands in for a moment
@@ -266,7 +326,8 @@ def connect(rule=None, tolerance=1e-4, allowGaps=False):
         raise
     finally:
         O.engines = engines
-        geometry.tolerance = before
+        for functor in functors:
+            functor.tolerance = before
     connected()
     _warn(pairs, joints, sizes, engines)
     return made
@@ -279,7 +340,19 @@ def _functorLoop(geometry, physics):
         if cyclic
         else Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening
     )
-    return InteractionLoop([geometry], [physics], [law()], label="joints")
+    return InteractionLoop(
+        [geometry, *_forPolyhedra(geometry)], [physics], [law()], label="joints"
+    )
+
+
+def _forPolyhedra(geometry):
+    """Functors for the pairs of shapes that a geometry functor does not take, where this YADE has Polyhedra."""
+    same = {p["name"]: getattr(geometry, p["name"]) for p in _GEOMETRY.properties()}
+    return [
+        cls(**same)
+        for cls in (_GEOMETRY, *_GEOMETRY.__subclasses__())
+        if cls is not type(geometry)
+    ]
 
 
 def _pairs(tolerance, allowGaps):
@@ -354,6 +427,10 @@ def _connect(pairs, physics, rule):
     return made, list(joints.values())
 
 
+def _isBlock(body):
+    return type(body.shape).__name__ in ("MasonryBlock", "Polyhedra")
+
+
 def _warn(pairs, joints, sizes, engines):
     """Print warnings of what looks like a mistake: other units, blocks without joints, properties without effect."""
     (thin, thickness), (large, size) = sizes
@@ -362,7 +439,7 @@ def _warn(pairs, joints, sizes, engines):
         hints.append(f"body {thin} is {thickness:g} m thick: are corners in m?")
     if size > 50:
         hints.append(f"body {large} is {size:g} m long: are corners in m, not mm?")
-    bodies = {b.id: b for b in O.bodies if isinstance(b.shape, Polyhedra)}
+    bodies = {b.id: b for b in O.bodies if _isBlock(b)}
     mats = {(b.mat.label, b.mat.young, b.mat.density): b.mat for b in bodies.values()}
     for thing in (*mats.values(), *joints):
         name = thing.name if isinstance(thing, MasonryJoint) else thing.label
@@ -373,9 +450,11 @@ def _warn(pairs, joints, sizes, engines):
                     f'{type(thing).__name__} "{name}": {p["name"]} {value:g} {p["unit"]}: is it in {p["unit"]}, '
                     f'not {p["other_unit"]}?'
                 )
-    usual = MasonryJoint()
+    usual, names = MasonryJoint(), [p["name"] for p in properties(MasonryJoint)]
+    #: properties that only the cyclic law reads stand behind the switch of that law
+    ofCycles = names[names.index("cyclic") + 1 : names.index("jointSet")]
     for joint in joints:
-        idle = [n for n in CYCLIC_ONLY if getattr(joint, n) != getattr(usual, n)]
+        idle = [n for n in ofCycles if getattr(joint, n) != getattr(usual, n)]
         if idle and (joint.elastic or not joint.cyclic):
             why = "is elastic" if joint.elastic else "is not cyclic"
             hints.append(

@@ -16,11 +16,9 @@ FUZZ = os.path.join(BUILD, "fuzz")
 
 @pytest.fixture(scope="module")
 def targets():
-    if not shutil.which("clang++-14"):
-        pytest.skip(
-            "clang++-14 is not installed (apt-get install clang-14 libclang-rt-14-dev)"
-        )
-    compiler = ["-DCMAKE_CXX_COMPILER=clang++-14", "-DCMAKE_C_COMPILER=clang-14"]
+    if not shutil.which("clang++"):
+        pytest.skip("clang++ is not installed (apt-get install clang libclang-rt-dev)")
+    compiler = ["-DCMAKE_CXX_COMPILER=clang++", "-DCMAKE_C_COMPILER=clang"]
     for command in (
         ["cmake", "-S", ROOT, "-B", FUZZ, "-DMASONRY_FUZZ=ON", *compiler],
         ["cmake", "--build", FUZZ],
@@ -37,6 +35,9 @@ def test_no_bytes_break_a_reader(targets, target, tmp_path):
             "-max_total_time=4",
             "-timeout=10",
             "-max_len=512",
+            # A program inherits the largest memory of the one that starts it, so the limit is on single allocations.
+            "-rss_limit_mb=0",
+            "-malloc_limit_mb=1024",
         ],
         cwd=tmp_path,
         capture_output=True,

@@ -123,7 +123,12 @@ def test_a_checkpoint_of_blocks_of_another_material_is_refused(tmp_path):
     saveCheckpoint(path)
     panel(False, "deformable")
     # Neither masses nor the stiffnesses of joints change with it.
-    O.bodies[1].mat.young *= 1.01
+    known = O.bodies[1].mat
+    stiffer = MasonryMat(
+        label=known.label, density=known.density, jointSet=known.jointSet
+    )
+    stiffer.young, stiffer.poisson = 1.01 * known.young, known.poisson
+    O.bodies[1].mat = stiffer
     with pytest.raises(ValueError, match="is of another scene: its blocks are others"):
         loadCheckpoint(path)
 

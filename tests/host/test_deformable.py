@@ -1,9 +1,11 @@
 """Deformable units in the engine loop: closed forms, energy, saving, and agreement with rigid ones."""
 
-import math
+import os
+import sys
 
 import numpy as np
 import pytest
+from conftest import ROOT
 from masonry import (
     MasonryJoint,
     MasonryLoad,
@@ -14,8 +16,11 @@ from masonry import (
     criticalTimeStep,
     engines,
 )
-from masonry.brickwork import corners
-from yade import O, Quaternion, Vector3
+from masonry.bricks import boxCorners as corners
+from yade import O, Vector3
+
+sys.path.insert(0, os.path.join(ROOT, "validation", "closed_forms"))
+from elastic_cases import deflection, frequency, together  # noqa: E402
 
 E, NU, RHO = 4.8e9, 0.16, 1800.0
 BRICK = (0.220, 0.102, 0.081)
@@ -49,80 +54,19 @@ def bar(length, cells, damping, section=0.05, poisson=0.0):
     return zones, unit
 
 
-def frequency(length, cells):
-    """First longitudinal frequency of the bar, from its free vibration [Hz]."""
-    O.reset()
-    zones, unit = bar(length, cells, damping=0)
-    O.dt = min(O.dt, 1e-7)  # small enough that the error is the zones'
-    for number in range(*zones.nodesOf(unit)):
-        z = zones.referencePoint(unit, number)[2]
-        zones.setVelocity(
-            number, Vector3(0, 0, 1e-3 * math.sin(0.5 * math.pi * z / length))
-        )
-    tip = max(
-        range(*zones.nodesOf(unit)), key=lambda n: zones.referencePoint(unit, n)[2]
-    )
-    crossings, last = [], 0.0
-    while len(crossings) < 5:
-        O.step()
-        now = zones.displacements[tip][2]
-        if last < 0 <= now or last > 0 >= now:
-            crossings.append(
-                O.time - O.dt * now / (now - last) if now != last else O.time
-            )
-        last = now
-    return 2 / (crossings[4] - crossings[0])
-
-
 @pytest.mark.slow
 def test_a_bar_s_wave_speed_converges_to_theory_at_second_order(scene):
-    length = 0.4
-    theory = math.sqrt(E / RHO) / (4 * length)
-    errors = [abs(frequency(length, n) / theory - 1) for n in (8, 16)]
+    pairs = [frequency(cells) for cells in (8, 16)]
+    errors = [abs(measured / theory - 1) for theory, measured in pairs]
     assert errors[1] < 0.01
     assert errors[0] / errors[1] > 3  # order 2: a factor of 4
-
-
-def deflection(cells, length=0.4, section=0.05):
-    """Tip deflection of the bar under its own weight sideways, over that of the beam theory."""
-    O.reset()
-    mat = MasonryMat(density=RHO, young=E, poisson=0.0)
-    base = addBlock(
-        corners((0, 0, -section), (section, section, 0)),
-        MasonryMat(density=RHO, young=1e16),
-    )
-    unit = addBlock(corners((0, 0, 0), (section, section, length)), mat)
-    O.bodies[base].state.blockedDOFs = "xyzXYZ"
-    zones = MasonryZones(
-        bodies=[unit],
-        divisions=[cells, cells, 8 * cells],
-        damping=0.8,
-        dampingKind="local",
-        gravity=(9.81, 0, 0),
-    )
-    engines([stiff()], gravity=(9.81, 0, 0), damping=0, zones=zones)
-    connect()
-    O.dt = 0.9 * criticalTimeStep()[0]
-    tip = [
-        n
-        for n in range(*zones.nodesOf(unit))
-        if abs(zones.referencePoint(unit, n)[2] - length) < 1e-9
-    ]
-    steps = int(8 * 0.0021 / O.dt)  # eight times the slowest period
-    for _ in range(steps):
-        O.step()
-    moved = np.mean([zones.displacements[n][0] for n in tip])
-    load, inertia, area = RHO * 9.81 * section**2, section**4 / 12, section**2
-    beam = load * length**4 / (8 * E * inertia) + 1.2 * load * length**2 / (
-        2 * area * E / 2
-    )
-    return moved / beam
 
 
 @pytest.mark.slow
 def test_a_cantilever_s_deflection_converges_to_theory(scene):
     # Zones of constant strain are too stiff in bending. The relative error falls with the square of their size.
-    coarse, fine = 1 / deflection(1) - 1, 1 / deflection(2) - 1
+    pairs = [deflection(cells) for cells in (1, 2)]
+    coarse, fine = (theory / measured - 1 for theory, measured in pairs)
     assert 0 < fine < 1
     assert coarse / fine > 2.5  # order 2: a factor of 4
 
@@ -224,27 +168,7 @@ def hold(load, steps=20000):
 def test_bricks_that_move_together_do_not_strain_their_joint_whatever_their_meshes(
     scene, seed, functors
 ):
-    dice = np.random.default_rng(seed)
-    turn = Quaternion(*dice.normal(size=4))
-    turn.normalize()
-    x, y, z = BRICK
-    mat = MasonryMat(young=E, poisson=NU, density=RHO)
-    put = lambda low, high: addBlock(
-        [turn * Vector3(*c) for c in corners(low, high)], mat
-    )
-    units = [put((0, 0, 0), (x, y, z)), put((0, 0, z), (x / 2, y, 2 * z))]
-    zones = MasonryZones(bodies=units, divisions=[2, 1, 1], damping=0)
-    around = dict(gravity=(0, 0, 0), damping=0, rows=2, functors=functors)
-    engines([stiff(1e10)], zones=zones, **around)
-    (interaction,) = connect()
-    O.dt = 0.1 * criticalTimeStep()[0]
-    for node in range(len(zones.masses)):
-        zones.setVelocity(node, Vector3(0.3, -0.2, 0.5))
-    for _ in range(20):
-        O.step()
-    moved = zones.displacements[0].norm()
-    assert moved > 1e-6
-    assert max(j.norm() for j in interaction.geom.jumps) < 1e-9 * moved
+    assert together(seed, functors) < 1e-9
 
 
 @pytest.mark.slow

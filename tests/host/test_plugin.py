@@ -103,6 +103,57 @@ print("USABLE")
     assert "USABLE" in run.stdout
 
 
+UNKNOWN = """
+import yade.config
+yade.config.version = "2099.1"
+import warnings
+with warnings.catch_warnings(record=True) as told:
+    warnings.simplefilter("always")
+    try:
+        import masonry
+        print("TAKEN", masonry.MasonryMat().young)
+    except ImportError as error:
+        print("REFUSED:", error)
+for warning in told:
+    print("WARNED:", warning.category.__name__, warning.message)
+"""
+
+
+def test_a_yade_of_an_unknown_version_is_used_on_the_users_word_only(monkeypatch):
+    monkeypatch.delenv("MASONRY_UNKNOWN_YADE", raising=False)
+    run = inFreshYade(UNKNOWN)
+    assert "REFUSED: " in run.stdout, run.stdout + run.stderr
+    assert "YADE version: 2099.1 is not known" in run.stdout
+    assert "MASONRY_UNKNOWN_YADE=1" in run.stdout and "TAKEN" not in run.stdout
+    monkeypatch.setenv("MASONRY_UNKNOWN_YADE", "1")
+    run = inFreshYade(UNKNOWN)
+    assert "TAKEN 4800000000.0" in run.stdout, run.stdout + run.stderr
+    assert "WARNED: RuntimeWarning YADE 2099.1 is not known" in run.stdout
+
+
+def test_an_unknown_version_with_another_layout_is_refused_whatever_the_user_says(
+    monkeypatch,
+):
+    monkeypatch.setenv("MASONRY_UNKNOWN_YADE", "1")
+    misfit = os.path.join(BUILD, "misfit", "_masonry.so")
+    load = (
+        "import importlib.util\n"
+        f"spec = importlib.util.spec_from_file_location('_masonry', {misfit!r})\n"
+    )
+    run = inFreshYade(
+        load
+        + UNKNOWN.replace("import masonry\n", "importlib.util.module_from_spec(spec)\n")
+    )
+    assert "REFUSED: " in run.stdout, run.stdout + run.stderr
+    assert "YADE version: 2099.1 is not known" in run.stdout
+    assert "State.mass: expected offset 176, found offset 168" in run.stdout
+
+
+def test_the_running_version_is_a_known_one_without_a_warning():
+    run = inFreshYade(UNKNOWN.replace('yade.config.version = "2099.1"', ""))
+    assert "TAKEN" in run.stdout and "WARNED" not in run.stdout, run.stdout
+
+
 def test_the_fitting_module_leaves_the_users_scene_alone():
     run = inFreshYade(
         """
@@ -133,7 +184,13 @@ def test_without_yade_the_package_still_reads_results():
 @pytest.mark.parametrize("name", classes)
 def test_a_class_stands_in_yade_with_docs_keywords_and_dict(name):
     cls = getattr(yade.wrapper, name)
-    assert name.startswith("Masonry") or name.split("_")[0] in ("Ig2", "Ip2", "Law2")
+    assert name.startswith("Masonry") or name.split("_")[0] in (
+        "Ig2",
+        "Ip2",
+        "Law2",
+        "Gl1",
+        "GlExtra",
+    )
     assert len(cls.__doc__) > 60
     instance = cls()
     own = {k: v for k, v in cls.__dict__.items() if isinstance(v, property)}
@@ -210,7 +267,7 @@ def test_wrong_attributes_are_refused_and_change_nothing():
     ):
         MasonryMat(young=-1, poisson=0.5)
     with pytest.raises(ValueError, match="subcontacts 0 must be 1 to 1000"):
-        Ig2_Polyhedra_Polyhedra_MasonryJointGeom(subcontacts=0)
+        Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom(subcontacts=0)
 
 
 def test_tables_of_the_user_are_kept_and_used():

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 from masonry import MasonryJoint, addBlock, connect, criticalTimeStep, engines
-from masonry.brickwork import corners, runningBond
+from masonry.bricks import Wall as BrickWall
+from masonry.bricks import boxCorners as corners
 from yade import O, Vector3
 from yade.wrapper import *
 
@@ -34,7 +35,7 @@ def panel(
     mat = MasonryMat(density=1800, young=young, poisson=0.16)
     bricks = {
         addBlock(corners(b.low, b.high), mat, inPlane=True): b
-        for b in runningBond(size, size, UNIT)
+        for b in BrickWall(size * UNIT[0] / 2, size * UNIT[2], UNIT)
     }
     fixed = [i for i, b in bricks.items() if b.course == 0]
     for body in fixed:

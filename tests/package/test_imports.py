@@ -12,50 +12,75 @@ PACKAGE = os.path.join(ROOT, "scripts", "masonry")
 WITHOUT_YADE = [
     "errors",
     "progress",
-    "brickwork",
     "columns",
     "loops",
     "curves",
     "history",
     "presets",
+    "fields",
+    "ground",
     "results",
+    "frames",
     "figures",
     "measure",
+    "comparison",
+    "viewer_scene",
+    "viewer",
+    "bricks.geometry",
+    "bricks.checks",
+    "bricks.blocks",
+    "bricks.bonds",
+    "bricks.openings",
+    "bricks.files",
+    "bricks.vaults",
+    "bricks.walls",
+    "bricks.__init__",
+    "ports",
 ]
 ORDER = WITHOUT_YADE + [
     "_masonry",  # the plugin
     "scene",
+    "limit",
+    "window",
     "materials",
     "checkpoints",
     "options",
+    "plotting",
     "model",
     "run",
     "loading",
-    "walls",
-    "couplet",
+    "described",
+    "bounds",
+    "structure",
+    "stages",
     "__init__",
 ]
 MODULES = [name for name in ORDER if name != "_masonry"]
 SCENES = [n[:-3] for n in os.listdir(os.path.join(ROOT, "scripts")) if n[-3:] == ".py"]
 
 
+def source(module):
+    return os.path.join(PACKAGE, *module.split(".")) + ".py"
+
+
 def imports(path):
-    """Every import of a source: (module, function-level or not), modules of the package by their bare names."""
+    """Every import of a source: (module, function-level or not), with the whole names of modules."""
     tree = ast.parse(open(path).read())
     top = set(map(id, tree.body))
     if os.path.basename(path) == "__init__.py":  # under `if "yade" in sys.modules`
         top = set(map(id, ast.walk(tree)))
+    folder = os.path.relpath(os.path.dirname(path), os.path.dirname(PACKAGE))
+    here = folder.split(os.sep)
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            names = [node.module]
-            if node.module == "masonry":
-                names = [f"masonry.{alias.name}" for alias in node.names]
-        elif isinstance(node, ast.ImportFrom) and node.module:
-            names = [f"masonry.{node.module}"]
         elif isinstance(node, ast.ImportFrom):
-            names = [f"masonry.{alias.name}" for alias in node.names]
+            parts = here[: len(here) + 1 - node.level] if node.level else []
+            parts += [node.module] if node.module else []
+            whole = ".".join(parts)
+            names = [whole]
+            if whole in ("masonry", "masonry.bricks"):
+                names = [f"{whole}.{alias.name}" for alias in node.names]
         else:
             continue
         for name in names:
@@ -63,20 +88,32 @@ def imports(path):
 
 
 def ownModule(name):
-    """The module of the package that an import names, "__init__" for what only the package itself has, or None."""
-    if name.split(".")[0] != "masonry":
+    """The module of the package that an import names, "__init__" for what only a package itself has, or None."""
+    package, *rest = name.split(".")
+    if package != "masonry":
         return None
-    return (name.split(".") + ["__init__"])[1] if name != "masonry" else "__init__"
+    if rest[:1] == ["bricks"]:
+        own = ".".join(rest[:2])
+        return own if own in ORDER else "bricks.__init__"
+    return rest[0] if rest else "__init__"
 
 
 def test_the_order_names_all_modules():
-    files = [name[:-3] for name in os.listdir(PACKAGE) if name.endswith(".py")]
+    files = [
+        prefix + name[:-3]
+        for prefix, folder in (
+            ("", PACKAGE),
+            ("bricks.", os.path.join(PACKAGE, "bricks")),
+        )
+        for name in os.listdir(folder)
+        if name.endswith(".py")
+    ]
     assert sorted(files) == sorted(MODULES)
 
 
 @pytest.mark.parametrize("module", MODULES)
 def test_a_module_imports_only_those_above_it(module):
-    for name, _ in imports(os.path.join(PACKAGE, module + ".py")):
+    for name, _ in imports(source(module)):
         own = ownModule(name)
         if own:
             assert own in ORDER, f"{module} imports {name} from the package itself"
@@ -86,10 +123,7 @@ def test_a_module_imports_only_those_above_it(module):
 def test_no_circle_of_imports():
     """This follows from the order of the modules. It is tested separately, in case the order given here is wrong."""
     graph = {
-        module: {
-            ownModule(name)
-            for name, _ in imports(os.path.join(PACKAGE, module + ".py"))
-        }
+        module: {ownModule(name) for name, _ in imports(source(module))}
         for module in MODULES
     }
 
@@ -104,14 +138,14 @@ def test_no_circle_of_imports():
 
 @pytest.mark.parametrize("module", MODULES)
 def test_a_module_imports_no_scene_and_breaks_no_circle_in_a_function(module):
-    for name, atTop in imports(os.path.join(PACKAGE, module + ".py")):
+    for name, atTop in imports(source(module)):
         assert name not in SCENES
         assert atTop or not ownModule(name), f"{module} imports {name} in a function"
 
 
 @pytest.mark.parametrize("module", WITHOUT_YADE)
 def test_what_reads_results_needs_no_yade(module):
-    for name, _ in imports(os.path.join(PACKAGE, module + ".py")):
+    for name, _ in imports(source(module)):
         assert name.split(".")[0] != "yade"
 
 

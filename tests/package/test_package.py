@@ -1,4 +1,4 @@
-"""The Python package: brickwork, materials, options, presets, results, curves."""
+"""The Python package: materials, options, presets, results, curves."""
 
 import argparse
 import itertools
@@ -12,44 +12,8 @@ import pytest
 from conftest import ROOT
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from masonry import brickwork, columns, curves, materials, options, presets, results
+from masonry import columns, curves, described, materials, options, presets, results
 from masonry.errors import Refused, Unwritable
-
-
-# -- brickwork --------------------------------------------------------------------------------------------------------
-
-
-def test_the_squat_wall_has_1224_half_bricks_in_running_bond():
-    blocks = brickwork.runningBond(34, 36)
-    assert len(blocks) == 1224
-    assert max(b.high[0] for b in blocks) == pytest.approx(3.96)
-    assert max(b.high[2] for b in blocks) == pytest.approx(2.754)
-    assert len({b.brick for b in blocks}) == 17 * 18 + 17 * 19
-
-
-@settings(max_examples=50, deadline=None)
-@given(courses=st.integers(1, 12), units=st.integers(1, 10), halves=st.booleans())
-def test_blocks_fill_the_wall_and_head_joints_never_meet(courses, units, halves):
-    blocks = brickwork.runningBond(courses, 2 * units, halves=halves)
-    volume = sum(math.prod(h - l for l, h in zip(b.low, b.high)) for b in blocks)
-    assert volume == pytest.approx(0.11 * 2 * units * 0.102 * 0.081 * courses)
-    for course in range(courses):
-        mine = [b for b in blocks if b.course == course]
-        for number, pieces in itertools.groupby(mine, key=lambda b: b.brick):
-            assert len(list(pieces)) <= (2 if halves else 1)
-    heads = lambda c: {
-        round(a.high[0], 6)
-        for a, b in zip(blocks, blocks[1:])
-        if a.course == b.course == c and a.brick != b.brick
-    }
-    for course in range(courses - 1):
-        assert not heads(course) & heads(course + 1)
-
-
-@pytest.mark.parametrize("courses, halfUnits", [(0, 4), (3, 0), (3, 5)])
-def test_impossible_brickwork_is_refused(courses, halfUnits):
-    with pytest.raises(ValueError, match=f"got {courses} and {halfUnits}"):
-        brickwork.runningBond(courses, halfUnits)
 
 
 # -- materials --------------------------------------------------------------------------------------------------------
@@ -261,6 +225,7 @@ def test_rows_that_a_full_disk_takes_stay_whole(tmp_path):
 
     def child():
         r = results.Results(folder, ["a_mm", "b_kN"])
+        r.begin()
         limit = os.path.getsize(r.path("curve.csv")) + 100  # bytes: 18 rows and a bit
         resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
         try:
@@ -317,18 +282,18 @@ def test_readers_ask_only_for_keys_of_run_json_that_are_documented(reader):
 @pytest.mark.parametrize("reader", ["figures", "measure"])
 def test_readers_ask_only_for_columns_that_are_described(reader):
     source = open(os.path.join(ROOT, "scripts", "masonry", reader + ".py")).read()
-    described = {c.name for c in columns.WALL + columns.COUPLET}
+    known = {c.name for c in columns.PUSH + columns.HISTORY + columns.BALANCE}
+    known |= set(described.OF_JOINTS)
     asked = set(re.findall(r'\b(?:curve|data)\["(\w+)"\]', source))
-    assert asked and not asked - described
+    assert asked and not asked - known
 
 
-@pytest.mark.parametrize("listed", [columns.WALL, columns.COUPLET])
-def test_a_column_says_its_unit_in_its_name_and_in_its_meaning(listed):
-    heads = columns.names(listed)
-    assert len(set(heads)) == len(heads) and heads[0] == "time_s"
-    for column in listed:
-        unit = column.meaning[column.meaning.rindex("[") + 1 : -1]
-        assert unit == "-" or column.name.endswith("_" + unit)
+def test_a_column_says_its_unit_in_its_name_and_in_its_meaning():
+    listed = columns.meanings(columns.PUSH + columns.HISTORY + columns.BALANCE)
+    assert next(iter(listed)) == "time_s"
+    for name, meaning in [*listed.items(), *described.OF_JOINTS.items()]:
+        unit = meaning[meaning.rindex("[") + 1 : -1]
+        assert unit == "-" or name.endswith("_" + unit)
 
 
 def test_the_energies_are_those_of_the_balance(scene):

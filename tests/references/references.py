@@ -230,9 +230,8 @@ def wall(
         loads=[load],
         zones=zones,
         functors=functors,
+        dampingKind="local" if functors else kind,
     )
-    if not functors:
-        engine(MasonryIntegrator).dampingKind = kind
     connect(
         lambda one, two, geom: (
             crack
@@ -320,8 +319,8 @@ def couplets(dt, turn=STRAIGHT, damping=0.6, kind="local"):
         rows=None,
         inPlane=inPlane,
         loads=drives,
+        dampingKind=kind,
     )
-    engine(MasonryIntegrator).dampingKind = kind
     connect(lambda one, two, geom: elastic if one.id % 3 else offered[one.id // 3])
     O.dt = dt
 
@@ -381,8 +380,10 @@ def tilted(dt, turn=STRAIGHT, rows=1, deformable=False, about=(0, 1, 0), rate=2.
         rows=rows,
         inPlane=inPlane,
         zones=zones,
+        dampingKind="local",
     )
     connect()
+    engine(MasonryEnergy).watch = False  # the runs go on after the collapse
     s = O.bodies[base].state
     s.blockedDOFs = "xyzXYZ"
     s.angVel = turn * (rate * Vector3(*about))

@@ -3,16 +3,54 @@
 import os
 import runpy
 import sys
+from dataclasses import dataclass
+from typing import Callable
 
 from conftest import ROOT
-from masonry import options
-from masonry.loading import push, settle
-from masonry.run import Run
-from masonry.walls import Wall, WallModel
+from masonry import Scene, bricks, columns, materials, options
 
-SMALL = Wall(
-    name="small", title="a small wall", halfUnits=6, precompression=0.5e6, courses=6
-)
+
+@dataclass
+class Wall:
+    """A wall that is tested as those of the paper: pressed, and pushed by a block that can turn or not."""
+
+    name: str = "small"
+    length: float = 0.66  # [m]
+    courses: int = 6
+    unit: tuple = bricks.walls.UNIT
+    precompression: float = 0.5e6  # [Pa]
+    loadHeight: float = None  # [m]; None: the block cannot turn
+    riding: bool = True
+    masonry: Callable = materials.calciumSilicate
+
+    @property
+    def area(self):
+        return self.length * self.unit[1]
+
+    def scene(self, args, **settings):
+        """The wall before its first stage, and its loading block."""
+        height = self.courses * self.unit[2]
+        scene = Scene(
+            self.name,
+            bricks.Wall(self.length, height, self.unit),
+            self.masonry(),
+            columns=columns.names(columns.PUSH),
+            arguments=args,
+            **settings,
+        )
+        scene.platen("bottom")
+        top = scene.platen(
+            "top",
+            rotation="free" if self.loadHeight else "held",
+            upTo=self.loadHeight,
+            recorded=height,
+            drive="x",
+        )
+        scene.press(top, self.precompression, riding=self.riding)
+        return scene, top
+
+
+SMALL = Wall()
 
 
 def parsed(*words):
@@ -21,20 +59,21 @@ def parsed(*words):
 
 def carryOut(wall, args):
     """Settle and push a wall as the scenes do. Returns the exit status."""
-    with Run(wall.name, args) as run:
-        model = run.build(WallModel(wall, args))
-        settle(run, model)
-        push(run, model)
-    return run.status
+    try:
+        scene, top = wall.scene(args)
+        scene.settle(damping="local", record=False)
+        scene.push(top)
+        scene.finish()
+    except SystemExit as end:
+        return end.code
+    return scene.status
 
 
 def settled(folder, *words, wall=SMALL):
-    """A wall at rest, and its run, without ParaView files."""
-    args = parsed("--no-vtk", "--out", str(folder), *words)
-    run = Run(wall.name, args)
-    model = run.build(WallModel(wall, args))
-    settle(run, model)
-    return run, model
+    """A wall at rest, without ParaView files: the scene, what it is in YADE, and its loading block."""
+    scene, top = wall.scene(parsed("--no-vtk", "--out", str(folder), *words))
+    scene.settle(damping="local", record=False)
+    return scene, scene.model, top
 
 
 def scene(name, *words):
@@ -47,3 +86,4 @@ def scene(name, *words):
         return end.code
     finally:
         sys.argv = before
+    return 0

@@ -11,14 +11,21 @@ from conftest import ROOT
 from masonry import readCheckpoint, saveCheckpoint
 from masonry.results import readCurve, readRun
 from masonry.run import Run
-from masonry.walls import Wall, WallModel
-from small import SMALL, carryOut, parsed, scene as runScript
+from masonry.structure import Structure
+from small import SMALL, Wall, carryOut, parsed, scene as runScript
 
 
 def files(folder):
-    """Contents of the files that a resumed run and a whole one must have in common, byte for byte."""
+    """Contents of the files that a resumed run and a whole one must have in common, byte for byte.
+
+    The mechanism of limit analysis is none of them: the process that finds it writes it at its end, and a kill comes before.
+    """
     wanted = (".csv", ".vtu", ".vtp", ".pvd")
-    names = sorted(n for n in os.listdir(folder) if n.endswith(wanted))
+    names = sorted(
+        n
+        for n in os.listdir(folder)
+        if n.endswith(wanted) and not n.startswith("mechanism")
+    )
     return {n: open(os.path.join(folder, n), "rb").read() for n in names}
 
 
@@ -98,15 +105,7 @@ def interrupt(run):
     os.kill(os.getpid(), signal.SIGINT if run.at.steps % 2 else signal.SIGTERM)
 
 
-CANTILEVER = Wall(
-    name="small",
-    title="a small cantilever under rollers",
-    halfUnits=6,
-    precompression=0.5e6,
-    courses=6,
-    loadHeight=0.6,
-    loadLineFixed=True,
-)
+CANTILEVER = Wall(loadHeight=0.6, riding=False)  # under rollers
 
 
 @pytest.mark.parametrize(
@@ -182,7 +181,7 @@ def test_a_run_that_fails_can_be_taken_up_where_it_failed(
     scene, tmp_path, monkeypatch, rows
 ):
     assert run(tmp_path / "whole", *PUSH) == 0
-    read, count = WallModel.read, [rows + 1]
+    read, count = Structure.read, [rows + 1]
 
     def fail(self):
         count[0] -= 1
@@ -190,7 +189,7 @@ def test_a_run_that_fails_can_be_taken_up_where_it_failed(
             raise OSError("a pipe that broke")
         return read(self)
 
-    monkeypatch.setattr(WallModel, "read", fail)
+    monkeypatch.setattr(Structure, "read", fail)
     with pytest.raises(OSError, match="a pipe that broke"):
         run(tmp_path / "failed", *PUSH)
     lines = open(tmp_path / "failed" / "curve.csv").readlines()
@@ -351,10 +350,10 @@ def test_what_cannot_be_taken_up_is_refused(broken, tmp_path, capsys):
         error = capsys.readouterr().err
         assert message in error and len(error.splitlines()) == 1
 
-    other = Wall(name="other", title="", halfUnits=6, precompression=0.5e6, courses=6)
+    other = Wall(name="other")
     assert refused(broken, wall=other) == 2
     says("holds a run of small, this is other")
-    higher = Wall(name="small", title="", halfUnits=6, precompression=0.5e6, courses=7)
+    higher = Wall(courses=7)
     assert refused(broken, wall=higher) == 2
     says("run.checkpoint is of another scene: its blocks are others")
 

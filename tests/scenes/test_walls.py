@@ -14,7 +14,7 @@ from conftest import ROOT
 from masonry import loading, options, results
 from masonry.figures import readFrame
 from masonry.results import readCurve, readRun
-from masonry.walls import Wall, WallModel
+from masonry.structure import Structure
 from small import SMALL, carryOut, parsed, settled
 from yade import O
 
@@ -161,7 +161,10 @@ def test_help_prints_the_options_without_running(tmp_path):
     "words, message",
     [
         (["--dt-fraction", "2"], "2 must be at least 0.001 and at most 1"),
-        (["--set", "bed.compressiveFractureEnergy=12000"], "needs at least 12208 J/m², more between rigid units"),
+        (
+            ["--set", "bed.compressiveFractureEnergy=12000"],
+            "needs at least 12208 J/m², more between rigid units",
+        ),
         (["--set", "glue.cohesion=1"], "no joint 'glue'"),
         (
             ["--divisions", "2", "--damping-kind", "combined"],
@@ -225,7 +228,7 @@ def base(model):
 
 
 def test_at_rest_the_base_carries_the_precompression_and_the_weight(scene, tmp_path):
-    _, model = settled(tmp_path)
+    _, model, _ = settled(tmp_path)
     weight = 6 * 3 * 0.22 * 0.102 * 0.081 * 1800 * 9.81
     assert base(model)[2] == pytest.approx(-(0.5e6 * 0.66 * 0.102 + weight), rel=1e-4)
     assert abs(base(model)[0]) < 1e-3 * weight
@@ -234,7 +237,7 @@ def test_at_rest_the_base_carries_the_precompression_and_the_weight(scene, tmp_p
 def test_before_it_cracks_a_mirrored_push_gives_the_mirrored_force(scene, tmp_path):
     forces = []
     for sign in (1, -1):
-        _, model = settled(tmp_path)
+        _, model, _ = settled(tmp_path)
         # Damping depends on the signs of forces and velocities, which are round-off at rest.
         model.damp(0, "local")
         model.loads["push"].velocity = sign * 0.002
@@ -246,7 +249,7 @@ def test_before_it_cracks_a_mirrored_push_gives_the_mirrored_force(scene, tmp_pa
 
 
 def test_a_wall_saved_in_the_middle_of_its_push_goes_on_the_same(scene, tmp_path):
-    _, model = settled(tmp_path)
+    _, model, _ = settled(tmp_path)
     model.loads["push"].velocity = 0.02
     for _ in range(1500):
         O.step()
@@ -259,11 +262,11 @@ def test_a_wall_saved_in_the_middle_of_its_push_goes_on_the_same(scene, tmp_path
 
 
 def test_deformable_units_carry_the_weight_and_keep_the_balance(scene, tmp_path):
-    run, model = settled(tmp_path, "--blocks", "deformable", "--until", "0.3")
+    run, model, top = settled(tmp_path, "--blocks", "deformable", "--until", "0.3")
     weight = 6 * 3 * 0.22 * 0.102 * 0.081 * 1800 * 9.81
     load = 0.5e6 * 0.66 * 0.102 + weight
     assert base(model)[2] == pytest.approx(-load, rel=loading.REST)
-    loading.push(run, model)
+    run.push(top)
     assert max(run.results.column("base_shear_kN")) > 5
     assert model.energy.largestError < 1e-3
 
@@ -276,8 +279,8 @@ def test_density_scaling_is_another_rate(scene, tmp_path, blocks):
         words = (
             f"--blocks {blocks} --until 0.3 --density-scaling {scaling} --rate {rate}"
         )
-        run, model = settled(tmp_path, *words.split())
-        loading.push(run, model)
+        run, model, top = settled(tmp_path, *words.split())
+        run.push(top)
         curves.append(run.results.column)
     one, other = curves
     assert len(one("time_s")) > 20
@@ -336,23 +339,8 @@ def test_a_push_that_is_too_fast_says_so_and_what_would_do(runScene, words, cure
     assert not readRun(out)["too_fast"] and "too fast" not in process.stdout
 
 
-def test_an_impossible_wall_is_refused_with_all_problems():
-    with pytest.raises(
-        ValueError,
-        match="load height 0.3 m must be above the wall's top at 0.486 m; precompression -1 Pa",
-    ):
-        Wall(
-            name="w",
-            title="",
-            halfUnits=6,
-            courses=6,
-            precompression=-1,
-            loadHeight=0.3,
-        )
-
-
 def test_a_run_that_breaks_down_keeps_what_was_computed(scene, tmp_path, monkeypatch):
-    rows, read = [], WallModel.read
+    rows, read = [], Structure.read
 
     def breakDown(self):
         rows.append(1)
@@ -360,7 +348,7 @@ def test_a_run_that_breaks_down_keeps_what_was_computed(scene, tmp_path, monkeyp
             raise FloatingPointError("broken")
         return read(self)
 
-    monkeypatch.setattr(WallModel, "read", breakDown)
+    monkeypatch.setattr(Structure, "read", breakDown)
     with pytest.raises(FloatingPointError, match="broken"):
         carryOut(SMALL, parsed("--no-vtk", "--out", str(tmp_path)))
     assert len(readCurve(str(tmp_path))["time_s"]) == 50
@@ -370,14 +358,14 @@ def test_a_run_that_breaks_down_keeps_what_was_computed(scene, tmp_path, monkeyp
 def test_a_reading_that_is_not_finite_ends_the_run_with_the_rows_before(
     scene, tmp_path, monkeypatch
 ):
-    read, count = WallModel.read, [20]
+    read, count = Structure.read, [20]
 
     def broken(self):
         count[0] -= 1
         reading = read(self)
         return reading if count[0] else reading._replace(up=float("nan"))
 
-    monkeypatch.setattr(WallModel, "read", broken)
+    monkeypatch.setattr(Structure, "read", broken)
     with pytest.raises(FloatingPointError, match="finite numbers in vertical_mm"):
         carryOut(SMALL, parsed("--no-vtk", "--until", "0.5", "--out", str(tmp_path)))
     assert len(readCurve(str(tmp_path))["time_s"]) == 19
@@ -387,7 +375,7 @@ def test_a_reading_that_is_not_finite_ends_the_run_with_the_rows_before(
 def test_stronger_joints_carry_more(scene, tmp_path):
     peaks = []
     for cohesion in ("0.11e6", "0.5e6"):
-        run, model = settled(
+        run, model, top = settled(
             tmp_path,
             "--until",
             "2",
@@ -396,6 +384,6 @@ def test_stronger_joints_carry_more(scene, tmp_path):
             "--set",
             f"head.cohesion={cohesion}",
         )
-        loading.push(run, model)
+        run.push(top)
         peaks.append(max(run.results.column("base_shear_kN")))
     assert peaks[1] > 1.1 * peaks[0]

@@ -11,7 +11,6 @@ import pytest
 from conftest import ROOT
 from masonry import figures, history, loading, loops, measure, readCheckpoint, results
 from masonry.results import readCurve, readRun
-from masonry.walls import Wall
 from small import SMALL, carryOut, parsed
 from test_checkpoints import CANTILEVER, at, files, interrupt, refused, run
 

@@ -23,11 +23,9 @@ import resource
 import sys
 import time
 
-from masonry import brickwork, materials, options, scene, walls
-from masonry.loading import push, settle
+from masonry import Scene, bricks, columns, materials, scene
 from masonry.results import readCurve, readRun
-from masonry.run import Run
-from yade import O, Vector3, polyhedra_utils, timing, utils
+from yade import O, Vector3, timing, utils
 from yade.wrapper import *
 
 HERE = os.path.dirname(os.path.abspath(sys.argv[0]))
@@ -35,7 +33,7 @@ sys.path.insert(0, os.path.dirname(HERE))  # yade leaves it out
 import studies  # noqa: E402
 
 OUT = os.path.join("results", "benchmark")
-BLOCKS = brickwork.runningBond(34, 36)
+BLOCKS = bricks.Wall(3.96, 2.754)
 PUSH = sys.argv[1:2] == ["--push"]
 WIDE = sys.argv[1:2] == ["--wide"]
 STEPS = int(sys.argv[1]) if len(sys.argv) > 1 and not (PUSH or WIDE) else 500
@@ -57,15 +55,21 @@ def plugin(words="", until=0.2, functors=False):
 
     :returns: seconds a step, subcontacts, and microseconds of each engine
     """
-    wall = walls.Wall(
-        name="benchmark", title="TUD-COMP-4", halfUnits=36, precompression=0.5e6
-    )
     words = f"--no-vtk --checkpoint-every 0 --rate 50 --until {until} --out {OUT} {words}".split()
-    args = options.parser("", until=12).parse_args(words)
-    run = Run(wall.name, args)
-    model = run.build(walls.WallModel(wall, args, functors))
-    settle(run, model)
-    push(run, model)
+    run = Scene(
+        "benchmark",
+        BLOCKS,
+        materials.calciumSilicate(),
+        columns=columns.names(columns.PUSH),
+        functors=functors,
+        arguments=words,
+    )
+    run.platen("bottom")
+    top = run.platen("top", recorded=2.754, drive="x")
+    run.press(top, 0.5e6)
+    run.settle(damping="local", record=False)
+    run.push(top)
+    model = run.model
     seconds = cost(STEPS)
     O.timingEnabled = True
     timing.reset()
@@ -97,8 +101,8 @@ def wide(courses, halfUnits):
     began = time.perf_counter()
     unit, joints = materials.calciumSilicateUnit(), materials.calciumSilicateJoints()
     before = resident()
-    for b in brickwork.runningBond(courses, halfUnits):
-        scene.addBlock(brickwork.corners(b.low, b.high), unit, inPlane=True)
+    for b in bricks.Wall(0.11 * halfUnits, 0.081 * courses):
+        scene.addBlock(b.corners, unit, inPlane=True)
     bodies = resident()
     O.bodies[0].state.blockedDOFs = "xyzXYZ"
     scene.engines(list(joints.values()), inPlane=True)
@@ -116,6 +120,8 @@ def wide(courses, halfUnits):
 
 def volumetric():
     """The same half bricks, laid 0.1 mm into each other so that every bed joint is a contact."""
+    from yade import polyhedra_utils  # not in the YADE of Debian 13
+
     O.reset()
     mat = PolyhedraMat(density=1800, young=1e12, poisson=0.2, frictionAngle=0.4)
     O.materials.append(mat)
@@ -127,7 +133,7 @@ def volumetric():
         high[2] = low[2] + 0.081
         O.bodies.append(
             polyhedra_utils.polyhedra(
-                mat, v=[Vector3(*p) for p in brickwork.corners(low, high)]
+                mat, v=[Vector3(*p) for p in bricks.boxCorners(low, high)]
             )
         )
     O.engines = [

@@ -14,7 +14,7 @@ import csv
 import os
 import sys
 
-from masonry import MasonryJoint, addBlock, brickwork, criticalTimeStep, engines
+from masonry import MasonryJoint, addBlock, bricks, criticalTimeStep, engines
 from masonry import connect, materials
 from masonry.errors import Refused
 from masonry.options import applySettings
@@ -54,7 +54,7 @@ class Joint:
         length, thickness, height = UNIT
         lower, upper = [
             addBlock(
-                brickwork.corners((0, 0, z), (length, thickness, z + height)),
+                bricks.boxCorners((0, 0, z), (length, thickness, z + height)),
                 rigid,
                 inPlane=True,
             )

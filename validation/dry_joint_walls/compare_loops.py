@@ -37,7 +37,9 @@ RANGES = (
     (12, 17),
     (17, 46),
 )  # of amplitudes [mm]
-POINTS = 6  # along a joint; the peak is within 1 % of that with 16, in a third of the time
+POINTS = (
+    6  # along a joint; the peak is within 1 % of that with 16, in a third of the time
+)
 RATE = 20  # [mm/s]
 COLOURS = {"softening": "tab:blue", "cyclic": "tab:red"}
 

@@ -20,7 +20,8 @@ from masonry import (
     criticalTimeStep,
     engines,
 )
-from masonry.brickwork import corners, runningBond
+from masonry import bricks
+from masonry.bricks import boxCorners as corners
 from yade import O, Quaternion, Vector3
 
 HERE = os.path.dirname(os.path.abspath(sys.argv[0]))
@@ -76,7 +77,7 @@ def curve(
         for young, name in ((4.8e9, "brick"), (1e16, "plate"))
     ]
     long, high = COLUMNS * UNIT[0] / 2, COURSES * UNIT[2]
-    boxes = [(b.low, b.high, mats[0]) for b in runningBond(COURSES, COLUMNS, UNIT)]
+    boxes = [(b.low, b.high, mats[0]) for b in bricks.Wall(long, high, UNIT)]
     boxes.append(((0, 0, -0.1), (long, UNIT[1], 0), mats[1]))
     boxes.append(((0, 0, high), (long, UNIT[1], high + 0.1), mats[1]))
     order = (
@@ -96,8 +97,8 @@ def curve(
     }
     zones = None
     if blocks == "deformable":
-        bricks = [ids[n] for n in sorted(ids) if n < len(boxes) - 2]
-        zones = MasonryZones(bodies=bricks, damping=damping)
+        laid = [ids[n] for n in sorted(ids) if n < len(boxes) - 2]
+        zones = MasonryZones(bodies=laid, damping=damping)
     load = MasonryLoad(
         body=plate,
         point=place((0.3 * long, UNIT[1] / 3, high)),

@@ -3,16 +3,13 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from masonry import materials, options
-from masonry.loading import push, settle
-from masonry.run import Run
-from masonry.walls import Wall, WallModel
-from yade import O, Vector3
+from masonry import Scene, bricks, columns, materials
+from yade import O
 
 BLOCKS = ["rigid", "deformable"]
 UNIT = (0.220, 0.102, 0.081)  # [m]
 STEPS = 4000  # of the push, where an axis does not ask for another rate
-SMALL = dict(halfUnits=4, courses=4, precompression=0.5e6, unit=UNIT)
+SMALL = dict(halfUnits=4, courses=4, precompression=0.5e6, unit=UNIT, loadHeight=None)
 
 
 @dataclass
@@ -21,25 +18,25 @@ class Point:
 
     value: object
     words: str = ""  # options
-    wall: dict = field(default_factory=dict)  # keywords of masonry.walls.Wall
+    wall: dict = field(default_factory=dict)  # what is other than in SMALL
     #: Properties in SI units by the name of the joint; "all" stands for bed, head and crack.
     joints: dict = field(default_factory=dict)
-    until: float = 1.0  # [mm]
+    until: float = 1.0  # [mm]; None: the words have a history
     rate: float = None  # [mm/s]; None: what takes STEPS steps
     dt: float = None  # of the push, over the limit [-]
     gravity: bool = True
     whole: bool = False  # whether it is COMP-4 and not the small wall
 
-    def jointsOf(self, brittle):
-        """The joints of calcium silicate with the changes of this point."""
-        joints = materials.calciumSilicateJoints(brittle)
+    def masonry(self):
+        """Calcium silicate with the changes of this point."""
+        joints = materials.calciumSilicateJoints("--joints brittle" in self.words)
         for name, values in self.joints.items():
             for joint in ["bed", "head", "crack"] if name == "all" else [name]:
                 joints[joint].updateAttrs(values)
-        return joints
+        return materials.Masonry(materials.calciumSilicateUnit(), joints)
 
 
-class Observed(Run):
+class Observed(Scene):
     """A run of a point, with ``model``. Every step or so, numbers that are not finite raise AssertionError.
 
     ``worst`` has the largest value of a yield function over its size, and the most that any memory of a joint fell.
@@ -48,32 +45,42 @@ class Observed(Run):
     """
 
     def __init__(self, point, blocks, folder):
-        words = f"--no-vtk --out {folder} --blocks {blocks} --until {point.until!r} {point.words}"
+        words = f"--no-vtk --out {folder} --blocks {blocks} {point.words}"
+        if point.until:
+            words += f" --until {point.until!r}"
         if point.rate:
             words += f" --rate {point.rate!r}"
-        args = options.parser("", until=1).parse_args(words.split())
-        super().__init__("w", args)
+        whole = dict(halfUnits=36, courses=34) if point.whole else {}
+        wall = {**SMALL, **whole, **point.wall}
+        long, _, high = unit = wall["unit"]
         self.point, self.before, self.looked = point, None, 0
         self.worst = dict.fromkeys(["yield", "healed"], 0.0)
-        whole = dict(halfUnits=36, courses=34) if point.whole else {}
-        wall = Wall(
-            name="w",
-            title="",
-            joints=point.jointsOf,
-            **{**SMALL, **whole, **point.wall},
+        super().__init__(
+            "w",
+            bricks.Wall(wall["halfUnits"] * long / 2, wall["courses"] * high, unit),
+            point.masonry(),
+            columns=columns.names(columns.PUSH),
+            arguments=words.split(),
+            gravity=9.81 if point.gravity else 0,
+            until=1,
         )
-        model = self.build(WallModel(wall, args))
-        if not point.gravity:
-            model.gravity = 0
-            for engine in O.engines:
-                if hasattr(engine, "gravity"):
-                    engine.gravity = Vector3.Zero
+        self.platen("bottom")
+        self.top = self.platen(
+            "top",
+            rotation="free" if wall["loadHeight"] else "held",
+            upTo=wall["loadHeight"],
+            recorded=wall["courses"] * high,
+            drive="x",
+        )
+        self.press(self.top, wall["precompression"])
+        self._entered_with = True  # errors are the caller's
+        self._begin()
 
     def show(self, *args, **more):
         """Nothing is shown: a study has thousands of runs."""
 
-    def advance(self, steps):
-        super().advance(steps)
+    def advance(self, steps, one=None):
+        super().advance(steps, one)
         self.looked += 1
         if len(self.model.interactions) < 500 or self.looked % 20 == 0:
             self.look()
@@ -107,13 +114,13 @@ class Observed(Run):
     def _note(self, what, value):
         self.worst[what] = max(self.worst[what], float(value))
 
-    def settle(self):
-        settle(self, self.model)
+    def rest(self):
+        return self.settle(damping="local", record=False)
 
-    def push(self):
+    def pushOn(self):
         point, args = self.point, self.args
         if point.dt:
             O.dt = point.dt * self.model.limit
         if point.rate is None:
             args.rate = args.until / (STEPS * O.dt)
-        push(self, self.model)
+        return self.push(self.top)

@@ -21,7 +21,7 @@ from masonry import (
     criticalTimeStep,
     engines,
 )
-from masonry.brickwork import corners
+from masonry.bricks import boxCorners as corners
 from yade import O, Vector3
 from yade.wrapper import MasonryEnergy, MasonryIntegrator
 

@@ -31,7 +31,7 @@ def soak(blocks, steps):
     """Rows of steps, memory [MB], largest error of the balance [-], base shear [kN] and energy lost in the joints [J]."""
     with tempfile.TemporaryDirectory() as folder:
         m = Observed(Point(0), blocks, folder)
-        m.settle()
+        m.rest()
         model = m.model
         quarter = int(AMPLITUDE / RATE / O.dt)
         rows, done, way, leg = [], 0, 1, quarter

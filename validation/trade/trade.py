@@ -50,35 +50,27 @@ def asOptions(preset):
 
 #: What is varied, and its runs: options of a scene, all others at their defaults.
 RUNS = {
-    "reference": [f"{SOFT} --divisions 3"],
+    "reference": [f"{SOFT} --divisions 3 --rate 50"],
     "rigid": [""],
-    "rigid: rate": [f"--rate {v}" for v in (10, 50, 100, 200, 400)],
-    "rigid: subcontacts": [f"--subcontacts {n}" for n in (2, 8)],
-    "rigid: rate and subcontacts": [f"--rate {v} --subcontacts 2" for v in (100, 200)],
+    "rigid: rate": [f"--rate {v}" for v in (50, 100, 200)],
+    "rigid: subcontacts": [f"--subcontacts {n}" for n in (2, 6)],
+    "rigid: rate and subcontacts": ["--rate 100 --subcontacts 2"],
+    "rigid: cyclic law": ["--joints cyclic"],
     "rigid: density scaling": ["--density-scaling 25"],
-    "rigid: damping": [f"--damping {a}" for a in (0.4, 0.95)],
-    "rigid: local damping": [
-        f"--damping-kind local --rate {v}" for v in (20, 50, 100, 200)
-    ],
+    "rigid: damping": ["--damping 0.4"],
+    "rigid: local damping": ["--damping-kind local --rate 50"],
     "rigid: time step": ["--dt-fraction 0.95"],
     "rigid: no crack surfaces": ["--crack-surfaces off"],
     "deformable": [f"{SOFT} --rate 50"],
-    "deformable: rate": [f"{SOFT} --rate {v}" for v in (20, 100, 200, 400)],
+    "deformable: rate": [f"{SOFT} --rate {v}" for v in (100, 200)],
     "deformable: mesh and rate": [
-        f"{SOFT} --divisions {n} --rate {v}"
-        for n, v in ((2, 50), (2, 100), (2, 200), (3, 50))
+        f"{SOFT} --divisions 2 --rate {v}" for v in (50, 100, 200)
     ],
-    "deformable: damping": [f"{SOFT} --rate 50 --damping 0.4"],
-    "deformable: local damping": [
-        f"{SOFT} --damping-kind local --rate {v}" for v in (20, 50, 200)
-    ],
-    "deformable: time step": [f"{SOFT} --rate 50 --dt-fraction 0.95"],
-    "deformable: no crack surfaces": [f"{SOFT} --rate 50 --crack-surfaces off"],
     **{f"preset {name}": [asOptions(name)] for name in PRESETS},
 }
 
 #: Series whose runs are repeated with these time steps, which differ only to see what is chance.
-REPEATED = ["reference", "rigid", "deformable"] + [f"preset {name}" for name in PRESETS]
+REPEATED = ["rigid", "preset fast"]
 AGAIN = (0.78, 0.79)
 
 #: Patches for the pattern of cracks: half units by courses, 0.22 × 0.24 m.
@@ -163,7 +155,7 @@ def errors(wall, runs):
     ``pattern`` is the share of the crack volume that lies in other patches than those of the first reference run: 0 is
     the same pattern, 1 has nothing in common. ``imbalance`` is the dynamic imbalance of run.json.
     """
-    references = [numbers(wall, r) for r in repeats("reference") if done(wall, r)]
+    references = [numbers(wall, r) for r in RUNS["reference"]]
     mean = {name: np.mean([r[name] for r in references]) for name in references[0]}
     mine = [numbers(wall, r) for r in runs]
     result = {name: [m[name] / mean[name] - 1 for m in mine] for name in mean}

@@ -118,7 +118,12 @@ template <class T> T given(const std::string& name, const py::object& value) {
 // The description of a property as a dict for Python.
 py::dict told(const std::string& name, const Property&);
 
-template <class Derived, class Base> class Adapter : public Base, public Stateful {
+struct Nothing {};
+
+// A class whose base is a class of ours has its state from there.
+template <class Base> using StateOf = std::conditional_t<std::is_base_of<Stateful, Base>::value, Nothing, Stateful>;
+
+template <class Derived, class Base> class Adapter : public Base, public StateOf<Base> {
 public:
     std::string getClassName() const override { return Derived::className; }
     std::string getBaseClassName(unsigned i = 0) const override { return i == 0 ? Derived::baseName : ""; }
@@ -199,6 +204,7 @@ public:
     }
 
     void transfer(Transfer& to) override {
+        if constexpr (std::is_base_of<Stateful, Base>::value) Base::transfer(to);
         Derived::attributes([&](const char* name, const auto& member, const Property&, int flags = Plain) {
             if (flags & (Given | Shown)) return;
             auto value = valueOf(self(), member);

@@ -1,4 +1,5 @@
 #include "BodyColumns.hpp"
+#include <algorithm>
 
 namespace masonry {
 
@@ -25,12 +26,10 @@ void BodyColumns::read(const yade::Scene& scene) {
     }
 }
 
-bool BodyColumns::fits(const yade::Scene& scene, bool thoroughly) const {
+bool BodyColumns::fits(const yade::Scene& scene) const {
     const auto& all = scene.bodies->body;
-    if (all.size() != bodies_.size()) return false;
-    for (std::size_t b = 0; b < all.size(); ++b)
-        if (all[b].get() != bodies_[b] || (thoroughly && all[b] && all[b]->state != states_[b])) return false;
-    return true;
+    return std::equal(all.begin(), all.end(), bodies_.begin(), bodies_.end(),
+                      [](const auto& body, const auto* known) { return body.get() == known; });
 }
 
 bool BodyColumns::sameFrame(int b) const {

@@ -13,9 +13,8 @@ class BodyColumns : public RigidColumns {
 public:
     // Takes all bodies of a scene from the host.
     void read(const yade::Scene&);
-    // Whether the scene's bodies are still those that were read. With `thoroughly` their State objects are compared,
-    // too.
-    bool fits(const yade::Scene&, bool thoroughly) const;
+    // Whether the scene's bodies are still those that were read.
+    bool fits(const yade::Scene&) const;
 
     int size() const { return int(states_.size()); }
     bool has(int body) const { return states_[body] != nullptr; }

@@ -37,6 +37,7 @@ BodyStep stepOf(const State& s, const BodyForces& on, const Vector3r& gravity, d
     BodyStep step{s.vel, s.angVel, on.torque, {}};
     auto& e = step.energies;
     const double alpha = s.isDamped ? damping.alpha : 0, rate = 1 / dt;
+    const double steady = meanOverStep(s.isDamped ? damping.viscous : 0, dt);
     const bool combined = damping.last != nullptr;
     const double share = dampingShare(combined);
     // What damping takes of an acceleration whose undamped value is `free`. `middle` is the velocity in the middle of
@@ -55,7 +56,8 @@ BodyStep stepOf(const State& s, const BodyForces& on, const Vector3r& gravity, d
             continue;
         }
         const double free = on.force[i] / s.mass + gravity[i];
-        const double taken = drag(free, rate * s.vel[i] + 0.5 * free, combined ? &damping.last->force[i] : nullptr);
+        double taken = drag(free, rate * s.vel[i] + 0.5 * free, combined ? &damping.last->force[i] : nullptr);
+        taken += steady * (s.vel[i] + 0.5 * dt * (free - taken));
         step.vel[i] += dt * (free - taken);
         e.damped += 0.5 * dt * s.mass * taken * s.vel[i];
         e.pendingDamped += 0.5 * dt * s.mass * taken * step.vel[i];
@@ -77,6 +79,8 @@ BodyStep stepOf(const State& s, const BodyForces& on, const Vector3r& gravity, d
         const double middle = restrained ? rate * s.angVel[i] + 0.5 * free
                                          : least / s.inertia[i] * (rate * s.angVel[i] + 0.5 * gained[i]);
         taken[i] = s.inertia[i] * drag(free, middle, combined ? &damping.last->torque[i] : nullptr);
+        const double momentum = restrained ? s.inertia[i] * s.angVel[i] : s.angMom[i];
+        taken[i] += steady * (momentum + 0.5 * dt * (on.torque[i] - taken[i]));
     }
     step.torque -= taken;
     e.pendingExternal = e.external;

@@ -30,6 +30,7 @@ struct BodyDamping {
     // For combined damping: force per mass [m/s²] and torque per inertia [1/s²] in the step before, which stepOf()
     // replaces by those of this step. Null for local damping.
     BodyForces* last;
+    double viscous = 0; // mass-proportional damping [1/s]
 };
 
 // A step takes the velocity v- to v+ with the forces at the place x_n. Between x_n and x_n+1 a force does the work of

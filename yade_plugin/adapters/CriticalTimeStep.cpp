@@ -68,6 +68,10 @@ Dynamics::Dynamics(SceneStore& store) {
 void Dynamics::addJoint(const SceneStore& store, const JointView& joint) {
     const auto& geom = *joint.geom;
     const auto& r = geom.reference();
+    if (r.hung && r.hung->zones.get() != store.zones)
+        throw std::invalid_argument("the joint of bodies " + std::to_string(r.sides[0].body) + " and " +
+                                    std::to_string(r.sides[1].body) +
+                                    " needs its MasonryZones in O.engines, and not dead");
     const Matrix3r axes = r.axes();
     for (int p = 0; p < geom.points(); ++p) {
         Joint part{{}, {}, r.sides[0].body, r.sides[1].body};
@@ -86,7 +90,7 @@ void Dynamics::addJoint(const SceneStore& store, const JointView& joint) {
                         add(3 * a.nodes[n] + d, sign * a.weights[n] * Vector3r::Unit(d));
                 continue;
             }
-            const auto& body = *store.scene().bodies->body[r.sides[side].body];
+            const auto& body = bodyAt(store.scene(), r.sides[side].body, "a joint holds body");
             const State& s = *body.state;
             const auto [first, fresh] = firstOfBody_.emplace(body.id, int(moves.size()));
             if (fresh)
@@ -152,9 +156,10 @@ std::pair<int, int> Dynamics::stiffest(const Eigen::VectorXd& mode) const {
 struct Known {
     const SceneStore* store = nullptr;
     long revision = -1;
-    double damping = 0, zoneDamping = 0;
+    double damping = 0, zoneDamping = 0, stiffnessDamping = 0;
     bool operator==(const Known& o) const {
-        return store == o.store && revision == o.revision && damping == o.damping && zoneDamping == o.zoneDamping;
+        return store == o.store && revision == o.revision && damping == o.damping && zoneDamping == o.zoneDamping &&
+               stiffnessDamping == o.stiffnessDamping;
     }
 };
 
@@ -163,12 +168,15 @@ struct Known {
 TimeStepLimit timeStepLimit(SceneStore& store, bool anew) {
     static Known known;
     static TimeStepLimit last;
-    const Known now{&store, store.revision(), store.damping(), store.zones ? store.zones->damping : 0};
+    const Known now{&store, store.revision(), store.damping(), store.zones ? store.zones->damping : 0,
+                    store.stiffnessDamping()};
     if (!anew && now == known) return last;
     const Dynamics dynamics(store);
     const auto highest = largestEigenvalue(
         dynamics.moves, [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) { dynamics.multiply(x, y); });
     last.dt = highest.bound > 0 ? 2 / std::sqrt(highest.bound) : HUGE_VAL;
+    const double ratio = now.stiffnessDamping / last.dt; // of the damping of the highest mode to the critical one
+    last.dt *= std::sqrt(1 + ratio * ratio) - ratio;
     std::tie(last.id1, last.id2) = dynamics.stiffest(highest.mode);
     known = now;
     return last;
@@ -182,7 +190,7 @@ std::string described(const SceneStore& store, const TimeStepLimit& limit) {
     std::string name;
     for (const auto& joint : store.joints)
         if (joint.interaction->id1 == limit.id1 && joint.interaction->id2 == limit.id2)
-            name = joint.phys->home->joint->name;
+            name = joint.phys->home->joints[joint.phys->index]->name;
     return what + "joint \"" + name + "\" between bodies " + std::to_string(limit.id1) + " and " +
            std::to_string(limit.id2) + " sets";
 }

@@ -20,6 +20,12 @@ class SceneStore;
 // because close to the limit the highest modes swing with w near zero, where damping has no effect, and joints that
 // yield let them drift.
 //
+// Mass-proportional damping, which acts on the mean velocity of a step, changes nothing of this. Stiffness-proportional
+// damping of the joints takes the velocity of half a step before. A mode of angular frequency w and damping ratio
+// d = stiffnessDamping w/2 is then stable up to (sqrt(1 + d²) - d) 2/w: the quadratic equation of its step has a root
+// of size 1 where (w dt/2)² + 2 d (w dt/2) = 1. The highest mode gives the least of these limits. It is taken as if all
+// of its stiffness were that of joints, which is on the safe side for deformable units.
+//
 // All this holds for elastic joints and small rotations; joints that yield, open or crush are softer. The host's own
 // damping may bring w beyond zero. That such runs are calm below the limit is measured, not proved
 // (validation/stability).

@@ -12,9 +12,9 @@ namespace {
 const MasonryJointGeom& geometryOf(const yade::Interaction& interaction) {
     const auto* geom = dynamic_cast<const MasonryJointGeom*>(interaction.geom.get());
     if (!geom || !geom->made())
-        throw std::invalid_argument("interaction " + std::to_string(interaction.id1) + "+" +
-                                    std::to_string(interaction.id2) +
-                                    " has no MasonryJointGeom: Ig2_Polyhedra_Polyhedra_MasonryJointGeom must make it");
+        throw std::invalid_argument(
+            "interaction " + std::to_string(interaction.id1) + "+" + std::to_string(interaction.id2) +
+            " has no MasonryJointGeom: Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom must make it");
     return *geom;
 }
 
@@ -36,6 +36,10 @@ void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::assign(const MasonryMat& mat1, 
     const shared_ptr<MasonryJointPhys> phys(new MasonryJointPhys);
     phys->define(joint, k, geom.points());
     interaction.phys = phys;
+    const auto& present = *Singleton<yade::Omega>::instance().getScene();
+    joint->madeIn(present);
+    mat1.usedIn(present);
+    mat2.usedIn(present);
 }
 
 void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::assignTo(const shared_ptr<yade::Interaction>& interaction,

@@ -13,6 +13,7 @@ void JointShapes::take(int joint, const JointShapes& from, int other) {
     joints[joint] = from.joints[other];
     for (int p = 0; p < points; ++p) {
         setJump(p, joint, from.jumpAt(p, other));
+        setViscous(p, joint, from.viscousAt(p, other));
         setShape(p, joint, from.offsetAt(p, other), from.areaAt(p, other));
     }
 }

@@ -89,7 +89,9 @@ struct JointShapes : Home {
     int stride;         // number of joints, rounded up to whole lanes; one joint alone is not rounded up
     bool alike = false; // see shareShapes()
     std::vector<JointReference> joints;
-    std::vector<double> jump[3];   // displacement jump since the reference state: opening and the two slides [m]
+    std::vector<double> jump[3]; // displacement jump since the reference state: opening and the two slides [m]
+    // Stress of JointDamping in the last step [Pa], normal and the two shears; empty while there was no such damping.
+    std::vector<double> viscous[3];
     std::vector<double> area;      // of a subcontact [m²]
     std::vector<double> offset[3]; // from the centre of body 1 to the subcontact in the reference state [m]
 
@@ -102,6 +104,18 @@ struct JointShapes : Home {
     Vector3r jumpAt(int point, int joint) const { return vectorAt(jump, at(point, joint)); }
     Vector3r offsetAt(int point, int joint) const { return vectorAt(offset, shape(point, joint)); }
     double areaAt(int point, int joint) const { return area[shape(point, joint)]; }
+    Vector3r viscousAt(int point, int joint) const {
+        return viscous[0].empty() ? Vector3r(Vector3r::Zero()) : vectorAt(viscous, at(point, joint));
+    }
+    void setViscous(int point, int joint, const Vector3r& value) {
+        if (viscous[0].empty() && value.isZero(0)) return;
+        makeViscous();
+        setVector(viscous, at(point, joint), value);
+    }
+    void makeViscous() {
+        for (auto& column : viscous)
+            column.resize(jump[0].size(), 0);
+    }
     void setJump(int point, int joint, const Vector3r& value) { setVector(jump, at(point, joint), value); }
     // Sets area and offset of a subcontact. Only for homes whose joints do not share them.
     void setShape(int point, int joint, const Vector3r& offsetOfPoint, double areaOfPoint) {
@@ -129,17 +143,18 @@ private:
 // much when they are calculated at different places of a wall.
 inline bool sameButRoundOff(double a, double b, double scale) { return std::abs(a - b) <= 1e-12 * scale; }
 
-// State of the law in joints that share properties and stiffness.
+// State of the law in joints whose properties have equal values, and which share stiffness.
 struct JointStates : Home {
-    JointStates(const shared_ptr<MasonryJoint>& kind, const ElasticStiffness& k, int joints, int points)
-        : joint(kind), columns(kind->law()->columns(k, joints, points)) {}
+    JointStates(const shared_ptr<MasonryJoint>& kind, const ElasticStiffness& k, int count, int points)
+        : joints(count, kind), columns(kind->law()->columns(k, count, points)) {}
 
-    shared_ptr<MasonryJoint> joint; // the property set of these joints
+    std::vector<shared_ptr<MasonryJoint>> joints; // the property set of each; different objects have equal values
     std::unique_ptr<LawColumns> columns;
     shared_ptr<JointShapes> shapes; // of the same joints in the same order; null before they belong to a scene
 
     // Copies joint number `other` of another home into place `number` of this one.
     void take(int number, const JointStates& from, int other) {
+        joints[number] = from.joints[other];
         for (int p = 0; p < columns->points(); ++p) {
             columns->set(p, number, from.columns->get(p, other));
             columns->setDissipated(p, number, from.columns->dissipated(p, other));

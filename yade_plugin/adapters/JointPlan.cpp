@@ -3,8 +3,10 @@
 #include "MasonryJointPhys.hpp"
 #include "MasonryZones.hpp"
 #include "common/Vectorised.hpp"
+#include "law/JointDamping.hpp"
 #include "motion/JointFrames.hpp"
 #include <algorithm>
+#include <numeric>
 
 namespace masonry {
 
@@ -294,7 +296,8 @@ bool JointPlan::noticeBodies(SceneStore& store) {
     return fits;
 }
 
-void JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const Kind& plan, int from, int n) {
+double JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const Kind& plan, int from, int n,
+                               double stiffnessDamping) {
     auto& shapes = *kind.shapes;
     auto& states = *kind.states->columns;
     const auto& bodies = store.bodies;
@@ -317,6 +320,13 @@ void JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const Kin
     else
         (plane_ ? alignRigidInPlane : alignRigid)(n, body1, body2, position, turn, frame1, frame2, span, frames);
     const int stride = int(plan.body1.size());
+    const auto& k = states.stiffness();
+    const auto& properties = states.law().properties();
+    const double times = stiffnessDamping / store.scene().dt;
+    const JointDamping damping{times * k.normal, times * k.shear, properties.elastic, properties.tensileStrength > 0,
+                               properties.friction};
+    constexpr double none[most] = {};
+    double sumA[most], sumB[most], taken = 0; // shear stresses of law and damping; the energy that damping takes
     for (int p = 0; p < shapes.points; ++p) {
         const std::size_t i = shapes.at(p, from), shape = shapes.alike ? shapes.shape(p, 0) : i;
         const std::size_t hung = std::size_t(p) * stride + from;
@@ -334,6 +344,16 @@ void JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const Kin
                        frames.normalStress);
         const double *normal = frames.normalStress, *a = states.shearStressA(p, from),
                      *b = states.shearStressB(p, from);
+        if (!shapes.viscous[0].empty()) {
+            std::copy_n(a, n, sumA);
+            plane_ ? std::fill_n(sumB, n, 0.0) : std::copy_n(b, n, sumB);
+            a = sumA;
+            b = sumB;
+            const double* const change[3] = {frames.step[0], frames.step[1], plane_ ? none : frames.step[2]};
+            double* const viscous[3] = {&shapes.viscous[0][i], &shapes.viscous[1][i], &shapes.viscous[2][i]};
+            taken += addJointDamping(n, damping, states.regime(p, from), states.tensionDamage(p, from), area, change,
+                                     frames.normalStress, sumA, sumB, viscous);
+        }
         if (kind.hung) {
             double* onPoints = &onPoints_[(plane_ ? 2 : 3) * (plan.firstPoint + hung)];
             plane_ ? pullNodalInPlane(n, area, normal, a, j0, j1, frames, onPoints)
@@ -346,6 +366,7 @@ void JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const Kin
         (plane_ ? finishNodalInPlane : finishNodal)(n, frames, onJoints);
     else
         (plane_ ? finishRigidInPlane : finishRigid)(n, frames, onJoints);
+    return taken;
 }
 
 // Finds the displacements of all dependent points. In a planar run nothing moves along y.
@@ -462,27 +483,32 @@ void JointPlan::bringToNodes(SceneStore& store) {
     }
 }
 
-void JointPlan::advance(SceneStore& store) {
+double JointPlan::advance(SceneStore& store, double stiffnessDamping) {
     if (store_ != &store || revision_ != store.revision()) build(store, true);
     if (!noticeBodies(store)) {
         build(store, false);
         noticeBodies(store);
     }
     if (zones_) moveDependentPoints(store);
+    if (stiffnessDamping > 0)
+        for (auto& kind : store.kinds)
+            if (kind.shapes->viscous[0].empty()) kind.shapes->makeViscous();
     const int count = int(batches_.size());
+    taken_.resize(count);
 #pragma omp parallel for schedule(static)
     for (int n = 0; n < count; ++n) {
         const auto& kind = store.kinds[batches_[n].kind];
         const auto& plan = kinds_[batches_[n].kind];
         const int from = batches_[n].from;
         const int left = int(kind.shapes->joints.size()) - from;
-        advanceBatch(store, kind, plan, from, std::min(most, left));
+        taken_[n] = advanceBatch(store, kind, plan, from, std::min(most, left), stiffnessDamping);
     }
     const int bodies = store.bodies.size();
     forces_ = store.scene().forces().forces(bodies);
     torques_ = store.scene().forces().torques(bodies);
     bringToBodies();
     if (zones_) bringToNodes(store);
+    return std::accumulate(taken_.begin(), taken_.end(), 0.0);
 }
 
 } // namespace masonry

@@ -10,7 +10,8 @@ namespace masonry {
 
 class JointPlan {
 public:
-    void advance(SceneStore&);
+    // Makes a step. `stiffnessDamping` is the attribute of MasonryJointLoop [s]; returns the energy it takes [J].
+    double advance(SceneStore&, double stiffnessDamping);
 
 private:
     // What a kind of joints (see JointKind) needs beside its columns in the store.
@@ -67,7 +68,7 @@ private:
     void buildPlaces(const JointKind&, Kind&, std::vector<std::vector<Receivers::Item>>& atPlaces,
                      std::map<std::array<double, 6>, int>& known);
     bool noticeBodies(SceneStore&);
-    void advanceBatch(SceneStore&, const JointKind&, const Kind&, int from, int count);
+    double advanceBatch(SceneStore&, const JointKind&, const Kind&, int from, int count, double stiffnessDamping);
     void shareOut();
     void moveDependentPoints(const SceneStore&);
     void bringToBodies();
@@ -95,6 +96,7 @@ private:
     // Scratch of a step. Of every joint between rigid bodies the force on body 1 [N] and the torques about both centres
     // [N m]; of a joint with a deformable side only the moments on the rotations of both bodies [N m].
     std::vector<double> onJoints_;
+    std::vector<double> taken_;    // scratch: energy that damping takes in every batch [J]
     std::vector<double> onPoints_; // scratch: force on side 1 of every subcontact with deformable sides [N]
     Vector3r* forces_ = nullptr;   // the host's forces of the present step [N], to which the joints add theirs
     Vector3r* torques_ = nullptr;  // the host's torques of the present step [N m]

@@ -12,7 +12,7 @@ template <class Class, class Visit> void ledgerOfBodies(Visit&& visit) {
           ReadOnly);
     visit("damped", &Class::damped, number("J", "Energy taken by damping so far"), ReadOnly);
     visit("kinetic", &Class::kinetic, number("J", "Kinetic energy"), ReadOnly);
-    visit("fallen", &Class::fallen, number("J", "Work of gravity since the reference state"), ReadOnly);
+    visit("fallen", &Class::fallen, number("J", "Work of gravity since the first step"), ReadOnly);
     visit("pendingExternal", &Class::pendingExternal, number("J", "External work of the last step"), Hidden);
     visit("pendingDamped", &Class::pendingDamped, number("J", "Damping of the last step"), Hidden);
 }

@@ -2,9 +2,12 @@
 #include "BodyStep.hpp"
 #include "CriticalTimeStep.hpp"
 #include "MasonryIntegrator.hpp"
+#include "MasonryJointLoop.hpp"
 #include "MasonryLoad.hpp"
 #include "MasonryZones.hpp"
+#include "SceneCheck.hpp"
 #include "SceneStore.hpp"
+#include <iostream>
 
 template class masonry::Adapter<masonry::MasonryEnergy, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryEnergy)
@@ -17,6 +20,7 @@ MasonryEnergy::Inventory MasonryEnergy::inventory(const SceneStore& store) const
     Inventory all{external, fallen, kinetic, damped, 0};
     for (const auto* load : store.allLoads)
         all.work += load->work;
+    if (store.loop) all.drag += store.loop->dampingWork;
     for (const EnergyLedger* other :
          {static_cast<const EnergyLedger*>(store.integrator), static_cast<const EnergyLedger*>(store.zones)}) {
         if (!other) continue;
@@ -54,18 +58,47 @@ void MasonryEnergy::watchOver(SceneStore& store) {
         if (anew) throw std::runtime_error("unstable: " + masonry::described(store, limit));
     }
     if (!tenth) return;
+    if (scene->iter % SceneStore::collapseEvery == 0) stopIfCollapsed(store);
+    if (scene->iter % 1000 == 0 && scene->iter > 0) warnOfBalance(store);
     const auto all = inventory(store);
     const double motion = std::abs(all.moving);
-    if (!std::isfinite(motion))
+    if (!std::isfinite(motion)) {
+        stopIfCollapsed(store);
         throw std::runtime_error("numbers " + firstNotFinite(*scene) + " are not finite at step " +
                                  std::to_string(scene->iter) + "; " +
                                  masonry::described(store, timeStepLimit(store, false)));
+    }
     largestInput = std::max(largestInput, std::abs(all.work + all.falls));
-    if (motion > 100 * largestInput + 1e-12)
-        throw std::runtime_error("unstable: motion out of nothing at step " + std::to_string(scene->iter) + ", " +
-                                 text(motion) + " J where " + text(largestInput) + " J of work were done; " +
-                                 masonry::described(store, timeStepLimit(store, true)) +
-                                 ". Velocities set by hand must be told at once by MasonryEnergy.given()");
+    if (motion > 100 * largestInput + 1e-12) {
+        const auto what = "unstable: motion out of nothing at step " + std::to_string(scene->iter) + ", " +
+                          text(motion) + " J where " + text(largestInput) + " J of work were done; " +
+                          masonry::described(store, timeStepLimit(store, true)) +
+                          ". Velocities set by hand must be told at once by MasonryEnergy.given()";
+        stopIfCollapsed(store, what);
+        throw std::runtime_error(what);
+    }
+}
+
+void MasonryEnergy::stopIfCollapsed(SceneStore& store, const std::string& besides) {
+    const auto found = store.collapse.look(store, {turnLimit, slideLimit, closureLimit, openingLimit});
+    collapsedBlock = found.block;
+    collapse = found.what;
+    if (found.block < 0) return;
+    throw std::runtime_error("collapsed: " + found.what + (besides.empty() ? "" : ". Besides, " + besides));
+}
+
+// A look costs less than a step, and is made every thousandth.
+void MasonryEnergy::warnOfBalance(const SceneStore& store) {
+    if (warned) return;
+    const auto balance = presentBalance(store);
+    if (!(std::abs(balance.error) > 0.01)) return;
+    warned = true;
+    std::cerr << "warning: at step " + std::to_string(scene->iter) + " the energy balance is off by " +
+                     text(std::round(1000 * std::abs(balance.error)) / 10) +
+                     " % of the work done: a smaller time step, slower loading or more damping helps; what a script "
+                     "does between steps to places, velocities and forces is not counted (this is told once, see "
+                     "MasonryEnergy.balance())\n"
+              << std::flush;
 }
 
 namespace {
@@ -116,17 +149,21 @@ void MasonryEnergy::action() {
     const BodyDamping damping{turn->damping(), turn->hostIntegrator != nullptr, nullptr};
     auto& forces = scene->forces();
     forces.sync();
+    const double before = fallen;
+    Vector3r moment = Vector3r::Zero();
     beginStep();
     for (const auto& body : scene->bodies->body) {
         if (!body || !body->state || (turn->zones && turn->zones->unitOf(body->id))) continue; // MasonryZones does
         const State& s = *body->state;
         fallen += s.mass * gravity.dot(s.pos - s.refPos);
+        moment += s.mass * (s.pos - s.refPos);
         if (!isFreeOrMoves(s)) continue;
         const BodyForces on{forces.getForce(body->id), forces.getTorque(body->id)};
         add(stepOf(s, on, gravity, scene->dt, damping).energies);
     }
+    fallen = workOfGravity(fallen, gravity, moment, before);
     for (auto* load : turn->loads) {
-        const State& s = *scene->bodies->body[load->body]->state;
+        const State& s = *bodyAt(*scene, load->body, "MasonryLoad.body").state;
         const BodyForces on{forces.getForce(load->body), forces.getTorque(load->body)};
         const auto step = stepOf(s, on, gravity, scene->dt, damping);
         load->workBefore(scene->dt, s);
@@ -134,10 +171,7 @@ void MasonryEnergy::action() {
     }
 }
 
-py::dict MasonryEnergy::balance() {
-    const BetweenSteps still;
-    auto& store = SceneStore::present();
-    store.update(SceneStore::Look::AtJoints); // a full look would take too long: every row of curve.csv calls this
+MasonryEnergy::Balance MasonryEnergy::presentBalance(const SceneStore& store) const {
     LawColumns::Sums joints{};
     for (const auto& kind : store.kinds) {
         const auto sums = kind.states->columns->energies(kind.shapes->area.data(), kind.shapes->alike);
@@ -150,15 +184,25 @@ py::dict MasonryEnergy::balance() {
     }
     const auto& stored = joints.stored;
     const Vector3r lost(joints.dissipated.tension, joints.dissipated.shear, joints.dissipated.compression);
-    const auto [work, falls, moving, drag, inUnits] = inventory(store);
+    const auto all = inventory(store);
+    const auto [work, falls, moving, drag, inUnits] = all;
     const double in = work + falls;
     const double out = moving + drag + inUnits + stored.tension + stored.shear + stored.compression + lost.sum();
     const double size = std::max(std::abs(work) + std::abs(falls), std::abs(out));
+    return {all, stored, joints.dissipated, size, size > 0 ? (in - out) / size : 0};
+}
+
+py::dict MasonryEnergy::balance() {
+    const BetweenSteps still;
+    auto& store = SceneStore::present();
+    store.update(SceneStore::Look::AtJoints); // a full look would take too long: every row of curve.csv calls this
+    const auto [inventory, stored, dissipated, size, error] = presentBalance(store);
+    const auto [work, falls, moving, drag, inUnits] = inventory;
+    const Vector3r lost(dissipated.tension, dissipated.shear, dissipated.compression);
     // Dissipated energies should never fall. They can: where a joint opens or closes within a step, the trapezoidal
     // rule takes the mean of the tractions before and after, and the error is counted as dissipated, also where it is
     // negative. A long undamped series of such steps makes energy. Damping or shorter steps prevent that.
     mostLost = mostLost.cwiseMax(lost);
-    const double error = size > 0 ? (in - out) / size : 0;
     largestError = std::max(largestError, std::abs(error));
     if (size > 0) largestMade = std::max(largestMade, (mostLost - lost).sum() / size);
     py::dict all;

@@ -1,11 +1,15 @@
 #pragma once
+#include "Collapse.hpp"
+#include "GravityWork.hpp"
 #include "Ledger.hpp"
+#include "SceneCheck.hpp"
+#include "law/JointState.hpp"
 
 namespace masonry {
 
 class SceneStore;
 
-class MasonryEnergy : public Adapter<MasonryEnergy, yade::GlobalEngine>, public EnergyLedger {
+class MasonryEnergy : public Adapter<MasonryEnergy, yade::GlobalEngine>, public EnergyLedger, public GravityWork {
 public:
     static constexpr const char* className = "MasonryEnergy";
     static constexpr const char* baseName = "GlobalEngine";
@@ -16,10 +20,21 @@ public:
         "move. With NewtonIntegrator this engine must stand directly before it, and counts them by its equations. The "
         "error of the balance is round-off and the small terms of finite rotation. It also watches over the run: a "
         "time "
-        "step above its limit, motion that grows without work and numbers that are not finite stop it with an error.";
+        "step above its limit, motion that grows without work and numbers that are not finite stop it with an error "
+        "that begins with 'unstable:' or 'numbers'. A collapse ends it with an error that begins with 'collapsed:': a "
+        "block has turned, slid, been crushed or gone away so far that the joints, whose geometry is that of the "
+        "reference state, mean nothing any more; see turnLimit, slideLimit, closureLimit and openingLimit. An energy "
+        "balance that is off by more than 1 % of the work done is told once, on the terminal's error stream.";
 
-    // See attributes() for the meaning and unit of each. Users set `watch` only.
+    // See attributes() for the meaning and unit of each. Users set `watch` and the limits only.
     bool watch = true;
+    double turnLimit = CollapseLimits().turn;
+    double slideLimit = CollapseLimits().slide;
+    double closureLimit = CollapseLimits().closure;
+    double openingLimit = CollapseLimits().opening;
+    int collapsedBlock = -1;
+    std::string collapse;
+    bool warned = false;
     bool begun = false;
     double largestError = 0;
     double largestMade = 0;
@@ -29,10 +44,41 @@ public:
     template <class Visit> static void attributes(Visit&& visit) {
         using E = MasonryEnergy;
         ledgerOfBodies<E>(visit);
+        GravityWork::describe<E>(visit);
         visit("watch", &E::watch,
               described(
-                  "Whether an unstable run is stopped. If it is not, a time step above criticalTimeStep() gives wrong "
+                  "Whether a run that is unstable or has collapsed is stopped, and a wrong energy balance is told. If "
+                  "an unstable run is not stopped, a time step above criticalTimeStep() gives wrong "
                   "results that look sound, because damping keeps the unstable motion within bounds"));
+        visit("turnLimit", &E::turnLimit,
+              number("rad", "Rotation of two joined blocks against each other at which a run has collapsed, looked at "
+                            "every hundredth step. At 60° the normal of a joint, the mean of both faces, lies 30° off "
+                            "either face, which is the angle of friction of masonry: from there an edge that stands "
+                            "still in reality would slip. A block that rocks about an edge is exact up to there")
+                  .above(0)
+                  .source("[decided]: yade_plugin/README.md, Collapse"));
+        visit("slideLimit", &E::slideLimit,
+              number("-", "Slide in a joint, mean of its subcontacts, over the joint's own size in that direction, at "
+                          "which a run has collapsed: at 1 the two faces have parted")
+                  .above(0)
+                  .source("[decided]: yade_plugin/README.md, Collapse"));
+        visit("closureLimit", &E::closureLimit,
+              number("-", "Largest closure of a joint over the size of the smaller of its two blocks across the joint, "
+                          "at which a run has collapsed: at 1 one block has gone through the other")
+                  .above(0)
+                  .source("[decided]: yade_plugin/README.md, Collapse"));
+        visit("openingLimit", &E::openingLimit,
+              number("-", "Smallest opening of a joint over the largest extent of the smaller of its two blocks, at "
+                          "which a run has collapsed. A block that rocks keeps an edge closed; at 1 it has left its "
+                          "neighbour by its own size")
+                  .above(0)
+                  .source("[decided]: yade_plugin/README.md, Collapse"));
+        visit("collapsedBlock", &E::collapsedBlock,
+              number("", "Id of the block whose collapse has ended the run; -1: none has collapsed"), ReadOnly);
+        visit("collapse", &E::collapse, described("What that block did, and when; empty: none has collapsed"),
+              ReadOnly);
+        visit("warned", &E::warned,
+              described("Whether a balance that is off by more than 1 % has been told on the terminal"), ReadOnly);
         visit("largestError", &E::largestError,
               number("-", "Largest error of the balance seen by balance(), relative to the work done"), ReadOnly);
         visit("largestMade", &E::largestMade,
@@ -54,6 +100,7 @@ public:
                  "setting velocities by hand, if the run has made a step before.");
     }
 
+    bool isActivated() override { return standsAlone(*this); }
     void action() override;
 
 private:
@@ -65,10 +112,20 @@ private:
         double inUnits = 0; // elastic energy of deformable units
     };
     Inventory inventory(const SceneStore&) const;
+    struct Balance {
+        Inventory all;
+        Energies stored, dissipated; // of the joints [J]
+        double size;                 // of the work done [J]
+        double error;                // relative to that [-]
+    };
+    Balance presentBalance(const SceneStore&) const;
     py::dict balance();
     void given();
     void countPresentMotion(SceneStore&);
     void watchOver(SceneStore&);
+    // Ends the run if a block has collapsed; `besides` says what else is wrong.
+    void stopIfCollapsed(SceneStore&, const std::string& besides = "");
+    void warnOfBalance(const SceneStore&);
 
     double checkedStep_ = 0;    // time step at the last check [s]
     long checkedRevision_ = -1; // SceneStore::revision() at the last check

@@ -2,6 +2,7 @@
 #include "BodyStep.hpp"
 #include "MasonryLoad.hpp"
 #include "MasonryZones.hpp"
+#include "SceneCheck.hpp"
 #include "SceneStore.hpp"
 #include <cstdint>
 
@@ -37,34 +38,45 @@ void MasonryIntegrator::action() {
     const EngineTurn turn(*scene, *this);
     auto& bodies = turn->bodies;
     const int count = bodies.size();
+    if (std::size_t(count) < last_[0].size())
+        throw std::invalid_argument("MasonryIntegrator remembers forces of " + std::to_string(last_[0].size()) +
+                                    " bodies, the scene has " + std::to_string(count));
     const auto summed = scene->forces().summed(count);
     for (auto& column : last_)
         if (combined()) column.resize(count, 0);
-    for (auto* load : turn->loads)
+    for (auto* load : turn->loads) { // a script may have changed its body since the load acted
+        bodyAt(*scene, load->body, "MasonryLoad.body");
         load->workBefore(scene->dt, bodies.state(load->body));
+    }
     // The pieces over which energies are summed up do not depend on the number of threads, so neither do the sums.
     constexpr int piece = RigidMotion::most;
     const int pieces = (count + piece - 1) / piece;
-    std::vector<EnergyLedger> sums(pieces);
+    std::vector<Sums> sums(pieces);
 #pragma omp parallel for schedule(static)
     for (int n = 0; n < pieces; ++n)
         sums[n] = advance(turn.store(), summed.forces, summed.torques, n * piece, std::min(count, (n + 1) * piece));
+    const double before = fallen;
+    Vector3r moment = Vector3r::Zero();
     beginStep();
-    for (const auto& sum : sums)
-        add(sum);
+    for (const auto& sum : sums) {
+        add(sum.energies);
+        moment += sum.moment;
+    }
+    fallen = workOfGravity(fallen, gravity, moment, before);
     for (auto* load : turn->loads) {
         const auto& s = bodies.state(load->body);
         load->workAfter(scene->dt, s.vel, s.angVel);
     }
 }
 
-EnergyLedger MasonryIntegrator::advance(SceneStore& store, const Vector3r* forces, const Vector3r* torques, int first,
-                                        int beyond) {
+MasonryIntegrator::Sums MasonryIntegrator::advance(SceneStore& store, const Vector3r* forces, const Vector3r* torques,
+                                                   int first, int beyond) {
     constexpr int ahead = 8;
     auto& bodies = store.bodies;
     const int count = beyond - first;
     const bool thoroughly = scene->iter % 10 == 0;
-    EnergyLedger sum;
+    Sums all;
+    auto& sum = all.energies;
     RigidMotion motion;
     unsigned axes = 0;
     int spinning = 0;
@@ -72,7 +84,7 @@ EnergyLedger MasonryIntegrator::advance(SceneStore& store, const Vector3r* force
     for (int i = 0; i < count; ++i) {
         const int b = first + i;
         blocked[i] = 63;
-        motion.alpha[i] = 0;
+        motion.alpha[i] = motion.viscous[i] = 0;
         if (i + ahead < count && bodies.has(b + ahead)) bodies.prefetch(b + ahead);
         if (!bodies.has(b) || bodies.isUnit[b]) continue;
         thoroughly ? bodies.noticeAll(b) : bodies.notice(b);
@@ -82,9 +94,10 @@ EnergyLedger MasonryIntegrator::advance(SceneStore& store, const Vector3r* force
             axes |= bodies.axes(b);
             blocked[i] = bodies.blockedAxes(b);
             motion.alpha[i] = bodies.isDamped(b) ? damping : 0;
+            motion.viscous[i] = bodies.isDamped(b) ? massDamping : 0;
         }
     }
-    sum.fallen = weightsFallen(bodies, first, count);
+    findWeights(bodies, first, count, all);
     if (axes != 0) {
         const RigidMotion::Around around{scene->dt, {gravity[0], gravity[1], gravity[2]}, combined()};
         double unused[RigidMotion::most] = {}; // local damping does not use earlier forces
@@ -115,22 +128,27 @@ EnergyLedger MasonryIntegrator::advance(SceneStore& store, const Vector3r* force
         if (!bodies.has(b) || bodies.isUnit[b] || !bodies.spins(b)) continue;
         sum.add(turnFreely(store, forces[b], torques[b], b)); // last, because RigidMotion has written to its columns
     }
-    return sum;
+    return all;
 }
 
-// Work of gravity on rigid bodies since the reference state [J].
-double MasonryIntegrator::weightsFallen(const BodyColumns& bodies, int first, int count) const {
+// Sums m g·u and m u of rigid bodies, with their displacements u since the reference state.
+void MasonryIntegrator::findWeights(const BodyColumns& bodies, int first, int count, Sums& all) const {
+    double masses[RigidMotion::most];     // 0 where there is no rigid body
     double falls[RigidMotion::most] = {}; // gravity times displacement
-    for (int d = 0; d < 3; ++d) {
-        if (gravity[d] == 0) continue;
-        const double g = gravity[d], *now = &bodies.position[d][first], *before = &bodies.referencePosition[d][first];
-        for (int i = 0; i < count; ++i)
-            falls[i] += g * (now[i] - before[i]);
-    }
-    double sum = 0;
     for (int i = 0; i < count; ++i)
-        if (bodies.has(first + i) && !bodies.isUnit[first + i]) sum += bodies.mass[first + i] * falls[i];
-    return sum;
+        masses[i] = bodies.has(first + i) && !bodies.isUnit[first + i] ? bodies.mass[first + i] : 0;
+    for (int d = 0; d < 3; ++d) {
+        const double g = gravity[d], *now = &bodies.position[d][first], *before = &bodies.referencePosition[d][first];
+        double moment = 0;
+        for (int i = 0; i < count; ++i) {
+            const double moved = now[i] - before[i];
+            falls[i] += g * moved;
+            moment += masses[i] * moved;
+        }
+        all.moment[d] = moment;
+    }
+    for (int i = 0; i < count; ++i)
+        all.energies.fallen += masses[i] * falls[i];
 }
 
 // The step is made in the host's State, because only that holds the angular momentum of the body.
@@ -141,7 +159,8 @@ EnergyLedger MasonryIntegrator::turnFreely(SceneStore& store, const Vector3r& fo
         before.force[d] = last_[d][body];
         before.torque[d] = last_[3 + d][body];
     }
-    const auto step = stepOf(s, {force, torque}, gravity, scene->dt, {damping, false, combined() ? &before : nullptr});
+    const auto step =
+        stepOf(s, {force, torque}, gravity, scene->dt, {damping, false, combined() ? &before : nullptr, massDamping});
     for (int d = 0; combined() && d < 3; ++d) {
         last_[d][body] = before.force[d];
         last_[3 + d][body] = before.torque[d];

@@ -1,5 +1,7 @@
 #pragma once
+#include "GravityWork.hpp"
 #include "Ledger.hpp"
+#include "SceneCheck.hpp"
 #include "motion/RigidMotion.hpp"
 
 namespace masonry {
@@ -7,7 +9,9 @@ namespace masonry {
 class BodyColumns;
 class SceneStore;
 
-class MasonryIntegrator : public Adapter<MasonryIntegrator, yade::GlobalEngine>, public EnergyLedger {
+class MasonryIntegrator : public Adapter<MasonryIntegrator, yade::GlobalEngine>,
+                          public EnergyLedger,
+                          public GravityWork {
 public:
     static constexpr const char* className = "MasonryIntegrator";
     static constexpr const char* baseName = "GlobalEngine";
@@ -18,7 +22,8 @@ public:
         "MasonryEnergy remains as the reference.";
 
     double damping = 0.8;
-    std::string dampingKind = "local";
+    std::string dampingKind = "combined";
+    double massDamping = 0;
     Vector3r gravity = Vector3r(0, 0, -9.81);
 
     template <class Visit> static void attributes(Visit&& visit) {
@@ -28,21 +33,36 @@ public:
         visit("dampingKind", &I::dampingKind,
               described("'local': -alpha |F| sgn(v), paper eq. (3); 'combined': alpha |F| (sgn(dF/dt) - sgn(v)) / 2, "
                         "which also calms vibration about a steady motion"));
-        visit("gravity", &I::gravity, number("m/s²", "Gravity"));
+        visit("massDamping", &I::massDamping,
+              number("1/s", "Mass-proportional viscous damping: every free axis of a damped body, and the nodes of "
+                            "MasonryZones, get the force -massDamping times momentum. A mode of angular frequency w "
+                            "then has the damping ratio massDamping/(2w); the limit of the time step stays. Blocks "
+                            "under a MasonryLoad and axes whose motion is prescribed are left out")
+                  .atLeast(0));
+        visit("gravity", &I::gravity,
+              number("m/s²",
+                     "Gravity. It may change during a run: MasonryZones follows it, and the energy balance counts "
+                     "its work"));
         ledgerOfBodies<I>(visit);
+        GravityWork::describe<I>(visit);
         visit("last", computed(&I::lastForces, &I::setLastForces),
               described("Force per mass and torque per inertia of every body in the last step"), Hidden);
     }
 
     std::vector<std::string> problems() const;
+    bool isActivated() override { return standsAlone(*this); }
     void action() override;
 
 private:
     bool combined() const { return dampingKind == "combined"; }
-    // Makes a step of bodies `first` up to, but without, `beyond`, and gives their energies.
-    EnergyLedger advance(SceneStore&, const Vector3r* forces, const Vector3r* torques, int first, int beyond);
+    struct Sums {                           // of some bodies
+        EnergyLedger energies;              // `fallen` is the sum of m g·u
+        Vector3r moment = Vector3r::Zero(); // sum of m u [kg m]; see GravityWork
+    };
+    // Makes a step of bodies `first` up to, but without, `beyond`.
+    Sums advance(SceneStore&, const Vector3r* forces, const Vector3r* torques, int first, int beyond);
+    void findWeights(const BodyColumns&, int first, int count, Sums&) const;
     // Makes a step of a body none of whose rotations is blocked.
-    double weightsFallen(const BodyColumns&, int first, int count) const;
     EnergyLedger turnFreely(SceneStore&, const Vector3r& force, const Vector3r& torque, int body);
     std::vector<Vector3r> lastForces();
     void setLastForces(const std::vector<Vector3r>&);

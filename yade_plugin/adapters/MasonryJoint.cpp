@@ -8,6 +8,8 @@ namespace masonry {
 
 void MasonryJoint::postLoad() {
     if (!direction.allFinite()) throw std::invalid_argument("joint \"" + name + "\": direction must be finite numbers");
+    const auto wrong = fixed_.problems({"normalStiffness", "shearStiffness"}, {normalStiffness, shearStiffness});
+    if (!wrong.empty()) throw std::invalid_argument("joint \"" + name + "\": " + joined(wrong, "; "));
     law_ = Law::of(*this); // throws std::invalid_argument for wrong properties
     ++changes;
 }

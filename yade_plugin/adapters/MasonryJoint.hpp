@@ -1,5 +1,6 @@
 #pragma once
 #include "Adapter.hpp"
+#include "Fixed.hpp"
 #include "law/Law.hpp"
 #include <memory>
 
@@ -33,6 +34,9 @@ public:
     // The law with these properties. It is made anew whenever a property is set.
     const std::shared_ptr<const Law>& law() const { return law_; }
 
+    // To be called when a joint of this kind is made: its stiffness is fixed then.
+    void madeIn(const yade::Scene& scene) const { fixed_.fix(scene, {normalStiffness, shearStiffness}); }
+
     // Whether a joint with this unit normal, between units of these MasonryMat.jointSet, is of this kind.
     bool appliesTo(const std::string& set1, const std::string& set2, const Vector3r& normal) const;
 
@@ -52,6 +56,7 @@ private:
     shared_ptr<MasonryJoint> brittle() const;
 
     std::shared_ptr<const Law> law_;
+    mutable Fixed fixed_;
 };
 
 } // namespace masonry

@@ -161,11 +161,12 @@ std::vector<double> MasonryJointGeom::record() {
     n(count);
     exchange(n, home->joints[index]);
     for (int p = 0; p < count; ++p) {
-        Vector3r offsetOfPoint = offset(p), jumpOfPoint = jump(p);
+        Vector3r offsetOfPoint = offset(p), jumpOfPoint = jump(p), viscous = home->viscousAt(p, index);
         double areaOfPoint = area(p);
         n(offsetOfPoint);
         n(areaOfPoint);
         n(jumpOfPoint);
+        n(viscous);
     }
     return n.flat;
 }
@@ -180,11 +181,13 @@ void MasonryJointGeom::setRecord(const std::vector<double>& flat) {
     if (home) made->joints[0].hung = reference().hung;
     exchange(n, made->joints[0]);
     for (int p = 0; p < count; ++p) {
-        Vector3r offsetOfPoint = Vector3r::Zero(), jumpOfPoint = Vector3r::Zero();
+        Vector3r offsetOfPoint = Vector3r::Zero(), jumpOfPoint = Vector3r::Zero(), viscous = Vector3r::Zero();
         double areaOfPoint = 0;
         n(offsetOfPoint);
         n(areaOfPoint);
         n(jumpOfPoint);
+        n(viscous);
+        made->setViscous(p, 0, viscous);
         made->setShape(p, 0, offsetOfPoint, areaOfPoint);
         made->setJump(p, 0, jumpOfPoint);
     }

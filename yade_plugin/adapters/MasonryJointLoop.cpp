@@ -8,7 +8,14 @@ namespace masonry {
 
 void MasonryJointLoop::action() {
     const EngineTurn turn(*scene, *this);
-    plan_.advance(turn.store());
+    dampingWork += plan_.advance(turn.store(), stiffnessDamping);
+}
+
+int MasonryJointLoop::groups() const {
+    const BetweenSteps still;
+    auto& store = SceneStore::present();
+    store.update();
+    return int(store.kinds.size());
 }
 
 } // namespace masonry

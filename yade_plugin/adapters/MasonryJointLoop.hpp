@@ -1,7 +1,8 @@
 #pragma once
-#include "Ig2_Polyhedra_Polyhedra_MasonryJointGeom.hpp"
+#include "Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom.hpp"
 #include "Ip2_MasonryMat_MasonryMat_MasonryJointPhys.hpp"
 #include "JointPlan.hpp"
+#include "SceneCheck.hpp"
 
 namespace masonry {
 
@@ -15,18 +16,41 @@ public:
         "the same with the functors of this plugin and remains as the reference. A run is the same, bit for bit, with "
         "any number of threads. It makes no joints: masonry.connect() does.";
 
-    shared_ptr<Ig2_Polyhedra_Polyhedra_MasonryJointGeom> geometry;
+    shared_ptr<Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom> geometry;
     shared_ptr<Ip2_MasonryMat_MasonryMat_MasonryJointPhys> physics;
+
+    double stiffnessDamping = 0;
+    double dampingWork = 0;
 
     template <class Visit> static void attributes(Visit&& visit) {
         using L = MasonryJointLoop;
+        visit("stiffnessDamping", &L::stiffnessDamping,
+              number("s",
+                     "Stiffness-proportional viscous damping of joints: a subcontact that is elastic, and intact or "
+                     "pressed, gets this time times its stiffness times the rate of its jump as a stress beside "
+                     "that of the law. It does not pull where there is no bond, and is none where the joint is "
+                     "open or yields. A mode of angular frequency w, elastic in joints alone, then has the damping "
+                     "ratio d = stiffnessDamping w/2. The limit of the time step falls by the factor "
+                     "sqrt(1 + d²) - d for the highest mode; criticalTimeStep() counts that")
+                  .atLeast(0));
+        visit("dampingWork", &L::dampingWork, number("J", "Energy taken by stiffnessDamping so far"), ReadOnly);
         visit("geometry", &L::geometry, described("Ig2 functor with which masonry.connect() makes joints"));
         visit("physics", &L::physics, described("Ip2 functor with which masonry.connect() makes joints"));
     }
 
+    template <class PyClass> static void extras(PyClass& cls) {
+        cls.add_property("groups", &MasonryJointLoop::groups,
+                         "Number of groups of joints that a step takes together: their properties have equal values, "
+                         "whether in one MasonryJoint or in many, and they share stiffness and number of subcontacts. "
+                         "A step of many small groups takes longer than one of a few large ones.");
+    }
+
+    bool isActivated() override { return standsAlone(*this); }
     void action() override;
 
 private:
+    int groups() const;
+
     JointPlan plan_; // holds no state: all that it keeps from step to step follows from the scene
 };
 

@@ -11,7 +11,7 @@ void MasonryJointPhys::define(const shared_ptr<MasonryJoint>& kind, const Elasti
     index = 0;
 }
 
-shared_ptr<MasonryJoint> MasonryJointPhys::joint() { return home ? home->joint : shared_ptr<MasonryJoint>(); }
+shared_ptr<MasonryJoint> MasonryJointPhys::joint() { return home ? home->joints[index] : shared_ptr<MasonryJoint>(); }
 
 // A file holds the property set before the record.
 void MasonryJointPhys::setJoint(const shared_ptr<MasonryJoint>& kind) {

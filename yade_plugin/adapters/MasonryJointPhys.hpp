@@ -42,7 +42,10 @@ class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys> {
                           "Per subcontact: damage in tension, shear and compression [-], 0 to 1.")
             .add_property("largest", &MasonryJointPhys::largest,
                           "Per subcontact: largest opening and largest closure so far [m]. The opening is measured "
-                          "from the place to which crushing and dilation have moved the surfaces.")
+                          "from the place to which crushing and dilation have moved the surfaces. Of a cyclic joint "
+                          "the closure is "
+                          "kappa, which counts slip on the cap, too, and is 0 up to the elastic limit "
+                          "(yade_plugin/law/cyclic_softening/README.md).")
             .add_property(
                 "yielding", &MasonryJointPhys::yielding,
                 "Per subcontact: yield functions F1, F2 and F3 of the paper's eqs. (8) and (9) [-]. Each is divided by "
@@ -64,11 +67,11 @@ class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys> {
     // Energies dissipated so far by mode [J/m²].
     Energies lost(int point) const { return home->columns->dissipated(point, index); }
 
-    shared_ptr<JointStates> home; // null until define() or loading; SceneStore replaces it
-    int index = 0;                // number of the joint in its home
+    shared_ptr<MasonryJoint> joint(); // the property set
+    shared_ptr<JointStates> home;     // null until define() or loading; SceneStore replaces it
+    int index = 0;                    // number of the joint in its home
 
 private:
-    shared_ptr<MasonryJoint> joint();
     void setJoint(const shared_ptr<MasonryJoint>&);
     double normalStiffness();
     double shearStiffness();

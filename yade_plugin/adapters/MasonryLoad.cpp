@@ -10,8 +10,10 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryLoad)
 namespace masonry {
 
 std::vector<std::string> MasonryLoad::problems() const {
-    if (direction.norm() > 0 || !direction.allFinite()) return {};
-    return {"direction must not be zero"};
+    std::vector<std::string> found;
+    if (direction.allFinite() && !(direction.norm() > 0)) found.push_back("direction must not be zero");
+    if (driven && damped) found.push_back("damped must be off if the block is driven");
+    return found;
 }
 
 void MasonryLoad::action() {
@@ -20,7 +22,7 @@ void MasonryLoad::action() {
         throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) +
                                     " is a deformable unit; load a rigid block joined to it");
     auto& state = *bodyAt(*scene, body, "MasonryLoad.body").state;
-    state.isDamped = false;
+    if (!damped) state.isDamped = false;
     arm_ = state.ori * state.refOri.conjugate() * (point - state.refPos);
     total_ = force;
     auto& forces = scene->forces();

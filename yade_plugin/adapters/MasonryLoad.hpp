@@ -1,5 +1,6 @@
 #pragma once
 #include "Adapter.hpp"
+#include "SceneCheck.hpp"
 
 namespace masonry {
 
@@ -11,13 +12,15 @@ public:
         "Loads a rigid block at a point fixed to it: with a constant force and, if it is driven, with a prescribed "
         "velocity of that point in one direction. The block remains free to rotate and to move in other directions. "
         "Stands after the loop of the joints and before the integrator. It switches off the damping of the block, so "
-        "that the velocity is exact; two driven loads on one block are exact only if the block cannot rotate.";
+        "that the velocity is exact, unless damped keeps it; two driven loads on one block are exact only if the block "
+        "cannot rotate.";
 
     int body = 0;
     Vector3r point = Vector3r::Zero();
     Vector3r force = Vector3r::Zero();
     Vector3r direction = Vector3r::UnitX();
     bool driven = false;
+    bool damped = false;
     double velocity = 0;
     double reaction = 0;
     double work = 0;
@@ -30,6 +33,7 @@ public:
         visit("force", &L::force, number("N", "Force at the point"));
         visit("direction", &L::direction, described("Direction of the driven velocity; not zero"));
         visit("driven", &L::driven, described("Whether the velocity is prescribed"));
+        visit("damped", &L::damped, described("Whether the block keeps its numerical damping; not if it is driven"));
         visit("velocity", &L::velocity, number("m/s", "Velocity of the point along the direction"));
         visit("reaction", &L::reaction, number("N", "Force that the drive applies along the direction"), ReadOnly);
         visit("work", &L::work,
@@ -45,6 +49,7 @@ public:
     }
 
     std::vector<std::string> problems() const;
+    bool isActivated() override { return standsAlone(*this); }
     void action() override;
 
     // For the engine that counts energies. Half of a load's work is done with the velocity before the step, and half

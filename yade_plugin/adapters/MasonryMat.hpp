@@ -1,5 +1,6 @@
 #pragma once
 #include "Adapter.hpp"
+#include "Fixed.hpp"
 
 namespace masonry {
 
@@ -37,19 +38,26 @@ class MasonryMat : public Adapter<MasonryMat, yade::Material> {
     MasonryMat() { createIndex(); }
 
     std::vector<std::string> problems() const {
+        auto all = fixed_.problems({"young", "poisson"}, {young, poisson});
         const auto wrong = densityOf().problem("density", density);
-        return wrong.empty() ? std::vector<std::string>{} : std::vector<std::string>{wrong};
+        if (!wrong.empty()) all.push_back(wrong);
+        return all;
     }
     std::string title() const { return "MasonryMat \"" + label + "\""; }
 
     // Puts the States of units beside each other in memory, because every step reads and writes all of them.
     shared_ptr<yade::State> newAssocState() const override;
 
+    // To be called when a joint of such a unit is made, or such a unit divided: its elasticity is fixed then.
+    void usedIn(const yade::Scene& scene) const { fixed_.fix(scene, {young, poisson}); }
+
     double shearModulus() const { return young / (2 * (1 + poisson)); }
 
 private:
     static constexpr double infinity = Property::infinity;
     static Property densityOf() { return number("kg/m³", "Density").above(0); }
+
+    mutable Fixed fixed_;
 };
 
 } // namespace masonry

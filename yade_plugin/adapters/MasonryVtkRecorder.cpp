@@ -1,4 +1,5 @@
 #include "MasonryVtkRecorder.hpp"
+#include "Blocks.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
 #include "MasonryZones.hpp"
@@ -184,21 +185,16 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
     }
     for (const auto& body : scene->bodies->body) {
         if (body && deformable.count(body->id)) continue;
-        auto* shape = body ? dynamic_cast<yade::Polyhedra*>(body->shape.get()) : nullptr;
-        if (!shape) continue;
+        if (!body || !isBlock(body->shape.get())) continue;
         const auto& s = *body->state;
         const auto first = points->GetNumberOfPoints();
-        for (const auto& v : shape->v) {
+        const auto block = blockOf(*body->shape);
+        for (const auto& v : block.vertices) {
             const Vector3r reference = s.refPos + s.refOri * v, arm = s.ori * v;
             points->InsertNextPoint(reference.data());
             displacement->InsertNextTuple(Vector3r(s.pos + arm - reference).data());
             velocity->InsertNextTuple(Vector3r(s.vel + s.angVel.cross(arm)).data());
         }
-        ConvexBlock block;
-        block.vertices = shape->v;
-        const auto corners = shape->GetSurfaceTriangulation();
-        for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
-            block.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
         vtkNew<vtkIdList> faces; // number of faces, then for each face its number of corners and the corners
         faces->InsertNextId(block.triangles.size());
         for (const auto& t : block.triangles) {
@@ -246,7 +242,7 @@ void MasonryVtkRecorder::writeJoints(const std::string& path) {
         const auto& r = geom.reference();
         const auto& s1 = store.bodies.state(joint.interaction->id1);
         const auto& s2 = store.bodies.state(joint.interaction->id2);
-        const auto& name = phys.home->joint->name;
+        const auto& name = phys.home->joints[phys.index]->name;
         const auto known = std::find(kinds.begin(), kinds.end(), name);
         const int number = int(known - kinds.begin());
         if (known == kinds.end()) kinds.push_back(name);
@@ -296,8 +292,11 @@ void MasonryVtkRecorder::writeCollection(const std::string& name, const std::str
     std::ofstream out(fresh);
     out.precision(12);
     out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
-    for (std::size_t i = 0; i < times.size(); ++i)
-        out << "<DataSet timestep=\"" << times[i] << "\" file=\"" << frame(name, i, extension) << "\"/>\n";
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        const auto file = frame(name, i, extension);
+        if (!std::ifstream(directory + "/" + file)) continue; // somebody has removed it
+        out << "<DataSet timestep=\"" << times[i] << "\" file=\"" << file << "\"/>\n";
+    }
     out << "</Collection>\n</VTKFile>\n";
     if (!out.flush()) failed(fresh, errno);
     if (std::rename(fresh.c_str(), path.c_str())) failed(fresh, errno);

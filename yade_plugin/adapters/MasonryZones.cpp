@@ -1,8 +1,8 @@
 #include "MasonryZones.hpp"
+#include "Blocks.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointLoop.hpp"
 #include "MasonryMat.hpp"
-#include "Neighbours.hpp"
 #include "SceneStore.hpp"
 #include <algorithm>
 
@@ -91,7 +91,11 @@ const std::vector<MasonryZones::Unit>& MasonryZones::units() {
 }
 
 void MasonryZones::mesh() {
-    const auto& all = Singleton<yade::Omega>::instance().getScene()->bodies->body;
+    // Another scene may be the present one by now, whose bodies have the same ids.
+    auto scene = boost::dynamic_pointer_cast<yade::Scene>(divided_.lock());
+    if (!scene) scene = Singleton<yade::Omega>::instance().getScene();
+    divided_ = scene;
+    const auto& all = scene->bodies->body;
     struct Kind {
         std::vector<Vector3r> corners;
         const MasonryMat* mat;
@@ -110,14 +114,13 @@ void MasonryZones::mesh() {
             fail("does not exist");
             continue;
         }
-        auto* shape = dynamic_cast<yade::Polyhedra*>(all[id]->shape.get());
         const auto* mat = dynamic_cast<const MasonryMat*>(all[id]->material.get());
-        if (!shape || !mat) {
-            fail("is no Polyhedra of MasonryMat");
+        if (!isBlock(all[id]->shape.get()) || !mat) {
+            fail("is no block of MasonryMat");
             continue;
         }
         const auto& state = *all[id]->state;
-        ConvexBlock block = blockOf(*shape, state.refPos, state.refOri);
+        ConvexBlock block = blockOf(*all[id]->shape, state.refPos, state.refOri);
         for (auto& v : block.vertices)
             v -= state.refPos;
         auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) {
@@ -138,6 +141,7 @@ void MasonryZones::mesh() {
             }
             kind = std::prev(kinds.end());
         }
+        mat->usedIn(*scene);
         unitOfBody_[id] = int(units_.size());
         units_.push_back({id, next, 0, kind->elasticity, state.refPos, state.refOri});
         next += int(kind->elasticity->masses().size());
@@ -146,6 +150,10 @@ void MasonryZones::mesh() {
     if (known != 0 && known != std::size_t(next))
         wrong.push_back("MasonryZones: bodies of " + std::to_string(next) + " nodes do not fit the state of " +
                         std::to_string(known) + " nodes");
+    for (const auto* list : {&loaded_.velocities, &loaded_.lastForces})
+        if (known != 0 && !list->empty() && list->size() != known)
+            wrong.push_back("MasonryZones: the state has " + std::to_string(known) + " displacements of nodes and " +
+                            std::to_string(list->size()) + " velocities or forces");
     if (!wrong.empty()) {
         units_.clear();
         throw std::invalid_argument(firstOf(wrong));
@@ -363,8 +371,18 @@ void MasonryZones::gatherFromFunctors(const SceneStore& store) {
     }
 }
 
+void MasonryZones::followGravity(const Vector3r& ofIntegrator) {
+    const auto told = [](const Vector3r& g) { return "(" + text(g[0]) + ", " + text(g[1]) + ", " + text(g[2]) + ")"; };
+    if (falling && gravity != lastGravity && gravity != ofIntegrator)
+        throw std::invalid_argument("MasonryZones.gravity " + told(gravity) + " m/s² is not that of the integrator, " +
+                                    told(ofIntegrator) +
+                                    " m/s²: set the gravity of the integrator alone, MasonryZones follows it");
+    gravity = ofIntegrator;
+}
+
 void MasonryZones::action() {
     const EngineTurn turn(*scene, *this);
+    followGravity(turn->gravity());
     units();
     scene_ = turn->life();
     acted_ = true;
@@ -373,7 +391,8 @@ void MasonryZones::action() {
                             damping,
                             {gravity[0], gravity[1], gravity[2]},
                             dampingKind == "combined",
-                            {holds(0), holds(1), holds(2)}};
+                            {holds(0), holds(1), holds(2)},
+                            turn->massDamping()};
     const int count = int(batches_.size());
     std::vector<NodeSums> sums(count);
     std::vector<Row> energies(count);
@@ -406,10 +425,17 @@ void MasonryZones::action() {
             }
         }
     }
+    const double before = fallen;
+    const Vector3r moment = moved; // the work is counted up to the beginning of this step
     beginStep();
-    for (int b = 0; b < count; ++b)
+    moved.setZero();
+    for (int b = 0; b < count; ++b) {
         add({0, total(sums[b].damping), 0, total(sums[b].pending), total(sums[b].kinetic), total(sums[b].gravityWork),
              total(energies[b])});
+        for (int d = 0; d < 3; ++d)
+            moved[d] += total(sums[b].moved[d]);
+    }
+    fallen = workOfGravity(fallen, gravity, moment, before);
 }
 
 } // namespace masonry

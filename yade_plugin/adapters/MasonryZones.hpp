@@ -1,6 +1,8 @@
 #pragma once
+#include "GravityWork.hpp"
 #include "JointHome.hpp"
 #include "Ledger.hpp"
+#include "SceneCheck.hpp"
 #include "blocks/BlockElasticity.hpp"
 #include "blocks/JointPoints.hpp"
 #include <memory>
@@ -12,7 +14,7 @@ class MasonryJointGeom;
 class MasonryMat;
 class SceneStore;
 
-class MasonryZones : public Adapter<MasonryZones, yade::GlobalEngine>, public EnergyLedger {
+class MasonryZones : public Adapter<MasonryZones, yade::GlobalEngine>, public EnergyLedger, public GravityWork {
 public:
     static constexpr const char* className = "MasonryZones";
     static constexpr const char* baseName = "GlobalEngine";
@@ -20,12 +22,13 @@ public:
         "Deformable units: blocks divided into tetrahedral zones of linear elastic material, with their masses at the "
         "nodes (paper §2, eqs. (1)-(7)). Their joints act at points of the faces of cells, between which displacements "
         "are those of the faces' triangles: three along every face where the unit is held across the joint, else the "
-        "corners and the centroid of each triangle. A unit remains one body with a Polyhedra shape; its position and "
+        "corners and the centroid of each triangle. A unit remains one body with the shape of its block; its position "
+        "and "
         "orientation follow the centre of mass and the mean rotation. Strains are taken as small in axes that turn "
         "with "
         "the unit. Stands after the loop of the joints; integrators of rigid bodies do not move these bodies. Give "
         "this "
-        "engine to Ig2_Polyhedra_Polyhedra_MasonryJointGeom.zones before joints are made.";
+        "engine to Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom.zones before joints are made.";
 
     std::vector<int> bodies;
     std::vector<int> divisions{1, 1, 1};
@@ -34,6 +37,7 @@ public:
     std::string dampingKind = "combined";
     std::string blocked;
     Vector3r gravity = Vector3r(0, 0, -9.81);
+    Vector3r moved = Vector3r::Zero(); // sum of mass times displacement of all nodes after the last step [kg m]
 
     template <class Visit> static void attributes(Visit&& visit) {
         using Z = MasonryZones;
@@ -52,10 +56,12 @@ public:
                   "'local': -alpha |F| sgn(v), paper eq. (3), which leaves that vibration and resists the motion"));
         visit("blocked", &Z::blocked,
               described("Directions in which the nodes are held: 'y' for a wall loaded in its plane, in plane stress"));
-        visit("gravity", &Z::gravity, number("m/s²", "Gravity"));
+        visit("gravity", &Z::gravity,
+              number("m/s²", "Gravity: that of the integrator, which this engine takes over in every step. Another "
+                             "value that is set during a run is refused"));
         visit("kinetic", &Z::kinetic, number("J", "Kinetic energy of the nodes"), ReadOnly);
         visit("elastic", &Z::elastic, number("J", "Elastic energy of the zones"), ReadOnly);
-        visit("gravityWork", &Z::fallen, number("J", "Work of gravity since the reference state"), ReadOnly);
+        visit("gravityWork", &Z::fallen, number("J", "Work of gravity since the first step"), ReadOnly);
         visit("dampingWork", &Z::damped, number("J", "Energy taken by damping so far"), ReadOnly);
         visit("displacements", computed(&Z::displacements, &Z::setDisplacements),
               number("m", "Displacements of all nodes since the reference state"), ReadOnly);
@@ -64,6 +70,8 @@ public:
         visit("lastForces", computed(&Z::lastForces, &Z::setLastForces),
               number("N", "Forces on all nodes in the last step"), Hidden);
         visit("pendingDamping", &Z::pendingDamped, number("J", "Damping of the last step"), Hidden);
+        GravityWork::describe<Z>(visit);
+        visit("moved", &Z::moved, number("kg m", "Sum of mass times displacement of all nodes"), Hidden);
         visit("laidOut", &Z::laidOut, described("Divisions and bodies for which the nodes were numbered"), Hidden);
     }
 
@@ -78,6 +86,7 @@ public:
 
     void postLoad();
     std::vector<std::string> problems() const;
+    bool isActivated() override { return standsAlone(*this); }
     void action() override;
 
     struct Unit {
@@ -151,6 +160,9 @@ private:
         for (int d = 0; d < 3; ++d)
             (rows[0].lane + place)[d * lanes] = value[d];
     }
+    // Takes over the gravity of the integrator. Throws std::invalid_argument if a script has set another one
+    // here during the run.
+    void followGravity(const Vector3r&);
     void mesh();
     void layOut();
     void gatherFromFunctors(const SceneStore&);
@@ -177,8 +189,9 @@ private:
     std::vector<int> places_;     // of all nodes in the rows
     std::vector<Batch> batches_;
     std::vector<Row> displacements_, velocities_, forces_, lastForces_, moments_;
-    boost::weak_ptr<yade::Factorable> scene_; // the scene in which the units were last moved
-    bool acted_ = false;                      // whether the units were ever moved
+    boost::weak_ptr<yade::Factorable> divided_; // the scene whose bodies were divided
+    boost::weak_ptr<yade::Factorable> scene_;   // the scene in which the units were last moved
+    bool acted_ = false;                        // whether the units were ever moved
 };
 
 } // namespace masonry

@@ -1,4 +1,5 @@
 #include "Neighbours.hpp"
+#include "Blocks.hpp"
 #include "SceneCheck.hpp"
 #include "common/Text.hpp"
 #include <algorithm>
@@ -6,22 +7,7 @@
 namespace masonry {
 
 namespace py = boost::python;
-using yade::Quaternionr;
 using yade::Vector3r;
-
-ConvexBlock blockOf(yade::Polyhedra& shape, const Vector3r& position, const Quaternionr& orientation) {
-    ConvexBlock block;
-    const auto corners = shape.GetSurfaceTriangulation();
-    for (const auto& v : shape.v)
-        block.vertices.push_back(position + orientation * v);
-    for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
-        std::array<int, 3> t{corners[i], corners[i + 1], corners[i + 2]};
-        const auto &a = block.vertices[t[0]], &b = block.vertices[t[1]], &c = block.vertices[t[2]];
-        if ((b - a).cross(c - a).dot(a - position) < 0) std::swap(t[1], t[2]); // outward from the centre
-        block.triangles.push_back(t);
-    }
-    return block;
-}
 
 namespace {
 
@@ -39,14 +25,16 @@ std::vector<Candidate> candidates(double tolerance) {
     std::vector<Candidate> all;
     std::vector<std::string> wrong;
     for (const auto& body : Singleton<yade::Omega>::instance().getScene()->bodies->body) {
-        auto* shape = body ? dynamic_cast<yade::Polyhedra*>(body->shape.get()) : nullptr;
-        if (!shape) continue;
+        if (!body || !isBlock(body->shape.get())) continue;
         const auto found = problemsOf(*body);
         wrong.insert(wrong.end(), found.begin(), found.end());
         if (!found.empty()) continue;
         const auto& s = *body->state;
-        Candidate c{
-            body->id, blockOf(*shape, s.pos, s.ori), Vector3r::Constant(HUGE_VAL), Vector3r::Constant(-HUGE_VAL), {}};
+        Candidate c{body->id,
+                    blockOf(*body->shape, s.pos, s.ori),
+                    Vector3r::Constant(HUGE_VAL),
+                    Vector3r::Constant(-HUGE_VAL),
+                    {}};
         const double size = c.block.diagonal, away = (s.pos - s.refPos).norm();
         if (away > tolerance * size)
             wrong.push_back("body " + std::to_string(body->id) + " lies " + text(1e3 * away) +

@@ -5,9 +5,6 @@
 
 namespace masonry {
 
-// The block with the shape of a Polyhedra at a position and orientation, in global axes.
-ConvexBlock blockOf(yade::Polyhedra&, const yade::Vector3r& position, const yade::Quaternionr& orientation);
-
 // Looks at all blocks of the present scene, and gives a tuple of three lists. The lower id stands first in a pair.
 // - (id1, id2) of all pairs that share a face
 // - (id1, id2, gap, bound) of all pairs that nearly share one or that overlap: the gap, which is negative for an

@@ -1,10 +1,15 @@
 #include "SceneCheck.hpp"
+#include "Blocks.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
 #include "MasonryMat.hpp"
 #include "SceneStore.hpp"
 #include "common/Text.hpp"
 #include <algorithm>
+#include <iostream>
+#include <mutex>
+#include <omp.h>
+#include <utility>
 
 namespace masonry {
 
@@ -12,7 +17,35 @@ const yade::Body& bodyAt(const yade::Scene& scene, int id, const std::string& wh
     const auto& all = scene.bodies->body;
     if (id < 0 || std::size_t(id) >= all.size() || !all[id])
         throw std::invalid_argument(what + " " + std::to_string(id) + " does not exist");
+    if (!all[id]->state) throw std::invalid_argument(what + " " + std::to_string(id) + " has no State");
     return *all[id];
+}
+
+namespace {
+
+std::mutex parallel;        // guards what follows
+std::string parallelEngine; // the sentence about an engine in a ParallelEngine, until it is thrown
+long parallelStep = -1;     // the step in which that engine should have acted
+
+long presentStep() { return Singleton<yade::Omega>::instance().getScene()->iter; }
+
+} // namespace
+
+std::string refusalInParallel() {
+    const std::lock_guard<std::mutex> held(parallel);
+    const auto told = std::exchange(parallelEngine, {});
+    return parallelStep == presentStep() ? told : "";
+}
+
+bool standsAlone(const yade::Engine& engine) {
+    if (omp_get_level() == 0) return true;
+    const std::lock_guard<std::mutex> held(parallel);
+    const bool first = parallelEngine.empty();
+    parallelEngine = engine.getClassName() +
+                     " stands in a ParallelEngine and does nothing: put it into O.engines itself, it uses all threads";
+    parallelStep = presentStep();
+    if (first) std::cerr << "error: " + parallelEngine + "\n" << std::flush;
+    return false;
 }
 
 std::vector<std::string> problemsOf(const yade::Body& body) {
@@ -21,7 +54,17 @@ std::vector<std::string> problemsOf(const yade::Body& body) {
     const auto positive = [](double value) { return value > 0 && std::isfinite(value); };
     if (!dynamic_cast<const MasonryMat*>(body.material.get()))
         fail("has " + (body.material ? body.material->getClassName() : "no material") + ", must have a MasonryMat");
+    if (!body.state) {
+        fail("has no State");
+        return wrong;
+    }
+    if (body.clumpId >= 0)
+        fail("belongs to clump " + std::to_string(body.clumpId) +
+             ", which would not move as one: join blocks by stiff "
+             "joints instead");
     const auto& s = *body.state;
+    if (const auto* corners = cornersOf(body.shape.get()); corners && corners->empty())
+        fail("has a " + body.shape->getClassName() + " without corners");
     if (!positive(s.mass)) fail("has a mass of " + text(s.mass) + " kg, must be a finite number above 0");
     for (double inertia : {s.inertia[0], s.inertia[1], s.inertia[2]})
         if (!positive(inertia)) {
@@ -86,7 +129,7 @@ void checkScene(const SceneStore& store) {
     std::vector<const MasonryZones*> owner(scene.bodies->body.size(), nullptr), zones;
     for (const auto& engine : scene.engines)
         if (const auto* one = dynamic_cast<const MasonryZones*>(engine.get())) {
-            zones.push_back(one);
+            if (!engine->dead) zones.push_back(one);
             for (int id : one->bodies)
                 try {
                     bodyAt(scene, id, "MasonryZones: body");
@@ -97,7 +140,7 @@ void checkScene(const SceneStore& store) {
         }
     int blocks = 0;
     for (const auto& body : scene.bodies->body)
-        if (body && dynamic_cast<const yade::Polyhedra*>(body->shape.get())) {
+        if (body && isBlock(body->shape.get())) {
             add(wrong, problemsOf(*body));
             ++blocks;
         }
@@ -117,10 +160,17 @@ void checkScene(const SceneStore& store) {
             fail("is not one that connect() made");
             continue;
         }
+        bool lost = false;
+        for (int id : {interaction.id1, interaction.id2})
+            if (std::size_t(id) >= owner.size() || !scene.bodies->body[id] || !scene.bodies->body[id]->state) {
+                fail("has lost body " + std::to_string(id) + ": erase its interaction, too, or call O.reset()");
+                lost = true;
+            }
+        if (lost) continue;
         const auto& hung = geom->reference().hung;
         const MasonryZones* own = hung ? hung->zones.get() : nullptr;
         if (own && std::find(zones.begin(), zones.end(), own) == zones.end())
-            fail("needs its MasonryZones in O.engines");
+            fail("needs its MasonryZones in O.engines, and not dead");
         for (int id : {interaction.id1, interaction.id2})
             if (owner[id] && own != owner[id])
                 fail("was made before MasonryZones had body " + std::to_string(id) +

@@ -1,4 +1,5 @@
 #include "SceneCheckpoint.hpp"
+#include "Blocks.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
 #include "SceneStore.hpp"
@@ -25,12 +26,14 @@ template <class F> void numbers(BodyRecord& b, F&& each) {
 
 // State of a subcontact in a checkpoint.
 struct PointRecord {
-    Vector3r jump;   // [m]
-    Vector3r losses; // energies dissipated in tension, shear and compression [J/m²]
+    Vector3r jump;    // [m]
+    Vector3r viscous; // stress of damping in the last step [Pa]
+    Vector3r losses;  // energies dissipated in tension, shear and compression [J/m²]
     JointState state;
 };
 template <class F> void numbers(PointRecord& p, F&& each) {
     numbers(p.jump, each);
+    numbers(p.viscous, each);
     numbers(p.losses, each);
     numbers(p.state, each);
 }
@@ -91,7 +94,10 @@ void transferJoints(const SceneStore& store, Transfer& to) {
     for (const auto& joint : store.joints)
         for (int p = 0; p < joint.geom->points(); ++p) {
             const auto e = joint.phys->lost(p);
-            records.push_back({joint.geom->jump(p), {e.tension, e.shear, e.compression}, joint.phys->state(p)});
+            records.push_back({joint.geom->jump(p),
+                               joint.geom->home->viscousAt(p, joint.geom->index),
+                               {e.tension, e.shear, e.compression},
+                               joint.phys->state(p)});
         }
     to.several("joints", records.data(), records.size());
     if (!to.back) return;
@@ -100,6 +106,7 @@ void transferJoints(const SceneStore& store, Transfer& to) {
         for (int p = 0; p < joint.geom->points(); ++p) {
             auto& states = *joint.phys->home->columns;
             joint.geom->home->setJump(p, joint.geom->index, next->jump);
+            joint.geom->home->setViscous(p, joint.geom->index, next->viscous);
             states.set(p, joint.phys->index, next->state);
             states.setDissipated(p, joint.phys->index, {next->losses[0], next->losses[1], next->losses[2]});
             ++next;
@@ -159,8 +166,8 @@ Checkpoint captured(yade::Scene& scene) {
     for (const auto* body : bodiesOf(scene)) {
         const auto& s = *body->state;
         blocks(double(body->id), s.refPos, s.refOri, s.mass, s.inertia);
-        if (auto* shape = dynamic_cast<yade::Polyhedra*>(body->shape.get()))
-            for (const auto& corner : shape->v)
+        if (const auto* corners = cornersOf(body->shape.get()))
+            for (const auto& corner : *corners)
                 blocks(corner);
         blocks(dynamic_cast<Stateful*>(body->material.get()));
     }
@@ -169,7 +176,7 @@ Checkpoint captured(yade::Scene& scene) {
     store.update();
     for (const auto& joint : store.joints) {
         const auto& r = joint.geom->reference();
-        auto* properties = joint.phys->home->joint.get();
+        auto* properties = joint.phys->home->joints[joint.phys->index].get();
         const auto [kind, fresh] = kinds.emplace(properties, double(kinds.size()));
         if (fresh) joints(static_cast<Stateful*>(properties));
         joints(kind->second, double(joint.interaction->id1), double(joint.interaction->id2), r.normal, r.tangent,

@@ -1,4 +1,5 @@
 #include "SceneStore.hpp"
+#include "Blocks.hpp"
 #include "JointFunctor.hpp"
 #include "MasonryEnergy.hpp"
 #include "MasonryIntegrator.hpp"
@@ -29,6 +30,36 @@ private:
     PyGILState_STATE state_;
 };
 
+// All values of a property set as bytes, so that sets with equal values can be found.
+std::string valuesOf(const JointProperties& properties) {
+    std::string bytes;
+    const auto add = [&](const auto& value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
+    JointProperties::describe([&](const char*, auto member, const Property&) {
+        const auto& value = properties.*member;
+        using Value = std::decay_t<decltype(value)>;
+        if constexpr (std::is_arithmetic<Value>::value)
+            add(value);
+        else {
+            add(value.size());
+            for (const auto& part : value)
+                if constexpr (std::is_same<Value, std::string>::value)
+                    add(part);
+                else {
+                    add(part.ratio);
+                    add(part.damage);
+                }
+        }
+    });
+    return bytes;
+}
+
+// Whether the bodies of a scene still have the State objects that were read.
+bool sameStates(const yade::Scene& scene, const BodyColumns& bodies) {
+    for (const auto& body : scene.bodies->body)
+        if (body && body->state.get() != (bodies.has(body->id) ? &bodies.state(body->id) : nullptr)) return false;
+    return true;
+}
+
 } // namespace
 
 SceneStore::SceneStore(yade::Scene& scene) : scene_(scene), life_(scene.shared_from_this()) {}
@@ -52,6 +83,10 @@ double SceneStore::damping() const {
 yade::Vector3r SceneStore::gravity() const {
     return integrator ? integrator->gravity : hostIntegrator ? hostIntegrator->gravity : yade::Vector3r(0, 0, 0);
 }
+
+double SceneStore::massDamping() const { return integrator ? integrator->massDamping : 0; }
+
+double SceneStore::stiffnessDamping() const { return loop ? loop->stiffnessDamping : 0; }
 
 // Returns whether the engines are others than before.
 bool SceneStore::readEngines() {
@@ -100,7 +135,8 @@ void SceneStore::update(Look look) {
     }
     bool sameBodies = true;
     if (look == Look::AtAll || (look == Look::InStep && seenStep_ != scene_.iter)) {
-        sameBodies = bodies.fits(scene_, look == Look::AtAll || scene_.iter % 100 == 0);
+        sameBodies = bodies.fits(scene_);
+        if (sameBodies && (look == Look::AtAll || scene_.iter % 10 == 0)) sameBodies = sameStates(scene_, bodies);
         seenStep_ = scene_.iter;
     }
     if (sameBodies && seenChanges_ == changes && seenInteractions_ == scene_.interactions->currSize) return;
@@ -123,7 +159,14 @@ void SceneStore::readJoints() {
         ElasticStiffness k;
         std::vector<std::size_t> members;
     };
-    using Key = std::tuple<const MasonryJoint*, int, bool>;
+    std::map<std::string, int> sets; // number of every set of values
+    std::map<const MasonryJoint*, int> setOf;
+    const auto setNumber = [&](const MasonryJoint* joint) {
+        const auto [at, fresh] = setOf.emplace(joint, 0);
+        if (fresh) at->second = sets.emplace(valuesOf(*joint), int(sets.size())).first->second;
+        return at->second;
+    };
+    using Key = std::tuple<int, int, bool>;
     std::map<Key, std::multimap<double, std::size_t>> byStiffness; // numbers of groups, sorted by normal stiffness
     std::vector<Group> groups;
     std::vector<JointView> found;
@@ -142,7 +185,7 @@ void SceneStore::readJoints() {
             throw std::invalid_argument("the joints of a scene can belong to one MasonryZones only");
         if (hung) zonesOfJoints = hung->zones.get();
         const auto& k = phys->stiffness();
-        auto& alike = byStiffness[{phys->home->joint.get(), geom->points(), hung != nullptr}];
+        auto& alike = byStiffness[{setNumber(phys->joint().get()), geom->points(), hung != nullptr}];
         auto at = alike.lower_bound(k.normal * (1 - 2e-12));
         const auto fits = [&](std::size_t group) {
             return sameButRoundOff(groups[group].k.normal, k.normal, k.normal) &&
@@ -163,7 +206,7 @@ void SceneStore::readJoints() {
         const auto& first = found[group.members[0]];
         const int count = int(group.members.size()), points = first.geom->points();
         JointKind kind{shared_ptr<JointShapes>(new JointShapes(count, points)),
-                       shared_ptr<JointStates>(new JointStates(first.phys->home->joint, group.k, count, points)),
+                       shared_ptr<JointStates>(new JointStates(first.phys->joint(), group.k, count, points)),
                        first.geom->reference().hung != nullptr};
         kind.states->shapes = kind.shapes;
         for (Home* home : {static_cast<Home*>(kind.shapes.get()), static_cast<Home*>(kind.states.get())}) {
@@ -192,6 +235,11 @@ void SceneStore::readJoints() {
 void SceneStore::check() {
     if (!(scene_.dt > 0 && std::isfinite(scene_.dt)))
         throw std::invalid_argument("O.dt " + text(scene_.dt) + " s must be a finite number above 0");
+    if (const auto wrong = refusalInParallel(); !wrong.empty()) throw std::invalid_argument(wrong);
+    if (scene_.isPeriodic)
+        throw std::invalid_argument(
+            "O.periodic: joints do not reach across a periodic cell, nor does a cell strain blocks; "
+            "set it to False");
     if (strayed.load().body1 >= 0) {
         const auto joint = strayed.exchange({});
         throw std::invalid_argument("the joint of bodies " + std::to_string(joint.body1) + " and " +
@@ -200,11 +248,17 @@ void SceneStore::check() {
                                     "Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening, others "
                                     "Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening");
     }
-    if (checked_) return;
-    checkScene(*this);
-    if (zones) zones->units(); // divides the bodies into zones when nothing else is wrong
-    if (connected_.empty() && !joints.empty()) connected();
-    checked_ = true;
+    if (!checked_) {
+        checkScene(*this);
+        if (zones) zones->units(); // divides the bodies into zones when nothing else is wrong
+        if (connected_.empty() && !joints.empty()) connected();
+        checked_ = true;
+    }
+    if (!energy && scene_.iter % collapseEvery == 0 && scene_.iter != seenCollapse_) {
+        seenCollapse_ = scene_.iter;
+        if (const auto found = collapse.look(*this, {}); found.block >= 0)
+            throw std::runtime_error("collapsed: " + found.what);
+    }
 }
 
 void SceneStore::connected() {
@@ -218,12 +272,13 @@ std::vector<int> SceneStore::strangers() const {
     if (connected_.empty()) return all;
     std::vector<bool> joined(scene_.bodies->body.size(), false);
     for (const auto& joint : joints)
-        joined[joint.interaction->id1] = joined[joint.interaction->id2] = true;
+        for (int id : {joint.interaction->id1, joint.interaction->id2})
+            if (std::size_t(id) < joined.size()) joined[id] = true;
     for (std::size_t id = 0; id < joined.size(); ++id) {
         const auto& body = scene_.bodies->body[id];
-        const bool isBlock = body && dynamic_cast<const yade::Polyhedra*>(body->shape.get());
+        const bool block = body && isBlock(body->shape.get());
         const bool known = id < connected_.size() && connected_[id] == body.get();
-        if (isBlock && !known && !joined[id]) all.push_back(int(id));
+        if (block && !known && !joined[id]) all.push_back(int(id));
     }
     return all;
 }

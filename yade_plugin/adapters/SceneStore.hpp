@@ -2,6 +2,7 @@
 // have changed. It owns the columns in which the state of joints and rigid bodies lives.
 #pragma once
 #include "BodyColumns.hpp"
+#include "Collapse.hpp"
 #include "JointHome.hpp"
 
 namespace masonry {
@@ -14,7 +15,7 @@ class MasonryJointPhys;
 class MasonryLoad;
 class MasonryZones;
 
-struct JointKind { // joints that share properties, stiffness and number of subcontacts
+struct JointKind { // joints whose properties have equal values, and which share stiffness and number of subcontacts
     shared_ptr<JointShapes> shapes;
     shared_ptr<JointStates> states;
     bool hung; // whether a side of these joints is deformable
@@ -34,15 +35,16 @@ public:
     // How thoroughly update() looks for changes.
     enum class Look {
         AtAll,    // at joints, bodies and their State objects
-        InStep,   // at joints; at bodies once a step; at their State objects, which are hardly ever replaced, every
-                  // hundredth step
+        InStep,   // at joints; at bodies once a step; at their State objects, which lie apart in memory and are hardly
+                  // ever replaced, every tenth step
         AtJoints, // at joints only
     };
     // Reads again what has changed since the last time. Throws std::invalid_argument, and leaves the joints in their
     // homes, if the joints of the scene belong to more than one MasonryZones.
     void update(Look look = Look::AtAll);
     // Throws std::invalid_argument with all problems that prevent a run. Checks only when the scene has changed; the
-    // time step is checked every time.
+    // time step is checked every time. In a scene without MasonryEnergy, which looks itself, it throws
+    // std::runtime_error if a block has collapsed.
     void check();
     // masonry.connect() calls this when all blocks have their joints. Blocks that are added later are then reported by
     // strangers().
@@ -66,13 +68,17 @@ public:
     std::vector<MasonryLoad*> allLoads; // also those that are dead, whose work so far counts
 
     BodyColumns bodies;
+    CollapseWatch collapse;
+    static constexpr int collapseEvery = 100; // steps between two looks at it
     std::vector<JointKind> kinds;
     std::vector<JointView> joints; // of all kinds, in the host's order
 
     // Ids of the blocks that were added after connect() and have no joint.
     std::vector<int> strangers() const;
-    double damping() const;         // damping constant of the integrator of rigid bodies [-]
-    yade::Vector3r gravity() const; // of the integrator of rigid bodies [m/s²]
+    double damping() const;          // damping constant of the integrator of rigid bodies [-]
+    yade::Vector3r gravity() const;  // of the integrator of rigid bodies [m/s²]
+    double massDamping() const;      // of the integrator of rigid bodies [1/s]
+    double stiffnessDamping() const; // of MasonryJointLoop [s]
 
 private:
     explicit SceneStore(yade::Scene&);
@@ -86,6 +92,7 @@ private:
     std::size_t seenInteractions_ = 0;                          // number of interactions when the joints were last read
     long seenStep_ = -1;                                        // step in which the bodies were last looked at
     std::vector<std::pair<const yade::Engine*, bool>> engines_; // all engines, and whether each is dead
+    long seenCollapse_ = -1;                                    // step in which check() last looked for a collapse
     bool checked_ = false;                                      // whether the scene was checked since it changed
     std::vector<const yade::Body*> connected_;                  // the bodies at connected()
 };

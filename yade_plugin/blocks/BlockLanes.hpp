@@ -23,11 +23,12 @@ struct BlockMatrix {
 
 // What the motion of all nodes depends on in a step.
 struct NodeMotion {
-    double dt;         // time step [s]
-    double damping;    // coefficient of damping, 0 to 1
-    double gravity[3]; // [m/s²]
-    bool combined;     // combined damping instead of the paper's local damping
-    bool held[3];      // directions in which nodes do not move
+    double dt;              // time step [s]
+    double damping;         // coefficient of damping, 0 to 1
+    double gravity[3];      // [m/s²]
+    bool combined;          // combined damping instead of the paper's local damping
+    bool held[3];           // directions in which nodes do not move
+    double massDamping = 0; // viscous [1/s]
 };
 
 // Sums over the nodes of each block, for the energy balance and the motion of the block. Forces belong to the middle of

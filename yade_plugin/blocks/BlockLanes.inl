@@ -90,6 +90,7 @@ void addForces(const BlockMatrix& m, const Row* displacements, const Row* moment
 void move(const BlockMatrix& matrix, const NodeMotion& m, const Row& present, Row* displacements, Row* velocities,
           Row* forces, Row* lastForces, NodeSums& sums) {
     const double alpha = dampingShare(m.combined) * m.damping;
+    const double steady = 0.5 * m.dt * meanOverStep(m.massDamping, m.dt);
     for (int part = 0; part < parts; ++part) {
         Lanes* us = at(displacements, part);
         Lanes* vs = at(velocities, part);
@@ -115,7 +116,8 @@ void move(const BlockMatrix& matrix, const NodeMotion& m, const Row& present, Ro
                 const Lanes middle = 0.5 * (old + half);
                 const Lanes reach = alpha * (half < zero ? -half : half);
                 const Lanes change = m.combined ? sign(force - lasts[i]) : zero;
-                const Lanes taken = dampingTaken(middle, reach, change);
+                const Lanes opposed = dampingTaken(middle, reach, change);
+                const Lanes taken = opposed + steady * (old + half - opposed);
                 lasts[i] = force;
                 const Lanes now = old + 2 * (half - taken); // paper eq. (2)
                 // Work by the trapezoidal rule, and kinetic energy at the time of the forces.

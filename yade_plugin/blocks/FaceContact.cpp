@@ -183,7 +183,7 @@ std::optional<FaceContact> coincidentFaces(const KnownBlock& one, const KnownBlo
             // A cheap test leaves out faces that are far apart; the gap is measured below.
             if (std::abs((origin - mine.corners[0]).dot(mine.normal)) > 100 * width) continue;
             auto m = meet(mine, theirs);
-            if (m.shared.size() < 3 || m.gap > width || m.area < 0.5 * m.perimeter * width) continue;
+            if (m.shared.size() < 3 || m.gap > width || !(m.area > 0.5 * m.perimeter * width)) continue;
             m.shared = withoutFlatCorners(std::move(m.shared), 0.01 * width);
             for (auto& corner : m.shared)
                 corner += 0.5 * (origin - corner).dot(theirs.normal) * theirs.normal;

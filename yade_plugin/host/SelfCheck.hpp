@@ -7,10 +7,14 @@
 namespace masonry::host {
 
 // One line for each difference: the class, its member, what was expected and what was found. Empty if the running YADE
-// fits.
+// fits. A YADE of an unknown version whose layout fits is one difference too, unless the environment variable
+// MASONRY_UNKNOWN_YADE is 1: then it is a warning.
 std::vector<std::string> differences();
 
 // The YADE versions that this build can run in, for messages.
 std::string knownVersions();
+
+// Whether the running YADE has a class of this name. Some builds of YADE lack some classes.
+bool has(const std::string& className);
 
 } // namespace masonry::host

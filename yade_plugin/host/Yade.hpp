@@ -1,6 +1,6 @@
 // The classes of YADE that this plugin touches, declared in our own words, because Debian's YADE comes without headers.
-// Layouts are those of YADE 2023.02a with double precision. SelfCheck.cpp compares them with the running YADE when the
-// plugin is imported; README.md says why they are declared as they are.
+// Layouts are those of the YADE versions in SelfCheck.cpp, with double precision. SelfCheck.cpp compares them with the
+// running YADE when the plugin is imported; README.md says why they are declared as they are.
 //
 // Each class declares its destructor before all other virtual functions and does not define it. The compiler then
 // writes no virtual function table for the class and uses YADE's own, so that dispatch, dynamic_cast and saving see one
@@ -126,13 +126,13 @@ public:
     bool wire, highlight;
 };
 
+// Only a YADE that was built with CGAL has this class, so its function is a weak symbol: null where it is missing.
 class Polyhedra : public Shape {
     MASONRY_HOST_CLASS(Polyhedra)
     int& modifyClassIndex() override;
     const int& getClassIndex() const override;
     const int& getBaseClassIndex(int depth) const override;
-    std::vector<int> GetSurfaceTriangulation();
-    Real GetVolume();
+    __attribute__((weak)) std::vector<int> GetSurfaceTriangulation();
 
 private:
     char hull_[328 - 96];

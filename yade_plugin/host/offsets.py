@@ -13,9 +13,13 @@ import sys
 
 import yade.wrapper
 
-HEADER = object.__basicsize__  # [bytes] of every Python object: reference count and type
+HEADER = (
+    object.__basicsize__
+)  # [bytes] of every Python object: reference count and type
 POINTER = ctypes.sizeof(ctypes.c_void_p)
-DATA_MEMBER = b"6callerINS3_6memberI"  # "caller<member<" in the mangled type name of a caller
+DATA_MEMBER = (
+    b"6callerINS3_6memberI"  # "caller<member<" in the mangled type name of a caller
+)
 
 
 def pointerAt(address):
@@ -50,10 +54,13 @@ def membersOf(cls):
 
 
 def declaredClasses():
-    """Names of the classes that Yade.hpp declares."""
-    header = os.path.join(os.path.dirname(os.path.abspath(sys.argv[0])), "Yade.hpp")
-    with open(header, encoding="utf-8") as f:
-        return re.findall(r"^class (\w+)[^;]*\{", f.read(), re.MULTILINE)
+    """Names of the classes that Yade.hpp and YadeGl.hpp declare."""
+    names = []
+    for header in ("Yade.hpp", "YadeGl.hpp"):
+        path = os.path.join(os.path.dirname(os.path.abspath(sys.argv[0])), header)
+        with open(path, encoding="utf-8") as f:
+            names += re.findall(r"^class (\w+)[^;]*\{", f.read(), re.MULTILINE)
+    return names
 
 
 for name in sys.argv[1:] or declaredClasses():

@@ -58,10 +58,13 @@ def tableOf(name, symbols, pointers):
 
 
 def declaredClasses():
-    """Names of the classes that Yade.hpp declares."""
-    header = os.path.join(os.path.dirname(os.path.abspath(__file__)), "Yade.hpp")
-    with open(header, encoding="utf-8") as f:
-        return re.findall(r"^class (\w+)[^;]*\{", f.read(), re.MULTILINE)
+    """Names of the classes that Yade.hpp and YadeGl.hpp declare."""
+    names = []
+    for header in ("Yade.hpp", "YadeGl.hpp"):
+        path = os.path.join(os.path.dirname(os.path.abspath(__file__)), header)
+        with open(path, encoding="utf-8") as f:
+            names += re.findall(r"^class (\w+)[^;]*\{", f.read(), re.MULTILINE)
+    return names
 
 
 if len(sys.argv) < 2:

@@ -58,9 +58,17 @@ template <class Visit> void JointProperties::describe(Visit&& visit) {
     constexpr double infinity = Property::infinity;
     visit("name", &P::name, described("Name of this kind of joint, as files and messages show it"));
     visit("normalStiffness", &P::normalStiffness,
-          number("Pa/m", "Normal stiffness kn").above(0).usually(1e7, infinity, "N/mm³").source("paper eq. (26)"));
+          number("Pa/m", "Normal stiffness kn. A joint takes its elastic stiffness from it when it is made; a later "
+                         "change acts on its tables alone")
+              .above(0)
+              .usually(1e7, infinity, "N/mm³")
+              .source("paper eq. (26)"));
     visit("shearStiffness", &P::shearStiffness,
-          number("Pa/m", "Shear stiffness ks").above(0).usually(1e7, infinity, "N/mm³").source("paper eq. (26)"));
+          number("Pa/m", "Shear stiffness ks. A joint takes its elastic stiffness from it when it is made; a later "
+                         "change acts on its tables alone")
+              .above(0)
+              .usually(1e7, infinity, "N/mm³")
+              .source("paper eq. (26)"));
 
     visit("elastic", &P::elastic,
           described("Whether the joint is linear elastic: no strength is ever reached").source("paper section 4.1"));

@@ -23,6 +23,11 @@ public:
     const double* shearStressA(int point, int from) const { return columns_[Columns::ShearStressA] + at(point, from); }
     const double* shearStressB(int point, int from) const { return columns_[Columns::ShearStressB] + at(point, from); }
 
+    const double* tensionDamage(int point, int from) const {
+        return columns_[Columns::TensionDamage] + at(point, from);
+    }
+    const Regime* regime(int point, int from) const { return &regime_[at(point, from)]; }
+
     virtual const Law& law() const = 0;
     // Other properties for the same law: what follows from them is found anew, the state stays. False, and nothing
     // happens, if the properties ask for another law.

@@ -17,6 +17,12 @@ template <class Number> [[gnu::always_inline]] inline Number dampingTaken(Number
     return below > least ? below : least;
 }
 
+// Mass-proportional viscous damping takes `massDamping` times the mean velocity of a step from an acceleration. This
+// mean is v + dt (a - taken) / 2 divided by 1 + massDamping dt / 2, with the velocity v before the step and what other
+// damping takes from the acceleration a. Returns the factor on v + dt (a - taken) / 2. The limit of the time step stays
+// that of the undamped motion.
+inline double meanOverStep(double massDamping, double dt) { return massDamping / (1 + 0.5 * massDamping * dt); }
+
 // The share of alpha |F| in `reach`.
 inline double dampingShare(bool combined) { return combined ? 0.5 : 1; }
 

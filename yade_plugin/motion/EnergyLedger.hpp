@@ -11,7 +11,7 @@ struct EnergyLedger {
     double pendingExternal = 0; // second half of the last step's work, which the next step adds to `external`
     double pendingDamped = 0;   // second half of what damping took in the last step
     double kinetic = 0;         // present kinetic energy
-    double fallen = 0;          // work of gravity since the reference state
+    double fallen = 0;          // work of gravity since the first step
     double elastic = 0;         // present elastic energy of deformable units
 
     // Adds what was pending, and sets the present energies to zero.

@@ -24,6 +24,7 @@ MASONRY_VECTORISED
 void RigidMotion::push(int n, const Axis& axis, const Around& around, double gravity) {
     const double *inert = axis.inert, *moves = axis.free, *pushed = axis.force;
     double *velocity = axis.velocity, *last = axis.last;
+    const double* steady = steady_;
     const double dt = around.dt, half = 0.5 * dt, rate = 1 / dt;
     const double share = dampingShare(around.combined), calms = around.combined ? 1 : 0;
     MASONRY_INDEPENDENT
@@ -33,8 +34,9 @@ void RigidMotion::push(int n, const Axis& axis, const Around& around, double gra
         const double trend = calms * ((change > 0 ? 1.0 : 0.0) - (change < 0 ? 1.0 : 0.0));
         const double taken = dampingTaken(middle, share * alpha[i] * std::abs(undamped), trend);
         const bool isFree = moves[i] != 0;
-        const double end = before + dt * (undamped - taken), after = isFree ? end : before;
-        const double drag = half * mass * taken, held = half * before * (pushed[i] + mass * gravity);
+        const double lost = taken + steady[i] * (before + half * (undamped - taken));
+        const double end = before + dt * (undamped - lost), after = isFree ? end : before;
+        const double drag = half * mass * lost, held = half * before * (pushed[i] + mass * gravity);
         const double energy = 0.5 * mass * before * after;
         kinetic[i] += isFree ? energy : 0;
         damped[0][i] += isFree ? drag * before : 0;
@@ -93,10 +95,12 @@ void RigidMotion::advance(RigidColumns& bodies, double* const* last, int first, 
                           unsigned axes) {
     for (auto* sum : {kinetic, work, damped[0], damped[1]})
         std::fill(sum, sum + n, 0.0);
+    for (int i = 0; i < n; ++i)
+        steady_[i] = meanOverStep(viscous[i], around.dt);
     for (int d = 0; d < 6; ++d) {
         if (!(axes >> d & 1)) continue;
         const auto& inert = d < 3 ? bodies.mass : bodies.inertia[d - 3];
-        push(n, {&inert[first], alpha, free[d], force[d], &bodies.velocity[d][first], last[d]}, around,
+        push(n, {&inert[first], free[d], force[d], &bodies.velocity[d][first], last[d]}, around,
              d < 3 ? around.gravity[d] : 0);
         if (d < 3) move(n, around.dt, &bodies.velocity[d][first], &bodies.position[d][first]);
     }

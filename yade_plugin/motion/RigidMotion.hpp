@@ -25,6 +25,7 @@ struct RigidMotion {
         bool combined;     // whether damping is combined or local
     };
     double alpha[most];     // input: damping constant of each body [-]
+    double viscous[most];   // input: mass-proportional damping of each body [1/s]
     double free[6][most];   // input: 0 in blocked axes and for bodies that are not moved here, else 1
     double force[6][most];  // input: force [N] and torque [N m]
     double kinetic[most];   // output: kinetic energy [J]
@@ -39,9 +40,11 @@ struct RigidMotion {
 
 private:
     struct Axis { // columns of one translation or rotation; `inert` is the mass or the inertia
-        const double *inert, *alpha, *free, *force;
+        const double *inert, *free, *force;
         double *velocity, *last;
     };
+    double steady_[most]; // scratch: see meanOverStep()
+
     void push(int n, const Axis&, const Around&, double gravity);
     static void move(int n, double dt, const double* velocity, double* position);
     static void turn(int n, double dt, const double* const* spin, double* const* orientation);

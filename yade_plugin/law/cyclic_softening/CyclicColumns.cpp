@@ -81,9 +81,10 @@ struct Asked {
     alignas(64) Mask asks[lanes];
 };
 
-[[gnu::noinline]] void readTable(const SofteningTable& table, std::int32_t TableRows::*row, TableRows* rows, Asked& a) {
+[[gnu::noinline]] void readTable(const SofteningTable& table, std::int32_t TableRows::*row, TableRows* rows,
+                                 const int* places, Asked& a) {
     for (int i = 0; i < lanes; ++i)
-        if (a.asks[i]) a.found[i] = larger<double>(a.found[i], table.damage(a.at[i], a.shift[i], rows[i].*row));
+        if (a.asks[i]) a.found[i] = larger<double>(a.found[i], table.damage(a.at[i], a.shift[i], rows[places[i]].*row));
 }
 [[gnu::noinline]] void readCurve(const CyclicEquations& e, Asked& a) {
     for (int i = 0; i < lanes; ++i)
@@ -102,7 +103,8 @@ struct LookAtEight {
     const CyclicEquations& e;
     const SofteningTable &tensionTable, &shearTable;
     TableRows* rows;
-    PackMask waits; // the others are not looked up
+    const int* places; // of the eight, in `rows`
+    PackMask waits;    // the others are not looked up
 
     MASONRY_INLINED Asked asked(const Pack& found, const Pack& at, const Pack& shift, const PackMask& asks) const {
         Asked a;
@@ -115,12 +117,12 @@ struct LookAtEight {
     }
     MASONRY_INLINED Pack tension(const Pack& damage, const Pack& ratio, const Pack& shift, const PackMask& asks) const {
         Asked a = asked(damage, ratio, shift, asks);
-        readTable(tensionTable, &TableRows::tension, rows, a);
+        readTable(tensionTable, &TableRows::tension, rows, places, a);
         return load(a.found);
     }
     MASONRY_INLINED Pack shear(const Pack& damage, const Pack& ratio, const Pack& shift, const PackMask& asks) const {
         Asked a = asked(damage, ratio, shift, asks);
-        readTable(shearTable, &TableRows::shear, rows, a);
+        readTable(shearTable, &TableRows::shear, rows, places, a);
         return load(a.found);
     }
     double lastRatio() const { return shearTable.lastRatio() - 1; }
@@ -141,8 +143,26 @@ struct LookAtEight {
     }
 };
 
-// Writes a column where `waits` says so.
-MASONRY_INLINED void put(double* to, const Pack& x, const PackMask& waits) { store(to, choose(waits, x, load(to))); }
+// Eight subcontacts of a column, wherever they stand in it.
+struct Places {
+    int at[lanes]; // the last one stands for those that are missing
+    int many;
+
+    MASONRY_INLINED Pack get(const double* column) const {
+        alignas(64) double x[lanes];
+        for (int i = 0; i < lanes; ++i)
+            x[i] = column[at[i]];
+        return load(x);
+    }
+    MASONRY_INLINED void put(double* column, const Pack& x) const {
+        for (int i = 0; i < many; ++i)
+            column[at[i]] = x[i];
+    }
+    MASONRY_INLINED void add(double* column, const Pack& x) const {
+        for (int i = 0; i < many; ++i)
+            column[at[i]] += x[i];
+    }
+};
 
 } // namespace
 
@@ -163,86 +183,86 @@ void advanceSideBySide(const CyclicEquations& given, const SofteningTable& tensi
                        const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* waits,
                        int count, double* normalStress) {
     const CyclicEquations e = given;
-    for (int from = 0; from < count; from += lanes) {
-        // jumps, marks and normal stresses may end before the eighth joint
-        Pack opening{}, slideA{}, slideB{};
+    Places eight;
+    for (int from = 0; from < count;) {
+        // those that wait stand scattered among others, and few of them fill eight places
+        int last = 0;
+        for (eight.many = 0; from < count && eight.many < lanes; ++from)
+            if (waits[from]) eight.at[eight.many++] = last = from;
+        if (eight.many == 0) return;
         PackMask mask{};
-        const int many = count - from < lanes ? count - from : lanes;
-        for (int i = 0; i < many; ++i) {
-            mask[i] = waits[from + i] ? -1 : 0;
-            opening[i] = jumps.opening[from + i];
-            slideA[i] = jumps.slideA[from + i];
-            slideB[i] = jumps.slideB[from + i];
+        for (int i = 0; i < lanes; ++i) {
+            mask[i] = i < eight.many ? -1 : 0;
+            if (i >= eight.many) eight.at[i] = last;
         }
-        if (!any(mask)) continue;
-        const Columns c = columns.from(std::size_t(from));
+        const Pack opening = eight.get(jumps.opening), slideA = eight.get(jumps.slideA),
+                   slideB = eight.get(jumps.slideB);
+        const Columns& c = columns;
         CyclicPoint<Pack> p;
-        p.opening = load(c[Columns::Opening]);
-        p.crushing = load(c[Columns::Crushing]);
-        p.dilation = load(c[Columns::Dilation]);
-        p.slip = load(c[Columns::Slip]);
-        p.largestOpening = load(c[Columns::LargestOpening]);
-        p.largestClosure = load(c[Columns::LargestClosure]);
-        p.tensionDamage = load(c[Columns::TensionDamage]);
-        p.shearDamage = load(c[Columns::ShearDamage]);
-        p.shearA = load(c[Columns::ShearStressA]);
-        p.shearB = load(c[Columns::ShearStressB]);
-        p.plasticA = load(c[Columns::PlasticSlipA]);
-        p.plasticB = load(c[Columns::PlasticSlipB]);
-        p.shearSoftening = load(c[Columns::ShearSoftening]);
-        p.shearStiffnessLoss = load(c[Columns::ShearStiffnessLoss]);
-        p.capDisplacement = load(c[Columns::CapDisplacement]);
-        p.strength = root(load(c[Columns::CapSquared]));
-        p.closing = load(c[Columns::ClosingStiffness]);
-        p.shearing = load(c[Columns::ShearStiffness]);
-        p.left = load(c[Columns::Intact]);
-        p.secant = load(c[Columns::Secant]);
-        p.hardening = load(c[Columns::SquaredHardening]);
-        p.normalStress = e.normal<Pack>(p.opening + load(c[Columns::Irreversible]), p.secant, p.closing);
+        p.opening = eight.get(c[Columns::Opening]);
+        p.crushing = eight.get(c[Columns::Crushing]);
+        p.dilation = eight.get(c[Columns::Dilation]);
+        p.slip = eight.get(c[Columns::Slip]);
+        p.largestOpening = eight.get(c[Columns::LargestOpening]);
+        p.largestClosure = eight.get(c[Columns::LargestClosure]);
+        p.tensionDamage = eight.get(c[Columns::TensionDamage]);
+        p.shearDamage = eight.get(c[Columns::ShearDamage]);
+        p.shearA = eight.get(c[Columns::ShearStressA]);
+        p.shearB = eight.get(c[Columns::ShearStressB]);
+        p.plasticA = eight.get(c[Columns::PlasticSlipA]);
+        p.plasticB = eight.get(c[Columns::PlasticSlipB]);
+        p.shearSoftening = eight.get(c[Columns::ShearSoftening]);
+        p.shearStiffnessLoss = eight.get(c[Columns::ShearStiffnessLoss]);
+        p.capDisplacement = eight.get(c[Columns::CapDisplacement]);
+        p.strength = root(eight.get(c[Columns::CapSquared]));
+        p.closing = eight.get(c[Columns::ClosingStiffness]);
+        p.shearing = eight.get(c[Columns::ShearStiffness]);
+        p.left = eight.get(c[Columns::Intact]);
+        p.secant = eight.get(c[Columns::Secant]);
+        p.hardening = eight.get(c[Columns::SquaredHardening]);
+        p.normalStress = e.normal<Pack>(p.opening + eight.get(c[Columns::Irreversible]), p.secant, p.closing);
         const auto out =
-            advance<Pack>(e, LookAtEight{e, tension, shear, rows + from, mask}, p, opening, slideA, slideB);
+            advance<Pack>(e, LookAtEight{e, tension, shear, rows, eight.at, mask}, p, opening, slideA, slideB);
         // what did not happen to one of them changes no column
-        put(c[Columns::Opening], p.opening, mask);
-        put(c[Columns::ShearStressA], p.shearA, mask);
-        put(c[Columns::ShearStressB], p.shearB, mask);
+        eight.put(c[Columns::Opening], p.opening);
+        eight.put(c[Columns::ShearStressA], p.shearA);
+        eight.put(c[Columns::ShearStressB], p.shearB);
         if (out.tore | out.dilated) {
-            put(c[Columns::LargestOpening], p.largestOpening, mask);
-            put(c[Columns::TensionDamage], p.tensionDamage, mask);
-            put(c[Columns::ShearDamage], p.shearDamage, mask);
-            put(c[Columns::Intact], p.left, mask);
-            put(c[Columns::Secant], p.secant, mask);
-            put(c[Columns::Reach], e.reach<Pack>(p.left, p.largestOpening), mask);
+            eight.put(c[Columns::LargestOpening], p.largestOpening);
+            eight.put(c[Columns::TensionDamage], p.tensionDamage);
+            eight.put(c[Columns::ShearDamage], p.shearDamage);
+            eight.put(c[Columns::Intact], p.left);
+            eight.put(c[Columns::Secant], p.secant);
+            eight.put(c[Columns::Reach], e.reach<Pack>(p.left, p.largestOpening));
         }
         if (out.slid) {
-            put(c[Columns::Slip], p.slip, mask);
-            put(c[Columns::PlasticSlipA], p.plasticA, mask);
-            put(c[Columns::PlasticSlipB], p.plasticB, mask);
-            put(c[Columns::ShearSoftening], p.shearSoftening, mask);
-            put(c[Columns::LostShear], load(c[Columns::LostShear]) + out.lostShear, mask);
+            eight.put(c[Columns::Slip], p.slip);
+            eight.put(c[Columns::PlasticSlipA], p.plasticA);
+            eight.put(c[Columns::PlasticSlipB], p.plasticB);
+            eight.put(c[Columns::ShearSoftening], p.shearSoftening);
+            eight.add(c[Columns::LostShear], out.lostShear);
             if (e.omegaM > 0) {
-                put(c[Columns::ShearStiffnessLoss], p.shearStiffnessLoss, mask);
-                put(c[Columns::ShearStiffness], p.shearing, mask);
+                eight.put(c[Columns::ShearStiffnessLoss], p.shearStiffnessLoss);
+                eight.put(c[Columns::ShearStiffness], p.shearing);
             }
         }
         if (out.crushed) {
-            put(c[Columns::LargestClosure], p.largestClosure, mask);
-            put(c[Columns::CapDisplacement], p.capDisplacement, mask);
-            put(c[Columns::CapSquared], p.strength * p.strength, mask);
-            put(c[Columns::ClosingStiffness], p.closing, mask);
-            put(c[Columns::SquaredHardening], p.hardening, mask);
+            eight.put(c[Columns::LargestClosure], p.largestClosure);
+            eight.put(c[Columns::CapDisplacement], p.capDisplacement);
+            eight.put(c[Columns::CapSquared], p.strength * p.strength);
+            eight.put(c[Columns::ClosingStiffness], p.closing);
+            eight.put(c[Columns::SquaredHardening], p.hardening);
         }
         if (out.crushed | out.dilated) {
-            put(c[Columns::Crushing], p.crushing, mask);
-            put(c[Columns::Dilation], p.dilation, mask);
-            put(c[Columns::Irreversible], p.crushing - p.dilation, mask);
+            eight.put(c[Columns::Crushing], p.crushing);
+            eight.put(c[Columns::Dilation], p.dilation);
+            eight.put(c[Columns::Irreversible], p.crushing - p.dilation);
         }
-        put(c[Columns::LostTension], load(c[Columns::LostTension]) + out.lostTension, mask);
-        put(c[Columns::LostCompression], load(c[Columns::LostCompression]) + out.lostCompression, mask);
-        for (int i = 0; i < many; ++i) {
-            if (!mask[i]) continue;
-            normalStress[from + i] = p.normalStress[i];
-            regime[from + i] = Regime(int(out.regime[i]));
-        }
+        eight.add(c[Columns::LostTension], out.lostTension);
+        eight.add(c[Columns::LostCompression], out.lostCompression);
+        eight.put(normalStress, p.normalStress);
+        for (int i = 0; i < eight.many; ++i)
+            regime[eight.at[i]] = Regime(int(out.regime[i]));
     }
 }
 

@@ -1,5 +1,5 @@
 // The cyclic law on one subcontact: the strengths, tables and compression curve of the paper's law, with softening by
-// rate, stiffness that degrades, dilatancy that turns back, and joints that close on a curve. law/README.md states it.
+// rate, stiffness that degrades, dilatancy that turns back, and joints that close on a curve. README.md states it.
 #pragma once
 #include "CyclicStep.hpp"
 #include "law/piecewise_softening/JointLaw.hpp"

@@ -17,7 +17,7 @@ template <class T> struct CyclicPoint { // JointState, and what follows from it
 template <class T> struct CyclicOutcome {
     T lostTension, lostShear, lostCompression; // [J/m²] of the step
     T regime;                                  // a number of Regime
-    bool tore, slid, dilated, crushed;         // what one of the subcontacts at least did
+    bool tore, slid, dilated, crushed; // whether bond, slip, dilation, crushing of one at least may have changed
 };
 
 // Tension damage when the bond was lost otherwise: with lumped units the rows of the table move by what the bond holds.
@@ -78,11 +78,12 @@ MASONRY_INLINED void dilate(const CyclicEquations& e, const Look& look, CyclicPo
     sigma = choose(dilation != 0, e.normal<T>(w, s.secant, s.closing), sigma);
 }
 
-// `look` reads tables and curve where a mask says so:
-//   tension, shear(damage, ratio, shift, asks)  the larger of `damage` and that of the table
-//   strength(fc, kappa, asks)                   fc at kappa, where asked
-//   decay(slip, asks)                           dilatancy at a slip
-//   normalEnergy(sigma, w)                      [J/m²] stored
+// One step, in the order of README.md. `look` has these functions, which read tables and curves for those subcontacts
+// that the mask `asks` marks:
+//   tension, shear(damage, ratio, shift, asks)  the damage of the table, or `damage` if that is larger or not asked
+//   strength(fc, kappa, asks)                   the cap's strength at kappa, or `fc` if not asked
+//   decay(slip, asks)                           the dilatancy that is left at a slip
+//   normalEnergy(sigma, w)                      the energy that normal stress stores [J/m²]
 template <class T, class Look>
 MASONRY_INLINED CyclicOutcome<T> advance(const CyclicEquations& e, Look&& look, CyclicPoint<T>& s, const T& opening,
                                          const T& slideA, const T& slideB) {

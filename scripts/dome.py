@@ -1,0 +1,13 @@
+"""A dome of voussoirs with an oculus, under its own weight and then under a growing horizontal acceleration."""
+
+from masonry import Scene, bricks, materials
+
+dome = bricks.Dome(radius=2.0, thickness=0.25, courses=8, stones=16, oculus=0.4)
+
+scene = Scene("dome", dome, materials.dry(friction=0.7, normalStiffness=2e10))
+scene.platen("bottom")
+scene.watch((0.4, 0, dome.high[2]), name="crown")
+scene.settle()
+scene.accelerate(1.2, rate=0.2)  # [g], [g/s]
+print(f"leaves rest at {scene.factor:.3f} g")
+scene.finish()

@@ -1,0 +1,198 @@
+"""Bounds beside a run: limit analysis of what the stages of a scene load.
+
+:class:`masonry.stages.Scene` asks for them by itself when a stage pushes or leans the structure. :mod:`masonry.limit` says
+what they are.
+"""
+
+import os
+
+import numpy as np
+
+from . import limit
+from .errors import Refused
+from .model import GRAVITY
+from .progress import say
+
+SMALL = 500  # up to so many joints a collapse without dilatancy, which takes many rounds, is looked for unasked
+JOINTS = 3000  # up to so many joints every run has its bounds; limit analysis of more takes longer than seconds
+#: By how much a run may be above its bound [-]: joints of finite stiffness, displacements that are not small, and motion,
+#: whose measured share is added.
+TOLERANCE = 0.02
+FIGURE = "mechanism.png"
+
+
+class Bounds:
+    """The bounds of a scene that is built in YADE.
+
+    :param model: :class:`masonry.structure.Structure`
+    """
+
+    def __init__(self, model):
+        self.model = model
+        self.moved = False  # whether supports have been moved by a stage
+        self.last = None  # what was found last: limit.Bound and its entry
+
+    @property
+    def entries(self):
+        """What was found, by the load: entries of run.json. A checkpoint keeps them."""
+        return self.model.scene.at.bounds
+
+    def push(self, way, both, lower=False, always=False):
+        """Find the bound of a push of what the model pushes now.
+
+        :param way: unit vector of the push
+        :param both: whether it goes there and back
+        :param lower: whether to look for a collapse without dilatancy, too, if joints slide
+        :param always: whether to do that also where it takes long
+        """
+        target = self.model.target
+        for sign in (1, -1) if both else (1,):
+            self._find(f"{target.name} along {_told(sign * way)}", "kN", lambda a, dead: self._pushed(a, dead, sign * way), lower, always)  # fmt: skip
+
+    def _pushed(self, assembly, dead, way):
+        """Live load, and what is added to its factor to give the base shear [kN]."""
+        load = self.model.loads["push"]
+        block = assembly.ids.index(load.body)
+        point = load.point + load.displacement()
+        free = ~assembly.held[:, :3]
+        return (
+            assembly.force(block, 1e3 * way, point),
+            1e-3 * (np.where(free, dead[:, :3], 0) @ np.array(way)).sum(),
+        )
+
+    def lean(self, towards, tilts=False, lower=False, always=False):
+        """Find the bound of a horizontal acceleration [g].
+
+        :param towards: unit vector
+        :param tilts: whether gravity turns, and does not grow; the factor is then the horizontal over the vertical part
+        """
+        scaled = GRAVITY / self.model.args.density_scaling
+        what = f"{'tilt' if tilts else 'acceleration'} towards {_told(towards)}"
+        live = lambda a, dead: (a.weights(scaled * np.array(towards)), 0.0)
+        if not tilts:
+            return self._find(what, "g", live, lower, always)
+        share = self.model.gravity / scaled
+        turned = lambda a, dead: (share * live(a, dead)[0], 0.0)
+        return self._find(what, "", turned, lower, always, tilts=True)
+
+    def _find(self, what, unit, load, lower, always, tilts=False):
+        if what in self.entries:
+            return
+        model = self.model
+        entry = self.entries[what] = {"load": what, "unit": unit}
+        if self.moved:
+            entry[
+                "note"
+            ] = "no limit analysis: supports have moved, and joints that are open would be taken as closed"
+            return
+        count = len(model.interactions)
+        if count > JOINTS and not lower:
+            entry["note"] = f"no limit analysis: {count} joints are more than {JOINTS}"
+            say(
+                f"note: {entry['note']}; scene.bound() and --preset bound take their time"
+            )
+            return
+        try:
+            assembly = limit.read()
+            down = assembly.weights(model.now)
+            forces = self._forces(assembly)
+            live, beside = load(assembly, down + forces)
+            bound = assembly.largest(live, down + forces)
+            for _ in range(5 if tilts else 0):  # both parts of gravity shrink
+                cos = 1 / np.hypot(1, bound.factor)
+                bound = assembly.largest(cos * live, cos * down + forces)
+            entry.update(bound.describe())
+            entry["factor"] += beside
+            say(bound.sentence(what, unit))
+            if lower and bound.slides and (count <= SMALL or always):
+                least = assembly.withoutDilatancy(live, down + forces)
+                entry["without_dilatancy"] = least.factor + beside
+                entry["without_dilatancy_settled"] = least.settled
+                say(least.sentence(what, unit))
+            self.last = bound, entry
+        except Refused as refused:
+            entry["note"] = str(refused)
+            say(f"note: {refused}")
+
+    def _forces(self, assembly):
+        """Presses, dead loads and wind with their whole, and props at the points that other drives hold."""
+        loads = np.zeros_like(assembly.held, float)
+        for load, force in self.model.deadLoads():
+            block, point = assembly.ids.index(load.body), load.point + load.displacement()  # fmt: skip
+            if force.norm():
+                loads += assembly.force(block, np.array(force), point)
+            if load.driven and load is not self.model.loads["push"]:
+                prop = block, np.array(load.direction.normalized()), point
+                assembly.props.append(prop)
+        return loads
+
+    # -- what is told ---------------------------------------------------------------------------------------------
+
+    def describe(self):
+        """Entries of run.json."""
+        if not self.entries:
+            return {}
+        told = {"bounds": list(self.entries.values())}
+        known = [e for e in self.entries.values() if "factor" in e]
+        pushes = [e["factor"] for e in known if e["unit"] == "kN"]
+        leans = [e["factor"] for e in known if e["unit"] != "kN"]
+        if pushes:
+            told["bound_base_shear_kN"] = pushes[0]
+        if pushes[1:]:
+            told["negative_bound_base_shear_kN"] = -pushes[1]
+        if leans:
+            told["bound_acceleration"] = leans[0]
+        return told
+
+    def lines(self):
+        """Horizontal lines of curve.png, for a push."""
+        told = self.describe()
+        for key in ("bound_base_shear_kN", "negative_bound_base_shear_kN"):
+            if key in told:
+                yield {
+                    "y": told[key],
+                    "text": f"limit analysis: {abs(told[key]):.1f} kN at most",
+                }
+
+    def over(self, run, factor=0.0):
+        """Sentences about what is above its bound.
+
+        :param run: the entries of run.json
+        :param factor: of a structure that stood under a horizontal acceleration [-]
+        """
+        allowed = 1 + TOLERANCE + run.get("dynamic_imbalance", 0.0)
+        told = self.describe()
+        pairs = [
+            (abs(run[reached]), abs(told[bound]), "kN", "the largest base shear")
+            for reached, bound in (
+                ("peak_base_shear_kN", "bound_base_shear_kN"),
+                ("negative_peak_base_shear_kN", "negative_bound_base_shear_kN"),
+            )
+            if reached in run and bound in told
+        ]
+        if "bound_acceleration" in told:
+            pairs.append(
+                (factor, told["bound_acceleration"], "of gravity", "the acceleration")
+            )
+        for reached, bound, unit, what in pairs:
+            if reached > allowed * bound:
+                yield (
+                    f"warning: {what}, {reached:.4g} {unit}, is more than {100 * (allowed - 1):.1f} % above the upper bound "
+                    f"of limit analysis, {bound:.4g} {unit}: is the run too fast, or does the structure move far?"
+                )
+
+    def leave(self, directory, title, parts, views):
+        """Write the mechanism that was found last: mechanism.png, and two files for ParaView."""
+        if self.last:
+            bound, entry = self.last
+            told = f"{title}\nlimit analysis, {entry['load']}: {entry['factor']:.4g} {entry['unit']}".rstrip()
+            bound.save(directory)
+            bound.draw(os.path.join(directory, FIGURE), told, parts, views)
+
+
+def _told(way):
+    """A direction as text."""
+    for axis, value in zip("xyz", way):
+        if abs(value) > 1 - 1e-9:
+            return ("-" if value < 0 else "") + axis
+    return "(" + ", ".join(f"{v:.3g}" for v in way) + ")"

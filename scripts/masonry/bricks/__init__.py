@@ -1,0 +1,49 @@
+"""Bricks of any structure as plain records, before anything is made in YADE. Nothing here needs YADE.
+
+A :class:`Bricks` is an immutable collection of :class:`Block` records: convex blocks that meet face to face. These make
+one, and raise ValueError with all problems of what they are given at once:
+
+- :func:`Wall`: running, stack, header, English and Flemish bond, with :class:`Opening` and :class:`Lintel`;
+- :func:`Corner`, :func:`Tee` and :func:`Room`: walls that meet, with interlocking courses;
+- :func:`Arch`, :func:`BarrelVault` and :func:`Dome`, from voussoirs;
+- :func:`stack` and :func:`block`: boxes;
+- :func:`fromFile`: one block for each convex solid of a file.
+
+Collections are added with ``+``, moved, turned, named, cut by planes, and chosen from; see :class:`Bricks`. Its
+``problems()`` tells gaps, overlaps, slivers, loose parts and joints of odd size, with the bricks and the place::
+
+    from masonry.bricks import Arch, Lintel, Opening, Wall, block
+
+    wall = Wall(3.08, 2.43, openings=[Opening(0.99, 0.81, 0.99, 0.81, Lintel(bearing=0.22, height=0.162))])
+    scene = wall + block((0, 0, -0.2), (3.08, 0.102, 0)).named("base")
+    assert not scene.problems()
+
+Lengths are in m and angles in degrees. Every length of a unit contains its joint, as blocks have no mortar between them.
+"""
+
+from .blocks import Block, Bricks, boxCorners, summary
+from .checks import Joint
+from .files import fromFile
+from .openings import Lintel, Opening
+from .vaults import Arch, BarrelVault, Dome
+from .walls import Corner, Room, Tee, Wall, block, stack
+
+__all__ = [
+    "Arch",
+    "BarrelVault",
+    "Block",
+    "Bricks",
+    "Corner",
+    "Dome",
+    "Joint",
+    "Lintel",
+    "Opening",
+    "Room",
+    "Tee",
+    "Wall",
+    "block",
+    "boxCorners",
+    "fromFile",
+    "stack",
+    "summary",
+]

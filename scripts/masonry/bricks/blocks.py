@@ -1,0 +1,512 @@
+"""Blocks as plain records, and collections of them. Nothing here needs YADE."""
+
+import math
+from collections import Counter
+from dataclasses import dataclass, replace
+from numbers import Integral, Real
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from . import checks
+from .geometry import COINCIDENT, Solids, cutCorners, measures
+
+LOOKING = math.cos(math.radians(45))  # of the angle between a face and where it looks
+ALONG = 1 - 1e-6  # of the angle between normals of one face of a convex block
+
+
+@dataclass(frozen=True)
+class Block:
+    """One convex block, rigid or deformable: a brick, or a piece of one.
+
+    :param corners: tuple of (x, y, z) [m]: all corners of the convex solid, in any order, at least four
+    :param brick: number of the brick that it is, or is a piece of. Pieces of one brick share the number, and what they
+        share is a crack surface of the brick, not a mortar joint
+    :param part: name of the part of the structure, such as "wall" or "arch". Figures draw part by part
+    :param course: number of the course, or of the voussoir, from 0; -1: none
+    :param kind: "brick", "lintel", "voussoir" or "block". Materials can be chosen by it
+    """
+
+    corners: tuple
+    brick: int
+    part: str = "wall"
+    course: int = -1
+    kind: str = "brick"
+
+    def __post_init__(self):
+        problems = []
+        try:
+            corners = tuple(map(tuple, self.corners))
+        except TypeError:
+            corners = ()
+        if len(corners) < 4:
+            problems.append(
+                f"corners must be at least 4 points, got {_short(self.corners)}"
+            )
+        for n, corner in enumerate(corners):
+            if len(corner) != 3 or not all(
+                type(x) is float or _isNumber(x) for x in corner
+            ):
+                problems.append(
+                    f"corner {n} must be three numbers [m], got {_short(corner)}"
+                )
+            elif not all(map(math.isfinite, corner)):
+                problems.append(f"corner {n} [m] must be finite, got {_short(corner)}")
+        for what in ("brick", "course"):
+            if not isinstance(getattr(self, what), Integral):
+                problems.append(
+                    f"{what} must be a whole number, got {getattr(self, what)!r}"
+                )
+        for what in ("part", "kind"):
+            if not isinstance(getattr(self, what), str):
+                problems.append(f"{what} must be a text, got {getattr(self, what)!r}")
+        refuse("block", problems)
+        object.__setattr__(self, "corners", corners)
+
+    @property
+    def low(self):
+        """Lowest x, y and z [m]."""
+        return tuple(map(min, zip(*self.corners)))
+
+    @property
+    def high(self):
+        """Highest x, y and z [m]."""
+        return tuple(map(max, zip(*self.corners)))
+
+    @property
+    def middle(self):
+        """Mean of the corners [m]."""
+        return tuple(math.fsum(c) / len(self.corners) for c in zip(*self.corners))
+
+
+class Bricks:
+    """An immutable collection of blocks. Whatever changes something returns a new collection.
+
+    ``bricks[3]`` is a :class:`Block`, ``bricks[2:5]`` a collection; ``len()`` and iteration are those of a tuple. The
+    sum of two collections renumbers the bricks of the second so that numbers stay unique.
+
+    :param blocks: the :class:`Block` records
+    """
+
+    def __init__(self, blocks=()):
+        try:
+            self._blocks = tuple(blocks)
+        except TypeError:
+            raise ValueError(
+                f"Bricks needs a list of blocks, got {_short(blocks)}"
+            ) from None
+        refuse(
+            "Bricks",
+            [
+                f"item {n} is {_short(b)}, not a Block"
+                for n, b in enumerate(self._blocks)
+                if not isinstance(b, Block)
+            ],
+        )
+        self._found = {}
+
+    def __len__(self):
+        return len(self._blocks)
+
+    def __iter__(self):
+        return iter(self._blocks)
+
+    def __getitem__(self, key):
+        found = self._blocks[key]
+        return Bricks(found) if isinstance(key, slice) else found
+
+    def __eq__(self, other):
+        return isinstance(other, Bricks) and self._blocks == other._blocks
+
+    def __hash__(self):
+        return hash(self._blocks)
+
+    def __repr__(self):
+        if not self._blocks:
+            return "Bricks: none"
+        size = " x ".join(f"{b - a:.4g}" for a, b in zip(self.low, self.high))
+        bricks = len({b.brick for b in self._blocks})
+        parts = ", ".join(dict.fromkeys(b.part for b in self._blocks))
+        return f"Bricks: {len(self)} blocks of {bricks} bricks ({parts}), {size} m"
+
+    def __add__(self, other):
+        if not isinstance(other, Bricks):
+            return NotImplemented
+        return Bricks(self._blocks + tuple(other._renumbered(self._nextBrick())))
+
+    def __radd__(self, other):
+        return self if other == 0 else NotImplemented  # so that sum() works
+
+    def _nextBrick(self):
+        return max((b.brick for b in self._blocks), default=-1) + 1
+
+    def _renumbered(self, first):
+        """The blocks with bricks numbered from `first`, in the order of their first appearance."""
+        numbers = {}
+        for block in self._blocks:
+            number = numbers.setdefault(block.brick, first + len(numbers))
+            yield block if number == block.brick else replace(block, brick=number)
+
+    # -- size -----------------------------------------------------------------------------------------------------
+
+    @property
+    def low(self):
+        """Lowest x, y and z of all blocks [m]."""
+        return self._box()[0]
+
+    @property
+    def high(self):
+        """Highest x, y and z of all blocks [m]."""
+        return self._box()[1]
+
+    @property
+    def length(self):
+        """Extent along x [m]."""
+        return self.high[0] - self.low[0]
+
+    @property
+    def height(self):
+        """Extent along z [m]."""
+        return self.high[2] - self.low[2]
+
+    @property
+    def volume(self):
+        """[m³]"""
+        return float(self._solids().volumes().sum())
+
+    def _box(self):
+        if "box" not in self._found:
+            if not self._blocks:
+                raise ValueError("no blocks, so no size")
+            lows, highs = zip(*((b.low, b.high) for b in self._blocks))
+            self._found["box"] = tuple(map(min, zip(*lows))), tuple(
+                map(max, zip(*highs))
+            )
+        return self._found["box"]
+
+    def _solids(self):
+        if "solids" not in self._found:
+            self._found["solids"] = Solids([b.corners for b in self._blocks])
+        return self._found["solids"]
+
+    # -- moving and naming ----------------------------------------------------------------------------------------
+
+    def moved(self, dx=0.0, dy=0.0, dz=0.0):
+        """The blocks moved along the axes [m]."""
+        by = _vector((dx, dy, dz), "moved: way [m]")
+        return self._mapped(lambda c: tuple(x + d for x, d in zip(c, by)))
+
+    def turned(self, degrees, axis="z", about=(0, 0, 0)):
+        """The blocks turned about an axis through a point, by the right-hand rule. Quarter turns are exact.
+
+        :param degrees: angle [°]
+        :param axis: "x", "y" or "z"
+        :param about: point of the axis [m]
+        """
+        problems = []
+        if not (_isNumber(degrees) and math.isfinite(degrees)):
+            problems.append(f"angle [°] must be a finite number, got {_short(degrees)}")
+        if axis not in ("x", "y", "z"):
+            problems.append(f'axis must be "x", "y" or "z", got {_short(axis)}')
+        refuse("turned", problems)
+        about = _vector(about, "turned: about [m]")
+        quarters = degrees / 90
+        if quarters == round(quarters):
+            cos, sin = [(1, 0), (0, 1), (-1, 0), (0, -1)][round(quarters) % 4]
+        else:
+            cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+        k = "xyz".index(axis)
+        i, j = (k + 1) % 3, (k + 2) % 3
+
+        def turn(corner):
+            u, v = corner[i] - about[i], corner[j] - about[j]
+            new = list(corner)
+            new[i], new[j] = about[i] + cos * u - sin * v, about[j] + sin * u + cos * v
+            return tuple(new)
+
+        return self._mapped(turn)
+
+    def named(self, part):
+        """The blocks as a part of this name."""
+        return Bricks(replace(b, part=part) for b in self._blocks)
+
+    def ofKind(self, kind):
+        """The blocks as blocks of this kind."""
+        return Bricks(replace(b, kind=kind) for b in self._blocks)
+
+    def _mapped(self, function):
+        return Bricks(
+            replace(b, corners=tuple(map(function, b.corners))) for b in self._blocks
+        )
+
+    # -- choosing -------------------------------------------------------------------------------------------------
+
+    def where(self, function):
+        """The blocks for which a function of the :class:`Block` is true, with their numbers of bricks."""
+        if not callable(function):
+            raise ValueError(
+                f"where: needs a function of a block, got {_short(function)}"
+            )
+        return Bricks(b for b in self._blocks if function(b))
+
+    def within(self, low, high):
+        """The blocks whose middle lies in a box, its sides included.
+
+        :param low: opposite corners of the box [m]; ``math.inf`` is allowed
+        :param high:
+        """
+        low = _vector(low, "within: low corner [m]", finite=False)
+        high = _vector(high, "within: high corner [m]", finite=False)
+        if not all(a <= b for a, b in zip(low, high)):
+            raise ValueError(
+                f"within: low corner {low} m must lie below high corner {high} m"
+            )
+        return self.where(
+            lambda b: all(p <= x <= q for p, x, q in zip(low, b.middle, high))
+        )
+
+    def top(self):
+        """The blocks with a face in the highest horizontal plane."""
+        return self._inPlane(self.high[2])
+
+    def bottom(self):
+        """The blocks with a face in the lowest horizontal plane."""
+        return self._inPlane(self.low[2])
+
+    def _inPlane(self, z):
+        def hasFace(block):
+            width = COINCIDENT * math.dist(block.low, block.high)
+            return sum(abs(c[2] - z) <= width for c in block.corners) >= 3
+
+        return self.where(hasFace)
+
+    # -- cutting --------------------------------------------------------------------------------------------------
+
+    def cut(self, point, normal, own=False):
+        """The blocks, with every one that a plane crosses cut in two. Order and numbers of bricks stay.
+
+        :param point: a point of the plane [m]
+        :param normal: its normal, of any length
+        :param own: whether the part beyond the plane (along the normal) becomes a brick of its own, together with the
+            other parts of its brick there, so that the cut is a mortar joint; else the parts stay pieces of one brick
+            and the cut is a crack surface
+        """
+        point = _vector(point, "cut: point [m]")
+        normal = _vector(normal, "cut: normal")
+        length = math.hypot(*normal)
+        if not length > 0:
+            raise ValueError("cut: normal must not be of length 0")
+        normal = tuple(n / length for n in normal)
+        solids = self._solids()
+        refuse("cut", self._degenerate(solids))
+        blocks, beyond = [], []
+        for n, block in enumerate(self._blocks):
+            faces = solids.groups[solids.groupOf[n]].faces
+            width = COINCIDENT * solids.diagonal[n]
+            above, below = cutCorners(block.corners, faces, point, normal, width)
+            if above is None or below is None:
+                beyond.append(below is None)
+                blocks.append(block)
+            else:
+                beyond += [False, True]
+                blocks += [replace(block, corners=c) for c in (below, above)]
+        if own:
+            here = {b.brick for b, far in zip(blocks, beyond) if not far}
+            numbers, first = {}, self._nextBrick()
+            for k, (block, far) in enumerate(zip(blocks, beyond)):
+                if far and block.brick in here:
+                    number = numbers.setdefault(block.brick, first + len(numbers))
+                    blocks[k] = replace(block, brick=number)
+        return Bricks(blocks)
+
+    def _degenerate(self, solids):
+        return [
+            f"block {n} of brick {self._blocks[n].brick}: {what}"
+            for n, what in sorted(solids.problems.items())
+        ]
+
+    def whole(self):
+        """The blocks with the pieces of every brick joined, where the first of them stands.
+
+        :raises ValueError: if the pieces of a brick do not make up a convex solid
+        """
+        pieces, problems = {}, []
+        for block in self._blocks:
+            pieces.setdefault(block.brick, []).append(block)
+        joined = []
+        for number, blocks in pieces.items():
+            if len(blocks) > 1:
+                corners = self._joined(blocks)
+                if corners is None:
+                    problems.append(
+                        f"the {len(blocks)} pieces of brick {number} make up no convex solid"
+                    )
+                    continue
+                blocks = [replace(blocks[0], corners=corners)]
+            joined += blocks
+        refuse("whole", problems)
+        return Bricks(joined)
+
+    @staticmethod
+    def _joined(blocks):
+        """Corners of the solid that some blocks make up, or None."""
+        volume = math.fsum(Solids([b.corners for b in blocks]).volumes())
+        low, high = (
+            tuple(map(f, zip(*(getattr(b, name) for b in blocks))))
+            for f, name in ((min, "low"), (max, "high"))
+        )
+        box = boxCorners(low, high)
+        size = math.prod(b - a for a, b in zip(low, high))
+        if abs(size - volume) < COINCIDENT * size:
+            return box
+        points = list(dict.fromkeys(c for b in blocks for c in b.corners))
+        hull = ConvexHull(points)
+        if abs(hull.volume - volume) < COINCIDENT * volume:
+            return tuple(points[n] for n in sorted(hull.vertices))
+        return None
+
+    # -- checking -------------------------------------------------------------------------------------------------
+
+    def joints(self):
+        """Joints of all blocks that share a face: a list of :class:`masonry.bricks.Joint`.
+
+        Two faces coincide as they do for the plugin: within 1e-4 of the diagonal of the smaller block.
+        """
+        return list(self._pairs()[0])
+
+    def freeFaces(self, direction):
+        """Faces that look in a direction, within 45 degrees, with what no joint covers of them.
+
+        :param direction: three numbers, of any length
+        :returns: list of (number of the block, outward normal, free area [m²], centroid of the free part [m])
+        """
+        sight = np.array(_vector(direction, "freeFaces: direction"), float)
+        if not np.linalg.norm(sight) > 0:
+            raise ValueError("freeFaces: direction must not be of length 0")
+        sight /= np.linalg.norm(sight)
+        solids = self._solids()
+        refuse("freeFaces", self._degenerate(solids))
+        covered = {}
+        for joint in self.joints():
+            for block, sign in ((joint.first, 1), (joint.second, -1)):
+                outward = sign * np.array(joint.normal)
+                covered.setdefault(block, []).append((outward, joint))
+        found = []
+        for n in range(len(self._blocks)):
+            group, row = solids.groups[solids.groupOf[n]], solids.rowOf[n]
+            for face, normal in enumerate(group.normals[row]):
+                if normal @ sight < LOOKING:
+                    continue
+                corners = [tuple(c) for c in solids.face(n, face)]
+                area, _, middle = measures(corners, normal)
+                free, moment = area, area * np.array(middle)
+                for outward, joint in covered.get(n, ()):
+                    if outward @ normal > ALONG:
+                        free -= joint.area
+                        moment -= joint.area * np.array(joint.middle)
+                if free > COINCIDENT * area:
+                    found.append((n, tuple(normal), float(free), tuple(moment / free)))
+        return found
+
+    def _pairs(self):
+        if "pairs" not in self._found:
+            self._found["pairs"] = checks.findJoints(self._solids())
+        return self._found["pairs"]
+
+    def problems(self):
+        """What is wrong with the blocks: a list of sentences, empty if nothing is.
+
+        Each names the blocks (their numbers in this collection), the bricks, and the place:
+
+        - a block whose corners are not those of a convex solid, or lie in one plane;
+        - an overlap deeper than 1e-4 of the diagonal of the smaller block;
+        - a gap between two faces that nearly coincide: within 6°, and within a quarter of the thinner block;
+        - a sliver: thinner than a quarter of what is usual for its kind;
+        - a joint of odd size: narrower than a tenth of the thinner block;
+        - blocks that have no joint with the rest.
+        """
+        if "problems" not in self._found:
+            self._found["problems"] = checks.findProblems(
+                self._blocks, self._solids(), *self._pairs()
+            )
+        return list(self._found["problems"])
+
+
+def summary(bricks):
+    """Counts and sizes of a collection of blocks: a dict with units in its names."""
+    count = lambda what: dict(Counter(getattr(b, what) for b in bricks))
+    return dict(
+        blocks=len(bricks),
+        bricks=len({b.brick for b in bricks}),
+        courses=len({b.course for b in bricks if b.course >= 0}),
+        parts=count("part"),
+        kinds=count("kind"),
+        volume_m3=bricks.volume,
+        low_m=bricks.low if len(bricks) else None,
+        high_m=bricks.high if len(bricks) else None,
+    )
+
+
+# -- what the generators share ----------------------------------------------------------------------------------------
+
+
+def boxCorners(low, high):
+    """The eight corners of an axis-parallel box, x slowest and z fastest."""
+    return tuple(
+        (x, y, z)
+        for x in (low[0], high[0])
+        for y in (low[1], high[1])
+        for z in (low[2], high[2])
+    )
+
+
+def refuse(what, problems, most=10):
+    """Raise ValueError with the first problems of a list, if there are any."""
+    if problems:
+        more = [f"and {len(problems) - most} more"] if len(problems) > most else []
+        raise ValueError(f"{what}: " + "; ".join([*problems[:most], *more]))
+
+
+def positive(value, name, problems, unit="m", zero=False):
+    """Whether a value is a finite number above 0 (or 0, too); else a sentence is added to the problems."""
+    fine = _isNumber(value) and math.isfinite(value)
+    fine = fine and (value >= 0 if zero else value > 0)
+    if not fine:
+        bound = "0 or more" if zero else "above 0"
+        problems.append(
+            f"{name} [{unit}] must be a number {bound}, got {_short(value)}"
+        )
+    return fine
+
+
+def wholeNumber(value, name, problems, least=1):
+    """Whether a value is a whole number of at least `least`; else a sentence is added to the problems."""
+    fine = isinstance(value, Integral) and not isinstance(value, bool)
+    fine = fine and value >= least
+    if not fine:
+        problems.append(
+            f"{name} must be a whole number of at least {least}, got {_short(value)}"
+        )
+    return fine
+
+
+def _isNumber(value):
+    return isinstance(value, Real) and not isinstance(value, (bool, np.bool_))
+
+
+def _short(value):
+    text = repr(value)
+    return text if len(text) < 80 else text[:77] + "..."
+
+
+def _vector(value, what, finite=True):
+    try:
+        found = tuple(value)
+        good = len(found) == 3 and all(map(_isNumber, found))
+        good = good and not any(map(math.isnan, found))
+        good = good and (not finite or all(map(math.isfinite, found)))
+    except TypeError:
+        good = False
+    if not good:
+        raise ValueError(f"{what} must be three finite numbers, got {_short(value)}")
+    return found

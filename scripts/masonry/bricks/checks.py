@@ -1,0 +1,185 @@
+"""What is wrong with a set of blocks before anything runs: gaps, overlaps, slivers, loose parts, joints of odd size."""
+
+from collections import namedtuple
+from math import dist
+from statistics import median
+
+import numpy as np
+
+from .geometry import (
+    COINCIDENT,
+    NEARLY_OPPOSITE,
+    OPPOSITE,
+    REACH,
+    clip,
+    measures,
+)
+
+#: A block is a sliver if it is thinner than this share of the middle thickness (the median) of the blocks of its kind.
+#: The thinnest brick that a mason cuts, a queen closer or a quarter bat, has more. Assumed.
+SLIVER = 0.25
+
+#: A joint is of odd size if its width, area through longest extent, is below this share of the thinner block. Assumed.
+NARROW = 0.1
+
+#: Joint of two blocks: their numbers in the collection, the unit normal from the first to the second, the polygon
+#: (counter-clockwise about the normal) [m], its area [m²] and its centroid [m].
+Joint = namedtuple("Joint", "first second normal polygon area middle")
+
+
+def findJoints(solids):
+    """Joints, and pairs of blocks that do not fit.
+
+    :returns: list of :class:`Joint`, sorted by the numbers of the blocks, and a list of misfits: (number of the first
+        block, of the second, gap [m] (negative for an overlap), place [m])
+    """
+    thickness = solids.thicknesses()
+    with np.errstate(invalid="ignore"):
+        reach = np.where(np.isfinite(thickness), REACH * thickness, 0)
+    one, two = solids.nearPairs(reach / 2)
+    apart, faces, cosine = solids.compare(one, two)
+    width = COINCIDENT * np.minimum(solids.diagonal[one], solids.diagonal[two])
+    # A face that two blocks share is as long as wide: their bounding boxes overlap along two axes at least.
+    common = np.minimum(solids.high[one], solids.high[two])
+    common -= np.maximum(solids.low[one], solids.low[two])
+    flat = (common > 0.1 * width[:, None]).sum(axis=1) < 2
+    near = (apart <= REACH * np.minimum(thickness[one], thickness[two])) & ~flat
+    near &= (apart < -width) | (cosine <= NEARLY_OPPOSITE)
+    rows = (one, two, width, apart, cosine, *faces)
+    joints, misfits = [], []
+    faceOf = _Faces(solids)
+    for i, j, w, gap, cos, f, g in zip(*(row[near].tolist() for row in rows)):
+        if gap < -w:
+            gap = float(solids.separation(i, j))
+            if gap < -w:
+                misfits.append((i, j, gap, _shared(solids, i, j)))
+            continue
+        mine, normal, area = faceOf(i, f)
+        theirs, other, otherArea = faceOf(j, g)
+        shared = clip(mine, theirs, normal)
+        if len(shared) < 3:
+            continue
+        size, perimeter, middle = measures(shared, normal)
+        if middle is None or size < 0.5 * perimeter * w:
+            continue
+        (x, y, z), (nx, ny, nz) = theirs[0], other
+        between = [
+            abs((p - x) * nx + (q - y) * ny + (r - z) * nz) for p, q, r in shared
+        ]
+        if max(between) <= w and cos < OPPOSITE:
+            joints.append(Joint(i, j, normal, tuple(shared), size, middle))
+        elif size > 0.01 * min(area, otherArea):
+            away = sum((m - p) * n for m, p, n in zip(middle, theirs[0], other)) / 2
+            place = tuple(m - away * n for m, n in zip(middle, other))
+            if not _filled(solids, place, (i, j)):
+                misfits.append((i, j, max(between), place))
+    joints.sort(key=lambda joint: joint[:2])
+    return joints, misfits
+
+
+class _Faces:
+    """Faces of solids as plain lists of points, with normal and area, made when they are asked for."""
+
+    def __init__(self, solids):
+        self.solids = solids
+        self.corners = [group.corners.tolist() for group in solids.groups]
+        self.normals = [group.normals.tolist() for group in solids.groups]
+        self.areas = [group.areas.tolist() for group in solids.groups]
+        self.groupOf, self.rowOf = solids.groupOf.tolist(), solids.rowOf.tolist()
+
+    def __call__(self, solid, face):
+        g, row = self.groupOf[solid], self.rowOf[solid]
+        corners = self.corners[g][row]
+        polygon = [corners[n] for n in self.solids.groups[g].faces[face]]
+        return polygon, tuple(self.normals[g][row][face]), self.areas[g][row][face]
+
+
+def _filled(solids, place, but):
+    """Whether a place lies in a solid other than two given ones."""
+    around = (solids.low <= place) & (solids.high >= place)
+    for n in np.flatnonzero(around.all(axis=1) & (solids.groupOf >= 0)):
+        group, row = solids.groups[solids.groupOf[n]], solids.rowOf[n]
+        heights = group.normals[row] @ place - group.offsets[row]
+        if n not in but and (heights <= 0).all():
+            return True
+    return False
+
+
+def _shared(solids, one, two):
+    """Middle of what the bounding boxes of two solids have in common."""
+    low = np.maximum(solids.low[one], solids.low[two])
+    high = np.minimum(solids.high[one], solids.high[two])
+    return tuple((low + high) / 2)
+
+
+def components(count, joints):
+    """Number of the connected part to which each block belongs: a list. Parts are numbered by their first block."""
+    parent = list(range(count))
+
+    def root(n):
+        while parent[n] != n:
+            parent[n] = parent[parent[n]]
+            n = parent[n]
+        return n
+
+    for joint in joints:
+        a, b = root(joint[0]), root(joint[1])
+        parent[max(a, b)] = min(a, b)
+    return [root(n) for n in range(count)]
+
+
+def findProblems(blocks, solids, joints, misfits):
+    """Sentences about what is wrong with some blocks, see :meth:`masonry.bricks.Bricks.problems`."""
+    found = []
+    thickness = solids.thicknesses().tolist()
+    told = lambda n: f"block {n} of brick {blocks[n].brick}"
+    middles = solids.middles()
+    for n in sorted(solids.problems):
+        found.append(f"{told(n)} ({blocks[n].part}): {solids.problems[n]}")
+    for i, j, gap, place in misfits:
+        both = f"{told(i)} and {told(j)}"
+        if gap < 0:
+            found.append(f"{both} overlap by {-gap:.3g} m near {where(place)}")
+        else:
+            found.append(f"{both}: a gap of up to {gap:.3g} m near {where(place)}")
+    kinds = {}
+    for n, block in enumerate(blocks):
+        if n not in solids.problems:
+            kinds.setdefault(block.kind, []).append(n)
+    for kind, members in kinds.items():
+        least = SLIVER * median(thickness[n] for n in members)
+        for n in members:
+            if thickness[n] < least * (1 - 1e-9):
+                found.append(
+                    f"{told(n)} near {where(middles[n])} is a sliver: {thickness[n]:.3g} m thin, less than {least:.3g} m, "
+                    f"a quarter of what is usual for a {kind} here"
+                )
+    for joint in joints:
+        i, j, polygon = joint.first, joint.second, joint.polygon
+        longest = max(dist(p, q) for n, p in enumerate(polygon) for q in polygon[:n])
+        width, least = joint.area / longest, NARROW * min(thickness[i], thickness[j])
+        if width < least:
+            found.append(
+                f"{told(i)} and {told(j)} share a joint of odd size near {where(joint.middle)}: {longest:.3g} m long but "
+                f"{width:.3g} m wide, less than {least:.3g} m, a tenth of the thinner block"
+            )
+    parts = {}
+    good = [n for n in range(len(blocks)) if n not in solids.problems]
+    for n, part in enumerate(components(len(blocks), joints)):
+        if n not in solids.problems:
+            parts.setdefault(part, []).append(n)
+    largest = max(parts.values(), key=len, default=[])
+    for members in parts.values():
+        if members is not largest:
+            what = told(members[0])
+            if len(members) > 1:
+                what = f"{len(members)} blocks from {what} on"
+            found.append(
+                f"{what}, near {where(middles[members[0]])}: no joint with the other {len(good) - len(members)} blocks"
+            )
+    return found
+
+
+def where(point):
+    """A place as text [m]."""
+    return "(" + ", ".join(f"{x + 0.0:.3f}" for x in point) + ") m"

@@ -1,0 +1,446 @@
+"""Blocks from files of surface meshes: OBJ, OFF, STL, PLY, and JSON of COMPAS.
+
+PLY and binary STL are read by meshio. It loses the names of groups (OBJ) and of solids (STL as text), takes nothing but
+triangles (OFF) and knows no COMPAS, so these are read here.
+"""
+
+import json
+import math
+import os
+from collections import namedtuple
+
+import numpy as np
+
+from .blocks import Block, Bricks, positive, refuse
+from .checks import where
+from .geometry import FLAT
+
+#: Points of one solid are the same if they are no further apart than this share of its size; STL as bytes, and text of
+#: six digits, round by less.
+SAME = 1e-6
+
+#: Faces of two solids that touch coincide if the angle between them about an edge is below this [rad]. Single precision
+#: turns the smallest faces by less, and no solid has so sharp an edge.
+COINCIDE = 1e-3
+
+#: A surface as a file has it: name, points (n, 3), and faces, tuples of point numbers.
+_Surface = namedtuple("_Surface", "name points faces")
+
+
+def fromFile(path, scale=1.0, kind="block"):
+    """Blocks from a file, one for each closed convex surface in it: a :class:`Bricks`, each block a brick of its own.
+
+    Formats: ``.obj`` (each ``g`` or ``o`` is a group), ``.off``, ``.stl`` (as text, each ``solid`` is a group, or as
+    bytes), ``.ply``, and ``.json`` of COMPAS: a mesh, or anything that holds meshes, such as an assembly. Solids in one
+    group are told apart, also where they touch. Each group gives a part its name; files without groups give their own.
+    Faces run counter-clockwise seen from outside, or all of them clockwise.
+
+    :param scale: metres in one unit of the file; 0.001 if it is in millimetres
+    :param kind: kind of the blocks
+    :raises ValueError: for a file that cannot be read, and with every solid that is open, not convex or has a bent face;
+        each is named by its group and its number there, with the face and its place
+    """
+    problems = []
+    positive(scale, "scale", problems, "m")
+    if not isinstance(kind, str):
+        problems.append(f"kind must be a text, got {kind!r}")
+    try:
+        path = os.fspath(path)
+    except TypeError:
+        problems.append(f"path must be the name of a file, got {path!r}")
+        refuse("fromFile", problems)
+    ending = os.path.splitext(path)[1].lower()
+    readers = {
+        ".obj": _readObj,
+        ".off": _readOff,
+        ".stl": _readStl,
+        ".ply": _readPly,
+        ".json": _readJson,
+    }
+    if ending not in readers:
+        problems.append(f"{path}: must end with one of {', '.join(readers)}")
+    elif not os.path.isfile(path):
+        problems.append(f"{path}: no such file")
+    refuse("fromFile", problems)
+    try:
+        surfaces = readers[ending](path)
+    except (OSError, ValueError, IndexError, KeyError, TypeError) as error:
+        raise ValueError(f"{path}: cannot be read: {error}") from None
+    blocks = []
+    for surface in surfaces:
+        for corners in _solids(surface, scale, problems):
+            blocks.append(Block(corners, len(blocks), surface.name, -1, kind))
+    if not blocks and not problems:
+        problems.append("no faces, so no solids")
+    refuse(path, problems)
+    return Bricks(blocks)
+
+
+# -- formats ----------------------------------------------------------------------------------------------------------
+
+
+def _plain(path):
+    return os.path.splitext(os.path.basename(path))[0]
+
+
+def _lines(path):
+    """Words of each line of a text that has any, without comments, with the number of the line."""
+    with open(path, encoding="utf-8", errors="replace") as file:
+        text = file.read().replace("\\\n", " ")
+    for number, line in enumerate(text.splitlines(), 1):
+        words = line.split("#")[0].split()
+        if words:
+            yield number, words
+
+
+def _readObj(path):
+    points, groups, name = [], {}, _plain(path)
+    for number, words in _lines(path):
+        what = words[0]
+        if what == "v":
+            points.append(_point(words[1:4], number))
+        elif what in ("g", "o"):
+            name = " ".join(words[1:]) or _plain(path)
+        elif what == "f":
+            face = []
+            for word in words[1:]:
+                n = int(word.split("/")[0])
+                n = n - 1 if n > 0 else len(points) + n
+                if not 0 <= n < len(points):
+                    raise ValueError(
+                        f"line {number}: face with point {word}, of {len(points)} so far"
+                    )
+                face.append(n)
+            groups.setdefault(name, []).append(tuple(face))
+    return [_Surface(name, np.array(points), faces) for name, faces in groups.items()]
+
+
+def _point(words, number):
+    try:
+        point = tuple(map(float, words))
+    except ValueError:
+        point = ()
+    if len(point) != 3 or not all(map(math.isfinite, point)):
+        raise ValueError(
+            f"line {number}: {' '.join(words)} is no point of three finite numbers"
+        )
+    return point
+
+
+def _readOff(path):
+    lines = list(_lines(path))
+    if not lines or not lines[0][1][0].endswith("OFF"):
+        raise ValueError("does not start with OFF")
+    if lines[0][1][0] != "OFF":
+        raise ValueError(f"{lines[0][1][0]} is a variant of OFF that is not known here")
+    head = lines[0][1][1:]
+    lines = lines[1:]
+    if not head:
+        head, lines = lines[0][1], lines[1:]
+    count, faces = int(head[0]), int(head[1])
+    if count < 0 or faces < 0 or len(lines) < count + faces:
+        raise ValueError(
+            f"{count} points and {faces} faces are told, fewer lines are there"
+        )
+    points = [_point(words[:3], n) for n, words in lines[:count]]
+    found = []
+    for number, words in lines[count : count + faces]:
+        face = tuple(map(int, words[1 : 1 + int(words[0])]))
+        if len(face) != int(words[0]) or not all(0 <= n < count for n in face):
+            raise ValueError(f"line {number}: a face with points {face} of {count}")
+        found.append(face)
+    return [_Surface(_plain(path), np.array(points), found)]
+
+
+def _readStl(path):
+    size = os.path.getsize(path)
+    with open(path, "rb") as file:
+        head = file.read(84)
+    count = int.from_bytes(head[80:84], "little")
+    if len(head) == 84 and size == 84 + 50 * count:
+        return _byMeshio(path)
+    if not head.lstrip().startswith(b"solid"):
+        raise ValueError(
+            f"neither text that starts with solid, nor bytes of {count} triangles"
+        )
+    surfaces, points, name = [], None, ""
+    for number, words in _lines(path):
+        what = words[0].lower()
+        if what == "solid":
+            name, points = " ".join(words[1:]) or _plain(path), []
+        elif what == "vertex" and points is not None:
+            points.append(_point(words[1:4], number))
+        elif what == "endsolid" and points is not None:
+            if len(points) % 3:
+                raise ValueError(
+                    f"line {number}: solid {name} has a facet without three points"
+                )
+            faces = [(n, n + 1, n + 2) for n in range(0, len(points), 3)]
+            if faces:
+                surfaces.append(_Surface(name, np.array(points), faces))
+            points = None
+    if points is not None:
+        raise ValueError(f"solid {name} has no end")
+    return surfaces
+
+
+def _readPly(path):
+    return _byMeshio(path)
+
+
+def _byMeshio(path):
+    import meshio  # takes a second, and few scenes need it
+
+    try:
+        mesh = meshio.read(path)
+    except (Exception, SystemExit) as error:  # meshio ends the program for some files
+        raise ValueError(f"meshio: {error or type(error).__name__}") from None
+    points = np.asarray(mesh.points, float)
+    if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
+        raise ValueError("points must be three finite numbers each")
+    faces = []
+    for cells in mesh.cells:
+        if cells.type not in ("triangle", "quad", "polygon"):
+            raise ValueError(f"cells of type {cells.type} are no faces")
+        faces += [tuple(int(n) for n in face) for face in cells.data]
+    if any(not 0 <= n < len(points) for face in faces for n in face):
+        raise ValueError(f"a face has a point that is none of the {len(points)}")
+    return [_Surface(_plain(path), points, faces)]
+
+
+def _readJson(path):
+    with open(path, encoding="utf-8") as file:
+        data = json.load(file)
+    found = []
+    _meshes(data, "", found)
+    if not found:
+        raise ValueError("no mesh: nothing with both vertex and face")
+    surfaces = []
+    for n, (name, mesh) in enumerate(found):
+        usual = mesh.get("default_vertex_attributes") or mesh.get("dva") or {}
+        keys = {key: k for k, key in enumerate(mesh["vertex"])}
+        points = []
+        for key, vertex in mesh["vertex"].items():
+            point = [vertex.get(axis, usual.get(axis, 0.0)) for axis in "xyz"]
+            points.append(_point([str(x) for x in point], f"of vertex {key}"))
+        faces = []
+        for key, face in mesh["face"].items():
+            missing = [v for v in face if str(v) not in keys]
+            if missing:
+                raise ValueError(f"face {key} has a vertex {missing[0]} that is none")
+            faces.append(tuple(keys[str(v)] for v in face))
+        name = name or (f"{_plain(path)} {n}" if len(found) > 1 else _plain(path))
+        surfaces.append(_Surface(name, np.array(points), faces))
+    return surfaces
+
+
+def _meshes(data, name, found):
+    """Every dictionary with the vertices and faces of a COMPAS mesh, with the name that it or its holder has."""
+    if isinstance(data, dict):
+        own = data.get("attributes")
+        name = (
+            (own.get("name") if isinstance(own, dict) else None)
+            or data.get("name")
+            or name
+        )
+        name = name if isinstance(name, str) else ""
+        if isinstance(data.get("vertex"), dict) and isinstance(data.get("face"), dict):
+            found.append((name, data))
+            return
+        for value in data.values():
+            _meshes(value, name, found)
+    elif isinstance(data, list):
+        for value in data:
+            _meshes(value, name, found)
+
+
+# -- from surfaces to solids ------------------------------------------------------------------------------------------
+
+
+def _solids(surface, scale, problems):
+    """Corners of each convex solid of a surface."""
+    name = surface.name
+    if not len(surface.points):
+        problems.append(f"{name}: no points")
+        return
+    points = surface.points * scale
+    used = sorted({n for face in surface.faces for n in face})
+    merge = _merged(points, used)
+    faces, numbers = [], []
+    for number, face in enumerate(surface.faces):
+        face = [merge[n] for n in face]
+        face = tuple(p for k, p in enumerate(face) if p != face[k - 1])
+        if len(face) >= 3 and len(set(face)) == len(face):
+            faces.append(face)
+            numbers.append(number)
+        elif len(set(face)) > 2:
+            problems.append(f"{name}, face {number}: comes back to one of its points")
+    if not faces:
+        problems.append(f"{name}: no faces")
+        return
+    # All faces may run clockwise; then the volume that they enclose comes out negative.
+    about = points[used].mean(axis=0)
+    volume = sum(
+        np.dot(points[f[0]] - about, np.cross(points[a] - about, points[b] - about))
+        for f in faces
+        for a, b in zip(f[1:], f[2:])
+    )
+    if volume < 0:
+        faces = [face[::-1] for face in faces]
+    mates, open_ = _mates(points, faces)
+    if open_:
+        for face, (a, b) in open_[:3]:
+            middle = (points[a] + points[b]) / 2
+            problems.append(
+                f"{name}, face {numbers[face]}: an edge at {where(middle)} without a second face that runs the other way: "
+                f"the solid is open, or its faces run in different senses"
+            )
+        if len(open_) > 3:
+            problems.append(f"{name}: {len(open_) - 3} more such edges")
+        return
+    for n, members in enumerate(_connected(len(faces), mates)):
+        told = f"{name}, solid {n}"
+        corners = _corners(points, faces, numbers, members, told, problems)
+        if corners:
+            yield corners
+
+
+def _merged(points, used):
+    """For each point the number of the first one that is at the same place."""
+    merge = np.arange(len(points))
+    size = np.ptp(points[used], axis=0).max()
+    if not size > 0:
+        return merge
+    width = SAME * size
+    from scipy.spatial import cKDTree
+
+    tree = cKDTree(points[used])
+    for a, b in sorted(tree.query_pairs(width)):
+        one, two = merge[used[a]], merge[used[b]]
+        merge[used[b]] = merge[used[a]] = min(one, two)
+    return merge.tolist()
+
+
+def _mates(points, faces):
+    """Which faces of one solid share an edge: pairs of their numbers. And the edges without a second face.
+
+    Where solids touch, an edge has more than two faces. Of these the first that one meets on the way from a face through
+    the inside of its solid is the one of the same solid.
+    """
+    edges = {}
+    for n, face in enumerate(faces):
+        for a, b in zip(face, face[1:] + face[:1]):
+            edges.setdefault((a, b), []).append(n)
+    normals = [_normal(points[list(face)]) for face in faces]
+    mates, open_ = [], []
+    for (a, b), here in edges.items():
+        there = edges.get((b, a), [])
+        if len(here) != len(there):
+            open_ += [(n, (a, b)) for n in here[len(there) :]]
+            continue
+        if a > b:
+            continue
+        if len(here) == 1:
+            mates.append((here[0], there[0]))
+            continue
+        along = points[b] - points[a]
+        along = along / np.linalg.norm(along)
+        taken = set()
+        for n in here:
+            into = np.cross(
+                normals[n], along
+            )  # into the face, at right angles to the edge
+            best = min(
+                (m for m in there),
+                key=lambda m: _turn(into, -normals[n], np.cross(normals[m], -along)),
+            )
+            if best in taken:
+                open_.append((n, (a, b)))
+            taken.add(best)
+            mates.append((n, best))
+    return mates, open_
+
+
+def _turn(into, inside, other):
+    """Angle from one face to another about their edge through the inside of the solid; a whole turn if they coincide."""
+    angle = math.atan2(np.dot(other, inside), np.dot(other, into))
+    return angle if angle > COINCIDE else angle + 2 * math.pi
+
+
+def _normal(polygon):
+    arms = polygon - polygon.mean(axis=0)
+    normal = np.cross(arms, np.roll(arms, -1, axis=0)).sum(axis=0)
+    length = np.linalg.norm(normal)
+    return normal / length if length > 0 else normal
+
+
+def _connected(count, mates):
+    neighbours = [[] for _ in range(count)]
+    for a, b in mates:
+        neighbours[a].append(b)
+        neighbours[b].append(a)
+    seen, parts = [False] * count, []
+    for start in range(count):
+        if seen[start]:
+            continue
+        seen[start], part = True, [start]
+        for n in part:
+            for m in neighbours[n]:
+                if not seen[m]:
+                    seen[m] = True
+                    part.append(m)
+        parts.append(part)
+    return parts
+
+
+def _corners(points, faces, numbers, members, told, problems):
+    """Corners of one solid if it is convex, else None and a sentence. Points inside a face or an edge are left out."""
+    used = sorted({n for face in members for n in faces[face]})
+    own = points[used]
+    size = np.linalg.norm(np.ptp(own, axis=0))
+    width = FLAT * size
+    planes, meeting = [], {n: [] for n in used}
+    for face in members:
+        polygon = points[list(faces[face])]
+        normal, middle = _normal(polygon), polygon.mean(axis=0)
+        if not normal.any():
+            continue  # a face without area, as some programs write for T-shaped edges
+        bent = np.abs((polygon - middle) @ normal).max()
+        place = where(middle)
+        if bent > width:
+            problems.append(
+                f"{told}, face {numbers[face]} at {place}: bent by {bent:.3g} m, not plane"
+            )
+            return None
+        beyond = ((own - middle) @ normal).max()
+        if beyond > width:
+            problems.append(
+                f"{told}, face {numbers[face]} at {place}: the solid reaches {beyond:.3g} m beyond its plane, so it is not "
+                f"convex"
+            )
+            return None
+        k = next(
+            (
+                k
+                for k, plane in enumerate(planes)
+                if _same(plane, normal, middle, width)
+            ),
+            len(planes),
+        )
+        if k == len(planes):
+            planes.append((normal, middle))
+        for n in faces[face]:
+            meeting[n].append(k)
+    if len(planes) < 4:
+        problems.append(f"{told}: only {len(planes)} planes, so no volume")
+        return None
+    return tuple(
+        tuple(map(float, points[n])) for n in used if len(set(meeting[n])) >= 3
+    )
+
+
+def _same(plane, normal, middle, width):
+    return (
+        np.dot(plane[0], normal) > 1 - 1e-6
+        and abs(np.dot(middle - plane[1], plane[0])) <= width
+    )

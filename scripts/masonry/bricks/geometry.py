@@ -1,0 +1,401 @@
+"""Convex solids that are given by their corners: faces, volumes, joints, gaps and overlaps. Many at a time, with numpy.
+
+Solids whose corners stand in the same order have the same faces, so the faces are looked for once for all of them.
+"""
+
+from math import dist
+
+import numpy as np
+from scipy.spatial import ConvexHull, QhullError
+
+#: Largest gap or overlap of two faces that still share a joint, as a share of the diagonal of the smaller block. It is
+#: the plugin's own bound (coincidentFaces in yade_plugin/blocks/FaceContact.hpp).
+COINCIDENT = 1e-4
+
+#: Largest distance of a corner from its face's plane, as a share of the diagonal of the block. Coordinates in a file of
+#: six digits keep it.
+FLAT = 1e-5
+
+#: Two faces look at each other if the cosine between their outward normals is below this. Faces within 6° of that, and
+#: no further apart than a quarter of the thinner block, were probably meant to touch. Both are the plugin's bounds.
+OPPOSITE = -np.cos(np.radians(0.5))
+NEARLY_OPPOSITE = -np.cos(np.radians(6))
+REACH = 0.25
+
+_CHUNK = (
+    40_000  # pairs of blocks that are compared at a time, so that memory stays small
+)
+
+
+def hull(corners):
+    """Faces of the convex solid around some corners: tuples of corner numbers, counter-clockwise seen from outside.
+
+    :param corners: (n, 3) [m]
+    :raises ValueError: if the corners have no volume, or if one of them is no corner of the solid
+    """
+    corners = np.asarray(corners, float)
+    middle = corners.mean(axis=0)
+    size = np.ptp(corners, axis=0).max()
+    if not size > 0:
+        raise ValueError("all its corners are one point")
+    centred = (corners - middle) / size
+    for n, corner in enumerate(centred):
+        if n and np.abs(centred[:n] - corner).max(axis=1).min() < 1e-9:
+            raise ValueError(f"corner {n} at {_place(corners[n])} m is given twice")
+    try:
+        found = ConvexHull(centred)
+    except QhullError:
+        raise ValueError(
+            f"its {len(corners)} corners lie in one plane: no volume"
+        ) from None
+    faces, left = [], set(range(len(found.equations)))
+    order = sorted(left, key=lambda n: -_triangleArea(centred[found.simplices[n]]))
+    for n in order:  # from the largest triangle on, whose plane is the surest
+        if n not in left:
+            continue
+        plane = found.equations[n]
+        # Triangles that lie in the plane of the largest one belong to its face.
+        same = [
+            m
+            for m in left
+            if np.abs(centred[found.simplices[m]] @ plane[:3] + plane[3]).max() < FLAT
+        ]
+        left.difference_update(same)
+        members = np.unique(found.simplices[same])
+        faces.append(_around(members, centred, plane[:3]))
+    count = np.zeros(len(corners), int)
+    for face in faces:
+        count[list(face)] += 1
+    for n in np.flatnonzero(count < 3):
+        raise ValueError(
+            f"corner {n} at {_place(corners[n])} m is no corner of the convex solid around all of them"
+        )
+    return tuple(faces)
+
+
+def _triangleArea(points):
+    return np.linalg.norm(np.cross(points[1] - points[0], points[2] - points[0]))
+
+
+def _around(members, corners, normal):
+    """Corners of a face, counter-clockwise about its normal."""
+    points = corners[members] - corners[members].mean(axis=0)
+    first = points[0] / np.linalg.norm(points[0])
+    second = np.cross(normal, first)
+    angles = np.arctan2(points @ second, points @ first)
+    return tuple(int(n) for n in members[np.argsort(angles)])
+
+
+def _place(point):
+    return "(" + ", ".join(f"{x:.6g}" for x in point) + ")"
+
+
+class Alike:
+    """Convex solids whose corners stand in the same order.
+
+    :ivar index: numbers of the solids, (n,)
+    :ivar corners: (n, corners, 3) [m]
+    :ivar faces: tuples of corner numbers, counter-clockwise seen from outside
+    :ivar normals: outward unit normals, (n, faces, 3)
+    :ivar offsets: normal times a point of the face, (n, faces) [m]
+    :ivar fit: whether these faces are those of the solid, (n,)
+    """
+
+    def __init__(self, index, corners, faces):
+        self.index, self.corners, self.faces = index, corners, faces
+        size = np.linalg.norm(np.ptp(corners, axis=1), axis=1)
+        centres, normals = [], []
+        for face in faces:
+            points = corners[:, face]
+            centre = points.mean(axis=1)
+            arms = points - centre[:, None]
+            # Newell's normal of a polygon: half the sum of the products of neighbouring corners
+            normal = np.cross(arms, np.roll(arms, -1, axis=1)).sum(axis=1) / 2
+            centres.append(centre)
+            normals.append(normal)
+        self._areaVectors = np.stack(normals, axis=1)
+        self._centres = np.stack(centres, axis=1)
+        self.areas = np.linalg.norm(self._areaVectors, axis=2)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            self.normals = self._areaVectors / self.areas[..., None]
+        self.offsets = np.einsum("nfk,nfk->nf", self.normals, self._centres)
+        heights = np.einsum("nfk,nck->nfc", self.normals, corners)
+        heights -= self.offsets[..., None]
+        on = np.zeros((len(faces), corners.shape[1]), bool)
+        for row, face in zip(on, faces):
+            row[list(face)] = True
+        limit = (FLAT * size)[:, None, None]
+        with np.errstate(invalid="ignore"):
+            self.fit = np.where(on, np.abs(heights) <= limit, heights < -limit).all(
+                axis=(1, 2)
+            )
+        self.thickness = -heights.min(axis=2).max(axis=1)  # along the thinnest normal
+
+    def volumes(self):
+        """[m³]: a third of the sum of face area times its distance from the middle."""
+        middle = self.corners.mean(axis=1)
+        arms = self._centres - middle[:, None]
+        return np.einsum("nfk,nfk->n", self._areaVectors, arms) / 3
+
+    def middles(self):
+        """Centroids of the solids, (n, 3) [m], from the tetrahedra between a middle and the triangles of the surface."""
+        middle = self.corners.mean(axis=1)
+        moment, volume = np.zeros_like(middle), np.zeros(len(middle))
+        for face in self.faces:
+            for a, b in zip(face[1:], face[2:]):
+                arms = [self.corners[:, c] - middle for c in (face[0], a, b)]
+                six = np.einsum("nk,nk->n", arms[0], np.cross(arms[1], arms[2]))
+                moment += six[:, None] * sum(arms) / 4
+                volume += six
+        return middle + moment / volume[:, None]
+
+    def taken(self, keep):
+        return Alike(self.index[keep], self.corners[keep], self.faces)
+
+
+class Solids:
+    """Faces, joints, gaps and overlaps of convex solids.
+
+    :param solids: for each solid its corners, (corners, 3) [m]
+    :ivar problems: dict from the number of a solid to what is wrong with it; such a solid has no faces here
+    """
+
+    def __init__(self, solids):
+        self.count = len(solids)
+        self.low, self.high = np.zeros((2, self.count, 3))
+        self.problems, self.groups = {}, []
+        byCorners = {}
+        for n, corners in enumerate(solids):
+            byCorners.setdefault(len(corners), []).append(n)
+        for count, members in byCorners.items():
+            index = np.array(members)
+            corners = np.array([solids[n] for n in members], float)
+            self.low[index], self.high[index] = corners.min(axis=1), corners.max(axis=1)
+            self._sort(index, corners)
+        self.groupOf = np.full(self.count, -1)
+        self.rowOf = np.full(self.count, -1)
+        for g, group in enumerate(self.groups):
+            self.groupOf[group.index] = g
+            self.rowOf[group.index] = np.arange(len(group.index))
+        self.diagonal = np.linalg.norm(self.high - self.low, axis=1)
+
+    def _sort(self, index, corners):
+        """Groups of solids with the same number of corners, by their faces."""
+        while len(index):
+            try:
+                alike = Alike(index, corners, hull(corners[0]))
+                if not alike.fit[0]:
+                    raise ValueError(
+                        "its corners lie so near to one another, or to one plane, that its faces are not to be told"
+                    )
+                fit = alike.fit
+                self.groups.append(alike if fit.all() else alike.taken(fit))
+            except ValueError as error:
+                self.problems[int(index[0])] = str(error)
+                fit = np.arange(len(index)) == 0
+            index, corners = index[~fit], corners[~fit]
+
+    def volumes(self):
+        """[m³], (n,); NaN for a solid with problems."""
+        return self._each(Alike.volumes)
+
+    def thicknesses(self):
+        """Smallest extent along the normal of a face [m], (n,); NaN for a solid with problems."""
+        return self._each(lambda group: group.thickness)
+
+    def middles(self):
+        """Centroids [m], (n, 3)."""
+        found = np.full((self.count, 3), np.nan)
+        for group in self.groups:
+            found[group.index] = group.middles()
+        return found
+
+    def _each(self, measure):
+        found = np.full(self.count, np.nan)
+        for group in self.groups:
+            found[group.index] = measure(group)
+        return found
+
+    def face(self, solid, number):
+        """Corners of a face, (corners, 3) [m]."""
+        group = self.groups[self.groupOf[solid]]
+        return group.corners[self.rowOf[solid]][list(group.faces[number])]
+
+    # -- pairs ----------------------------------------------------------------------------------------------------
+
+    def nearPairs(self, reach):
+        """Pairs of solids whose bounding boxes are no further apart than `reach` [m] of both: arrays of their numbers."""
+        good = np.flatnonzero(self.groupOf >= 0)
+        empty = np.zeros(0, int)
+        if len(good) < 2:
+            return empty, empty
+        low = self.low[good] - reach[good, None]
+        high = self.high[good] + reach[good, None]
+        # Solids are sorted along the axis on which they overlap least.
+        extent = high.max(axis=0) - low.min(axis=0)
+        axis = np.argmin((high - low).mean(axis=0) / np.maximum(extent, 1e-300))
+        order = np.argsort(low[:, axis], kind="stable")
+        good, low, high = good[order], low[order], high[order]
+        last = np.searchsorted(low[:, axis], high[:, axis], side="right")
+        firsts, seconds = [], []
+        counts = np.maximum(last - np.arange(len(good)) - 1, 0)
+        sums = np.concatenate([[0], np.cumsum(counts)])
+        start = 0
+        while start < len(good):
+            end = np.searchsorted(sums, sums[start] + 2_000_000, side="right") - 1
+            end = max(end, start + 1)
+            n = counts[start:end]
+            one = np.repeat(np.arange(start, end), n)
+            within = np.arange(len(one)) - np.repeat(sums[start:end] - sums[start], n)
+            two = one + 1 + within
+            near = np.ones(len(one), bool)
+            for k in range(3):
+                if k != axis:
+                    near &= low[one, k] <= high[two, k]
+                    near &= low[two, k] <= high[one, k]
+            firsts.append(good[one[near]])
+            seconds.append(good[two[near]])
+            start = end
+        one, two = np.concatenate(firsts), np.concatenate(seconds)
+        return np.minimum(one, two), np.maximum(one, two)
+
+    def compare(self, one, two):
+        """How far pairs of solids are apart, and with which of their faces they look at each other.
+
+        :returns: distance [m] along the normal of a face that parts them best, (n,), negative for an overlap; the
+            number of that face, of the first solid's and of the second's; and the cosine between these two faces
+        """
+        apart, cosine = np.zeros(len(one)), np.zeros(len(one))
+        faces = np.zeros((2, len(one)), int)
+        kinds = self.groupOf[one] * len(self.groups) + self.groupOf[two]
+        for kind in np.unique(kinds):
+            here = np.flatnonzero(kinds == kind)
+            a, b = (self.groups[g] for g in divmod(kind, len(self.groups)))
+            for part in np.array_split(here, len(here) // _CHUNK + 1):
+                i, j = self.rowOf[one[part]], self.rowOf[two[part]]
+                mine, f = _parted(a, i, b, j)
+                theirs, g = _parted(b, j, a, i)
+                first = mine >= theirs
+                row = np.arange(len(part))
+                # the face of the other solid that looks at this one
+                cosines = np.einsum("nfk,ngk->nfg", a.normals[i], b.normals[j])
+                f = np.where(first, f, cosines[row, :, g].argmin(axis=1))
+                g = np.where(first, cosines[row, f].argmin(axis=1), g)
+                apart[part] = np.maximum(mine, theirs)
+                faces[:, part] = f, g
+                cosine[part] = cosines[row, f, g]
+        return apart, faces, cosine
+
+    def separation(self, one, two):
+        """How far two solids are apart [m] by the separating axis theorem; negative for an overlap: its smallest depth."""
+        corners, edges, axes = [], [], []
+        for solid in (one, two):
+            group = self.groups[self.groupOf[solid]]
+            row = self.rowOf[solid]
+            corners.append(group.corners[row])
+            axes.append(group.normals[row])
+            pairs = {
+                tuple(sorted(pair))
+                for face in group.faces
+                for pair in zip(face, face[1:] + face[:1])
+            }
+            ends = group.corners[row][np.array(sorted(pairs))]
+            along = ends[:, 1] - ends[:, 0]
+            edges.append(along / np.linalg.norm(along, axis=1)[:, None])
+        across = np.cross(edges[0][:, None], edges[1][None]).reshape(-1, 3)
+        length = np.linalg.norm(across, axis=1)
+        across = across[length > 1e-6] / length[length > 1e-6, None]
+        a, b = (c @ np.concatenate([*axes, across]).T for c in corners)
+        gaps = np.maximum(b.min(axis=0) - a.max(axis=0), a.min(axis=0) - b.max(axis=0))
+        return gaps.max()
+
+
+def _parted(a, i, b, j):
+    """How far the second solids are beyond the faces of the first, and beyond which of them the furthest."""
+    heights = np.einsum("nfk,nck->nfc", a.normals[i], b.corners[j])
+    beyond = heights.min(axis=2) - a.offsets[i]
+    face = beyond.argmax(axis=1)
+    return beyond[np.arange(len(i)), face], face
+
+
+def clip(polygon, other, normal):
+    """What two convex polygons in one plane have in common, as a list of points.
+
+    :param polygon: points, counter-clockwise about the normal
+    :param other: points, clockwise about the normal
+    """
+    px, py, pz = normal
+    kept = [tuple(p) for p in polygon]
+    others = [tuple(p) for p in other]
+    for (ax, ay, az), (bx, by, bz) in zip(others, others[1:] + others[:1]):
+        ex, ey, ez = bx - ax, by - ay, bz - az
+        # inward: the edge turned by the normal
+        ix, iy, iz = ey * pz - ez * py, ez * px - ex * pz, ex * py - ey * px
+        level = ax * ix + ay * iy + az * iz
+        sides = [x * ix + y * iy + z * iz - level for x, y, z in kept]
+        if min(sides) >= 0:
+            continue
+        cut = []
+        for k, (p, s) in enumerate(zip(kept, sides)):
+            q, t = kept[k - 1], sides[k - 1]
+            if (s < 0) != (t < 0):
+                share = t / (t - s)
+                cut.append(tuple(u + share * (v - u) for u, v in zip(q, p)))
+            if s >= 0:
+                cut.append(p)
+        kept = cut
+        if len(kept) < 3:
+            return []
+    return kept
+
+
+def measures(polygon, normal):
+    """Area [m²], perimeter [m] and centroid [m] of a convex polygon; the centroid is None without an area."""
+    x0, y0, z0 = polygon[0]
+    nx, ny, nz = normal
+    twice = mx = my = mz = 0.0
+    for (ax, ay, az), (bx, by, bz) in zip(polygon[1:], polygon[2:]):
+        ax, ay, az, bx, by, bz = ax - x0, ay - y0, az - z0, bx - x0, by - y0, bz - z0
+        part = (
+            (ay * bz - az * by) * nx
+            + (az * bx - ax * bz) * ny
+            + (ax * by - ay * bx) * nz
+        )
+        twice += part
+        mx, my, mz = mx + part * (ax + bx), my + part * (ay + by), mz + part * (az + bz)
+    perimeter = sum(map(dist, polygon, polygon[1:] + polygon[:1]))
+    if not twice > 0:
+        return 0.0, perimeter, None
+    k = 3 * twice
+    return twice / 2, perimeter, (x0 + mx / k, y0 + my / k, z0 + mz / k)
+
+
+def cutCorners(corners, faces, point, normal, width):
+    """Corners of the two parts of a convex solid on either side of a plane: beyond it (along the normal), and below.
+
+    A corner no further from the plane than `width` [m] counts as lying in it. A part without volume is None.
+    """
+    corners = [tuple(map(float, c)) for c in corners]
+    heights = [
+        sum((x - p) * n for x, p, n in zip(corner, point, normal)) for corner in corners
+    ]
+    sides = [0 if abs(h) <= width else (1 if h > 0 else -1) for h in heights]
+    if not any(s > 0 for s in sides):
+        return None, tuple(corners)
+    if not any(s < 0 for s in sides):
+        return tuple(corners), None
+    edges = {
+        (min(pair), max(pair))
+        for face in faces
+        for pair in zip(face, face[1:] + face[:1])
+    }
+    new = []
+    for a, b in sorted(edges):
+        if sides[a] * sides[b] < 0:
+            share = heights[a] / (heights[a] - heights[b])
+            new.append(
+                tuple(u + share * (v - u) for u, v in zip(corners[a], corners[b]))
+            )
+    above = [c for c, s in zip(corners, sides) if s >= 0] + new
+    below = [c for c, s in zip(corners, sides) if s <= 0] + new
+    return tuple(above), tuple(below)

@@ -1,0 +1,269 @@
+"""Arches, barrel vaults and domes from voussoirs with plane faces. Neighbours share whole faces, corner by corner."""
+
+import math
+
+from .blocks import Block, Bricks, positive, refuse, wholeNumber
+
+#: No arch, vault or dome has more stones.
+MOST_STONES = 100_000
+
+
+def Arch(
+    thickness,
+    depth,
+    stones,
+    span=None,
+    radius=None,
+    angle=180.0,
+    skewback=None,
+    part="arch",
+):
+    """A circular arch from equal voussoirs: a :class:`Bricks` of kind "voussoir", numbered from left to right.
+
+    ::
+
+        Arch(thickness=0.3, depth=0.5, stones=27, radius=2.0)                             # half a circle
+        Arch(thickness=0.2, depth=0.3, stones=15, span=3.0, angle=90, skewback=0.3)       # segmental
+
+    The inner springings lie at (0, 0, 0) and (span, 0, 0); the arch spans along x and is ``depth`` wide along y. Corners
+    of the voussoirs lie on the inner and outer circle; their edges between these are straight.
+
+    :param thickness: of the ring, between inner and outer circle [m]
+    :param depth: along y [m]
+    :param stones: number of voussoirs
+    :param span: clear span between the inner springings [m]; give this or ``radius``
+    :param radius: of the inner circle [m]
+    :param angle: at the centre, between the springings [°], up to 180: a half circle, the default
+    :param skewback: width of two blocks, kind "block", part "skewback", on which the arch springs, behind the outer
+        springings [m]. Their bottom is level with the inner springings, so that an arch of less than 180° can stand on
+        level supports. None: none
+    :raises ValueError: with all problems
+    """
+    problems = []
+    radius = _circle(thickness, stones, span, radius, angle, problems)
+    positive(depth, "depth", problems)
+    if skewback is not None and positive(skewback, "skewback", problems):
+        if angle == 180:
+            problems.append(
+                "an arch of 180° springs from level joints and needs no skewback"
+            )
+    refuse("arch", problems)
+    points = _ring(radius, thickness, stones, angle)
+    voussoirs = [
+        Block(_prism(_quad(points, n), 0.0, float(depth)), n, part, n, "voussoir")
+        for n in range(stones)
+    ]
+    if skewback is not None:
+        for end, sign in ((points[0], -1), (points[-1], 1)):
+            (x, z), (u, v) = end
+            section = [
+                (x, z),
+                (u, v),
+                (u + sign * skewback, v),
+                (u + sign * skewback, z),
+            ]
+            corners = _prism(section, 0.0, float(depth))
+            voussoirs.append(Block(corners, len(voussoirs), "skewback", -1, "block"))
+    return Bricks(voussoirs)
+
+
+def BarrelVault(
+    thickness,
+    length,
+    stones,
+    rows,
+    span=None,
+    radius=None,
+    angle=180.0,
+    staggered=True,
+    part="vault",
+):
+    """A barrel vault: a :func:`Arch` stretched along y, with courses that run along it.
+
+    Courses are numbered from the left springing to the right one.
+
+    :param thickness: of the shell [m]
+    :param length: along y [m]
+    :param stones: number of courses
+    :param rows: number of stones along a course
+    :param span: clear span [m]; give this or ``radius`` of the inner surface
+    :param angle: at the centre [°], up to 180
+    :param staggered: whether odd courses are shifted by half a stone, with half stones at their ends
+    :raises ValueError: with all problems
+    """
+    problems = []
+    radius = _circle(thickness, stones, span, radius, angle, problems)
+    positive(length, "length", problems)
+    if wholeNumber(rows, "rows", problems) and not problems:
+        _few(stones * rows, problems)
+    refuse("vault", problems)
+    points = _ring(radius, thickness, stones, angle)
+    blocks = []
+    for course in range(stones):
+        halves = range(0, 2 * rows + 1, 2)
+        if staggered and course % 2:
+            halves = [0, *range(1, 2 * rows, 2), 2 * rows]
+        ends = [length * k / (2 * rows) for k in halves]
+        for low, high in zip(ends, ends[1:]):
+            corners = _prism(_quad(points, course), low, high)
+            blocks.append(Block(corners, len(blocks), part, course, "voussoir"))
+    return Bricks(blocks)
+
+
+def Dome(
+    radius,
+    thickness,
+    courses,
+    stones,
+    oculus=None,
+    angle=180.0,
+    staggered=False,
+    part="dome",
+):
+    """A dome whose horizontal courses are regular polygons: a :class:`Bricks` of kind "voussoir".
+
+    Its axis is the z axis, and the lowest inner corners lie at z = 0. Corners lie on two spheres with a common centre.
+    Vertical planes through the axis part the stones of a course, and planes part the courses, so that all faces are
+    plane and neighbours share whole faces. Courses are numbered from below.
+
+    :param radius: of the inner sphere [m]
+    :param thickness: [m]
+    :param courses: number of courses, without the keystone
+    :param stones: number of stones in each course, at least 3; with ``staggered`` at least 2
+    :param oculus: radius of the hole at the crown, to its inner corners [m]. None: a keystone closes the dome, which is as
+        wide as a course is high
+    :param angle: at the centre, from springing to springing [°], up to 180: half a sphere, the default
+    :param staggered: whether odd courses are turned by half a stone. Every stone is then two pieces of one brick, and
+        the faces between these are crack surfaces of it
+    :raises ValueError: with all problems
+    """
+    problems = []
+    good = positive(radius, "radius", problems)
+    positive(thickness, "thickness", problems)
+    fine = wholeNumber(courses, "courses", problems)
+    fine &= wholeNumber(stones, "stones", problems, 2 if staggered else 3)
+    if fine:
+        _few(2 * courses * stones, problems)
+    opening = _angle(angle, problems)
+    if oculus is not None and positive(oculus, "oculus", problems) and good and opening:
+        most = radius * math.sin(math.radians(angle / 2))
+        if oculus >= most:
+            problems.append(
+                f"oculus {oculus:g} m must be smaller than the springing's radius, {most:g} m"
+            )
+    refuse("dome", problems)
+    lowest = math.radians(angle / 2)
+    # polar angles of the bed joints, from below
+    highest = (
+        lowest / (2 * courses + 1) if oculus is None else math.asin(oculus / radius)
+    )
+    polar = [lowest + (highest - lowest) * n / courses for n in range(courses + 1)]
+    sectors = 2 * stones if staggered else stones
+    turns = [_unitVector(n, sectors) for n in range(sectors)]
+    level = radius * math.cos(lowest)
+
+    def corner(turn, polarAngle, r):
+        out = r * math.sin(polarAngle)
+        up = (
+            0.0
+            if r == radius and polarAngle == lowest
+            else r * math.cos(polarAngle) - level
+        )
+        return out * turn[0], out * turn[1], up
+
+    radii = radius, radius + thickness
+    blocks, brick = [], 0
+    for course in range(courses):
+        beds = polar[course], polar[course + 1]
+        shift = course % 2 if staggered else 0
+        for k in range(sectors):
+            pair = turns[(k + shift) % sectors], turns[(k + 1 + shift) % sectors]
+            corners = tuple(corner(t, p, r) for t in pair for p in beds for r in radii)
+            number = brick + (k // 2 if staggered else k)
+            blocks.append(Block(corners, number, part, course, "voussoir"))
+        brick += stones
+    if oculus is None:
+        key = tuple(corner(t, polar[-1], r) for t in turns for r in radii)
+        blocks.append(Block(key, brick, part, courses, "voussoir"))
+    return Bricks(blocks)
+
+
+# -- circles ----------------------------------------------------------------------------------------------------------
+
+
+def _angle(angle, problems):
+    if not positive(angle, "angle", problems, "°"):
+        return False
+    if angle > 180:
+        problems.append(f"angle {angle:g}° must be at most 180°")
+    elif angle < 1:
+        problems.append(f"angle {angle:g}° must be at least 1°: is it in degrees?")
+    return 1 <= angle <= 180
+
+
+def _few(count, problems):
+    if count > MOST_STONES:
+        problems.append(f"{count} stones are more than {MOST_STONES}")
+
+
+def _circle(thickness, stones, span, radius, angle, problems):
+    """The inner radius [m] of a ring, or None with sentences."""
+    positive(thickness, "thickness", problems)
+    if wholeNumber(stones, "stones", problems):
+        _few(stones, problems)
+    good = _angle(angle, problems)
+    if (span is None) == (radius is None):
+        problems.append("either span or radius [m] must be given")
+        return None
+    if span is not None:
+        if not (positive(span, "span", problems) and good):
+            return None
+        radius = span / 2 / math.sin(math.radians(angle / 2))
+    elif not positive(radius, "radius", problems):
+        return None
+    if good and not problems:
+        half = math.radians(angle / stones / 2)
+        if half > math.pi / 4:
+            problems.append(
+                f"{stones} voussoirs are too few for {angle:g}°: each may take 90° at most"
+            )
+    return radius
+
+
+def _ring(radius, thickness, stones, angle):
+    """Inner and outer point (x, z) of each joint of a ring, from left to right."""
+    half = math.radians(angle / 2)
+    across, up = radius * math.sin(half), radius * math.cos(half)
+    if angle == 180:
+        across, up = radius, 0.0
+    points = []
+    for n in range(stones + 1):
+        turn = half * (2 * n / stones - 1)
+        sin, cos = math.sin(turn), math.cos(turn)
+        if angle == 180 and n in (0, stones):  # level joints
+            sin, cos = math.copysign(1.0, turn), 0.0
+        inner, outer = (
+            (across + r * sin, r * cos - up) for r in (radius, radius + thickness)
+        )
+        if n in (0, stones):  # the inner springings
+            inner = (0.0 if n == 0 else 2 * across), 0.0
+        points.append((inner, outer))
+    return points
+
+
+def _quad(points, n):
+    """Section (x, z) of a voussoir."""
+    return [*points[n], *points[n + 1]]
+
+
+def _prism(section, low, high):
+    """Corners of a section (x, z) that is stretched along y."""
+    return tuple((x, y, z) for y in (low, high) for x, z in section)
+
+
+def _unitVector(n, of):
+    """Direction n of so many equal ones around the axis; quarter turns are exact."""
+    if 4 * n % of == 0:
+        return [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)][4 * n // of % 4]
+    turn = 2 * math.pi * n / of
+    return math.cos(turn), math.sin(turn)

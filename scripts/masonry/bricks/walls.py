@@ -1,0 +1,538 @@
+"""Straight walls in five bonds, with openings and lintels; walls that meet at corners and junctions; stacks of blocks.
+
+A wall stands along x from the origin, its thickness along y, its height along z. Units contain their joints: blocks
+meet face to face. All positions along a wall are multiples of a quarter unit, except cuts at openings and junctions.
+"""
+
+import math
+from dataclasses import replace
+
+from .blocks import Block, Bricks, boxCorners, positive, refuse, wholeNumber
+from .bonds import layout
+from .openings import WHOLE, LaidBrick, finished, numbered, opened
+
+#: A calcium-silicate unit of the walls in the paper (yade_plugin/law/README.md): length, thickness and height [m].
+UNIT = (0.220, 0.102, 0.081)
+
+#: No wall has more bricks: lengths that need them are probably not in metres.
+MOST_BRICKS = 100_000
+
+BONDS = ("running", "stack", "header", "english", "flemish")
+
+
+def Wall(
+    length,
+    height=None,
+    unit=UNIT,
+    bond="running",
+    wythes=1,
+    openings=(),
+    courses=None,
+    halves=True,
+    collar=None,
+    part="wall",
+):
+    """A straight wall, its lower left front corner at the origin: a :class:`Bricks`.
+
+    ::
+
+        Wall(2.2, 1.62)                                          # 10 units long, 20 courses, one brick thick
+        Wall(3.08, 2.43, openings=[Opening(0.99, 0.81, 0.99, 0.81, Lintel(0.22, 0.162))])
+        Wall(2.2, 1.62, bond="flemish", wythes=2)
+
+    Even courses, from 0, of a running bond start with a whole unit, odd ones with a half. English bond has courses of
+    stretchers and courses of headers in turn, Flemish bond a header after every stretcher, header bond nothing but
+    headers. Queen closers, half bats and three-quarter bats keep the bond at the ends, so that no vertical joint goes
+    through two courses; in stack bond all do.
+
+    :param length: [m]; whole half units, in stack bond whole units
+    :param height: [m]; whole courses. None: that of ``courses``
+    :param unit: length, thickness and height of a unit, joints included [m]; default: the paper's calcium-silicate unit
+    :param bond: "running", "stack", "header", "english" or "flemish"
+    :param wythes: bricks across the wall. Header, English and Flemish bond need 2, with headers that go through both.
+        Leaves of a running or stack bond are parts of their own, "wall leaf 1" and so on; those of running bond are
+        shifted by half a unit against each other
+    :param openings: :class:`masonry.bricks.Opening` records
+    :param courses: heights of the courses from below [m]; None: all have the height of a unit
+    :param halves: whether every whole brick is two half bricks that may crack apart; cut bricks are one block
+    :param collar: thickness of the joint between two wythes [m], which they share in halves. None: 0, and where headers
+        go through, what these are longer than two thicknesses
+    :param part: name of the part
+    :raises ValueError: with all problems
+    """
+    problems = []
+    unit = _unit(unit, problems)
+    if bond not in BONDS:
+        problems.append(f"bond must be one of {', '.join(BONDS)}, got {bond!r}")
+    through = bond in ("header", "english", "flemish")
+    if wholeNumber(wythes, "wythes", problems) and bond in BONDS:
+        if through and wythes != 2:
+            problems.append(
+                f"{bond} bond has headers that go through the wall and needs wythes=2, got {wythes}"
+            )
+    if collar is not None:
+        positive(collar, "collar", problems, zero=True)
+    if not isinstance(part, str):
+        problems.append(f"part must be a text, got {part!r}")
+    step = 4 if bond == "stack" else 2
+    quarters = _quarters(length, unit, "length", step, problems)
+    levels = _levels(height, courses, unit, problems)
+    refuse("wall", problems)
+    thickness = unit[1]
+    if through:
+        if collar is None:
+            collar = max(unit[0] - 2 * thickness, 0.0)
+        if abs(2 * thickness + collar - unit[0]) > WHOLE * unit[0]:
+            fits = unit[0] - 2 * thickness
+            hint = (
+                f"; collar {fits:g} m fits"
+                if fits >= 0
+                else f"; a thickness of {unit[0] / 2:g} m fits"
+            )
+            problems.append(
+                f"headers of {unit[0]:g} m do not fit through two wythes of {thickness:g} m with a collar of {collar:g} m{hint}"
+            )
+    if bond == "header" and quarters < 6:
+        problems.append(
+            f"header bond needs a length of at least 1.5 units, {1.5 * unit[0]:g} m, got {length:g} m"
+        )
+    _few(quarters, levels, wythes, problems)
+    refuse("wall", problems)
+    collar = collar or 0.0
+    ys = [0.0] + [w * thickness + (w - 0.5) * collar for w in range(1, wythes)]
+    ys.append(wythes * thickness + (wythes - 1) * collar)
+    if through:
+        ys[2] = unit[0] if wythes == 2 and collar else ys[2]
+    bricks = []
+    for course in range(len(levels) - 1):
+        for k0, k1, w0, w1 in layout(bond, wythes, quarters, course):
+            low = (k0 * unit[0] / 4, ys[w0], levels[course])
+            high = (k1 * unit[0] / 4, ys[w1], levels[course + 1])
+            split = None
+            if halves and k1 - k0 == 4:
+                split = 0, (k0 + 2) * unit[0] / 4
+            elif halves and through and k1 - k0 == 2 and w1 - w0 == 2:
+                split = 1, ys[1]
+            leaf = part if through or wythes == 1 else f"{part} leaf {w0 + 1}"
+            bricks.append(LaidBrick(low, high, course, leaf, split))
+    end = quarters * unit[0] / 4
+    kept, lintels = opened(
+        numbered(bricks), openings, unit, levels, (0.0, end), (ys[0], ys[-1]), part
+    )
+    return finished(kept + lintels)
+
+
+def Corner(
+    length,
+    length2,
+    height=None,
+    unit=UNIT,
+    openings=(),
+    openings2=(),
+    courses=None,
+    halves=True,
+):
+    """Two walls of one wythe in running bond that meet at a right angle at the origin, with interlocking courses.
+
+    The first, part "wall", runs along x; the second, part "return", along y. Even courses of the wall and odd ones of
+    the return go through to the corner. The bricks beside the corner are cut or stretched by what the thickness of the
+    unit differs from half its length, so that the bond goes on.
+
+    :param length: of the wall, measured outside [m]; whole half units, at least 1.5 units
+    :param length2: of the return, likewise
+    :param openings: of the wall; x is measured from the corner's outer edge
+    :param openings2: of the return; x is measured along it from the corner's outer edge
+    :param height: as for :func:`Wall`, like ``unit``, ``courses`` and ``halves``
+    :raises ValueError: with all problems
+    """
+    problems = []
+    unit = _unit(unit, problems)
+    one = _quarters(length, unit, "length", 2, problems, least=6)
+    two = _quarters(length2, unit, "length2", 2, problems, least=6)
+    levels = _levels(height, courses, unit, problems)
+    refuse("corner", problems)
+    _few(one + two, levels, 1, problems)
+    refuse("corner", problems)
+    ys = (0.0, unit[1])
+    walls = [
+        _leaf(one, levels, unit, ys, halves, "wall", openings, start=0),
+        _leaf(two, levels, unit, ys, halves, "return", openings2, start=1),
+    ]
+    return finished(_joined([walls[0], _along(walls[1])]))
+
+
+def Tee(
+    length,
+    length2,
+    at,
+    height=None,
+    unit=UNIT,
+    openings=(),
+    openings2=(),
+    courses=None,
+    halves=True,
+):
+    """A wall of one wythe in running bond along x, part "wall", and another, part "stem", that meets it from behind.
+
+    Odd courses of the stem go through the wall, even courses of the wall go through the stem.
+
+    :param length: of the wall [m]; whole half units
+    :param length2: of the stem along y, measured from the outer face of the wall [m]; whole half units, at least 1.5 units
+    :param at: distance of the stem's axis from the start of the wall [m]: half a unit more than whole units, so that it
+        stands over the middle of a brick
+    :param openings: of the wall
+    :param openings2: of the stem; x is measured along it from the outer face of the wall
+    :param height: as for :func:`Wall`, like ``unit``, ``courses`` and ``halves``
+    :raises ValueError: with all problems
+    """
+    problems = []
+    unit = _unit(unit, problems)
+    one = _quarters(length, unit, "length", 2, problems, least=8)
+    two = _quarters(length2, unit, "length2", 2, problems, least=6)
+    levels = _levels(height, courses, unit, problems)
+    middle = None
+    if positive(at, "at", problems) and unit and one:
+        middle = at / unit[0] - 0.5
+        nearest = round(middle)
+        most = one // 4 - 1 if one % 4 == 0 else (one - 2) // 4 - 1
+        nearest = min(max(nearest, 1), most - 1) if most > 1 else nearest
+        if abs(middle - nearest) > WHOLE:
+            problems.append(
+                f"at {at:g} m: the stem must stand over the middle of a brick of the even courses, with a brick on each "
+                f"side; nearest: {(nearest + 0.5) * unit[0]:g} m"
+            )
+        middle = 4 * nearest + 2
+    if unit and unit[1] > 0.75 * unit[0]:
+        problems.append(
+            f"a junction needs a unit no thicker than 0.75 of its length, got {unit[1]:g} m and {unit[0]:g} m"
+        )
+    refuse("tee", problems)
+    _few(one + two, levels, 1, problems)
+    refuse("tee", problems)
+    ys = (0.0, unit[1])
+    axis = middle * unit[0] / 4
+    across = (axis - unit[1] / 2, axis + unit[1] / 2)
+    walls = [
+        _leaf(one, levels, unit, ys, halves, "wall", openings, crossed=across),
+        _leaf(two, levels, unit, across, halves, "stem", openings2, start=1),
+    ]
+    return finished(_joined([walls[0], _along(walls[1])]))
+
+
+def Room(
+    length,
+    width,
+    height=None,
+    unit=UNIT,
+    front=(),
+    right=(),
+    back=(),
+    left=(),
+    courses=None,
+    halves=True,
+):
+    """Four walls of one wythe in running bond around a rectangle, with interlocking courses at its four corners.
+
+    The parts "front" and "back" run along x, "left" and "right" along y. Even courses of front and back, and odd ones of
+    left and right, go through to the corners.
+
+    :param length: along x, measured outside [m]; whole units, at least 3
+    :param width: along y, likewise
+    :param front: openings of this wall, and likewise ``right``, ``back`` and ``left``; x is measured along x or y from
+        the outer edge of the corner nearer to the origin
+    :param height: as for :func:`Wall`, like ``unit``, ``courses`` and ``halves``
+    :raises ValueError: with all problems
+    """
+    problems = []
+    unit = _unit(unit, problems)
+    one = _quarters(length, unit, "length", 4, problems, least=12)
+    two = _quarters(width, unit, "width", 4, problems, least=12)
+    levels = _levels(height, courses, unit, problems)
+    if unit and unit[1] > unit[0]:
+        problems.append(
+            f"a room needs a unit no thicker than its length, got {unit[1]:g} m and {unit[0]:g} m"
+        )
+    refuse("room", problems)
+    _few(2 * (one + two), levels, 1, problems)
+    refuse("room", problems)
+    near = (0.0, unit[1])
+    ends = one * unit[0] / 4, two * unit[0] / 4
+    far = [(end - unit[1], end) for end in ends]
+    lay = lambda n, ys, part, openings, parity: _leaf(
+        n, levels, unit, ys, halves, part, openings, start=parity, end=parity
+    )
+    return finished(
+        _joined(
+            [
+                lay(one, near, "front", front, 0),
+                _along(lay(two, far[0], "right", right, 1)),
+                lay(one, far[1], "back", back, 0),
+                _along(lay(two, near, "left", left, 1)),
+            ]
+        )
+    )
+
+
+def stack(count, size, part="stack"):
+    """Blocks on top of each other, the lowest one's lower left front corner at the origin: a :class:`Bricks`.
+
+    :param count: number of blocks
+    :param size: length, thickness and height of a block [m]
+    """
+    problems = []
+    wholeNumber(count, "count", problems)
+    size = _unit(size, problems, "size")
+    refuse("stack", problems)
+    if count > MOST_BRICKS:
+        raise ValueError(f"stack: {count} blocks are more than {MOST_BRICKS}")
+    return Bricks(
+        Block(
+            boxCorners((0.0, 0.0, n * size[2]), (size[0], size[1], (n + 1) * size[2])),
+            n,
+            part,
+            n,
+            "block",
+        )
+        for n in range(count)
+    )
+
+
+def block(low, high, part="block", kind="block"):
+    """One block, a box between two opposite corners [m]: a :class:`Bricks`. It can be a platen, a pier or a beam."""
+    found = Block(
+        boxCorners(_triple(low, "low"), _triple(high, "high")), 0, part, -1, kind
+    )
+    if not all(a < b for a, b in zip(low, high)):
+        raise ValueError(
+            f"block: low corner {tuple(low)} m must lie below high corner {tuple(high)} m on every axis"
+        )
+    return Bricks([found])
+
+
+# -- checks of what a user gives --------------------------------------------------------------------------------------
+
+
+def _triple(value, what):
+    try:
+        found = tuple(value)
+    except TypeError:
+        found = ()
+    if len(found) != 3:
+        raise ValueError(
+            f"block: {what} corner [m] must be three numbers, got {value!r}"
+        )
+    return found
+
+
+def _unit(unit, problems, what="unit"):
+    """Three lengths, or None with a sentence."""
+    found = []
+    try:
+        sides = tuple(unit)
+        if len(sides) == 3 and all(positive(side, what, found) for side in sides):
+            return sides
+    except TypeError:
+        pass
+    problems.append(
+        f"{what} must be a length, thickness and height above 0 m, got {unit!r}"
+    )
+
+
+def _quarters(length, unit, what, step, problems, least=None):
+    """A length in quarter units, or None with a sentence.
+
+    :param step: of which it must be a multiple
+    :param least: smallest number of quarter units; None: one step, or two for half units
+    """
+    least = least or 4
+    if not positive(length, what, problems) or not unit:
+        return None
+    units = length / unit[0]
+    steps = 4 * units / step
+    if not steps < 1e9:
+        problems.append(f"{what} {length:g} m is {units:.3g} units: is it in m?")
+        return None
+    nearest = round(steps)
+    if abs(steps - nearest) > WHOLE * max(1, nearest) or nearest * step < least:
+        below = max(math.floor(steps + WHOLE), math.ceil(least / step))
+        above = max(math.ceil(steps - WHOLE), below)
+        told = " or ".join(
+            f"{n * step * unit[0] / 4:.6g} m ({n * step / 4:g})"
+            for n in sorted({below, above})
+        )
+        need = "whole units" if step == 4 else "whole half units"
+        problems.append(
+            f"{what} {length:g} m is {units:.6g} units of {unit[0]:g} m; it must be {need}, at least {least / 4:g}; "
+            f"nearest: {told}"
+        )
+        return None
+    return nearest * step
+
+
+def _levels(height, courses, unit, problems):
+    """Heights of all bed joints, from 0 to the top [m], or None with a sentence."""
+    if courses is not None:
+        try:
+            courses = tuple(courses)
+        except TypeError:
+            courses = ()
+        if not courses:
+            problems.append("courses must be a list of at least one height [m]")
+            return None
+        checks = [positive(h, f"course {n}", problems) for n, h in enumerate(courses)]
+        if not all(checks):
+            return None
+        levels = [0.0]
+        for h in courses:
+            levels.append(levels[-1] + h)
+        if height is not None and positive(height, "height", problems):
+            if abs(height - levels[-1]) > WHOLE * levels[-1]:
+                problems.append(
+                    f"height {height:g} m differs from the sum of all courses, {levels[-1]:g} m"
+                )
+        return levels
+    if height is None:
+        problems.append("height [m] or courses must be given")
+        return None
+    if not positive(height, "height", problems) or not unit:
+        return None
+    count = height / unit[2]
+    if not count < 1e9:
+        problems.append(f"height {height:g} m is {count:.3g} courses: is it in m?")
+        return None
+    nearest = round(count)
+    if nearest < 1 or abs(count - nearest) > WHOLE * nearest:
+        below, above = max(math.floor(count), 1), max(math.ceil(count), 1)
+        told = " or ".join(f"{n * unit[2]:.6g} m ({n})" for n in sorted({below, above}))
+        problems.append(
+            f"height {height:g} m is {count:.6g} courses of {unit[2]:g} m; it must be whole courses; nearest: {told}"
+        )
+        return None
+    return [course * unit[2] for course in range(nearest + 1)]
+
+
+def _few(quarters, levels, wythes, problems):
+    bricks = quarters / 4 * (len(levels) - 1) * wythes
+    if bricks > MOST_BRICKS:
+        problems.append(
+            f"{bricks:.3g} bricks are more than {MOST_BRICKS}: are all lengths in m?"
+        )
+
+
+# -- leaves that meet others ------------------------------------------------------------------------------------------
+
+
+def _leaf(
+    quarters,
+    levels,
+    unit,
+    ys,
+    halves,
+    part,
+    openings,
+    start=None,
+    end=None,
+    crossed=None,
+):
+    """A leaf in running bond, as (bricks, lintels), along x between the two ``ys``.
+
+    :param start: remainder by 2 of the courses that go through to x = 0, where another wall meets this one; the other
+        courses start beside that wall. None: no wall there
+    :param end: likewise at the other end
+    :param crossed: from where to where another wall goes through the odd courses [m]
+    """
+    q, thickness = unit[0] / 4, unit[1]
+    length = quarters * q
+    bricks = []
+    for course in range(len(levels) - 1):
+        shifted = course % 2 if start is None else course % 2 != start
+        for x0, x1, split in _course(
+            quarters,
+            unit,
+            shifted,
+            thickness if start is not None else 0.0,
+            length - thickness if end is not None else length,
+            start is not None,
+            end is not None,
+        ):
+            pieces = [(x0, x1, split)]
+            if crossed and course % 2 and x0 < crossed[1] and x1 > crossed[0]:
+                pieces = [(x0, crossed[0], None)] if x0 < crossed[0] else []
+                pieces += [(crossed[1], x1, None)] if x1 > crossed[1] else []
+            for a, b, at in pieces:
+                low, high = (a, ys[0], levels[course]), (b, ys[1], levels[course + 1])
+                cut = (0, at) if halves and at is not None else None
+                bricks.append(LaidBrick(low, high, course, part, cut))
+    free = [thickness if start is not None else 0.0]
+    free.append(length - thickness if end is not None else length)
+    return opened(numbered(bricks), openings, unit, levels, free, ys, part, crossed)
+
+
+def _course(quarters, unit, shifted, first, last, joinedStart, joinedEnd):
+    """Bricks of a course in running bond: start, end, and where its two halves meet (None: it is no whole brick).
+
+    :param shifted: whether the head joints stand half a unit off
+    :param first: where a shifted course starts if another wall meets this one there [m]
+    :param last: where a shifted course ends, likewise [m]
+    """
+    q, whole = unit[0] / 4, unit[0]
+    length = quarters * q
+    if not shifted:
+        for k0 in range(0, quarters, 4):
+            k1 = min(k0 + 4, quarters)
+            at = (k0 + 2) * q if k1 - k0 == 4 else None
+            if at is not None and q < unit[1] < 3 * q:
+                # The end that stands in the other wall is split where that wall's face is.
+                at = unit[1] if joinedStart and k0 == 0 else at
+                at = length - unit[1] if joinedEnd and k1 == quarters else at
+            yield k0 * q, k1 * q, at
+        return
+    low = first if joinedStart else 0.0
+    high = last if joinedEnd else length
+    near = q * (1 - WHOLE)  # least length of a piece
+    joints = [k * q for k in range(2, quarters, 4)]
+    joints = [x for x in joints if x - low >= near and high - x >= near]
+    ends = [low, *joints, high]
+    # A piece beside a corner that is much longer than a unit is cut at three quarters of a unit.
+    if joinedStart and ends[1] - ends[0] > 1.1 * whole:
+        ends.insert(1, ends[1] - 0.75 * whole)
+    if joinedEnd and ends[-1] - ends[-2] > 1.1 * whole:
+        ends.insert(-1, ends[-2] + 0.75 * whole)
+    for n, (a, b) in enumerate(zip(ends, ends[1:])):
+        at = None
+        if abs(b - a - whole) <= 0.1 * whole * (1 + WHOLE):
+            at = (
+                a + whole / 2
+                if n and n == len(ends) - 2 and joinedEnd
+                else b - whole / 2
+            )
+        yield a, b, at
+
+
+def _along(leaf):
+    """A leaf turned so that it runs along y: x and y change places, so that all coordinates stay exact."""
+    swap = lambda p: (p[1], p[0], p[2])
+    return tuple(
+        [
+            replace(
+                b,
+                low=swap(b.low),
+                high=swap(b.high),
+                split=b.split and (1 - b.split[0], b.split[1]),
+            )
+            for b in bricks
+        ]
+        for bricks in leaf
+    )
+
+
+def _joined(leaves):
+    """Bricks of several leaves, course by course, then their lintels, with numbers of their own."""
+    found, numbers = [], {}
+    bricks = [(n, b) for n, leaf in enumerate(leaves) for b in leaf[0]]
+    bricks.sort(key=lambda item: item[1].course)
+    lintels = [(n, b) for n, leaf in enumerate(leaves) for b in leaf[1]]
+    for n, brick in bricks + lintels:
+        number = numbers.setdefault((n, brick.number), len(numbers))
+        found.append(replace(brick, number=number))
+    return found

@@ -1,0 +1,201 @@
+"""Curves of several runs and of measured CSV files over each other, in one picture. This module needs no YADE."""
+
+import argparse
+import csv
+import math
+import os
+import sys
+
+import numpy as np
+
+from .errors import Refused
+from .figures import _drawing, _save, _style
+from .results import readCurve, readRun
+
+#: Colours that differ in print, also for those who do not tell red from green (Okabe and Ito, 2008), and dashes.
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#555555"]
+DASHES = ["-", (0, (6, 2)), (0, (4, 1.5, 1, 1.5)), (0, (1.2, 1.2))]
+
+
+def readMeasured(text):
+    """A measured curve of ``FILE:X:Y``: its two columns as arrays, and their names.
+
+    The file has a line of column names and then numbers, with commas, semicolons or tabs between them. X and Y are names
+    of columns, or their numbers from 1. Empty cells are left out.
+
+    :raises Refused: if the text, the file or a column is not as it must be
+    """
+    parts = text.rsplit(":", 2)
+    if len(parts) != 3 or not all(parts):
+        raise Refused(f"--csv: '{text}' must be FILE:X:Y, with the names of two columns, or their numbers from 1")  # fmt: skip
+    path, *wanted = parts
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as f:
+            lines = f.read().splitlines()
+    except OSError as error:
+        raise Refused(f"cannot read {path}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise Refused(f"cannot read {path}: it is no text") from None
+    lines = [line for line in lines if line.strip() and not line.startswith("#")]
+    if len(lines) < 3:
+        raise Refused(f"{path}: there must be a line of names and two of numbers")
+    mark = max(",;\t", key=lines[0].count)
+    names = [name.strip() for name in next(csv.reader(lines[:1], delimiter=mark))]
+    places = []
+    for name in wanted:
+        if name in names:
+            places.append(names.index(name))
+        elif name.isdigit() and 1 <= int(name) <= len(names):
+            places.append(int(name) - 1)
+        else:
+            raise Refused(f"{path}: there is no column {name}, there are {', '.join(names)}")  # fmt: skip
+    rows = []
+    for number, row in enumerate(csv.reader(lines[1:], delimiter=mark), start=2):
+        cells = [row[p].strip() if p < len(row) else "" for p in places]
+        if not all(cells):
+            continue
+        try:
+            rows.append([float(cell) for cell in cells])
+        except ValueError as error:
+            raise Refused(f"{path}, row {number}: {error}") from None
+        if not all(map(math.isfinite, rows[-1])):
+            raise Refused(f"{path}, row {number}: a number is not finite")
+    if len(rows) < 2:
+        raise Refused(f"{path}: fewer than two rows have both columns")
+    x, y = np.array(rows).T
+    return x, y, [names[p] for p in places]
+
+
+def readRuns(directories, x=None, y=None):
+    """Curves of runs: a list of (x, y) arrays, and the labels of both axes.
+
+    :param directories: folders of runs
+    :param x: column of curve.csv; None: that of the entry ``figure`` in run.json of the first run
+    :param y: as ``x``; None: the first one of this entry
+    :raises Refused: if a column is not there, or if none is told
+    """
+    curves, labels = [], None
+    for directory in directories:
+        data = readCurve(directory)
+        try:
+            run = readRun(directory)
+        except Refused:
+            if not (x and y):
+                raise
+            run = {}
+        told = run.get("figure")
+        if not told and not (x and y):
+            raise Refused(f'{directory}: run.json has no entry "figure": name the columns by --x and --y')  # fmt: skip
+        if labels is None:
+            x, y = x or told["x"]["column"], y or told["y"][0]["column"]
+            labels = [_label(name, run) for name in (x, y)]
+        for name in (x, y):
+            if name not in data:
+                raise Refused(f"{directory}: curve.csv has no column {name}, it has {', '.join(data)}")  # fmt: skip
+        curves.append((np.array(data[x]), np.array(data[y])))
+    return curves, labels
+
+
+def _label(column, run):
+    """Label of an axis: that of curve.png if it has the column, else what the column is called."""
+    told = run.get("figure", {})
+    if told and told["x"]["column"] == column:
+        return told["x"]["label"]
+    if told and told["y"][0]["column"] == column and told.get("y_label"):
+        return told["y_label"]
+    words = column.split("_")
+    return f"{' '.join(words[:-1])} [{words[-1]}]" if len(words) > 1 else column
+
+
+def compare(directories, measured=(), x=None, y=None, labels=(), out="plot.png", title=""):  # fmt: skip
+    """Draw curves over each other. Measured ones are black and behind, runs are in colours. Returns the path.
+
+    :param directories: folders of runs
+    :param measured: texts ``FILE:X:Y``, as of :func:`readMeasured`
+    :param x: column of curve.csv; None: as curve.png has it
+    :param y: as ``x``
+    :param labels: names for the legend, of all runs and then of all measured curves; what is missing is named after its
+        folder or file
+    :param out: path of the picture, .png, .pdf or .svg
+    :param title: of the picture
+    :raises Refused: if something cannot be read or drawn
+    """
+    if os.path.splitext(out)[1].lower() not in (".png", ".pdf", ".svg"):
+        raise Refused(f"--out: {out} must end in .png, .pdf or .svg")
+    count = len(directories) + len(measured)
+    if not count:
+        raise Refused("name one folder of results at least, or one --csv")
+    if len(labels) > count:
+        raise Refused(f"--label: {len(labels)} labels for {count} curves")
+    names = [*labels, *_names(directories, measured)[len(labels) :]]
+    curves, axesLabels = readRuns(directories, x, y)
+    tests = [readMeasured(text) for text in measured]
+    if axesLabels is None:
+        axesLabels = tests[0][2]
+    with _style():
+        figure = _drawing(7, 4.6)
+        axes = figure.subplots()
+        for n, (a, b, _) in enumerate(tests):
+            axes.plot(
+                a, b, color="0.15", lw=1.0, ls=DASHES[n % 4], zorder=1.5,
+                label=names[len(curves) + n],
+            )  # fmt: skip
+        for n, (a, b) in enumerate(curves):
+            colour = COLOURS[n % len(COLOURS)]
+            dash = DASHES[n // len(COLOURS) % len(DASHES)]
+            axes.plot(a, b, color=colour, lw=1.3, ls=dash, label=names[n], zorder=2)
+        for low, high, line in ((*axes.get_xlim(), axes.axvline), (*axes.get_ylim(), axes.axhline)):  # fmt: skip
+            if low < -0.05 * high < 0:  # both sides are more than a margin
+                line(0, color="0.4", lw=0.8, zorder=0)
+        axes.set_xlabel(axesLabels[0])
+        axes.set_ylabel(axesLabels[1])
+        axes.set_title(title)
+        axes.grid(alpha=0.3)
+        axes.legend(fontsize=9, framealpha=0.9)
+        figure.tight_layout()
+        try:
+            _save(figure, out, 150)
+        except OSError as error:
+            raise Refused(f"cannot write {out}: {error.strerror}") from None
+    return out
+
+
+def _names(directories, measured):
+    """Short names of runs and measured curves, as much of the ends of their paths as tells them apart.
+
+    Measured curves of one file have the name of their second column, too.
+    """
+    files = [text.rsplit(":", 2) for text in measured]
+    paths = [*directories, *(f[0] for f in files)]
+    parts = [os.path.abspath(path).split(os.sep) for path in paths]
+    names = []
+    for own in parts:
+        depth = 1
+        while any(own[-depth:] == p[-depth:] for p in parts if p != own):
+            depth += 1
+        names.append("/".join(own[-depth:]))
+    for n, f in enumerate(files, len(directories)):
+        if paths.count(f[0]) > 1:
+            names[n] += ", " + f[-1]
+    return names
+
+
+def main(words=None):
+    """The program ``scripts/plot.py``. Returns its exit status."""
+    parser = argparse.ArgumentParser(
+        description="Draw curves of runs and of measured CSV files over each other."
+    )
+    parser.add_argument("result", nargs="*", help="folder of results")
+    parser.add_argument("--csv", action="append", default=[], metavar="FILE:X:Y", help="a measured curve: a file and the names of its two columns, or their numbers from 1; may be repeated")  # fmt: skip
+    parser.add_argument("--x", metavar="COLUMN", help="column of curve.csv; else that of curve.png")  # fmt: skip
+    parser.add_argument("--y", metavar="COLUMN", help="column of curve.csv; else the first one of curve.png")  # fmt: skip
+    parser.add_argument("--label", action="append", default=[], help="name of a curve, in the order of the folders and then of the CSV files; may be repeated")  # fmt: skip
+    parser.add_argument("--title", default="", help="of the picture")
+    parser.add_argument("--out", default="plot.png", help=".png, .pdf or .svg file (default plot.png)")  # fmt: skip
+    args = parser.parse_args(words)
+    try:
+        print(compare(args.result, args.csv, args.x, args.y, args.label, args.out, args.title))  # fmt: skip
+    except Refused as problem:
+        print(problem, file=sys.stderr)
+        return 2
+    return 0

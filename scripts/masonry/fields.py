@@ -1,0 +1,69 @@
+"""Properties that vary from place to place, for :meth:`masonry.materials.Masonry.vary`. This module needs no YADE.
+
+Each function gives a function of x, y and z [m] that gives a factor on a property [-], 1 on the mean::
+
+    masonry = materials.calciumSilicate().vary("bed.cohesion", fields.lognormal(cov=0.2, length=0.5, seed=1))
+
+A random field is the sum of :data:`WAVES` cosines with random directions, lengths and phases. Its values at two points a
+distance d apart have the correlation exp(-(d/length)²), as they stand before the exponential of a lognormal field.
+"""
+
+import math
+
+import numpy as np
+
+WAVES = 512  # cosines of a field: its moments are off by some 1/sqrt(WAVES) at most
+
+
+def _standard(length, seed):
+    """A field of mean 0 and variance 1."""
+    if not (isinstance(seed, int) and seed >= 0):
+        raise ValueError(
+            f"random field: seed {seed!r} must be a whole number from 0 on"
+        )
+    if not 0 <= length < math.inf:
+        raise ValueError(
+            f"random field: correlation length {length} m must be at least 0"
+        )
+    if length == 0:
+
+        def independent(x, y, z):
+            place = [int(round(1e6 * float(v))) & 0xFFFFFFFF for v in (x, y, z)]
+            return np.random.default_rng([seed, *place]).standard_normal()
+
+        return independent
+    random = np.random.default_rng(seed)
+    # the waves of exp(-(d/length)²) are normally distributed
+    waves = random.normal(0, math.sqrt(2) / length, (WAVES, 3))
+    phases = random.uniform(0, 2 * math.pi, WAVES)
+    return lambda x, y, z: math.sqrt(2 / WAVES) * float(
+        np.cos(waves @ (float(x), float(y), float(z)) + phases).sum()
+    )
+
+
+def _checked(cov):
+    if not 0 < cov < math.inf:
+        raise ValueError(
+            f"random field: coefficient of variation {cov} must be above 0"
+        )
+
+
+def lognormal(cov, length=0.0, seed=0):
+    """Factors that are lognormally distributed about the mean 1.
+
+    :param cov: coefficient of variation, standard deviation over mean [-]
+    :param length: correlation length [m]; 0: every joint has its own value
+    :param seed: the same number gives the same field
+    """
+    _checked(cov)
+    field, spread = _standard(length, seed), math.sqrt(math.log1p(cov * cov))
+    return lambda x, y, z: math.exp(spread * field(x, y, z) - spread * spread / 2)
+
+
+def normal(cov, length=0.0, seed=0, least=0.05):
+    """Factors that are normally distributed about the mean 1, but not below ``least``. Other parameters: :func:`lognormal`."""
+    _checked(cov)
+    if not 0 < least < 1:
+        raise ValueError(f"random field: least {least} must be above 0, below 1")
+    field = _standard(length, seed)
+    return lambda x, y, z: max(least, 1 + cov * field(x, y, z))

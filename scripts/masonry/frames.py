@@ -1,0 +1,122 @@
+"""Frames for ParaView that MasonryVtkRecorder wrote, read again. This module needs no YADE and no VTK.
+
+VTK's own reader is not used: its Python modules come with python3-vtk9 or, in its place, with python3-paraview, and
+either can end a process in which YADE runs with a VTK of its own. MasonryVtkRecorder writes one kind of file, with all
+numbers appended in base64 and compressed by zlib, and that kind is read here.
+"""
+
+import base64
+import glob
+import os
+import re
+import struct
+import zlib
+from xml.etree import ElementTree
+
+import numpy as np
+
+from .errors import Refused
+
+#: Types of numbers in the files.
+TYPES = {"Float64": "f8", "Float32": "f4", "Int64": "i8", "Int32": "i4", "UInt8": "u1"}
+
+
+def framePaths(directory, kind):
+    """Paths of all frames of a run, in the order of time.
+
+    :param kind: ``blocks`` or ``joints``
+    :raises Refused: if there is none
+    """
+    number = lambda path: int(re.search(r"_(\d+)\.vt[up]$", path)[1])
+    paths = [
+        path
+        for path in glob.glob(os.path.join(glob.escape(directory), kind + "_*.vt[up]"))
+        if re.search(r"_\d+\.vt[up]$", path)
+    ]
+    if not paths:
+        raise Refused(f"no file {kind}_*.vt? in {directory}")
+    return sorted(paths, key=number)
+
+
+def frameTimes(directory):
+    """Times of all frames of a run in the order of time, as joints.pvd has them [s]."""
+    path = os.path.join(directory, "joints.pvd")
+    try:
+        sets = ElementTree.parse(path).iter("DataSet")
+        return [float(s.get("timestep")) for s in sets]
+    except OSError as error:
+        raise Refused(f"cannot read {path}: {error.strerror}") from None
+    except (ElementTree.ParseError, TypeError, ValueError) as error:
+        raise Refused(f"cannot read {path}: {error}") from None
+
+
+def readFrame(directory, kind, number=-1):
+    """A frame of blocks or joints as a dict: ``points`` [m], ``cells`` (arrays of point numbers), and every data array.
+
+    :param kind: ``blocks`` or ``joints``
+    :param number: of the frame, from 0; negative numbers count from the end
+    :raises Refused: if there is no such frame, or if its file is damaged
+    """
+    path = framePaths(directory, kind)[number]
+    try:
+        root = ElementTree.parse(path).getroot()
+        return _frame(root)
+    except OSError as error:
+        raise Refused(f"cannot read {path}: {error.strerror}") from None
+    except Exception as error:  # whatever a damaged file leads to
+        raise Refused(
+            f"cannot read {path}: it holds no frame ({type(error).__name__}: {error})"
+        ) from None
+
+
+def _frame(root):
+    """What :func:`readFrame` returns, of the parsed file."""
+    if (root.get("compressor"), root.get("byte_order")) != (
+        "vtkZLibDataCompressor",
+        "LittleEndian",
+    ):
+        raise ValueError("it was not written by MasonryVtkRecorder")
+    appended = root.find("AppendedData")
+    if appended.get("encoding") != "base64":
+        raise ValueError("its numbers are not in base64")
+    text = appended.text.strip()[1:]  # the first letter is an underscore
+    size = {"UInt32": "I", "UInt64": "Q"}[root.get("header_type")]
+    piece = root[0].find("Piece")
+    read = lambda array: _array(array, text, size)
+    frame = {"points": read(piece.find("Points/DataArray"))}
+    for array in piece.findall("PointData/DataArray") + piece.findall(
+        "CellData/DataArray"
+    ):
+        frame[array.get("Name")] = read(array)
+    kind = "Polys" if root.get("type") == "PolyData" else "Cells"
+    ends, corners = (
+        read(piece.find(f"{kind}/DataArray[@Name='{name}']"))
+        for name in ("offsets", "connectivity")
+    )
+    if not len(frame["points"]) or not len(ends):
+        raise ValueError("it has no points or no cells")
+    if ends[-1] != len(corners) or corners.max() >= len(frame["points"]):
+        raise ValueError("its cells have points that are not there")
+    frame["cells"] = np.split(corners, ends[:-1])
+    return frame
+
+
+def _array(array, text, size):
+    """The numbers of a DataArray: a row a tuple if it has several components.
+
+    Its part of the text is a head and the data. The head has the number of blocks, the bytes of a full block and of the
+    last one before they were compressed, and the compressed bytes of each. Head and data are encoded one by one.
+    """
+    start, width = int(array.get("offset")), struct.calcsize(size)
+    letters = lambda count: -(-count // 3) * 4  # of so many bytes in base64
+    decode = lambda at, count: base64.b64decode(text[at : at + letters(count)])
+    blocks = struct.unpack_from("<" + size, decode(start, width))[0]
+    head = width * (3 + blocks)
+    sizes = struct.unpack_from(f"<{3 + blocks}{size}", decode(start, head))[3:]
+    data, parts, at = decode(start + letters(head), sum(sizes)), [], 0
+    for length in sizes:
+        parts.append(zlib.decompress(data[at : at + length]))
+        at += length
+    numbers = np.frombuffer(b"".join(parts), "<" + TYPES[array.get("type")])
+    components = int(array.get("NumberOfComponents") or 1)
+    return numbers.reshape(-1, components) if components > 1 else numbers

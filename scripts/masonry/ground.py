@@ -1,0 +1,77 @@
+"""Ground motion: records of acceleration, and viscous damping for it. This module needs no YADE."""
+
+import math
+
+from .errors import Refused
+
+
+def rayleigh(ratio, low, high):
+    """Viscous damping for :meth:`masonry.stages.Scene.shake`: mass damping [1/s] and stiffness damping [s].
+
+    :param ratio: share of critical damping at two frequencies [-]; between them it is less
+    :param low: lower frequency [Hz]; ``high``: upper one
+    """
+    if not (0 <= ratio < 1 and 0 < low < high < math.inf):
+        raise ValueError(
+            f"rayleigh: ratio {ratio} must be at least 0 and below 1, frequencies {low} and {high} Hz above 0, the lower first"
+        )
+    one, two = 2 * math.pi * low, 2 * math.pi * high
+    return 2 * ratio * one * two / (one + two), 2 * ratio / (one + two)
+
+
+UNITS = {"m/s²": 1.0, "g": 9.81, "cm/s²": 0.01}  # [m/s²]
+WEAK, STRONG = 1.5, 30.0  # [m/s²] peaks beyond these may be in g, or in cm/s²
+
+
+def readRecord(accelerations, every, scale=1.0, unit=None):
+    """Samples and the time between them [s] of a record.
+
+    :param scale: factor on the samples
+    :param unit: of the samples, a key of UNITS; None: m/s², if the peak does not look like another unit
+    :returns: the samples [m/s²], without the scale, and the time between two of them
+    :raises Refused: with what is wrong
+    """
+    if unit not in (None, *UNITS):
+        raise Refused(f"shake: unit must be one of {', '.join(UNITS)}, got {unit!r}")
+    if isinstance(accelerations, str):
+        rows, path = [], accelerations
+        try:
+            with open(path) as f:
+                for number, line in enumerate(f, start=1):
+                    words = line.replace(",", " ").split()
+                    if words and not words[0].startswith("#"):
+                        rows.append([float(w) for w in words])
+        except OSError as error:
+            raise Refused(f"shake: cannot read {path}: {error.strerror}") from None
+        except (ValueError, UnicodeDecodeError):
+            raise Refused(f"shake: {path}, line {number}: not numbers") from None
+        widths = {len(row) for row in rows}
+        if widths not in ({1}, {2}) or len(rows) < 2:
+            raise Refused(
+                f"shake: {path} must have two lines at least, of one or two numbers each"
+            )
+        accelerations = [row[-1] for row in rows]
+        if widths == {2}:
+            times = [row[0] for row in rows]
+            steps = [b - a for a, b in zip(times, times[1:])]
+            mean = sum(steps) / len(steps)
+            if not mean > 0 or max(abs(s - mean) for s in steps) > 1e-3 * mean:
+                raise Refused(f"shake: {path}: its times are not evenly apart")
+            if every is not None and abs(every - mean) > 1e-3 * mean:
+                raise Refused(
+                    f"shake: {path}: its times are {mean:g} s apart, not {every:g} s"
+                )
+            every = mean
+    values = [float(a) for a in accelerations]
+    if len(values) < 2 or not all(map(math.isfinite, values)):
+        raise Refused("shake: a record needs two finite accelerations at least")
+    if not (isinstance(every, (int, float)) and 0 < every < math.inf):
+        raise Refused(f"shake: the time between samples, {every!r} s, must be above 0")
+    peak = abs(scale) * max(map(abs, values))
+    if unit is None and peak > 0 and not WEAK <= peak <= STRONG:
+        other = "g" if peak < WEAK else "cm/s²"
+        raise Refused(
+            f"shake: the peak of the record is {peak:g}, which is {peak / 9.81:.2g} g if it is in m/s²: is it in {other}? "
+            f"Say unit='{other}', or unit='m/s²' if it is"
+        )
+    return [UNITS[unit or "m/s²"] * v for v in values], every

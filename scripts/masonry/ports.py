@@ -1,0 +1,37 @@
+"""The ports that the program ``yade`` opens when it starts.
+
+One is a Python prompt, whose password is short and stands in the log; the other answers to XML-RPC without a password, and
+can stop the run. Both listen on every address of the machine, whatever the lines of the start say.
+"""
+
+import gc
+import socket
+import socketserver
+import sys
+import threading
+
+
+def close():
+    """Close both. Importing :mod:`masonry` does this; ``yade.remote.runServers()`` opens them again."""
+    remote = sys.modules.get("yade.remote")
+    if not remote:
+        return
+    for server in [o for o in gc.get_objects() if _isOpen(o, remote)]:
+        ends = threading.Thread(target=server.shutdown)
+        ends.start()
+        server.socket.shutdown(
+            socket.SHUT_RDWR
+        )  # wakes it, so that it sees that it ends
+        ends.join()
+        server.server_close()
+
+
+def _isOpen(thing, remote):
+    """Whether an object is one of YADE's servers, and listens."""
+    if not issubclass(type(thing), socketserver.TCPServer):
+        return False
+    ours = (
+        thing.RequestHandlerClass is remote.PythonConsoleSocketEmulator
+        or type(getattr(thing, "instance", None)) is remote.InfoProvider
+    )
+    return ours and thing.socket.fileno() >= 0

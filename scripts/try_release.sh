@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# Tries both commands of README.md in a fresh Debian, and prints peak and times of each release in a line.
+#
+#   bash scripts/try_release.sh bookworm|trixie...      in a temporary folder, which is removed at the end
+#   FOLDER=/some/new/folder bash scripts/try_release.sh trixie
+#   MIRROR=http://... bash scripts/try_release.sh trixie      another package mirror than that of debootstrap
+#
+# Needs root, debootstrap, 5 GB in FOLDER and twenty minutes for a release. What is tried is this working tree.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+(($#)) || { sed -n '2,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2; }
+for release in "$@"; do
+    [[ $release == bookworm || $release == trixie ]] || { echo "release '$release' must be bookworm or trixie" >&2; exit 2; }
+done
+((EUID == 0)) || { echo "needs root, for chroot" >&2; exit 1; }
+command -v debootstrap >/dev/null || { echo "needs debootstrap: apt-get install debootstrap" >&2; exit 1; }
+folder=${FOLDER:-$(mktemp -d)}
+mkdir -p "$folder"
+[[ -z $(ls -A "$folder") ]] || { echo "FOLDER $folder must be empty" >&2; exit 1; }
+chmod 755 "$folder"
+
+clean() {
+    for root in "$folder"/*/; do
+        umount "$root/proc" 2>/dev/null || true
+        grep -qs " ${root%/}/" /proc/mounts || rm -rf --one-file-system "$root"
+    done
+    rm -f "$folder"/*.log
+    rmdir "$folder" 2>/dev/null || true
+}
+trap clean EXIT
+
+# In the release: a command from the working tree there. Its output goes to a log, whose end is shown if it fails.
+inside() {
+    local started=$SECONDS
+    chroot "$root" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 \
+        bash -c "cd /root/masonry && $*" >"$folder/$release.log" 2>&1 && outcome=ok || outcome="exit $?"
+    seconds=$((SECONDS - started))
+    [[ $outcome == ok ]] || tail -n 40 "$folder/$release.log" >&2
+}
+
+lines=("release|yade|command|outcome|time [s]|peak [kN]")
+for release in "$@"; do
+    root=$folder/$release
+    started=$SECONDS
+    debootstrap --variant=minbase "$release" "$root" ${MIRROR:+"$MIRROR"} >"$folder/$release.log" 2>&1 ||
+        { tail -n 20 "$folder/$release.log" >&2; exit 1; }
+    lines+=("$release|-|debootstrap|ok|$((SECONDS - started))|-")
+    printf '#!/bin/sh\nexit 101\n' >"$root/usr/sbin/policy-rc.d" # no package starts a service
+    chmod +x "$root/usr/sbin/policy-rc.d"
+    mount -t proc proc "$root/proc"
+    mkdir "$root/root/masonry"
+    git ls-files -z --cached --others --exclude-standard | tar -c --null --files-from=- | tar -x -C "$root/root/masonry"
+    inside bash scripts/run.sh wall_comp4
+    yade=$(chroot "$root" dpkg-query -W -f '${Version}' yade 2>/dev/null || echo none)
+    json=$root/root/masonry/results/wall_comp4/run.json
+    peak=none
+    [[ -f $json ]] && peak=$(chroot "$root" /usr/bin/python3 -c \
+        'import json, sys; print(json.load(sys.stdin)["peak_base_shear_kN"])' <"$json")
+    lines+=("$release|$yade|bash scripts/run.sh wall_comp4|$outcome|$seconds|$peak")
+    inside bash scripts/test.sh quick
+    passed=$(tail -n 1 "$folder/$release.log")
+    lines+=("$release|$yade|bash scripts/test.sh quick|$outcome: $passed|$seconds|-")
+    mv "$folder/$release.log" "${TMPDIR:-/tmp}/try_release_$release.log"
+    clean
+    mkdir -p "$folder"
+done
+printf '%s\n' "${lines[@]}" | column -t -s '|'
+[[ "${lines[*]}" != *"|exit "* ]]

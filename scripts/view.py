@@ -1,0 +1,11 @@
+"""Runs in ParaView: a window in a ready state, or a picture and a film without a display.
+
+/usr/bin/python3 scripts/view.py results/wall_comp4
+/usr/bin/python3 scripts/view.py results/wall_comp4 --picture wall.png --at 12mm
+/usr/bin/python3 scripts/view.py results/wall_comp4 --film wall.avi
+"""
+
+from masonry.viewer import main
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,295 @@
+"""Blocks of our own beside YADE's Polyhedra: the same numbers, the same runs, saved and loaded."""
+
+import math
+import random
+
+import pytest
+import yade.wrapper
+from masonry import (
+    MasonryBlock,
+    MasonryJoint,
+    MasonryLoad,
+    MasonryMat,
+    addBlock,
+    connect,
+    criticalTimeStep,
+    engines,
+)
+from yade import Body, O, Quaternion, Vector3
+from yade.wrapper import *
+
+BRICK = (0.220, 0.102, 0.081)
+
+polyhedra = pytest.mark.skipif(
+    not hasattr(yade.wrapper, "Polyhedra"), reason="this YADE has no Polyhedra"
+)
+
+
+def box(low, size=BRICK):
+    return [
+        Vector3(*(low[i] + size[i] * c[i] for i in range(3)))
+        for c in [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    ]
+
+
+def samples():
+    """Corners of many blocks: boxes, turned boxes, voussoirs, prisms and random ones, of at most 14 points."""
+    rng = random.Random(15)
+    place = lambda: [rng.uniform(-3, 3) for _ in range(3)]
+    size = lambda: [rng.uniform(0.05, 0.5) for _ in range(3)]
+    for _ in range(40):
+        yield box(place(), size())
+    for _ in range(40):
+        turn = Quaternion(*[rng.gauss(0, 1) for _ in range(4)])
+        turn.normalize()
+        shift = Vector3(*place())
+        yield [turn * p + shift for p in box((0, 0, 0), size())]
+    for _ in range(40):
+        near, thick, wide = (
+            rng.uniform(0.5, 5),
+            rng.uniform(0.05, 1),
+            rng.uniform(0.1, 1),
+        )
+        one = rng.uniform(0, 3)
+        two = one + rng.uniform(0.02, 0.5)
+        yield [
+            Vector3(r * math.cos(a), y, r * math.sin(a))
+            for r in (near, near + thick)
+            for a in (one, two)
+            for y in (0, wide)
+        ]
+    for corners in (3, 4, 5, 6, 7):
+        yield [
+            Vector3(
+                0.2 * math.cos(2 * math.pi * i / corners),
+                0.2 * math.sin(2 * math.pi * i / corners),
+                z,
+            )
+            for i in range(corners)
+            for z in (0, 0.1)
+        ]
+    for _ in range(60):
+        yield [
+            Vector3(*(rng.gauss(0, 0.2) for _ in range(3)))
+            for _ in range(rng.randint(4, 14))
+        ]
+
+
+# -- shape ------------------------------------------------------------------------------------------------------------
+
+
+@polyhedra
+def test_a_block_has_every_bit_of_a_polyhedra_of_the_same_points():
+    for points in samples():
+        own, centroid, orientation = MasonryBlock.around(points)
+        host = Polyhedra(v=points)
+        assert own.volume == host.GetVolume()
+        assert own.inertia == host.GetInertia()
+        assert centroid == host.GetCentroid()
+        assert orientation == host.GetOri()
+        assert list(own.v) == list(host.v)
+        assert own.triangles == host.GetSurfaceTriangulation()
+
+
+def test_volume_centroid_and_inertia_are_those_of_a_box():
+    a, b, c = BRICK
+    block, centroid, orientation = MasonryBlock.around(box((1, -2, 3)))
+    assert block.volume == pytest.approx(a * b * c, rel=1e-12)
+    assert (centroid - Vector3(1 + a / 2, -2 + b / 2, 3 + c / 2)).norm() < 1e-12
+    expected = [a * b * c * (p * p + q * q) / 12 for p, q in ((b, c), (a, c), (a, b))]
+    assert sorted(block.inertia) == pytest.approx(sorted(expected), rel=1e-9)
+    turned = [orientation * v + centroid for v in block.v]
+    assert all(min((t - p).norm() for t in turned) < 1e-12 for p in box((1, -2, 3)))
+
+
+def test_a_block_of_many_corners_is_the_same_wherever_its_memory_lies():
+    rng = random.Random(2)
+    kept = []
+    for _ in range(200):
+        points = [Vector3(*(rng.gauss(0, 0.2) for _ in range(3))) for _ in range(40)]
+        first = MasonryBlock.around(points)
+        kept.append(MasonryBlock.around(points[: rng.randint(4, 40)]))
+        second = MasonryBlock.around(points)
+        assert list(first[0].v) == list(second[0].v) and first[1:] == second[1:]
+        assert first[0].triangles == second[0].triangles
+
+
+def test_the_surface_of_a_block_is_closed_and_faces_outward():
+    for points in samples():
+        block = MasonryBlock.around(points)[0]
+        t = block.triangles
+        triangles = [t[i : i + 3] for i in range(0, len(t), 3)]
+        edges = [(a, b) for x, y, z in triangles for a, b in ((x, y), (y, z), (z, x))]
+        assert sorted(edges) == sorted((b, a) for a, b in edges)
+        for x, y, z in triangles:
+            a, b, c = block.v[x], block.v[y], block.v[z]
+            assert (b - a).cross(c - a).dot(a) > 0  # the centroid is the origin
+
+
+def test_a_new_block_has_the_looks_of_a_new_shape():
+    block, sphere = MasonryBlock(), Sphere()
+    for name in ("color", "wire", "highlight"):
+        assert getattr(block, name) == getattr(sphere, name)
+
+
+def test_points_without_volume_are_refused():
+    flat = [Vector3(x, y, 0) for x in (0, 1) for y in (0, 1)]
+    for points in ([], flat, flat[:2], [Vector3(1, 2, 3)] * 5):
+        with pytest.raises(ValueError, match="the corners of the block have no volume"):
+            MasonryBlock.around(points)
+
+
+def test_a_body_with_a_block_without_corners_is_refused(scene):
+    addBlock(box((0, 0, 0)), MasonryMat(density=1800))
+    addBlock(box((0, 0, BRICK[2])), MasonryMat(density=1800))
+    O.bodies[1].shape = MasonryBlock()
+    engines([MasonryJoint()])
+    with pytest.raises(ValueError, match="body 1 has a MasonryBlock without corners"):
+        connect()
+
+
+# -- runs -------------------------------------------------------------------------------------------------------------
+
+
+def addPolyhedra(points, material):
+    """A brick as YADE makes it: what scenes did before there was MasonryBlock."""
+    from yade import polyhedra_utils
+
+    body = polyhedra_utils.polyhedra(material, v=points)
+    body.state.refPos, body.state.refOri = body.state.pos, body.state.ori
+    body.bounded = False
+    return O.bodies.append(body)
+
+
+def stack(kinds, functors=False, zones=False, steps=1500):
+    """Three turned bricks, the lowest held, the highest driven sideways until joints are damaged. All state at the end."""
+    O.reset()
+    turn = Quaternion(Vector3(1, 2, 0.5).normalized(), 0.7)
+    material = MasonryMat(density=1800)
+    for course, make in enumerate(kinds):
+        make([turn * p for p in box((0.03 * course, 0, BRICK[2] * course))], material)
+    O.bodies[0].state.blockedDOFs = "xyzXYZ"
+    held = MasonryZones(bodies=[1], divisions=[2, 1, 1]) if zones else None
+    load = MasonryLoad(
+        body=2,
+        point=O.bodies[2].state.pos,
+        driven=True,
+        direction=turn * Vector3(1, 0, 0.25),
+        velocity=0.02,
+        label="load",
+    )
+    engines([MasonryJoint()], loads=[load], zones=held, functors=functors)
+    connect()
+    O.dt = 0.5 * criticalTimeStep()[0]
+    for _ in range(steps):
+        O.step()
+    return state()
+
+
+def state():
+    joints = [
+        (
+            i.id1,
+            i.id2,
+            i.phys.stress,
+            i.phys.damage,
+            i.phys.slip,
+            i.geom.jumps,
+            i.geom.areas,
+        )
+        for i in O.interactions
+    ]
+    bodies = [
+        (
+            b.state.pos,
+            b.state.ori,
+            b.state.vel,
+            b.state.angVel,
+            b.state.mass,
+            b.state.inertia,
+        )
+        for b in O.bodies
+    ]
+    load = next(e for e in O.engines if e.label == "load")
+    return O.iter, load.reaction, joints, bodies
+
+
+@polyhedra
+@pytest.mark.parametrize("how", [{}, {"functors": True}, {"zones": True}])
+def test_runs_of_both_kinds_of_body_are_equal_to_the_bit(scene, how):
+    own = stack([addBlock] * 3, **how)
+    assert any(d != 0 for joint in own[2] for point in joint[3] for d in point)
+    assert stack([addPolyhedra] * 3, **how) == own
+    assert stack([addBlock, addBlock, addPolyhedra], **how) == own
+
+
+@polyhedra
+def test_a_joint_may_lie_between_both_kinds_of_body(scene):
+    """YADE swaps the bodies of a joint whose functor names the other kind first, which turns signs and rounding."""
+    own = stack([addBlock] * 3, steps=50)
+    mixed = stack([addPolyhedra, addBlock, addPolyhedra], steps=50)
+    assert [(j[0], j[1]) for j in mixed[2]] == [(1, 0), (1, 2)]
+    assert mixed[1] == pytest.approx(own[1], rel=1e-9)
+    for one, two in zip(own[3], mixed[3]):
+        assert (one[0] - two[0]).norm() < 1e-12
+
+
+@polyhedra
+def test_a_scene_with_the_functor_for_polyhedra_goes_on_working(scene):
+    """Engines as users wrote them when there was no MasonryBlock."""
+    material = MasonryMat(density=1800)
+    for course in range(2):
+        addPolyhedra(box((0, 0, BRICK[2] * course)), material)
+    O.bodies[0].state.blockedDOFs = "xyzXYZ"
+    geometry = Ig2_Polyhedra_Polyhedra_MasonryJointGeom(subcontacts=4, rows=2)
+    physics = Ip2_MasonryMat_MasonryMat_MasonryJointPhys(joints=[MasonryJoint()])
+    law = Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening()
+    O.engines = [
+        ForceResetter(),
+        InteractionLoop([geometry], [physics], [law]),
+        MasonryEnergy(),
+        NewtonIntegrator(gravity=(0, 0, -9.81)),
+    ]
+    (interaction,) = connect()
+    assert len(interaction.geom.areas) == 8
+    O.dt = 0.5 * criticalTimeStep()[0]
+    for _ in range(200):
+        O.step()
+    assert O.forces.f(1, True)[2] > 0
+
+
+# -- saving -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("extension", [".xml", ".yade.gz"])
+def test_a_saved_block_is_the_same_block(scene, tmp_path, extension):
+    stack([addBlock] * 3)
+    path = str(tmp_path / ("run" + extension))
+    shapes = lambda: [
+        (
+            list(b.shape.v),
+            b.shape.triangles,
+            b.shape.volume,
+            b.shape.inertia,
+            b.shape.color,
+        )
+        for b in O.bodies
+    ]
+    before = shapes()
+    O.save(path)
+    for _ in range(300):
+        O.step()
+    later = state()
+    O.load(path)
+    assert shapes() == before
+    assert all(isinstance(b.shape, MasonryBlock) for b in O.bodies)
+    for _ in range(300):
+        O.step()
+    assert state() == later
+
+
+def test_the_attributes_of_a_block_are_read_only():
+    block = MasonryBlock.around(box((0, 0, 0)))[0]
+    for name in ("v", "triangles", "volume", "inertia"):
+        with pytest.raises(AttributeError):
+            setattr(block, name, getattr(block, name))

@@ -1,0 +1,239 @@
+"""A block that has left the small displacements its joints are made for ends the run as collapsed; a wrong balance is told.
+
+Rocking and sliding within a face do not end it.
+"""
+
+import math
+import re
+
+import pytest
+from masonry import MasonryJoint, addBlock, connect, criticalTimeStep, engines
+from masonry.bricks import boxCorners as corners
+from yade import O, Quaternion, Vector3
+from yade.wrapper import *
+
+G = 9.81
+B, H = 0.25, 1.0  # of the free block [m]
+ALPHA = math.atan(B / H)
+FUNCTORS = pytest.mark.parametrize("functors", [False, True], ids=["loop", "functors"])
+
+
+def energy():
+    return next((e for e in O.engines if isinstance(e, MasonryEnergy)), None)
+
+
+def dry(**other):
+    return MasonryJoint(
+        **{
+            **dict(name="dry", tensileStrength=0, cohesion=0, cap=False),
+            **dict(friction=0.7, residualFriction=0.7),
+            **dict(normalStiffness=1e10, shearStiffness=5e9),
+            **other,
+        }
+    )
+
+
+def standing(joint=None, size=(B, 0.25, H), base=0.2, gravity=(0, 0, -G), **around):
+    """A free block on a fixed one, in the plane."""
+    O.reset()
+    mat = MasonryMat(density=1800, young=1e12, poisson=0.16)
+    addBlock(corners((0, 0, -base), (size[0], size[1], 0)), mat, inPlane=True)
+    addBlock(corners((0, 0, 0), size), mat, inPlane=True)
+    O.bodies[0].state.blockedDOFs = "xyzXYZ"
+    engines(
+        [joint or dry()],
+        **{**dict(gravity=gravity, damping=0, inPlane=True), **around},
+    )
+    connect()
+    O.dt = 0.8 * criticalTimeStep()[0]
+    return O.bodies[1].state
+
+
+def go(seconds):
+    for _ in range(int(seconds / O.dt)):
+        O.step()
+
+
+def collapses(seconds, message):
+    with pytest.raises(RuntimeError, match="^collapsed: " + message) as told:
+        go(seconds)
+    assert re.search(
+        r"at step \d+00, \S+ s\. Joints are for small displacements", str(told.value)
+    )
+    return str(told.value)
+
+
+# -- what is told ----------------------------------------------------------------------------------------------------
+
+
+@FUNCTORS
+def test_a_block_that_tips_over_is_named_with_its_rotation(scene, functors):
+    s = standing(functors=functors, gravity=(1.2 * G * B / H, 0, -G))
+    assert energy().collapsedBlock == -1 and energy().collapse == ""
+    told = collapses(
+        5, r"block 1 has turned by 6\d(\.\d)?° against block 0, the limit is 60°"
+    )
+    since = s.angVel.norm() * 100 * O.dt  # the last look
+    assert 0 <= s.ori.toAngleAxis()[0] - math.radians(60) < since
+    assert energy().collapsedBlock == 1
+    assert told == "collapsed: " + energy().collapse
+    assert abs(energy().balance()["error"]) < 0.01
+
+
+def test_the_limits_can_be_moved_and_the_watch_put_out(scene):
+    standing(gravity=(1.2 * G * B / H, 0, -G))
+    energy().turnLimit = math.radians(20)
+    collapses(5, r"block 1 has turned by 2\d(\.\d)?° against block 0, the limit is 20°")
+    energy().turnLimit = math.radians(40)
+    collapses(5, r"block 1 has turned by 4\d(\.\d)?°")
+    energy().watch = False
+    go(0.1)
+    for name in ("turnLimit", "slideLimit", "closureLimit", "openingLimit"):
+        with pytest.raises(ValueError, match=name + " 0.* must be above 0"):
+            setattr(energy(), name, 0)
+    with pytest.raises(ValueError, match="read-only"):
+        energy().updateAttrs(dict(collapsedBlock=3))
+
+
+def test_a_scene_without_an_energy_balance_ends_too(scene):
+    standing(gravity=(1.2 * G * B / H, 0, -G))
+    O.engines = [e for e in O.engines if not isinstance(e, MasonryEnergy)]
+    collapses(5, "block 1 has turned by 6")
+
+
+@FUNCTORS
+def test_a_block_that_slides_off_its_neighbour_is_named_with_the_slide(scene, functors):
+    s = standing(
+        dry(friction=0.1, residualFriction=0.1), (0.25, 0.25, 0.1), functors=functors
+    )
+    s.blockedDOFs = "yXYZ"
+    s.vel = Vector3(3, 0, 0)
+    collapses(
+        1,
+        r"block 1 has slid 0\.2\d+ m along its joint with block 0, which is 0.25 m long",
+    )
+    assert 0 < s.pos[0] - s.refPos[0] - 0.25 < 3 * 100 * O.dt
+
+
+def test_a_joint_crushed_to_nothing_is_told_when_one_block_lies_in_the_other(scene):
+    soft = dry(
+        cap=True,
+        compressiveStrength=1e5,
+        residualStrengthRatio=0,
+        peakRatio=20,
+        compressiveFractureEnergy=3000,
+    )
+    s = standing(soft, (0.25, 0.25, 0.1), gravity=(0, 0, -100 * G))
+    s.blockedDOFs = "xyXYZ"
+    collapses(
+        2,
+        r"block 1 lies 0\.1\d* m deep in block 0, and the smaller of the two is 0.1 m thick there",
+    )
+    assert -0.12 < s.pos[2] - s.refPos[2] < -0.1
+
+
+@pytest.mark.parametrize("way", ["loop", "functors", "deformable"])
+def test_a_stack_pulled_apart_is_told_when_a_block_has_left(scene, way):
+    mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    size = (0.22, 0.102, 0.081)
+    for k in range(3):
+        addBlock(corners((0, 0, k * size[2]), (*size[:2], (k + 1) * size[2])), mat)
+    for k in (0, 2):
+        O.bodies[k].state.blockedDOFs = "xyzXYZ"
+    zones = MasonryZones(bodies=[1]) if way == "deformable" else None
+    engines(
+        [MasonryJoint()], gravity=(0, 0, -G), zones=zones, functors=way == "functors"
+    )
+    connect()
+    O.dt = 0.5 * criticalTimeStep()[0]
+    O.bodies[2].state.vel = Vector3(0, 0, 10)
+    # The largest extent of the smaller block is its diagonal.
+    collapses(
+        1,
+        r"block 1 has left block 2 by 0.2[5-9]\d* m, more than the size of the smaller block, 0.256 m",
+    )
+
+
+def test_a_collapse_goes_before_motion_out_of_nothing_and_tells_both(scene):
+    s = standing(dry(friction=0.1, residualFriction=0.1), (0.25, 0.25, 0.1))
+    go(120 * O.dt)
+    while O.iter % 100 != 10:
+        O.step()
+    s.pos += Vector3(0.3, 0, 0)
+    s.vel = Vector3(30, 0, 0)
+    with pytest.raises(
+        RuntimeError,
+        match=r"^collapsed: block 1 has slid .* Besides, unstable: motion out of nothing",
+    ):
+        go(20 * O.dt)
+
+
+# -- what is none ----------------------------------------------------------------------------------------------------
+
+
+@FUNCTORS
+def test_a_block_that_rocks_at_nine_tenths_of_its_slenderness_is_exact_and_no_collapse(
+    scene, functors
+):
+    """Quarter period from rest: acosh(1/(1 - θ0/α))/p with p = sqrt(3 g/4 R) (Housner 1963)."""
+    s = standing(functors=functors)
+    start = 0.9 * ALPHA
+    turn = Quaternion(Vector3(0, 1, 0), start)
+    edge = Vector3(B, s.pos[1], 0)
+    s.pos, s.ori = edge + turn * (s.pos - edge), turn * s.ori
+    p = math.sqrt(0.75 * G / (0.5 * math.hypot(B, H)))
+    quarter = math.acosh(1 / (1 - 0.9)) / p
+    while (s.ori * Vector3(0, 0, 1))[0] > 0:
+        O.step()
+        assert O.time < 1.5 * quarter
+    assert O.time == pytest.approx(quarter, rel=0.01)
+    go(0.5 * quarter)
+    assert energy().collapsedBlock == -1
+
+
+def test_a_block_that_slides_half_its_length_is_no_collapse(scene):
+    s = standing(dry(friction=0.5, residualFriction=0.5), (0.25, 0.25, 0.1))
+    s.blockedDOFs = "yXYZ"
+    s.vel = Vector3(
+        math.sqrt(2 * 0.5 * G * 0.125), 0, 0
+    )  # stops after half of its length
+    go(0.5)
+    assert s.pos[0] - s.refPos[0] == pytest.approx(0.125, rel=0.01)
+    assert energy().collapsedBlock == -1
+
+
+def test_a_base_that_turns_with_all_its_blocks_is_no_collapse(scene):
+    standing(gravity=(0, 0, 0), joint=MasonryJoint(elastic=True))
+    for k, spin in ((0, 4.0), (1, 4.0)):
+        state = O.bodies[k].state
+        state.angVel = Vector3(0, spin, 0)
+        state.vel = Vector3(0, spin, 0).cross(state.pos - O.bodies[0].state.pos)
+    go(0.5)
+    assert O.bodies[1].state.ori.toAngleAxis()[0] > math.radians(90)
+
+
+# -- the balance -----------------------------------------------------------------------------------------------------
+
+
+def test_a_balance_that_is_off_is_told_once(scene, capfd):
+    s = standing(joint=MasonryJoint(elastic=True), damping=0.3)
+    O.forces.setPermF(1, Vector3(0, 0, -5 * G * s.mass))  # work that nobody counts
+    go(2500 * O.dt)
+    told = capfd.readouterr().err
+    assert told.count("the energy balance is off by") == 1
+    off = float(
+        re.search(r"at step 1000 the energy balance is off by (\S+) %", told)[1]
+    )
+    assert off == pytest.approx(100 * abs(energy().balance()["error"]), rel=0.3)
+    assert energy().warned
+
+
+@pytest.mark.parametrize("off", [False, True], ids=["sound", "unwatched"])
+def test_nothing_is_told_of_a_sound_balance_or_without_the_watch(scene, capfd, off):
+    s = standing(joint=MasonryJoint(elastic=True), damping=0.3)
+    if off:
+        energy().watch = False
+        O.forces.setPermF(1, Vector3(0, 0, -5 * G * s.mass))
+    go(2500 * O.dt)
+    assert "balance" not in capfd.readouterr().err
+    assert not energy().warned

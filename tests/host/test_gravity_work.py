@@ -1,0 +1,161 @@
+"""Work of a gravity that changes during a run: raised step by step, turned, and under blocks that were moved before."""
+
+import math
+import os
+import sys
+
+import pytest
+from conftest import ROOT
+from masonry import (
+    MasonryJoint,
+    addBlock,
+    connect,
+    criticalTimeStep,
+    engines,
+    loadCheckpoint,
+    saveCheckpoint,
+)
+from masonry.bricks import boxCorners as corners
+from yade import O, Vector3
+from yade.wrapper import *
+
+sys.path.insert(0, os.path.join(ROOT, "validation", "closed_forms"))
+from motion_cases import gravityWork  # noqa: E402
+
+UNIT = (0.22, 0.102, 0.081)
+G = 9.81
+WAYS = pytest.mark.parametrize("way", ["rigid", "deformable", "functors"])
+
+
+def engine(kind):
+    return next((e for e in O.engines if isinstance(e, kind)), None)
+
+
+def integrator():
+    return next(e for e in O.engines if e.label == "integrator")
+
+
+def stack(way, joint=None, damping=0.5, gravity=(0, 0, 0), blocked="", joined=True):
+    """Two bricks on a fixed one. ``way``: rigid or deformable units, or YADE's own loop and integrator."""
+    O.reset()
+    mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    for k in range(3):
+        body = addBlock(
+            corners((0, 0, k * UNIT[2]), (*UNIT[:2], (k + 1) * UNIT[2])), mat
+        )
+        O.bodies[body].state.blockedDOFs = blocked if k else "xyzXYZ"
+    zones = None
+    if way == "deformable":
+        zones = MasonryZones(bodies=[1, 2], damping=damping)
+    engines(
+        [joint or MasonryJoint(elastic=True)],
+        damping=damping,
+        gravity=gravity,
+        zones=zones,
+        functors=way == "functors",
+    )
+    if joined:
+        connect()
+        O.dt = 0.5 * criticalTimeStep()[0]
+
+
+def balance():
+    return engine(MasonryEnergy).balance()
+
+
+def weight():
+    return G * sum(O.bodies[k].state.mass for k in (1, 2))
+
+
+def ramp(steps):
+    for n in range(steps):
+        integrator().gravity = (0, 0, -G * min(1, (n + 1) / steps))
+        O.step()
+
+
+@WAYS
+def test_gravity_that_is_raised_step_by_step_does_half_the_work(scene, way):
+    """A spring under a load that grows from zero stores half of load times way; the load does no more."""
+    half, counted = gravityWork(way)
+    assert counted == pytest.approx(half, rel=2e-3)
+    assert abs(balance()["error"]) < 1e-9
+
+
+@WAYS
+def test_the_balance_closes_while_gravity_turns(scene, way):
+    stack(way, damping=0.2, gravity=(0, 0, -G))
+    turned, steps = 0.6, 3000
+    for n in range(steps):
+        a = turned * (n + 1) / steps
+        integrator().gravity = Vector3(G * math.sin(a), 0.1 * G * a, -G * math.cos(a))
+        O.step()
+    b = balance()
+    assert b["gravity"] > 0
+    assert abs(b["error"]) < 1e-6
+    if way == "deformable":
+        assert engine(MasonryZones).gravity == integrator().gravity
+
+
+@pytest.mark.parametrize("way", ["rigid", "functors"])
+def test_blocks_moved_before_the_first_step_fall_from_where_they_are(scene, way):
+    """connect() refuses blocks that were moved before it, so the joints are those of the reference."""
+    dry = MasonryJoint(tensileStrength=0, cohesion=0, friction=0, residualFriction=0)
+    stack(way, dry, damping=0, gravity=(0, 0, -G))
+    for k in (1, 2):
+        O.bodies[k].state.pos += Vector3(0, 0, 0.05 * k)
+    start = [O.bodies[k].state.pos[2] for k in (1, 2)]
+    for _ in range(1000):
+        O.step()
+    # The balance belongs to the beginning of the last step.
+    fallen = sum(
+        O.bodies[k].state.mass
+        * (z - O.bodies[k].state.pos[2] + O.dt * O.bodies[k].state.vel[2])
+        for k, z in zip((1, 2), start)
+    )
+    b = balance()
+    assert fallen > 0
+    assert b["gravity"] == pytest.approx(G * fallen, rel=1e-9)
+    assert abs(b["error"]) < 1e-9
+
+
+def test_deformable_units_know_one_gravity(scene):
+    stack("deformable", gravity=(0, 0, -G))
+    zones = engine(MasonryZones)
+    zones.gravity = (0, 0, -1)  # before the run the integrator's is taken over
+    O.step()
+    assert zones.gravity == Vector3(0, 0, -G)
+    integrator().gravity = (1, 0, -2)
+    O.step()
+    assert zones.gravity == Vector3(1, 0, -2)
+    zones.gravity = (0, 0, -1)
+    refused = r"MasonryZones.gravity \(0, 0, -1\) m/s² is not that of the integrator, \(1, 0, -2\)"
+    with pytest.raises(
+        ValueError, match=refused + ".* set the gravity of the integrator alone"
+    ):
+        O.step()
+
+
+@WAYS
+@pytest.mark.parametrize("through", ["checkpoint", "file"])
+def test_the_work_goes_on_after_saving_and_loading(scene, way, through, tmp_path):
+    ends = []
+    path = str(tmp_path / ("scene.yade.gz" if through == "file" else "c"))
+    for interrupted in (False, True):
+        stack(way)
+        ramp(300)
+        if interrupted and through == "file":
+            O.save(path)
+            O.load(path)
+        elif interrupted:
+            saveCheckpoint(path)
+            stack(way)
+            loadCheckpoint(path)
+        integrator().gravity = (0.5, 0, -12)
+        for _ in range(200):
+            O.step()
+        ends.append(balance())
+    if through == "file" or way == "functors":  # sums in another order
+        assert ends[0] == pytest.approx(ends[1], rel=1e-9, abs=1e-12)
+    else:
+        assert ends[0] == ends[1]
+    assert abs(ends[1]["error"]) < 1e-9

@@ -1,0 +1,105 @@
+"""Joints are grouped by the values of their properties, whether these stand in one MasonryJoint or in many."""
+
+import pytest
+from masonry import MasonryJoint, addBlock, connect, engines
+from masonry.bricks import boxCorners as corners
+from yade import O, Vector3
+from yade.wrapper import *
+
+UNIT = (0.22, 0.102, 0.081)
+
+
+def couplets(count, joint):
+    """Separate couplets whose upper bricks are pulled up. ``joint``: gives the MasonryJoint of each."""
+    O.reset()
+    mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    for n in range(count):
+        for k in (0, 1):
+            low = (0.25 * n, 0, k * UNIT[2])
+            high = (low[0] + UNIT[0], UNIT[1], low[2] + UNIT[2])
+            O.bodies[addBlock(corners(low, high), mat)].state.blockedDOFs = "xyzXYZ"
+        O.bodies[2 * n + 1].state.vel = Vector3(0.02, 0, 0.05)
+    engines([MasonryJoint()], gravity=(0, 0, 0), damping=0, rows=1)
+    made = connect(lambda one, two, geom: joint())
+    O.dt = 1e-5
+    return made
+
+
+def loop():
+    return next(e for e in O.engines if isinstance(e, MasonryJointLoop))
+
+
+def stresses(made):
+    return [[tuple(s) for s in i.phys.stress] for i in made]
+
+
+def test_equal_values_in_many_objects_are_one_group(scene):
+    shared = MasonryJoint()
+    made = couplets(500, lambda: shared)
+    assert loop().groups == 1
+    O.run(200, True)
+    one = stresses(made)
+    made = couplets(500, MasonryJoint)
+    assert len({id(i.phys.joint) for i in made}) == 500
+    assert loop().groups == 1
+    O.run(200, True)
+    assert stresses(made) == one
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        dict(name="other"),
+        dict(tensileStrength=0.05e6),
+        dict(cap=False),
+        dict(tensionTable=[(1, 0), (40, 1)]),
+    ],
+    ids=lambda v: next(iter(v)),
+)
+def test_other_values_are_another_group(scene, values):
+    couplets(40, MasonryJoint)
+    assert loop().groups == 1
+    made = couplets(
+        40, iter([MasonryJoint(**values if n == 7 else {}) for n in range(40)]).__next__
+    )
+    assert loop().groups == 2
+    assert [
+        n
+        for n, i in enumerate(made)
+        if i.phys.joint.dict() != made[0].phys.joint.dict()
+    ] == [7]
+
+
+def test_a_later_change_of_one_object_acts_on_its_own_joints_alone(scene):
+    made = couplets(40, MasonryJoint)
+    O.run(2, True)
+    made[7].phys.joint.tensileStrength = 0.02e6
+    assert loop().groups == 2
+    O.run(300, True)
+    damage = [max(d[0] for d in i.phys.damage) for i in made]
+    assert damage[0] > 0.1 < damage[7] < damage[0] - 0.1
+    for n in range(40):
+        assert n == 7 or damage[n] == pytest.approx(damage[0], rel=1e-9)
+    made[7].phys.joint.tensileStrength = 0.10e6
+    assert loop().groups == 1
+    O.run(2, True)
+    assert max(d[0] for d in made[7].phys.damage) >= damage[7]
+
+
+def test_every_joint_keeps_its_own_object_through_a_file(scene, tmp_path):
+    made = couplets(5, MasonryJoint)
+    O.run(2, True)
+    path = str(tmp_path / "scene.yade.gz")
+    O.save(path)
+    O.load(path)
+    made = sorted(O.interactions, key=lambda i: i.id1)
+    assert loop().groups == 1
+    made[3].phys.joint.cohesion = 0.2e6
+    assert loop().groups == 2
+    assert [i.phys.joint.cohesion for i in made] == [
+        0.11e6,
+        0.11e6,
+        0.11e6,
+        0.2e6,
+        0.11e6,
+    ]

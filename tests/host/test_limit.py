@@ -1,0 +1,396 @@
+"""Limit analysis against closed forms, against values of another programme, and against itself."""
+
+import json
+import math
+import os
+
+import numpy as np
+import pytest
+from masonry import MasonryJoint, MasonryMat, addBlock, connect, engines, limit
+from masonry.bricks import boxCorners
+from masonry.errors import Refused
+from yade import O
+
+G = 9.81  # [m/s²]
+DENSITY = 2000.0  # [kg/m³]
+
+
+def joint(friction=0.7, **kw):
+    """A dry joint that cannot crush, if nothing else is said."""
+    dry = dict(tensileStrength=0, cohesion=0, residualCohesion=0, cap=False)
+    return MasonryJoint(friction=friction, residualFriction=friction, **{**dry, **kw})
+
+
+def assembly(boxes, kind=None, plane=True, held=(0,)):
+    """Boxes (lower corner, size) as an assembly; those that are named are held."""
+    material = MasonryMat(density=DENSITY)
+    for low, size in boxes:
+        high = [a + b for a, b in zip(low, size)]
+        addBlock(boxCorners(low, high), material, inPlane=plane)
+    for body in held:
+        O.bodies[body].state.blockedDOFs = "xyzXYZ"
+    engines([kind or joint()], gravity=(0, 0, -G), inPlane=plane)
+    connect()
+    return limit.read()
+
+
+def block(width, height, plane=True, kind=None):
+    """A block of 0.3 m on a wide floor."""
+    return assembly(
+        [((-1, -1, -0.2), (3, 3, 0.2)), ((0, 0, 0), (width, 0.3, height))], kind, plane
+    )
+
+
+def sideways(a, way=(1, 0, 0)):
+    """Factor of a horizontal acceleration on gravity."""
+    return a.largest(a.weights(G * np.array(way)), a.weights((0, 0, -G)))
+
+
+# -- closed forms ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("plane", [True, False])
+@pytest.mark.parametrize("height, friction", [(1.0, 0.7), (0.2, 0.4), (0.25, 2.0)])
+def test_a_block_tips_at_its_slenderness_or_slides_at_its_friction(
+    scene, plane, height, friction
+):
+    bound = sideways(block(0.25, height, plane, joint(friction)))
+    assert bound.factor == pytest.approx(min(0.25 / height, friction), rel=1e-6)
+    assert bound.exact == (0.25 / height < friction)
+    assert bound.slides == (0.25 / height > friction)
+    assert list(bound.joints()) == ["opens" if bound.exact else "slides"]
+
+
+@pytest.mark.parametrize("angle", [0, 10, 22.5, 37, 45])
+def test_friction_in_space_is_round(scene, angle):
+    way = (math.cos(math.radians(angle)), math.sin(math.radians(angle)), 0)
+    bound = sideways(block(0.3, 0.1, False, joint(0.4)), way)
+    assert bound.factor == pytest.approx(0.4, rel=2e-3)
+    assert bound.factor >= 0.4 * (1 - 1e-6)  # from above
+
+
+def test_tension_cohesion_and_crushing_are_those_of_the_joint(scene):
+    bond = joint(0.5, tensileStrength=0.1e6, cohesion=0.3e6)
+    area, weight = 0.25 * 0.3, 0.25 * 0.3 * 0.5 * DENSITY * G
+    a = block(0.25, 0.5, True, bond)
+    dead, top = a.weights((0, 0, -G)), (0.125, 0.15, 0.5)
+    lifted = a.largest(a.force(1, (0, 0, 1), top), dead)
+    assert lifted.factor == pytest.approx(weight + 0.1e6 * area, rel=1e-6)
+    assert lifted.powers["tension"] == pytest.approx(0.1e6 * area, rel=1e-6)
+    slid = a.largest(a.force(1, (1, 0, 0), (0.125, 0.15, 0.0)), dead)
+    assert slid.factor == pytest.approx(0.3e6 * area + 0.5 * weight, rel=1e-6)
+    assert not slid.exact and slid.slides
+    with pytest.raises(Refused, match="nothing gives way, however large the load is"):
+        a.largest(a.force(1, (0, 0, -1), top), dead)
+    O.reset()
+    weak = joint(0.5, tensileStrength=0.1e6, cohesion=0.3e6, cap=True, compressiveStrength=2e6,
+                 peakRatio=2, compressiveFractureEnergy=1e6)  # fmt: skip
+    a = block(0.25, 0.5, True, weak)
+    crushed = a.largest(a.force(1, (0, 0, -1), top), a.weights((0, 0, -G)))
+    assert crushed.factor == pytest.approx(2e6 * area - weight, rel=1e-6)
+    assert list(crushed.joints()) == ["crushes"]
+
+
+def test_a_support_that_settles_keeps_its_least_reaction(scene):
+    """A beam on two supports, of which one goes down: the joint opens, and the beam turns about the far edge of the
+    other. Pushed up, it carries at most what turns the beam about the near side."""
+    a = assembly(
+        [((0, 0, -0.1), (0.1, 0.3, 0.1)), ((0.9, 0, -0.1), (0.1, 0.3, 0.1)), ((0, 0, 0), (1.0, 0.3, 0.2))],
+        held=(0,),
+    )  # fmt: skip
+    a.held[1] = [False, True, False, True, True, True]
+    a.__post_init__()
+    weight = 0.3 * 0.2 * DENSITY * G
+    dead = a.weights((0, 0, -G))
+    dead[1] = 0
+    up = a.force(1, (0, 0, 1))
+    # about the left and the right edge of the support at the left, with the reaction at an end of the other
+    assert a.smallest(up, dead).factor == pytest.approx(weight * 0.4 / 0.9, rel=1e-6)
+    assert a.largest(up, dead).factor == pytest.approx(weight * 0.5 / 0.9, rel=1e-6)
+
+
+def arch(stones, ratio, friction=0.7, end=math.pi):
+    """Flat voussoirs around a semicircle of mean radius 1 m, between two held blocks."""
+    material, bodies = MasonryMat(density=DENSITY), []
+    angles = [end * n / stones - (end - math.pi) / 2 for n in range(stones + 1)]
+    edge = lambda a, r: (-r * math.cos(a), r * math.sin(a))
+    inner, outer = 1 - ratio / 2, 1 + ratio / 2
+    for a, b in zip(angles, angles[1:]):
+        flat = [edge(a, inner), edge(a, outer), edge(b, outer), edge(b, inner)]
+        points = [(x, y, z) for x, z in flat for y in (0, 0.3)]
+        bodies.append(addBlock(points, material, inPlane=True))
+    for a, turn in ((angles[0], -0.1), (angles[-1], 0.1)):
+        b = a + turn
+        flat = [edge(a, inner), edge(a, outer), edge(b, outer), edge(b, inner)]
+        foot = addBlock([(x, y, z) for x, z in flat for y in (0, 0.3)], material, inPlane=True)  # fmt: skip
+        O.bodies[foot].state.blockedDOFs = "xyzXYZ"
+    engines([joint(friction)], gravity=(0, 0, -G), inPlane=True)
+    connect()
+    return limit.read()
+
+
+@pytest.mark.parametrize("stones, least", [(7, 0.09570), (16, 0.10708)])
+def test_a_semicircular_arch_needs_its_thickness(scene, stones, least):
+    stands = arch(stones, 1.002 * least)
+    assert sideways(stands).factor < 0.005
+    O.reset()
+    thin = arch(stones, 0.998 * least)
+    with pytest.raises(Refused, match=r"does not stand under its dead loads alone: body \d+ at \(.*\) m moves first"):  # fmt: skip
+        sideways(thin)
+
+
+def test_an_arch_of_seven_stones_is_pushed_over(scene):
+    """Oppenheim (1992) gives 0.37."""
+    bound = sideways(arch(7, 0.15, 0.7, math.radians(157.5)))
+    assert bound.factor == pytest.approx(0.3736, abs=1e-4)
+    assert bound.exact and (bound.joints() == "opens").sum() == 4
+
+
+def wall(courses, units, friction):
+    """Running bond of units of 0.2 × 0.1 m, with halves at both ends of every second course."""
+    boxes = [((0, 0, -0.2), (0.2 * units, 0.1, 0.2))]
+    for course in range(courses):
+        cuts = [0.2 * n for n in range(units + 1)]
+        if course % 2:
+            cuts = [0, *(0.2 * n + 0.1 for n in range(units)), 0.2 * units]
+        boxes += [((a, 0, 0.1 * course), (b - a, 0.1, 0.1)) for a, b in zip(cuts, cuts[1:])]  # fmt: skip
+    return assembly(boxes, joint(friction))
+
+
+@pytest.mark.parametrize(
+    "courses, units, friction, factor",
+    [(10, 5, 0.65, 0.5383), (10, 5, 0.40, 0.4000), (20, 10, 0.65, 0.4655)],
+)
+def test_dry_walls_fall_where_another_programme_says(
+    scene, courses, units, friction, factor
+):
+    bound = sideways(wall(courses, units, friction))
+    assert bound.factor == pytest.approx(factor, abs=1e-4)
+    assert bound.slides and not bound.exact
+
+
+# -- against itself ----------------------------------------------------------------------------------------------------
+
+
+def test_both_solvers_agree(scene, monkeypatch):
+    a = wall(6, 4, 0.6)
+    first = sideways(a).factor
+    calls = []
+    monkeypatch.setattr(limit, "_clp", lambda *words: calls.append(1) or gone())
+
+    def gone():
+        raise OSError("no library")
+
+    assert sideways(a).factor == pytest.approx(first, rel=1e-6)
+    assert calls
+
+
+@pytest.mark.parametrize("plane", [True, False])
+@pytest.mark.parametrize("bond", [0.0, 0.05e6])
+def test_the_mechanism_takes_as_much_power_as_the_loads_give(scene, plane, bond):
+    """The value of the programme is found again from the velocities of its dual alone, with the strengths."""
+    kind = joint(0.6, tensileStrength=0.5 * bond, cohesion=bond)
+    boxes = [((0, 0, -0.2), (0.8, 0.1, 0.2))]
+    boxes += [((0.2 * n, 0, 0), (0.2, 0.1, 0.1)) for n in range(4)]
+    boxes += [((0.1 + 0.2 * n, 0, 0.1), (0.2, 0.1, 0.1)) for n in range(3)]
+    bound = sideways(assembly(boxes, kind, plane))
+    given = (bound.factor * bound.live + bound.dead) * bound.velocities
+    powers = bound.powers
+    c = bound.assembly.contacts
+    opening, slide = bound.jumps(c.joint, c.at)
+    speed = np.linalg.norm(slide, axis=1)
+    # in an associated mechanism pressure gives back by dilation what friction takes
+    least = (c.area * bond * (speed + 0)).sum() if not plane else None
+    taken = (bound.live * bound.velocities).sum()
+    assert taken == pytest.approx(1, rel=1e-6)
+    inner = (bound.normal * opening).sum() * -1
+    assert (opening >= 0.6 * speed - 1e-4 * speed.max()).all() or plane
+    assert given.sum() == pytest.approx(
+        powers["friction"] + powers["cohesion"] + inner, rel=2e-3, abs=1e-6
+    )
+    assert least is None or powers["cohesion"] == pytest.approx(least, rel=1e-9)
+
+
+def test_without_dilatancy_a_wall_carries_less_and_no_joint_is_above_its_friction(
+    scene,
+):
+    a = wall(6, 3, 0.5)
+    live, dead = a.weights((G, 0, 0)), a.weights((0, 0, -G))
+    most = a.largest(live, dead)
+    least = a.withoutDilatancy(live, dead)
+    assert least.settled and not least.dilates
+    assert 0.8 * most.factor < least.factor <= most.factor * (1 + 1e-6)
+    assert least.overstressed < 0.01
+    opening, slide = least.jumps(a.contacts.joint, a.contacts.at)
+    beds = np.abs(a.normals[a.contacts.joint, 2]) > 0.5
+    pressed = beds & (least.normal > 1e-3 * least.normal.max())
+    # where a bed is pressed it slips without opening; under friction's own flow it would open by half of the slip
+    assert opening[pressed].max() < 0.05 * np.linalg.norm(slide, axis=1).max()
+
+
+def test_a_wedge_over_open_head_joints_is_found(scene):
+    """The wedge of courses 1 to 5 about the lower right corner, of which the head joints are open: by hand, with n half
+    units in course n, the factor is 0.05 Σn² / (0.1 Σn² - 0.05 Σn). The engine falls there, too.
+    """
+    a = wall(6, 3, 0.65)
+    live, dead = a.weights((G, 0, 0)), a.weights((0, 0, -G))
+    squares, sums = sum(n * n for n in range(1, 6)), sum(range(1, 6))
+    wedge = 0.05 * squares / (0.1 * squares - 0.05 * sums)
+    assert a.withoutDilatancy(live, dead).factor == pytest.approx(wedge, rel=1e-4)
+    assert a.largest(live, dead).factor > 1.02 * wedge
+
+
+def test_a_bond_in_which_no_joint_slides_is_not_called_exact(scene):
+    """With such friction the wall tips as a whole at 1 g, if joints that slip must open; its open wedge falls at 0.58 g."""
+    bound = sideways(wall(6, 3, 2.0))
+    assert bound.factor == pytest.approx(1.0, rel=1e-4) and bound.rigid
+    assert not bound.exact and "upper bound" in bound.sentence("x", "g")
+
+
+def test_strengths_of_a_wrong_unit_do_not_end_in_numbers(scene):
+    """Whatever the solver says, the user reads a sentence."""
+    a = block(0.25, 1.0, True, joint(0.5, tensileStrength=1.0, cohesion=1.0))
+    a.tension *= 1e18
+    a.cohesion *= 1e18
+    try:
+        assert sideways(a).factor > 1e6
+    except Refused as refused:
+        assert str(refused).startswith("limit analysis: ")
+
+
+def test_odd_loads_are_refused(scene):
+    a = block(0.25, 1.0)
+    dead = a.weights((0, 0, -G))
+    with pytest.raises(Refused, match="the live load acts on no free block"):
+        a.largest(0 * dead, dead)
+    with pytest.raises(Refused, match="the live load has numbers that are not finite"):
+        a.largest(math.nan * dead, dead)
+    O.reset()
+    with pytest.raises(Refused, match="the scene has no joints"):
+        limit.read()
+
+
+# -- files and scenes --------------------------------------------------------------------------------------------------
+
+
+def test_a_mechanism_is_drawn_and_written_for_paraview(scene, tmp_path):
+    import meshio
+
+    bound = sideways(arch(7, 0.15, 0.7, math.radians(157.5)))
+    bound.draw(str(tmp_path / "m.png"), "An arch")
+    bound.save(str(tmp_path))
+    assert os.path.getsize(tmp_path / "m.png") > 10000
+    blocks = meshio.read(tmp_path / "mechanism_blocks.vtu")
+    joints = meshio.read(tmp_path / "mechanism_joints.vtu")
+    size = np.ptp(blocks.points, axis=0).max()
+    moved = np.linalg.norm(blocks.point_data["displacement"], axis=1).max()
+    assert moved == pytest.approx(limit.SHOWN * size, rel=1e-6)
+    assert (joints.cell_data["damage_tension"][0] > 0).sum() == 8  # two triangles each
+
+
+def small(*words, until=0.3, **kw):
+    """A pushed pier of dry stones."""
+    from masonry import Scene, bricks, materials
+
+    pier = bricks.Wall(0.4, 0.6, unit=(0.2, 0.1, 0.1), halves=False)
+    s = Scene("pier", pier, materials.dry(0.6, normalStiffness=1e10), arguments=[*words, "--no-vtk"])  # fmt: skip
+    s.platen("bottom")
+    top = s.platen("top", rotation="held", height=0.1)
+    s.press(top, 0.05e6)
+    return s, top
+
+
+def told(out):
+    return json.load(open(out / "run.json"))
+
+
+def test_a_push_has_its_bound_beside_it(scene, tmp_path):
+    s, top = small("--out", str(tmp_path / "r"))
+    s.settle()
+    s.push(top, 0.3)
+    s.finish()
+    run = told(tmp_path / "r")
+    (entry,) = run["bounds"]
+    assert entry["load"] == "top along x" and entry["unit"] == "kN"
+    assert run["bound_base_shear_kN"] == entry["factor"]
+    assert 0.5 * entry["factor"] < run["peak_base_shear_kN"] < 1.02 * entry["factor"]
+    assert run["figure"]["bounds"] == [
+        {"y": entry["factor"], "text": f"limit analysis: {entry['factor']:.1f} kN at most"}  # fmt: skip
+    ]
+    assert (tmp_path / "r" / "mechanism.png").exists()
+
+
+def test_the_preset_bound_runs_nothing(scene, tmp_path, capsys):
+    out = tmp_path / "r"
+    s, top = small("--out", str(out), "--preset", "bound")
+    assert s.settle() == "at rest"
+    assert s.push(top, 1) == "done"
+    s.finish()
+    run = told(out)
+    assert run["steps"] == 0 and run["bound_base_shear_kN"] > 0
+    assert run["preset"]["name"] == "bound"
+    assert not (out / "curve.csv").exists() or len(open(out / "curve.csv").readlines()) == 1  # fmt: skip
+    assert "there is no run" in capsys.readouterr().out
+    O.reset()
+    s, top = small("--out", str(tmp_path / "q"))
+    s.settle()
+    s.push(top, 0.05)
+    s.finish()
+    assert told(tmp_path / "q")["bound_base_shear_kN"] == pytest.approx(
+        run["bound_base_shear_kN"], rel=1e-3
+    )
+
+
+def test_a_lean_is_bracketed_by_its_bound_alone(scene, tmp_path):
+    from masonry import AT_REST
+
+    s, top = small("--out", str(tmp_path / "r"), "--preset", "bound")
+    s.settle()
+    low, high = s.bracket(lambda g: s.lean(g) == AT_REST, 0.0, 5.0, within=1e-3)
+    s.finish()
+    assert low <= told(tmp_path / "r")["bound_acceleration"] <= high
+
+
+def test_a_peak_above_its_bound_is_a_warning_with_both_numbers(scene, tmp_path, capsys):
+    s, top = small("--out", str(tmp_path / "r"))
+    s.settle()
+    s.push(top, 0.3)
+    peak = max(s.results.column("base_shear_kN"))
+    s.at.bounds["top along x"]["factor"] = 0.9 * peak
+    s.finish()
+    said = capsys.readouterr().out
+    assert f"warning: the largest base shear, {peak:.4g} kN, is more than" in said
+    assert f"{0.9 * peak:.4g} kN" in said
+
+
+@pytest.mark.parametrize("plane", [True, False])
+def test_deformable_units_have_the_bound_of_rigid_ones(scene, tmp_path, plane):
+    from masonry import Scene, bricks, materials
+
+    factors = []
+    for kind in ("rigid", "deformable"):
+        O.reset()
+        words = ["--preset", "bound", "--blocks", kind, "--out", str(tmp_path / kind)]
+        s = Scene("pier", bricks.Wall(0.22, 0.243), materials.calciumSilicate(), plane=plane, arguments=words)  # fmt: skip
+        s.platen("bottom")
+        top = s.platen("top", rotation="free", height=0.1)
+        s.press(top, 0.2e6)
+        s.settle()
+        s.push(top, 1)
+        s.finish()
+        factors.append(told(tmp_path / kind)["bound_base_shear_kN"])
+    assert factors[1] == pytest.approx(factors[0], rel=0.02)  # other points of joints
+
+
+def test_no_bound_is_told_after_supports_have_moved(scene, tmp_path):
+    from masonry import Scene, bricks, materials
+
+    two = bricks.Wall(0.4, 0.2, unit=(0.2, 0.1, 0.1), halves=False)
+    s = Scene("pier", two, materials.dry(0.6, normalStiffness=1e10), arguments=["--no-vtk", "--out", str(tmp_path / "r")])  # fmt: skip
+    base = s.platen("bottom")
+    s.settle()
+    s.move(base, x=0.1, rate=50)
+    s.lean(0.05)
+    s.finish()
+    (entry,) = told(tmp_path / "r")["bounds"]
+    assert "supports have moved" in entry["note"] and "factor" not in entry

@@ -1,0 +1,274 @@
+"""What a script can do to a scene that runs: it takes effect, or an error says why not. Nothing ends the process."""
+
+import gc
+import os
+
+import pytest
+from masonry import addBlock, connect, criticalTimeStep, engines
+from yade import O, Vector3
+from yade.wrapper import *
+
+SIDE = 0.1  # [m]
+
+
+def cube(x=0.0, z=0.0):
+    return [
+        (x + i * SIDE, j * SIDE, z + k * SIDE)
+        for i in (0, 1)
+        for j in (0, 1)
+        for k in (0, 1)
+    ]
+
+
+def stack(number=3, zones=(), lone=False, functors=False, reset=True):
+    """Cubes on each other, the lowest of which is fixed, and a load on the highest. Returns the joints."""
+    if reset:
+        O.reset()
+    O.materials.append(MasonryMat(young=5e9, poisson=0.2, density=1800))
+    for level in range(number):
+        addBlock(cube(z=SIDE * level), O.materials[0])
+    if lone:
+        addBlock(cube(x=1), O.materials[0])
+    O.bodies[0].state.blockedDOFs = "xyzXYZ"
+    load = MasonryLoad(body=number - 1, point=(0.05, 0.05, SIDE * number), force=(0, 0, -10))  # fmt: skip
+    joint = MasonryJoint(name="j", normalStiffness=1e10, shearStiffness=5e9, elastic=True)  # fmt: skip
+    engines(
+        [joint],
+        loads=[load],
+        zones=MasonryZones(bodies=list(zones)) if zones else None,
+        functors=functors,
+    )
+    made = connect()
+    O.dt = 0.3 * criticalTimeStep()[0]
+    return made
+
+
+def steps(count=2):
+    for _ in range(count):
+        O.step()
+
+
+def refused(message, act=steps):
+    with pytest.raises((ValueError, RuntimeError), match=message):
+        act()
+
+
+# -- no crash ----------------------------------------------------------------------------------------------------------
+
+
+def test_bodies_that_are_gone_are_told(scene):
+    stack()
+    steps()
+    O.bodies.clear()
+    refused("joint holds body 0 does not exist", criticalTimeStep)
+    refused("has lost body 0: erase its interaction, too, or call O.reset")
+    stack()
+    steps()
+    O.bodies[1].state = None
+    refused("body 1 has no State", lambda: steps(10))  # looked at in every tenth
+
+
+def test_a_lone_deformable_block_that_is_erased_is_told(scene):
+    stack(2, zones=[2], lone=True)
+    steps()
+    O.bodies.erase(2)
+    refused("body 2 does not exist")
+
+
+def test_units_without_their_engine_are_told(scene):
+    stack(zones=[1])
+    steps()
+    for change in (lambda: setattr(zones, "dead", True), lambda: setattr(O, "engines", others)):  # fmt: skip
+        *others, zones = O.engines
+        change()
+        for act in (criticalTimeStep, steps):
+            refused("needs its MasonryZones in O.engines, and not dead", act)
+        zones.dead = False
+        O.engines = [*others, zones]
+        steps()
+
+
+def test_a_load_whose_body_is_changed_within_the_step_is_told(scene):
+    stack()
+    again = PyRunner(command="O.engines[2].body = 99", iterPeriod=1, initRun=True)
+    O.engines = [*O.engines[:3], again, *O.engines[3:]]
+    refused("MasonryLoad.body 99 does not exist")
+
+
+def test_a_joint_of_no_scene_has_no_points():
+    assert MasonryJointPhys().yielding == [] and MasonryJointGeom().jumps == []
+
+
+@pytest.mark.parametrize("which", ["loop", "load", "all"])
+def test_an_engine_in_a_parallel_engine_is_told(scene, which, capfd):
+    """Threads of the host cannot pass an error on: an engine that follows does, and the error stream has it anyway."""
+    stack()
+    reset, loop, load, *others = O.engines
+    inside = {"loop": [loop], "load": [load], "all": [loop, load, *others]}[which]
+    outside = [e for e in (loop, load, *others) if e not in inside]
+    after = [ParallelEngine(inside), *outside]
+    O.engines = [reset, *(after if which != "load" else [loop, *after[:1], *others])]
+    if which == "all":
+        steps()
+        assert O.bodies[2].state.vel == Vector3.Zero
+    else:
+        refused("stands in a ParallelEngine")
+    assert capfd.readouterr().err.count("stands in a ParallelEngine") == 1
+    O.engines = [reset, loop, load, *others]
+    steps()
+
+
+def test_damaged_lists_of_a_checkpoint_are_told(scene, tmp_path):
+    """Lists of a wrong length under a right sum: velocities of nodes, and the forces that combined damping remembers."""
+    from masonry._masonry import loadScene, saveScene
+
+    stack(zones=[1])
+    steps(20)
+    data = saveScene("null")
+    for name, message in (("MasonryZones.velocities", "state has .* nodes"), ("MasonryIntegrator.last", "remembers forces of 6 bodies")):  # fmt: skip
+        refused(message, lambda: (loadScene(withTwice(data, name)), steps()))
+        stack(zones=[1])
+    loadScene(data)
+    steps()
+
+
+def withTwice(data, name):
+    """A checkpoint in which a list stands twice as long, with the sum that belongs to it."""
+    title, at, records = data.index(b"\n") + 1, data.index(b"\n") + 9, []
+    while at < len(data) - 8:
+        sizes = [int.from_bytes(data[at + 1 + 8 * i : at + 9 + 8 * i], "little") for i in (0, 1)]  # fmt: skip
+        called = data[at + 17 : at + 17 + sizes[0]]
+        value = data[at + 17 + sizes[0] : at + 17 + sum(sizes)]
+        twice = value * 2 if called.decode().endswith(name) else value
+        records.append(data[at : at + 1] + sizes[0].to_bytes(8, "little") + len(twice).to_bytes(8, "little") + called + twice)  # fmt: skip
+        at += 17 + sum(sizes)
+    body = b"".join(records)
+    whole = data[:title] + (len(body) + 8).to_bytes(8, "little") + body
+    total = 0xCBF29CE484222325
+    for byte in whole:
+        total = (total ^ byte) * 0x100000001B3 % 2**64
+    return whole + total.to_bytes(8, "little")
+
+
+# -- no silence --------------------------------------------------------------------------------------------------------
+
+
+def replaceState(body):
+    old = O.bodies[body].state
+    new = O.bodies[body].mat.newAssocState()
+    for name in ("mass", "inertia", "pos", "ori", "refPos", "refOri"):
+        setattr(new, name, getattr(old, name))
+    O.bodies[body].state = new
+    gc.collect()
+    return new
+
+
+def test_a_state_that_replaces_another_counts_within_ten_steps(scene):
+    joints = stack(lone=True)
+    steps(3)
+    state = replaceState(2)
+    state.pos = state.pos + Vector3(0, 0, 1e-6)
+    state.vel = Vector3(0, 0, -1e-3)
+    steps(8)
+    assert max(jump[0] for jump in joints[1].geom.jumps) > 0.9e-6
+    lone = replaceState(3)
+    lone.vel = Vector3(1e-3, 0, 0)
+    before = lone.pos
+    steps(10)
+    assert (lone.pos - before)[0] == pytest.approx(1e-3 * O.dt, rel=1e-6)
+
+
+@pytest.mark.parametrize("functors", [False, True])
+def test_what_joints_were_made_with_cannot_be_changed(scene, functors):
+    joints = stack(zones=() if functors else (1,), functors=functors)
+    joint, mat = joints[0].phys.joint, O.bodies[1].mat
+    geometry = O.engines[1].geomDispatcher.functors[0] if functors else O.engines[1].geometry  # fmt: skip
+    before = joints[0].phys.normalStiffness
+    for thing, name, value in (
+        (joint, "normalStiffness", 1e7),
+        (joint, "shearStiffness", 1e7),
+        (mat, "young", 1e6),
+        (mat, "poisson", 0.3),
+        (geometry, "subcontacts", 7),
+        (geometry, "rows", 2),
+    ):
+        old = getattr(thing, name)
+        refused(f"{name} .* would have no effect", lambda: setattr(thing, name, value))
+        assert getattr(thing, name) == old
+        setattr(thing, name, old)
+    joint.cohesion = 1e6  # takes effect
+    steps()
+    assert joints[0].phys.normalStiffness == before
+    O.reset()  # the next scene can have other values
+    joint.normalStiffness, mat.young, geometry.subcontacts = 1e7, 1e6, 7
+
+
+def test_values_can_be_mended_after_a_connect_that_was_refused(scene):
+    joint = MasonryJoint(name="k", elastic=True)
+    O.materials.append(MasonryMat(young=5e9, poisson=0.2, density=1800))
+    for level in range(2):
+        addBlock(cube(z=SIDE * level), O.materials[0])
+    engines([joint])
+    refused("rule must return a MasonryJoint", lambda: connect(lambda *pair: 5))
+    joint.normalStiffness, O.materials[0].young = 1e10, 6e9
+    assert len(connect()) == 1
+
+
+def test_what_cannot_be_followed_is_told(scene):
+    stack(4)
+    O.bodies.clump([2, 3])
+    refused("body 2 belongs to clump 4, which would not move as one")
+    stack()
+    O.periodic = True
+    refused("O.periodic: ")
+    O.periodic = False
+    steps()
+    addBlock(cube(z=3 * SIDE), O.materials[0])
+    refused("body 3 was added after connect")
+
+
+def test_zones_of_another_scene_leave_the_blocks_of_the_present_one_alone(scene):
+    stack(zones=[1])
+    zones = O.engines[-1]
+    steps()
+    nodes = len(zones.displacements)
+    O.switchScene()
+    try:
+        stack(reset=False)
+        zones.damping = 0.5  # the units are divided anew
+        zones.nodesOf(1)
+        assert len(zones.displacements) == nodes
+        assert O.bodies[1].state.blockedDOFs == ""
+        steps(100)
+        assert O.bodies[1].state.pos[2] < 1.5 * SIDE
+    finally:
+        O.switchScene()
+
+
+def test_a_python_class_of_joints_is_a_joint(scene):
+    class Mortar(MasonryJoint):
+        pass
+
+    O.materials.append(MasonryMat(young=5e9))
+    for level in range(2):
+        addBlock(cube(z=SIDE * level), O.materials[0])
+    engines([Mortar(name="mortar", elastic=True)])
+    (made,) = connect()
+    assert made.phys.joint.name == "mortar"
+
+
+# -- files -------------------------------------------------------------------------------------------------------------
+
+
+def test_frames_that_somebody_removed_are_not_listed(scene, tmp_path):
+    stack()
+    recorder = MasonryVtkRecorder(directory=str(tmp_path))
+    for _ in range(3):
+        steps()
+        recorder()
+    os.remove(tmp_path / "blocks_0001.vtu")
+    recorder.collect()
+    listed = (tmp_path / "blocks.pvd").read_text()
+    assert "blocks_0000.vtu" in listed and "blocks_0001.vtu" not in listed
+    assert "blocks_0002.vtu" in listed
+    assert "joints_0001.vtp" in (tmp_path / "joints.pvd").read_text()

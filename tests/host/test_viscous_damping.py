@@ -1,0 +1,234 @@
+"""Viscous damping, proportional to mass and to the stiffness of joints, against closed forms."""
+
+import math
+import os
+import sys
+
+import pytest
+from conftest import ROOT
+from masonry import (
+    MasonryJoint,
+    addBlock,
+    connect,
+    criticalTimeStep,
+    engines,
+    loadCheckpoint,
+    saveCheckpoint,
+)
+from masonry.bricks import boxCorners as corners
+from yade import O, Vector3
+from yade.wrapper import *
+
+sys.path.insert(0, os.path.join(ROOT, "validation", "closed_forms"))
+from motion_cases import UNIT, damped, oscillator  # noqa: E402
+from structures import G  # noqa: E402
+
+
+def engine(kind):
+    return next((e for e in O.engines if isinstance(e, kind)), None)
+
+
+def balance():
+    return engine(MasonryEnergy).balance()
+
+
+@pytest.mark.parametrize("ratio", [0.02, 0.1])
+@pytest.mark.parametrize("kind", ["mass", "stiffness"])
+@pytest.mark.parametrize("inPlane", [False, True], ids=["space", "plane"])
+def test_a_block_on_a_joint_loses_amplitude_by_the_decrement(
+    scene, kind, ratio, inPlane
+):
+    expected, measured = damped(kind, ratio, inPlane)
+    assert measured == pytest.approx(expected, rel=0.005)
+    b = balance()
+    assert abs(b["error"]) < 1e-9
+    assert b["damping"] == pytest.approx(b["external"], rel=0.05 if ratio == 0.1 else 1)
+
+
+@pytest.mark.parametrize("blocked", ["", "yXZ", "XYZ"], ids=lambda b: b or "free")
+def test_a_falling_block_comes_to_gravity_over_mass_damping(scene, blocked):
+    body = addBlock(corners((0, 0, 0), UNIT), MasonryMat(density=1800))
+    O.bodies[body].state.blockedDOFs = blocked
+    O.engines = [
+        ForceResetter(),
+        MasonryEnergy(),
+        MasonryIntegrator(damping=0, massDamping=5, gravity=(0, 0, -G)),
+    ]
+    O.dt = 1e-3
+    speed = lambda t: -G / 5 * (1 - math.exp(-5 * t))
+    for _ in range(100):
+        O.step()
+    s = O.bodies[body].state
+    assert s.vel[2] == pytest.approx(speed(O.time), rel=1e-3)
+    for _ in range(4000):
+        O.step()
+    assert s.vel[2] == pytest.approx(-G / 5, rel=1e-8)
+    assert abs(balance()["error"]) < 1e-12
+
+
+@pytest.mark.parametrize("blocked", ["", "xyz", "yXZ"], ids=lambda b: b or "free")
+def test_a_spin_dies_away_with_mass_damping(scene, blocked):
+    body = addBlock(corners((0, 0, 0), UNIT), MasonryMat(density=1800))
+    s = O.bodies[body].state
+    s.blockedDOFs = blocked
+    s.angVel = Vector3(0, 3, 0)
+    if blocked in ("", "xyz"):
+        s.angMom = Vector3(0, 3 * s.inertia[1], 0)
+        s.inertia = Vector3(s.inertia[1], s.inertia[1], s.inertia[1])
+    O.engines = [
+        ForceResetter(),
+        MasonryEnergy(),
+        MasonryIntegrator(damping=0, massDamping=5, gravity=(0, 0, 0)),
+    ]
+    O.dt = 1e-3
+    for _ in range(400):
+        O.step()
+    assert s.angVel[1] == pytest.approx(3 * math.exp(-5 * O.time), rel=1e-3)
+    assert abs(balance()["error"]) < 1e-9
+
+
+def test_driven_bodies_and_prescribed_motions_keep_their_velocity(scene):
+    oscillator(blocked="xyXYZ")
+    engine(MasonryIntegrator).massDamping = 50
+    load = MasonryLoad(body=1, direction=(0, 0, 1), driven=True, velocity=0.001)
+    O.engines = O.engines[:2] + [load] + O.engines[2:]
+    O.dt = 1e-6
+    for _ in range(200):
+        O.step()
+    assert O.bodies[1].state.vel[2] == pytest.approx(0.001, rel=1e-12)
+    O.bodies[0].state.vel = Vector3(0.5, 0, 0)
+    for _ in range(20):
+        O.step()
+    assert O.bodies[0].state.vel[0] == 0.5
+
+
+def test_nodes_of_deformable_units_lose_momentum_at_the_same_rate(scene):
+    body = addBlock(corners((0, 0, 0), UNIT), MasonryMat(density=1800, young=4.8e9))
+    zones = MasonryZones(bodies=[body], damping=0)
+    engines([MasonryJoint()], damping=0, gravity=(0, 0, 0), zones=zones)
+    engine(MasonryIntegrator).massDamping = 200
+    for node in range(*zones.nodesOf(body)):
+        zones.setVelocity(node, Vector3(0, 0, 0.01))
+    O.dt = 1e-6
+    for _ in range(2000):
+        O.step()
+    expected = 0.01 * math.exp(-200 * O.time)
+    assert all(v[2] == pytest.approx(expected, rel=1e-4) for v in zones.velocities)
+    assert abs(balance()["error"]) < 1e-9
+
+
+def swing(fraction, ratio):
+    """Largest displacement after many steps over that of the first one."""
+    omega = oscillator()
+    engine(MasonryJointLoop).stiffnessDamping = 2 * ratio / omega
+    O.dt = fraction * criticalTimeStep()[0]
+    engine(MasonryEnergy).watch = False
+    s = O.bodies[1].state
+    s.vel = Vector3(0, 0, 1e-3)
+    largest = 0
+    for _ in range(600):
+        O.step()
+        largest = max(largest, abs(s.pos[2] - s.refPos[2]))
+    return largest / (1e-3 * O.dt)
+
+
+@pytest.mark.parametrize("ratio", [0.05, 0.5, 2])
+def test_the_limit_of_the_time_step_is_sharp_with_stiffness_damping(scene, ratio):
+    omega = oscillator()
+    engine(MasonryJointLoop).stiffnessDamping = 2 * ratio / omega
+    limit = (math.sqrt(1 + ratio**2) - ratio) * 2 / omega
+    assert criticalTimeStep()[0] == pytest.approx(limit, rel=1e-9)
+    assert swing(0.99, ratio) < 5
+    assert swing(1.01, ratio) > 1e3
+
+
+def test_the_watch_knows_the_limit_with_stiffness_damping(scene):
+    omega = oscillator()
+    O.dt = 0.9 * criticalTimeStep()[0]
+    for _ in range(20):
+        O.step()
+    engine(MasonryJointLoop).stiffnessDamping = 1 / omega
+    with pytest.raises(RuntimeError, match="unstable: the time step is"):
+        for _ in range(20):
+            O.step()
+
+
+@pytest.mark.parametrize("inPlane", [False, True], ids=["space", "plane"])
+def test_an_open_joint_transmits_nothing_and_a_pressed_dry_one_does_not_pull(
+    scene, inPlane
+):
+    dry = MasonryJoint(
+        tensileStrength=0, cohesion=0, friction=0.6, residualFriction=0.6
+    )
+    omega = oscillator(dry, blocked="xyzXYZ", inPlane=inPlane)
+    engine(MasonryJointLoop).stiffnessDamping = 2 / omega
+    O.dt = 1e-6
+    s = O.bodies[1].state
+    s.vel = Vector3(0, 0, -5e-3)
+    for _ in range(200):
+        O.step()
+    made = O.interactions[0, 1]
+    pressed = -O.forces.f(0, True)[2]
+    assert pressed > 0
+    s.vel = Vector3(0.01, 0, 5e-3)
+    for _ in range(400):
+        O.step()
+        x, _, z = O.forces.f(0, True)
+        law = sum(m[0] * a for m, a in zip(made.phys.stress, made.geom.areas))
+        assert z <= 0 and abs(x) <= 0.6 * max(-z, -law) * (1 + 1e-9)
+    assert O.forces.f(0, True) == Vector3.Zero
+    b = balance()
+    assert b["damping"] > 0
+    assert (
+        abs(b["error"]) < 0.05
+    )  # a prescribed velocity that jumps under load, as in test_stability.py
+
+
+def test_an_intact_bond_is_damped_in_tension_and_a_torn_one_is_not(scene):
+    omega = oscillator(MasonryJoint(), blocked="xyzXYZ")
+    engine(MasonryJointLoop).stiffnessDamping = 0.01 / omega
+    O.dt = 1e-6
+    s = O.bodies[1].state
+    phys = O.interactions[0, 1].phys
+    area = UNIT[0] * UNIT[1]
+    s.vel = Vector3(0, 0, 1e-4)
+    O.step()
+    O.step()
+    more = 0.01 / omega * phys.normalStiffness * s.vel[2]
+    law = phys.stress[0][0]
+    assert law > 0
+    assert O.forces.f(0, True)[2] / area == pytest.approx(law + more, rel=1e-6)
+    while max(d[0] for d in phys.damage) < 0.5:
+        O.step()
+    assert O.forces.f(0, True)[2] / area == pytest.approx(phys.stress[0][0], rel=1e-9)
+
+
+@pytest.mark.parametrize("through", ["checkpoint", "file"])
+def test_a_damped_run_goes_on_bit_for_bit_after_saving_and_loading(
+    scene, tmp_path, through
+):
+    path = str(tmp_path / ("scene.yade.gz" if through == "file" else "c"))
+    ends = []
+    for interrupted in (False, True):
+
+        def build():
+            omega = oscillator(blocked="", gravity=(100, 200, -1000))
+            engine(MasonryJointLoop).stiffnessDamping = 0.1 / omega
+            engine(MasonryIntegrator).massDamping = 0.1 * omega
+            O.dt = 0.5 * criticalTimeStep()[0]
+
+        build()
+        for _ in range(150):
+            O.step()
+        if interrupted and through == "file":
+            O.save(path)
+            O.load(path)
+        elif interrupted:
+            saveCheckpoint(path)
+            build()
+            loadCheckpoint(path)
+        for _ in range(150):
+            O.step()
+        ends.append((balance(), [tuple(b.state.pos) for b in O.bodies]))
+    assert ends[0] == ends[1]
+    assert ends[0][0]["damping"] > 0 and abs(ends[0][0]["error"]) < 1e-5

@@ -1,0 +1,762 @@
+"""Walls as plain records: bonds, openings, junctions, and collections of blocks.
+
+What a wall must be is computed here from the corners of its boxes alone: they fill what they should fill, no two
+overlap, and no head joint goes through two courses. The checks of the package itself are tested in test_bricks_checks.
+"""
+
+import math
+import pickle
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as some
+
+from masonry import bricks
+from masonry.bricks import (
+    Block,
+    Bricks,
+    Corner,
+    Lintel,
+    Opening,
+    Room,
+    Tee,
+    Wall,
+    block,
+    stack,
+)
+
+L, T, H = bricks.walls.UNIT
+
+few = settings(max_examples=25, deadline=None)
+units = some.tuples(
+    some.floats(0.1, 1.2), some.floats(0.05, 0.6), some.floats(0.03, 0.5)
+)
+
+
+def boxes(wall):
+    """Lowest and highest corner of every block, which must be a box."""
+    low, high = (np.array([getattr(b, n) for b in wall]) for n in ("low", "high"))
+    for b in wall:
+        assert set(b.corners) == set(product(*zip(b.low, b.high)))
+    return low, high
+
+
+def volume(wall):
+    low, high = boxes(wall)
+    return np.prod(high - low, axis=1).sum()
+
+
+def assertNoOverlap(wall):
+    low, high = boxes(wall)
+    size = (high - low).min()
+    for n in range(len(low)):
+        common = np.minimum(high[n], high[n + 1 :]) - np.maximum(low[n], low[n + 1 :])
+        assert not (common > 1e-9 * size).all(axis=1).any()
+
+
+def touching(wall):
+    """Pairs of boxes that share a face: their numbers, the axis of its normal, its place there and its other extents."""
+    low, high = boxes(wall)
+    near = 1e-9 * (high - low).max()
+    for a in range(len(low)):
+        common = np.minimum(high[a], high) - np.maximum(low[a], low)
+        for axis in range(3):
+            others = [k for k in range(3) if k != axis]
+            face = np.abs(high[a, axis] - low[:, axis]) <= near
+            for b in np.flatnonzero(face & (common[:, others] > near).all(axis=1)):
+                spans = [
+                    (max(low[a, k], low[b, k]), min(high[a, k], high[b, k]))
+                    for k in others
+                ]
+                yield a, int(b), axis, high[a, axis], spans
+
+
+def assertConnected(wall):
+    parent = list(range(len(wall)))
+
+    def root(n):
+        while parent[n] != n:
+            n = parent[n]
+        return n
+
+    for a, b, *_ in touching(wall):
+        parent[root(a)] = root(b)
+    assert len({root(n) for n in range(len(wall))}) == 1
+
+
+def straightJoints(wall, axis=0):
+    """Head joints across an axis that go on in the next course: (course, place)."""
+    other = 1 - axis
+    joints = {}
+    for a, b, normal, place, spans in touching(wall):
+        if normal == axis and wall[a].brick != wall[b].brick:
+            joints.setdefault(wall[a].course, []).append((place, spans[0]))
+    found = []
+    for course, here in joints.items():
+        for place, (low, high) in here:
+            for second, (a, b) in joints.get(course + 1, []):
+                if abs(second - place) < 1e-6 and min(high, b) - max(low, a) > 1e-6:
+                    found.append((course, place))
+    return found
+
+
+# -- running bond -----------------------------------------------------------------------------------------------------
+
+
+def runningBond(courses, halfUnits, unit, halves):
+    """A running bond by its definition: brick, course and corners of every block."""
+    brick = -1
+    for course in range(courses):
+        joints = [c for c in range(1, halfUnits) if c % 2 == course % 2] + [halfUnits]
+        for first, beyond in zip([0, *joints], joints):
+            brick += 1
+            ends = range(first, beyond + 1) if halves else (first, beyond)
+            for a, b in zip(ends, ends[1:]):
+                low = (a * (unit[0] / 2), 0.0, course * unit[2])
+                high = (b * (unit[0] / 2), unit[1], (course + 1) * unit[2])
+                yield brick, course, bricks.boxCorners(low, high)
+
+
+@few
+@given(some.integers(1, 9), some.integers(1, 8), units, some.booleans())
+def test_running_bond_is_its_definition_to_the_last_bit(courses, n, unit, halves):
+    wall = Wall(n * unit[0], courses * unit[2], unit, halves=halves)
+    found = [(b.brick, b.course, b.corners) for b in wall]
+    assert found == list(runningBond(courses, 2 * n, unit, halves))
+    assert {(b.part, b.kind) for b in wall} == {("wall", "brick")}
+
+
+def test_the_walls_of_the_paper():
+    for halfUnits, courses in ((10, 34), (24, 34), (8, 20)):
+        found = [b.corners for b in Wall(halfUnits * L / 2, courses * H)]
+        assert found == [c for _, _, c in runningBond(courses, halfUnits, (L, T, H), True)]  # fmt: skip
+    squat = Wall(3.96, 2.754)
+    assert len(squat) == 1224 and len({b.brick for b in squat}) == 17 * 18 + 17 * 19
+    assert squat.high == pytest.approx((3.96, T, 2.754))
+
+
+@few
+@given(some.integers(1, 6), some.integers(1, 5), units)
+def test_whole_bricks_are_those_that_were_never_halved(courses, n, unit):
+    size = n * unit[0], courses * unit[2], unit
+    assert Wall(*size).whole() == Wall(*size, halves=False)
+    assert Wall(*size, halves=False).whole() == Wall(*size, halves=False)
+
+
+def test_pieces_of_a_cut_brick_are_joined_if_they_are_convex_together():
+    arch = bricks.Arch(thickness=0.15, depth=0.3, stones=7, radius=0.925, angle=157.5)
+    cut = arch.cut((0, 0, 0.5), (0.2, 0, 1))
+    assert len(cut) > len(arch)
+    whole = cut.whole()
+    assert len(whole) == len(arch) and whole.volume == pytest.approx(arch.volume)
+    apart = Bricks([b for n, b in enumerate(Wall(0.66, 0.081)) if n in (0, 1)])
+    apart = Bricks([apart[0], replace(apart[1], corners=Wall(0.66, 0.081)[3].corners)])
+    with pytest.raises(ValueError, match="the 2 pieces of brick 0 make up no convex"):
+        apart.whole()
+
+
+def test_free_faces_are_what_no_joint_covers():
+    wall = Wall(0.88, 0.81, halves=False)
+    front = wall.freeFaces((0, -1, 0))
+    assert len(front) == len(wall)
+    assert sum(area for _, _, area, _ in front) == pytest.approx(0.88 * 0.81)
+    for n, normal, area, middle in front:
+        assert normal == pytest.approx((0, -1, 0)) and middle[1] == pytest.approx(0)
+    # the end of the wall alone, and of a corner what the return leaves free
+    side = wall.freeFaces((1, 0, 0))
+    assert sum(area for _, _, area, _ in side) == pytest.approx(T * 0.81)
+    corner = Corner(0.88, 0.66, 0.81, halves=False)
+    inner = corner.freeFaces((0, 1, 0))
+    assert sum(f[2] for f in inner) == pytest.approx(
+        0.88 * 0.81
+    )  # and the return's end
+    slope = wall.turned(30, "z").freeFaces((0, -1, 0))
+    assert len(slope) == len(wall)  # within 45 degrees
+    big, low = block((0, 0, 0), (1, 1, 1)), block((1, 0, 0), (2, 1, 0.4))
+    (face,) = [f for f in (big + low).freeFaces((1, 0, 0)) if f[0] == 0]
+    assert face[2] == pytest.approx(0.6) and face[3] == pytest.approx((1, 0.5, 0.7))
+    with pytest.raises(ValueError, match="direction must not be of length 0"):
+        wall.freeFaces((0, 0, 0))
+
+
+# -- bonds ------------------------------------------------------------------------------------------------------------
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    some.sampled_from(["running", "header", "english", "flemish"]),
+    some.integers(2, 26),
+    some.integers(1, 6),
+    some.booleans(),
+)
+def test_a_bond_fills_the_wall_and_has_no_straight_head_joint(
+    bond, halfUnits, courses, halves
+):
+    assume(bond != "header" or halfUnits >= 3)
+    wythes = 1 if bond == "running" else 2
+    wall = Wall(halfUnits * L / 2, courses * H, bond=bond, wythes=wythes, halves=halves)
+    thickness = T if wythes == 1 else L
+    assert volume(wall) == pytest.approx(
+        halfUnits * L / 2 * courses * H * thickness, rel=1e-12
+    )
+    assertNoOverlap(wall)
+    assert not straightJoints(wall)
+    if (
+        courses > 1 or bond != "english"
+    ):  # one course of stretchers is two rows, which touch
+        assertConnected(wall)
+    assert wall.low == (0, 0, 0)
+    assert wall.high == pytest.approx((halfUnits * L / 2, thickness, courses * H))
+    assert {b.brick for b in wall} == set(range(1 + max(b.brick for b in wall)))
+    least = 0.25 * L if wythes == 2 else 0.5 * L
+    low, high = boxes(wall)
+    assert (high - low)[:, 0].min() >= least * (1 - 1e-9)
+    assert wall.problems() == []
+
+
+def test_straight_joints_are_found_in_a_stack_bond():
+    """Holds the test above against a wall that has them: two head joints, in all pairs of three courses."""
+    wall = Wall(3 * L, 3 * H, bond="stack")
+    assert sorted(straightJoints(wall)) == [
+        (c, pytest.approx(x)) for c in (0, 1) for x in (L, 2 * L)
+    ]
+
+
+def test_english_bond_lays_stretchers_and_headers_in_turn():
+    wall = Wall(4 * L, 2 * H, bond="english", wythes=2, halves=False)
+    sizes = lambda course: [
+        (round((b.high[0] - b.low[0]) / L * 4), round((b.high[1] - b.low[1]) / L, 3))
+        for b in wall
+        if b.course == course
+    ]
+    assert sizes(0) == [(4, 0.5)] * 8
+    closer, header = (1, 1.0), (2, 1.0)
+    assert sizes(1) == [header, closer, *[header] * 5, closer, header]
+
+
+def test_flemish_bond_has_headers_over_the_middle_of_stretchers():
+    wall = Wall(5.5 * L, 4 * H, bond="flemish", wythes=2, halves=False)
+    ends = lambda course, front: [
+        (round(b.low[0] / L * 4), round(b.high[0] / L * 4))
+        for b in wall
+        if b.course == course and b.low[1] == 0 and front(b.high[0] - b.low[0])
+    ]
+    stretchers, headers = (lambda x: x > 0.9 * L), (lambda x: 0.4 < x / L < 0.6)
+    assert ends(0, headers) == [(4, 6), (10, 12), (16, 18)]
+    assert ends(1, stretchers) == [(3, 7), (9, 13), (15, 19)]
+    middles = {(a + b) / 2 for a, b in ends(1, stretchers)}
+    assert {(a + b) / 2 for a, b in ends(0, headers)} == middles
+    through = [b for b in wall if 0.2 < (b.high[0] - b.low[0]) / L < 0.6]
+    assert all(b.low[1] == 0 and b.high[1] == L for b in through)
+
+
+def test_halves_of_headers_and_stretchers_share_the_number_of_their_brick():
+    wall = Wall(4 * L, 2 * H, bond="english", wythes=2)
+    pieces = {}
+    for b in wall:
+        pieces.setdefault(b.brick, []).append(b)
+    stretchers = [p for p in pieces.values() if p[0].course == 0]
+    assert all(len(p) == 2 and p[0].high[0] == p[1].low[0] for p in stretchers)
+    headers = [p for p in pieces.values() if p[0].course == 1 and len(p) == 2]
+    assert len(headers) == 7
+    assert all(p[0].high[1] == p[1].low[1] == L / 2 for p in headers)
+
+
+def test_leaves_with_a_collar_meet_in_the_middle_of_it():
+    wall = Wall(2 * L, 2 * H, wythes=3, collar=0.02)
+    ys = sorted({y for b in wall for y in (b.low[1], b.high[1])})
+    assert ys == pytest.approx([0, T + 0.01, 2 * T + 0.03, 3 * T + 0.04])
+    assert {b.part for b in wall} == {f"wall leaf {n}" for n in (1, 2, 3)}
+    assert not straightJoints(wall)
+    assertConnected(wall)
+
+
+def test_courses_of_different_height():
+    heights = [0.1, 0.2, 0.05]
+    wall = Wall(2 * L, courses=heights)
+    assert volume(wall) == pytest.approx(2 * L * T * 0.35)
+    assert sorted({round(b.high[2], 9) for b in wall}) == [0.1, 0.3, 0.35]
+    with pytest.raises(ValueError, match="height 0.4 m differs from the sum .* 0.35 m"):
+        Wall(2 * L, 0.4, courses=heights)
+
+
+# -- openings ---------------------------------------------------------------------------------------------------------
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    some.integers(1, 30),
+    some.integers(0, 8),
+    some.integers(1, 30),
+    some.integers(1, 8),
+    some.sampled_from(["running", "english", "flemish", "header"]),
+    some.booleans(),
+)
+def test_an_opening_takes_its_volume_and_nothing_else(
+    x, z, width, height, bond, lintel
+):
+    n, courses, q = 32, 12, L / 4
+    # Something of the wall stays beside and above the opening, so it is never cut in two.
+    assume(x + width < n and z + height + (2 if lintel else 1) <= courses)
+    bearing = min(2, x, n - x - width)
+    over = Lintel(bearing * q, 2 * H) if lintel else None
+    opening = Opening(x * q, z * H, width * q, height * H, over)
+    wythes = 1 if bond == "running" else 2
+    wall = Wall(n * q, courses * H, bond=bond, wythes=wythes, openings=[opening])
+    thickness = T if wythes == 1 else L
+    full = n * q * courses * H * thickness
+    assert volume(wall) == pytest.approx(full - width * q * height * H * thickness)
+    assertNoOverlap(wall)
+    assertConnected(wall)
+    low, high = boxes(wall)
+    inside = [(x + 0.5 * width) * q, (z + 0.5 * height) * H]
+    held = (low[:, [0, 2]] < inside) & (high[:, [0, 2]] > inside)
+    assert not held.all(axis=1).any()
+    over = [b for b in wall if b.kind == "lintel"]
+    assert len(over) == lintel
+    if lintel:
+        assert (
+            over[0].part == "wall" and sum(b.brick == over[0].brick for b in wall) == 1
+        )
+        assert over[0].low == pytest.approx(((x - bearing) * q, 0, (z + height) * H))
+        assert over[0].high == pytest.approx(
+            ((x + width + bearing) * q, thickness, (z + height + 2) * H)
+        )
+    assert not [p for p in wall.problems() if "odd size" not in p]
+
+
+@settings(max_examples=60, deadline=None)
+@given(*[some.floats(0.0, 2.5) for _ in range(4)])
+def test_any_opening_is_cut_out_or_refused(x, z, width, height):
+    try:
+        wall = Wall(10 * L, 20 * H, openings=[Opening(x, z, width, height)])
+    except ValueError as error:
+        assert str(error).startswith("wall: ")
+        return
+    assert volume(wall) == pytest.approx(10 * L * T * 20 * H - width * T * height)
+    assertNoOverlap(wall)
+    assertConnected(wall)
+    low, high = boxes(wall)
+    assert (high - low)[:, 0].min() >= L / 4 * (1 - 1e-5)
+    assert (high - low)[:, 2].min() >= H / 4 * (1 - 1e-5)
+    assert not [p for p in wall.problems() if "odd size" not in p]
+
+
+def test_a_brick_that_an_opening_leaves_in_an_l_is_pieces_of_one_brick():
+    """The opening's corner lies in the whole brick from 2 L to 3 L of course 2, at a quarter of it and half its height."""
+    opening = Opening(2.25 * L, 2.5 * H, 1.5 * L, 3 * H)
+    wall = Wall(6 * L, 8 * H, openings=[opening], halves=False)
+    pieces = [b for b in wall if b.course == 2 and b.high[0] <= 3.0001 * L < 3.5 * L]
+    pieces = [b for b in pieces if b.low[0] >= 1.999 * L]
+    assert len(pieces) == 2 and pieces[0].brick == pieces[1].brick
+    assert sum(np.prod(np.subtract(b.high, b.low)) for b in pieces) == pytest.approx(
+        (L - 0.75 * L * 0.5) * H * T
+    )
+
+
+@pytest.mark.parametrize(
+    "opening, said",
+    [
+        (
+            Opening(-0.1, 0.5, 0.5, 0.5),
+            "opening 0: x .* must be a number 0 or more, got -0.1",
+        ),
+        (Opening(0.5, 0.5, math.nan, 0.5), "opening 0: width .* got nan"),
+        (Opening(0.5, 0.5, 0.0, 0.5), "opening 0: width .* above 0, got 0"),
+        (Opening(0.5, 0.5, "1", 0.5), "opening 0: width .* got '1'"),
+        (
+            Opening(2, 0.5, 0.5, 0.5),
+            "opening 0 reaches from x = 2 to 2.5 m, off the wall",
+        ),
+        (
+            Opening(1, 1, 0.5, 0.7),
+            "opening 0 reaches up to 1.7 m, off the wall of 1.62 m",
+        ),
+        (Opening(0, 0.405, 2.2, 0.405), "as wide as the wall"),
+        (Opening(0.55, 0, 0.55, 1.62), "no joint with the rest"),
+        (
+            Opening(0.02, 0.405, 0.5, 0.405),
+            "a sliver of brick .* 0.02 m long, at .* 0.055 m",
+        ),
+        (
+            Opening(0.55, 0.41, 0.55, 0.395),
+            "a sliver of brick .* 0.005 m high, at .* 0.0203 m",
+        ),
+        (
+            Opening(0.11, 0.405, 0.55, 0.405, Lintel(0.22, 0.081)),
+            "lintel bears from x = -0.11 to 0.88 m, off the wall",
+        ),
+        (
+            Opening(0.55, 0.405, 0.55, 1.134, Lintel(0.22, 0.162)),
+            "lintel reaches up to 1.701 m, off the wall",
+        ),
+        (
+            Opening(0.55, 0.405, 0.55, 0.405, Lintel(-1, 0.162)),
+            "bearing of its lintel .* got -1",
+        ),
+        (
+            Opening(0.55, 0.405, 0.55, 0.405, 0.1),
+            "lintel must be a Lintel or None, got 0.1",
+        ),
+        ((0.55, 0.405, 0.55, 0.405), "opening 0 must be an Opening"),
+    ],
+)
+def test_an_impossible_opening_is_refused(opening, said):
+    with pytest.raises(ValueError, match=said):
+        Wall(2.2, 1.62, openings=[opening])
+
+
+def test_openings_and_lintels_may_not_overlap():
+    first = Opening(0.22, 0.405, 0.44, 0.405, Lintel(0.11, 0.081))
+    for second, said in (
+        (Opening(0.55, 0.405, 0.44, 0.405), "opening 0 and opening 1 overlap"),
+        (
+            Opening(0.66, 0.81, 0.44, 0.405),
+            "opening 1 and the lintel of opening 0 overlap",
+        ),
+        (
+            Opening(0.88, 0.405, 0.44, 0.405, Lintel(0.22, 0.081)),
+            "the lintel of opening 0 and the lintel of opening 1 overlap",
+        ),
+    ):
+        with pytest.raises(ValueError, match=said):
+            Wall(2.2, 1.62, openings=[first, second])
+
+
+# -- junctions --------------------------------------------------------------------------------------------------------
+
+junctionUnits = some.sampled_from(
+    [
+        (L, T, H),
+        (0.25, 0.125, 0.065),
+        (0.3, 0.1, 0.1),
+        (0.4, 0.2, 0.2),
+        (0.2, 0.12, 0.1),
+    ]
+)
+
+
+@few
+@given(
+    junctionUnits,
+    some.integers(3, 9),
+    some.integers(3, 9),
+    some.integers(2, 5),
+    some.booleans(),
+)
+def test_a_corner_interlocks(unit, n, m, courses, halves):
+    l, t, h = unit
+    wall = Corner(n * l / 2, m * l / 2, courses * h, unit, halves=halves)
+    area = n * l / 2 * t + (m * l / 2 - t) * t
+    assertFits(wall, area * courses * h)
+    # The square at the corner belongs to the wall in even courses, to the return in odd ones.
+    for b in wall:
+        if b.low[0] < 1e-9 and b.low[1] < 1e-9:
+            assert b.part == ("return" if b.course % 2 else "wall")
+
+
+@few
+@given(
+    junctionUnits,
+    some.integers(4, 12),
+    some.integers(3, 9),
+    some.integers(2, 5),
+    some.data(),
+)
+def test_a_tee_interlocks(unit, n, m, courses, data):
+    l, t, h = unit
+    middle = data.draw(some.integers(1, max(1, (n - 3) // 2)))
+    assume((middle + 2) * 2 <= n)
+    wall = Tee(n * l / 2, m * l / 2, (middle + 0.5) * l, courses * h, unit)
+    area = n * l / 2 * t + (m * l / 2 - t) * t
+    assertFits(wall, area * courses * h)
+
+
+@few
+@given(
+    junctionUnits,
+    some.integers(3, 6),
+    some.integers(3, 6),
+    some.integers(2, 5),
+    some.booleans(),
+)
+def test_a_room_interlocks(unit, n, m, courses, halves):
+    l, t, h = unit
+    room = Room(n * l, m * l, courses * h, unit, halves=halves)
+    area = n * l * m * l - (n * l - 2 * t) * (m * l - 2 * t)
+    assertFits(room, area * courses * h)
+    assert {b.part for b in room} == {"front", "right", "back", "left"}
+
+
+def assertFits(wall, filled):
+    assert volume(wall) == pytest.approx(filled, rel=1e-9)
+    assertNoOverlap(wall)
+    assertConnected(wall)
+    assert not straightJoints(wall, 0) and not straightJoints(wall, 1)
+    assert wall.problems() == []
+
+
+def test_walls_that_meet_have_openings_of_their_own():
+    hole = Opening(0.66, 0.405, 0.44, 0.405, Lintel(0.22, 0.162))
+    corner = Corner(2.2, 2.2, 1.62, openings=[hole], openings2=[hole])
+    full = volume(Corner(2.2, 2.2, 1.62))
+    assert volume(corner) == pytest.approx(full - 2 * 0.44 * 0.405 * T)
+    lintels = [b for b in corner if b.kind == "lintel"]
+    assert [b.part for b in lintels] == ["wall", "return"]
+    assert lintels[1].low == pytest.approx((0, 0.44, 0.81))
+    assertNoOverlap(corner)
+    with pytest.raises(ValueError, match="return: opening 0 .* from 0.102 to 2.2 m"):
+        Corner(2.2, 2.2, 1.62, openings2=[Opening(0.055, 0.405, 0.44, 0.405)])
+    with pytest.raises(ValueError, match="opening 0 reaches into the junction"):
+        Tee(2.2, 1.65, 1.21, 1.62, openings=[Opening(0.99, 0.405, 0.44, 0.405)])
+    room = Room(2.2, 2.2, 1.62, back=[hole])
+    assert volume(room) == pytest.approx(
+        volume(Room(2.2, 2.2, 1.62)) - 0.44 * 0.405 * T
+    )
+
+
+def test_a_stem_in_the_wrong_place_is_told_the_nearest_right_one():
+    with pytest.raises(ValueError, match="at 1.1 m: .* nearest: (0.99|1.21) m"):
+        Tee(2.2, 1.65, 1.1, 1.62)
+
+
+# -- what is refused --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "arguments, said",
+    [
+        (
+            dict(length=3.0),
+            r"length 3 m is 13.6\d* units .* nearest: 2.97 m \(13.5\) or 3.08 m \(14\)",
+        ),
+        (
+            dict(height=1.0),
+            r"height 1 m is 12.3\d* courses .* nearest: 0.972 m \(12\) or 1.053 m \(13\)",
+        ),
+        (dict(length=2200), "bricks are more than 100000: are all lengths in m"),
+        (dict(length=1e300), "is it in m"),
+        (dict(length=0.11), "nearest: 0.22 m"),
+        (dict(length=-2.2), "length .* above 0, got -2.2"),
+        (dict(length="2.2"), "length .* got '2.2'"),
+        (dict(length=True), "length .* got True"),
+        (dict(height=math.inf), "height .* got inf"),
+        (dict(height=None), "height .* or courses must be given"),
+        (
+            dict(unit=(0.22, 0.102)),
+            r"unit must be a length, thickness and height above 0 m, got \(0.22, 0.102\)",
+        ),
+        (dict(unit=(0.22, -0.102, 0.081)), "unit must be"),
+        (dict(unit=7), "unit must be"),
+        (dict(bond="dutch"), "bond must be one of running, .* got 'dutch'"),
+        (dict(bond=["running"]), "bond must be one of"),
+        (dict(wythes=0), "wythes must be a whole number of at least 1, got 0"),
+        (dict(wythes=1.5), "wythes must be a whole number"),
+        (dict(bond="english"), "english bond .* needs wythes=2, got 1"),
+        (
+            dict(bond="english", wythes=2, collar=0.03),
+            "collar of 0.03 m; collar 0.016 m fits",
+        ),
+        (
+            dict(bond="english", wythes=2, unit=(0.22, 0.12, 0.081)),
+            "a thickness of 0.11 m fits",
+        ),
+        (dict(bond="stack", length=2.31), "it must be whole units"),
+        (dict(wythes=2, collar=-1), "collar .* got -1"),
+        (dict(openings=3), "openings must be a list of Opening, got 3"),
+        (dict(courses=[]), "courses must be a list of at least one"),
+        (dict(courses=[0.1, math.nan]), "course 1 .* got nan"),
+        (dict(part=3), "part must be a text, got 3"),
+        (
+            dict(length=3.0, height=1.0, bond="x"),
+            "bond must.*; length 3 m.*; height 1 m",
+        ),
+    ],
+)
+def test_an_impossible_wall_is_refused_with_all_problems(arguments, said):
+    with pytest.raises(ValueError, match=said):
+        Wall(**{**dict(length=2.2, height=1.62), **arguments})
+
+
+anything = some.one_of(
+    some.none(),
+    some.booleans(),
+    some.integers(-3, 5),
+    some.floats(),
+    some.text(max_size=3),
+    some.tuples(some.floats(0, 2), some.floats(0, 2), some.floats(0, 2)),
+)
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    some.dictionaries(
+        some.sampled_from(
+            "length height unit bond wythes openings courses collar part".split()
+        ),
+        anything,
+        max_size=3,
+    )
+)
+def test_whatever_is_given_there_is_a_wall_or_a_value_error(arguments):
+    try:
+        wall = Wall(**{**dict(length=0.66, height=0.243), **arguments})
+    except ValueError as error:
+        assert str(error)
+        return
+    assert len(wall) and wall.volume > 0
+
+
+# -- collections ------------------------------------------------------------------------------------------------------
+
+
+def test_a_collection_is_an_immutable_sequence():
+    wall = Wall(0.66, 0.243)
+    assert len(wall) == len(list(wall)) and wall[3] is list(wall)[3]
+    assert isinstance(wall[2:5], Bricks) and len(wall[2:5]) == 3
+    assert wall == Wall(0.66, 0.243) and hash(wall) == hash(Wall(0.66, 0.243))
+    assert wall != wall.moved(dx=1)
+    assert pickle.loads(pickle.dumps(wall)) == wall
+    assert (wall.length, wall.height) == pytest.approx((0.66, 0.243))
+    with pytest.raises(AttributeError):
+        wall[0].brick = 7
+    with pytest.raises(ValueError, match="no blocks, so no size"):
+        Bricks().height
+
+
+@few
+@given(some.lists(some.integers(1, 4), min_size=2, max_size=5))
+def test_a_sum_keeps_pieces_together_and_numbers_unique(lengths):
+    walls = [Wall(n * L, 2 * H).moved(dy=k) for k, n in enumerate(lengths)]
+    total = sum(walls)
+    assert len(total) == sum(map(len, walls))
+    assert len({b.brick for b in total}) == sum(
+        len({b.brick for b in w}) for w in walls
+    )
+    start = 0
+    for wall in walls:
+        here = [b.brick for b in total[start : start + len(wall)]]
+        own = [b.brick for b in wall]
+        assert [a == b for a in own for b in own] == [
+            a == b for a in here for b in here
+        ]
+        start += len(wall)
+
+
+def test_four_quarter_turns_are_exact():
+    wall = Wall(0.66, 0.243)
+    turned = wall.turned(90)
+    assert turned[0].high == (-0.0, 0.11, 0.081)
+    assert turned.turned(90).turned(90).turned(90) == wall
+    assert wall.turned(360, "x") == wall == wall.turned(-720, "y")
+    about = wall.turned(180, about=(0.33, 0.051, 0))
+    assert about.low == pytest.approx(wall.low) and about.high == pytest.approx(
+        wall.high
+    )
+
+
+@few
+@given(
+    some.floats(-400, 400),
+    some.sampled_from("xyz"),
+    some.tuples(*[some.floats(-5, 5)] * 3),
+)
+def test_a_moved_and_turned_wall_is_the_same_wall(degrees, axis, way):
+    wall = Wall(0.66, 0.243)
+    moved = wall.turned(degrees, axis).moved(*way)
+    assert moved.volume == pytest.approx(wall.volume, rel=1e-9)
+    assert [j[:2] for j in moved.joints()] == [j[:2] for j in wall.joints()]
+    assert sum(j.area for j in moved.joints()) == pytest.approx(
+        sum(j.area for j in wall.joints())
+    )
+    assert moved.problems() == []
+
+
+def test_choosing_blocks():
+    wall = Wall(2 * L, 3 * H)
+    assert {b.course for b in wall.top()} == {2} and len(wall.top()) == 4
+    assert {b.course for b in wall.bottom()} == {0} and len(wall.bottom()) == 4
+    left = wall.within((0, 0, 0), (L, T, math.inf))
+    assert {b.high[0] <= L * 1.001 for b in left} == {True} and len(left) == 6
+    assert len(wall.where(lambda b: b.course == 1)) == 4
+    assert {b.part for b in wall.named("pier")} == {"pier"}
+    assert len(wall.turned(5, "y").top()) == 0  # no level face
+
+
+def test_a_cut_keeps_the_volume_and_the_brick():
+    wall = Wall(2 * L, 2 * H, halves=False)
+    cut = wall.cut((0.1, 0, 0), (1, 0, 0))
+    assert cut.volume == pytest.approx(wall.volume, rel=1e-12)
+    assert len(cut) == len(wall) + 2
+    assert {b.brick for b in cut} == {b.brick for b in wall}
+    own = wall.cut((0.1, 0, 0), (1, 0, 0), own=True)
+    assert len({b.brick for b in own}) == len({b.brick for b in wall}) + 2
+    assert wall.cut((2 * L, 0, 0), (1, 0, 0)) == wall  # the plane touches the end
+
+
+@few
+@given(
+    some.tuples(*[some.integers(-9, 9)] * 3).filter(any),
+    some.floats(0.1, 0.9),
+    some.booleans(),
+)
+def test_cuts_by_any_planes_leave_convex_pieces_that_fill_the_wall(normal, share, own):
+    wall = Wall(2 * L, 3 * H)
+    point = tuple(share * x for x in wall.high)
+    cut = wall.cut(point, normal, own).cut((0.2, 0.05, 0.1), (0.3, 1, 0.2), own)
+    bad = [p for p in cut.problems() if "sliver" not in p and "odd size" not in p]
+    assert bad == []
+    assert cut.volume == pytest.approx(wall.volume, rel=1e-6)
+
+
+def test_what_cannot_be_done_with_a_collection_is_refused():
+    wall = Wall(0.66, 0.243)
+    for call, said in (
+        (lambda: wall.turned(math.nan), "angle .* finite number, got nan"),
+        (lambda: wall.turned(10, "q"), 'axis must be "x", "y" or "z"'),
+        (lambda: wall.moved(math.inf), r"way \[m\] must be three finite numbers"),
+        (lambda: wall.cut((0, 0, 0), (0, 0, 0)), "normal must not be of length 0"),
+        (lambda: wall.within((1, 0, 0), (0, 1, 1)), "must lie below"),
+        (lambda: wall.where(3), "needs a function"),
+        (lambda: Bricks([3]), "item 0 is 3, not a Block"),
+        (lambda: Block(((0, 0, 0),) * 3, 0), "at least 4 points"),
+        (
+            lambda: Block(((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, math.nan)), 0),
+            "corner 3 .* finite",
+        ),
+        (
+            lambda: Block(((0, 0), (1, 0), (0, 1), (0, 0)), 0),
+            "corner 0 must be three numbers",
+        ),
+        (
+            lambda: Block(((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)), 1.5),
+            "brick must be a whole number",
+        ),
+        (lambda: stack(0, (1, 1, 1)), "count must be a whole number of at least 1"),
+        (lambda: stack(2, (1, 1)), "size must be"),
+        (lambda: block((0, 0, 0), (1, 0, 1)), "must lie below"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            call()
+
+
+def test_stacks_and_blocks():
+    tower = stack(5, (0.4, 0.3, 0.2))
+    assert tower.high == pytest.approx((0.4, 0.3, 1.0))
+    assert [b.course for b in tower] == list(range(5)) and len(tower.joints()) == 4
+    assert block((0, 0, -0.2), (1, 1, 0)).volume == pytest.approx(0.2)
+
+
+def test_a_summary_counts():
+    wall = Wall(2 * L, 3 * H) + block((0, 0, -0.2), (1, 1, 0))
+    told = bricks.summary(wall)
+    assert told["parts"] == {"wall": 12, "block": 1} and told["kinds"] == {
+        "brick": 12,
+        "block": 1,
+    }
+    assert told["bricks"] == 8 and told["courses"] == 3
+    assert told["volume_m3"] == pytest.approx(2 * L * T * 3 * H + 0.2)
+    assert bricks.summary(Bricks())["blocks"] == 0

@@ -1,0 +1,259 @@
+"""What the checks of a set of blocks find: gaps, overlaps, slivers, loose parts and joints of odd size."""
+
+import math
+import re
+import time
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as some
+
+from masonry.bricks import Arch, Block, Bricks, Dome, Wall, block, stack
+from masonry.bricks.geometry import Solids, hull
+
+few = settings(max_examples=40, deadline=None)
+CUBE = ((0, 0, 0), (1, 1, 1))
+
+
+def beside(dx, dy=0.0, dz=0.0):
+    """Two cubes of 1 m, the second moved by 1 m + dx along x."""
+    return block(*CUBE) + block(*CUBE).moved(1 + dx, dy, dz)
+
+
+# -- faces ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_cube_has_six_faces_that_run_counter_clockwise_outside():
+    corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
+    faces = hull(corners)
+    assert sorted(map(len, faces)) == [4] * 6
+    for face in faces:
+        a, b, c = corners[list(face[:3])]
+        outward = np.cross(b - a, c - b)
+        assert np.dot(outward, a - 0.5) > 0
+
+
+@few
+@given(some.integers(4, 12), some.integers(0, 10**6))
+def test_volume_and_centroid_of_any_convex_solid(count, seed):
+    """Against the sum of tetrahedra of Qhull's own triangles."""
+    from scipy.spatial import ConvexHull
+
+    points = np.random.default_rng(seed).normal(size=(count, 3))
+    points = points / np.linalg.norm(points, axis=1)[:, None]  # all are corners
+    try:
+        solids = Solids([points])
+        assume(not solids.problems)
+    except ValueError:
+        assume(False)
+    volume, moment = 0.0, np.zeros(3)
+    found = ConvexHull(points)
+    for triangle, plane in zip(found.simplices, found.equations):
+        a, b, c = points[triangle]
+        six = abs(np.dot(a, np.cross(b, c))) * np.sign(-plane[3])
+        volume += six / 6
+        moment += six / 6 * (a + b + c) / 4
+    assert solids.volumes()[0] == pytest.approx(volume, rel=1e-6)
+    assert solids.middles()[0] == pytest.approx(moment / volume, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "corners, said",
+    [
+        (((0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)), "lie in one plane: no volume"),
+        (((0, 0, 0),) * 4, "all its corners are one point"),
+        (
+            ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0.1, 0.1, 0.1)),
+            r"corner 4 at \(0.1, 0.1, 0.1\) m is no corner of the convex solid",
+        ),
+        (
+            ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 0)),
+            "corner 4 .* is given twice",
+        ),
+    ],
+)
+def test_a_block_that_is_no_convex_solid_is_told(corners, said):
+    blocks = Bricks([Block(corners, 0, "rubble")]) + block((5, 5, 5), (6, 6, 6))
+    told = blocks.problems()
+    assert (
+        re.search(r"block 0 of brick 0 \(rubble\): .*" + said, told[0])
+        and len(told) == 1
+    )
+    with pytest.raises(ValueError, match=said):
+        blocks.cut((0, 0, 0.2), (0, 0, 1))
+
+
+# -- pairs ------------------------------------------------------------------------------------------------------------
+
+
+def test_blocks_that_fit_have_one_joint_and_no_problem():
+    pair = beside(0, 0.25, 0.5)
+    (joint,) = pair.joints()
+    assert (joint.first, joint.second) == (0, 1) and joint.normal == (1, 0, 0)
+    assert joint.area == pytest.approx(0.75 * 0.5)
+    assert joint.middle == pytest.approx((1, 0.625, 0.75))
+    assert pair.problems() == []
+
+
+@few
+@given(some.floats(3e-4, 0.2), some.floats(-400, 400), some.sampled_from("xyz"))
+def test_a_gap_and_an_overlap_are_told_with_bricks_depth_and_place(depth, turn, axis):
+    for sign, word in ((1, "gap of up to"), (-1, "overlap by")):
+        pair = beside(sign * depth).turned(turn, axis)
+        told = [p for p in pair.problems() if word in p]
+        assert len(told) == 1 and told[0].startswith(
+            "block 0 of brick 0 and block 1 of brick 1"
+        )
+        size = float(re.search(word + r" (\S+) m", told[0])[1])
+        assert size == pytest.approx(depth, rel=0.02)
+        place = [float(x) for x in re.search(r"\((.*)\) m$", told[0])[1].split(",")]
+        right = block((1, 0.5, 0.5), (1.1, 0.6, 0.6)).turned(turn, axis)[0].corners[0]
+        assert math.dist(place, right) < (0.51 * depth + 0.002 if sign > 0 else 1.5)
+        assert not pair.joints()
+
+
+def test_round_off_is_neither_gap_nor_overlap():
+    for dx in (1e-5, -1e-5):
+        assert beside(dx).problems() == [] and len(beside(dx).joints()) == 1
+
+
+def test_a_gap_that_another_block_fills_is_none():
+    three = (
+        block(*CUBE) + block((1, 0, 0), (1.2, 1, 1)) + block((1.2, 0, 0), (2.2, 1, 1))
+    )
+    assert not [p for p in three.problems() if "gap" in p]
+    assert [p for p in (three[:1] + three[2:]).problems() if "gap of up to 0.2 m" in p]
+
+
+@few
+@given(some.integers(0, 10**6))
+def test_blocks_at_any_angle_overlap_as_sampled_points_say(seed):
+    """Two boxes at random. Points are sampled in one; the checks tell an overlap if any lies clearly in the other, and
+    tell none if a plane (one of many directions) parts them."""
+    random = np.random.default_rng(seed)
+    one = block((0, 0, 0), tuple(random.uniform(0.3, 1, 3)))
+    two = block((0, 0, 0), tuple(random.uniform(0.3, 1, 3)))
+    for axis in "xyz":
+        two = two.turned(float(random.uniform(0, 360)), axis)
+    two = two.moved(*random.uniform(-1, 1, 3))
+    told = any("overlap" in p for p in (one + two).problems())
+    low, high = np.array(one.low), np.array(one.high)
+    corners = np.array(
+        two[0].corners
+    )  # a corner and its three neighbours: the axes of a turned box
+    origin, axes = corners[0], corners[[4, 2, 1]] - corners[0]
+    inside = random.uniform(size=(20000, 3)) @ axes + origin
+    margin = 0.01
+    if ((inside > low + margin) & (inside < high - margin)).all(axis=1).any():
+        assert told
+    directions = random.normal(size=(3000, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    a, b = (np.array(x[0].corners) @ directions.T for x in (one, two))
+    if (
+        np.maximum(a.min(axis=0) - b.max(axis=0), b.min(axis=0) - a.max(axis=0)) > 0
+    ).any():
+        assert not told
+
+
+def test_edges_that_cross_are_parted_although_no_face_parts_them():
+    """Two wedges, edge above edge at right angles: only the product of the edges is an axis that separates them."""
+    wedge = Bricks(
+        [
+            Block(
+                (
+                    (-1, 0, 0),
+                    (1, 0, 0),
+                    (-1, -1, -1),
+                    (1, -1, -1),
+                    (-1, 1, -1),
+                    (1, 1, -1),
+                ),
+                0,
+            )
+        ]
+    )
+    other = wedge.turned(180, "x").turned(90, "z")
+    assert not any("overlap" in p for p in (wedge + other.moved(dz=0.01)).problems())
+    assert any(
+        "overlap by 0.01 m" in p for p in (wedge + other.moved(dz=-0.01)).problems()
+    )
+
+
+# -- sets of blocks ---------------------------------------------------------------------------------------------------
+
+
+def test_loose_parts_are_told_with_their_size():
+    both = stack(3, (1, 1, 1)) + stack(2, (1, 1, 1)).moved(dx=5)
+    (told,) = both.problems()
+    assert (
+        told
+        == "2 blocks from block 3 of brick 3 on, near (5.500, 0.500, 0.500) m: no joint with the other 3 blocks"
+    )
+
+
+def test_touching_edges_and_corners_make_no_joint():
+    for way in ((0, 1, 0), (0, 1, 1)):
+        pair = beside(0, *way[1:])
+        assert pair.joints() == [] and "no joint with the other" in pair.problems()[0]
+
+
+def test_a_sliver_and_a_narrow_joint_are_told():
+    wall = Wall(0.66, 0.243, halves=False)
+    sliver = wall.cut((0, 0, 0.172), (0, 0, 1))
+    told = [p for p in sliver.problems() if "sliver: 0.01 m thin, less than" in p]
+    assert len(told) == 3  # course 2 has three whole bricks
+    shifted = stack(2, (1, 1, 1))[:1] + stack(1, (1, 1, 1)).moved(0.95, 0, 1)
+    (told,) = shifted.problems()
+    assert re.fullmatch(
+        r"block 0 of brick 0 and block 1 of brick 1 share a joint of odd size near \(0.975, 0.500, 1.000\) m: 1 m long but "
+        r"0.04\d+ m wide, less than 0.1 m, a tenth of the thinner block",
+        told,
+    )
+
+
+@pytest.mark.parametrize("way", ["missing", "pushed", "swollen"])
+def test_one_wrong_brick_in_a_wall_is_found(way):
+    """A wall has 20 courses of five bricks; brick 52 is taken out, pushed by 3 mm, or made 3 mm longer."""
+    wall = Wall(1.1, 1.62, halves=False)
+    assert wall.problems() == []
+    if way == "missing":
+        assert (
+            wall.where(lambda b: b.brick != 52).problems() == []
+        )  # a hole is no fault: it may be meant
+        return
+    brick = wall.where(lambda b: b.brick == 52)
+    far = lambda p: p[0] > brick.high[0] - 1e-6
+    new = (
+        brick.moved(dx=0.003)
+        if way == "pushed"
+        else Bricks(
+            [
+                Block(
+                    tuple(
+                        (p[0] + 0.003, *p[1:]) if far(p) else p
+                        for p in brick[0].corners
+                    ),
+                    52,
+                )
+            ]
+        )
+    )
+    told = Bricks([new[0] if b.brick == 52 else b for b in wall]).problems()
+    assert all("block 52 of brick 52" in p for p in told)
+    assert any("overlap by 0.003 m" in p for p in told)
+    assert any("gap of up to 0.003 m" in p for p in told) == (way == "pushed")
+
+
+def test_ten_thousand_blocks_take_seconds():
+    """The bound is that of the brief, 5 s on one core, in CPU time so that a busy machine does not fail it."""
+    for made in (Wall(11, 8.1), Wall(11, 8.1).turned(10, "x").turned(20)):
+        start = time.process_time()
+        assert len(made) == 10_000 and made.problems() == []
+        assert time.process_time() - start < 5
+
+
+def test_arches_and_domes_have_the_joints_of_their_neighbours_alone():
+    assert len(Arch(0.3, 0.5, 27, radius=2.0).joints()) == 26
+    dome = Dome(3.0, 0.3, 6, 16)
+    assert len(dome.joints()) == 6 * 16 + 5 * 16 + 16 and dome.problems() == []

@@ -1,0 +1,56 @@
+"""The plugin finds the same joints between blocks as the plain records do."""
+
+import pytest
+
+from masonry import MasonryMat, addBlock
+from masonry._masonry import neighbours
+from masonry.bricks import (
+    Arch,
+    BarrelVault,
+    Corner,
+    Dome,
+    Lintel,
+    Opening,
+    Room,
+    Tee,
+    Wall,
+    stack,
+)
+
+HOLE = Opening(0.66, 0.405, 0.44, 0.405, Lintel(0.22, 0.162))
+
+STRUCTURES = {
+    "running": lambda: Wall(2.2, 1.62, openings=[HOLE]),
+    "english": lambda: Wall(1.1, 0.405, bond="english", wythes=2),
+    "flemish": lambda: Wall(1.21, 0.405, bond="flemish", wythes=2),
+    "header": lambda: Wall(1.1, 0.405, bond="header", wythes=2),
+    "leaves": lambda: Wall(0.88, 0.324, wythes=3, collar=0.01),
+    "corner": lambda: Corner(1.1, 0.88, 0.405),
+    "tee": lambda: Tee(1.76, 0.88, 0.77, 0.405),
+    "room": lambda: Room(1.1, 0.88, 0.324),
+    "arch": lambda: Arch(0.2, 0.3, 15, span=3.0, angle=90, skewback=0.25),
+    "vault": lambda: BarrelVault(0.2, 2.0, 11, 4, span=3.0, angle=120),
+    "dome": lambda: Dome(3.0, 0.3, 5, 12),
+    "staggered dome": lambda: Dome(3.0, 0.3, 5, 6, oculus=0.5, staggered=True),
+    "turned": lambda: Wall(0.88, 0.324).turned(33, "x").turned(20),
+    "cut": lambda: stack(3, (1, 1, 1)).cut((0.5, 0.5, 1.5), (1, 0.3, 0.4)),
+}
+
+
+@pytest.mark.parametrize("name", STRUCTURES)
+def test_the_plugin_finds_the_same_joints(scene, name):
+    blocks = STRUCTURES[name]()
+    assert [
+        p for p in blocks.problems() if "odd size" not in p and "sliver" not in p
+    ] == []
+    material = MasonryMat(young=4.8e9, poisson=0.16, density=1800)
+    ids = [addBlock(b.corners, material) for b in blocks]
+    pairs, misfits, _ = neighbours(1e-4)
+    assert list(misfits) == []
+    number = {body: n for n, body in enumerate(ids)}
+    found = {tuple(sorted((number[a], number[b]))) for a, b, *_ in pairs}
+    assert found == {j[:2] for j in blocks.joints()}
+    for body, b in zip(ids, blocks):
+        assert scene.bodies[body].state.mass > 0
+    mass = sum(scene.bodies[body].state.mass for body in ids)
+    assert mass == pytest.approx(1800 * blocks.volume, rel=1e-6)

@@ -1,0 +1,213 @@
+"""Arches, barrel vaults and domes against closed forms of their polygons, and as sets of blocks that fit."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as some
+
+from masonry.bricks import Arch, BarrelVault, Dome
+
+few = settings(max_examples=40, deadline=None)
+sizes = some.floats(0.05, 3.0)
+angles = some.one_of(some.just(180.0), some.floats(20, 179))
+
+
+def ringArea(radius, thickness, stones, angle):
+    """Area between two inscribed polygons [m²]: their triangles about the centre."""
+    return (
+        stones
+        / 2
+        * math.sin(math.radians(angle) / stones)
+        * ((radius + thickness) ** 2 - radius**2)
+    )
+
+
+@few
+@given(sizes, some.floats(0.02, 1.0), sizes, some.integers(3, 60), angles)
+def test_an_arch_is_that_of_its_circles(radius, share, depth, stones, angle):
+    thickness = share * radius
+    arch = Arch(thickness, depth, stones, radius=radius, angle=angle)
+    assert arch.volume == pytest.approx(
+        depth * ringArea(radius, thickness, stones, angle), rel=1e-9
+    )
+    span = 2 * radius * math.sin(math.radians(angle / 2))
+    centre = np.array([span / 2, -radius * math.cos(math.radians(angle / 2))])
+    for b in arch:
+        far = np.linalg.norm(np.array(b.corners)[:, [0, 2]] - centre, axis=1)
+        near = np.isclose(far, radius, rtol=1e-9)
+        assert near.sum() == 4
+        assert far[~near] == pytest.approx(radius + thickness, rel=1e-9)
+    joints = arch.joints()
+    assert [j[:2] for j in joints] == [(n, n + 1) for n in range(stones - 1)]
+    for j in joints:
+        assert j.area == pytest.approx(thickness * depth, rel=1e-6)
+    assert [p for p in arch.problems() if "sliver" not in p] == []
+    assert [b.course for b in arch] == list(range(stones))
+
+
+def test_span_and_radius_say_the_same():
+    """A segment of 90° over a span of 3 m has a radius of 3 m / (2 sin 45°)."""
+    by = dict(thickness=0.2, depth=0.3, stones=15, angle=90)
+    one, two = Arch(span=3.0, **by), Arch(radius=3 / math.sqrt(2), **by)
+    assert np.allclose([b.corners for b in one], [b.corners for b in two], atol=1e-12)
+    inner = [c for b in (one[0], one[14]) for c in b.corners if c[2] == 0]
+    assert sorted({round(c[0], 12) for c in inner}) == [0, 3]
+
+
+def test_a_half_circle_stands_on_level_joints():
+    arch = Arch(0.3, 0.5, 27, radius=2.0)
+    assert [b.course for b in arch.bottom()] == [0, 26]
+    assert arch.low == (pytest.approx(-0.3), 0.0, 0.0)
+
+
+def test_skewbacks_carry_a_segmental_arch_on_level_ground():
+    arch = Arch(0.2, 0.3, 15, span=3.0, angle=90, skewback=0.25)
+    assert {b.part for b in arch.bottom()} == {"skewback"} and len(arch.bottom()) == 2
+    assert len(arch.joints()) == 16 and arch.problems() == []
+    outer = 0.2 * math.sin(math.pi / 4)
+    assert arch.low == pytest.approx((-outer - 0.25, 0, 0))
+    for joint in arch.joints():
+        assert joint.area == pytest.approx(0.2 * 0.3)
+
+
+@few
+@given(some.integers(3, 20), some.integers(1, 8), angles, some.booleans())
+def test_a_barrel_vault_is_an_arch_in_rows(stones, rows, angle, staggered):
+    vault = BarrelVault(
+        0.2, 4.0, stones, rows, radius=2.0, angle=angle, staggered=staggered
+    )
+    arch = Arch(0.2, 4.0, stones, radius=2.0, angle=angle)
+    assert vault.volume == pytest.approx(arch.volume, rel=1e-9)
+    bad = [p for p in vault.problems() if "odd size" not in p and "sliver" not in p]
+    assert not [p for p in bad if "no joint" not in p]
+    assert not bad
+    odd = sum(1 for c in range(stones) if c % 2)
+    assert len(vault) == stones * rows + (odd if staggered else 0)
+    # joints between rows, and between courses
+    between = sum(
+        j.area
+        for j in vault.joints()
+        if vault[j.first].course != vault[j.second].course
+    )
+    assert between == pytest.approx((stones - 1) * 0.2 * 4.0, rel=1e-6)
+
+
+@few
+@given(
+    some.floats(0.5, 10),
+    some.floats(0.02, 0.4),
+    some.integers(1, 8),
+    some.integers(3, 24),
+    angles,
+    some.one_of(some.none(), some.floats(0.05, 0.6)),
+    some.booleans(),
+)
+def test_a_dome_fits_and_has_the_volume_of_its_frustums(
+    radius, share, courses, stones, angle, hole, staggered
+):
+    """Inner and outer surface are similar about the centre, as (r + t) / r; so the shell has ((r + t)³ - r³) / r³ of the
+    volume of the pyramids from the centre to the inner surface."""
+    thickness = share * radius
+    oculus = None if hole is None else hole * radius * math.sin(math.radians(angle / 2))
+    dome = Dome(radius, thickness, courses, stones, oculus, angle, staggered)
+    sectors = 2 * stones if staggered else stones
+    assert len(dome) == courses * sectors + (oculus is None)
+    assert len({b.brick for b in dome}) == courses * stones + (oculus is None)
+    problems = [p for p in dome.problems() if "sliver" not in p and "odd size" not in p]
+    assert problems == []
+    joints = dome.joints()
+    assert len(joints) == courses * sectors + (courses - (oculus is not None)) * sectors
+    # Corners lie on two spheres about (0, 0, -radius cos(angle/2)).
+    corners = np.array([c for b in dome for c in b.corners])
+    far = np.linalg.norm(
+        corners - [0, 0, -radius * math.cos(math.radians(angle / 2))], axis=1
+    )
+    near = np.isclose(far, radius, rtol=1e-9)
+    assert near.sum() * 2 == len(corners)
+    assert far[~near] == pytest.approx(radius + thickness, rel=1e-9)
+    inner = 0.0
+    centre = np.array([0, 0, -radius * math.cos(math.radians(angle / 2))])
+    for b in dome:
+        on = [np.array(c) - centre for c in b.corners]
+        on = [c for c in on if abs(np.linalg.norm(c) - radius) < 1e-6 * radius]
+        if len(on) == 4:
+            lower, upper = (
+                sorted(on, key=lambda c: c[2])[:2],
+                sorted(on, key=lambda c: c[2])[2:],
+            )
+            a, b_ = lower
+            c = min(upper, key=lambda p: np.linalg.norm(p - b_))
+            d = min(upper, key=lambda p: np.linalg.norm(p - a))
+            quads = [(a, b_, c), (a, c, d)]
+        else:
+            top = np.mean(on, axis=0)
+            ring = sorted(on, key=lambda p: math.atan2(p[1], p[0]))
+            quads = [(top, p, q) for p, q in zip(ring, ring[1:] + ring[:1])]
+        inner += sum(abs(np.dot(p, np.cross(q, r))) / 6 for p, q, r in quads)
+    shell = inner * ((1 + share) ** 3 - 1)
+    assert dome.volume == pytest.approx(shell, rel=1e-6)
+
+
+def test_stones_of_a_staggered_dome_cover_the_joints_below():
+    """Sector k of 2 n belongs to stone k // 2 in even courses and to (k - 1) // 2 in odd ones."""
+    dome = Dome(3.0, 0.3, 4, 8, oculus=0.6, staggered=True)
+    pieces = {}
+    for b in dome:
+        pieces.setdefault(b.brick, []).append(b)
+    assert {len(p) for p in pieces.values()} == {2}
+    vertical = {}
+    for j in dome.joints():
+        one, two = dome[j.first], dome[j.second]
+        if one.course == two.course and one.brick != two.brick:
+            at = math.degrees(math.atan2(j.middle[1], j.middle[0])) % 360
+            vertical.setdefault(one.course, set()).add(round(at, 6) % 360)
+    for course in range(3):
+        assert len(vertical[course]) == 8
+        assert not vertical[course] & vertical[course + 1]
+
+
+@pytest.mark.parametrize(
+    "make, said",
+    [
+        (lambda: Arch(0.2, 0.3, 15), "either span or radius"),
+        (lambda: Arch(0.2, 0.3, 15, span=1, radius=1), "either span or radius"),
+        (lambda: Arch(0.2, 0.3, 15, span=math.nan), "span .* got nan"),
+        (
+            lambda: Arch(-0.2, 0, 1.5, radius=2),
+            "thickness .* got -0.2; stones .* got 1.5; depth .* got 0",
+        ),
+        (
+            lambda: Arch(0.2, 0.3, 15, radius=2, angle=200),
+            "angle 200° must be at most 180°",
+        ),
+        (
+            lambda: Arch(0.2, 0.3, 15, radius=2, angle=0.5),
+            "at least 1°: is it in degrees",
+        ),
+        (lambda: Arch(0.2, 0.3, 1, radius=2), "1 voussoirs are too few for 180°"),
+        (lambda: Arch(0.2, 0.3, 10**7, radius=2), "more than 100000"),
+        (
+            lambda: Arch(0.2, 0.3, 9, radius=2, skewback=0.2),
+            "springs from level joints",
+        ),
+        (
+            lambda: Arch(0.2, 0.3, 9, radius=2, angle="x", skewback=0.2),
+            "angle .* got 'x'",
+        ),
+        (lambda: BarrelVault(0.2, 3, 9, 0, radius=2), "rows must be a whole number"),
+        (
+            lambda: Dome(3, 0.3, 0, 2),
+            "courses .* got 0; stones must be .* at least 3, got 2",
+        ),
+        (
+            lambda: Dome(3, 0.3, 4, 9, oculus=3.5),
+            "oculus 3.5 m must be smaller than the springing's radius, 3 m",
+        ),
+        (lambda: Dome("3", 0.3, 4, 9), "radius .* got '3'"),
+    ],
+)
+def test_an_impossible_vault_is_refused(make, said):
+    with pytest.raises(ValueError, match=said):
+        make()

@@ -1,0 +1,52 @@
+"""Random fields: mean, spread and correlation are those that were asked for."""
+
+import math
+
+import numpy as np
+import pytest
+from masonry import fields
+
+POINTS = np.random.default_rng(7).uniform(-50, 50, (2000, 3))
+
+
+def values(field, points=POINTS):
+    return np.array([field(*p) for p in points])
+
+
+@pytest.mark.parametrize("make", [fields.lognormal, fields.normal])
+@pytest.mark.parametrize("length", [0.0, 0.5])
+def test_mean_and_coefficient_of_variation(make, length):
+    found = values(make(cov=0.2, length=length, seed=3))
+    assert found.mean() == pytest.approx(1, abs=0.02)
+    assert found.std() == pytest.approx(0.2, rel=0.06)
+
+
+@pytest.mark.parametrize("share", [0.25, 0.5, 1.0, 1.5])
+def test_correlation_falls_with_the_distance(share):
+    length, found = 2.0, []
+    for seed in range(6):
+        field = fields.normal(cov=0.1, length=length, seed=seed)
+        one, two = values(field), values(field, POINTS + [0, 0, share * length])
+        found.append(np.corrcoef(one, two)[0, 1])
+    assert np.mean(found) == pytest.approx(math.exp(-(share**2)), abs=0.05)
+
+
+def test_a_seed_gives_the_same_field_again_and_another_seed_another_one():
+    for length in (0.0, 0.3):
+        a, b, c = (
+            values(fields.lognormal(0.3, length, s), POINTS[:50]) for s in (1, 1, 2)
+        )
+        assert (a == b).all() and (a != c).any()
+
+
+@pytest.mark.parametrize(
+    "wrong, told",
+    [
+        (dict(cov=0), "coefficient of variation 0 must be above 0"),
+        (dict(cov=0.1, length=-1), "correlation length -1 m must be at least 0"),
+        (dict(cov=0.1, seed=1.5), "seed 1.5 must be a whole number"),
+    ],
+)
+def test_wrong_parameters_are_refused(wrong, told):
+    with pytest.raises(ValueError, match=told):
+        fields.lognormal(**wrong)

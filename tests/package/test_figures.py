@@ -1,0 +1,339 @@
+"""Figures of any run: what is drawn where, from frames of real joints and from curves made up for it."""
+
+import json
+import math
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from masonry import figures, frames
+from masonry.errors import Refused
+from masonry.figures import View, merged, viewOf
+
+L, T, H = 0.2, 0.1, 0.08  # [m] of a brick
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """Figures that would be saved, by the name of their file."""
+    found = {}
+    monkeypatch.setattr(figures, "_save", lambda figure, path, dpi: found.update({os.path.basename(path): figure}))  # fmt: skip
+    return found
+
+
+def writeRun(folder, columns, rows, **told):
+    """A folder with curve.csv and run.json."""
+    os.makedirs(folder, exist_ok=True)
+    with open(os.path.join(folder, "curve.csv"), "w") as f:
+        f.write(",".join(columns) + "\r\n")
+        f.writelines(",".join("%.9g" % v for v in row) + "\r\n" for row in rows)
+    with open(os.path.join(folder, "run.json"), "w") as f:
+        json.dump({"title": "a run", **told}, f)
+    return str(folder)
+
+
+def axis(column, label=None):
+    return {"column": column, "label": label or column}
+
+
+# -- curve.png ---------------------------------------------------------------------------------------------------------
+
+
+def test_a_history_over_time_shows_all_values_and_needs_no_energies(tmp_path, drawn):
+    t = np.linspace(0, 2, 101)
+    rows = np.column_stack([t, np.sin(9 * t), -3 * np.sin(9 * t)])
+    entry = {"x": axis("time_s", "time [s]"), "y": [axis("top_mm", "top"), axis("base_kN", "base")], "y_label": "both"}  # fmt: skip
+    entry["bounds"] = [{"y": 5, "text": "bound"}]
+    figures.curve(writeRun(tmp_path, ["time_s", "top_mm", "base_kN"], rows, figure=entry))  # fmt: skip
+    (top,) = drawn["curve.png"].axes
+    low, high = top.get_ylim()
+    assert low < -2.99 and high > 5
+    labelled = {line.get_label(): line for line in top.lines}
+    assert labelled["top"].get_ydata() == pytest.approx(rows[:, 1], abs=1e-8)
+    assert labelled["base"].get_ydata() == pytest.approx(rows[:, 2], abs=1e-8)
+    assert top.get_xlabel() == "time [s]" and top.get_ylabel() == "both"
+    assert "bound" in [text.get_text() for text in top.texts]
+
+
+def test_what_energies_there_are_is_drawn_since_the_first_row(tmp_path, drawn):
+    x = np.arange(5.0)
+    rows = np.column_stack([x, -x, 10 + x, 3 * x, x, 2 * x])
+    columns = ["u_mm", "f_kN", "external_J", "elastic_shear_J", "elastic_tension_J", "viscous_J"]  # fmt: skip
+    figures.curve(writeRun(tmp_path, columns, rows, figure={"x": axis("u_mm"), "y": [axis("f_kN")]}))  # fmt: skip
+    top, bottom = drawn["curve.png"].axes
+    assert top.get_ylim()[0] < -4 and top.get_ylim()[1] >= 0
+    lines = {line.get_label(): list(line.get_ydata()) for line in bottom.lines}
+    assert lines == {
+        "elastic": [0, 4, 8, 12, 16],
+        "viscous": [0, 2, 4, 6, 8],
+        "work done": [0, 1, 2, 3, 4],
+    }
+
+
+def test_marks_loops_and_the_envelope(tmp_path, drawn):
+    x = np.concatenate([np.linspace(0, 2, 21), np.linspace(2, -2, 41), np.linspace(-2, 0, 21)])  # fmt: skip
+    entry = {"x": axis("u_mm"), "y": [axis("f_kN")], "looped": True, "marks": [{"x": -2, "y": -8, "text": "lowest"}]}  # fmt: skip
+    figures.curve(writeRun(tmp_path, ["u_mm", "f_kN"], np.column_stack([x, x**3]), figure=entry))  # fmt: skip
+    (top,) = drawn["curve.png"].axes
+    assert top.get_ylim()[0] < -8 and top.get_ylim()[1] > 8
+    assert [text.get_text() for text in top.texts] == ["lowest"]
+    envelope = [line for line in top.lines if line.get_label() == "envelope"]
+    assert envelope[0].get_xdata().max() == 2
+
+
+def test_what_cannot_be_drawn_is_refused_in_a_sentence(tmp_path):
+    columns, rows = ["u_mm", "f_kN"], [[0, 0], [1, 1]]
+    with pytest.raises(Refused, match='run.json has no entry "figure".*older version'):
+        figures.draw(writeRun(tmp_path, columns, rows))
+    entry = {"x": axis("v_mm"), "y": [axis("f_kN")]}
+    with pytest.raises(Refused, match="curve.csv has no column v_mm, it has u_mm, f_kN"):  # fmt: skip
+        figures.draw(writeRun(tmp_path, columns, rows, figure=entry))
+    with pytest.raises(Refused, match="not the files of a finished run"):
+        figures.draw(writeRun(tmp_path, columns, rows, figure={"x": axis("u_mm")}))
+
+
+# -- how a part is seen --------------------------------------------------------------------------------------------------
+
+
+def boxPoints(length, thickness, height, angle=0.0):
+    """Corners of a box that is turned in plan [rad]."""
+    points = np.array([(x, y, z) for x in (0, length) for y in (0, thickness) for z in (0, height)])  # fmt: skip
+    c, s = math.cos(angle), math.sin(angle)
+    return points @ np.array([(c, s, 0), (-s, c, 0), (0, 0, 1)])
+
+
+@pytest.mark.parametrize("degrees", [0, 30, 90, 117, 180])
+def test_a_wall_at_any_angle_is_seen_from_its_front(degrees):
+    angle = math.radians(degrees)
+    along = np.array([math.cos(angle), math.sin(angle), 0])
+    normals = np.array([along, (0, 0, 1)])
+    view = viewOf(boxPoints(3, 0.1, 2.5, angle), normals, np.ones(2))
+    assert abs(view.right @ along) == pytest.approx(1)
+    assert view.right[0] > 1e-9 or view.right[1] > 0
+    assert view.up == pytest.approx([0, 0, 1])
+    assert view.towards == pytest.approx(np.cross(view.right, view.up))
+    points = boxPoints(3, 0.1, 2.5, angle) - view.start
+    assert np.ptp(points @ view.right) == pytest.approx(3)
+
+
+def test_a_low_arch_is_seen_from_its_side_and_a_dome_from_above():
+    angles = np.linspace(0.4, math.pi - 0.4, 20)
+    ring = np.column_stack([-np.sin(angles), 0 * angles, np.cos(angles)])
+    points = boxPoints(5, 1.5, 0.6)  # deeper than high
+    view = viewOf(points, ring, np.ones(20))
+    assert view.towards == pytest.approx([0, -1, 0]) and view.right[0] == 1
+    dome = boxPoints(4, 4, 2)
+    joints = np.array([(1, 0, 0), (0, 1, 0), (0.6, 0, 0.8), (0, 0.6, 0.8)])
+    view = viewOf(dome, joints, np.ones(4))
+    assert view.towards == pytest.approx([0, 0, 1]) and view.labels == ["x [m]", "y [m]"]  # fmt: skip
+    # two wythes with a collar joint are still a wall
+    view = viewOf(boxPoints(3, 0.2, 2), np.eye(3), np.ones(3))
+    assert view.towards == pytest.approx([0, -1, 0])
+
+
+def test_the_direction_of_sight_can_be_told():
+    view = viewOf(boxPoints(3, 0.1, 2.5), np.eye(3), np.ones(3), sight=(0, -2, 0))
+    assert view.towards == pytest.approx([0, 1, 0])
+    assert view.right == pytest.approx([-1, 0, 0])
+
+
+def test_cracks_behind_each_other_are_drawn_once_with_the_largest():
+    none = np.zeros(2)
+    front = (0.0, 1.0, 0.0, 0.2, 1e-3, "slid", none, none)
+    behind = (0.0, 1.0, 0.1, 0.3, 3e-3, "open", none, np.array([0.2, 0]))
+    other = (0.0, 2.0, 0.0, 0.2, 1e-3, "slid", none, none)
+    lines = merged([front, behind, other])
+    assert np.array(lines["slid"])[:, :, 0] == pytest.approx(np.array([(0, 0.1), (0, 0.2)]))  # fmt: skip
+    # half of the shift of its right end, 0.1 m from its left one
+    assert np.array(lines["open"])[:, :, 0].ravel() == pytest.approx([0.1, 0.3, 0.3, 0.5])  # fmt: skip
+    # the same line in the other direction is a line, too
+    turned = (math.pi / 2, 0.0, 0.0, 1.0, 1e-3, "open", none, none)
+    assert len(merged([turned, turned])["open"]) == 1
+
+
+def test_the_magnification_is_the_usual_one_unless_that_is_absurd():
+    of = figures.magnificationOf
+    assert of(3, np.full(100, 12e-3)) == of(3, np.full(100, 0.3e-3)) == 30
+    assert of(3, np.zeros(100)) == of(3, []) == 30
+    assert of(3, np.full(100, 1.0)) == 1
+    assert of(3, np.full(100, 1e-6)) == 100000
+    fallen = np.full(100, 5e-3)
+    fallen[0] = 2  # one brick has fallen
+    assert of(3, fallen) == 30
+
+
+# -- frames and cracks.png of real blocks ----------------------------------------------------------------------------
+
+
+def box(low, high):
+    from masonry import MasonryMat, addBlock
+
+    brick = MasonryMat(young=4.8e9, poisson=0.16, density=1800)
+    return addBlock([(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])], brick)  # fmt: skip
+
+
+def pull(scene, folder, body, velocity, most=2e-3):
+    """Connect all blocks, hold all but one, which is moved away, and write a frame."""
+    from masonry import MasonryJoint, connect, criticalTimeStep, engines
+    from yade.wrapper import MasonryVtkRecorder
+
+    for b in scene.bodies:
+        b.state.blockedDOFs = "xyzXYZ"
+    engines([MasonryJoint(name="bed", cap=False, tensileStrength=0.1e6)], rows=3)
+    connect()
+    scene.bodies[body].state.vel = velocity
+    speed = np.linalg.norm(velocity)
+    scene.dt = min(1e-5, most / speed / 50)
+    for _ in range(round(most / speed / scene.dt)):
+        scene.step()
+    MasonryVtkRecorder(directory=str(folder))()
+
+
+def test_the_reader_reads_what_vtk_reads(scene, tmp_path):
+    io = pytest.importorskip("vtkmodules.vtkIOXML")
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    box((0, 0, 0), (L, T, H))
+    pull(scene, tmp_path, box((0, 0, H), (L, T, 2 * H)), (0, 0, 1.0))
+    for kind, reader, ending in (
+        ("blocks", io.vtkXMLUnstructuredGridReader(), "vtu"),
+        ("joints", io.vtkXMLPolyDataReader(), "vtp"),
+    ):
+        reader.SetFileName(str(tmp_path / f"{kind}_0000.{ending}"))
+        reader.Update()
+        data, frame = reader.GetOutput(), frames.readFrame(str(tmp_path), kind)
+        expected = {"points": vtk_to_numpy(data.GetPoints().GetData())}
+        for of in (data.GetPointData(), data.GetCellData()):
+            for n in range(of.GetNumberOfArrays()):
+                expected[of.GetArrayName(n)] = vtk_to_numpy(of.GetArray(n))
+        assert set(frame) == {*expected, "cells"}
+        for name, values in expected.items():
+            assert np.array_equal(frame[name], values), name
+        cells = data.GetCells() if kind == "blocks" else data.GetPolys()
+        corners = vtk_to_numpy(cells.GetConnectivityArray())
+        assert np.array_equal(np.concatenate(frame["cells"]), corners)
+        assert len(frame["cells"]) == data.GetNumberOfCells()
+    assert frames.frameTimes(str(tmp_path)) == [pytest.approx(scene.time)]
+
+
+def test_frames_are_in_the_order_of_their_numbers_and_damage_is_refused(scene, tmp_path):  # fmt: skip
+    box((0, 0, 0), (L, T, H))
+    pull(scene, tmp_path, box((0, 0, H), (L, T, 2 * H)), (0, 0, 1.0))
+    whole = (tmp_path / "joints_0000.vtp").read_bytes()
+    for number in (9999, 10000):
+        (tmp_path / f"joints_{number:04d}.vtp").write_bytes(whole)
+    last = frames.framePaths(str(tmp_path), "joints")[-1]
+    assert last.endswith("joints_10000.vtp")
+    for broken in (whole[: len(whole) // 2], whole.replace(b"Polys>", b"Verts>"), whole[:-200] + whole[-120:]):  # fmt: skip
+        (tmp_path / "joints_10000.vtp").write_bytes(broken)
+        with pytest.raises(Refused, match="joints_10000.vtp: it holds no frame"):
+            frames.readFrame(str(tmp_path), "joints")
+
+
+def crackLines(axes):
+    """Lines by kind: arrays of pairs of ends."""
+    return {
+        c.get_label(): np.array(c.get_segments())
+        for c in axes.collections
+        if c.get_label() in ("open", "slid")
+    }
+
+
+def test_two_wythes_show_an_open_joint_once(scene, tmp_path, drawn):
+    """Two wythes of two bricks under one lintel, which is lifted: its joint opens over both, and in three rows each."""
+    for n in (0, 1):
+        for m in (0, 1):
+            box((m * L, n * T, 0), ((m + 1) * L, (n + 1) * T, H))
+    lintel = box((0, 0, H), (2 * L, 2 * T, 3 * H))
+    pull(scene, tmp_path, lintel, (0, 0, 1.0))
+    writeRun(tmp_path, ["time_s", "f_kN"], [[0, 0], [1, 1]])
+    figures.cracks(str(tmp_path))
+    (axes,) = drawn["cracks.png"].axes
+    lines = crackLines(axes)
+    assert not len(lines["slid"])
+    # all of the joint, and nothing twice; half of what was lifted, magnified
+    assert np.abs(np.diff(lines["open"][:, :, 0])).sum() == pytest.approx(2 * L)
+    assert lines["open"][:, :, 1] == pytest.approx(H + 30 * 1e-3, rel=0.05)
+    assert axes.get_xlabel() == "x [m]" and axes.get_ylabel() == "z [m]"
+    assert "displacements × 30" in axes.get_title()
+
+
+def test_a_corner_has_a_panel_for_each_wall_and_shows_its_joint_in_both(scene, tmp_path, drawn):  # fmt: skip
+    """A wall along x and one along y that butts against it and is pulled away along y."""
+    high = 4 * H
+    front = [box((n * L, 0, 0), ((n + 1) * L, T, high)) for n in (0, 1)]
+    side = [box((0, T, 0), (T, T + 4 * L, high))]
+    pull(scene, tmp_path, side[0], (0, 1.0, 0))
+    parts = {"front": front, "side": side}
+    folder = writeRun(tmp_path, ["time_s", "f_kN"], [[0, 0], [1, 1]], parts=parts)
+    figures.cracks(folder)
+    panels = {axes.get_title().split(" ")[0]: axes for axes in drawn["cracks.png"].axes}
+    assert [panels[n].get_xlabel() for n in parts] == ["x [m]", "y [m]"]
+    assert "moved up to 2 mm away from the viewer" not in panels["side"].get_title()
+    lines = crackLines(panels["side"])["open"]
+    assert lines[:, :, 0] == pytest.approx(T + 30 * 1e-3, rel=0.05)
+    assert np.abs(np.diff(lines[:, :, 1])).sum() == pytest.approx(high)
+    assert not len(crackLines(panels["front"])["open"])  # it faces the viewer there
+    faces = [c for c in panels["front"].collections if c.get_label() == "open, seen face-on"]  # fmt: skip
+    assert sum(len(c.get_paths()) for c in faces) == 9  # its subcontacts
+
+    # a ground that has moved with everything is taken off
+    told = json.load(open(os.path.join(folder, "run.json")))
+    json.dump({**told, "reference_body": side[0]}, open(os.path.join(folder, "run.json"), "w"))  # fmt: skip
+    figures.cracks(folder)
+    panels = {axes.get_title().split(" ")[0]: axes for axes in drawn["cracks.png"].axes}
+    lines = crackLines(panels["side"])["open"]
+    assert lines[:, :, 0] == pytest.approx(T - 30 * 1e-3, rel=0.05)
+    assert "moved up to 2 mm towards the viewer" in panels["front"].get_title()
+
+
+def test_bodies_that_are_not_there_are_refused(scene, tmp_path):
+    box((0, 0, 0), (L, T, H))
+    pull(scene, tmp_path, box((0, 0, H), (L, T, 2 * H)), (0, 0, 1.0))
+    for told, words in (
+        ({"parts": {"all": [0, 7]}}, r"names bodies \[7\]"),
+        ({"reference_body": 9}, r"names bodies \[9\]"),
+        ({"parts": {"all": []}}, "parts: all has no bodies"),
+    ):
+        with pytest.raises(Refused, match=words):
+            figures.cracks(writeRun(tmp_path, ["time_s", "f"], [[0, 0], [1, 1]], **told))  # fmt: skip
+
+
+# -- inside YADE -----------------------------------------------------------------------------------------------------
+
+INSIDE = """
+import sys
+import masonry, masonry.figures
+import matplotlib
+from yade import plot
+before = dict(matplotlib.rcParams), matplotlib.get_backend()
+masonry.figures.draw({folder!r})
+assert before == (dict(matplotlib.rcParams), matplotlib.get_backend()), "settings of matplotlib were changed"
+assert not [name for name in sys.modules if name.startswith(("vtk", "paraview"))], "VTK's Python was loaded"
+try:
+    masonry.figures.draw("nowhere")
+except masonry.figures.Refused as error:
+    print("refused:", error)
+"""
+
+
+def test_a_script_of_yade_draws_without_harm(scene, tmp_path):
+    box((0, 0, 0), (L, T, H))
+    pull(scene, tmp_path, box((0, 0, H), (L, T, 2 * H)), (0, 0, 1.0))
+    entry = {"x": axis("time_s"), "y": [axis("f_kN")]}
+    folder = writeRun(tmp_path, ["time_s", "f_kN"], [[0, 0], [1, 1]], figure=entry)
+    script = tmp_path / "inside.py"
+    script.write_text(INSIDE.format(folder=folder))
+    run = subprocess.run(["yade", "-n", "-x", str(script)], capture_output=True, text=True)  # fmt: skip
+    assert run.returncode == 0, run.stdout + run.stderr
+    assert "refused: cannot read nowhere/run.json" in run.stdout
+    inside = {n: (tmp_path / n).read_bytes() for n in ("curve.png", "cracks.png")}
+    for name, data in inside.items():
+        assert data.startswith(b"\x89PNG")
+        os.remove(tmp_path / name)
+    # the same pictures without YADE
+    run = subprocess.run([sys.executable, "-m", "masonry.figures", folder], capture_output=True, text=True)  # fmt: skip
+    assert run.returncode == 0, run.stderr
+    assert inside == {name: (tmp_path / name).read_bytes() for name in inside}

@@ -1,0 +1,96 @@
+"""Nothing runs that was not asked: files in the present folder, ports of YADE, and what apt-get would remove."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+from conftest import ROOT
+
+#: Modules of Python and of other libraries that the package reads.
+PLANTED = (
+    "csv token json glob struct zlib base64 numpy matplotlib argparse yade".split()
+)
+
+
+@pytest.fixture
+def planted(tmp_path):
+    """A folder whose modules say that they were run."""
+    for name in PLANTED:
+        (tmp_path / f"{name}.py").write_text("open('ran', 'a').write(__name__)\n")
+    return tmp_path
+
+
+@pytest.mark.parametrize("module", ["measure", "figures"])
+def test_programs_of_the_package_run_nothing_of_the_present_folder(planted, module):
+    command = [sys.executable, "-m", f"masonry.{module}", "nowhere"]
+    done = subprocess.run(command, cwd=planted, capture_output=True, text=True)
+    assert done.returncode == 2 and "nowhere" in done.stderr
+    assert not (planted / "ran").exists()
+
+
+def test_figures_are_drawn_with_nothing_of_the_present_folder(planted, monkeypatch):
+    """The program that draws them runs in a process of its own."""
+    from masonry.errors import Unwritable
+    from masonry.model import Model
+
+    monkeypatch.chdir(planted)
+    with pytest.raises(Unwritable):
+        Model.draw(None, "nowhere")
+    assert not (planted / "ran").exists()
+
+
+#: Prints the addresses on which this process listens, before and after the import.
+PORTS = """
+import os, sys
+def listens():
+    own = {os.readlink(f'/proc/self/fd/{n}')[8:-1] for n in os.listdir('/proc/self/fd') if os.path.lexists(f'/proc/self/fd/{n}')}
+    lines = [l.split() for f in ('tcp', 'tcp6') for l in open(f'/proc/net/{f}').readlines()[1:]]
+    return [l[1] for l in lines if l[3] == '0A' and l[9] in own]
+print('before', len(listens()))
+import masonry
+print('after', len(listens()))
+import yade.remote
+yade.remote.runServers()
+print('again', len(listens()))
+masonry.ports.close()
+print('closed', len(listens()), 'planted', os.path.exists('ran'))
+"""
+
+
+def test_the_import_closes_the_ports_that_yade_opens(planted):
+    (planted / "p.py").write_text(PORTS)
+    done = subprocess.run(["yade", "-n", "-x", "p.py"], cwd=planted, capture_output=True, text=True)  # fmt: skip
+    for line in ("before 2", "after 0", "again 2", "closed 0 planted False"):
+        assert line in done.stdout, done.stdout + done.stderr
+
+
+#: Stands in for apt-get and dpkg-query: nothing of this machine is asked or changed.
+APT = """#!/bin/bash
+echo "$@" >> "$LOG"
+[[ " $* " == *" --simulate "* ]] && echo "Inst python3-vtk9 (9.1)" && echo "Remv $REMOVED [5.11]"
+[[ "$*" == update || " $* " == *" --simulate "* ]]
+"""
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root installs packages")
+@pytest.mark.parametrize("removed", ["python3-paraview", ""])
+def test_an_installation_that_would_remove_packages_is_refused(tmp_path, removed):
+    (tmp_path / "bin").mkdir()
+    for name, text in {"apt-get": APT, "dpkg-query": "#!/bin/sh\nexit 1\n"}.items():
+        program = tmp_path / "bin" / name
+        program.write_text(text if removed else text.replace('echo "Remv', ': "'))
+        program.chmod(0o755)
+    (tmp_path / "logs").mkdir()
+    env = dict(os.environ, PATH=f"{tmp_path}/bin:/usr/bin:/bin", REMOVED=removed, LOG=str(tmp_path / "asked"), TMPDIR=str(tmp_path / "logs"))  # fmt: skip
+    setup = os.path.join(ROOT, "scripts", "setup.sh")
+    done = subprocess.run(["bash", setup], env=env, capture_output=True, text=True)
+    assert done.returncode == 1
+    asked = (tmp_path / "asked").read_text().splitlines()
+    assert asked[0] == "update" and "--simulate" in asked[1]
+    if removed:
+        assert "apt-get would remove python3-paraview. Nothing was changed" in done.stderr  # fmt: skip
+        assert len(asked) == 2
+    else:  # the stand-in refuses to install
+        assert len(asked) == 3 and "--no-remove" in asked[2]
+    assert os.listdir(tmp_path / "logs") == []

@@ -1,0 +1,80 @@
+"""The quick variants of the closed forms hold their aims, and what is known to miss one does so still."""
+
+import math
+import os
+import sys
+
+import pytest
+from conftest import ROOT
+
+sys.path.insert(0, os.path.join(ROOT, "validation"))
+sys.path.insert(0, os.path.join(ROOT, "validation", "closed_forms"))
+import closed_forms  # noqa: E402
+from arch_cases import oppenheim  # noqa: E402
+from cases import CASES, Case, between  # noqa: E402
+from masonry import limit  # noqa: E402
+from structures import arch, bound, rests, semicircle, unbalanced  # noqa: E402
+
+
+@pytest.mark.parametrize("case", [c for c in CASES if c.quick], ids=lambda c: c.name)
+def test_a_closed_form(scene, case):
+    result = case.run(quick=True)
+    if case.aim is None:
+        assert math.isfinite(result.error)
+    else:
+        told = f"expected {result.expected:g}, measured {result.measured}"
+        assert result.met == (not case.misses), told
+
+
+def test_there_are_at_least_thirty_cases_with_names_of_their_own():
+    names = [c.name for c in CASES]
+    assert len(names) == len(set(names)) >= 30
+
+
+def test_a_bracket_halves_and_says_when_the_limit_lies_outside():
+    below = lambda x: x < 1.03
+    low, high = between(below, 1.0, 0.01, quick=False)
+    assert low < 1.03 <= high <= low + 0.002
+    assert between(below, 1.0, 0.05, quick=True) == (0.95, 1.05)
+    assert between(below, 1.0, 0.01, quick=True) == (1.01, math.inf)
+    assert between(below, 2.0, 0.01, quick=True) == (0.0, 1.98)
+
+
+def test_the_program_writes_its_table_and_counts_what_misses(
+    tmp_path, capsys, monkeypatch
+):
+    good = Case("good", "g", "a", "b", lambda quick: (1.0, 1.001), aim=0.01)
+    bad = Case("bad", "g", "a", "b", lambda quick: (1.0, (1.1, 1.3)), aim=0.01)
+    broken = Case("broken", "g", "a", "b", lambda quick: 1 / 0, aim=0.01)
+    monkeypatch.setattr(closed_forms, "CASES", [broken, good])
+    path = tmp_path / "table.md"
+    assert closed_forms.main(["--only", "good", "--out", str(path)]) is False
+    assert "| good | a | b | 1 | 1.001 | +0.10 % | ± 1 % |" in path.read_text()
+    assert closed_forms.main(["--out", str(path)]) is True
+    *_, failed, after = path.read_text().splitlines()
+    assert "failed" in failed and "| good |" in after
+    assert "ZeroDivisionError" in capsys.readouterr().err
+    monkeypatch.setattr(closed_forms, "CASES", [bad])
+    assert closed_forms.main([]) is True
+    out = capsys.readouterr().out
+    assert "+20.00 % | ± 1 %, **missed**" in out
+    assert "- bad: the reason is not known" in out
+    with pytest.raises(SystemExit):
+        closed_forms.main(["--only", "nothing"])
+    assert "no case nothing; there are bad" in capsys.readouterr().err
+
+
+def test_the_forces_of_limit_analysis_are_added_up_once_more(scene):
+    arch(oppenheim(), friction=0.7)
+    found = bound()
+    assert found.factor == pytest.approx(0.3736, rel=1e-3)
+    found.normal *= 1.001
+    assert unbalanced(found) > 1e-4
+
+
+@pytest.mark.parametrize("thickness", [0.09, 0.1])
+def test_an_arch_that_is_too_thin_does_not_rest_whatever_the_solver_says(
+    scene, thickness
+):
+    arch(semicircle(7, thickness))
+    assert rests(limit.read()) == (thickness > 0.0957)

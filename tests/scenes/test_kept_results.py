@@ -1,0 +1,342 @@
+"""Results are the user's: what a run may touch, when, and how it ends when something is odd."""
+
+import errno
+import json
+import os
+import shutil
+import signal
+import socket
+import struct
+import subprocess
+import threading
+import time
+from types import SimpleNamespace
+
+import pytest
+from conftest import ROOT
+from masonry import readCheckpoint, results, saveCheckpoint
+from masonry import run as running
+from masonry.errors import Refused
+from masonry.results import Results, readRun
+from masonry.run import Run
+from masonry.structure import Structure
+from small import SMALL, Wall, carryOut, parsed
+
+SHORT = ["--until", "0.05", "--rate", "40", "--no-vtk"]
+LIGHT = Wall("light", length=0.22, courses=4, precompression=0.0, loadHeight=3.0)
+
+
+@pytest.fixture(autouse=True)
+def undrawn(monkeypatch):
+    """Figures take longer than these runs."""
+    monkeypatch.setattr(Structure, "draw", lambda self, directory: None)
+
+
+def contents(folder):
+    return {n: open(os.path.join(folder, n), "rb").read() for n in os.listdir(folder)}
+
+
+def run(out, *words, wall=SMALL, resume=False):
+    """Exit status of a run, refused or not."""
+    where = ["--resume" if resume else "--out", str(out)]
+    try:
+        return carryOut(wall, parsed(*where, *words))
+    except SystemExit as end:
+        return end.code
+
+
+@pytest.fixture
+def finished(scene, tmp_path):
+    out = tmp_path / "finished"
+    assert run(out, *SHORT) == 0
+    return out
+
+
+# -- an earlier run in the folder --------------------------------------------------------------------------------------
+
+
+def test_a_run_that_makes_no_row_leaves_the_results_of_an_earlier_one(
+    finished, monkeypatch, capsys
+):
+    before = contents(finished)
+
+    def spoilt(patch):
+        with monkeypatch.context() as m:
+            patch(m)
+            try:
+                return run(finished, *SHORT)
+            except (OSError, RuntimeError) as error:
+                return str(error)
+            finally:
+                assert contents(finished) == before
+
+    def stop(self):
+        os.kill(os.getpid(), signal.SIGINT)
+
+    def unstable(self, *words):
+        raise RuntimeError("unstable")
+
+    full = lambda folder: SimpleNamespace(free=10)
+    assert spoilt(lambda m: m.setattr(shutil, "disk_usage", full)) == 2
+    assert spoilt(lambda m: m.setattr(Structure, "build", unstable)) == "unstable"
+    assert spoilt(lambda m: m.setattr(Run, "_take", unstable)) == "unstable"
+    assert spoilt(lambda m: m.setattr(Structure, "unrest", lambda self, *rest: stop(self) or (1.0, 1.0))) == 130  # fmt: skip
+    assert "still has the results of an earlier one" in capsys.readouterr().out
+    # The other run has its rows now.
+    assert run(finished, *SHORT, "--rate", "30") == 0
+    assert readRun(str(finished))["options"]["rate"] == 30
+    assert sorted(os.listdir(finished)) == sorted(before)
+
+
+def test_files_that_no_run_has_left_are_refused(finished, tmp_path, capsys):
+    own = tmp_path / "own"
+    own.mkdir()
+    (own / "curve.csv").write_text("my_own_numbers\n1\n")
+    (own / "notes.txt").write_text("beside it")
+    before = contents(own)
+    assert run(own, *SHORT) == 2
+    assert contents(own) == before
+    assert "own holds curve.csv, which no run has left" in capsys.readouterr().err
+    # Beside the record of a run, but with other columns.
+    (finished / "curve.csv").write_text("my_own_numbers\n1\n")
+    assert run(finished, *SHORT) == 2
+    assert (finished / "curve.csv").read_text() == "my_own_numbers\n1\n"
+    # run.json of somebody else.
+    (own / "curve.csv").unlink()
+    (own / "run.json").write_text('{"scene": 1}')
+    assert run(own, *SHORT) == 2
+    # A folder that a refused run made is gone again.
+    assert run(tmp_path / "new", *SHORT, "--set", "bed.cohesion=-1") == 2
+    assert not (tmp_path / "new").exists()
+
+
+# -- two runs in a folder ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("locks", [True, False])
+def test_a_folder_is_for_one_run_at_a_time(finished, monkeypatch, capsys, locks):
+    """Also where the file system has no locks, as some network folders: then the text of the file counts."""
+    if not locks:
+
+        def none(file, how):
+            raise OSError(errno.ENOLCK, "No locks available")
+
+        monkeypatch.setattr(results.fcntl, "flock", none)
+    told, tell = os.pipe()
+    child = os.fork()
+    if child == 0:
+        held = Results(str(finished), ["a_mm"], True, "other")
+        os.write(tell, b"x")
+        time.sleep(60)
+        os._exit(int(held is None))
+    os.read(told, 1)
+    before = contents(finished)
+    try:
+        for words in (dict(), dict(resume=True)):
+            assert run(finished, *([] if words else SHORT), **words) == 2
+            said = capsys.readouterr().err
+            who = f"a run of other on host {socket.gethostname()}, process {child}, is writing to {finished}"
+            assert who in said and len(said.splitlines()) == 1
+        assert contents(finished) == before
+    finally:
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+    assert (finished / "run.lock").exists()
+    assert run(finished, *SHORT) == 0
+    assert not (finished / "run.lock").exists()
+    if not locks:
+        (finished / "run.lock").write_text('{"host": "elsewhere", "process": 1, "scene": "s"}')  # fmt: skip
+        assert run(finished, *SHORT) == 2
+        assert "on host elsewhere, process 1," in capsys.readouterr().err
+
+
+def test_files_of_a_run_that_was_killed_are_replaced(scene, tmp_path):
+    child = os.fork()
+    if child == 0:
+        Results(str(tmp_path / "r"), ["a_mm"]).append([[1.0]])
+        os.kill(os.getpid(), signal.SIGKILL)
+    os.waitpid(child, 0)
+    assert sorted(os.listdir(tmp_path / "r")) == ["curve.csv", "run.lock"]
+    assert run(tmp_path / "r", *SHORT) == 0
+    assert not (tmp_path / "r" / "run.lock").exists()
+
+
+# -- slow steps --------------------------------------------------------------------------------------------------------
+
+
+def test_a_slow_push_obeys_at_once_and_keeps_to_its_checkpoints(
+    scene, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(running, "LOOK_EVERY", 0.1)
+    out, ends = tmp_path / "slow", []
+
+    def end():
+        there = readCheckpoint(str(out / "run.checkpoint"))["at"]
+        ends.append((time.perf_counter(), there["left"]))
+        os.kill(os.getpid(), signal.SIGINT)
+
+    timer = threading.Timer(2.0, end)
+    timer.start()
+    words = ["--rate", "0.001", "--no-vtk", "--checkpoint-every", "0.002"]
+    assert run(out, *words, "--until", "0.05") == 130
+    assert time.perf_counter() - ends[0][0] < 1
+    assert ends[0][1] > 1000  # of the steps of a row
+    assert readCheckpoint(str(out / "run.checkpoint"))["at"]["left"] > 1000
+
+
+def test_a_run_interrupted_between_rows_leaves_the_curve_of_a_whole_one(
+    scene, tmp_path, monkeypatch
+):
+    """The vertical load of this wall keeps its line, so it moves with every row."""
+    wall = Wall(length=0.22, courses=3, loadHeight=0.3, riding=False)
+    words = ["--until", "0.1", "--rate", "40", "--no-vtk"]
+    assert run(tmp_path / "whole", *words, wall=wall) == 0
+    whole = (tmp_path / "whole" / "curve.csv").read_bytes()
+    steps = readRun(str(tmp_path / "whole"))["steps"]
+    out, left = tmp_path / "broken", []
+    keepSafe = Run._keepSafe
+
+    def interrupt(self):
+        keepSafe(self)
+        if self.at.left and self.at.steps >= goal:
+            self.interrupted = True
+            left.append(self.at.left)
+
+    monkeypatch.setattr(running, "LOOK_EVERY", 0.0)
+    monkeypatch.setattr(Run, "_keepSafe", interrupt)
+    for share in (0.3, 0.8, 0.9, 0.95):
+        goal = int(share * steps)
+        again = dict(resume=True) if out.exists() else dict()
+        assert run(out, *([] if again else words), wall=wall, **again) == 130
+    goal = steps + 1
+    assert run(out, wall=wall, resume=True) == 0
+    assert len(left) == 4 and (out / "curve.csv").read_bytes() == whole
+
+
+# -- what is odd -------------------------------------------------------------------------------------------------------
+
+
+def test_what_is_no_checkpoint_is_refused_at_once(finished, capsys):
+    kept = finished / "run.checkpoint"
+    data = kept.read_bytes()
+
+    def refused(message):
+        before = set(os.listdir(finished))
+        assert run(finished, resume=True) == 2
+        said = capsys.readouterr().err
+        assert message in said and len(said.splitlines()) == 1
+        assert set(os.listdir(finished)) == before
+
+    kept.unlink()
+    os.mkfifo(kept)
+    refused("no regular file")
+    kept.unlink()
+    kept.symlink_to("/dev/zero")
+    refused("no regular file")
+    kept.unlink()
+    with open(kept, "wb") as f:
+        f.truncate(20 << 30)
+    refused("is no masonry checkpoint")
+    with open(kept, "wb") as f:
+        f.write(data)
+        f.truncate(20 << 30)
+    refused("is damaged: its size is not what it says")
+    kept.unlink()
+    kept.mkdir()
+    refused("")
+
+
+def test_a_checkpoint_whose_words_are_of_another_kind_is_refused(finished, capsys):
+    """Every entry of a record is replaced by values of other kinds, one at a time, under a right sum."""
+    kept = str(finished / "run.checkpoint")
+    told = readCheckpoint(kept)
+    wrong = [None, -1, "x", ["x"], {"x": 1}]
+    tried, welcome = 0, []
+    for where in ([], ["at"], ["at", "memory"], ["at", "seconds"], ["options"]):
+        place = told
+        for key in where:
+            place = place[key]
+        for key, right in list(place.items()):
+            if key in ("build", "YADE", "threads", "checkpoint_every", "until"):
+                continue
+            for value in wrong:
+                if type(value) is type(right) or right is None:
+                    continue
+                if isinstance(right, float) and not isinstance(value, (str, list, dict, type(None))):  # fmt: skip
+                    continue
+                place[key] = value
+                saveCheckpoint(kept, told)
+                try:
+                    parsed("--resume", str(finished))
+                    status = "parsed"
+                except SystemExit as end:
+                    status = end.code
+                if status == "parsed":
+                    status = run(finished, resume=True)
+                assert status in (0, 2), (where, key, value)
+                said = capsys.readouterr().err
+                assert "Traceback" not in said
+                if status == 0:
+                    welcome.append((key, value))
+                tried += 1
+            place[key] = right
+    assert tried > 100
+    assert welcome == [("origin", None)]  # a push that has not begun
+
+
+def test_odd_names_and_terminals_end_in_order(tmp_path):
+    """A folder that is not UTF-8, and a terminal that has no µ and no m³."""
+    script = tmp_path / "s.py"
+    script.write_text(
+        "from masonry import Scene, bricks, materials\n"
+        "m = materials.calciumSilicate()\n"
+        "s = Scene('two', bricks.stack(3, (0.2, 0.1, 0.1)), m, arguments=['--no-vtk', '--out', 'r'])\n"
+        "s.platen('bottom')\n"
+        "s.settle()\n"
+        "s.finish()\n"
+    )
+    plain = dict(os.environ, PYTHONIOENCODING="ascii:strict")
+    told = subprocess.run(["yade", "-n", "-x", script], cwd=tmp_path, env=plain, capture_output=True)  # fmt: skip
+    assert told.returncode == 0, told.stderr
+    assert b"\\xb5s" in told.stdout
+    odd = os.fsencode(tmp_path) + b"/caf\xe9"
+    couplet = os.path.join(ROOT, "scripts", "couplet.py")
+    told = subprocess.run(["yade", "-n", "-x", couplet, "--out", odd], capture_output=True)  # fmt: skip
+    assert told.returncode == 2 and b"is not UTF-8" in told.stderr
+    with pytest.raises(Refused, match="its name is not UTF-8"):
+        Results(os.fsdecode(odd), ["a_mm"])
+    assert not os.path.exists(odd)
+
+
+def test_a_wall_that_falls_before_its_push_ends_with_status_1(
+    scene, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(Structure, "hasSunk", lambda self, down=None: True)
+    assert run(tmp_path / "r", *SHORT) == 1
+    assert readRun(str(tmp_path / "r"))["collapsed"]
+
+
+def test_a_wall_that_moves_against_its_push_has_collapsed(scene, tmp_path, capsys):
+    """The foot of a tall loading block on slippery joints moves back while its head is pushed."""
+    words = ["--rate", "100", "--until", "10", "--no-vtk"]
+    for what in ("residualFriction=0.01", "friction=0.01", "cohesion=0", "tensileStrength=0"):  # fmt: skip
+        words += ["--set", "bed." + what]
+    assert run(tmp_path / "r", *words, wall=LIGHT) == 0
+    told = "collapsed: at -1.00 mm it moves against its push"
+    assert told in capsys.readouterr().out
+    assert len(results.readCurve(str(tmp_path / "r"))["time_s"]) < 1000
+
+
+def test_no_earlier_checkpoint_is_promised_where_there_is_none(
+    scene, tmp_path, monkeypatch, capsys
+):
+    out = tmp_path / "r"
+
+    def refuse(path, extra=None):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as m:
+        m.setattr(running, "saveCheckpoint", refuse)
+        assert run(out, *SHORT) == 0
+    said = capsys.readouterr().err
+    assert said.endswith("No space left on device\n")

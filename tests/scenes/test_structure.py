@@ -1,0 +1,458 @@
+"""Scenes of one's own: stages, how they end, closed forms of what they measure, and what they refuse."""
+
+import pytest
+from masonry import Scene, bricks, materials
+from masonry.errors import Refused
+from masonry.ground import readRecord
+from masonry.results import readCurve, readRun
+from masonry.stages import AT_REST, COLLAPSED, DONE
+from yade import O
+
+STONE = 2600 * 9.81  # [N/m³]
+
+
+def made(folder, blocks, masonry=None, words=(), **settings):
+    words = ["--no-vtk", "--out", str(folder), *words]
+    return Scene(
+        "tried", blocks, masonry or materials.dry(), arguments=words, **settings
+    )
+
+
+@pytest.fixture
+def pier(tmp_path):
+    """A small pier between platens at rest, and its platens."""
+    blocks = bricks.Wall(0.66, 0.486)
+    scene = made(tmp_path, blocks, materials.calciumSilicate())
+    base, top = scene.platen("bottom"), scene.platen("top", rotation="held")
+    scene.press(top, 0.3e6)
+    assert scene.settle() == AT_REST
+    return scene, base, top
+
+
+def test_at_rest_the_support_carries_weight_and_pressure(pier):
+    scene, *_ = pier
+    weight = 0.66 * 0.102 * (0.3e6 + 1800 * 9.81 * 0.486)
+    carried = -1e3 * scene.results.column("base_force_z_kN")[-1]
+    assert carried == pytest.approx(weight, rel=5e-3)
+    scene.finish()
+
+
+def test_a_push_and_its_figures(pier, tmp_path):
+    scene, base, top = pier
+    assert scene.push(top, 0.5) == DONE
+    scene.finish()
+    curve, run = readCurve(str(tmp_path)), readRun(str(tmp_path))
+    assert curve["displacement_mm"][-1] == pytest.approx(0.5, abs=0.02)
+    assert curve["top_x_mm"][-1] == pytest.approx(0.5, abs=0.02)
+    assert run["peak_base_shear_kN"] == pytest.approx(max(curve["base_shear_kN"]))
+    assert run["peak_base_shear_kN"] > 5
+    assert run["ended"] == DONE and not run["collapsed"]
+    assert (tmp_path / "curve.png").exists()
+
+
+def test_cycles_reach_both_sides(pier, tmp_path):
+    scene, _, top = pier
+    scene.cycle(top, [0.2, 0.4])
+    scene.finish()
+    run, moved = readRun(str(tmp_path)), readCurve(str(tmp_path))["displacement_mm"]
+    assert [c["amplitude_mm"] for c in run["cycles"]] == pytest.approx(
+        [0.2, 0.4], abs=0.02
+    )
+    assert (min(moved), max(moved)) == pytest.approx((-0.4, 0.4), abs=0.01)
+
+
+def test_a_resumed_scene_equals_one_without_a_break(tmp_path):
+    def play(folder, words=(), stop=None):
+        scene = made(
+            folder, bricks.Wall(0.44, 0.324), materials.calciumSilicate(), words
+        )
+        base, top = scene.platen("bottom"), scene.platen("top")
+        scene.press(top, 0.3e6)
+        try:
+            scene.settle()
+            if stop:
+                before = scene.advance
+
+                def advance(steps, one=None):
+                    before(steps, one)
+                    if O.iter > stop:
+                        scene.interrupted = True
+
+                scene.advance = advance
+            scene.push(top, 0.2)
+            scene.move(base, z=-0.1)
+        except SystemExit:
+            pass
+        scene.finish()
+
+    play(tmp_path / "whole")
+    steps = readRun(str(tmp_path / "whole"))["steps"]
+    play(tmp_path / "broken", stop=int(0.8 * steps))
+    assert readRun(str(tmp_path / "broken"))["interrupted"]
+    play(tmp_path / "broken", ["--resume", str(tmp_path / "broken")])
+    whole, broken = (
+        (tmp_path / n / "curve.csv").read_bytes() for n in ("whole", "broken")
+    )
+    assert whole == broken
+
+
+def small(folder, *words, press=1e5, push=0.05):
+    scene = made(folder, bricks.stack(3, (0.4, 0.3, 0.2)), words=words)
+    scene.platen("bottom")
+    top = scene.platen("top")
+    scene.press(top, press)
+    scene.settle()
+    scene.push(top, push)
+    return scene, top
+
+
+def test_the_drive_stops_when_its_stage_ends(tmp_path):
+    scene, top = small(tmp_path)
+    scene.run(0.05)
+    scene.lean(0.02)
+    assert scene.results.column("displacement_mm")[-1] == pytest.approx(0.05, abs=0.01)
+    scene.finish()
+
+
+def test_a_platen_presses_what_it_touches(tmp_path):
+    blocks = bricks.Corner(1.1, 0.88, 0.486, halves=False)
+    scene = made(tmp_path, blocks, materials.dry(normalStiffness=5e10))
+    scene.platen("bottom")
+    scene.press(scene.platen("top", part="wall"), 1e5)
+    assert scene.settle() == AT_REST
+    tops = [b for b in blocks.top() if b.part == "wall"]
+    area = sum((b.high[0] - b.low[0]) * (b.high[1] - b.low[1]) for b in tops)
+    carried = -1e3 * scene.results.column("base_force_z_kN")[-1]
+    assert carried == pytest.approx(1e5 * area + STONE * blocks.volume, rel=6e-3)
+    scene.finish()
+
+
+def test_a_guided_platen_has_its_share_of_the_force(tmp_path):
+    scene = made(tmp_path, bricks.stack(3, (0.4, 0.3, 0.2)))
+    scene.platen("bottom")
+    scene.press(scene.platen("top", guided="x"), 1e5)
+    scene.settle()
+    assert scene.lean(0.2) == AT_REST
+    column = scene.results.column
+    both = column("base_force_x_kN")[-1] + column("top_force_x_kN")[-1]
+    assert both == pytest.approx(1e-3 * 0.2 * STONE * 0.4 * 0.3 * 0.6, rel=0.01)
+    assert column("base_shear_kN")[-1] == pytest.approx(both, rel=1e-6)
+    scene.finish()
+
+
+def test_a_resumed_script_must_say_the_same(tmp_path, capsys):
+    small(tmp_path)[0].finish()
+    with pytest.raises(SystemExit) as end:
+        small(tmp_path, "--resume", str(tmp_path), press=2e5)
+    assert end.value.code == 2
+    assert "the script said" in capsys.readouterr().err
+    scene, _ = small(tmp_path, "--resume", str(tmp_path), push=0.08)  # farther
+    assert scene.results.column("displacement_mm")[-1] == pytest.approx(0.08, abs=0.01)
+    scene.finish()
+
+
+def test_two_scenes_at_once_are_refused(tmp_path):
+    one, _ = small(tmp_path / "one")
+    two, _ = small(tmp_path / "two")
+    with pytest.raises(ValueError, match="scene tried is gone"):
+        one.lean(0.1)
+    two.finish()
+
+
+@pytest.mark.parametrize(
+    "act, told",
+    [
+        (lambda s, t: s.push(t, 0.1, rate=0), "push: rate 0 must be a number above 0"),
+        (lambda s, t: s.accelerate(0.3, rate=-1), "accelerate: rate -1 must be"),
+        (lambda s, t: s.tilt(5, rate=0), "tilt: rate 0 must be a number above 0"),
+        (lambda s, t: s.bracket(lambda f: f < 0.1, 0.2, 0.3), "does not carry 0.2"),
+        (
+            lambda s, t: s.bracket(lambda f: True, 0.2, 0.3),
+            "carries 0.3, the upper end",
+        ),
+        (lambda s, t: s.bracket(lambda f: True, 0.3, 0.2), "below high 0.2"),
+        (lambda s, t: s.push(t, 0.1, direction=(0, 1, 0)), "in the x-z plane"),
+        (lambda s, t: s.press(t, 1e5), "must come before the first stage"),
+    ],
+)
+def test_wrong_stages_are_refused(tmp_path, act, told):
+    scene, top = small(tmp_path)
+    with pytest.raises(ValueError, match=told):
+        act(scene, top)
+
+
+def test_loads_that_have_not_grown_are_refused(tmp_path):
+    scene = made(tmp_path, bricks.stack(3, (0.4, 0.3, 0.2)))
+    scene.platen("bottom")
+    top = scene.platen("top")
+    scene.press(top, 1e5)
+    with pytest.raises(ValueError, match=r"the loads on top grow in settle\(\)"):
+        scene.push(top, 1)
+
+
+def test_help_leads_to_every_module():
+    import masonry
+
+    for name in dir(masonry):
+        getattr(masonry, name)
+
+
+def test_a_block_that_is_tilted_beyond_its_diagonal_falls(tmp_path):
+    block = bricks.stack(1, (0.25, 0.25, 0.5))
+    scene = made(tmp_path, block, materials.dry(friction=5, normalStiffness=1e10))
+    scene.platen("bottom")
+    scene.settle()
+    assert scene.tilt(45, rate=3) == COLLAPSED
+    assert scene.factor == pytest.approx(0.5, rel=0.01)
+    assert scene.run(0.1) == COLLAPSED
+    scene.stepBack()
+    assert scene.lean(0.48) == AT_REST
+    assert scene.lean(0.52) == COLLAPSED
+    scene.stepBack()
+    scene.finish()
+    assert readRun(str(tmp_path))["collapse"] is None
+
+
+def test_a_property_varies_from_place_to_place(tmp_path):
+    masonry = materials.calciumSilicate().vary("bed.cohesion", lambda x, y, z: 1 + z)
+    scene = made(tmp_path, bricks.Wall(0.44, 0.81), masonry)
+    scene.platen("bottom")
+    scene.settle()
+    found = {
+        round(i.geom.polygon[0][2], 6): i.phys.joint.cohesion
+        for i in O.interactions
+        if i.phys.joint.name == "bed"
+    }
+    assert len(found) == 9
+    for height, cohesion in found.items():
+        assert cohesion == pytest.approx(0.11e6 * (1 + height), rel=5.1e-3)
+    scene.finish()
+
+
+def test_a_variation_that_cannot_be_is_refused(tmp_path):
+    masonry = materials.calciumSilicate().vary("bed.cohesion", lambda x, y, z: 0.3)
+    scene = made(tmp_path, bricks.Wall(0.44, 0.81), masonry)
+    scene.platen("bottom")
+    with pytest.raises(ValueError, match=r"vary: at \(.*\) m: joint \"bed\": tensile"):
+        scene.settle()
+    with pytest.raises(ValueError, match="vary: no property 'bed.cohesive'"):
+        materials.calciumSilicate().vary("bed.cohesive", lambda x, y, z: 1)
+
+
+def test_nothing_held_is_refused(tmp_path):
+    scene = made(tmp_path, bricks.stack(2, (0.2, 0.2, 0.2)))
+    with pytest.raises(SystemExit) as end:
+        scene.settle()
+    assert end.value.code == 2
+
+
+@pytest.mark.parametrize(
+    "act, told",
+    [
+        (lambda s: s.platen("left"), "where must be 'bottom' or 'top', got 'left'"),
+        (
+            lambda s: s.platen("bottom", rotation="free"),
+            "the one at the bottom is fixed",
+        ),
+        (lambda s: s.platen("top", height=-1), "height -1 m must be above 0"),
+        (
+            lambda s: s.press(s.platen("bottom"), 1e6),
+            "only a platen that moves can be pressed",
+        ),
+        (lambda s: s.press(s.platen("top"), -1), "stress -1 must be at least 0 Pa"),
+        (lambda s: s.hold(99), "brick 99: there are 2 bricks"),
+        (lambda s: s.hold((9, 9, 9)), "no brick is near"),
+        (lambda s: s.hold(0, axes="q"), "axes must be some of 'xyzXYZ', got 'q'"),
+        (
+            lambda s: (s.hold(0, name="a"), s.hold(1, name="a")),
+            "two targets of the name 'a'",
+        ),
+        (
+            lambda s: s.hold(0, name="my brick"),
+            "must be letters, digits and underscores",
+        ),
+        (lambda s: s.column("x", "", 3), "column x: value must be a function"),
+        (
+            lambda s: s.column("my x", "", lambda: 1),
+            "a name must be letters, digits and",
+        ),
+        (
+            lambda s: s.load(s.platen("top"), (0, 9, 0)),
+            "load: the scene is in the x-z plane",
+        ),
+        (lambda s: s.hold(0, axes="y"), "in the x-z plane no block moves along y"),
+        (lambda s: s.platen("top", part="roof"), "no part 'roof'; there are stack"),
+    ],
+)
+def test_wrong_words_are_refused(tmp_path, act, told):
+    scene = made(tmp_path, bricks.stack(2, (0.2, 0.2, 0.2)))
+    with pytest.raises(ValueError, match=told):
+        act(scene)
+
+
+@pytest.mark.parametrize(
+    "wrong, told",
+    [
+        (dict(name="a/b"), "name must be a text that can name a folder"),
+        (dict(bricks=[]), "bricks must be a list of blocks"),
+        (dict(materials=5), "materials must be a masonry.materials.Masonry, got 5"),
+        (dict(gravity=-1), "gravity -1 must be at least 0"),
+    ],
+)
+def test_wrong_scenes_are_refused(wrong, told):
+    right = dict(name="a", bricks=bricks.stack(1, (1, 1, 1)), materials=materials.dry())
+    with pytest.raises(Refused, match=told):
+        Scene(**{**right, **wrong})
+
+
+# -- supports that go, wind, drift, pushes that go on, records --------------------------------------------------------
+
+
+def test_a_support_is_released_and_the_other_one_carries_all(tmp_path):
+    """A stone on two legs, which stand on held stones; a third one in the middle takes the weight when one leg goes."""
+    stone = lambda x, z, w, n: bricks.block((x, 0, z), (x + w, 0.2, z + 0.2))
+    legs = [stone(x, 0, 0.2, n) for n, x in enumerate((0.0, 0.4, 0.8))]
+    beam = bricks.block((0, 0, 0.2), (1.0, 0.2, 0.4))
+    scene = made(tmp_path, sum([*legs, beam]), materials.dry(normalStiffness=1e10))
+    left, middle, right = (scene.hold(n, name=f"leg{n}") for n in range(3))
+    assert scene.settle() == AT_REST
+    carried = lambda name: -scene.results.column(f"{name}_force_z_kN")[-1]
+    assert carried("leg2") > 0.1
+    scene.release(right, "xyzXYZ")
+    scene.run(0.2)
+    weight = 1e-3 * STONE * 1.0 * 0.2 * 0.2
+    # the leg has fallen off, and hangs on nothing: the joint has no tensile strength
+    assert carried("leg0") + carried("leg1") == pytest.approx(weight, rel=0.05)
+    assert scene.results.column("leg2_z_mm")[-1] < -50
+    with pytest.raises(ValueError, match="release: leg2 is not held along x"):
+        scene.release(right, "x")
+
+
+def test_loads_stay_when_a_structure_settles_again(tmp_path):
+    scene, top = small(tmp_path)
+    before = scene.model.loads["top_force"].force[2]
+    assert scene.settle() == AT_REST
+    assert scene.model.loads["top_force"].force[2] == before < 0
+    scene.finish()
+
+
+def test_a_drive_that_is_released_leaves_a_force(tmp_path):
+    scene = made(tmp_path, bricks.stack(2, (0.4, 0.3, 0.2)), gravity=0)
+    base, top = scene.platen("bottom"), scene.platen("top", drive="xz")
+    joint = scene.joint(0, 1)
+    scene.pressJoint(top, joint, -1e5)
+    scene.run(0.05)
+    assert scene.results.column("joint0_normal_stress_MPa")[-1] == pytest.approx(-0.1, rel=1e-3)  # fmt: skip
+    assert scene.results.column("base_force_z_kN")[-1] == pytest.approx(-12, rel=1e-3)
+    with pytest.raises(ValueError, match="top has drives along x, z alone, not along"):
+        scene.push(top, 1, direction=(1, 0, 1))
+
+
+def test_a_second_push_in_another_direction_does_not_let_go(tmp_path):
+    scene = made(tmp_path, bricks.stack(2, (0.4, 0.3, 0.2)), plane=False)
+    scene.platen("bottom")
+    top = scene.platen("top")
+    scene.press(top, 1e5)
+    scene.settle()
+    scene.push(top, 0.02)
+    with pytest.raises(ValueError, match="would let go of it to push along"):
+        scene.push(top, 0.02, direction=(0, 1, 0))
+
+
+def test_a_push_goes_on_from_where_the_one_before_began(tmp_path):
+    scene, top = small(tmp_path)
+    scene.push(top, 0.08, goOn=True)
+    moved = scene.results.column("displacement_mm")
+    assert moved[-1] == pytest.approx(0.08, abs=0.01) and len(scene.at.stages) == 3
+    assert scene.results.column("top_x_mm")[-1] == pytest.approx(0.08, abs=0.01)
+    scene.push(top, 0.03)
+    assert scene.results.column("top_x_mm")[-1] == pytest.approx(0.11, abs=0.01)
+    with pytest.raises(ValueError, match="goOn: top has not been pushed along"):
+        scene.push(top, 1, direction=(-1, 0, 0), goOn=True)
+
+
+def test_storey_drift_is_the_difference_of_two_floors(tmp_path):
+    blocks = bricks.stack(4, (0.4, 0.3, 0.2))
+    scene = made(tmp_path, blocks, materials.dry(normalStiffness=1e8))
+    base, top = scene.platen("bottom"), scene.platen("top")
+    floor = scene.watch((0.2, 0.15, 0.4), name="floor")
+    scene.drift(base, floor, name="first"), scene.drift(floor, top)
+    with pytest.raises(ValueError, match="drift: base at z = -0.2 m must be above top"):
+        scene.drift(top, base)
+    scene.press(top, 1e5)
+    scene.settle()
+    scene.push(top, 0.1)
+    value = lambda name: scene.results.column(name)[-1]
+    assert value("first_x_mm") == value("floor_x_mm") > 0
+    assert value("top_drift_x_mm") == pytest.approx(value("top_x_mm") - value("floor_x_mm"))  # fmt: skip
+    assert value("top_drift_x_mrad") == pytest.approx(value("top_drift_x_mm") / 0.6)
+    scene.finish()
+
+
+def test_wind_overturns_a_wall_at_the_pressure_of_statics(tmp_path):
+    """A wall t thick and h high falls over its edge at the pressure ρ g t²/h; its joints are stiff."""
+    blocks = bricks.Wall(0.44, 0.81, halves=False)
+    limit = STONE * 0.102**2 / 0.81
+    for share, ends in ((0.96, AT_REST), (1.04, COLLAPSED)):
+        scene = made(tmp_path, blocks, materials.dry(normalStiffness=2e12), plane=False)
+        scene.platen("bottom")
+        area = scene.wind(share * limit, towards=(0, 1, 0))
+        assert area == pytest.approx(0.44 * 0.81)
+        assert scene.settle(longest=4) == ends
+        if ends == AT_REST:
+            force = 1e-3 * share * limit * area
+            assert scene.results.column("base_force_y_kN")[-1] == pytest.approx(force, rel=0.01)  # fmt: skip
+        try:
+            scene.finish()
+        except SystemExit as end:  # what falls in settle() ends with status 1
+            assert end.code == 1 and ends == "collapsed"
+        assert readRun(str(tmp_path))["energy_balance_error"] < 1e-3
+
+
+def test_wind_that_cannot_be_is_refused(tmp_path):
+    blocks = bricks.Wall(0.44, 0.81, halves=False)
+    scene = made(tmp_path, blocks, materials.dry(), plane=False)
+    for pressure, way, told in (
+        (0, (0, 1, 0), "pressure 0 Pa must be other than 0"),
+        (500, (0, 0, 1), "the direction must be horizontal"),
+        (500, (0, 0, 0), "the direction must be horizontal"),
+    ):
+        with pytest.raises(ValueError, match=told):
+            scene.wind(pressure, way)
+    scene = made(tmp_path, blocks, materials.dry(), ["--blocks", "deformable"])
+    with pytest.raises(Refused, match="wind: it loads rigid bricks"):
+        scene.wind(500, (1, 0, 0))
+
+
+@pytest.mark.parametrize("rate", [0.2, 1.0])
+def test_a_growing_acceleration_tells_where_the_structure_left_rest(tmp_path, rate):
+    """A block of 0.25 × 0.5 m leaves rest at b/h = 0.5, whatever the rate, though it falls only later."""
+    block = bricks.stack(1, (0.25, 0.25, 0.5))
+    scene = made(tmp_path, block, materials.dry(friction=5, normalStiffness=1e12))
+    scene.platen("bottom")
+    scene.settle()
+    assert scene.accelerate(0.9, rate=rate) == COLLAPSED
+    assert scene.factor == pytest.approx(0.5, rel=0.01)
+    assert scene.model.factor() > 0.51  # when it was told
+    scene.finish()
+
+
+@pytest.mark.parametrize(
+    "peak, settings, told",
+    [
+        (0.4, {}, "the peak of the record is 0.4, .* is it in g"),
+        (400, {}, "the peak of the record is 400, .* is it in cm/s²"),
+        (2, dict(scale=0.1), "the peak of the record is 0.2"),
+        (2, dict(unit="mm/s²"), "unit must be one of m/s², g, cm/s², got 'mm/s²'"),
+    ],
+)
+def test_a_record_in_another_unit_is_asked_about(peak, settings, told):
+    with pytest.raises(Refused, match=told):
+        readRecord([0, peak, -peak / 2], 0.01, **settings)
+
+
+def test_a_record_is_read_in_its_unit(tmp_path):
+    assert readRecord([0, 4.0], 0.01)[0] == [0, 4.0]
+    assert readRecord([0, 0.4], 0.01, unit="g")[0] == pytest.approx([0, 3.924])
+    assert readRecord([0, 400], 0.01, unit="cm/s²")[0] == pytest.approx([0, 4])
+    assert readRecord([0, 0.4], 0.01, unit="m/s²")[0] == [0, 0.4]

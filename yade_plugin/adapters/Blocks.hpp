@@ -1,0 +1,19 @@
+// Which bodies are blocks: those with a MasonryBlock, and those with a Polyhedra of a YADE that has this class.
+#pragma once
+#include "blocks/FaceContact.hpp"
+#include "host/Yade.hpp"
+
+namespace masonry {
+
+// The corners of a block [m], relative to its centroid and in the axes of its body. Null if the shape is none of a
+// block, or if there is no shape.
+const std::vector<yade::Vector3r>* cornersOf(const yade::Shape*);
+
+inline bool isBlock(const yade::Shape* shape) { return cornersOf(shape) != nullptr; }
+
+// A block in the axes of its body. The shape must be that of a block.
+ConvexBlock blockOf(yade::Shape&);
+// The same block at a position and orientation, in global axes.
+ConvexBlock blockOf(yade::Shape&, const yade::Vector3r& position, const yade::Quaternionr& orientation);
+
+} // namespace masonry

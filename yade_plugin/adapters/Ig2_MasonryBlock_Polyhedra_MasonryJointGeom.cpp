@@ -1,0 +1,5 @@
+#include "Ig2_MasonryBlock_Polyhedra_MasonryJointGeom.hpp"
+
+template class masonry::Adapter<masonry::Ig2_MasonryBlock_Polyhedra_MasonryJointGeom,
+                                masonry::Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom>;
+BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Ig2_MasonryBlock_Polyhedra_MasonryJointGeom)
