@@ -176,7 +176,7 @@ def test_both_solvers_agree(scene, monkeypatch):
     a = wall(6, 4, 0.6)
     first = sideways(a).factor
     calls = []
-    monkeypatch.setattr(limit, "_clp", lambda *words: calls.append(1) or gone())
+    monkeypatch.setattr(limit.programme, "_clp", lambda *words: calls.append(1) or gone())
 
     def gone():
         raise OSError("no library")

@@ -40,7 +40,12 @@ WITHOUT_YADE = [
 ORDER = WITHOUT_YADE + [
     "_masonry",  # the plugin
     "scene",
-    "limit",
+    "limit.programme",
+    "limit.bound",
+    "limit.slipping",
+    "limit.assembly",
+    "limit.reading",
+    "limit.__init__",
     "window",
     "materials",
     "checkpoints",
@@ -56,6 +61,7 @@ ORDER = WITHOUT_YADE + [
     "__init__",
 ]
 MODULES = [name for name in ORDER if name != "_masonry"]
+PACKAGES = ["bricks", "limit"]  # inside the package
 SCENES = [n[:-3] for n in os.listdir(os.path.join(ROOT, "scripts")) if n[-3:] == ".py"]
 
 
@@ -79,7 +85,7 @@ def imports(path):
             parts += [node.module] if node.module else []
             whole = ".".join(parts)
             names = [whole]
-            if whole in ("masonry", "masonry.bricks"):
+            if whole in ("masonry", *("masonry." + inner for inner in PACKAGES)):
                 names = [f"{whole}.{alias.name}" for alias in node.names]
         else:
             continue
@@ -92,20 +98,17 @@ def ownModule(name):
     package, *rest = name.split(".")
     if package != "masonry":
         return None
-    if rest[:1] == ["bricks"]:
+    if rest and rest[0] in PACKAGES:
         own = ".".join(rest[:2])
-        return own if own in ORDER else "bricks.__init__"
+        return own if own in ORDER else rest[0] + ".__init__"
     return rest[0] if rest else "__init__"
 
 
 def test_the_order_names_all_modules():
     files = [
-        prefix + name[:-3]
-        for prefix, folder in (
-            ("", PACKAGE),
-            ("bricks.", os.path.join(PACKAGE, "bricks")),
-        )
-        for name in os.listdir(folder)
+        (f"{inner}." if inner else "") + name[:-3]
+        for inner in ("", *PACKAGES)
+        for name in os.listdir(os.path.join(PACKAGE, inner))
         if name.endswith(".py")
     ]
     assert sorted(files) == sorted(MODULES)

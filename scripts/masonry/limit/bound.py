@@ -1,0 +1,302 @@
+"""What limit analysis found: the factor, forces, and the mechanism with its files."""
+
+import os
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..figures import mechanism
+from .programme import FACETS
+
+SLIDES = 1e-4  # share of the power of a mechanism that is friction, from which its joints slide [-]
+GIVES = 0.02  # less than this share of the largest motion between two blocks of the mechanism is not told [-]
+
+MECHANISM = "mechanism_blocks.vtu", "mechanism_joints.vtu"  # files for ParaView
+SHOWN = 0.06  # how far the fastest corner is drawn to move, over the size of the structure [-]
+
+
+@dataclass
+class Bound:
+    """What limit analysis found: a load factor, and the mechanism at which the structure gives way.
+
+    Velocities are those with which the live load has a power of 1, so only their ratios mean something.
+    """
+
+    assembly: object  #: :class:`Assembly`
+    #: factor that was maximised [-]; :attr:`factor` has its sign
+    value: float
+    velocities: np.ndarray  #: of blocks (n, 6): of the centroid, and of the rotation
+    live: np.ndarray
+    dead: np.ndarray
+    normal: np.ndarray  #: force on each contact, positive in compression [N]
+    along: np.ndarray  #: force along the joint on each contact (c, 3) [N]
+    #: change of the factor when the facets of friction were turned last [-]; 0 in the plane, where there are none
+    facetError: float = 0.0
+    dilates: bool = True  #: whether joints that slip open as friction tells
+    settled: bool = False  #: of :meth:`Assembly.withoutDilatancy`
+    #: factor of a mechanism in which open joints slip, if that is lower, else None [-]
+    weaker: float = None
+    factor: float = field(init=False)  #: on the live load [-]
+
+    def __post_init__(self):
+        self.factor = self.value
+
+    # -- forces ---------------------------------------------------------------------------------------------------
+
+    @property
+    def compressed(self):
+        """Normal forces by which friction is judged [N]: one a joint in the plane, one a contact in space."""
+        a = self.assembly
+        if a.plane:
+            return np.bincount(a.contacts.joint, self.normal, len(a.pairs))
+        return self.normal
+
+    @property
+    def directions(self):
+        """Angle of the force along the joint on each contact, from the joint's first tangent [rad]."""
+        one, two = self.assembly.tangents[self.assembly.contacts.joint].swapaxes(0, 1)
+        return np.arctan2((self.along * two).sum(1), (self.along * one).sum(1))
+
+    @property
+    def overstressed(self):
+        """How far forces along the joints are above friction and cohesion, as a share of all of them [-]."""
+        a, c = self.assembly, self.assembly.contacts
+        joint = c.joint
+        strength = a.cohesion[joint] * c.area + a.friction[joint] * self.normal
+        along = np.linalg.norm(self.along, axis=1)
+        if a.plane:  # one force along each joint
+            one = (self.along * a.tangents[joint, 0]).sum(axis=1)
+            count = len(a.pairs)
+            along = np.abs(np.bincount(joint, one, count))
+            strength = np.bincount(joint, strength, count)
+        return float(np.maximum(along - strength, 0).sum() / max(along.sum(), 1e-300))
+
+    # -- the mechanism --------------------------------------------------------------------------------------------
+
+    def motion(self, block, at):
+        """Velocities of points of blocks. ``block`` are numbers, ``at`` their points (k, 3) [m]."""
+        u = self.velocities[block]
+        return u[:, :3] + np.cross(u[:, 3:], at - self.assembly.centres[block])
+
+    def jumps(self, joint, at):
+        """Opening (k) and slide (k, 3) of points (k, 3) of joints."""
+        one, two = self.assembly.pairs[joint].T
+        jump = self.motion(two, at) - self.motion(one, at)
+        normal = self.assembly.normals[joint]
+        opening = (jump * normal).sum(axis=1)
+        return opening, jump - opening[:, None] * normal
+
+    def fastest(self):
+        """Number of the block with the fastest centroid."""
+        return int(np.linalg.norm(self.velocities[:, :3], axis=1).argmax())
+
+    @property
+    def powers(self):
+        """Power of the mechanism by what takes it, with the live load at its factor and the dead loads, as a dict:
+        ``friction``, ``cohesion``, ``tension``, ``crushing``, and ``loads``, which is the sum of what the loads do, all counted
+        positive.
+        """
+        a, c = self.assembly, self.assembly.contacts
+        opening, slide = self.jumps(c.joint, c.at)
+        speed = np.linalg.norm(slide, axis=1)
+        pressed = np.maximum(self.normal, 0)
+        cohesion = (a.cohesion[c.joint] * c.area * speed).sum()
+        shear = -(self.along * slide).sum()
+        if a.plane:  # the force along the joint stands at one of its points
+            shear = np.abs((self.along * slide).sum(axis=1)).sum()
+        shear = abs(shear)
+        closing = np.where(np.isfinite(a.crushing[c.joint]), np.maximum(-opening, 0), 0)
+        return {
+            "friction": max(0.0, shear - cohesion),
+            "cohesion": float(cohesion),
+            "tension": float(
+                (a.tension[c.joint] * c.area * np.maximum(opening, 0)).sum()
+            ),
+            "crushing": float((pressed * closing).sum()),
+            "loads": float(
+                abs((self.factor * self.live * self.velocities).sum())
+                + np.abs((self.dead * self.velocities).sum(axis=1)).sum()
+            ),
+        }
+
+    @property
+    def slides(self):
+        """Whether friction takes part in the mechanism."""
+        powers = self.powers
+        return powers["friction"] > SLIDES * powers["loads"]
+
+    @property
+    def rigid(self):
+        """Whether no joint slides in the mechanism, and none has a strength there that it could lose."""
+        powers = self.powers
+        lost = sum(powers[kind] for kind in ("cohesion", "tension", "crushing"))
+        return not self.slides and lost <= SLIDES * powers["loads"]
+
+    @property
+    def exact(self):
+        """Whether the factor is what rigid blocks with dry joints carry: no joint slides or loses strength in the mechanism,
+        and no joints close a loop, so that none can slip while others keep it open."""
+        return self.rigid and not self.assembly.bonded
+
+    def joints(self):
+        """What joints do in the mechanism: an array of ``"rests"``, ``"opens"``, ``"slides"`` or ``"crushes"`` (m)."""
+        a, c = self.assembly, self.assembly.contacts
+        told = np.full(len(a.pairs), "rests", dtype="<U7")
+        opening, slide = self.jumps(c.joint, c.at)
+        speed = np.linalg.norm(slide, axis=1)
+        least = GIVES * max(np.abs(opening).max(initial=0), speed.max(initial=0))
+        for kind, size in (("crushes", -opening), ("slides", speed), ("opens", opening)):  # fmt: skip
+            if kind == "crushes":
+                size = np.where(np.isinf(a.crushing[c.joint]), 0, size)
+            # what slides as friction tells opens by the friction coefficient of it
+            over = size > least
+            if kind == "opens":
+                over &= opening > 1.001 * a.friction[c.joint] * speed + 1e-9 * least
+            told[c.joint[over]] = kind
+        return told
+
+    def sentence(self, load, unit, digits=4):
+        """What was found, as a sentence.
+
+        :param load: name of the live load
+        :param unit: of the factor
+        """
+        told = self.joints()
+        counts = ", ".join(
+            f"{(told == kind).sum()} {kind[:-1] if kind != 'crushes' else 'crush'}"
+            for kind in ("opens", "slides", "crushes")
+            if (told == kind).any()
+        )
+        what = (
+            "no joint slides, so this is what rigid blocks carry"
+            if self.exact
+            else "an upper bound, since " + self._reason()
+        )
+        if not self.dilates:
+            what = "joints that slip do not open" + (
+                ""
+                if self.settled
+                else f"; {100 * self.overstressed:.1g} % of the forces are above friction"
+            )
+        return f"limit analysis: {load} {self.factor:.{digits}g} {unit} ({what}); joints: {counts or 'none moves'}"
+
+    def _reason(self):
+        powers = self.powers
+        whole = powers["loads"]
+        reasons = []
+        if self.weaker is not None:
+            reasons.append(f"open joints slip at {self.weaker:.4g} already")
+        if powers["friction"] > SLIDES * whole:
+            reasons.append("joints slide")
+        if any(
+            powers[kind] > SLIDES * whole
+            for kind in ("cohesion", "tension", "crushing")
+        ):
+            reasons.append("joints lose strength")
+        return " and ".join(reasons) or "joints that are open may slip"
+
+    def describe(self):
+        """The entries of run.json: a dict."""
+        told = self.joints()
+        return {
+            "factor": self.factor,
+            "exact": self.exact,
+            "open_joints_slip": self.weaker,
+            "dilates": self.dilates,
+            "joints": {
+                kind: int((told == kind).sum())
+                for kind in ("opens", "slides", "crushes")
+            },
+            "powers": {
+                k: v / (self.powers["loads"] or 1) for k, v in self.powers.items()
+            },
+            "facets": 0 if self.assembly.plane else FACETS,
+            "facet_error": self.facetError,
+        }
+
+    # -- files ----------------------------------------------------------------------------------------------------
+
+    def frames(self):
+        """The mechanism as frames of blocks and joints, as :func:`masonry.frames.readFrame` gives those of a run.
+
+        It is scaled so that the corner that moves most moves by :data:`SHOWN` of the structure's size.
+        """
+        a = self.assembly
+        sizes = [len(c) for c in a.corners]
+        numbers, points = np.repeat(np.arange(len(sizes)), sizes), np.concatenate(a.corners)  # fmt: skip
+        moved = self.motion(numbers, points)
+        far = np.linalg.norm(moved, axis=1).max() or 1.0
+        scale = SHOWN * np.ptp(points, axis=0).max() / far
+        blocks = {
+            "points": points,
+            "displacement": scale * moved,
+            "body": np.array(a.ids),
+            "cells": np.split(np.arange(len(points)), np.cumsum(sizes)[:-1]),
+        }
+        told, count = self.joints(), len(a.pairs)
+        opening, slide = self.jumps(a.contacts.joint, a.contacts.at)
+        widest, closest, along = np.zeros(count), np.zeros(count), np.zeros((count, 3))
+        np.maximum.at(widest, a.contacts.joint, opening)
+        np.maximum.at(closest, a.contacts.joint, -opening)
+        order = np.argsort(np.linalg.norm(slide, axis=1))
+        # the last of a joint stays, and that is its fastest point
+        along[a.contacts.joint[order]] = slide[order]
+        sizes = [len(p) for p in a.polygons]
+        corners, which = np.concatenate(a.polygons), np.repeat(np.arange(count), sizes)
+        one, two = a.pairs[which].T
+        middle = 0.5 * (self.motion(one, corners) + self.motion(two, corners))
+        opens, slides = told == "opens", told == "slides"
+        joints = {
+            "points": corners,
+            "displacement": scale * middle,
+            "cells": np.split(np.arange(len(corners)), np.cumsum(sizes)[:-1]),
+            "bodies": np.array(a.ids)[a.pairs],
+            "normal": a.normals,
+            "area": np.bincount(a.joint, a.areas, count),
+            "opening": np.where(opens, scale * widest, 0),
+            "slide": np.where(slides[:, None], scale * along, 0),
+            "crushing": np.where(told == "crushes", scale * closest, 0),
+            "damage_tension": opens.astype(float),
+            "damage_shear": slides.astype(float),
+        }
+        return blocks, joints
+
+    def save(self, directory):
+        """Write the mechanism for ParaView: ``mechanism_blocks.vtu`` and ``mechanism_joints.vtu``."""
+        from meshio import Mesh
+        from scipy.spatial import ConvexHull
+
+        blocks, joints = self.frames()
+        faces, body = [], []
+        for number, nodes in zip(blocks["body"], blocks["cells"]):
+            hull = ConvexHull(blocks["points"][nodes])
+            faces.append(nodes[hull.simplices])
+            body += [number] * len(hull.simplices)
+        Mesh(
+            blocks["points"],
+            [("triangle", np.concatenate(faces))],
+            point_data={"displacement": blocks["displacement"]},
+            cell_data={"body": [np.array(body)]},
+        ).write(os.path.join(directory, MECHANISM[0]))
+        fans, owner = [], []
+        for number, nodes in enumerate(joints["cells"]):
+            for second, third in zip(nodes[1:], nodes[2:]):
+                fans.append((nodes[0], second, third))
+                owner.append(number)
+        told = ("opening", "slide", "crushing", "normal", "damage_tension", "damage_shear")  # fmt: skip
+        Mesh(
+            joints["points"],
+            [("triangle", np.array(fans))],
+            point_data={"displacement": joints["displacement"]},
+            cell_data={name: [joints[name][owner]] for name in told},
+        ).write(os.path.join(directory, MECHANISM[1]))
+
+    def draw(self, path, title="", parts=None, views=None):
+        """Draw the mechanism in the style of the crack figure.
+
+        :param path: of the picture
+        :param title: above it
+        :param parts: dict of name -> ids of bodies, a panel each; None: all in one
+        :param views: directions of sight by part, as of run.json
+        """
+        mechanism(path, *self.frames(), title, parts, views)

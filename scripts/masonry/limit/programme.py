@@ -1,0 +1,278 @@
+"""The linear programme of limit analysis, and its solution with Clp or HiGHS."""
+
+import math
+
+import numpy as np
+
+FACETS = 8  # of a friction cone
+SHARE = 12  # entries of the load by which a copy of the factor is multiplied
+KEPT = 1e-6  # how well equilibrium and strength must be kept, relative to the largest force
+SIMPLEX = 1500  # from so many variables on HiGHS uses its interior-point method
+INTERIOR_POINT = 4  # a method of Clp, as its ClpSolve.hpp counts them
+NO_PRESOLVE = 1  # so, too
+
+
+class Programme:
+    """The linear programme: columns are force variables, rows are equilibrium and strength. Forces are in units of a
+    typical one, lengths of a typical one."""
+
+    def __init__(self, assembly, rows, size, force):
+        self.assembly, self.rows, self.size, self.force = assembly, rows, size, force
+        self.columns, self.low, self.high = 0, [], []
+        self._equal, self._unequal = [], []
+        self.limits = np.zeros(0)
+
+    def factor(self, load, most):
+        """The factor on a load. Returns its number.
+
+        A variable that acts on many blocks would couple them all in the solver. So it has one copy for every :data:`SHARE`
+        entries of the load, and each copy equals the one before.
+
+        :param load: entries of equilibrium, in units
+        :param most: largest value; None: none
+        """
+        rows = np.flatnonzero(load)
+        copies = np.arange(len(rows)) // SHARE
+        columns = self._new(copies[-1] + 1, -np.inf, np.inf if most is None else most)
+        self._equal.append((rows, columns[copies], load[rows]))
+        links = int(self.rows.max()) + 1 + np.arange(copies[-1])
+        for column, sign in ((columns[:-1], 1.0), (columns[1:], -1.0)):
+            self._equal.append((links, column, np.full(len(links), sign)))
+        self.links = len(links)
+        return columns[-1]
+
+    def _new(self, count, low, high):
+        first = self.columns
+        self.columns += count
+        self.low = np.append(self.low, np.broadcast_to(low, count))
+        self.high = np.append(self.high, np.broadcast_to(high, count))
+        return first + np.arange(count)
+
+    def _forces(self, joint, at, direction, columns, moment=None):
+        """Let variables act as forces in a direction, or as moments, on both blocks of a joint."""
+        centres, pairs = self.assembly.centres, self.assembly.pairs
+        for side, sign in ((0, -1), (1, 1)):
+            block = pairs[joint, side]
+            if moment is None:
+                arm = (at - centres[block]) / self.size
+                six = np.hstack([direction, np.cross(arm, direction)])
+            else:
+                six = np.hstack([np.zeros_like(moment), moment])
+            rows = self.rows[block]
+            kept = (rows >= 0) & (six != 0)
+            which = np.broadcast_to(columns[:, None], rows.shape)
+            self._equal.append((rows[kept], which[kept], sign * six[kept]))
+
+    def joints(self, turn, fixed):
+        """All joints and props. Parameters as of :meth:`Assembly._solve`."""
+        a = self.assembly
+        self._rigid()
+        for block, direction, point in a.props:
+            load = a.force(block, direction, point)[block]
+            load[3:] /= self.size
+            kept = (self.rows[block] >= 0) & (load != 0)
+            column, rows = self._new(1, -np.inf, np.inf), self.rows[block][kept]
+            self._equal.append((rows, np.repeat(column, len(rows)), load[kept]))
+        c = a.contacts
+        dry = a.dry[c.joint] & (fixed is None) & (not a.plane)
+        self._dry(np.flatnonzero(dry), turn)
+        self._strong(np.flatnonzero(~dry), turn, fixed)
+
+    def _rigid(self):
+        """Joints that never give way: any force and moment."""
+        a = self.assembly
+        which = np.flatnonzero(a.elastic)
+        if not len(which):
+            return
+        areas = np.bincount(a.joint, a.areas, len(a.pairs))
+        middle = np.column_stack(
+            [np.bincount(a.joint, a.areas * x, len(a.pairs)) for x in a.points.T]
+        )[which]
+        middle /= areas[which][:, None]
+        axes = np.eye(3)[[0, 2]] if a.plane else np.eye(3)
+        for axis in axes:
+            columns = self._new(len(which), -np.inf, np.inf)
+            self._forces(which, middle, np.tile(axis, (len(which), 1)), columns)
+        for axis in np.eye(3)[[1]] if a.plane else np.eye(3):
+            columns = self._new(len(which), -np.inf, np.inf)
+            self._forces(which, middle, None, columns, np.tile(axis, (len(which), 1)))
+
+    def _dry(self, which, turn):
+        """Contacts of dry joints in space: forces within the friction cone, as sums of its edges."""
+        a, c = self.assembly, self.assembly.contacts
+        self._edges = []
+        joint, at = c.joint[which], c.at[which]
+        normal, (one, two) = a.normals[joint], a.tangents[joint].swapaxes(0, 1)
+        friction = a.friction[joint][:, None]
+        radius = 1 / math.cos(math.pi / FACETS)
+        angles = turn[which] + 2 * math.pi / FACETS * np.arange(FACETS)[:, None]
+        cos, sin = np.cos(angles)[..., None], np.sin(angles)[..., None]
+        sides = [radius * (x * one + y * two) for x, y in zip(cos, sin)]
+        for side in sides:
+            columns = self._new(len(which), 0, np.inf)
+            self._forces(joint, at, normal + friction * side, columns)
+            self._edges.append((which, columns, friction * side))
+
+    def _strong(self, which, turn, fixed):
+        """Contacts of the other joints: a normal force within bounds, and forces along the joint below the strength."""
+        a, c = self.assembly, self.assembly.contacts
+        self._shear, self._normal = [], None
+        if not len(which):
+            return
+        joint, at, area = c.joint[which], c.at[which], c.area[which] / self.force
+        one, two = a.tangents[joint].swapaxes(0, 1)
+        low, high = -a.tension[joint] * area, a.crushing[joint] * area
+        columns = self._new(len(which), low, high)
+        self._normal = which, columns
+        self._forces(joint, at, a.normals[joint], columns)
+        # what shares a shear strength: in the plane all points of a joint, in space a point
+        if a.plane:
+            groups, first, group = np.unique(joint, return_index=True, return_inverse=True)  # fmt: skip
+        else:
+            groups, first = joint, np.arange(len(which))
+            group = first
+        strength = np.bincount(group, a.cohesion[joint] * area)
+        slope = a.friction[groups]
+        if fixed is not None:
+            pressed, share = fixed
+            pressed = pressed[groups if a.plane else which] / self.force
+            strength = strength + (1 - share) * slope * np.maximum(pressed, 0)
+            slope = share * slope
+        along = [self._new(len(first), -np.inf, np.inf)]
+        self._forces(joint[first], at[first], one[first], along[0])
+        self._shear.append((which[first], along[0], one[first]))
+        if not a.plane:
+            along.append(self._new(len(first), -np.inf, np.inf))
+            self._forces(joint, at, two, along[1])
+            self._shear.append((which, along[1], two))
+        count = 2 if a.plane else FACETS
+        for facet in range(count):
+            rows = len(self.limits) + np.arange(len(first))
+            if a.plane:
+                parts = [(along[0], np.full(len(first), 1.0 - 2 * facet))]
+            else:  # the normal of a side stands between two vertices
+                angle = turn[which] + (2 * facet + 1) * math.pi / FACETS
+                parts = [(along[0], np.cos(angle)), (along[1], np.sin(angle))]
+            for column, value in parts:
+                self._unequal.append((rows, column, value))
+            self._unequal.append((rows[group], columns, -slope[group]))
+            self.limits = np.append(self.limits, strength)
+
+    def matrices(self):
+        """Matrices of equilibrium and of strength."""
+        from scipy.sparse import csc_matrix
+
+        def matrix(entries, count):
+            if not entries:
+                return csc_matrix((count, self.columns))
+            rows, columns, values = (np.concatenate(x) for x in zip(*entries))
+            return csc_matrix((values, (rows, columns)), (count, self.columns))
+
+        return (
+            matrix(self._equal, int(self.rows.max()) + 1 + self.links),
+            matrix(self._unequal, len(self.limits)),
+        )
+
+    def read(self, values):
+        """Normal force, positive in compression, (one a contact) and force along the joint (contact, 3) [N]."""
+        count = len(self.assembly.contacts.at)
+        normal, along = np.zeros(count), np.zeros((count, 3))
+        for which, columns, side in self._edges:
+            force = self.force * values[columns]
+            normal[which] += force
+            along[which] += force[:, None] * side
+        if self._normal:
+            which, columns = self._normal
+            normal[which] = self.force * values[columns]
+        for which, columns, direction in self._shear:
+            along[which] += (self.force * values[columns])[:, None] * direction
+        return normal, along
+
+
+class Unsolved(Exception):
+    """The programme has no solution, or none was found; the text says what the solver says."""
+
+
+def solve(programme, cost, loads):
+    """Solve a programme, with Clp's interior-point method if its library is there, else with HiGHS.
+
+    On the many contacts of a wall in which forces can be shared in many ways, Clp's method takes a twentieth of the time
+    of HiGHS's.
+
+    :param programme: :class:`Programme`
+    :param cost: of each variable
+    :param loads: right-hand side of equilibrium
+    :returns: the variables, and the multipliers of equilibrium
+    :raises Unsolved:
+    """
+    equal, unequal = programme.matrices()
+    if not (np.isfinite(equal.data).all() and np.isfinite(loads).all()):
+        raise Unsolved("the programme has numbers that are not finite")
+    try:
+        values, dual = _clp(programme, cost, loads, equal, unequal)
+    except OSError:
+        values, dual = _highs(programme, cost, loads, equal, unequal)
+    off = np.abs(equal @ values - loads).max()
+    over = (unequal @ values - programme.limits).max(initial=0)
+    if max(off, over) > KEPT * max(1, np.abs(values).max()):
+        raise Unsolved(
+            f"its solution misses equilibrium by {off:.1g} and strength by {over:.1g} of a block's usual load"
+        )
+    return values, dual
+
+
+def _highs(programme, cost, loads, equal, unequal):
+    from scipy.optimize import linprog
+
+    found = linprog(
+        cost,
+        A_eq=equal,
+        b_eq=loads,
+        A_ub=unequal if unequal.shape[0] else None,
+        b_ub=programme.limits if unequal.shape[0] else None,
+        bounds=np.column_stack([programme.low, programme.high]),
+        method="highs-ds" if programme.columns < SIMPLEX else "highs-ipm",
+    )
+    if found.status:
+        raise Unsolved(found.message.strip())
+    return found.x, found.eqlin.marginals
+
+
+def _clp(programme, cost, loads, equal, unequal):
+    import ctypes
+
+    from scipy.sparse import vstack
+
+    clp = ctypes.CDLL("libClp.so.1")
+    numbers = ctypes.POINTER(ctypes.c_double)
+    clp.Clp_newModel.restype = clp.ClpSolve_new.restype = ctypes.c_void_p
+    for name in ("Clp_primalColumnSolution", "Clp_dualRowSolution"):
+        getattr(clp, name).restype = numbers
+    whole = vstack([equal, unequal], format="csc")
+    rows, columns = whole.shape
+    double = lambda values: np.ascontiguousarray(values, np.float64)
+    low = double(np.append(loads, np.full(len(programme.limits), -np.inf)))
+    high = double(np.append(loads, programme.limits))
+    arrays = [
+        np.ascontiguousarray(whole.indptr, np.int32),
+        np.ascontiguousarray(whole.indices, np.int32),
+        *map(double, (whole.data, programme.low, programme.high, cost, low, high)),
+    ]
+    model = ctypes.c_void_p(clp.Clp_newModel())
+    try:
+        clp.Clp_setLogLevel(model, 0)
+        places = [ctypes.c_void_p(array.ctypes.data) for array in arrays]
+        clp.Clp_loadProblem(model, columns, rows, *places)
+        how = ctypes.c_void_p(clp.ClpSolve_new())
+        clp.ClpSolve_setSolveType(how, INTERIOR_POINT, -1)
+        clp.ClpSolve_setPresolveType(how, NO_PRESOLVE, -1)
+        clp.Clp_initialSolveWithOptions(model, how)
+        clp.ClpSolve_delete(how)
+        status = clp.Clp_status(model)
+        if status:
+            said = {1: "it has no solution", 2: "it has no end"}
+            raise Unsolved(said.get(status, f"Clp ended with status {status}"))
+        values = np.array(clp.Clp_primalColumnSolution(model)[:columns])
+        return values, np.array(clp.Clp_dualRowSolution(model)[: equal.shape[0]])
+    finally:
+        clp.Clp_deleteModel(model)

@@ -1,0 +1,126 @@
+"""The blocks and joints of the scene in YADE, as limit analysis takes them."""
+
+import math
+
+import numpy as np
+from yade import O
+
+from ..errors import Refused
+from .assembly import Assembly
+
+AXES = "xyzXYZ"  # as blockedDOFs names the freedoms of a body
+
+
+def read():
+    """The blocks and joints of the scene in YADE, as they stand now: an :class:`Assembly`.
+
+    Joints that have opened are taken as closed, so after supports have moved far the answer is one for other joints.
+
+    :raises Refused: if there are no joints
+    """
+    blocks = list(O.bodies)
+    numbers = {body.id: number for number, body in enumerate(blocks)}
+    joints = [i for i in O.interactions if type(i.geom).__name__ == "MasonryJointGeom"]
+    if not joints:
+        raise Refused("limit analysis: the scene has no joints; connect() makes them")
+    joints.sort(key=lambda i: (i.id1, i.id2))
+    geoms = [i.geom for i in joints]
+    pairs = np.array([[numbers[i.id1], numbers[i.id2]] for i in joints])
+    points = [_rows(g.centres) for g in geoms]
+    polygons = [_rows(g.polygon) for g in geoms]
+    areas = [a for g in geoms for a in g.areas]
+    place = _Placement(blocks)
+    joint = np.repeat(np.arange(len(joints)), [len(p) for p in points])
+    corner = np.repeat(np.arange(len(joints)), [len(p) for p in polygons])
+    normals = place.turned(pairs, np.array(_rows([g.normal for g in geoms])))
+    moved = place.moved(pairs[corner], np.concatenate(polygons))
+    strengths = np.array([_strengths(i.phys.joint) for i in joints], float).T
+    return Assembly(
+        centres=place.now,
+        masses=np.array([b.state.mass for b in blocks], float),
+        held=_held(blocks),
+        pairs=pairs,
+        normals=normals / np.linalg.norm(normals, axis=1)[:, None],
+        joint=joint,
+        points=place.moved(pairs[joint], np.concatenate(points)),
+        areas=np.array(areas, float),
+        tension=strengths[0],
+        cohesion=strengths[1],
+        friction=strengths[2],
+        crushing=strengths[3],
+        elastic=strengths[4] > 0,
+        ids=[b.id for b in blocks],
+        polygons=np.split(moved, np.cumsum([len(p) for p in polygons])[:-1]),
+        corners=[_corners(b) for b in blocks],
+    )
+
+
+def _rows(vectors):
+    """Vectors of YADE as a list of (x, y, z)."""
+    return [(v[0], v[1], v[2]) for v in vectors]
+
+
+def _held(blocks):
+    """Whether each block cannot move along x, y, z or turn about them (n, 6). The nodes of deformable units are held in their
+    engine, not in the States of their bodies."""
+    blocked = [b.state.blockedDOFs for b in blocks]
+    numbers = {body.id: number for number, body in enumerate(blocks)}
+    for engine in O.engines:
+        if type(engine).__name__ == "MasonryZones":
+            along = engine.blocked
+            about = "".join(axis.upper() for axis in "xyz" if set(along) - {axis})
+            for body in engine.bodies:
+                blocked[numbers[body]] = along + about
+    return np.array([[axis in axes for axis in AXES] for axes in blocked])
+
+
+class _Placement:
+    """Where blocks are now, and how they have turned since the reference state."""
+
+    def __init__(self, blocks):
+        states = [b.state for b in blocks]
+        self.was = np.array(_rows([s.refPos for s in states]))
+        self.now = np.array(_rows([s.pos for s in states]))
+        self.turns = np.array(
+            [_matrix(s.ori * s.refOri.conjugate()) for s in states], float
+        )
+
+    def turned(self, pairs, vectors):
+        """The mean of directions fixed to both blocks of pairs (k, 2), from the reference state (k, 3)."""
+        turn = lambda side: np.einsum("kij,kj->ki", self.turns[pairs[:, side]], vectors)
+        return 0.5 * (turn(0) + turn(1))
+
+    def moved(self, pairs, points):
+        """The mean of points fixed to both blocks of pairs (k, 2), from the reference state (k, 3)."""
+        ways = []
+        for block in pairs.T:
+            arms = points - self.was[block]
+            ways.append(np.einsum("kij,kj->ki", self.turns[block], arms) + self.now[block])  # fmt: skip
+        return 0.5 * (ways[0] + ways[1])
+
+
+def _matrix(turn):
+    """The rotation matrix (3, 3) of a quaternion of YADE."""
+    matrix = turn.toRotationMatrix()
+    return np.array([[matrix[i, k] for k in range(3)] for i in range(3)])
+
+
+def _strengths(p):
+    """Tensile strength, cohesion, friction, compressive strength, and whether a joint never gives way."""
+    values = (
+        p.tensileStrength,
+        max(p.cohesion, p.residualCohesion),
+        max(p.friction, p.residualFriction),
+    )
+    if p.elastic or not p.cap:
+        return *values, math.inf, p.elastic
+    # of eq. (8c) without shear: Cnn σ² - Cn σ = fc²
+    half = p.capLinear / (2 * p.capNormal)
+    crushing = half + math.sqrt(half * half + p.compressiveStrength**2 / p.capNormal)
+    return *values, crushing, p.elastic
+
+
+def _corners(body):
+    """Corners of a block as it stands now (k, 3) [m]."""
+    turn = _matrix(body.state.ori)
+    return np.array(_rows(body.shape.v)) @ turn.T + np.array(body.state.pos)
