@@ -4,6 +4,7 @@
 what they are.
 """
 
+import math
 import os
 
 import numpy as np
@@ -13,7 +14,9 @@ from .errors import Refused
 from .model import GRAVITY
 from .progress import say
 
-SMALL = 500  # up to so many joints a collapse without dilatancy, which takes many rounds, is looked for unasked
+#: Up to so many joints a collapse without dilatancy, which takes many rounds, is looked for with --preset bound.
+SMALL = 500
+EVERY = math.inf  # it is looked for however many joints there are
 JOINTS = 3000  # up to so many joints every run has its bounds; limit analysis of more takes longer than seconds
 #: By how much a run may be above its bound [-]: joints of finite stiffness, displacements that are not small, and motion,
 #: whose measured share is added.
@@ -29,7 +32,6 @@ class Bounds:
 
     def __init__(self, model):
         self.model = model
-        self.moved = False  # whether supports have been moved by a stage
         self.last = None  # what was found last: limit.Bound and its entry
 
     @property
@@ -37,17 +39,19 @@ class Bounds:
         """What was found, by the load: entries of run.json. A checkpoint keeps them."""
         return self.model.scene.at.bounds
 
-    def push(self, way, both, lower=False, always=False):
-        """Find the bound of a push of what the model pushes now.
+    def push(self, way, both, lowerUpTo=0):
+        """Find the bound of a push of what the model pushes now. Returns its entry of run.json, the last one if there are two.
 
         :param way: unit vector of the push
         :param both: whether it goes there and back
-        :param lower: whether to look for a collapse without dilatancy, too, if joints slide
-        :param always: whether to do that also where it takes long
+        :param lowerUpTo: up to so many joints a collapse without dilatancy is looked for, too, if the bound is not exact
         """
         target = self.model.target
         for sign in (1, -1) if both else (1,):
-            self._find(f"{target.name} along {_told(sign * way)}", "kN", lambda a, dead: self._pushed(a, dead, sign * way), lower, always)  # fmt: skip
+            what = f"{target.name} along {_told(sign * way)}"
+            live = lambda a, dead: self._pushed(a, dead, sign * way)
+            entry = self._find(what, "kN", live, lowerUpTo)
+        return entry
 
     def _pushed(self, assembly, dead, way):
         """Live load, and what is added to its factor to give the base shear [kN]."""
@@ -60,38 +64,41 @@ class Bounds:
             1e-3 * (np.where(free, dead[:, :3], 0) @ np.array(way)).sum(),
         )
 
-    def lean(self, towards, tilts=False, lower=False, always=False):
-        """Find the bound of a horizontal acceleration [g].
+    def lean(self, towards, tilts=False, lowerUpTo=0):
+        """Find the bound of a horizontal acceleration [g]. Returns its entry of run.json.
 
         :param towards: unit vector
         :param tilts: whether gravity turns, and does not grow; the factor is then the horizontal over the vertical part
+        :param lowerUpTo: as of :meth:`push`
         """
         scaled = GRAVITY / self.model.args.density_scaling
         what = f"{'tilt' if tilts else 'acceleration'} towards {_told(towards)}"
         live = lambda a, dead: (a.weights(scaled * np.array(towards)), 0.0)
         if not tilts:
-            return self._find(what, "g", live, lower, always)
+            return self._find(what, "g", live, lowerUpTo)
         share = self.model.gravity / scaled
         turned = lambda a, dead: (share * live(a, dead)[0], 0.0)
-        return self._find(what, "", turned, lower, always, tilts=True)
+        return self._find(what, "", turned, lowerUpTo, tilts=True)
 
-    def _find(self, what, unit, load, lower, always, tilts=False):
-        if what in self.entries:
-            return
+    def _find(self, what, unit, load, lowerUpTo, tilts=False):
+        known = self.entries.get(what)
+        if known and not lowerUpTo:
+            return known
         model = self.model
         entry = self.entries[what] = {"load": what, "unit": unit}
-        if self.moved:
-            entry[
-                "note"
-            ] = "no limit analysis: supports have moved, and joints that are open would be taken as closed"
-            return
+        if model.scene.at.supportsMoved:
+            told = (
+                "supports have moved, and joints that are open would be taken as closed"
+            )
+            entry["note"] = f"no limit analysis: {told}"
+            return entry
         count = len(model.interactions)
-        if count > JOINTS and not lower:
+        if count > JOINTS and not lowerUpTo:
             entry["note"] = f"no limit analysis: {count} joints are more than {JOINTS}"
             say(
                 f"note: {entry['note']}; scene.bound() and --preset bound take their time"
             )
-            return
+            return entry
         try:
             assembly = limit.read()
             down = assembly.weights(model.now)
@@ -104,7 +111,7 @@ class Bounds:
             entry.update(bound.describe())
             entry["factor"] += beside
             say(bound.sentence(what, unit))
-            if lower and bound.slides and (count <= SMALL or always):
+            if not bound.exact and count <= lowerUpTo:
                 least = assembly.withoutDilatancy(live, down + forces)
                 entry["without_dilatancy"] = least.factor + beside
                 entry["without_dilatancy_settled"] = least.settled
@@ -113,6 +120,7 @@ class Bounds:
         except Refused as refused:
             entry["note"] = str(refused)
             say(f"note: {refused}")
+        return entry
 
     def _forces(self, assembly):
         """Presses, dead loads and wind with their whole, and props at the points that other drives hold."""

@@ -59,6 +59,7 @@ class Place:
     frames: list = field(default_factory=list)  # times of the ParaView frames [s]
     origins: dict = field(default_factory=dict)  # where pushes began, by their name
     bounds: dict = field(default_factory=dict)  # what limit analysis found, by the load
+    supportsMoved: bool = False  # whether a stage has moved supports
     resumed: list = field(default_factory=list)  # times at which it was taken up [s]
 
 

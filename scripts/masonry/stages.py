@@ -32,6 +32,7 @@ from yade import O, Vector3
 
 from . import history, loading, options
 from ._masonry import loadScene, saveScene
+from .bounds import EVERY, SMALL
 from .bricks import Bricks
 from .described import Described, JointRecord, Target
 from .errors import Collapsed, Interrupted, Refused
@@ -574,7 +575,7 @@ class Scene(Described, Run):
             state.vel = speed * along
 
         self._timed(at, duration, before)
-        self.model.bounds.moved = True
+        self.at.supportsMoved = True
         state.vel = Vector3.Zero
         return DONE
 
@@ -649,14 +650,12 @@ class Scene(Described, Run):
             self.model.pushTo(
                 target, vector(direction, "bound: direction").normalized()
             )
-            bounds.push(self.model.way, False, True, True)
-        else:
-            bounds.lean(self._sideways(towards, "bound"), lower=True, always=True)
-        return list(bounds.entries.values())[-1]
+            return bounds.push(self.model.way, False, lowerUpTo=EVERY)
+        return bounds.lean(self._sideways(towards, "bound"), lowerUpTo=EVERY)
 
     def _findBound(self, kind, *load):
         """Find the bound of a stage."""
-        getattr(self.model.bounds, kind)(*load, lower=self.only)
+        getattr(self.model.bounds, kind)(*load, lowerUpTo=SMALL if self.only else 0)
 
     def _lean(self, name, duration, gravity):
         if self.only:
