@@ -168,9 +168,8 @@ class Run:
         """From here on files are written; those of a run that is resumed are cut back to its checkpoint."""
         if self._told:
             try:
-                if (
-                    self.at.left
-                ):  # what the stage did before it advanced was done before these steps
+                # what the stage did before it advanced was done before these steps
+                if self.at.left:
                     loadCheckpoint(self.results.path(NAME))
                 self.results.takeUp(
                     self._told["rows"], len(self.at.frames), self._told["seconds"]
