@@ -3,13 +3,14 @@
 #
 #   bash scripts/try_release.sh bookworm|trixie...      in a temporary folder, which is removed at the end
 #   FOLDER=/some/new/folder bash scripts/try_release.sh trixie
+#   KEEP=1 FOLDER=/some/new/folder bash scripts/try_release.sh trixie     leaves the release there, for more trials
 #   MIRROR=http://... bash scripts/try_release.sh trixie      another package mirror than that of debootstrap
 #
 # Needs root, debootstrap, 5 GB in FOLDER and twenty minutes for a release. What is tried is this working tree.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-(($#)) || { sed -n '2,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2; }
+(($#)) || { sed -n '2,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2; }
 for release in "$@"; do
     [[ $release == bookworm || $release == trixie ]] || { echo "release '$release' must be bookworm or trixie" >&2; exit 2; }
 done
@@ -23,9 +24,10 @@ chmod 755 "$folder"
 clean() {
     for root in "$folder"/*/; do
         umount "$root/proc" 2>/dev/null || true
+        [[ -z ${KEEP:-} ]] || continue
         grep -qs " ${root%/}/" /proc/mounts || rm -rf --one-file-system "$root"
     done
-    rm -f "$folder"/*.log
+    [[ -n ${KEEP:-} ]] || rm -f "$folder"/*.log
     rmdir "$folder" 2>/dev/null || true
 }
 trap clean EXIT
