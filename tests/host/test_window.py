@@ -35,7 +35,7 @@ top = addBlock(box(0, COURSES * H, 5 * L, 0.1), plate)
 O.bodies[top].state.blockedDOFs = "yXYZ"
 point = (2.5 * L, T / 2, COURSES * H + 0.05)
 press = MasonryLoad(body=top, point=point, force=(0, 0, -0.3e6 * 5 * L * T))
-push = MasonryLoad(body=top, point=point, driven=True, direction=(1, 0, 0), velocity=0.05)
+push = MasonryLoad(body=top, point=point, driven=True, direction=(1, 0, 0), velocity=0.005)
 engines([MasonryJoint(name="bed")], loads=[press, push], inPlane=True)
 connect()
 O.dt = 0.8 * criticalTimeStep()[0]
@@ -43,7 +43,7 @@ if mode == "view":
     window.show(blocks="displacement", joints="damage", scale=30)
     before = window.drawingTime()
 start = time.process_time()
-advance(int(0.006 / 0.05 / O.dt))
+advance(int(0.006 / 0.005 / O.dt))  # some seven pictures, ten a second
 taken = time.process_time() - start
 b = O.bodies[top].state
 print("END", repr(tuple(b.pos)), repr(push.reaction))
@@ -130,10 +130,10 @@ def test_blocks_joints_and_the_legend_are_drawn(seen):
 
 
 def test_a_run_with_the_view_costs_no_more_than_the_drawing(seen):
-    """The time of the processor beside that of the drawing, with a tenth for what a noisy machine adds."""
+    """The time of the processor beside that of the drawing, with half as much again for what a noisy machine adds."""
     _, (_, (view, drawing)), (_, (plain, _)) = seen
     assert drawing > 0
-    assert view - drawing < 1.1 * plain + 0.2
+    assert view - drawing < 1.5 * plain
 
 
 @pytest.mark.parametrize(
