@@ -288,6 +288,19 @@ def test_bad_arguments_are_refused(tmp_path):
         fromFile(7.5)
 
 
+def test_a_corner_beyond_all_masonry_is_refused(tmp_path):
+    path = tmp_path / "far.obj"
+    writePlainObj(path, stack(2, (0.4, 0.2, 0.1)))
+    lines = path.read_text().splitlines()
+    first = next(n for n, line in enumerate(lines) if line.startswith("v "))
+    lines[first] = "v 1e300 0 0"
+    path.write_text("\n".join(lines))
+    with pytest.raises(
+        ValueError, match="a coordinate of 1e[+]300 m is above 1e[+]06 m"
+    ):
+        fromFile(path)
+
+
 @settings(
     max_examples=150,
     deadline=None,

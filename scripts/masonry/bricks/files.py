@@ -23,6 +23,9 @@ SAME = 1e-6
 #: turns the smallest faces by less, and no solid has so sharp an edge.
 COINCIDE = 1e-3
 
+#: No corner of masonry is farther from the origin [m].
+FARTHEST = 1e6
+
 #: A surface as a file has it: name, points (n, 3), and faces, tuples of point numbers.
 _Surface = namedtuple("_Surface", "name points faces")
 
@@ -264,6 +267,12 @@ def _solids(surface, scale, problems):
         problems.append(f"{name}: no points")
         return
     points = surface.points * scale
+    far = np.abs(points).max()
+    if not far <= FARTHEST:
+        problems.append(
+            f"{name}: a coordinate of {far:g} m is above {FARTHEST:g} m: is scale, metres in one unit of the file, right?"
+        )
+        return
     used = sorted({n for face in surface.faces for n in face})
     merge = _merged(points, used)
     faces, numbers = [], []

@@ -8,7 +8,7 @@ import numpy as np
 from ..errors import Refused
 from . import slipping
 from .bound import Bound
-from .programme import FACETS, Programme, Unsolved, solve
+from .programme import FACETS, Late, Programme, Unsolved, solve
 
 TURNS = 6  # how often the facets of friction are turned at most
 STILL = 1e-3  # change of the factor at which they stand still [-]
@@ -36,6 +36,7 @@ class Assembly:
     :param ids: numbers by which messages name the blocks (n), YADE's
     :param polygons: corners of the joints, a list of arrays (k, 3) [m]
     :param corners: corners of the blocks, a list of arrays (k, 3) [m]
+    :param longest: time that the solver may take for one programme [s]
     :param props: points of blocks that cannot move in a direction, whatever force that takes: a list of (number of the
         block, unit vector, point [m])
     """
@@ -57,6 +58,7 @@ class Assembly:
     polygons: list
     corners: list
     props: list = field(default_factory=list)
+    longest: float = 600.0
 
     def __post_init__(self):
         free = ~self.held.all(axis=1)
@@ -161,7 +163,11 @@ class Assembly:
             return best
         for _ in range(turns):
             turn = best.directions - math.pi / FACETS
-            again = solve(turn)
+            try:
+                again = solve(turn)
+            except Refused:  # it takes too long; the polygon around the cone stays
+                best.facetError = 1 / math.cos(math.pi / FACETS) - 1
+                break
             change = abs(again.value - best.value) / max(abs(best.value), 1e-12)
             if again.value < best.value:
                 best = again
@@ -194,12 +200,14 @@ class Assembly:
         cost[last] = -1
         try:
             loads = np.append(-still, np.zeros(programme.links))
-            values, dual = solve(programme, cost, loads)
+            values, dual = solve(programme, cost, loads, self.longest)
             if most is None and values[last] / step > self._endless(live, dead):
                 raise Unsolved("it has no end")
         except Unsolved as unsolved:
             if most is not None:
                 raise
+            if isinstance(unsolved, Late):
+                raise Refused(f"limit analysis: {unsolved}") from None
             raise self._why(live, dead, sense, turn, unsolved) from None
         speed = np.zeros(self.held.shape)
         # The dual of equilibrium, with which the live load has the power of its unit.

@@ -30,7 +30,8 @@ class Bound:
     dead: np.ndarray
     normal: np.ndarray  #: force on each contact, positive in compression [N]
     along: np.ndarray  #: force along the joint on each contact (c, 3) [N]
-    #: change of the factor when the facets of friction were turned last [-]; 0 in the plane, where there are none
+    #: change of the factor when the facets of friction were turned last [-]; 0 in the plane, where there are none; how far
+    #: their corners are outside the cone where turning takes too long
     facetError: float = 0.0
     dilates: bool = True  #: whether joints that slip open as friction tells
     settled: bool = False  #: of :meth:`Assembly.withoutDilatancy`

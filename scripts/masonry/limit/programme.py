@@ -10,6 +10,7 @@ KEPT = 1e-6  # how well equilibrium and strength must be kept, relative to the l
 SIMPLEX = 1500  # from so many variables on HiGHS uses its interior-point method
 INTERIOR_POINT = 4  # a method of Clp, as its ClpSolve.hpp counts them
 NO_PRESOLVE = 1  # so, too
+STOPPED = 3  # the status of Clp after its longest time
 
 
 class Programme:
@@ -104,10 +105,7 @@ class Programme:
         joint, at = c.joint[which], c.at[which]
         normal, (one, two) = a.normals[joint], a.tangents[joint].swapaxes(0, 1)
         friction = a.friction[joint][:, None]
-        radius = 1 / math.cos(math.pi / FACETS)
-        angles = turn[which] + 2 * math.pi / FACETS * np.arange(FACETS)[:, None]
-        cos, sin = np.cos(angles)[..., None], np.sin(angles)[..., None]
-        sides = [radius * (x * one + y * two) for x, y in zip(cos, sin)]
+        sides = _polygon(turn[which], one, two)
         for side in sides:
             columns = self._new(len(which), 0, np.inf)
             self._forces(joint, at, normal + friction * side, columns)
@@ -138,25 +136,16 @@ class Programme:
             pressed = pressed[groups if a.plane else which] / self.force
             strength = strength + (1 - share) * slope * np.maximum(pressed, 0)
             slope = share * slope
-        along = [self._new(len(first), -np.inf, np.inf)]
-        self._forces(joint[first], at[first], one[first], along[0])
-        self._shear.append((which[first], along[0], one[first]))
-        if not a.plane:
-            along.append(self._new(len(first), -np.inf, np.inf))
-            self._forces(joint, at, two, along[1])
-            self._shear.append((which, along[1], two))
-        count = 2 if a.plane else FACETS
-        for facet in range(count):
-            rows = len(self.limits) + np.arange(len(first))
-            if a.plane:
-                parts = [(along[0], np.full(len(first), 1.0 - 2 * facet))]
-            else:  # the normal of a side stands between two vertices
-                angle = turn[which] + (2 * facet + 1) * math.pi / FACETS
-                parts = [(along[0], np.cos(angle)), (along[1], np.sin(angle))]
-            for column, value in parts:
-                self._unequal.append((rows, column, value))
-            self._unequal.append((rows[group], columns, -slope[group]))
-            self.limits = np.append(self.limits, strength)
+        # the force along the joint is a sum of forces to the corners of a polygon, and their sum is below the strength
+        limits = len(self.limits) + np.arange(len(first))
+        self.limits = np.append(self.limits, strength)
+        self._unequal.append((limits[group], columns, -slope[group]))
+        ways = [one[first], -one[first]] if a.plane else _polygon(turn[which], one, two)
+        for way in ways:
+            along = self._new(len(first), 0, np.inf)
+            self._forces(joint[first], at[first], way, along)
+            self._unequal.append((limits, along, np.ones(len(first))))
+            self._shear.append((which[first], along, way))
 
     def matrices(self):
         """Matrices of equilibrium and of strength."""
@@ -189,11 +178,29 @@ class Programme:
         return normal, along
 
 
+def _polygon(turn, one, two):
+    """Corners of a polygon around the unit circle between two directions (k, 3): a list of :data:`FACETS` arrays (k, 3).
+
+    :param turn: angle of the first corner from ``one`` (k) [rad]
+    """
+    radius = 1 / math.cos(math.pi / FACETS)
+    angles = turn + 2 * math.pi / FACETS * np.arange(FACETS)[:, None]
+    cos, sin = np.cos(angles)[..., None], np.sin(angles)[..., None]
+    return [radius * (x * one + y * two) for x, y in zip(cos, sin)]
+
+
 class Unsolved(Exception):
     """The programme has no solution, or none was found; the text says what the solver says."""
 
 
-def solve(programme, cost, loads):
+class Late(Unsolved):
+    """The solver took longer than it may."""
+
+    def __init__(self, longest):
+        super().__init__(f"it was not solved within {longest:g} s")
+
+
+def solve(programme, cost, loads, longest):
     """Solve a programme, with Clp's interior-point method if its library is there, else with HiGHS.
 
     On the many contacts of a wall in which forces can be shared in many ways, Clp's method takes a twentieth of the time
@@ -202,6 +209,7 @@ def solve(programme, cost, loads):
     :param programme: :class:`Programme`
     :param cost: of each variable
     :param loads: right-hand side of equilibrium
+    :param longest: time that the solver may take [s]
     :returns: the variables, and the multipliers of equilibrium
     :raises Unsolved:
     """
@@ -209,9 +217,9 @@ def solve(programme, cost, loads):
     if not (np.isfinite(equal.data).all() and np.isfinite(loads).all()):
         raise Unsolved("the programme has numbers that are not finite")
     try:
-        values, dual = _clp(programme, cost, loads, equal, unequal)
+        values, dual = _clp(programme, cost, loads, equal, unequal, longest)
     except OSError:
-        values, dual = _highs(programme, cost, loads, equal, unequal)
+        values, dual = _highs(programme, cost, loads, equal, unequal, longest)
     off = np.abs(equal @ values - loads).max()
     over = (unequal @ values - programme.limits).max(initial=0)
     if max(off, over) > KEPT * max(1, np.abs(values).max()):
@@ -221,7 +229,7 @@ def solve(programme, cost, loads):
     return values, dual
 
 
-def _highs(programme, cost, loads, equal, unequal):
+def _highs(programme, cost, loads, equal, unequal, longest):
     from scipy.optimize import linprog
 
     found = linprog(
@@ -232,13 +240,16 @@ def _highs(programme, cost, loads, equal, unequal):
         b_ub=programme.limits if unequal.shape[0] else None,
         bounds=np.column_stack([programme.low, programme.high]),
         method="highs-ds" if programme.columns < SIMPLEX else "highs-ipm",
+        options={"time_limit": longest},
     )
+    if found.status == 1:
+        raise Late(longest)
     if found.status:
         raise Unsolved(found.message.strip())
     return found.x, found.eqlin.marginals
 
 
-def _clp(programme, cost, loads, equal, unequal):
+def _clp(programme, cost, loads, equal, unequal, longest):
     import ctypes
 
     from scipy.sparse import vstack
@@ -261,6 +272,7 @@ def _clp(programme, cost, loads, equal, unequal):
     model = ctypes.c_void_p(clp.Clp_newModel())
     try:
         clp.Clp_setLogLevel(model, 0)
+        clp.Clp_setMaximumSeconds(model, ctypes.c_double(longest))
         places = [ctypes.c_void_p(array.ctypes.data) for array in arrays]
         clp.Clp_loadProblem(model, columns, rows, *places)
         how = ctypes.c_void_p(clp.ClpSolve_new())
@@ -270,6 +282,8 @@ def _clp(programme, cost, loads, equal, unequal):
         clp.ClpSolve_delete(how)
         status = clp.Clp_status(model)
         if status:
+            if status == STOPPED:
+                raise Late(longest)
             said = {1: "it has no solution", 2: "it has no end"}
             raise Unsolved(said.get(status, f"Clp ended with status {status}"))
         values = np.array(clp.Clp_primalColumnSolution(model)[:columns])
