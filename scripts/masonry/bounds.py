@@ -18,9 +18,8 @@ from .progress import say
 SMALL = 500
 EVERY = math.inf  # it is looked for however many joints there are
 JOINTS = 3000  # up to so many joints every run has its bounds; limit analysis of more takes longer than seconds
-UNASKED = (
-    20.0  # time that the solver may take for a programme that nobody asked for [s]
-)
+#: Time that the solver may take for a programme that nobody asked for [s]
+UNASKED = 10.0
 #: By how much a run may be above its bound [-]: joints of finite stiffness, displacements that are not small, and motion,
 #: whose measured share is added.
 TOLERANCE = 0.02

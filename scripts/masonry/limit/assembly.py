@@ -1,6 +1,7 @@
 """Rigid blocks, their joints and loads, and the bounds of what they carry."""
 
 import math
+import time
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -36,7 +37,7 @@ class Assembly:
     :param ids: numbers by which messages name the blocks (n), YADE's
     :param polygons: corners of the joints, a list of arrays (k, 3) [m]
     :param corners: corners of the blocks, a list of arrays (k, 3) [m]
-    :param longest: time that the solver may take for one programme [s]
+    :param longest: time that the solver may take for one programme, and after which facets are not turned again [s]
     :param props: points of blocks that cannot move in a direction, whatever force that takes: a list of (number of the
         block, unit vector, point [m])
     """
@@ -157,16 +158,19 @@ class Assembly:
 
     def _turned(self, solve, turns=TURNS):
         """Solve with facets of friction that turn to where forces point."""
+        began = time.monotonic()
         turn = np.zeros(len(self.contacts.at))
         best = solve(turn)
         if self.plane:
             return best
+        best.facetError = 1 / math.cos(math.pi / FACETS) - 1  # before any turn
         for _ in range(turns):
+            if time.monotonic() - began > self.longest:
+                break
             turn = best.directions - math.pi / FACETS
             try:
                 again = solve(turn)
-            except Refused:  # it takes too long; the polygon around the cone stays
-                best.facetError = 1 / math.cos(math.pi / FACETS) - 1
+            except Refused:  # it takes too long
                 break
             change = abs(again.value - best.value) / max(abs(best.value), 1e-12)
             if again.value < best.value:
