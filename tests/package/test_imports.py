@@ -20,6 +20,7 @@ WITHOUT_YADE = [
     "fields",
     "ground",
     "results",
+    "batch",
     "frames",
     "figures",
     "measure",
@@ -36,6 +37,17 @@ WITHOUT_YADE = [
     "bricks.walls",
     "bricks.__init__",
     "ports",
+    "study.variables",
+    "study.designs",
+    "study.plan",
+    "study.gathering",
+    "study.start",
+    "study.row",
+    "study.yadebatch",
+    "study.local",
+    "study.slurm",
+    "study.__init__",
+    "study.__main__",
 ]
 ORDER = WITHOUT_YADE + [
     "_masonry",  # the plugin
@@ -52,6 +64,7 @@ ORDER = WITHOUT_YADE + [
     "described",
     "bounds",
     "structure",
+    "probing",
     "stages",
     "__init__",
 ]
@@ -79,7 +92,7 @@ def imports(path):
             parts += [node.module] if node.module else []
             whole = ".".join(parts)
             names = [whole]
-            if whole in ("masonry", "masonry.bricks"):
+            if whole in ("masonry", "masonry.bricks", "masonry.study"):
                 names = [f"{whole}.{alias.name}" for alias in node.names]
         else:
             continue
@@ -92,9 +105,9 @@ def ownModule(name):
     package, *rest = name.split(".")
     if package != "masonry":
         return None
-    if rest[:1] == ["bricks"]:
+    if rest[:1] in (["bricks"], ["study"]):
         own = ".".join(rest[:2])
-        return own if own in ORDER else "bricks.__init__"
+        return own if own in ORDER else rest[0] + ".__init__"
     return rest[0] if rest else "__init__"
 
 
@@ -104,6 +117,7 @@ def test_the_order_names_all_modules():
         for prefix, folder in (
             ("", PACKAGE),
             ("bricks.", os.path.join(PACKAGE, "bricks")),
+            ("study.", os.path.join(PACKAGE, "study")),
         )
         for name in os.listdir(folder)
         if name.endswith(".py")

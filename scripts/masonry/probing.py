@@ -1,0 +1,126 @@
+"""What a scene knows, for those who are about to run it many times: see :mod:`masonry.study`. There is no run."""
+
+import contextlib
+import io
+import json
+import math
+import os
+
+from yade.wrapper import MasonryJoint
+
+from . import batch, fields
+from .errors import Refused
+from .options import Parser, check
+from .scene import properties
+
+#: How far a random field is looked at to either side, in standard deviations of its normal: beyond lies one joint in a
+#: million.
+FAR = 4.75
+PUSHES = ("push", "cycle", "follow")  # stages that take --until, --history and --rate
+DRIVES = ("drive", "pressJoint")  # stages that take --rate
+MOST = 20  # problems that are told of rows
+
+
+def probe(scene, stage, settings):
+    """Write what a scene that is built knows, as JSON, and end when its first stage after ``settle`` begins. Keys:
+
+    - ``heard``: whether the scene takes its options from the command line
+    - ``options``: names of its options, without those that say where results go
+    - ``unused``: options that the scene does not use, with the reason; ``doubtful``: those that it may not use
+    - ``joints``: properties of every kind of joint; ``counts``: how many joints there are of each kind
+    - ``bounds``: of the properties of a joint: ``low``, ``high``, ``unit``
+    - ``room``: bytes that a run will probably write
+    - ``problems``: sentences on rows of the table that cannot be run
+    """
+    if stage == "settle":
+        return "at rest"
+    parser, found = Parser.last
+    heard = scene.args is found
+    told = {
+        "scene": scene.name,
+        "heard": heard,
+        "options": sorted({a.dest for a in parser._actions} - {"help", "out", "resume", "set", "field"}) if heard else [],  # fmt: skip
+        "joints": {n: _plain(j.dict()) for n, j in scene.model.joints.items()},
+        "counts": _counts(scene.model),
+        "unused": {"rate": f"{stage}() has a rate of its own"} if stage in PUSHES and settings.get("rate") is not None else {},  # fmt: skip
+        "doubtful": {name: f"its first stage is {stage}()" for name in ("rate", "until", "history")} if stage not in PUSHES + DRIVES else {},  # fmt: skip
+        "room": scene.model.room()[1],
+        "bounds": {p["name"]: _bounds(p) for p in properties(MasonryJoint)},
+        "problems": _rows(scene, parser) if heard else [],
+    }
+    path = os.environ[batch.PROBE]
+    with open(path + ".new", "w") as f:
+        json.dump(told, f)
+    os.replace(path + ".new", path)
+    scene.finished = True
+    scene.results.release()
+    raise SystemExit(0)
+
+
+def _counts(model):
+    counts = model.describe()["joints_by_kind"]
+    return {kind: counts.get(joint.name, 0) for kind, joint in model.joints.items()}
+
+
+def _plain(values):
+    return {n: v for n, v in values.items() if isinstance(v, (bool, int, float, str))}
+
+
+def _bounds(p):
+    """The bounds of a property; what JSON has no number for is None."""
+    finite = lambda v: v if v is not None and math.isfinite(v) else None
+    return {"low": finite(p["low"]), "high": finite(p["high"]), "unit": p["unit"]}
+
+
+def _rows(scene, parser):
+    """Sentences on the rows of the table that cannot be run, as the scene itself tells them."""
+    path, _ = batch.place(os.environ[batch.VARIABLE])
+    problems = {}
+    for line, row in batch.readTable(path).items():
+        told = _refused(scene, parser, batch.optionWords(row))
+        if told:
+            problems.setdefault(told, []).append(row.get("description", line))
+    sentences = [
+        f"row {rows[0]}{f' and {len(rows) - 1} more' if rows[1:] else ''}: {told}"
+        for told, rows in problems.items()
+    ]
+    more = len(sentences) - MOST
+    return sentences[:MOST] + ([f"and {more} more"] if more > 0 else [])
+
+
+def _refused(scene, parser, words):
+    """Why a row is refused, or None. Its fields are looked at where they are far out."""
+    told = io.StringIO()
+    try:
+        with contextlib.redirect_stderr(told):
+            args = parser._parsed(words, None)
+    except SystemExit:
+        return told.getvalue().partition("error: ")[2].strip() or told.getvalue()
+    try:
+        masonry = scene.materials.variant(args)
+        check(args, masonry.joints)
+        for text in args.field:
+            _far(text, masonry.joints)
+    except ValueError as refused:
+        return str(refused)
+    return None
+
+
+def _far(text, joints):
+    names, kind, cov, length, seed = fields.parts(text)
+    ends = fields.ends(kind, cov, FAR)
+    for factor in ends:
+        changes = {}
+        for name in names:
+            joint, _, attribute = name.partition(".")
+            value = factor * getattr(joints[joint], attribute)
+            changes.setdefault(joint, {})[attribute] = value
+        for joint, values in changes.items():
+            before = {a: getattr(joints[joint], a) for a in values}
+            try:
+                joints[joint].updateAttrs(values)
+            except ValueError as error:
+                raise Refused(
+                    f"--field {text}: where the field is {factor:.3g} of the mean: {error}"
+                ) from None
+            joints[joint].updateAttrs(before)
