@@ -24,7 +24,8 @@ from .results import readRun
 VARIABLE = "YADE_BATCH"  # of the environment: path of the table and number of the line
 ROWS = "rows"  # folder of the results, beside the table
 FIELD = "field:"  # begins the name of a column
-#: Name in the environment of a file: the scene is built, and what it knows is written there. There is no run.
+#: Name in the environment of a file: the scene is built, and what it knows is written there. There is no run. The line of
+#: the heads then stands for a scene without options.
 PROBE = "MASONRY_PROBE"
 
 
@@ -111,6 +112,8 @@ def present():
         return None
     path, line = place(told)
     rows = readTable(path)
+    if PROBE in os.environ:
+        return optionWords(rows.get(line, {}))
     if line not in rows:
         raise Refused(f"{path} has no row in line {line}")
     out = folder(path, rows[line], line)

@@ -35,19 +35,24 @@ def probe(scene, stage, settings):
     if stage == "settle":
         return "at rest"
     parser, found = Parser.last
-    heard = scene.args is found
+    model, heard = scene.model, scene.args is found
     told = {
         "scene": scene.name,
         "heard": heard,
-        "options": sorted({a.dest for a in parser._actions} - {"help", "out", "resume", "set", "field"}) if heard else [],  # fmt: skip
-        "joints": {n: _plain(j.dict()) for n, j in scene.model.joints.items()},
-        "counts": _counts(scene.model),
-        "unused": {"rate": f"{stage}() has a rate of its own"} if stage in PUSHES and settings.get("rate") is not None else {},  # fmt: skip
-        "doubtful": {name: f"its first stage is {stage}()" for name in ("rate", "until", "history")} if stage not in PUSHES + DRIVES else {},  # fmt: skip
-        "room": scene.model.room()[1],
+        "options": _options(parser) if heard else [],
+        "unused": {},
+        "doubtful": {},
+        "joints": {name: _plain(joint.dict()) for name, joint in model.joints.items()},
+        "counts": _counts(model),
         "bounds": {p["name"]: _bounds(p) for p in properties(MasonryJoint)},
         "problems": _rows(scene, parser) if heard else [],
+        "room": model.room()[1],
     }
+    if stage in PUSHES and settings.get("rate") is not None:
+        told["unused"]["rate"] = f"{stage}() has a rate of its own"
+    if stage not in PUSHES + DRIVES:
+        for name in ("rate", "until", "history"):
+            told["doubtful"][name] = f"its first stage is {stage}()"
     path = os.environ[batch.PROBE]
     with open(path + ".new", "w") as f:
         json.dump(told, f)
@@ -55,6 +60,11 @@ def probe(scene, stage, settings):
     scene.finished = True
     scene.results.release()
     raise SystemExit(0)
+
+
+def _options(parser):
+    elsewhere = {"help", "out", "resume", "set", "field"}
+    return sorted({action.dest for action in parser._actions} - elsewhere)
 
 
 def _counts(model):
@@ -76,7 +86,10 @@ def _rows(scene, parser):
     """Sentences on the rows of the table that cannot be run, as the scene itself tells them."""
     path, _ = batch.place(os.environ[batch.VARIABLE])
     problems = {}
+    known = {action.dest for action in parser._actions}
     for line, row in batch.readTable(path).items():
+        # others are no options, which is told once, and not of every row
+        row = {n: v for n, v in row.items() if "." in n or n in known | {"description"}}
         told = _refused(scene, parser, batch.optionWords(row))
         if told:
             problems.setdefault(told, []).append(row.get("description", line))

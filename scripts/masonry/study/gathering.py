@@ -115,6 +115,28 @@ def written(path, text):
         raise Unwritable(f"cannot write {path}: {error.strerror}") from None
 
 
+#: How lines begin that are no reason of a failure.
+_CHATTER = (
+    "Yade: ",
+    "Running script",
+    "XMLRPC",
+    "TCP python",
+    "Welcome to",
+    "Using python",
+    "note: ",
+)
+_ERROR = re.compile(r"[\w.]*(Error|Exception|Exit|Interrupt)\b")
+
+
+def reason(log):
+    """What a scene said at last before it failed, of the text of its log: sentences, or an empty list."""
+    lines = [line.strip() for line in log.partition("error: ")[2 if " error: " in log else 0].splitlines()]  # fmt: skip
+    lines = [line for line in lines if line and not line.startswith(_CHATTER)]
+    if "Traceback (most recent call last):" in log:
+        lines = [line for line in lines if _ERROR.match(line)][-1:] or lines[-1:]
+    return lines
+
+
 def _text(value):
     """A number or text of study.csv: numbers with all their digits."""
     if value is None:

@@ -53,6 +53,7 @@ class Local:
         self.failed, self.interrupted = {}, False
         self.progress = Progress()
         self._process, self._begun = None, time.time()
+        self._groups = []  # of processes: every yade-batch with its jobs
         self._told = False  # whether the end has been shown
 
     def run(self):
@@ -70,6 +71,7 @@ class Local:
                 self._look()
                 idle = idle + bool(mine) if len(self.open) == before else 0
             if self.interrupted:
+                self._stop()
                 raise Interrupted()
             for number in self.open:
                 self._fail(number, f"it did not come to its end in {TRIES} attempts")
@@ -95,19 +97,18 @@ class Local:
         env.pop(batch.VARIABLE, None)
         with open(self.folder.of(LOG), "ab") as log:
             self._process = subprocess.Popen(command, cwd=self.folder.path, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True)  # fmt: skip
-        try:
-            while self._process.poll() is None and not self.interrupted:
-                time.sleep(LOOK_EVERY)
-                self._look()
-        finally:
-            if self._process.poll() is None:
-                self._stop()
+        self._groups.append(self._process.pid)
+        while self._process.poll() is None and not self.interrupted:
+            time.sleep(LOOK_EVERY)
+            self._look()
 
     def _stop(self):
-        """Tell all jobs to stop, and wait until they have left their checkpoints."""
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(self._process.pid, signal.SIGTERM)
-        self._process.wait()
+        """Tell all jobs to stop, also those of a yade-batch that was killed, and wait until they have left checkpoints."""
+        for group in self._groups:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(group, signal.SIGTERM)
+        if self._process:
+            self._process.wait()
         for _ in range(100):
             if not any(self.folder.isHeld(n) for n in self.open):
                 break

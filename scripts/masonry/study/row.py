@@ -16,7 +16,7 @@ import time
 from .. import batch
 from ..errors import Refused
 from ..results import readRun
-from .gathering import Folder, TABLE
+from .gathering import TABLE, Folder, reason
 from .plan import named
 
 REFUSED = 2  # exit status of a scene that refuses its input
@@ -117,9 +117,7 @@ class Job:
             error = readRun(self.folder.row(number)).get("error")
         except Refused:
             error = None
-        lines = [l.strip() for l in self._tail(number).splitlines()]
-        lines = [l for l in lines if l and not l.startswith(("Yade: ", "Running script", "XMLRPC", "TCP python"))]  # fmt: skip
-        return error or (lines[-1] if lines else "")
+        return error or "; ".join(reason(self._tail(number))[-3:])
 
 
 def _batched(words):

@@ -9,7 +9,7 @@ import tempfile
 from .. import batch
 from ..errors import Refused
 from ..progress import say
-from .gathering import STUDY, TABLE, Folder, written
+from .gathering import STUDY, TABLE, Folder, reason, written
 from .variables import NEVER, Distribution, Field
 
 VERSION = 1  # of study.json
@@ -97,6 +97,8 @@ def _look(study, script, table):
         with open(path, "w") as f:
             f.write(table)
         found = _probed(script, path, os.path.join(place, "probe.json"))
+        if isinstance(found, str):  # the first row may be to blame
+            found = _probed(script, path, os.path.join(place, "probe.json"), line=1) or found  # fmt: skip
     if isinstance(found, str):
         return [f"its scene cannot be built: {found}"], 0
     problems = _names(study, found) + _ranges(study, found) + found["problems"]
@@ -106,9 +108,12 @@ def _look(study, script, table):
     return problems, found["room"]
 
 
-def _probed(script, table, path):
-    """What :mod:`masonry.probing` writes, as a dict, or why there is none."""
-    env = {**os.environ, batch.VARIABLE: f"{table}:2", batch.PROBE: path, "OMP_NUM_THREADS": "1"}  # fmt: skip
+def _probed(script, table, path, line=2):
+    """What :mod:`masonry.probing` writes, as a dict, or why there is none.
+
+    :param line: of the table: the options with which the scene is built; 1: it is built without options
+    """
+    env = {**os.environ, batch.VARIABLE: f"{table}:{line}", batch.PROBE: path, "OMP_NUM_THREADS": "1"}  # fmt: skip
     try:
         done = subprocess.run(["yade", "-n", "--threads=1", "-x", script], env=env, cwd=os.path.dirname(script), stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", timeout=PROBING)  # fmt: skip
     except subprocess.TimeoutExpired:
@@ -117,10 +122,7 @@ def _probed(script, table, path):
         with open(path) as f:
             return json.load(f)
     except (OSError, ValueError):
-        told = (done.stderr.partition("error: ")[2] or done.stderr).strip()
-        lines = [l for l in told.splitlines() if l.strip()]
-        if "Traceback" in told or not lines:
-            lines = lines[-1:] or [f"no masonry.Scene began a stage in {script}"]
+        lines = reason(done.stderr) or [f"no masonry.Scene began a stage in {script}"]
         return "\n  ".join(lines[:10])
 
 
