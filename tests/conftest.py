@@ -17,7 +17,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 BUILD = os.path.join(ROOT, "build")
 RINGS = ["law", "blocks", "files", "host", "package", "sanitizers", "fuzz", "studies", "scenes"]  # fmt: skip
 SLOW = ["sanitizers", "fuzz", "studies", "scenes"]  # rings of which every test is slow
-TOGETHER = ["programs", "targets", "squat"]  # fixtures that many tests share
+TOGETHER = ["programs", "targets", "squat", "whole"]  # fixtures that many tests share
 
 sys.path.insert(1, "/usr/lib/x86_64-linux-gnu/yade-double/py")  # as /usr/bin/yade does
 sys.path.insert(1, os.path.join(ROOT, "tests", "references"))

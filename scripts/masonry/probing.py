@@ -5,6 +5,7 @@ import io
 import json
 import math
 import os
+import re
 
 from yade.wrapper import MasonryJoint
 
@@ -90,33 +91,34 @@ def _rows(scene, parser):
     for line, row in batch.readTable(path).items():
         # others are no options, which is told once, and not of every row
         row = {n: v for n, v in row.items() if "." in n or n in known | {"description"}}
-        told = _refused(scene, parser, batch.optionWords(row))
-        if told:
-            problems.setdefault(told, []).append(row.get("description", line))
+        for told in _refused(scene, parser, batch.optionWords(row)):
+            alike = re.sub(r"\d[\d.e+-]*", "#", told)  # but for its numbers
+            problems.setdefault(alike, []).append((row.get("description", line), told))
     sentences = [
-        f"row {rows[0]}{f' and {len(rows) - 1} more' if rows[1:] else ''}: {told}"
-        for told, rows in problems.items()
+        f"row {found[0][0]}{f' and {len(found) - 1} more' if found[1:] else ''}: {found[0][1]}"
+        for found in problems.values()
     ]
     more = len(sentences) - MOST
     return sentences[:MOST] + ([f"and {more} more"] if more > 0 else [])
 
 
 def _refused(scene, parser, words):
-    """Why a row is refused, or None. Its fields are looked at where they are far out."""
+    """Why a row is refused, a list of sentences. Its fields are looked at where they are far out."""
     told = io.StringIO()
     try:
         with contextlib.redirect_stderr(told):
             args = parser._parsed(words, None)
     except SystemExit:
-        return told.getvalue().partition("error: ")[2].strip() or told.getvalue()
+        text = told.getvalue()
+        return (text.partition("error: ")[2] or text).strip().splitlines()
     try:
         masonry = scene.materials.variant(args)
         check(args, masonry.joints)
         for text in args.field:
             _far(text, masonry.joints)
     except ValueError as refused:
-        return str(refused)
-    return None
+        return str(refused).splitlines()
+    return []
 
 
 def _far(text, joints):

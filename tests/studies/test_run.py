@@ -253,7 +253,7 @@ study = Study({SMALL!r}, runs=20, seed=1, options={{"until": 1, "dance": 3}}, va
     "bed.stickiness": uniform(0, 1),
     "wall.cohesion": uniform(1, 2),
     "support.cohesion": uniform(1e5, 2e5),
-    "rate": uniform(-1, 30),
+    "rate": uniform(-30, 30),
     "color": ["red"],
 }})
 """,
