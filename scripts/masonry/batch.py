@@ -86,6 +86,11 @@ def place(told):
     return path, int(line)
 
 
+def named(number):
+    """The name of a row of a study, from its number, from 1."""
+    return f"{number:04d}"
+
+
 def folder(path, row, line):
     """The folder of the results of a row."""
     name = row.get("description", f"line_{line}").replace("/", "_").strip("'\"")

@@ -17,7 +17,22 @@ A study is a small Python file::
 python3-openturns); a grid of numbers and choices needs no more than Python.
 """
 
-from .plan import Study
-from .variables import Distribution, Field, choice, field, lognormal, normal, uniform
+import importlib
 
-__all__ = "Study Distribution Field choice field lognormal normal uniform".split()
+#: Public names by the module that has them. They are loaded when they are used first, because a row needs none of them.
+_NAMES = {
+    "plan": ["Study"],
+    "variables": ["Distribution", "Field", "choice", "field", "lognormal", "normal", "uniform"],  # fmt: skip
+}
+__all__ = [name for names in _NAMES.values() for name in names]
+
+
+def __getattr__(name):
+    for module, names in _NAMES.items():
+        if name in names:
+            return getattr(importlib.import_module(f"{__name__}.{module}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__():
+    return sorted({*globals(), *__all__})

@@ -74,6 +74,9 @@ def main(words):
             say("interrupted: the same command goes on from here")
             return 130
         return tell(folder)
+    except KeyboardInterrupt:
+        say("interrupted: nothing was run")
+        return 130
     except (Refused, Unwritable) as problem:
         print(problem, file=sys.stderr)
         return 2

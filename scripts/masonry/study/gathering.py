@@ -13,7 +13,6 @@ import re
 from .. import batch
 from ..errors import Refused, Unwritable
 from ..results import held, readWhole
-from .plan import named
 
 TABLE, STUDY, CSV, TIMES = "table.txt", "study.json", "study.csv", "times.csv"
 
@@ -64,7 +63,7 @@ class Folder:
 
     def row(self, number):
         """The folder of the results of a row."""
-        return self.of(batch.ROWS, named(number))
+        return self.of(batch.ROWS, batch.named(number))
 
     def job(self, number):
         """The file that says how the last attempt at a row ended."""
@@ -153,11 +152,11 @@ def gather(folder):
         run, status = batch.ended(folder.row(number)) or {}, folder.status(number)
         counts[status] = counts.get(status, 0) + 1
         measures = {n: v for n, v in run.items() if n not in ASIDE and (v is None or isinstance(v, (bool, int, float, str)))}  # fmt: skip
-        found.append(([named(number), *(_varied(n, row[n]) for n in names), status], measures))  # fmt: skip
+        found.append(([batch.named(number), *(_varied(n, row[n]) for n in names), status], measures))  # fmt: skip
         job = folder.lastJob(number)
         why = job.get("told", "") if status == "failed" else ""
         cost = run.get("wall_clock_s")
-        times.append([named(number), status, job.get("host", run.get("host", "")), _text(cost), _text(job.get("seconds")), run.get("commit", ""), why])  # fmt: skip
+        times.append([batch.named(number), status, job.get("host", run.get("host", "")), _text(cost), _text(job.get("seconds")), run.get("commit", ""), why])  # fmt: skip
     known = {n for _, measures in found for n in measures}
     heads = [n for n in FIRST if n in known] + sorted(known - set(FIRST))
     lines = [[*begin, *(_text(m.get(n)) for n in heads)] for begin, m in found]

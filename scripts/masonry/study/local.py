@@ -13,9 +13,8 @@ from .. import batch
 from ..errors import Interrupted, Refused
 from ..progress import Progress, say
 from .gathering import TABLE
-from .plan import named
 
-LOOK_EVERY = 0.3  # [s]
+LOOK_EVERY = 0.5  # [s]
 LOG = "study.log"  # of yade-batch, in the study's folder
 TRIES = 3  # starts of yade-batch in which no row comes to an end
 
@@ -100,7 +99,7 @@ class Local:
         self._groups.append(self._process.pid)
         while self._process.poll() is None and not self.interrupted:
             time.sleep(LOOK_EVERY)
-            self._look()
+            self._look(quick=True)
 
     def _stop(self):
         """Tell all jobs to stop, also those of a yade-batch that was killed, and wait until they have left checkpoints."""
@@ -114,15 +113,22 @@ class Local:
                 break
             time.sleep(0.1)
 
-    def _look(self):
-        """See which rows have come to an end, and tell."""
+    def _look(self, quick=False):
+        """See which rows have come to an end, and tell.
+
+        :param quick: look only where an attempt has ended
+        """
+        names = set(os.listdir(self.folder.of(batch.ROWS))) if quick else ()
+        jobOf = lambda number: os.path.basename(self.folder.job(number))
         for number in sorted(self.open):
+            if quick and jobOf(number) not in names:
+                continue
             if self.folder.isEnded(number):
                 self.open.remove(number)
                 continue
-            job = self._job(number)
-            if job and job["status"] > 0 and job["status"] != 130:
-                self._fail(number, job["told"] or f"exit status {job['status']}")
+            last = self._job(number)
+            if last and last["status"] > 0 and last["status"] != 130:
+                self._fail(number, last["told"] or f"exit status {last['status']}")
         self.open -= set(self.failed)
         self._show(not self.open)
 
@@ -145,4 +151,6 @@ class Local:
 
     def _fail(self, number, why):
         self.failed[number] = why
-        say(f"\nrow {named(number)} failed: {why}; see {self.folder.row(number)}.log")
+        say(
+            f"\nrow {batch.named(number)} failed: {why}; see {self.folder.row(number)}.log"
+        )

@@ -155,7 +155,7 @@ class Study:
         heads = ["description", *rows[0]]
         lines = [" ".join(heads)]
         for number, row in enumerate(rows, 1):
-            lines.append(" ".join([named(number), *map(repr, row.values())]))
+            lines.append(" ".join([batch.named(number), *map(repr, row.values())]))
         return "\n".join(lines) + "\n"
 
     def script(self, near):
@@ -177,11 +177,6 @@ class Study:
             raise Refused(f"study: no scene {self.scene}; looked in {looked}")
         with open(path, "rb") as f:
             return path, hashlib.sha256(f.read()).hexdigest()
-
-
-def named(number):
-    """The name of a row."""
-    return f"{number:04d}"
 
 
 def _namesOf(column):

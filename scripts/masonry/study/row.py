@@ -17,7 +17,6 @@ from .. import batch
 from ..errors import Refused
 from ..results import readRun
 from .gathering import TABLE, Folder, reason
-from .plan import named
 
 REFUSED = 2  # exit status of a scene that refuses its input
 TAIL = 4000  # bytes at the end of a log in which the reason of a failure stands
@@ -152,7 +151,7 @@ def main(words):
     for word in words[1:]:
         status = job.run(int(word))
         if status:
-            print(f"row {named(int(word))}: {job.folder.lastJob(int(word)).get('told') or f'exit status {status}'}", file=sys.stderr)  # fmt: skip
+            print(f"row {batch.named(int(word))}: {job.folder.lastJob(int(word)).get('told') or f'exit status {status}'}", file=sys.stderr)  # fmt: skip
         worst = max(worst, status if status >= 0 else 128 - status)
         if job.stopped:
             requeue(job)
