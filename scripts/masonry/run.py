@@ -113,6 +113,8 @@ class Run:
         self._values = [column.value for column in model.columns]
         self._live = live(columns)
         folder = args.out or os.path.join("results", self.name)
+        if batch.PROBE in os.environ:  # there is no run, and nothing shall be left
+            folder = os.environ[batch.PROBE] + ".results"
         self.results = Results(folder, columns, bool(args.resume), self.name)
         if batch.VARIABLE in os.environ and batch.ended(folder):
             self.results.release()  # another one ran this row since the options were read

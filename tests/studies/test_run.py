@@ -239,6 +239,7 @@ def refused(tmp_path, text, *words, env=None):
     assert done.returncode == 2, done.stdout + done.stderr
     assert "Traceback" not in done.stderr
     assert not out.exists()
+    assert not (tmp_path / "results").exists() and not os.path.exists(os.path.join(HERE, "results"))  # fmt: skip
     return done.stderr
 
 
@@ -335,19 +336,42 @@ def test_a_missing_engine_is_told_before_anything_runs(tmp_path, engine, words):
     assert engine in told and "apt-get install" in told and told.count("\n") == 1
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason="only root mounts a small disk")
-def test_a_full_disk_is_told_before_anything_runs(tmp_path):
-    small = tmp_path / "disk"
-    small.mkdir()
-    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", small]).returncode:  # fmt: skip
+@contextlib.contextmanager
+def disk(place, size):
+    """A small file system of its own."""
+    place.mkdir()
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", place]).returncode:  # fmt: skip
         pytest.skip("no file system can be mounted here")
     try:
+        yield place
+    finally:
+        subprocess.run(["umount", place], check=True)
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root mounts a small disk")
+def test_a_full_disk_is_told_before_anything_runs(tmp_path):
+    with disk(tmp_path / "disk", "1m") as small:
         done = study(write(tmp_path), "--out", small / "out")
         assert done.returncode == 2
         assert re.search(r"has 1 MB free, the study writes some \d+ MB", done.stderr)
         assert os.listdir(small) == []
-    finally:
-        subprocess.run(["umount", small], check=True)
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root mounts a small disk")
+def test_a_disk_that_fills_up_stops_the_study_in_order(whole, tmp_path):
+    with disk(tmp_path / "disk", "60m") as small:
+        shutil.copytree(whole[0], small / "out")
+        shutil.rmtree(small / "out" / "rows" / "0003")
+        (small / "filler").write_bytes(bytes(shutil.disk_usage(small).free - 6_000_000))
+        path = write(tmp_path)
+        done = study(path, "--out", small / "out", "--jobs", "2")
+        assert done.returncode == 2 and "Traceback" not in done.stderr
+        assert re.search(r"has [56].\d MB free, too little for 2 runs", done.stderr)
+        assert "goes on when there is room" in done.stderr
+        os.remove(small / "filler")
+        assert study(path, "--out", small / "out", "--jobs", "2").returncode == 0
+        assert read(small / "out") == read(whole[0])
+        assert ended(small / "out")[4:] == ["0003"]
 
 
 # -- Slurm ------------------------------------------------------------------------------------------------------------

@@ -10,12 +10,13 @@ import sys
 import time
 
 from .. import batch
-from ..errors import Interrupted, Refused
+from ..errors import Interrupted, Refused, Unwritable
 from ..progress import Progress, say
 from .gathering import TABLE
 
 LOOK_EVERY = 0.5  # [s]
 LOG = "study.log"  # of yade-batch, in the study's folder
+ROOM = 5e6  # bytes that must be free on the disk for every run at a time: its results and a checkpoint
 TRIES = 3  # starts of yade-batch in which no row comes to an end
 
 
@@ -61,6 +62,7 @@ class Local:
         try:
             idle = 0
             while self.open and idle < TRIES and not self.interrupted:
+                self._checkRoom()
                 before = len(self.open)
                 mine = {n for n in self.open if not self.folder.isHeld(n)}
                 if mine:
@@ -100,6 +102,17 @@ class Local:
         while self._process.poll() is None and not self.interrupted:
             time.sleep(LOOK_EVERY)
             self._look(quick=True)
+            self._checkRoom()
+
+    def _checkRoom(self):
+        """Stop a study whose disk is nearly full. Raises Unwritable."""
+        free = shutil.disk_usage(self.folder.path).free
+        if free < ROOM * self.jobs:
+            self._stop()
+            raise Unwritable(
+                f"{self.folder.path} has {1e-6 * free:.1f} MB free, too little for {self.jobs} runs at a time: stopped; what "
+                "was computed is kept, and the same command goes on when there is room"
+            )
 
     def _stop(self):
         """Tell all jobs to stop, also those of a yade-batch that was killed, and wait until they have left checkpoints."""
