@@ -193,7 +193,7 @@ class Parser(argparse.ArgumentParser):
                 alike(setting, ["", "", ""]) for setting in value
             )
         if action.dest == "field":
-            return alike(value, [""])
+            return isinstance(value, list) and all(isinstance(v, str) for v in value)
         if action.dest == "history":
             points = value.get("points_mm") if isinstance(value, dict) else None
             return bool(points) and alike(points, None) and alike(value.get("text"), "")
