@@ -52,6 +52,7 @@ Architecture: $architecture
 Maintainer: $name <$address>
 Installed-Size: $(du -sk "$root/usr" | cut -f 1)
 Depends: yade (= $yade), python3 (>= $python), python3 (<< $next), python3-matplotlib, python3-meshio, python3-numpy, python3-scipy, python3-vtk9, coinor-libclp1, $libraries
+Suggests: python3-openturns, slurm-client
 Section: science
 Priority: optional
 Description: masonry walls of blocks and joints in the discrete element code YADE

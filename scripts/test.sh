@@ -15,7 +15,8 @@ if [[ "${1:-}" == quick ]]; then
     tests=(tests/law tests/blocks tests/files tests/host -m "not slow" "$@")
     workers=$(nproc)
 else
-    bash scripts/setup.sh python3-pytest-xdist clang libclang-rt-dev libomp-dev # for fuzz and sanitizers
+    # for fuzz and sanitizers, and for studies
+    bash scripts/setup.sh python3-pytest-xdist clang libclang-rt-dev libomp-dev python3-openturns slurm-wlm munge
     races=tests/sanitizers/test_sanitizers.py::test_no_two_threads_race
     (($#)) && tests=("$@") || tests=(tests --deselect "$races")
     workers=$(($# ? 0 : $(nproc)))

@@ -1,4 +1,4 @@
-"""Rings, fastest first: law, blocks and files (C++, doctest), host, package, sanitizers, fuzz, scenes.
+"""Rings, fastest first: law, blocks and files (C++, doctest), host, package, sanitizers, fuzz, studies, scenes.
 
 The host is the installed YADE, in this process. Tests marked ``slow`` stand at the end, whatever their ring, and the
 quick ring (``scripts/test.sh quick``) leaves them out. With pytest-xdist every worker has a YADE of its own; what
@@ -15,9 +15,9 @@ import pytest
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 BUILD = os.path.join(ROOT, "build")
-RINGS = ["law", "blocks", "files", "host", "package", "sanitizers", "fuzz", "scenes"]
-SLOW = ["sanitizers", "fuzz", "scenes"]  # rings of which every test is slow
-TOGETHER = ["programs", "targets", "squat"]  # fixtures that many tests share
+RINGS = ["law", "blocks", "files", "host", "package", "sanitizers", "fuzz", "studies", "scenes"]  # fmt: skip
+SLOW = ["sanitizers", "fuzz", "studies", "scenes"]  # rings of which every test is slow
+TOGETHER = ["programs", "targets", "squat", "whole"]  # fixtures that many tests share
 
 sys.path.insert(1, "/usr/lib/x86_64-linux-gnu/yade-double/py")  # as /usr/bin/yade does
 sys.path.insert(1, os.path.join(ROOT, "tests", "references"))

@@ -38,8 +38,8 @@ __version__ = "2.0"
 
 #: Modules that are loaded when they are used first.
 _MODULES = (
-    "bounds bricks checkpoints columns comparison curves described errors fields figures frames ground history limit loading "
-    "loops materials measure model options plotting ports presets progress results run scene stages structure viewer window"
+    "batch bounds bricks checkpoints columns comparison curves described errors fields figures frames ground history limit loading "
+    "loops materials measure model options plotting ports presets probing progress results run scene stages structure study viewer window"
 ).split()
 
 

@@ -9,6 +9,7 @@ distance d apart have the correlation exp(-(d/length)²), as they stand before t
 """
 
 import math
+import re
 
 import numpy as np
 
@@ -60,10 +61,57 @@ def lognormal(cov, length=0.0, seed=0):
     return lambda x, y, z: math.exp(spread * field(x, y, z) - spread * spread / 2)
 
 
-def normal(cov, length=0.0, seed=0, least=0.05):
+LEAST = 0.05  # factor below which a normal field does not go
+
+
+def normal(cov, length=0.0, seed=0, least=LEAST):
     """Factors that are normally distributed about the mean 1, but not below ``least``. Other parameters: :func:`lognormal`."""
     _checked(cov)
     if not 0 < least < 1:
         raise ValueError(f"random field: least {least} must be above 0, below 1")
     field = _standard(length, seed)
     return lambda x, y, z: max(least, 1 + cov * field(x, y, z))
+
+
+KINDS = {"lognormal": lognormal, "normal": normal}
+_TEXT = re.compile(
+    r"(?P<names>[^=]+)=(?P<kind>lognormal|normal)\(cov=(?P<cov>[^,]+),length=(?P<length>[^,]+),seed=(?P<seed>\d+)\)"
+)
+
+
+def parts(text):
+    """Names, kind, coefficient of variation, length [m] and seed of a field that is written as :func:`read` takes it."""
+    found = _TEXT.fullmatch(text)
+    names = found["names"].split("+") if found else []
+    if not found or not all(re.fullmatch(r"[^.\s]+\.\w+", name) for name in names):
+        raise ValueError(
+            f"'{text}' must read JOINT.PROPERTY=KIND(cov=C,length=L,seed=N), KIND lognormal or normal, L in m"
+        )
+    try:
+        numbers = float(found["cov"]), float(found["length"])
+    except ValueError:
+        raise ValueError(f"'{text}': cov and length must be numbers") from None
+    return names, found["kind"], *numbers, int(found["seed"])
+
+
+def read(text):
+    """The names of the properties and the function of a field that is written as the option ``--field`` takes it.
+
+    :param text: for example ``bed.cohesion+bed.tensileStrength=lognormal(cov=0.3,length=0.5,seed=1)``
+    :raises ValueError: if it is none
+    """
+    names, kind, cov, length, seed = parts(text)
+    return names, KINDS[kind](cov, length, seed)
+
+
+def written(kind, cov, length, seed):
+    """The part of the text that :func:`read` reads behind the names."""
+    return f"{kind}(cov={cov!r},length={length!r},seed={seed})"
+
+
+def ends(kind, cov, far):
+    """The factors of a field where its normal is so many standard deviations below and above its mean [-]."""
+    if kind == "lognormal":
+        spread = math.sqrt(math.log1p(cov * cov))
+        return tuple(math.exp(s * far * spread - spread**2 / 2) for s in (-1, 1))
+    return max(LEAST, 1 - far * cov), 1 + far * cov

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from yade import Vector3
 from yade.wrapper import MasonryJoint, MasonryMat
 
+from . import fields
 from .errors import Refused
 
 #: A joint whose normal is steeper than this is a bed joint: 45 degrees.
@@ -111,9 +112,16 @@ class Masonry:
         if args.joints == "cyclic":
             makeCyclic(copies)
         units = {kind: _copied(mat) for kind, mat in source.units.items()}
-        return Masonry(
-            _copied(source.unit), copies, units, None, self.choose, self.varied
+        own = Masonry(
+            _copied(source.unit), copies, units, None, self.choose, [*self.varied]
         )
+        for text in args.field:
+            names, function = fields.read(text)
+            try:
+                own.vary(names, function)
+            except ValueError as error:
+                raise Refused(f"--field {text}: {error}") from None
+        return own
 
     def rule(self, model):
         """The rule of :func:`masonry.scene.connect` for a :class:`masonry.structure.Structure`."""

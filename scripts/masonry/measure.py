@@ -201,6 +201,72 @@ def force(displacement, shear):
     }
 
 
+def pushNumbers(displacement, shear):
+    """Numbers of a push: its work, and those of :func:`force`. Parameters are displacements [mm] and forces [kN]."""
+    work = float(np.trapz(shear, displacement))
+    return {"push_work_J": work, **force(displacement, shear)}
+
+
+def sliding(bed):
+    """Numbers of the bed joint, from side to side of the wall, in which most energy was lost in shear.
+
+    - sliding_course: courses between it and the base
+    - sliding_energy_share [-]: of the energy lost in shear by all bed joints, what it lost
+    - slid_share [-]: of its length, what slid more than CRACK
+    """
+    energy = bed["shear"].sum(axis=1)
+    course, whole = int(energy.argmax()), energy.sum()
+    return {
+        "sliding_course": course + 1,
+        "sliding_energy_share": energy[course] / whole if whole > 0 else 0.0,
+        "slid_share": (bed["slide"][course] > CRACK).mean(),
+    }
+
+
+def patternNumbers(bed, upright):
+    """Numbers of the crack pattern of a wall; ``bed`` and ``upright`` as of :func:`layOut`."""
+    found = {**diagonal(bed, upright), **flexure(bed), **crushing(bed), **sliding(bed)}
+    return {name: np.asarray(value).item() for name, value in found.items()}
+
+
+def pattern(frame, wall):
+    """Numbers of the crack pattern of a wall; ``frame`` and ``wall`` as of :func:`layOut`."""
+    return patternNumbers(*layOut(frame, wall))
+
+
+SLID = (
+    0.9,
+    0.5,
+)  # of a bed joint's length, and of the energy: a wall that slides along a bed joint slid there
+
+
+def failureMode(numbers, wall):
+    """A plain name of how a wall gave way, from its crack pattern at the end. The first that applies is given:
+
+    - ``bed sliding``: one bed joint slid along nine tenths of the wall's length, and lost half of the energy that bed
+      joints lost in shear
+    - ``diagonal cracking``: a stepped crack reaches over half of the shorter side of the wall, in courses or half units
+    - ``toe crushing``: bed joints of more than one half unit closed past the peak of their compression curve
+    - ``rocking``: a bed joint opened at a side of the wall by more than CRACK
+    - ``none``: the wall is not cracked
+
+    A wall that has several of these has the name of one: the numbers beside it tell of the others.
+
+    :param numbers: of :func:`patternNumbers`
+    :param wall: the entry ``wall`` of run.json
+    """
+    if numbers["slid_share"] >= SLID[0] and numbers["sliding_energy_share"] >= SLID[1]:
+        return "bed sliding"
+    if numbers["diagonal_reach"] >= 0.5 * min(wall["courses"], wall["half_units"]):
+        return "diagonal cracking"
+    half = 1e4 * wall["unit_m"][0] / 2 * wall["unit_m"][1]  # [cm²]
+    if numbers["past_peak_area_cm2"] > half:
+        return "toe crushing"
+    if numbers["flexural_cracks_base"] + numbers["flexural_cracks_top"]:
+        return "rocking"
+    return "none"
+
+
 def frameAt(directory, time):
     """Number of the joints' frame nearest to a time [s]."""
     sets = ElementTree.parse(os.path.join(directory, "joints.pvd")).iter("DataSet")
@@ -216,14 +282,13 @@ def wallNumbers(directory):
     if "history" in run:
         numbers.update(loopNumbers(run, moved, shear))
     else:
-        numbers["push_work_J"] = float(np.trapz(shear, moved))
-        numbers.update(force(moved, shear))
+        numbers.update(pushNumbers(moved, shear))
     if glob.glob(os.path.join(directory, "joints_*.vtp")):
         grid = lambda number: layOut(
             readFrame(directory, "joints", number), run["wall"]
         )
         bed, upright = grid(-1)
-        numbers.update(diagonal(bed, upright), **flexure(bed), **crushing(bed))
+        numbers.update(patternNumbers(bed, upright))
         if "history" in run:
             bed, upright = mirrored(bed), mirrored(upright)
             other = {**diagonal(bed, upright), **crushing(bed)}
@@ -334,8 +399,11 @@ def cycleTable(cycles):
 
 def show(directory):
     """Print all numbers of a run, and a table of its cycles if there are any."""
-    for name, value in measure(directory).items():
+    numbers, wall = measure(directory), readRun(directory).get("wall")
+    for name, value in numbers.items():
         print(f"{name:34} {value:.6g}")
+    if wall and "slid_share" in numbers:
+        print(f"{'failure_mode':34} {failureMode(numbers, wall)}")
     cycles = readRun(directory).get("cycles")
     if cycles:
         with filesOf(directory):

@@ -6,7 +6,7 @@ import os
 import re
 import sys
 
-from . import history
+from . import batch, fields, history
 from .checkpoints import alike, readProgress
 from .errors import Refused
 from .presets import BOUND, HARMLESS, PRESETS, USUAL, asOption
@@ -21,7 +21,7 @@ UNITS = {
 }
 
 #: Options that can be changed when a run is resumed.
-FREE = {"until", "history", "checkpoint_every", "vtk_every", "no_vtk"}
+FREE = {"until", "history", "checkpoint_every", "vtk_every", "no_vtk", "lean"}
 
 
 def number(text, low=-math.inf, high=math.inf, above=False):
@@ -66,6 +66,14 @@ def _setting(text):
     return joint, attribute, value
 
 
+def _field(text):
+    try:
+        fields.read(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+    return text
+
+
 def _history(text):
     try:
         return history.parse(text)
@@ -90,6 +98,9 @@ class Parser(argparse.ArgumentParser):
     a resumed run are refused, but for those in ``free``. ``overrides`` of the parsed options lists those that were given
     beside a preset and differ from it, or from the default.
     """
+
+    #: The parser that read the command line last, and what it found.
+    last = None, None
 
     def __init__(self, **settings):
         super().__init__(allow_abbrev=False, **settings)
@@ -118,6 +129,21 @@ class Parser(argparse.ArgumentParser):
         super().error("\n  ".join([*self.problems, message]))
 
     def parse_args(self, args=None, namespace=None):
+        """The options of the command line, or, in a run of ``yade-batch``, those of a row of its table: masonry.batch."""
+        whole = args is None
+        if whole:
+            try:
+                args = batch.present()
+            except batch.Done as done:
+                self.exit(0, f"{done} has the results of this row\n")
+            except Refused as refused:
+                self.exit(2, f"{refused}\n")
+        found = self._parsed(args, namespace)
+        if whole:
+            Parser.last = self, found
+        return found
+
+    def _parsed(self, args, namespace):
         found = super().parse_args(args, namespace)
         if found.resume is not None:
             return self._resumed(args, found.resume)
@@ -166,6 +192,8 @@ class Parser(argparse.ArgumentParser):
             return isinstance(value, list) and all(
                 alike(setting, ["", "", ""]) for setting in value
             )
+        if action.dest == "field":
+            return isinstance(value, list) and all(isinstance(v, str) for v in value)
         if action.dest == "history":
             points = value.get("points_mm") if isinstance(value, dict) else None
             return bool(points) and alike(points, None) and alike(value.get("text"), "")
@@ -325,7 +353,16 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         action="append",
         default=[],
         help="change a property of the bed, head, crack or support joints, in SI units; repeatable "
-        "(help(MasonryJoint) lists them)",
+        "(help(MasonryJoint) lists them); where friction and residual friction are one value, they stay one",
+    )
+    p.add_argument(
+        "--field",
+        metavar="JOINT.PROPERTY=FIELD",
+        type=_field,
+        action="append",
+        default=[],
+        help="let a property vary from place to place, as in bed.cohesion=lognormal(cov=0.3,length=0.5,seed=1): a random "
+        "field about its value, with a correlation length [m]; properties joined by + vary alike; repeatable",
     )
     p.add_argument(
         "--out",
@@ -366,6 +403,12 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         "--no-vtk",
         action="store_true",
         help="write no ParaView files and no crack figure",
+    )
+    p.add_argument(
+        "--lean",
+        action="store_true",
+        help="for many runs: no ParaView files, no figures, no bound beside the run, and no checkpoint once it has ended; "
+        "run.json has the numbers of the crack pattern of a wall and its failure mode",
     )
     return p
 
@@ -424,8 +467,12 @@ def applySettings(joints, settings):
             }.get(type(values[attribute]), "a number")
             problems.append(f"--set {name}.{attribute}={text}: must be {kind}")
     for name, change in changes.items():
+        joint = joints[name]
+        if joint.residualFriction == joint.friction and "friction" in change:
+            # joints with one value of friction keep one
+            change.setdefault("residualFriction", change["friction"])
         try:
-            joints[name].updateAttrs(change)
+            joint.updateAttrs(change)
         except ValueError as error:
             problems.append(str(error))
     if problems:

@@ -66,7 +66,15 @@ PROMISES = {
 }
 
 #: Options that leave a preset's promise alone.
-HARMLESS = {"preset", "until", "out", "vtk_every", "no_vtk", "checkpoint_every"}
+HARMLESS = {
+    "preset",
+    "until",
+    "out",
+    "vtk_every",
+    "no_vtk",
+    "checkpoint_every",
+    "lean",
+}
 
 
 def asOption(name):

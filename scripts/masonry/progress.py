@@ -32,7 +32,7 @@ class Progress:
         :param stage: name of the stage
         :param fraction: how much of the stage is done, 0 to 1 [-]
         :param detail: function without arguments that gives the text to show; it is called only if the text is shown
-        :param stepsPerSecond: time steps in a second of wall-clock time
+        :param stepsPerSecond: time steps in a second of wall-clock time; None: what is shown takes no steps
         :param final: whether the stage ends here; this is always shown
         """
         now = time.perf_counter()
@@ -45,7 +45,9 @@ class Progress:
             return
         self.last, self.lastTenth = now, tenth
         done = fraction - self.first
-        text = f"{stage:<12} {detail()}  {stepsPerSecond:,.0f} steps/s"
+        text = f"{stage:<12} {detail()}"
+        if stepsPerSecond is not None:
+            text += f"  {stepsPerSecond:,.0f} steps/s"
         if done > 0.01 and not final:
             left = int((now - self.began) * (1 - fraction) / done)
             text += f"  {left // 60}:{left % 60:02d} left"

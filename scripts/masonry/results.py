@@ -12,7 +12,7 @@
 - ``unit_material``: ``young_Pa``, ``poisson`` and ``density_kg_per_m3`` of the bricks
 - ``units``: how many bricks or half bricks there are; ``nodes``: how many nodes of deformable units; ``joint_count``: how
   many joints between blocks; ``joints_by_kind``: how many of each kind; ``subcontacts``: how many points of joints
-- ``versions``: of ``yade``, ``python`` and ``masonry``; ``commit``: of the plugin; ``threads``: how many
+- ``versions``: of ``yade``, ``python`` and ``masonry``; ``commit``: of the plugin; ``threads``: how many; ``host``: its name
 - ``time_step_s``, ``time_step_limit_s``: the time step and its stable limit
 - ``steps``: how many were taken; ``microseconds_per_step``, ``nanoseconds_per_subcontact_step``: their mean cost
 - ``stages``: a list with the name of every ``stage``, its ``steps`` and their ``seconds`` of wall-clock time
@@ -44,6 +44,7 @@
 - ``ended``: how the last stage ended: ``at rest``, ``moving``, ``done`` or ``collapsed``
 - ``collapse``: what has fallen, and how far; None if nothing has
 - ``held``: names of the platens and bricks that are held
+- ``factor``, ``stood``: as of :class:`masonry.stages.Scene`, of a run that tilts, leans or accelerates
 
 A run that pushes, leans or tilts has these, if limit analysis (:mod:`masonry.limit`) applies:
 
@@ -63,6 +64,8 @@ A run with a push has these, too:
 - ``peak_base_shear_kN``, ``displacement_at_peak_mm``: the largest force at the base, and where it is reached
 - ``base_shear_end_kN``, ``displacement_end_mm``: the last row
 - ``initial_stiffness_kN_per_mm``: as :func:`masonry.curves.initialStiffness` fits it
+- with --lean, which leaves no frames to measure: the numbers of :func:`masonry.measure.pushNumbers`, and of a wall in running
+  bond those of :func:`masonry.measure.patternNumbers` and its ``failure_mode`` (:func:`masonry.measure.failureMode`)
 - ``dynamic_imbalance``: as of :func:`masonry.curves.dynamicImbalance` [-]; ``too_fast``: whether it is more than a push
   may have
 - ``wall``, of a whole wall in running bond in the x-z plane that a platen pushes: ``length_m``, ``height_m``,
@@ -247,6 +250,28 @@ class Lock:
             if not (self.ours and names) or _recorded(folder):
                 os.remove(self.path)
         self._file.close()
+
+
+def held(directory):
+    """Whether a run is writing to a folder now, as far as its lock tells."""
+    try:
+        file = open(os.path.join(directory, LOCK), "rb")
+    except OSError:
+        return False
+    with file:
+        told = _object(file.read())
+        if told.get("host") == socket.gethostname() and not os.path.exists(
+            f"/proc/{told.get('process')}"
+        ):
+            return False  # a lock that is tried for a moment would be in the way of a run that begins
+        file.seek(0)
+        try:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+        except OSError:
+            return bool(_object(file.read()))
+        return False
 
 
 def _object(data):

@@ -15,8 +15,10 @@ which the checkpoint was made is entered with the scene and its memory as they w
 advanced, and what it does before it advances may be done twice.
 """
 
+import contextlib
 import os
 import signal
+import socket
 import sys
 import time
 from dataclasses import dataclass, field
@@ -26,6 +28,7 @@ import yade.config
 from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
+from . import batch
 from ._masonry import commit
 from .checkpoints import NAME, alike, loadCheckpoint, readProgress, saveCheckpoint
 from .columns import meanings, names
@@ -111,7 +114,13 @@ class Run:
         self._values = [column.value for column in model.columns]
         self._live = live(columns)
         folder = args.out or os.path.join("results", self.name)
+        if batch.PROBE in os.environ:  # there is no run, and nothing shall be left
+            folder = os.environ[batch.PROBE] + ".results"
         self.results = Results(folder, columns, bool(args.resume), self.name)
+        if batch.VARIABLE in os.environ and batch.ended(folder):
+            self.results.release()  # another one ran this row since the options were read
+            say(f"{folder} has the results of this row")
+            raise SystemExit(0)
         if args.resume:
             self._readProgress()
         for number in (signal.SIGINT, signal.SIGTERM):
@@ -128,7 +137,7 @@ class Run:
         self._recorder = MasonryVtkRecorder(
             directory=self.results.directory, times=self.at.frames
         )
-        self.vtk = None if args.no_vtk else self._recorder
+        self.vtk = None if args.no_vtk or args.lean else self._recorder
         return model
 
     def _readProgress(self):
@@ -416,9 +425,15 @@ class Run:
             self.checkpoint()
             self._finish()
             raise error
-        kept = self.checkpoint()
+        if stopped:
+            self.results.run["error"] = str(stopped[0])
+        over = self.args.lean and not stopped and not self.interrupted
+        kept = not over and self.checkpoint()
         try:
             self._finish()
+            if over:
+                with contextlib.suppress(OSError):
+                    os.remove(self.results.path(NAME))
         except Unwritable as unwritable:
             stopped.append(unwritable)
         for text in dict.fromkeys(map(str, stopped)):
@@ -475,6 +490,7 @@ class Run:
             },
             commit=commit,
             threads=O.numThreads,
+            host=socket.gethostname(),
             **model.describe(),
         )
         if self.results.rows:
@@ -513,7 +529,7 @@ class Run:
 
     def _report(self):
         run = self.results.run
-        if self.results.rows:
+        if self.results.rows and not self.args.lean:
             self.model.draw(self.results.directory)
         off, made = run.get("energy_balance_error", 0), run.get("energy_made", 0)
         if made > OFF or (off > OFF and not self.model.energy.warned):

@@ -24,13 +24,14 @@ first push or cycle of the scene says.
 import atexit
 import functools
 import math
+import os
 import sys
 from dataclasses import dataclass
 from types import SimpleNamespace
 
 from yade import O, Vector3
 
-from . import history, loading, options
+from . import batch, history, loading, options
 from ._masonry import loadScene, saveScene
 from .bounds import EVERY, SMALL
 from .bricks import Bricks
@@ -39,6 +40,7 @@ from .errors import Collapsed, Interrupted, Refused
 from .ground import readRecord
 from .model import GRAVITY
 from .presets import BOUND
+from .probing import probe
 from .progress import say
 from .run import Run
 from .scene import vector
@@ -79,6 +81,8 @@ def _stage(act):
             )
         try:
             self._begin()
+            if batch.PROBE in os.environ:
+                return probe(self, act.__name__, settings)
             self._say(act.__name__, args, settings)
             if not self._goesOn:
                 self._compare()
@@ -197,6 +201,8 @@ class Scene(Described, Run):
 
     def finish(self):
         """End the run: the last frame, run.json, the figures. A run that was not in order exits with its status."""
+        if batch.PROBE in os.environ and self.model:
+            probe(self, "finish", {})
         if not (self.finished or self._entered_with):
             self.__exit__(None, None, None)
 
@@ -655,6 +661,8 @@ class Scene(Described, Run):
 
     def _findBound(self, kind, *load):
         """Find the bound of a stage."""
+        if self.args.lean and not self.only:
+            return
         getattr(self.model.bounds, kind)(*load, lowerUpTo=SMALL if self.only else 0)
 
     def _lean(self, name, duration, gravity):

@@ -5,19 +5,21 @@
 
 import math
 import sys
+import tempfile
 from collections import namedtuple
 
 from yade import O, Vector3
-from yade.wrapper import MasonryJoint, MasonryLoad
+from yade.wrapper import MasonryJoint, MasonryLoad, MasonryVtkRecorder
 
-from . import columns, history, loading
+from . import columns, history, loading, measure
 from ._masonry import criticalTimeStep
 from .bounds import Bounds
 from .bricks import boxCorners
 from .columns import Column
 from .curves import cycleNumbers, dampedShare, dynamicImbalance, initialStiffness
 from .described import OF_JOINTS
-from .errors import Collapsed, Refused
+from .errors import Collapsed, Refused, Unwritable
+from .frames import readFrame
 from .materials import loadingBlock
 from .model import GRAVITY, Model
 from .progress import say
@@ -503,8 +505,9 @@ class Structure(Model):
         if args.history or args.until:
             frames = loading.wayLength(args) / loading.frameSpacing(args) + 2
             rows = loading.rowCount(args)
-        frames = 0 if args.no_vtk else frames
-        least = 400e3 + frame * min(frames, 2)  # figures, first and last frame
+        frames = 0 if args.no_vtk or args.lean else frames
+        figures = 50e3 if args.lean else 400e3
+        least = figures + frame * min(frames, 2)  # and the first and last frame
         return least, least + frame * frames + 250 * rows
 
     def describe(self):
@@ -661,6 +664,10 @@ class Structure(Model):
         found = dict(collapse=self.scene.results.run.get("collapse"))
         found["ended"] = self.scene.ended
         found.update(self._ofJoints(column))
+        if self.scene.factor:
+            found["factor"] = self.scene.factor
+        if self.scene.stood:
+            found["stood"] = self.scene.stood
         if not self.pushed:
             return found
         shear, moved = column("base_shear_kN"), column("displacement_mm")
@@ -684,6 +691,26 @@ class Structure(Model):
                 damped_share=dampedShare(column),
                 cycles=cycleNumbers(column, history.noise(self.pushed.history)),
             )
+        if self.args.lean:
+            found.update(self._measured(moved, shear))
+        return found
+
+    def _measured(self, moved, shear):
+        """The numbers that masonry.measure finds of a wall, and its failure mode: what leaves no frames has them at once."""
+        found, wall = {}, self._wall()
+        if not self.pushed.history:
+            found = measure.pushNumbers(moved, shear)
+            if not math.isfinite(found["drop_at_mm"]):
+                found["drop_at_mm"] = None
+        if wall:
+            with tempfile.TemporaryDirectory() as folder:
+                try:
+                    MasonryVtkRecorder(directory=folder)()
+                except RuntimeError as error:
+                    raise Unwritable(str(error)) from None
+                frame = readFrame(folder, "joints")
+            found.update(measure.pattern(frame, wall))
+            found["failure_mode"] = measure.failureMode(found, wall)
         return found
 
     def report(self, run):

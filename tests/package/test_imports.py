@@ -20,6 +20,7 @@ WITHOUT_YADE = [
     "fields",
     "ground",
     "results",
+    "batch",
     "frames",
     "figures",
     "measure",
@@ -36,6 +37,17 @@ WITHOUT_YADE = [
     "bricks.walls",
     "bricks.__init__",
     "ports",
+    "study.variables",
+    "study.designs",
+    "study.plan",
+    "study.gathering",
+    "study.start",
+    "study.row",
+    "study.yadebatch",
+    "study.local",
+    "study.slurm",
+    "study.__init__",
+    "study.__main__",
 ]
 ORDER = WITHOUT_YADE + [
     "_masonry",  # the plugin
@@ -57,11 +69,12 @@ ORDER = WITHOUT_YADE + [
     "described",
     "bounds",
     "structure",
+    "probing",
     "stages",
     "__init__",
 ]
 MODULES = [name for name in ORDER if name != "_masonry"]
-PACKAGES = ["bricks", "limit"]  # inside the package
+PACKAGES = ["bricks", "limit", "study"]  # inside the package
 SCENES = [n[:-3] for n in os.listdir(os.path.join(ROOT, "scripts")) if n[-3:] == ".py"]
 
 

@@ -21,9 +21,10 @@ def planted(tmp_path):
     return tmp_path
 
 
-@pytest.mark.parametrize("module", ["measure", "figures"])
-def test_programs_of_the_package_run_nothing_of_the_present_folder(planted, module):
-    command = [sys.executable, "-m", f"masonry.{module}", "nowhere"]
+@pytest.mark.parametrize("words", ["measure nowhere", "figures nowhere", "study nowhere.py --out out"])  # fmt: skip
+def test_programs_of_the_package_run_nothing_of_the_present_folder(planted, words):
+    module, *more = words.split()
+    command = [sys.executable, "-m", f"masonry.{module}", *more]
     done = subprocess.run(command, cwd=planted, capture_output=True, text=True)
     assert done.returncode == 2 and "nowhere" in done.stderr
     assert not (planted / "ran").exists()

@@ -1,0 +1,133 @@
+"""Rows of a table in YADE's batch format: options of a scene for ``yade-batch``. This module needs no YADE.
+
+``yade-batch table.txt scene.py`` runs a scene once for every row. A row has the options of the scene by their names, with
+underscores for dashes, and properties of joints. Values are written as in Python, without blanks::
+
+    description preset until bed.cohesion field:bed.tensileStrength
+    0001        'fast' 6     110000.0     'lognormal(cov=0.3,length=0.5,seed=7)'
+
+- an option: its value, or True for one that has none; ``*`` is the default, ``=`` the value of the row before
+- ``JOINT.PROPERTY``: as ``--set``; several of them that have the same value are joined by ``+``
+- ``field:JOINT.PROPERTY``: as ``--field``; several of them that vary alike are joined by ``+``
+- ``description``: names the row; its results are in the folder ``rows/DESCRIPTION`` beside the table
+
+A row that was run to its end is not run again, and one that was stopped goes on from its checkpoint.
+"""
+
+import ast
+import os
+import re
+
+from .errors import Refused
+from .results import readRun
+
+VARIABLE = "YADE_BATCH"  # of the environment: path of the table and number of the line
+ROWS = "rows"  # folder of the results, beside the table
+FIELD = "field:"  # begins the name of a column
+#: Name in the environment of a file: the scene is built, and what it knows is written there. There is no run. The line of
+#: the heads then stands for a scene without options.
+PROBE = "MASONRY_PROBE"
+
+
+def readTable(path):
+    """The rows of a table by the number of their line, from 1: dicts of texts. Raises Refused if it is none."""
+    try:
+        with open(path, encoding="utf-8") as f:
+            lines = [re.sub(r"\s*#.*", "", line).split() for line in f]
+    except (OSError, UnicodeDecodeError) as error:
+        raise Refused(f"cannot read {path}: {error}") from None
+    used = [number for number, words in enumerate(lines, 1) if words]
+    if not used:
+        raise Refused(f"{path}: there is no row")
+    heads = [h[:-1] if h[-1] == "!" else h for h in lines[used[0] - 1]]
+    rows, before = {}, {}
+    for number in used[1:]:
+        words = lines[number - 1]
+        if len(words) != len(heads):
+            raise Refused(
+                f"{path}, line {number}: {len(words)} values in {len(heads)} columns"
+            )
+        row = {h: before.get(h, w) if w == "=" else w for h, w in zip(heads, words)}
+        rows[number] = before = row
+    return rows
+
+
+def value(text):
+    """The value that a text of a table stands for; what is no value of Python is the text itself."""
+    try:
+        return ast.literal_eval(text)
+    except (ValueError, SyntaxError):
+        return text
+
+
+def optionWords(row):
+    """The words of the command line that a row stands for, without the folder of its results."""
+    words = []
+    for name, text in row.items():
+        if name == "description" or name.startswith("!") or text == "*":
+            continue
+        found = value(text)
+        if name.startswith(FIELD):
+            words.append(f"--field={name[len(FIELD):]}={found}")
+        elif "." in name:
+            words += [f"--set={one}={found}" for one in name.split("+")]
+        elif found is True:
+            words.append("--" + name.replace("_", "-"))
+        elif found is not False and found is not None:
+            words.append(f"--{name.replace('_', '-')}={found}")
+    return words
+
+
+def place(told):
+    """Path of the table and number of the line of what stands in the environment. Raises Refused."""
+    path, _, line = told.rpartition(":")
+    if not path or not line.isdecimal():
+        raise Refused(f"{VARIABLE}={told}: must read TABLE:LINE")
+    return path, int(line)
+
+
+def named(number):
+    """The name of a row of a study, from its number, from 1."""
+    return f"{number:04d}"
+
+
+def folder(path, row, line):
+    """The folder of the results of a row."""
+    name = row.get("description", f"line_{line}").replace("/", "_").strip("'\"")
+    return os.path.join(os.path.dirname(os.path.abspath(path)), ROWS, name)
+
+
+def ended(directory):
+    """run.json of a run that came to its end, however its structure ended; else None."""
+    try:
+        run = readRun(directory)
+    except Refused:
+        return None
+    return None if run.get("interrupted", True) or run.get("error") else run
+
+
+def present():
+    """The words of the command line of the row that ``yade-batch`` runs in this process. None: it runs none.
+
+    :raises Done: if the row was run to its end
+    :raises Refused: if there is no such row
+    """
+    told = os.environ.get(VARIABLE)
+    if not told:
+        return None
+    path, line = place(told)
+    rows = readTable(path)
+    if PROBE in os.environ:
+        return optionWords(rows.get(line, {}))
+    if line not in rows:
+        raise Refused(f"{path} has no row in line {line}")
+    out = folder(path, rows[line], line)
+    if ended(out):
+        raise Done(out)
+    if os.path.exists(os.path.join(out, "run.checkpoint")):
+        return [f"--resume={out}"]
+    return [*optionWords(rows[line]), f"--out={out}"]
+
+
+class Done(Exception):
+    """The row was run before. The message is the folder of its results."""

@@ -1,0 +1,141 @@
+"""What a scene knows, for those who are about to run it many times: see :mod:`masonry.study`. There is no run."""
+
+import contextlib
+import io
+import json
+import math
+import os
+import re
+
+from yade.wrapper import MasonryJoint
+
+from . import batch, fields
+from .errors import Refused
+from .options import Parser, check
+from .scene import properties
+
+#: How far a random field is looked at to either side, in standard deviations of its normal: beyond lies one joint in a
+#: million.
+FAR = 4.75
+PUSHES = ("push", "cycle", "follow")  # stages that take --until, --history and --rate
+DRIVES = ("drive", "pressJoint")  # stages that take --rate
+MOST = 20  # problems that are told of rows
+
+
+def probe(scene, stage, settings):
+    """Write what a scene that is built knows, as JSON, and end when its first stage after ``settle`` begins. Keys:
+
+    - ``heard``: whether the scene takes its options from the command line
+    - ``options``: names of its options, without those that say where results go
+    - ``unused``: options that the scene does not use, with the reason; ``doubtful``: those that it may not use
+    - ``joints``: properties of every kind of joint; ``counts``: how many joints there are of each kind
+    - ``bounds``: of the properties of a joint: ``low``, ``high``, ``unit``
+    - ``room``: bytes that a run will probably write
+    - ``problems``: sentences on rows of the table that cannot be run
+    """
+    if stage == "settle":
+        return "at rest"
+    parser, found = Parser.last
+    model, heard = scene.model, scene.args is found
+    told = {
+        "scene": scene.name,
+        "heard": heard,
+        "options": _options(parser) if heard else [],
+        "unused": {},
+        "doubtful": {},
+        "joints": {name: _plain(joint.dict()) for name, joint in model.joints.items()},
+        "counts": _counts(model),
+        "bounds": {p["name"]: _bounds(p) for p in properties(MasonryJoint)},
+        "problems": _rows(scene, parser) if heard else [],
+        "room": model.room()[1],
+    }
+    if stage in PUSHES and settings.get("rate") is not None:
+        told["unused"]["rate"] = f"{stage}() has a rate of its own"
+    if stage not in PUSHES + DRIVES:
+        for name in ("rate", "until", "history"):
+            told["doubtful"][name] = f"its first stage is {stage}()"
+    path = os.environ[batch.PROBE]
+    with open(path + ".new", "w") as f:
+        json.dump(told, f)
+    os.replace(path + ".new", path)
+    scene.finished = True
+    scene.results.release()
+    raise SystemExit(0)
+
+
+def _options(parser):
+    elsewhere = {"help", "out", "resume", "set", "field"}
+    return sorted({action.dest for action in parser._actions} - elsewhere)
+
+
+def _counts(model):
+    counts = model.describe()["joints_by_kind"]
+    return {kind: counts.get(joint.name, 0) for kind, joint in model.joints.items()}
+
+
+def _plain(values):
+    return {n: v for n, v in values.items() if isinstance(v, (bool, int, float, str))}
+
+
+def _bounds(p):
+    """The bounds of a property; what JSON has no number for is None."""
+    finite = lambda v: v if v is not None and math.isfinite(v) else None
+    return {"low": finite(p["low"]), "high": finite(p["high"]), "unit": p["unit"]}
+
+
+def _rows(scene, parser):
+    """Sentences on the rows of the table that cannot be run, as the scene itself tells them."""
+    path, _ = batch.place(os.environ[batch.VARIABLE])
+    problems = {}
+    known = {action.dest for action in parser._actions}
+    for line, row in batch.readTable(path).items():
+        # others are no options, which is told once, and not of every row
+        row = {n: v for n, v in row.items() if "." in n or n in known | {"description"}}
+        for told in _refused(scene, parser, batch.optionWords(row)):
+            alike = re.sub(r"\d[\d.e+-]*", "#", told)  # but for its numbers
+            problems.setdefault(alike, []).append((row.get("description", line), told))
+    sentences = [
+        f"row {found[0][0]}{f' and {len(found) - 1} more' if found[1:] else ''}: {found[0][1]}"
+        for found in problems.values()
+    ]
+    more = len(sentences) - MOST
+    return sentences[:MOST] + ([f"and {more} more"] if more > 0 else [])
+
+
+def _refused(scene, parser, words):
+    """Why a row is refused, a list of sentences. Its fields are looked at where they are far out."""
+    told = io.StringIO()
+    try:
+        with contextlib.redirect_stderr(told):
+            args = parser._parsed(words, None)
+    except SystemExit:
+        text = told.getvalue()
+        return (text.partition("error: ")[2] or text).strip().splitlines()
+    try:
+        masonry = scene.materials.variant(args)
+        check(args, masonry.joints)
+        for text in args.field:
+            _far(text, masonry.joints)
+    except ValueError as refused:
+        return str(refused).splitlines()
+    return []
+
+
+def _far(text, joints):
+    names, kind, cov, length, seed = fields.parts(text)
+    ends = fields.ends(kind, cov, FAR)
+    for factor in ends:
+        changes = {}
+        for name in names:
+            joint, _, attribute = name.partition(".")
+            value = factor * getattr(joints[joint], attribute)
+            changes.setdefault(joint, {})[attribute] = value
+        for joint, values in changes.items():
+            before = {a: getattr(joints[joint], a) for a in values}
+            try:
+                joints[joint].updateAttrs(values)
+            except ValueError as error:
+                raise Refused(
+                    f"--field {text}: where the field is {factor:.3g} of the mean: {error}"
+                ) from None
+            joints[joint].updateAttrs(before)

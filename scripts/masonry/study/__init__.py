@@ -1,0 +1,38 @@
+"""Studies: one scene, run many times with values that vary. This package needs no YADE.
+
+A study is a small Python file::
+
+    from masonry.study import Study, lognormal
+
+    study = Study(
+        "wall_comp4",
+        options={"preset": "fast", "until": 6},
+        runs=200,
+        seed=1,
+        vary={"bed.cohesion": lognormal(mean=0.11e6, cov=0.2), "bed.friction": lognormal(mean=0.43, cov=0.05)},
+    )
+
+``/usr/bin/python3 -m masonry.study FILE --out DIR`` runs it, goes on with it, and gathers what came out in ``DIR/study.csv``.
+``scripts/STUDIES.md`` is its manual. Distributions, correlation and designs are those of OpenTURNS (Debian's
+python3-openturns); a grid of numbers and choices needs no more than Python.
+"""
+
+import importlib
+
+#: Public names by the module that has them. They are loaded when they are used first, because a row needs none of them.
+_NAMES = {
+    "plan": ["Study"],
+    "variables": ["Distribution", "Field", "choice", "field", "lognormal", "normal", "uniform"],  # fmt: skip
+}
+__all__ = [name for names in _NAMES.values() for name in names]
+
+
+def __getattr__(name):
+    for module, names in _NAMES.items():
+        if name in names:
+            return getattr(importlib.import_module(f"{__name__}.{module}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__():
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,86 @@
+"""Runs, resumes and gathers a study: ``/usr/bin/python3 -m masonry.study FILE --out DIR``. scripts/STUDIES.md is the manual."""
+
+import argparse
+import os
+import runpy
+import sys
+
+from ..errors import Interrupted, Refused, Unwritable
+from ..progress import say
+from . import slurm
+from .gathering import CSV, Folder, gather
+from .local import Local, yadeBatch
+from .plan import Study
+from .start import begin
+
+
+def parser():
+    p = argparse.ArgumentParser(prog="python3 -m masonry.study", description="Run a scene many times with values that vary; go on with a study that was stopped; gather what came out.", epilog="With --slurm all other options, for example --partition=long --time=2:00:00, are those of sbatch.")  # fmt: skip
+    p.add_argument("file", metavar="FILE", nargs="?", help="Python file that makes one masonry.study.Study; not needed to --gather")  # fmt: skip
+    p.add_argument("--out", metavar="DIR", required=True, help="folder of the study")
+    p.add_argument("--jobs", metavar="N", type=int, default=os.cpu_count(), help="runs at a time (default: %(default)s, all cores)")  # fmt: skip
+    p.add_argument("--slurm", action="store_true", help="run the rows on a cluster: one job array")  # fmt: skip
+    p.add_argument("--prepare", action="store_true", help="check the study and make its folder; run nothing")  # fmt: skip
+    p.add_argument("--gather", action="store_true", help="write study.csv of what is there; run nothing")  # fmt: skip
+    return p
+
+
+def load(path):
+    """The study that a file makes. Raises Refused if it makes none or several."""
+    if not os.path.isfile(path):
+        raise Refused(f"no file {path}")
+    made = runpy.run_path(path)
+    studies = {id(v): v for v in made.values() if isinstance(v, Study)}
+    if len(studies) != 1:
+        raise Refused(f"{path} must make one masonry.study.Study, it makes {len(studies)}")  # fmt: skip
+    return [*studies.values()][0]
+
+
+def tell(folder):
+    """Gather, and say what is there. Returns the exit status: 0 if all rows are ended."""
+    counts = gather(folder)
+    said = ", ".join(f"{n} {status}" for status, n in sorted(counts.items()))
+    say(f"{said}; see {folder.of(CSV)}")
+    return 0 if set(counts) == {"ended"} else 1
+
+
+def main(words):
+    p = parser()
+    args, more = p.parse_known_args(words)
+    if more and not args.slurm:
+        p.error(f"unrecognized arguments: {' '.join(more)}")
+    if not args.file and not args.gather:
+        p.error("FILE is missing")
+    if not args.jobs > 0:
+        p.error(f"--jobs {args.jobs} must be at least 1")
+    try:
+        if args.gather:
+            return tell(Folder(args.out))
+        if args.slurm:
+            slurm.check()
+        elif not args.prepare:
+            yadeBatch()
+        study = load(args.file)
+        folder = begin(study, args.out, os.path.dirname(os.path.abspath(args.file)))
+        if args.slurm:
+            return slurm.submit(folder, study.runs, more)
+        if args.prepare:
+            say(f"{study.runs} rows; see {folder.path}")
+            return 0
+        try:
+            Local(folder, study.runs, args.jobs).run()
+        except Interrupted:
+            tell(folder)
+            say("interrupted: the same command goes on from here")
+            return 130
+        return tell(folder)
+    except KeyboardInterrupt:
+        say("interrupted: nothing was run")
+        return 130
+    except (Refused, Unwritable) as problem:
+        print(problem, file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

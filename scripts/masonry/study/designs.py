@@ -1,0 +1,97 @@
+"""Which values the rows of a study have: points of the unit cube, then values of what varies.
+
+Points are those of OpenTURNS: independent random numbers, a Latin hypercube, or Sobol's sequence, moved by a random vector.
+Correlated numbers follow a normal copula with the given rank correlation (Spearman's).
+"""
+
+import contextlib
+import itertools
+
+from ..errors import Refused
+from .variables import Choice, Distribution, openturns
+
+EDGE = 1e-12  # probabilities closer to 0 or 1 are moved here, where all quantiles are finite
+DESIGNS = ("random", "latin", "sobol", "grid")
+
+
+@contextlib.contextmanager
+def _seeded(ot, seed):
+    """Random numbers of OpenTURNS from a seed; those of the caller go on afterwards as if nothing had been."""
+    before = ot.RandomGenerator.GetState()
+    ot.RandomGenerator.SetSeed(seed)
+    try:
+        yield
+    finally:
+        ot.RandomGenerator.SetState(before)
+
+
+def points(design, count, dimension, seed):
+    """Points of the unit cube: a list of lists, the same for the same seed."""
+    if not dimension:
+        return [[] for _ in range(count)]
+    ot = openturns()
+    cube = ot.ComposedDistribution([ot.Uniform(0, 1)] * dimension)
+    with _seeded(ot, seed):
+        if design == "random":
+            made = ot.MonteCarloExperiment(cube, count)
+        elif design == "latin":
+            made = ot.LHSExperiment(cube, count, True, True)
+        else:
+            made = ot.LowDiscrepancyExperiment(ot.SobolSequence(), cube, count, True)
+            made.setRandomize(True)
+        inside = lambda u: min(max(u, EDGE), 1 - EDGE)
+        return [list(map(inside, point)) for point in made.generate()]
+
+
+def root(names, correlation):
+    """The Cholesky factor of the normal copula of numbers with these rank correlations, or None if there are none.
+
+    :param names: of the numbers, in their order
+    :param correlation: dict of pairs of names -> rank correlation [-]
+    :raises Refused: if no numbers have all these correlations at once
+    """
+    if not correlation:
+        return None
+    ot = openturns()
+    matrix = ot.CorrelationMatrix(len(names))
+    for (one, two), value in correlation.items():
+        matrix[names.index(one), names.index(two)] = value
+    try:
+        return ot.NormalCopula.GetCorrelationFromSpearmanCorrelation(
+            matrix
+        ).computeCholesky()
+    except (TypeError, RuntimeError):
+        raise Refused(
+            "correlation: no numbers have all these correlations at once"
+        ) from None
+
+
+def values(design, count, seed, vary, correlation):
+    """What every row has: a list of dicts of name -> value, without fields.
+
+    :param vary: dict of name -> Distribution or Choice
+    """
+    if design == "grid":
+        return [dict(zip(vary, row)) for row in itertools.product(*(c.values for c in vary.values()))]  # fmt: skip
+    names = [n for n, v in vary.items() if isinstance(v, Distribution)]
+    chosen = [n for n in vary if n not in names]
+    cube = points(design, count, len(vary), seed)
+    found = {}
+    numbers = [point[: len(names)] for point in cube]
+    factor = root(names, correlation)
+    if factor is not None:
+        normals = openturns().Normal()
+        numbers = [_tied(point, factor, normals) for point in numbers]
+    for i, name in enumerate(names):
+        law = vary[name].law()
+        found[name] = [float(law.computeQuantile(point[i])[0]) for point in numbers]
+    for i, name in enumerate(chosen, len(names)):
+        found[name] = [vary[name].of(point[i]) for point in cube]
+    return [{name: found[name][row] for name in vary} for row in range(count)]
+
+
+def _tied(point, factor, normals):
+    """A point of the unit cube, with the dependence of a normal copula whose Cholesky factor this is."""
+    free = [normals.computeQuantile(u)[0] for u in point]
+    size = range(len(free))
+    return [normals.computeCDF(sum(factor[i, j] * free[j] for j in size)) for i in size]

@@ -1,0 +1,181 @@
+"""What came out of a study: which of its rows are done, and the table of their numbers.
+
+``study.csv`` has a row a run: ``run``, what varies (of a field its seed), ``status``, and the numbers of run.json. It is
+the same to the last digit whoever ran the rows. ``times.csv`` has what is not: host, seconds, what a failed row said.
+"""
+
+import csv
+import io
+import json
+import os
+import re
+
+from .. import batch
+from ..errors import Refused, Unwritable
+from ..results import held, readWhole
+
+TABLE, STUDY, CSV, TIMES = "table.txt", "study.json", "study.csv", "times.csv"
+
+#: Entries of run.json that are no measures of the structure: what was asked for, and what depends on the machine.
+ASIDE = {
+    "scene",
+    "title",
+    "commit",
+    "host",
+    "threads",
+    "interrupted",
+    "units",
+    "nodes",
+    "joint_count",
+    "subcontacts",
+    "time_step_s",
+    "time_step_limit_s",
+    "microseconds_per_step",
+    "nanoseconds_per_subcontact_step",
+    "wall_clock_s",
+    "steps",
+    "preset",
+    "error",
+    "collapse",
+    "reference_body",
+}
+#: Those that stand first, as far as they are there.
+FIRST = (
+    "failure_mode",
+    "collapsed",
+    "ended",
+    "peak_base_shear_kN",
+    "displacement_at_peak_mm",
+    "base_shear_end_kN",
+    "displacement_end_mm",
+    "push_work_J",
+)
+
+
+class Folder:
+    """A folder of a study."""
+
+    def __init__(self, path):
+        self.path = os.path.abspath(path)
+
+    def of(self, *names):
+        return os.path.join(self.path, *names)
+
+    def row(self, number):
+        """The folder of the results of a row."""
+        return self.of(batch.ROWS, batch.named(number))
+
+    def job(self, number):
+        """The file that says how the last attempt at a row ended."""
+        return self.row(number) + ".job"
+
+    def description(self):
+        """study.json. Raises Refused if there is none."""
+        try:
+            told = json.loads(readWhole(self.of(STUDY)))
+            told["study"]["runs"], told["script"]
+            return told
+        except (OSError, ValueError, KeyError, TypeError):
+            raise Refused(f"{self.path} is no folder of a study: it has no {STUDY}") from None  # fmt: skip
+
+    def lastJob(self, number):
+        """How the last attempt at a row ended: a dict with ``host``, ``status``, ``seconds``, ``told``; or an empty one."""
+        try:
+            told = json.loads(readWhole(self.job(number)))
+        except (OSError, ValueError):
+            return {}
+        return told if isinstance(told, dict) else {}
+
+    def isEnded(self, number):
+        return batch.ended(self.row(number)) is not None
+
+    def isHeld(self, number):
+        return held(self.row(number))
+
+    def status(self, number):
+        """``ended``, ``running``, ``failed`` or ``missing``."""
+        if self.isEnded(number):
+            return "ended"
+        if self.isHeld(number):
+            return "running"
+        status = self.lastJob(number).get("status", 0)
+        return "failed" if status not in (0, 130) and status > 0 else "missing"
+
+
+def written(path, text):
+    """Write a file, whole or not at all. Raises Unwritable."""
+    try:
+        with open(path + ".new", "w", newline="") as f:
+            f.write(text)
+            f.flush()
+            os.fsync(f.fileno())
+        os.replace(path + ".new", path)
+    except OSError as error:
+        raise Unwritable(f"cannot write {path}: {error.strerror}") from None
+
+
+#: How lines begin that are no reason of a failure.
+_CHATTER = (
+    "Yade: ",
+    "Running script",
+    "XMLRPC",
+    "TCP python",
+    "Welcome to",
+    "Using python",
+    "note: ",
+)
+_ERROR = re.compile(r"[\w.]*(Error|Exception|Exit|Interrupt)\b")
+
+
+def reason(log):
+    """What a scene said at last before it failed, of the text of its log: sentences, or an empty list."""
+    lines = [line.strip() for line in log.partition("error: ")[2 if " error: " in log else 0].splitlines()]  # fmt: skip
+    lines = [line for line in lines if line and not line.startswith(_CHATTER)]
+    if "Traceback (most recent call last):" in log:
+        lines = [line for line in lines if _ERROR.match(line)][-1:] or lines[-1:]
+    return lines
+
+
+def _text(value):
+    """A number or text of study.csv: numbers with all their digits."""
+    if value is None:
+        return ""
+    return repr(value) if isinstance(value, float) else str(value)
+
+
+def gather(folder):
+    """Write study.csv and times.csv. Returns how many rows have each status."""
+    told = folder.description()["study"]
+    table = [*batch.readTable(folder.of(TABLE)).values()]
+    names, found, times, counts = list(told["vary"]), [], [], {}
+    for number, row in enumerate(table, 1):
+        run, status = batch.ended(folder.row(number)) or {}, folder.status(number)
+        counts[status] = counts.get(status, 0) + 1
+        measures = {n: v for n, v in run.items() if n not in ASIDE and (v is None or isinstance(v, (bool, int, float, str)))}  # fmt: skip
+        found.append(([batch.named(number), *(_varied(n, row[n]) for n in names), status], measures))  # fmt: skip
+        job = folder.lastJob(number)
+        why = job.get("told", "") if status == "failed" else ""
+        cost = run.get("wall_clock_s")
+        times.append([batch.named(number), status, job.get("host", run.get("host", "")), _text(cost), _text(job.get("seconds")), run.get("commit", ""), why])  # fmt: skip
+    known = {n for _, measures in found for n in measures}
+    heads = [n for n in FIRST if n in known] + sorted(known - set(FIRST))
+    lines = [[*begin, *(_text(m.get(n)) for n in heads)] for begin, m in found]
+    written(folder.of(CSV), _csv(["run", *names, "status", *heads], lines))
+    head = "run status host run_seconds job_seconds commit told".split()
+    written(folder.of(TIMES), _csv(head, times))
+    return counts
+
+
+def _varied(name, text):
+    """What a row has of something that varies, for study.csv; of a field its seed."""
+    value = batch.value(text)
+    if name.startswith(batch.FIELD):
+        return re.search(r"seed=(\d+)", value)[1]
+    return _text(value)
+
+
+def _csv(head, lines):
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerows([head, *lines])
+    return out.getvalue()

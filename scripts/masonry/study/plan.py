@@ -1,0 +1,196 @@
+"""The description of a study, and the table of its rows."""
+
+import hashlib
+import os
+import re
+
+import numpy as np
+
+from .. import batch
+from ..errors import Refused
+from . import designs
+from .variables import Choice, Distribution, Field, choice
+
+MOST = 100_000  # rows of a study
+#: Options that the study itself gives, or that a row cannot have.
+OWN = {"out", "resume", "lean", "set", "field", "no_vtk", "vtk_every", "help"}
+
+
+class Study:
+    """A scene, what varies in it, and how many runs there are.
+
+    :param scene: name of a scene that stands beside the study's file, in the present folder or in a folder ``scripts`` of
+        either or above it, or the path of a scene of your own, which ``masonry.Scene`` makes
+    :param options: options of the scene by their names, with underscores for dashes, the same in all rows; also properties
+        of joints, ``"bed.friction": 0.5``
+    :param runs: how many rows; of a grid None, or the number of its points
+    :param seed: the same number gives the same rows
+    :param vary: dict of a name -> what it is in the rows. A name is an option, for example ``"rate"``, or a property of a
+        kind of joints, ``"bed.cohesion"``; a tuple of properties have the same value or field. What it is, is a number or a
+        text, a list of these, :func:`choice`, :func:`lognormal`, :func:`normal`, :func:`uniform` or :func:`field`
+    :param design: ``"random"``, ``"latin"`` (hypercube), ``"sobol"`` (Sobol's sequence), or ``"grid"``: all combinations of
+        the lists
+    :param correlation: dict of pairs of names -> rank correlation of two distributions [-]
+    :raises Refused: with all problems at once
+    """
+
+    def __init__(self, scene, options=None, runs=None, seed=0, vary=None, design="random", correlation=None):  # fmt: skip
+        problems = []
+        self.scene, self.seed, self.design = str(scene), seed, design
+        self.options, self.runs = dict(options or {}), runs
+        self.vary, self.correlation = {}, {}
+        if design not in designs.DESIGNS:
+            problems.append(f"design {design!r} must be {', '.join(designs.DESIGNS)}")
+        if (
+            isinstance(seed, bool)
+            or not isinstance(seed, int)
+            or not 0 <= seed < 2**31
+        ):
+            problems.append(f"seed {seed!r} must be a whole number from 0 on")
+        for name, value in self.options.items():
+            problems += _wrongOption(name, value)
+        for key, what in dict(vary or {}).items():
+            self._take(key, what, problems)
+        if not self.vary:
+            problems.append("vary: nothing varies")
+        self._count(problems)
+        self._correlate(dict(correlation or {}), problems)
+        if problems:
+            raise Refused("study: " + "\n  ".join(problems))
+
+    def _take(self, key, what, problems):
+        names = (key,) if isinstance(key, str) else tuple(key) if isinstance(key, tuple) else ()  # fmt: skip
+        if not names or not all(isinstance(n, str) for n in names):
+            problems.append(f"vary: {key!r} must be a name or a tuple of names")
+            return
+        if isinstance(what, (bool, int, float, str)):
+            what = [what]
+        try:
+            what = choice(*what) if isinstance(what, (list, tuple)) else what
+        except Refused as refused:
+            problems.append(f"vary {key!r}: {refused}")
+            return
+        if not isinstance(what, (Choice, Distribution, Field)):
+            problems.append(f"vary {key!r}: {what!r} is no number, list, distribution or field")  # fmt: skip
+            return
+        properties = all("." in n for n in names)
+        if isinstance(what, Field):
+            if not properties:
+                problems.append(f"vary {key!r}: only a property of joints can be a field")  # fmt: skip
+            if what.mean is not None and len(names) > 1:
+                problems.append(f"vary {key!r}: a field of several properties is about their own values: field(cov=..., length=...)")  # fmt: skip
+            column = batch.FIELD + "+".join(names)
+        else:
+            if len(names) > 1 and not properties:
+                problems.append(f"vary {key!r}: only properties of joints can be tied in a tuple")  # fmt: skip
+            column = "+".join(names)
+        values = what.values if isinstance(what, Choice) else [0]
+        problems += [p for n in names for v in values for p in _wrongOption(n, v)]
+        twice = [n for n in names if n in self.options or any(n in _namesOf(c) and isinstance(w, Field) == isinstance(what, Field) for c, w in self.vary.items())]  # fmt: skip
+        if twice:
+            problems.append(f"{', '.join(twice)}: given twice")
+        self.vary[column] = what
+
+    def _count(self, problems):
+        if self.design == "grid":
+            odd = [c for c, w in self.vary.items() if isinstance(w, Distribution)]
+            if odd:
+                problems.append(f"design 'grid': {', '.join(odd)} must be a list of values")  # fmt: skip
+            sizes = [len(w.values) for w in self.vary.values() if isinstance(w, Choice)]
+            size = int(np.prod(sizes)) if sizes else 1
+            if self.runs not in (None, size):
+                problems.append(f"runs {self.runs}: the grid has {size} points")
+            self.runs = size
+        if isinstance(self.runs, bool) or not isinstance(self.runs, int) or not 1 <= self.runs <= MOST:  # fmt: skip
+            problems.append(f"runs {self.runs!r} must be a whole number from 1 to {MOST}")  # fmt: skip
+
+    def _correlate(self, correlation, problems):
+        joined = lambda key: "+".join(key) if isinstance(key, tuple) else key
+        for pair, value in correlation.items():
+            if not isinstance(pair, tuple) or len(pair) != 2:
+                problems.append(f"correlation {pair!r}: must be of two names")
+                continue
+            one, two = map(joined, pair)
+            odd = [n for n in (one, two) if not isinstance(self.vary.get(n), Distribution)]  # fmt: skip
+            if odd or one == two or not isinstance(value, (int, float)) or not -1 < value < 1:  # fmt: skip
+                problems.append(f"correlation {pair!r} = {value!r}: must be above -1 and below 1, of two names that have distributions")  # fmt: skip
+            elif (two, one) in self.correlation:
+                problems.append(f"correlation {pair!r}: given twice")
+            else:
+                self.correlation[one, two] = float(value)
+
+    # -- what follows -------------------------------------------------------------------------------------------------
+
+    def describe(self):
+        """The study as JSON has it: two studies with the same description have the same rows."""
+        return {
+            "scene": self.scene,
+            "options": self.options,
+            "runs": self.runs,
+            "seed": self.seed,
+            "design": self.design,
+            "vary": {name: what.describe() for name, what in self.vary.items()},
+            "correlation": [[*pair, v] for pair, v in self.correlation.items()],
+        }
+
+    def rows(self):
+        """The values of every row: a list of dicts, with the options that all have. Raises Refused."""
+        drawn = {n: w for n, w in self.vary.items() if not isinstance(w, Field)}
+        fields = {n: w for n, w in self.vary.items() if isinstance(w, Field)}
+        found = designs.values(self.design, self.runs, self.seed, drawn, self.correlation)  # fmt: skip
+        means = {n[len(batch.FIELD) :]: w.mean for n, w in fields.items() if w.mean is not None}  # fmt: skip
+        rows = []
+        for number, values in enumerate(found, 1):
+            seeds = {n: w.written(self._seed(k, number)) for k, (n, w) in enumerate(fields.items())}  # fmt: skip
+            rows.append({"lean": True, **self.options, **means, **values, **seeds})
+        return rows
+
+    def _seed(self, field, row):
+        """The seed of a field in a row."""
+        return int(np.random.SeedSequence([self.seed, field, row]).generate_state(1)[0])
+
+    def table(self):
+        """The table of the rows, as text: see :mod:`masonry.batch`."""
+        rows = self.rows()
+        heads = ["description", *rows[0]]
+        lines = [" ".join(heads)]
+        for number, row in enumerate(rows, 1):
+            lines.append(" ".join([batch.named(number), *map(repr, row.values())]))
+        return "\n".join(lines) + "\n"
+
+    def script(self, near):
+        """Path of the scene's file, and the fingerprint of its contents. Raises Refused.
+
+        :param near: folder of the study's file
+        """
+        if self.scene.endswith(".py"):
+            places = [os.path.join(near, self.scene)]
+        else:
+            above = [near]
+            while os.path.dirname(above[-1]) != above[-1]:
+                above.append(os.path.dirname(above[-1]))
+            folders = [near, os.getcwd(), *(os.path.join(f, "scripts") for f in [*above, os.getcwd()])]  # fmt: skip
+            places = [os.path.join(f, self.scene + ".py") for f in folders]
+        path = next((os.path.abspath(p) for p in places if os.path.isfile(p)), None)
+        if path is None:
+            looked = ", ".join(dict.fromkeys(os.path.dirname(os.path.abspath(p)) for p in places))  # fmt: skip
+            raise Refused(f"study: no scene {self.scene}; looked in {looked}")
+        with open(path, "rb") as f:
+            return path, hashlib.sha256(f.read()).hexdigest()
+
+
+def _namesOf(column):
+    return column.removeprefix(batch.FIELD).split("+")
+
+
+def _wrongOption(name, value):
+    """What is wrong with an option or a property, as a list."""
+    if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z_]\w*(\.\w+)?", name):
+        return [f"{name!r} must be an option, with underscores for dashes, or JOINT.PROPERTY"]  # fmt: skip
+    if name in OWN:
+        return [f"option {name!r} is the study's own"]
+    if value is not None and not isinstance(value, (bool, int, float, str)):
+        return [f"{name}: {value!r} must be a number, a text, or True or False"]
+    if isinstance(value, str) and re.search(r"[\s#]|^[=*]?$", value):
+        return [f"{name}: {value!r} cannot stand in a table of YADE: it is empty or has a blank or #"]  # fmt: skip
+    return []

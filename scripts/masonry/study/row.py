@@ -1,0 +1,163 @@
+"""Runs rows of a study: ``/usr/bin/python3 -P -m masonry.study.row DIR NUMBER...``
+
+A row that was run is left out, one that was stopped goes on from its checkpoint, and one that somebody else is running is
+left alone. ``DIR/rows/NUMBER.log`` has what it says. This is what a task of Slurm, or of GNU parallel, calls; yade-batch calls
+it too, with the row in its environment. The exit status is 0 if all rows are ended.
+"""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+from .. import batch
+from ..errors import Refused
+from ..results import readRun
+from .gathering import TABLE, Folder, reason
+
+REFUSED = 2  # exit status of a scene that refuses its input
+TAIL = 4000  # bytes at the end of a log in which the reason of a failure stands
+
+
+class Job:
+    """Runs rows, and stops in order when it is told to.
+
+    :param path: folder of the study
+    :param more: words for YADE
+    """
+
+    def __init__(self, path, more=()):
+        self.folder, self.more = Folder(path), list(more)
+        self.script = self.folder.description()["script"]
+        self.stopped = 0  # number of the signal that ended it
+        self._child = None
+        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1):
+            signal.signal(number, self._stop)
+
+    def _stop(self, number, frame):
+        self.stopped = self.stopped or number
+        if self._child:
+            self._child.send_signal(signal.SIGTERM)
+
+    def run(self, number, log=None):
+        """Run a row, unless it is done. Returns the exit status.
+
+        :param log: file object that takes what it says; None: the log of the row
+        """
+        folder = self.folder
+        if folder.isEnded(number):
+            return 0
+        os.makedirs(folder.of(batch.ROWS), exist_ok=True)
+        own = log is None
+        log = open(folder.row(number) + ".log", "wb") if own else log
+        began = time.time()
+        try:
+            status = self._attempts(number, log)
+        finally:
+            if own:
+                log.close()
+        told = "" if status == 0 else self._reason(number)
+        record = {"host": socket.gethostname(), "status": status, "seconds": round(time.time() - began, 3), "told": told}  # fmt: skip
+        if status == 0 or not (folder.isHeld(number) or folder.isEnded(number)):
+            with open(folder.job(number) + f".{os.getpid()}", "w") as f:
+                json.dump(record, f)
+            os.replace(f.name, folder.job(number))
+        return 0 if folder.isEnded(number) else status
+
+    def _attempts(self, number, log):
+        """Run it; once more from the beginning if its checkpoint is refused. Returns the exit status."""
+        folder = self.folder
+        checkpoint = os.path.join(folder.row(number), "run.checkpoint")
+        while True:
+            goesOn = os.path.exists(checkpoint)
+            status = self._yade(number, log)
+            if self.stopped:
+                return 130
+            if status == 0 and not folder.isEnded(number):
+                return 1
+            if status != REFUSED or folder.isEnded(number) or folder.isHeld(number):
+                return status
+            said = self._tail(number)
+            if "is writing to" in said:  # it has just ended, or was killed
+                time.sleep(0.2)
+            elif goesOn and "--resume" in said:
+                os.replace(checkpoint, checkpoint + ".refused")
+            else:
+                return status
+
+    def _yade(self, number, log):
+        place = f"{self.folder.of(TABLE)}:{number + 1}"
+        env = {**os.environ, batch.VARIABLE: place, "OMP_NUM_THREADS": "1"}
+        command = ["yade", "-n", *self.more, "-x", self.script]
+        where = os.path.dirname(self.script)
+        self._child = subprocess.Popen(command, env=env, cwd=where, stdin=subprocess.DEVNULL, stdout=log, stderr=log)  # fmt: skip
+        if self.stopped:
+            self._child.send_signal(signal.SIGTERM)
+        while True:
+            try:
+                return self._child.wait()
+            except InterruptedError:
+                pass
+
+    def _tail(self, number):
+        try:
+            with open(self.folder.row(number) + ".log", "rb") as f:
+                f.seek(max(0, os.fstat(f.fileno()).st_size - TAIL))
+                return f.read().decode(errors="replace")
+        except OSError:
+            return ""
+
+    def _reason(self, number):
+        """What a row said before it failed."""
+        try:
+            error = readRun(self.folder.row(number)).get("error")
+        except Refused:
+            error = None
+        return error or "; ".join(reason(self._tail(number))[-3:])
+
+
+def _batched(words):
+    """The row that yade-batch runs, with its words for YADE."""
+    path, line = batch.place(os.environ[batch.VARIABLE])
+    job = Job(os.path.dirname(os.path.abspath(path)), words[: words.index("-x")])
+    return job.run(line - 1, sys.stdout.buffer)
+
+
+def requeue(job):
+    """Ask Slurm to run this task again, if it is one that ran out of time."""
+    env = os.environ
+    if job.stopped == signal.SIGUSR1 and "SLURM_JOB_ID" in env:
+        subprocess.run(["scontrol", "requeue", env["SLURM_JOB_ID"]])
+
+
+def main(words):
+    if batch.VARIABLE in os.environ and "-x" in words:
+        return _batched(words)
+    try:
+        if len(words) < 2 or not all(w.isdecimal() for w in words[1:]):
+            raise Refused("name the folder of a study and the numbers of its rows")
+        job = Job(words[0], ["--threads=1"])
+        runs = job.folder.description()["study"]["runs"]
+        beyond = [w for w in words[1:] if not 1 <= int(w) <= runs]
+        if beyond:
+            raise Refused(f"no row {', '.join(beyond)}: {words[0]} has {runs}")
+    except Refused as refused:
+        print(refused, file=sys.stderr)
+        return REFUSED
+    worst = 0
+    for word in words[1:]:
+        status = job.run(int(word))
+        if status:
+            print(f"row {batch.named(int(word))}: {job.folder.lastJob(int(word)).get('told') or f'exit status {status}'}", file=sys.stderr)  # fmt: skip
+        worst = max(worst, status if status >= 0 else 128 - status)
+        if job.stopped:
+            requeue(job)
+            return 130
+    return worst
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,87 @@
+"""Runs the rows of a study on a cluster: one job array of Slurm."""
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+
+from .. import batch
+from ..errors import Refused
+from ..progress import say
+from ..results import readWhole
+from .gathering import written
+
+SCRIPT = "slurm.sh"  # in the study's folder: what was submitted last
+JOB = "slurm.job"  # there: the number of the job array
+LEAST = 60  # [s] before the end of its time in which a task is told to stop
+ARRAY = 1001  # tasks that an array has at most where Slurm does not say
+
+
+def check():
+    """Refuse a machine without Slurm."""
+    missing = [name for name in ("sbatch", "squeue", "scontrol") if not shutil.which(name)]  # fmt: skip
+    if missing:
+        raise Refused(f"--slurm: no {', '.join(missing)} here: run this where jobs are submitted, or apt-get install slurm-client")  # fmt: skip
+
+
+def _asked(command):
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode:
+        raise Refused(f"--slurm: {command[0]}: {done.stderr.strip() or f'exit status {done.returncode}'}")  # fmt: skip
+    return done.stdout
+
+
+def _largest():
+    """How many tasks an array may have."""
+    found = re.search(r"MaxArraySize\s*=\s*(\d+)", _asked(["scontrol", "show", "config"]))  # fmt: skip
+    return max(1, int(found[1] if found else ARRAY) - 1)
+
+
+def waiting(folder):
+    """The number of the job array that still has tasks, or None."""
+    try:
+        job = readWhole(folder.of(JOB)).decode().strip()
+    except OSError:
+        return None
+    done = subprocess.run(["squeue", "--noheader", "--jobs", job], capture_output=True, text=True)  # fmt: skip
+    return job if done.returncode == 0 and done.stdout.strip() else None
+
+
+def script(folder, rows, largest):
+    """The batch script of some rows. If they are more than an array may have tasks, a task has several, in turn."""
+    each = -(-len(rows) // largest)
+    tasks = -(-len(rows) // each)
+    runner = shlex.join([sys.executable, "-P", "-m", "masonry.study.row", folder.path])
+    return f"""#!/bin/bash
+#SBATCH --job-name=study
+#SBATCH --array=0-{tasks - 1}
+#SBATCH --requeue
+#SBATCH --open-mode=append
+#SBATCH --signal=B:USR1@{LEAST}
+#SBATCH --ntasks=1
+#SBATCH --cpus-per-task=1
+rows=({' '.join(map(str, rows))})
+exec {runner} "${{rows[@]:$((SLURM_ARRAY_TASK_ID * {each})):{each}}}"
+"""
+
+
+def submit(folder, runs, words):
+    """Submit one job array over the rows that are missing. Returns the exit status.
+
+    :param words: options of sbatch
+    """
+    before = waiting(folder)
+    if before:
+        raise Refused(f"--slurm: job array {before} still has tasks of this study: wait for them, or scancel {before}")  # fmt: skip
+    rows = [n for n in range(1, runs + 1) if not folder.isEnded(n)]
+    if not rows:
+        say("all rows are ended: --gather writes study.csv")
+        return 0
+    written(folder.of(SCRIPT), script(folder, rows, _largest()))
+    command = ["sbatch", "--parsable", f"--output={folder.of(batch.ROWS)}/slurm-%a.out", f"--chdir={folder.path}", *words, folder.of(SCRIPT)]  # fmt: skip
+    job = _asked(command).strip().split(";")[0]
+    written(folder.of(JOB), job + "\n")
+    say(f"{len(rows)} rows in job array {job}: squeue --jobs {job} shows it, --gather writes study.csv")  # fmt: skip
+    return 0

@@ -1,0 +1,172 @@
+"""Begins a study: checks all of it before anything runs, and makes its folder."""
+
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+
+from .. import batch
+from ..errors import Refused
+from ..progress import say
+from .gathering import STUDY, TABLE, Folder, reason, written
+from .variables import NEVER, Distribution, Field
+
+VERSION = 1  # of study.json
+SPARE = 20e6  # bytes that a study leaves free on the disk
+PROBING = 600  # [s] after which a scene that should only be built is given up
+
+
+def begin(study, path, near):
+    """The folder of a study: made if it is not there, else checked to be of the same study.
+
+    :param study: :class:`masonry.study.Study`
+    :param path: of the folder
+    :param near: folder of the study's file, where its scene is looked for
+    :returns: :class:`masonry.study.gathering.Folder`
+    :raises Refused: with all problems at once. Nothing is written then
+    """
+    folder = Folder(path)
+    script, fingerprint = study.script(near)
+    now = {"version": VERSION, "study": study.describe(), "scene_sha256": fingerprint}
+    now = json.loads(json.dumps(now))
+    if os.path.exists(folder.of(STUDY)):
+        _compare(folder, folder.description(), now)
+    else:
+        _checkEmpty(folder)
+        table = study.table()
+        problems, room = _look(study, script, table)
+        problems += _checkRoom(folder, study.runs * room)
+        if problems:
+            raise Refused("study: " + "\n  ".join(problems))
+        try:
+            os.makedirs(folder.of(batch.ROWS), exist_ok=True)
+        except OSError as error:
+            raise Refused(f"--out: cannot write to {path}: {error.strerror}") from None
+        written(folder.of(TABLE), table)
+    written(folder.of(STUDY), json.dumps({**now, "script": script}, indent=2) + "\n")
+    return folder
+
+
+def _compare(folder, known, now):
+    """Refuse another study than the one that a folder holds."""
+    was, told = known["study"], now["study"]
+    other = [f"{n} is {json.dumps(was.get(n))}, not {json.dumps(told.get(n))}" for n in {**was, **told} if was.get(n) != told.get(n)]  # fmt: skip
+    if not other and known.get("scene_sha256") != now["scene_sha256"]:
+        other = [f"the file of its scene {told['scene']} was another one"]
+    if other or known.get("version") != VERSION:
+        raise Refused(
+            f"--out: {folder.path} holds another study; name another folder. There\n  "
+            + "\n  ".join(other or ["it is of another version"])
+        )
+
+
+def _checkEmpty(folder):
+    """Refuse a folder of something else. A table without study.json is left by a study that was killed when it began."""
+    try:
+        names = set(os.listdir(folder.path)) - {TABLE, TABLE + ".new", STUDY + ".new"}
+        if batch.ROWS in names and not os.listdir(folder.of(batch.ROWS)):
+            names.remove(batch.ROWS)
+    except FileNotFoundError:
+        return
+    except OSError as error:
+        raise Refused(f"--out: {folder.path}: {error.strerror}") from None
+    if names:
+        some = ", ".join(sorted(names)[:3])
+        raise Refused(f"--out: {folder.path} is not empty ({some}) and holds no study: name another folder")  # fmt: skip
+
+
+def _checkRoom(folder, needed):
+    at = folder.path
+    while not os.path.isdir(at):
+        at = os.path.dirname(at)
+    if not os.access(at, os.W_OK):
+        return [f"--out: {at} cannot be written"]
+    free = shutil.disk_usage(at).free
+    if free < needed + SPARE:
+        return [f"--out: {at} has {1e-6 * free:.0f} MB free, the study writes some {1e-6 * needed:.0f} MB"]  # fmt: skip
+    return []
+
+
+def _look(study, script, table):
+    """Problems of the study that its scene tells when it is built, and the bytes that a row writes."""
+    if not shutil.which("yade"):
+        raise Refused("a study needs yade: apt-get install --no-install-recommends yade")  # fmt: skip
+    with tempfile.TemporaryDirectory() as place:
+        path = os.path.join(place, TABLE)
+        with open(path, "w") as f:
+            f.write(table)
+        found = _probed(script, path, os.path.join(place, "probe.json"))
+        if isinstance(found, str):  # the first row may be to blame
+            found = _probed(script, path, os.path.join(place, "probe.json"), line=1) or found  # fmt: skip
+    if isinstance(found, str):
+        return [f"its scene cannot be built: {found}"], 0
+    problems = _names(study, found) + _ranges(study, found) + found["problems"]
+    for name, why in found["doubtful"].items():
+        if name in study.vary:
+            say(f"warning: {name} varies, and the scene may not use it: {why}")
+    return problems, found["room"]
+
+
+def _probed(script, table, path, line=2):
+    """What :mod:`masonry.probing` writes, as a dict, or why there is none.
+
+    :param line: of the table: the options with which the scene is built; 1: it is built without options
+    """
+    env = {**os.environ, batch.VARIABLE: f"{table}:{line}", batch.PROBE: path, "OMP_NUM_THREADS": "1"}  # fmt: skip
+    try:
+        done = subprocess.run(["yade", "-n", "--threads=1", "-x", script], env=env, cwd=os.path.dirname(script), stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", timeout=PROBING)  # fmt: skip
+    except subprocess.TimeoutExpired:
+        return f"it is not built after {PROBING} s"
+    try:
+        with open(path) as f:
+            return json.load(f)
+    except (OSError, ValueError):
+        lines = reason(done.stderr) or [f"no masonry.Scene began a stage in {script}"]
+        return "\n  ".join(lines[:10])
+
+
+def _names(study, found):
+    """Names that the scene ignores."""
+    if not found["heard"]:
+        return ["its scene takes no options from the command line (arguments=...), and would ignore all that varies"]  # fmt: skip
+    problems, joints = [], found["joints"]
+    for name in [*study.options, *study.vary]:
+        for one in name.removeprefix(batch.FIELD).split("+"):
+            kind, dot, attribute = one.partition(".")
+            if not dot:
+                if one not in found["options"]:
+                    problems.append(f"{one}: the scene has no such option")
+                elif one in found["unused"]:
+                    problems.append(f"{one}: the scene ignores it: {found['unused'][one]}")  # fmt: skip
+                continue
+            if kind not in joints or attribute not in found["bounds"]:
+                continue  # the rows tell that
+            properties = joints[kind]
+            if not found["counts"][kind]:
+                problems.append(f"{one}: the scene has no {kind} joint and would ignore it")  # fmt: skip
+            elif properties.get("elastic") and "Stiffness" not in attribute:
+                problems.append(f"{one}: {kind} joints of the scene are linear elastic and ignore it")  # fmt: skip
+            elif properties.get("cap") is False and (attribute.startswith(("compressive", "peakRatio"))):  # fmt: skip
+                problems.append(f"{one}: {kind} joints of the scene do not crush and ignore it")  # fmt: skip
+    return problems
+
+
+def _ranges(study, found):
+    """Distributions that can give what a property cannot be."""
+    problems = []
+    for column, what in study.vary.items():
+        if isinstance(what, Field) and what.kind == "normal" and what.mean is not None and what.mean < 0:  # fmt: skip
+            problems.append(f"{column}: mean {what.mean:g} must be above 0")
+        if not isinstance(what, Distribution):
+            continue
+        for name in column.split("+"):
+            bounds = found["bounds"].get(name.partition(".")[2])
+            if not bounds or bounds["low"] is None and bounds["high"] is None:
+                continue
+            share = what.beyond(bounds["low"], bounds["high"])
+            if share > NEVER:
+                ends = [f"{word} {bounds[e]:g}" for e, word in (("low", "at least"), ("high", "at most")) if bounds[e] is not None]  # fmt: skip
+                unit = f" {bounds['unit']}" if bounds["unit"] not in ("", "-") else ""
+                problems.append(f"{name}: {what} gives impossible values in {100 * share:.2g} % of all rows: it must be {' and '.join(ends)}{unit}; low=... or high=... cuts it off")  # fmt: skip
+    return problems

@@ -1,0 +1,194 @@
+"""What varies in a study: distributions, choices, and random fields over the joints."""
+
+import math
+from dataclasses import dataclass
+
+from .. import fields
+from ..errors import Refused
+
+#: What a distribution may give beyond a bound of a property: less than once in a thousand million draws.
+NEVER = 1e-9
+
+
+def openturns():
+    """The module. Raises Refused where it is missing."""
+    try:
+        import openturns
+    except ImportError:
+        raise Refused(
+            "distributions and designs of studies need OpenTURNS: apt-get install --no-install-recommends python3-openturns"
+        ) from None
+    return openturns
+
+
+def _finite(**values):
+    for name, value in values.items():
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise Refused(f"{name} {value!r} must be a number")
+        if not math.isfinite(value):
+            raise Refused(f"{name} {value} must be finite")
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """A distribution of one number: :func:`lognormal`, :func:`normal`, :func:`uniform`.
+
+    :param kind: its name
+    :param parameters: pairs of a name and a number
+    """
+
+    kind: str
+    parameters: tuple
+
+    def law(self):
+        """The distribution of OpenTURNS."""
+        ot, p = openturns(), dict(self.parameters)
+        if self.kind == "uniform":
+            return ot.Uniform(p["low"], p["high"])
+        mean, deviation = p["mean"], p["mean"] * p["cov"]
+        if self.kind == "lognormal":
+            made = ot.LogNormalMuSigma(mean, deviation, 0.0).getDistribution()
+        else:
+            made = ot.Normal(mean, abs(deviation))
+        low, high = p.get("low"), p.get("high")
+        if low is None and high is None:
+            return made
+        ends = ot.Interval(
+            [0.0 if low is None else low],
+            [0.0 if high is None else high],
+            [low is not None],
+            [high is not None],
+        )
+        return ot.TruncatedDistribution(made, ends)
+
+    def beyond(self, low, high):
+        """Probability of a value below ``low`` or above ``high``; None is no bound [-]."""
+        law, found = self.law(), 0.0
+        if low is not None:
+            found += law.computeCDF(low)
+        if high is not None:
+            found += law.computeComplementaryCDF(high)
+        return found
+
+    def describe(self):
+        return {"kind": self.kind, **dict(self.parameters)}
+
+    def __str__(self):
+        return f"{self.kind}({', '.join(f'{n}={v:g}' for n, v in self.parameters)})"
+
+
+def _aboutMean(kind, mean, cov, low, high):
+    parameters = {"mean": mean, "cov": cov}
+    parameters.update({n: v for n, v in (("low", low), ("high", high)) if v is not None})  # fmt: skip
+    _finite(**parameters)
+    if not cov > 0:
+        raise Refused(f"{kind}: coefficient of variation {cov} must be above 0")
+    if mean == 0 or (kind == "lognormal" and mean < 0):
+        raise Refused(f"{kind}: mean {mean:g} must be above 0")
+    if low is not None and high is not None and not low < high:
+        raise Refused(f"{kind}: low {low:g} must be below high {high:g}")
+    return Distribution(kind, tuple(parameters.items()))
+
+
+def lognormal(mean, cov, low=None, high=None):
+    """A lognormal distribution.
+
+    :param mean: in the unit of what varies
+    :param cov: coefficient of variation, standard deviation over mean [-]
+    :param low: cuts it off below, ``high`` above; mean and cov are those before
+    """
+    return _aboutMean("lognormal", mean, cov, low, high)
+
+
+def normal(mean, cov, low=None, high=None):
+    """A normal distribution. Parameters are those of :func:`lognormal`. Most properties need a ``low`` end."""
+    return _aboutMean("normal", mean, cov, low, high)
+
+
+def uniform(low, high):
+    """All values between two ends alike."""
+    _finite(low=low, high=high)
+    if not low < high:
+        raise Refused(f"uniform: low {low:g} must be below high {high:g}")
+    return Distribution("uniform", (("low", low), ("high", high)))
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of some values; ``weights`` are probabilities."""
+
+    values: tuple
+    weights: tuple
+
+    def of(self, u):
+        """The value at a probability from 0 to 1."""
+        reached = 0.0
+        for value, weight in zip(self.values, self.weights):
+            reached += weight
+            if u < reached:
+                return value
+        return self.values[-1]
+
+    def describe(self):
+        return {"kind": "choice", "values": list(self.values), "weights": list(self.weights)}  # fmt: skip
+
+
+def choice(*values, weights=None):
+    """One of some values, for example ``choice("softening", "brittle")``. A list in ``vary`` means the same.
+
+    :param weights: how often each comes, relative to the others; None: all alike. A grid leaves them alone
+    """
+    if not values:
+        raise Refused("choice: needs at least one value")
+    wrong = [v for v in values if not isinstance(v, (bool, int, float, str))]
+    if wrong:
+        raise Refused(f"choice: {wrong[0]!r} must be a number, a text, or True or False")  # fmt: skip
+    if len(set(values)) != len(values):
+        raise Refused(f"choice: {list(values)} has a value twice")
+    weights = [1] * len(values) if weights is None else list(weights)
+    if len(weights) != len(values) or not all(w > 0 for w in weights):
+        raise Refused(f"choice: {len(values)} values need as many weights above 0")
+    return Choice(values, tuple(w / sum(weights) for w in weights))
+
+
+@dataclass(frozen=True)
+class Field:
+    """A random field over the joints: :func:`field`."""
+
+    kind: str
+    mean: object
+    cov: float
+    length: float
+
+    def describe(self):
+        return {"kind": "field", "of": self.kind, "mean": self.mean, "cov": self.cov, "length": self.length}  # fmt: skip
+
+    def written(self, seed):
+        """As a table has it."""
+        return fields.written(self.kind, self.cov, self.length, seed)
+
+
+def field(distribution=None, length=0.0, cov=None):
+    """A property that varies from joint to joint, with another field in every row.
+
+    :param distribution: :func:`lognormal` or :func:`normal` of the values; None: lognormal about the value that the scene
+        has, with ``cov``
+    :param length: correlation length [m], see :mod:`masonry.fields`; 0: every joint has its own value
+    :param cov: coefficient of variation [-], where there is no distribution
+    """
+    _finite(length=length)
+    if length < 0:
+        raise Refused(f"field: correlation length {length:g} m must be at least 0")
+    if distribution is None:
+        _finite(cov=cov)
+        if not cov > 0:
+            raise Refused(f"field: coefficient of variation {cov} must be above 0")
+        return Field("lognormal", None, float(cov), float(length))
+    if cov is not None:
+        raise Refused("field: cov goes with no distribution, which has its own")
+    if not isinstance(distribution, Distribution) or distribution.kind not in fields.KINDS:  # fmt: skip
+        raise Refused(f"field: {distribution} must be lognormal or normal")
+    p = dict(distribution.parameters)
+    if "low" in p or "high" in p:
+        raise Refused("field: its distribution cannot be cut off")
+    return Field(distribution.kind, float(p["mean"]), float(p["cov"]), float(length))

@@ -1,0 +1,415 @@
+"""Studies that run: here, killed at random moments, on Slurm, and by plain yade-batch; always with the same study.csv."""
+
+import contextlib
+import csv
+import json
+import os
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import cluster
+import pytest
+
+from masonry import batch
+from masonry.measure import failureMode, measure
+from masonry.results import readRun
+
+pytest.importorskip("openturns", reason="python3-openturns is not installed")
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SMALL = os.path.join(HERE, "small.py")
+STUDY = f"""
+from masonry.study import Study, field, lognormal
+study = Study({SMALL!r}, runs=4, seed=1, options={{"rate": 40, "until": 1, "checkpoint_every": 0.002}},
+    vary={{"bed.friction": lognormal(mean=0.43, cov=0.05), "joints": ["softening", "cyclic"],
+           ("bed.cohesion", "bed.tensileStrength"): field(cov=0.2, length=0.3)}})
+"""
+JOB = " -x " + SMALL
+COMMAND = [sys.executable, "-m", "masonry.study"]
+
+
+def write(folder, text=STUDY):
+    path = folder / "study.py"
+    path.write_text(text)
+    return path
+
+
+def study(*words, env=None, **settings):
+    return subprocess.run([*COMMAND, *map(str, words)], capture_output=True, text=True, env=env, **settings)  # fmt: skip
+
+
+def start(path, out):
+    return subprocess.Popen([*COMMAND, path, "--out", out, "--jobs", "2"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)  # fmt: skip
+
+
+def family(process):
+    """Ids and command lines of a process and of all that it has started and that live."""
+    listed = subprocess.run(["ps", "-e", "-o", "pid=,ppid=,args="], capture_output=True, text=True).stdout  # fmt: skip
+    told = [line.split(None, 2) for line in listed.splitlines()]
+    found = {str(process.pid)}
+    while True:
+        more = {pid for pid, parent, _ in told if parent in found} - found
+        if not more:
+            return {int(pid): args for pid, _, args in told if pid in found}
+        found |= more
+
+
+def listening(pids):
+    """Addresses on which processes listen, as ss tells."""
+    lines = subprocess.run(["ss", "-ltnp"], capture_output=True, text=True).stdout.splitlines()[1:]  # fmt: skip
+    return {line.split()[3] for line in lines if any(f"pid={pid}," in line for pid in pids)}  # fmt: skip
+
+
+def read(out, name="study.csv"):
+    return (out / name).read_bytes()
+
+
+def ended(out):
+    """The rows that came to their end, in turn, as their scene wrote them."""
+    return (out / "ended.txt").read_text().split()
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A study that was not disturbed: its folder, what it said, and the ports that were open in it longer than a moment."""
+    folder = tmp_path_factory.mktemp("whole")
+    out, seen = folder / "out", []
+    process = start(write(folder), out)
+    while process.poll() is None:
+        now = family(process)
+        seen.append((listening(now), [a for a in now.values() if "yadebatch" in a]))
+        time.sleep(0.05)
+    told = process.stdout.read()
+    assert process.returncode == 0, told
+    return out, told, seen
+
+
+def test_a_study_runs_all_rows_once(whole):
+    out, told, _ = whole
+    assert "4 of 4 rows" in told and "4 ended" in told
+    assert sorted(ended(out)) == ["0001", "0002", "0003", "0004"]
+    rows = [*csv.DictReader(read(out).decode().splitlines())]
+    assert [row["status"] for row in rows] == ["ended"] * 4
+    table = [*batch.readTable(str(out / "table.txt")).values()]
+    for number, (row, asked) in enumerate(zip(rows, table), 1):
+        run = readRun(str(out / "rows" / f"{number:04d}"))
+        assert float(row["peak_base_shear_kN"]) == run["peak_base_shear_kN"] > 1
+        assert float(row["bed.friction"]) == run["joints"]["bed"]["friction"] == float(asked["bed.friction"])  # fmt: skip
+        assert run["options"]["joints"] == row["joints"] == batch.value(asked["joints"])
+        assert run["options"]["field"] == ["bed.cohesion+bed.tensileStrength=" + batch.value(asked["field:bed.cohesion+bed.tensileStrength"])]  # fmt: skip
+        assert row["failure_mode"] and float(row["push_work_J"]) > 0
+        assert sorted(os.listdir(out / "rows" / f"{number:04d}")) == ["curve.csv", "run.json"]  # fmt: skip
+    assert len({row["peak_base_shear_kN"] for row in rows}) == 4
+    assert not any("seconds" in name or "host" in name for name in rows[0])
+
+
+def test_no_port_of_yade_batch_is_open(whole):
+    """YADE itself opens two for the moment before the scene imports masonry; yade-batch would have one from 9080 on."""
+    *_, seen = whole
+    assert any(batches for _, batches in seen), "yade-batch was not seen"
+    ports = {int(a.rpartition(":")[2]) for addresses, _ in seen for a in addresses}
+    assert not [p for p in ports if 9080 <= p < 11000], ports
+
+
+def test_a_study_that_is_done_runs_nothing(whole):
+    out, *_ = whole
+    before = read(out)
+    done = study(out.parent / "study.py", "--out", out)
+    assert done.returncode == 0 and len(ended(out)) == 4
+    assert read(out) == before
+    os.remove(out / "study.csv")
+    assert study("--out", out, "--gather").returncode == 0
+    assert read(out) == before
+
+
+def test_a_row_by_hand_gives_the_same(whole, tmp_path):
+    """Also its crack pattern, which masonry.measure then finds in the frames for ParaView."""
+    out, *_ = whole
+    words = batch.optionWords(batch.readTable(str(out / "table.txt"))[3])
+    words.remove("--lean")
+    subprocess.run(["yade", "-n", "-x", SMALL, *words, "--out", str(tmp_path / "r")], check=True, capture_output=True)  # fmt: skip
+    curve = (tmp_path / "r" / "curve.csv").read_bytes()
+    assert curve == (out / "rows" / "0002" / "curve.csv").read_bytes()
+    numbers = measure(str(tmp_path / "r"))
+    row = [*csv.DictReader(read(out).decode().splitlines())][1]
+    compared = 0
+    for name in row.keys() & numbers.keys():
+        if row[name]:
+            # curve.csv has nine digits, and the frames have all
+            assert float(row[name]) == pytest.approx(numbers[name], rel=1e-6), name
+            compared += 1
+    assert compared > 20
+    assert row["failure_mode"] == failureMode(numbers, readRun(str(tmp_path / "r"))["wall"])  # fmt: skip
+
+
+def test_plain_yade_batch_runs_the_table(whole, tmp_path):
+    out, *_ = whole
+    (tmp_path / "t").mkdir()
+    for name in ("table.txt", "study.json"):
+        shutil.copy(out / name, tmp_path / "t")
+    command = ["yade-batch", "-j", "2", "--lines", "2,4", "--log", "t/@.log", "t/table.txt", SMALL]  # fmt: skip
+    # its own port stays closed in a network of its own, if that can be had
+    alone = ["unshare", "--user", "--map-current-user", "--net"]
+    if subprocess.run([*alone, "true"], capture_output=True).returncode == 0:
+        command = alone + command
+    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
+    assert study("--out", tmp_path / "t", "--gather").returncode == 1
+    mine = read(tmp_path / "t").splitlines()
+    assert mine[1] in (theirs := read(out).splitlines()) and mine[3] in theirs
+    assert b",missing," in mine[2] and b",missing," in mine[4]
+
+
+def kill(process, who):
+    """Kill the command, its yade-batch, or one of its jobs. Returns whether there was one."""
+    marks = {"batch": "study.yadebatch", "job": JOB}
+    found = [pid for pid, args in family(process).items() if (pid == process.pid if who == "command" else marks[who] in args)]  # fmt: skip
+    if not found:
+        return False
+    with contextlib.suppress(ProcessLookupError):
+        os.kill(random.choice(found), signal.SIGKILL)
+    return True
+
+
+@pytest.mark.parametrize("seed", [16])
+def test_kills_at_random_moments_change_no_number(whole, tmp_path, seed):
+    random.seed(seed)
+    path, out, kills = write(tmp_path), tmp_path / "out", []
+    for victims in (["job", "batch", "command"], ["batch", "command"], ["job", "batch"]):  # fmt: skip
+        process = start(path, out)
+        for who in victims:
+            while process.poll() is None and not any(JOB in a for a in family(process).values()):  # fmt: skip
+                time.sleep(0.05)
+            time.sleep(random.uniform(0, 2))
+            if process.poll() is None and kill(process, who):
+                kills.append(who)
+        told = process.communicate(timeout=120)[0]
+        if process.returncode != -signal.SIGKILL:
+            assert process.returncode == 0, told
+    assert len(kills) >= 3, kills
+    done = study(path, "--out", out)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert read(out) == read(whole[0])
+    assert sorted(ended(out)) == sorted(set(ended(out))), "a row was run twice"
+
+
+def test_ctrl_c_leaves_checkpoints_and_the_study_goes_on(whole, tmp_path):
+    path, out = write(tmp_path), tmp_path / "out"
+    process = start(path, out)
+    while process.poll() is None and not [*out.glob("rows/*/run.checkpoint")]:
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    told = process.communicate(timeout=60)[0]
+    assert process.returncode == 130 and "goes on from here" in told
+    assert b"missing" in read(out)
+    assert not [a for a in family(process).values() if SMALL in a]
+    interrupted = [p.parent for p in out.glob("rows/*/run.checkpoint")]
+    done = study(path, "--out", out, "--jobs", "2")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert read(out) == read(whole[0])
+    assert any(readRun(str(folder))["resumed_at_s"] for folder in interrupted)
+
+
+FAILS = STUDY.replace('"joints": ["softening", "cyclic"]', '"fall": [False, True]').replace("runs=4", 'design="grid"').replace("lognormal(mean=0.43, cov=0.05)", "[0.43]")  # fmt: skip
+
+
+def test_a_row_that_fails_is_named_and_the_others_run(tmp_path):
+    path, out = write(tmp_path, FAILS), tmp_path / "out"
+    done = study(path, "--out", out, "--jobs", "2")
+    assert done.returncode == 1
+    assert "row 0002 failed: RuntimeError: it was told to fall; see " in done.stdout
+    assert "1 ended, 1 failed" in done.stdout
+    rows = [*csv.DictReader(read(out).decode().splitlines())]
+    assert [row["status"] for row in rows] == ["ended", "failed"]
+    assert rows[1]["fall"] == "True"
+    times = [*csv.DictReader(read(out, "times.csv").decode().splitlines())]
+    assert "it was told to fall" in times[1]["told"]
+
+
+# -- bad input --------------------------------------------------------------------------------------------------------
+
+
+def refused(tmp_path, text, *words, env=None):
+    path, out = write(tmp_path, text), tmp_path / "out"
+    done = study(path, "--out", out, *words, env=env)
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert "Traceback" not in done.stderr
+    assert not out.exists()
+    assert not (tmp_path / "results").exists() and not os.path.exists(os.path.join(HERE, "results"))  # fmt: skip
+    return done.stderr
+
+
+def test_what_the_scene_cannot_take_is_told_at_once_and_nothing_runs(tmp_path):
+    told = refused(
+        tmp_path,
+        f"""
+from masonry.study import *
+study = Study({SMALL!r}, runs=20, seed=1, options={{"until": 1, "dance": 3}}, vary={{
+    "bed.friction": normal(mean=0.43, cov=0.5),
+    "crack.cohesion": lognormal(mean=1e3, cov=0.1),
+    "bed.stickiness": uniform(0, 1),
+    "wall.cohesion": uniform(1, 2),
+    "support.cohesion": uniform(1e5, 2e5),
+    "rate": uniform(-30, 30),
+    "color": ["red"],
+}})
+""",
+    )
+    for sentence in (
+        "dance: the scene has no such option",
+        "color: the scene has no such option",
+        "bed.friction: normal(mean=0.43, cov=0.5) gives impossible values in 2.3 % of all rows: it must be at least 0",  # fmt: skip
+        "support.cohesion: support joints of the scene are linear elastic and ignore it",  # fmt: skip
+        "bed.stickiness: a MasonryJoint has no such property",
+        "no joint 'wall', there are ",
+        "argument --rate: -",
+    ):
+        assert sentence in told, told
+
+
+def test_rows_that_contradict_themselves_are_told_by_their_number(tmp_path):
+    vary = '{"bed.tensileStrength": uniform(1e4, 5e5), ("head.tensileStrength",): field(cov=0.5)}'  # fmt: skip
+    told = refused(tmp_path, f"from masonry.study import *\nstudy = Study({SMALL!r}, runs=8, seed=1, vary={vary})")  # fmt: skip
+    assert re.search(r'row 000\d.*: joint "bed": tensile strength', told), told
+    assert re.search(r"--field head.tensileStrength=.*where the field is [\d.]+ of the mean", told), told  # fmt: skip
+
+
+DEAF = """
+from masonry import Scene, bricks, materials
+scene = Scene("deaf", bricks.stack(2, (0.22, 0.1, 0.08)), materials.calciumSilicate(), arguments=[])
+scene.platen("bottom")
+scene.settle()
+scene.finish()
+"""
+
+
+def test_a_scene_that_ignores_what_varies_is_refused(tmp_path):
+    text = "from masonry.study import *\nstudy = Study('scene.py', vary={'bed.friction': [0.4, 0.5]}, design='grid')"  # fmt: skip
+    (tmp_path / "scene.py").write_text(DEAF)
+    told = refused(tmp_path, text)
+    assert "takes no options from the command line" in told
+    (tmp_path / "scene.py").write_text(DEAF.replace("arguments=[]", "until=1"))
+    told = refused(tmp_path, text.replace("bed.friction", "head.friction"))
+    assert "head.friction: the scene has no head joint and would ignore it" in told
+    (tmp_path / "scene.py").write_text("print('hello')")
+    assert "no masonry.Scene began a stage" in refused(tmp_path, text)
+    (tmp_path / "scene.py").write_text("import masonry\n1 / 0")
+    assert "ZeroDivisionError: division by zero" in refused(tmp_path, text)
+
+
+def test_another_study_in_the_folder_is_refused(whole, tmp_path):
+    out, *_ = whole
+    before = {path: path.read_bytes() for path in out.glob("*.*")}
+    path = write(tmp_path, STUDY.replace("seed=1", "seed=2").replace("0.05", "0.06"))
+    done = study(path, "--out", out)
+    assert done.returncode == 2
+    for told in ("holds another study", "seed is 1, not 2", '"cov": 0.05}', '"cov": 0.06}'):  # fmt: skip
+        assert told in done.stderr, done.stderr
+    assert before == {path: path.read_bytes() for path in out.glob("*.*")}
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "letter.txt").write_text("dear")
+    done = study(path, "--out", tmp_path / "mine")
+    assert done.returncode == 2 and "is not empty (letter.txt) and holds no study" in done.stderr  # fmt: skip
+    assert os.listdir(tmp_path / "mine") == ["letter.txt"]
+
+
+def test_a_changed_scene_is_another_study(whole, tmp_path):
+    out, *_ = whole
+    shutil.copytree(out, tmp_path / "out")
+    told = json.loads((tmp_path / "out" / "study.json").read_text())
+    told["scene_sha256"] = "0" * 64
+    (tmp_path / "out" / "study.json").write_text(json.dumps(told))
+    done = study(write(tmp_path), "--out", tmp_path / "out")
+    assert done.returncode == 2 and "the file of its scene" in done.stderr
+
+
+@pytest.mark.parametrize("engine, words", [("yade-batch", []), ("sbatch", ["--slurm"])])
+def test_a_missing_engine_is_told_before_anything_runs(tmp_path, engine, words):
+    (tmp_path / "bin").mkdir()
+    os.symlink(shutil.which("yade"), tmp_path / "bin" / "yade")
+    env = {**os.environ, "PATH": str(tmp_path / "bin")}
+    told = refused(tmp_path, STUDY, *words, env=env)
+    assert engine in told and "apt-get install" in told and told.count("\n") == 1
+
+
+@contextlib.contextmanager
+def disk(place, size):
+    """A small file system of its own."""
+    place.mkdir()
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", place]).returncode:  # fmt: skip
+        pytest.skip("no file system can be mounted here")
+    try:
+        yield place
+    finally:
+        subprocess.run(["umount", place], check=True)
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root mounts a small disk")
+def test_a_full_disk_is_told_before_anything_runs(tmp_path):
+    with disk(tmp_path / "disk", "1m") as small:
+        done = study(write(tmp_path), "--out", small / "out")
+        assert done.returncode == 2
+        assert re.search(r"has 1 MB free, the study writes some \d+ MB", done.stderr)
+        assert os.listdir(small) == []
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root mounts a small disk")
+def test_a_disk_that_fills_up_stops_the_study_in_order(whole, tmp_path):
+    with disk(tmp_path / "disk", "60m") as small:
+        shutil.copytree(whole[0], small / "out")
+        shutil.rmtree(small / "out" / "rows" / "0003")
+        (small / "filler").write_bytes(bytes(shutil.disk_usage(small).free - 6_000_000))
+        path = write(tmp_path)
+        done = study(path, "--out", small / "out", "--jobs", "2")
+        assert done.returncode == 2 and "Traceback" not in done.stderr
+        assert re.search(r"has [56].\d MB free, too little for 2 runs", done.stderr)
+        assert "goes on when there is room" in done.stderr
+        os.remove(small / "filler")
+        assert study(path, "--out", small / "out", "--jobs", "2").returncode == 0
+        assert read(small / "out") == read(whole[0])
+        assert ended(small / "out")[4:] == ["0003"]
+
+
+# -- Slurm ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def slurm():
+    absent = cluster.missing()
+    if absent:
+        pytest.skip("slurm-wlm and munge are not installed")
+    with cluster.cluster(tasks=4) as env:
+        yield env
+
+
+def test_slurm_gives_the_same(whole, slurm, tmp_path):
+    """Three tasks for four rows; one task is out of time, another one's node fails, and both go on."""
+    path, out = write(tmp_path), tmp_path / "out"
+    done = study(path, "--out", out, "--slurm", "--partition=walls", env=slurm)
+    assert done.returncode == 0, done.stderr
+    job = (out / "slurm.job").read_text().strip()
+    assert "#SBATCH --array=0-1" in (out / "slurm.sh").read_text()
+    again = study(path, "--out", out, "--slurm", env=slurm)
+    assert again.returncode == 2 and f"job array {job} still has tasks" in again.stderr
+    asked = lambda *words: subprocess.run(words, env=slurm, capture_output=True, text=True).stdout  # fmt: skip
+    wait(lambda: [*out.glob("rows/*/run.checkpoint")], 60)
+    asked("scancel", "--signal=USR1", "--batch", f"{job}_0")  # as at the end of its time
+    asked("scontrol", "requeue", f"{job}_1")
+    wait(lambda: not asked("squeue", "--noheader"), 120)
+    done = study("--out", out, "--gather", env=slurm)
+    assert done.returncode == 0, done.stdout + "".join(p.read_text() for p in out.glob("rows/*.out"))  # fmt: skip
+    assert read(out) == read(whole[0])
+    assert sorted(ended(out)) == sorted(set(ended(out))), "a row was run twice"
+    resumed = [readRun(str(p.parent))["resumed_at_s"] for p in out.glob("rows/*/run.json")]  # fmt: skip
+    assert any(resumed)
+
+
+def wait(found, seconds):
+    end = time.monotonic() + seconds
+    while not found():
+        assert time.monotonic() < end
+        time.sleep(0.05)
