@@ -9,6 +9,7 @@ The variance of every estimate here has two parts, A/N + B/M: what the shared ro
 
 - **Mean**: ȳ + b (x̄ of M - x̄ of N), the control variate with the slope b of the regression of y on x. A is the
   variance of the residuals, and B is b² times the variance of x.
+  Where y bends over x, it has a bias of the order of 1/N, which is small beside the interval.
 - **Standard deviation**: the same for (y - mean)², with x and x² as control variates.
 - **Quantile by a bridge**: y = a + b x + r, with a residual r that is independent of x. The distribution of y is that of
   a + b x over all M rows plus r over all N. It uses every row for every quantile.
@@ -233,9 +234,13 @@ def sentence(found, prices, unit="", names=("dear", "cheap"), confidence=CONFIDE
     """
     paid = saved(found, prices)
     unit = f" {unit}" if unit else ""
+    ends = [
+        f"{end:.4g}{unit}" if math.isfinite(end) else "an unknown end"
+        for end in (found.low, found.high)
+    ]
     told = (
-        f"{found.name} {found.value:.4g}{unit}, with {100 * confidence:g} % confidence between {found.low:.4g} and "
-        f"{found.high:.4g}{unit}, from {found.shared} runs of {names[0]} and {found.rows} of {names[1]} in {_time(paid.cost)}"
+        f"{found.name} {found.value:.4g}{unit}, with {100 * confidence:g} % confidence between {ends[0]} and {ends[1]}, "
+        f"from {found.shared} runs of {names[0]} and {found.rows} of {names[1]} in {_time(paid.cost)}"
     )
     same = f"{names[0]} alone needs {paid.alone:.0f} runs and {_time(paid.cost / paid.share)} for this interval"
     if paid.share < 1:
@@ -270,7 +275,7 @@ def _rows(dear, cheap):
         strange = np.flatnonzero(~np.isfinite(values))
         if len(strange):
             problems.append(f"{what} rows {', '.join(str(i + 1) for i in strange[:10])} have no finite number")  # fmt: skip
-        elif len(values) and np.ptp(values[: len(y)]) == 0:
+        elif len(y) > 1 and len(values) and np.ptp(values[: len(y)]) == 0:
             problems.append(f"the {what} numbers of all shared rows are {values[0]:g}: there is nothing to learn from them")  # fmt: skip
     if problems:
         raise Refused("\n".join(problems))
