@@ -275,7 +275,7 @@ def _rows(dear, cheap):
         strange = np.flatnonzero(~np.isfinite(values))
         if len(strange):
             problems.append(f"{what} rows {', '.join(str(i + 1) for i in strange[:10])} have no finite number")  # fmt: skip
-        elif len(y) > 1 and len(values) and np.ptp(values[: len(y)]) == 0:
+        elif len(values[: len(y)]) > 1 and np.ptp(values[: len(y)]) == 0:
             problems.append(f"the {what} numbers of all shared rows are {values[0]:g}: there is nothing to learn from them")  # fmt: skip
     if problems:
         raise Refused("\n".join(problems))
