@@ -10,7 +10,8 @@ The variance of every estimate here has two parts, A/N + B/M: what the shared ro
 - **Mean**: ȳ + b (x̄ of M - x̄ of N), the control variate with the slope b of the regression of y on x. A is the
   variance of the residuals, and B is b² times the variance of x.
   Where y bends over x, it has a bias of the order of 1/N, which is small beside the interval.
-- **Standard deviation**: the same for (y - mean)², with x and x² as control variates.
+- **Standard deviation**: the variance of y is b² times that of x over all M rows, plus that of the residuals. A is what
+  the slope and r² leave open, and B the variance of b² (x - mean)².
 - **Quantile by a bridge**: y = a + b x + r, with a residual r that is independent of x. The distribution of y is that of
   a + b x over all M rows plus r over all N. It uses every row for every quantile.
 - **Quantile by an indicator**: the control variate for "y is below q", whose mean is the probability, with the
@@ -45,6 +46,9 @@ QUANTILES = (0.05, 0.5, 0.95)
 #: A doubt about the bridge is told if its p-value is below this.
 DOUBT = 0.01
 
+#: A correlation that is as near to 1 leaves nothing to doubt [-].
+ROUNDING = 1e-9
+
 #: An estimate. ``name`` says of what, ``value``, ``low`` and ``high`` are in the unit of the numbers. ``dear`` and ``cheap``
 #: are A and B, and ``alone`` is the variance of one dear row without any cheap ones; the three have one scale, which is
 #: that of probability for a quantile. ``shared`` and ``rows`` are N and M.
@@ -68,8 +72,7 @@ def mean(dear, cheap, confidence=CONFIDENCE):
     y, x = _rows(dear, cheap)
     found = _controlled(y, x[:, None])
     half = _halfWidth(found, confidence)
-    alone = y.var(ddof=1)
-    return Estimate("mean", found.value, found.value - half, found.value + half, found.dear, found.cheap, alone, len(y), len(x))  # fmt: skip
+    return Estimate("mean", found.value, found.value - half, found.value + half, found.dear, found.cheap, found.dear + found.cheap, len(y), len(x))  # fmt: skip
 
 
 def deviation(dear, cheap, confidence=CONFIDENCE):
@@ -78,19 +81,20 @@ def deviation(dear, cheap, confidence=CONFIDENCE):
     Parameters and errors are those of :func:`mean`.
     """
     y, x = _rows(dear, cheap)
-    centre = _controlled(y, x[:, None])
-    moved = x - x.mean()
-    squares = (y - centre.value) ** 2
-    found = _controlled(squares, np.column_stack([moved, moved**2]))
-    # squares about an estimated mean are too small by the variance of that mean
-    variance = found.value + sum(centre.parts)
-    if variance <= 0:
-        raise Refused("the standard deviation: the cheap numbers do not follow the dear ones")  # fmt: skip
-    value = math.sqrt(variance)
-    relative = _halfWidth(found, confidence) / variance
+    n, m = len(y), len(x)
+    bridge = _Bridge(y, x)
+    b, residuals = bridge.slope, bridge.residuals
+    ofResiduals = residuals @ residuals / n
+    squared = max(b**2 - ofResiduals / bridge.squares, 0)  # b² is too large by that
+    ofX = x.var(ddof=1)
+    value = math.sqrt(squared * ofX + ofResiduals)
+    shared = 4 * b**2 * ofX**2 * ofResiduals * n / bridge.squares
+    shared += (residuals**2).var(ddof=1)
+    many = (b**2 * (x - x.mean()) ** 2).var(ddof=1)
+    found = _Found(value**2, (shared / n, many / m), (n - 2, m - 1), shared, many)
+    relative = _halfWidth(found, confidence) / value**2
     low, high = (value * math.exp(sign * relative / 2) for sign in (-1, 1))
-    alone = squares.var(ddof=1)
-    return Estimate("standard deviation", value, low, high, found.dear, found.cheap, alone, len(y), len(x))  # fmt: skip
+    return Estimate("standard deviation", value, low, high, shared, many, shared + many, n, m)  # fmt: skip
 
 
 def quantile(dear, cheap, share, method="bridge", confidence=CONFIDENCE):
@@ -148,6 +152,8 @@ def doubts(dear, cheap):
     """
     y, x = _rows(dear, cheap)
     told, x = [], x[: len(y)]
+    if 1 - abs(np.corrcoef(x, y)[0, 1]) < ROUNDING:
+        return told  # what is left is rounding
     moved = (x - x.mean()) / x.std()
     design = np.column_stack([np.ones_like(x), moved, moved**2])
     slopes, *_ = np.linalg.lstsq(design, y, rcond=None)
@@ -327,8 +333,8 @@ class _Bridge:
         self.y, self.x, n = y, x, len(y)
         near = x[:n] - x[:n].mean()
         self.squares = near @ near
-        slope = near @ y / self.squares
-        line = y.mean() + slope * (x - x[:n].mean())
+        self.slope = near @ y / self.squares
+        line = y.mean() + self.slope * (x - x[:n].mean())
         # each residual is smaller than the error that it shows, by its leverage
         grown = 1 / np.sqrt(np.maximum(1 - 1 / n - near**2 / self.squares, 1 / n))
         self.residuals = self._centred((y - line[:n]) * grown)
