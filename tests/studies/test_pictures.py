@@ -246,6 +246,38 @@ def test_shared_rows_are_found_by_what_varied_in_them(studies):
     assert x[:15] == pytest.approx(1.1 * y - 3, abs=1.5)
 
 
+def test_rows_without_a_number_in_either_study_are_not_shared(studies):
+    dear, cheap, peaks = studies
+    few, many = records.Record(dear), records.Record(cheap)
+    few.cells["peak_base_shear_kN"][2] = ""
+    keys = list(zip(*(many.cells[name] for name in NAMES)))
+    lost = keys.index(tuple(few.cells[name][4] for name in NAMES))
+    many.cells["peak_base_shear_kN"][lost] = ""
+    y, x, shared, rows = records.paired(few, many, "peak_base_shear_kN")
+    assert shared == [n for n in range(15) if n not in (2, 4)] and len(y) == 13
+    assert np.isfinite(y).all() and np.isfinite(x).all() and len(x) == 119
+    assert y == pytest.approx(peaks[shared])
+
+
+def test_studies_of_which_it_cannot_be_told_what_they_share_are_refused(studies):
+    few, many = map(records.Record, studies[:2])
+    many.varied = many.varied[:2]
+    with pytest.raises(Refused, match="varies bed.cohesion, bed.friction, head.tensileStrength, and"):  # fmt: skip
+        records.paired(few, many, "peak_base_shear_kN")
+    few, many = map(records.Record, studies[:2])
+    for name in NAMES:
+        many.cells[name][1] = many.cells[name][0]
+    with pytest.raises(Refused, match="rows have the same properties"):
+        records.paired(few, many, "peak_base_shear_kN")
+
+
+def test_the_seed_of_a_random_field_is_no_input(studies):
+    record = records.Record(studies[0])
+    record.varied.append("field:bed.cohesion")
+    record.cells["field:bed.cohesion"] = list(map(str, range(15)))
+    assert list(record.complete("peak_base_shear_kN")[1]) == list(NAMES)
+
+
 def test_the_report_tells_and_draws_all(studies, capsys):
     dear, cheap, peaks = studies
     words = [dear, "--cheap", cheap, "--demand", "100,120", "--prices", "60,3"]

@@ -193,7 +193,7 @@ def fragility(path, capacities, label):
 def fan(path, curves, xLabel, yLabel):
     """All curves over each other, with their median and the band that 90 % of them are in.
 
-    Where some have ended, the median and the band are those of the others; they end where fewer than half go on.
+    Where some have ended, the median and the band are those of the others; they end where half have.
 
     :param curves: list of (x, y), of which the first is made increasing by leaving out what goes back
     """
@@ -203,14 +203,13 @@ def fan(path, curves, xLabel, yLabel):
     end = np.median([x[-1] for x, _ in curves])
     grid = np.linspace(min(x[0] for x, _ in curves), end, POINTS)
     values = np.array([np.interp(grid, x, y, left=np.nan, right=np.nan) for x, y in curves])  # fmt: skip
-    there = np.isfinite(values).sum(axis=0) >= max(1, len(curves) / 2)
-    low, median, high = np.nanquantile(values[:, there], (BAND[0], 0.5, BAND[1]), axis=0)  # fmt: skip
+    low, median, high = np.nanquantile(values, (BAND[0], 0.5, BAND[1]), axis=0)  # fmt: skip
     with _Picture(path, 6.0, 4.0) as figure:
         axis = figure.subplots()
         alpha = float(np.clip(12 / len(curves), 0.05, 0.6))
         axis.add_collection(LineCollection([np.column_stack(c) for c in curves], color="0.35", lw=0.5, alpha=alpha, zorder=1))  # fmt: skip
-        axis.fill_between(grid[there], low, high, color=POINT, alpha=0.25, lw=0, zorder=2, label="between the 5 % and the 95 % quantile")  # fmt: skip
-        axis.plot(grid[there], median, color=LINE, lw=1.8, zorder=3, label="median")
+        axis.fill_between(grid, low, high, color=POINT, alpha=0.25, lw=0, zorder=2, label="between the 5 % and the 95 % quantile")  # fmt: skip
+        axis.plot(grid, median, color=LINE, lw=1.8, zorder=3, label="median")
         axis.plot([], [], color="0.35", lw=0.5, label=f"{len(curves)} curves")
         axis.autoscale_view()
         axis.set_xlabel(xLabel)

@@ -28,7 +28,7 @@ SPAN = 0.05, 0.95  # quantiles of a property between which its change is told
 DEGREE = 9  # highest degree of a polynomial in one property
 HYPERBOLIC = 0.6  # norm that keeps products of high powers out
 RESAMPLES = 300  # of the rows, for the intervals of Sobol indices
-DEPENDENT = 1e-4  # p-value of the rank correlation below which two properties are taken as dependent
+DEPENDENT = 1e-4  # probability that independent properties are taken as dependent ones, over all pairs
 
 
 def effects(inputs, output, confidence=CONFIDENCE):
@@ -90,7 +90,7 @@ def sobol(inputs, output, seed=1, confidence=CONFIDENCE):
     for i in range(k):
         for j in range(i):
             found = stats.spearmanr(x[:, i], x[:, j])
-            if found.pvalue < DEPENDENT:
+            if found.pvalue < 2 * DEPENDENT / (k * (k - 1)):
                 problems.append(f"Sobol indices need independent properties, {names[j]} and {names[i]} have a rank correlation of {found.statistic:.2f}")  # fmt: skip
     if np.ptp(y) == 0:
         problems.append("Sobol indices: all results are the same")
