@@ -193,11 +193,27 @@ def test_bars_stand_for_the_numbers_with_the_largest_on_top(drawn):
     pictures.sobol("i.png", found, PEAK)
     left, _ = drawn["t.png"].axes
     assert [bar.get_width() for bar in left.patches] == [e.change.value for e in effects.values()][::-1]  # fmt: skip
-    assert left.get_yticklabels()[-1].get_text() == NAMES[1]
+    assert left.get_yticklabels()[-1].get_text() == "bed: friction"
     (axis,) = drawn["i.png"].axes
     totals = [bar.get_width() for bar in axis.patches][:3]
-    assert totals == [found.indices[t.get_text()].total.value for t in axis.get_yticklabels()]  # fmt: skip
+    assert totals == [found.indices[t.get_text().replace(": ", ".")].total.value for t in axis.get_yticklabels()]  # fmt: skip
     assert totals[-1] == max(totals)
+
+
+@pytest.mark.parametrize(
+    "name, shown",
+    [
+        ("bed.cohesion", "bed: cohesion"),
+        ("bed.cohesion+head.cohesion", "bed, head: cohesion"),
+        ("bed.friction+bed.residualFriction", "bed: friction, residualFriction"),
+        ("bed.friction+head.cohesion", "bed.friction, head.cohesion"),
+        ("rate", "rate"),
+    ],
+)
+def test_names_that_are_tied_are_shown_in_short(name, shown, drawn):
+    x = {name: np.arange(20.0)}
+    pictures.tornado("t.png", sensitivity.effects(x, np.sin(x[name])), PEAK)
+    assert drawn["t.png"].axes[0].get_yticklabels()[0].get_text() == shown
 
 
 # -- a study's folder ---------------------------------------------------------------------------------------------------

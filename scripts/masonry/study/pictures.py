@@ -108,7 +108,7 @@ def tornado(path, effects, label):
             axis.errorbar([f.value for f in found], rows, xerr=_errors(found), fmt="none", ecolor="black", elinewidth=0.8, capsize=2.5)  # fmt: skip
             axis.axvline(0, color="black", lw=0.8)
             axis.grid(axis="x", alpha=0.3)
-        left.set_yticks(rows, names)
+        left.set_yticks(rows, map(_shown, names))
         left.set_xlabel(f"change of {label}\nfrom the 5 % to the 95 % quantile of a property")  # fmt: skip
         right.set_xlim(-1.05, 1.05)
         right.set_xlabel("correlation of ranks [-]")
@@ -130,11 +130,11 @@ def sobol(path, found, label):
             values = [getattr(found.indices[name], field) for name in names]
             axis.barh(rows - shift, [v.value for v in values], height=0.34, color=colour, alpha=0.75, label=text)  # fmt: skip
             axis.errorbar([v.value for v in values], rows - shift, xerr=_errors(values), fmt="none", ecolor="black", elinewidth=0.8, capsize=2)  # fmt: skip
-        axis.set_yticks(rows, names)
+        axis.set_yticks(rows, map(_shown, names))
         axis.set_xlim(0, 1.05)
         axis.grid(axis="x", alpha=0.3)
         axis.set_xlabel("share of the variance [-]")
-        axis.set_title(f"{label}: Sobol indices of a polynomial chaos that explains {100 * found.explained:.0f} % of the variance")  # fmt: skip
+        figure.suptitle(f"{label}: Sobol indices,\nof a polynomial chaos that explains {100 * found.explained:.0f} % of the variance", fontsize=9)  # fmt: skip
         axis.legend(loc="lower right")
 
 
@@ -181,9 +181,9 @@ def fragility(path, capacities, label):
             axis.plot(demands[inside], stats.lognorm.cdf(demands[inside], fit.dispersion, scale=fit.median), color="black", lw=1, ls=DASHES[1], label=f"lognormal: median {fit.median:.4g}, dispersion {fit.dispersion:.3g}")  # fmt: skip
         axis.set_ylim(0, 1)
         axis.set_xlim(demands[0], demands[-1])
-        axis.set_xlabel(f"demand, in the unit of {label}")
+        axis.set_xlabel(f"demand on {label}")
         axis.set_ylabel("probability that the capacity is below")
-        axis.legend(loc="upper left")
+        axis.legend(loc="lower right")
         axis.grid(alpha=0.3)
 
 
@@ -236,6 +236,16 @@ def _errors(intervals):
     return np.array([[max(i.value - i.low, 0), max(i.high - i.value, 0)] for i in intervals]).T  # fmt: skip
 
 
+def _shown(name):
+    """A varied name for readers: kinds of joints that share their properties stand together, ``bed, head: cohesion``."""
+    pairs = [part.partition(".") for part in name.split("+")]
+    kinds = list(dict.fromkeys(kind for kind, _, _ in pairs))
+    properties = list(dict.fromkeys(text for _, _, text in pairs))
+    if not all(properties) or len(kinds) * len(properties) != len(pairs):
+        return name.replace("+", ", ")
+    return f"{', '.join(kinds)}: {', '.join(properties)}"
+
+
 def _broken(name):
-    """A name with a line break where it can have one."""
-    return name.replace(".", ".\n", 1).replace(" [", "\n[", 1)
+    """A name with line breaks where it can have them."""
+    return _shown(name).replace(": ", ":\n").replace(", ", ",\n").replace(" [", "\n[")  # fmt: skip
