@@ -59,9 +59,18 @@ def study(wall, name):
     return Study(scene, options={"preset": preset, "until": until}, runs=runs, seed=seed, vary=VARY)  # fmt: skip
 
 
+def check(wall):
+    """Refuse studies of which the first rows of *many* are not those of *few*."""
+    few, many = ([{n: row[n] for n in made.vary} for row in made.rows()] for made in (study(wall, "few"), study(wall, "many")))  # fmt: skip
+    if few != many[: len(few)]:
+        raise Refused(f"{wall}: the first {len(few)} of {len(many)} rows are not the {len(few)} rows of the same seed")  # fmt: skip
+
+
 def run(jobs):
     """Run the rows that are missing, study by study. Returns whether all have ended."""
     whole = True
+    for wall in WALLS:
+        check(wall)
     for wall in WALLS:
         for name in STUDIES:
             made = study(wall, name)

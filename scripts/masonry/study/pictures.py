@@ -76,7 +76,7 @@ def scatter(path, inputs, output, label):
                 axis.tick_params(labelsize=6)
                 axis.locator_params(nbins=3)
                 for line, name in ((axis.xaxis, right), (axis.yaxis, down)):
-                    if name != label:
+                    if name != label and np.abs(columns[name]).max() >= 1e4:
                         line.set_major_formatter(EngFormatter(sep=""))
                 if i < k - 1:
                     axis.set_xticklabels([])
