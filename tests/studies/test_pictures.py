@@ -173,6 +173,12 @@ def test_a_fan_has_all_curves_and_the_median_of_those_that_go_on(drawn):
     assert "9 curves" in byLabel(axis)
 
 
+def test_a_median_ends_where_half_of_the_curves_have(drawn):
+    curves = [(np.linspace(0, end, 51), np.linspace(0, end, 51)) for end in (5, 5, 10)]
+    pictures.fan("c.png", curves, "x [mm]", "y [kN]")
+    assert byLabel(drawn["c.png"].axes[0])["median"].get_xdata()[-1] == 5
+
+
 def test_a_scatter_matrix_shows_what_varies_and_leaves_out_what_does_not(drawn):
     x = uniforms(np.random.default_rng(8), 50, 1e5, 2e5)
     x["head.friction"] = np.full(50, 0.4)
