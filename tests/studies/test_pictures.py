@@ -107,7 +107,7 @@ def test_what_no_sensitivity_can_be_made_of_is_refused(call, told):
         call()
 
 
-# -- pictures -----------------------------------------------------------------------------------------------------------
+# -- pictures --------------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture
@@ -222,7 +222,7 @@ def test_names_that_are_tied_are_shown_in_short(name, shown, drawn):
     assert drawn["t.png"].axes[0].get_yticklabels()[0].get_text() == shown
 
 
-# -- a study's folder ---------------------------------------------------------------------------------------------------
+# -- a study's folder ------------------------------------------------------------------------------------------------
 
 
 def writeStudy(folder, rows, measures, curves=0):

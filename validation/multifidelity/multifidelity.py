@@ -94,9 +94,9 @@ def alone(values):
 def compare(wall):
     """Lines of the table of a wall, and whether each of its three limits is met.
 
-    The limits are: (1) few and many together differ from accurate runs alone by no more than both intervals together tell;
-    (2) they cost at most SHARE of what accurate runs alone would cost for the same variance; (3) the interval of the mean is
-    not wider than that of accurate runs alone, which cost more.
+    The limits are: (1) few and many together differ from accurate runs alone by no more than both intervals together
+    tell; (2) they cost at most SHARE of what accurate runs alone would cost for the same variance; (3) the interval of
+    the mean is not wider than that of accurate runs alone, which cost more.
     """
     few, many, other = (Record(folder(wall, name)) for name in STUDIES)
     y, x, shared, rows = paired(few, many, MEASURE)

@@ -1,26 +1,27 @@
 """Mean, spread and quantiles from few dear runs and many cheap ones. This module needs no YADE.
 
 A preset is a fidelity: ``fast`` and ``bound`` miss the peak of ``accurate`` by a little, but they move with it when a
-strength moves. So a few rows are run with both, and many more with the cheap one alone. The shared rows tell how the dear
-number follows from the cheap one, and the many cheap ones tell how that one scatters.
+strength moves. So a few rows are run with both, and many more with the cheap one alone. The shared rows tell how the
+dear number follows from the cheap one, and the many cheap ones tell how that one scatters.
 
-In the formulas y is the dear and x the cheap number of a row, N rows are shared, and M rows, these among them, are cheap.
-The variance of every estimate here has two parts, A/N + B/M: what the shared rows leave open, and what the cheap ones do.
+In the formulas y is the dear and x the cheap number of a row, N rows are shared, and M rows, these among them, are
+cheap. The variance of every estimate here has two parts, A/N + B/M: what the shared rows leave open, and what the cheap
+ones do.
 
 - **Mean**: ȳ + b (x̄ of M - x̄ of N), the control variate with the slope b of the regression of y on x. A is the
   variance of the residuals, and B is b² times the variance of x.
   Where y bends over x, it has a bias of the order of 1/N, which is small beside the interval.
 - **Standard deviation**: the variance of y is b² times that of x over all M rows, plus that of the residuals. A is what
   the slope and r² leave open, and B the variance of b² (x - mean)².
-- **Quantile by a bridge**: y = a + b x + r, with a residual r that is independent of x. The distribution of y is that of
-  a + b x over all M rows plus r over all N. It uses every row for every quantile.
+- **Quantile by a bridge**: y = a + b x + r, with a residual r that is independent of x. The distribution of y is that
+  of a + b x over all M rows plus r over all N. It uses every row for every quantile.
 - **Quantile by an indicator**: the control variate for "y is below q", whose mean is the probability, with the
   probability that the bridge gives as the cheap number. It holds whether the bridge does or not, but a quantile of 5 %
   needs a hundred shared rows.
 
-How many runs of each kind reach an interval at the least cost follows from A and B and the prices of the runs. For the mean
-this is the rule of B. Peherstorfer, K. Willcox and M. Gunzburger, "Optimal model management for multifidelity Monte Carlo
-estimation", SIAM Journal on Scientific Computing 38 (2016), for two models.
+How many runs of each kind reach an interval at the least cost follows from A and B and the prices of the runs. For the
+mean this is the rule of B. Peherstorfer, K. Willcox and M. Gunzburger, "Optimal model management for multifidelity
+Monte Carlo estimation", SIAM Journal on Scientific Computing 38 (2016), for two models.
 
 Rows must be drawn independently, and shared ones must not be chosen by their results.
 """
@@ -49,13 +50,13 @@ DOUBT = 0.01
 #: A correlation that is as near to 1 leaves nothing to doubt [-].
 ROUNDING = 1e-9
 
-#: An estimate. ``name`` says of what, ``value``, ``low`` and ``high`` are in the unit of the numbers. ``dear`` and ``cheap``
-#: are A and B, and ``alone`` is the variance of one dear row without any cheap ones; the three have one scale, which is
-#: that of probability for a quantile. ``shared`` and ``rows`` are N and M.
+#: An estimate. ``name`` says of what, ``value``, ``low`` and ``high`` are in the unit of the numbers. ``dear`` and
+#: ``cheap`` are A and B, and ``alone`` is the variance of one dear row without any cheap ones; the three have one
+#: scale, which is that of probability for a quantile. ``shared`` and ``rows`` are N and M.
 Estimate = namedtuple("Estimate", "name value low high dear cheap alone shared rows")
 
-#: How many runs to make: ``shared`` rows with both, ``rows`` with the cheap one in all, and what they cost; ``alone``, how many
-#: dear runs alone reach the same interval, and ``share``, the cost over the cost of those.
+#: How many runs to make: ``shared`` rows with both, ``rows`` with the cheap one in all, and what they cost; ``alone``,
+#: how many dear runs alone reach the same interval, and ``share``, the cost over the cost of those.
 Allocation = namedtuple("Allocation", "shared rows cost alone share")
 
 
@@ -100,14 +101,14 @@ def deviation(dear, cheap, confidence=CONFIDENCE):
 def quantile(dear, cheap, share, method="bridge", confidence=CONFIDENCE):
     """The value below which a share of the dear numbers lies: an :class:`Estimate`.
 
-    Its interval is that of R. S. Woodruff, "Confidence intervals for medians and other position measures", Journal of the
-    American Statistical Association 47 (1952): from the value where the estimated probability is the share less its half
-    width to that where it is the share plus its half width. An end that the rows cannot tell is infinite.
+    Its interval is that of R. S. Woodruff, "Confidence intervals for medians and other position measures", Journal of
+    the American Statistical Association 47 (1952): from the value where the estimated probability is the share less its
+    half width to that where it is the share plus its half width. An end that the rows cannot tell is infinite.
 
     :param share: between 0 and 1
     :param method: ``"bridge"`` or ``"indicator"``, as above
-    :raises Refused: as :func:`mean`; or if the share is not between 0 and 1, or the method is another, or an indicator would
-        have fewer than SIDE shared rows to expect on one side
+    :raises Refused: as :func:`mean`; or if the share is not between 0 and 1, or the method is another, or an indicator
+        would have fewer than SIDE shared rows to expect on one side
     """
     problems = []
     if not 0 < share < 1:
@@ -146,9 +147,9 @@ def estimate(dear, cheap, method="bridge", confidence=CONFIDENCE):
 def doubts(dear, cheap):
     """What the shared rows say against the bridge: a list of sentences, empty if nothing does.
 
-    One test asks whether y bends over x, by the square of x in the regression. The other asks whether the residuals grow
-    along x, by the rank correlation of their size with x. Each tells in one of a hundred samples of which the bridge holds
-    that it does not.
+    One test asks whether y bends over x, by the square of x in the regression. The other asks whether the residuals
+    grow along x, by the rank correlation of their size with x. Each tells in one of a hundred samples of which the
+    bridge holds that it does not.
     """
     y, x = _rows(dear, cheap)
     told, x = [], x[: len(y)]
@@ -178,15 +179,16 @@ def doubts(dear, cheap):
 def allocate(pilot, prices, variance=None, budget=None):
     """The runs that reach a variance at the least cost, or the least variance for a budget: an :class:`Allocation`.
 
-    N = sqrt(A/c) S/V and M = sqrt(B/d) S/V, with S = sqrt(A c) + sqrt(B d), cost S²/V; c is the price of a dear run and d
-    that of a cheap one. M is never below N: if the rule has it so, the dear runs are better alone, and all M are shared.
+    N = sqrt(A/c) S/V and M = sqrt(B/d) S/V, with S = sqrt(A c) + sqrt(B d), cost S²/V; c is the price of a dear run and
+    d that of a cheap one. M is never below N: if the rule has it so, the dear runs are better alone, and all M are
+    shared.
 
     :param pilot: an :class:`Estimate` from a few shared rows
     :param prices: of a dear and of a cheap run, in any one unit
     :param variance: that is wanted, on the scale of ``pilot.alone``
     :param budget: in the unit of the prices, in place of the variance
-    :raises Refused: if a price is not above 0, or neither or both of variance and budget are given, or the one is not above
-        0, or the budget is below that of SHARED shared rows
+    :raises Refused: if a price is not above 0, or neither or both of variance and budget are given, or the one is not
+        above 0, or the budget is below that of SHARED shared rows
     """
     problems = []
     for price, of in zip(prices, ("dear", "cheap")):
@@ -264,8 +266,8 @@ def _time(seconds):
 
 # -- mathematics ------------------------------------------------------------------------------------------------------
 
-#: A mean with control variates, or a probability by the bridge. ``parts`` of its variance are those of the shared and of the
-#: cheap rows, ``freedom`` are the degrees of freedom of both; ``dear`` and ``cheap`` are A and B.
+#: A mean with control variates, or a probability by the bridge. ``parts`` of its variance are those of the shared and
+#: of the cheap rows, ``freedom`` are the degrees of freedom of both; ``dear`` and ``cheap`` are A and B.
 _Found = namedtuple("_Found", "value parts freedom dear cheap")
 
 

@@ -1,7 +1,7 @@
 """Pictures of a study, for print. This module needs no YADE.
 
-Each function takes numbers and writes one PNG file of 6 to 7 inches at 200 dots an inch. ``inputs`` is a dict of the name
-of a varied property -> its values, one a row, and ``label`` says what the output is, with its unit in brackets.
+Each function takes numbers and writes one PNG file of 6 to 7 inches at 200 dots an inch. ``inputs`` is a dict of the
+name of a varied property -> its values, one a row, and ``label`` says what the output is, with its unit in brackets.
 """
 
 import numpy as np
@@ -47,7 +47,8 @@ class _Picture:
 def scatter(path, inputs, output, label):
     """Every varied property and the output against each other, with histograms on the diagonal.
 
-    The number in a panel is Spearman's correlation of ranks; k and M at a number stand for a thousand and a million. Properties with one value throughout are left out.
+    The number in a panel is Spearman's correlation of ranks; k and M at a number stand for a thousand and a million.
+    Properties with one value throughout are left out.
     """
     from matplotlib.ticker import EngFormatter
 

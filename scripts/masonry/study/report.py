@@ -4,8 +4,8 @@
 /usr/bin/python3 -m masonry.study.report DIR --measure base_shear_end_kN --demand 90,100,110
 /usr/bin/python3 -m masonry.study.report ACCURATE --cheap FAST
 
-The pictures go into the folder of the study. With ``--cheap`` its rows are the dear ones and those of the other study the
-cheap ones; see :mod:`masonry.study.estimate`.
+The pictures go into the folder of the study. With ``--cheap`` its rows are the dear ones and those of the other study
+the cheap ones; see :mod:`masonry.study.estimate`.
 """
 
 import argparse

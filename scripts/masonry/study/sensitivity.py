@@ -13,12 +13,13 @@ from scipy import special, stats
 from ..errors import Refused
 from .statistics import CONFIDENCE, Interval
 
-#: What a varied property does. ``change`` of the output, an :class:`Interval`, when the property goes from its 5 % to its 95 %
-#: quantile and the others stay, by the regression on all of them; ``rank``, Spearman's correlation of ranks, an interval, too.
+#: What a varied property does. ``change`` of the output, an :class:`Interval`, when the property goes from its 5 % to
+#: its 95 % quantile and the others stay, by the regression on all of them; ``rank``, Spearman's correlation of ranks,
+#: an interval, too.
 Effect = namedtuple("Effect", "change rank")
 
-#: Sobol indices of a varied property, each an :class:`Interval`: the share of the variance that it makes alone, and the share
-#: that it makes alone and together with others.
+#: Sobol indices of a varied property, each an :class:`Interval`: the share of the variance that it makes alone, and the
+#: share that it makes alone and together with others.
 Indices = namedtuple("Indices", "first total")
 
 #: The variance that :func:`sobol` could explain [-], by leaving out each row in turn, and the indices by name.
@@ -73,8 +74,8 @@ def sobol(inputs, output, seed=1, confidence=CONFIDENCE):
 
     Each property is replaced by its rank, which is uniform whatever its distribution; indices do not change by that.
     OpenTURNS chooses the polynomials by least angle regression, and the indices are sums of squares of their
-    coefficients. The intervals are those of RESAMPLES samples of the rows, drawn with replacement and ranked again, with
-    the same polynomials; they do not tell what these leave out, which ``explained`` does.
+    coefficients. The intervals are those of RESAMPLES samples of the rows, drawn with replacement and ranked again,
+    with the same polynomials; they do not tell what these leave out, which ``explained`` does.
 
     :param inputs: as of :func:`effects`, drawn independently of each other
     :param output: of every row

@@ -1,7 +1,7 @@
 """Statistics of the rows of a study, each with its confidence interval. This module needs no YADE.
 
-All intervals are those of independent rows. Rows of a Latin hypercube or of a Sobol sequence cover the space more evenly
-than independent ones, so that a mean is then better known than its interval says.
+All intervals are those of independent rows. Rows of a Latin hypercube or of a Sobol sequence cover the space more
+evenly than independent ones, so that a mean is then better known than its interval says.
 """
 
 import math
@@ -38,8 +38,8 @@ def deviation(values, confidence=CONFIDENCE):
     """The standard deviation, with an interval that holds for distributions that are not normal, too.
 
     The interval is that of D. G. Bonett, "Approximate confidence interval for standard deviation of nonnormal
-    distributions", Computational Statistics & Data Analysis 50 (2006): the logarithm of the variance is normal, with the
-    variance (kurtosis - (n - 3)/n)/(n - 1), where the kurtosis counts from a trimmed mean.
+    distributions", Computational Statistics & Data Analysis 50 (2006): the logarithm of the variance is normal, with
+    the variance (kurtosis - (n - 3)/n)/(n - 1), where the kurtosis counts from a trimmed mean.
 
     :param values: ten numbers or more
     :raises Refused: if there are fewer, or one is not finite
@@ -62,8 +62,8 @@ def deviation(values, confidence=CONFIDENCE):
 def quantile(values, share, confidence=CONFIDENCE):
     """The value below which a share of all lies, with an interval that holds for every distribution.
 
-    The ends of the interval are values of the sample, as the binomial distribution of how many lie below tells. With too
-    few of them an end is infinite: the 5 % quantile needs 72 rows for both ends of a 95 % interval.
+    The ends of the interval are values of the sample, as the binomial distribution of how many lie below tells. With
+    too few of them an end is infinite: the 5 % quantile needs 72 rows for both ends of a 95 % interval.
 
     :param values: two numbers or more
     :param share: between 0 and 1
