@@ -14,7 +14,7 @@ case $release in
 esac
 packages=(yade cmake g++ make libboost-python-dev libboost-serialization-dev libeigen3-dev libcgal-dev libvtk9-dev
           coinor-libclp1 libxml2-dev libgl-dev python3-dev python3-matplotlib python3-numpy python3-vtk9 python3-scipy python3-meshio
-          python3-pytest python3-hypothesis doctest-dev git "$@")
+          python3-openturns python3-pytest python3-hypothesis doctest-dev git "$@")
 missing=()
 for package in "${packages[@]}"; do
     dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")

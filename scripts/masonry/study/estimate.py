@@ -1,0 +1,398 @@
+"""Mean, spread and quantiles from few dear runs and many cheap ones. This module needs no YADE.
+
+A preset is a fidelity: ``fast`` and ``bound`` miss the peak of ``accurate`` by a little, but they move with it when a
+strength moves. So a few rows are run with both, and many more with the cheap one alone. The shared rows tell how the
+dear number follows from the cheap one, and the many cheap ones tell how that one scatters.
+
+In the formulas y is the dear and x the cheap number of a row, N rows are shared, and M rows, these among them, are
+cheap. The variance of every estimate here has two parts, A/N + B/M: what the shared rows leave open, and what the cheap
+ones do.
+
+- **Mean**: ȳ + b (x̄ of M - x̄ of N), the control variate with the slope b of the regression of y on x. A is the
+  variance of the residuals, and B is b² times the variance of x.
+  Where y bends over x, it has a bias of the order of 1/N, which is small beside the interval.
+- **Standard deviation**: the variance of y is b² times that of x over all M rows, plus that of the residuals. A is what
+  the slope and r² leave open, and B the variance of b² (x - mean)².
+- **Quantile by a bridge**: y = a + b x + r, with a residual r that is independent of x. The distribution of y is that
+  of a + b x over all M rows plus r over all N. It uses every row for every quantile.
+- **Quantile by an indicator**: the control variate for "y is below q", whose mean is the probability, with the
+  probability that the bridge gives as the cheap number. It holds whether the bridge does or not, but a quantile of 5 %
+  needs a hundred shared rows.
+
+How many runs of each kind reach an interval at the least cost follows from A and B and the prices of the runs. For the
+mean this is the rule of B. Peherstorfer, K. Willcox and M. Gunzburger, "Optimal model management for multifidelity
+Monte Carlo estimation", SIAM Journal on Scientific Computing 38 (2016), for two models.
+
+Rows must be drawn independently, and shared ones must not be chosen by their results.
+"""
+
+import math
+from collections import namedtuple
+
+import numpy as np
+from scipy import special, stats
+
+from ..errors import Refused
+from .statistics import CONFIDENCE
+
+#: Fewest shared rows. With fewer, the slope, the residuals and their scatter are not known well enough for an interval.
+SHARED = 10
+
+#: Shared rows that must be expected on either side of a quantile that is found by an indicator.
+SIDE = 5
+
+#: The quantiles that :func:`estimate` gives [-].
+QUANTILES = (0.05, 0.5, 0.95)
+
+#: A doubt about the bridge is told if its p-value is below this.
+DOUBT = 0.01
+
+#: A correlation that is as near to 1 leaves nothing to doubt [-].
+ROUNDING = 1e-9
+
+#: An estimate. ``name`` says of what, ``value``, ``low`` and ``high`` are in the unit of the numbers. ``dear`` and
+#: ``cheap`` are A and B, and ``alone`` is the variance of one dear row without any cheap ones; the three have one
+#: scale, which is that of probability for a quantile. ``shared`` and ``rows`` are N and M.
+Estimate = namedtuple("Estimate", "name value low high dear cheap alone shared rows")
+
+#: How many runs to make: ``shared`` rows with both, ``rows`` with the cheap one in all, and what they cost; ``alone``,
+#: how many dear runs alone reach the same interval, and ``share``, the cost over the cost of those.
+Allocation = namedtuple("Allocation", "shared rows cost alone share")
+
+
+# -- estimates --------------------------------------------------------------------------------------------------------
+
+
+def mean(dear, cheap, confidence=CONFIDENCE):
+    """The mean of the dear number: an :class:`Estimate`.
+
+    :param dear: y of the shared rows
+    :param cheap: x of all rows, those of the shared rows first, in the same order
+    :raises Refused: if there are fewer than SHARED shared rows, or a number is not finite
+    """
+    y, x = _rows(dear, cheap)
+    found = _controlled(y, x[:, None])
+    half = _halfWidth(found, confidence)
+    return Estimate("mean", found.value, found.value - half, found.value + half, found.dear, found.cheap, found.dear + found.cheap, len(y), len(x))  # fmt: skip
+
+
+def deviation(dear, cheap, confidence=CONFIDENCE):
+    """The standard deviation of the dear number: an :class:`Estimate`. Its logarithm is taken as normal.
+
+    Parameters and errors are those of :func:`mean`.
+    """
+    y, x = _rows(dear, cheap)
+    n, m = len(y), len(x)
+    bridge = _Bridge(y, x)
+    b, residuals = bridge.slope, bridge.residuals
+    ofResiduals = residuals @ residuals / n
+    squared = max(b**2 - ofResiduals / bridge.squares, 0)  # b² is too large by that
+    ofX = x.var(ddof=1)
+    value = math.sqrt(squared * ofX + ofResiduals)
+    shared = 4 * b**2 * ofX**2 * ofResiduals * n / bridge.squares
+    shared += (residuals**2).var(ddof=1)
+    many = (b**2 * (x - x.mean()) ** 2).var(ddof=1)
+    found = _Found(value**2, (shared / n, many / m), (n - 2, m - 1), shared, many)
+    relative = _halfWidth(found, confidence) / value**2
+    low, high = (value * math.exp(sign * relative / 2) for sign in (-1, 1))
+    return Estimate("standard deviation", value, low, high, shared, many, shared + many, n, m)  # fmt: skip
+
+
+def quantile(dear, cheap, share, method="bridge", confidence=CONFIDENCE):
+    """The value below which a share of the dear numbers lies: an :class:`Estimate`.
+
+    Its interval is that of R. S. Woodruff, "Confidence intervals for medians and other position measures", Journal of
+    the American Statistical Association 47 (1952): from the value where the estimated probability is the share less its
+    half width to that where it is the share plus its half width. An end that the rows cannot tell is infinite.
+
+    :param share: between 0 and 1
+    :param method: ``"bridge"`` or ``"indicator"``, as above
+    :raises Refused: as :func:`mean`; or if the share is not between 0 and 1, or the method is another, or an indicator
+        would have fewer than SIDE shared rows to expect on one side
+    """
+    problems = []
+    if not 0 < share < 1:
+        problems.append(f"a quantile of {share:g}: it must be between 0 and 1")
+    if method not in ("bridge", "indicator"):
+        problems.append(f"method '{method}' must be 'bridge' or 'indicator'")
+    if problems:
+        raise Refused("\n".join(problems))
+    return _quantile(_Bridge(*_rows(dear, cheap)), share, method, confidence)
+
+
+def _quantile(bridge, share, method, confidence):
+    n, side = len(bridge.y), min(share, 1 - share)
+    if method == "indicator" and n * side < SIDE:
+        raise Refused(
+            f"the {100 * share:g} % quantile by an indicator needs {math.ceil(SIDE / side)} shared rows or more, there are {n}: "
+            "run more of them, or take the bridge"
+        )
+    value = _quantileAt(bridge, method, share)
+    found = bridge.probability(value) if method == "bridge" else bridge.controlled(value)  # fmt: skip
+    half = _halfWidth(found, confidence)
+    low, high = (_quantileAt(bridge, method, share + sign * half) for sign in (-1, 1))
+    return Estimate(f"{100 * share:g} % quantile", value, low, high, found.dear, found.cheap, share * (1 - share), n, len(bridge.x))  # fmt: skip
+
+
+def estimate(dear, cheap, method="bridge", confidence=CONFIDENCE):
+    """Mean, standard deviation and the quantiles QUANTILES: a list of :class:`Estimate`.
+
+    Parameters and errors are those of :func:`mean` and :func:`quantile`.
+    """
+    found = [mean(dear, cheap, confidence), deviation(dear, cheap, confidence)]
+    bridge = _Bridge(*_rows(dear, cheap))
+    return found + [_quantile(bridge, share, method, confidence) for share in QUANTILES]
+
+
+def doubts(dear, cheap):
+    """What the shared rows say against the bridge: a list of sentences, empty if nothing does.
+
+    One test asks whether y bends over x, by the square of x in the regression. The other asks whether the residuals
+    grow along x, by the rank correlation of their size with x. Each tells in one of a hundred samples of which the
+    bridge holds that it does not.
+    """
+    y, x = _rows(dear, cheap)
+    told, x = [], x[: len(y)]
+    if 1 - abs(np.corrcoef(x, y)[0, 1]) < ROUNDING:
+        return told  # what is left is rounding
+    moved = (x - x.mean()) / x.std()
+    design = np.column_stack([np.ones_like(x), moved, moved**2])
+    slopes, *_ = np.linalg.lstsq(design, y, rcond=None)
+    residuals = y - design @ slopes
+    free = len(y) - 3
+    scatter = residuals @ residuals / free * np.linalg.inv(design.T @ design)[2, 2]
+    if scatter > 0:
+        p = 2 * stats.t.sf(abs(slopes[2]) / math.sqrt(scatter), free)
+        if p < DOUBT:
+            told.append(f"the dear numbers bend over the cheap ones (p = {p:.2g}): quantiles by the bridge are biased")  # fmt: skip
+    line = np.polyfit(moved, y, 1)
+    size = np.abs(y - np.polyval(line, moved))
+    p = stats.spearmanr(size, x).pvalue
+    if p < DOUBT:
+        told.append(f"the dear numbers scatter about the cheap ones more at one end than at the other (p = {p:.2g}): quantiles by the bridge are biased")  # fmt: skip
+    return told
+
+
+# -- how many runs ----------------------------------------------------------------------------------------------------
+
+
+def allocate(pilot, prices, variance=None, budget=None):
+    """The runs that reach a variance at the least cost, or the least variance for a budget: an :class:`Allocation`.
+
+    N = sqrt(A/c) S/V and M = sqrt(B/d) S/V, with S = sqrt(A c) + sqrt(B d), cost S²/V; c is the price of a dear run and
+    d that of a cheap one. M is never below N: if the rule has it so, the dear runs are better alone, and all M are
+    shared.
+
+    :param pilot: an :class:`Estimate` from a few shared rows
+    :param prices: of a dear and of a cheap run, in any one unit
+    :param variance: that is wanted, on the scale of ``pilot.alone``
+    :param budget: in the unit of the prices, in place of the variance
+    :raises Refused: if a price is not above 0, or neither or both of variance and budget are given, or the one is not
+        above 0, or the budget is below that of SHARED shared rows
+    """
+    problems = []
+    for price, of in zip(prices, ("dear", "cheap")):
+        if not (math.isfinite(price) and price > 0):
+            problems.append(f"the price of a {of} run is {price:g}: it must be above 0")
+    if (variance is None) == (budget is None):
+        problems.append("give either the variance that is wanted or the budget")
+    for what, value in (("variance", variance), ("budget", budget)):
+        if value is not None and not (math.isfinite(value) and value > 0):
+            problems.append(f"the {what} is {value:g}: it must be above 0")
+    if problems:
+        raise Refused("\n".join(problems))
+    c, d = prices
+    least = SHARED * (c + d)
+    if budget is not None and budget < least:
+        raise Refused(f"a budget of {budget:g} is too small: {SHARED} shared rows cost {least:g}")  # fmt: skip
+    a, b = pilot.dear, pilot.cheap
+    ratio = math.sqrt(b * c / (a * d)) if a > 0 else math.inf
+    ratio = max(1.0, min(ratio, 1e6))
+    per = a + b / ratio  # variance times N
+    shared = budget / (c + d * ratio) if variance is None else per / variance
+    shared = max(SHARED, math.floor(shared) if variance is None else math.ceil(shared))
+    if variance is None:
+        rows = max(shared, math.floor((budget - shared * c) / d))
+    else:
+        left = variance - a / shared
+        rows = max(shared, math.ceil(b / left)) if left > 0 else shared
+    cost = c * shared + d * rows
+    alone = pilot.alone / (a / shared + b / rows)
+    return Allocation(shared, rows, cost, alone, cost / (c * alone))
+
+
+def saved(found, prices):
+    """What an estimate cost, and what dear runs alone would have cost for the same variance: an :class:`Allocation`.
+
+    :param found: an :class:`Estimate`
+    :param prices: of a dear and of a cheap run, in any one unit
+    """
+    c, d = prices
+    cost = c * found.shared + d * found.rows
+    alone = found.alone / (found.dear / found.shared + found.cheap / found.rows)
+    return Allocation(found.shared, found.rows, cost, alone, cost / (c * alone))
+
+
+def sentence(found, prices, unit="", names=("dear", "cheap"), confidence=CONFIDENCE):
+    """An estimate and what it saved, in words.
+
+    :param prices: of a dear and of a cheap run [s]
+    :param unit: of the numbers
+    :param names: of the dear and of the cheap fidelity
+    """
+    paid = saved(found, prices)
+    unit = f" {unit}" if unit else ""
+    ends = [
+        f"{end:.4g}{unit}" if math.isfinite(end) else "an unknown end"
+        for end in (found.low, found.high)
+    ]
+    told = (
+        f"{found.name} {found.value:.4g}{unit}, with {100 * confidence:g} % confidence between {ends[0]} and {ends[1]}, "
+        f"from {found.shared} runs of {names[0]} and {found.rows} of {names[1]} in {_time(paid.cost)}"
+    )
+    same = f"{names[0]} alone needs {paid.alone:.0f} runs and {_time(paid.cost / paid.share)} for this interval"
+    if paid.share < 1:
+        return f"{told}; {same}, so {100 * (1 - paid.share):.0f} % of the time is saved"
+    return f"{told}; {same}, so nothing is saved: {names[1]} follows {names[0]} too little for its price"
+
+
+def _time(seconds):
+    """A time in words [s]."""
+    for length, unit in ((3600, "h"), (60, "min")):
+        if seconds >= 2 * length:
+            return f"{seconds / length:.3g} {unit}"
+    return f"{seconds:.3g} s"
+
+
+# -- mathematics ------------------------------------------------------------------------------------------------------
+
+#: A mean with control variates, or a probability by the bridge. ``parts`` of its variance are those of the shared and
+#: of the cheap rows, ``freedom`` are the degrees of freedom of both; ``dear`` and ``cheap`` are A and B.
+_Found = namedtuple("_Found", "value parts freedom dear cheap")
+
+
+def _rows(dear, cheap):
+    """Both as arrays. Refuses what no interval can be made of, with all problems at once."""
+    y, x = np.asarray(dear, float).ravel(), np.asarray(cheap, float).ravel()
+    problems = []
+    if len(y) < SHARED:
+        problems.append(f"{len(y)} shared rows are too few: run {SHARED} or more with both fidelities")  # fmt: skip
+    if len(x) < len(y):
+        problems.append(f"{len(x)} cheap rows for {len(y)} dear ones: every dear row needs its cheap one")  # fmt: skip
+    for what, values in (("dear", y), ("cheap", x)):
+        strange = np.flatnonzero(~np.isfinite(values))
+        if len(strange):
+            problems.append(f"{what} rows {', '.join(str(i + 1) for i in strange[:10])} have no finite number")  # fmt: skip
+        elif len(values[: len(y)]) > 1 and np.ptp(values[: len(y)]) == 0:
+            problems.append(f"the {what} numbers of all shared rows are {values[0]:g}: there is nothing to learn from them")  # fmt: skip
+    if problems:
+        raise Refused("\n".join(problems))
+    return y, x
+
+
+def _controlled(g, z):
+    """The mean of g with control variates z: a :class:`_Controlled`.
+
+    :param g: of the N shared rows
+    :param z: of all M rows, a column a variate
+    """
+    n, m = len(g), len(z)
+    near, middle = z[:n], z[:n].mean(axis=0)
+    design = near - middle
+    inverse = np.linalg.pinv(design.T @ design)
+    slopes = inverse @ design.T @ (g - g.mean())
+    away = z.mean(axis=0) - middle
+    residuals = g - g.mean() - design @ slopes
+    leverage = 1 / n + np.einsum("ij,jk,ik->i", design, inverse, design)
+    # each residual is smaller than the error that it shows, by its leverage
+    squares = (residuals / np.maximum(1 - leverage, 1 / n)) ** 2
+    weights = 1 / n + design @ inverse @ away
+    dear, cheap = float(weights**2 @ squares), float((z @ slopes).var(ddof=1))
+    return _Found(
+        float(g.mean() + away @ slopes),
+        (dear, cheap / m),
+        (n - 1 - z.shape[1], max(m - 1, 1)),
+        dear * n,
+        cheap,
+    )
+
+
+def _halfWidth(found, confidence):
+    """Half of an interval: Student's t, with the degrees of freedom of Welch and Satterthwaite, times the deviation."""
+    variance = sum(found.parts)
+    if variance <= 0:
+        return 0.0
+    freedom = variance**2 / sum(
+        p**2 / f for p, f in zip(found.parts, found.freedom)
+    )
+    return special.stdtrit(freedom, (1 + confidence) / 2) * math.sqrt(variance)
+
+
+class _Bridge:
+    """y = a + b x + r of the shared rows, and the distribution of y that follows over all rows."""
+
+    def __init__(self, y, x):
+        self.y, self.x, n = y, x, len(y)
+        near = x[:n] - x[:n].mean()
+        self.squares = near @ near
+        self.slope = near @ y / self.squares
+        line = y.mean() + self.slope * (x - x[:n].mean())
+        # each residual is smaller than the error that it shows, by its leverage
+        grown = 1 / np.sqrt(np.maximum(1 - 1 / n - near**2 / self.squares, 1 / n))
+        self.residuals = self._centred((y - line[:n]) * grown)
+        error = math.sqrt(self.residuals @ self.residuals / (n - 2) / self.squares)
+        self.near, self.line = near, line
+        self.sortedLine, self.sortedResiduals = np.sort(line), np.sort(self.residuals)
+        self.sums = np.sort(np.add.outer(self.residuals, line), axis=None)
+        #: the same with the slope one standard error less and more, and the difference of both slopes
+        self.turned = [
+            np.sort(
+                np.add.outer(self._centred((y - other[:n]) * grown), other), axis=None
+            )  # fmt: skip
+            for other in (line + sign * error * (x - x[:n].mean()) for sign in (-1, 1))
+        ]
+        self.turn = 2 * error
+
+    @staticmethod
+    def _centred(residuals):
+        return residuals - residuals.mean()
+
+    @staticmethod
+    def _below(values, q):
+        """Share of sorted values that are not above q, which may be an array."""
+        return np.searchsorted(values, q, side="right") / len(values)
+
+    def probability(self, q):
+        """The probability that y is not above q, by the bridge: a :class:`_Found`."""
+        n, m = len(self.y), len(self.x)
+        value = self._below(self.sums, q)
+        ofResidual = self._below(self.sortedLine, q - self.residuals)
+        if self.turn > 0:
+            low, high = (self._below(sums, q) for sums in self.turned)
+            bySlope = (high - low) / self.turn
+            ofResidual = ofResidual + bySlope * n * self.near * self.residuals / self.squares  # fmt: skip
+        ofLine = self._below(self.sortedResiduals, q - self.line)
+        dear, cheap = ofResidual.var() * n / (n - 2), ofLine.var(ddof=1)
+        return _Found(value, (dear / n, cheap / m), (n - 2, max(m - 1, 1)), dear, cheap)
+
+    def controlled(self, q):
+        """The probability that y is not above q, by the indicator: a :class:`_Found`."""
+        indicator = (self.y <= q).astype(float)
+        ofLine = self._below(self.sortedResiduals, q - self.line)
+        return _controlled(indicator, ofLine[:, None])
+
+
+def _quantileAt(bridge, method, share):
+    """The value at which the probability of ``method`` reaches a share; infinite for a share of 0 or less, or 1 or more."""
+    if not 0 < share < 1:
+        return math.copysign(math.inf, share - 0.5)
+    if method == "bridge":
+        return float(bridge.sums[math.ceil(share * len(bridge.sums)) - 1])
+    low, high = bridge.sums[0], bridge.sums[-1]
+    while high - low > 1e-7 * (bridge.sums[-1] - bridge.sums[0]):
+        middle = (low + high) / 2
+        if bridge.controlled(middle).value < share:
+            low = middle
+        else:
+            high = middle
+    return (low + high) / 2

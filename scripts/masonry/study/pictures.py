@@ -1,0 +1,252 @@
+"""Pictures of a study, for print. This module needs no YADE.
+
+Each function takes numbers and writes one PNG file of 6 to 7 inches at 200 dots an inch. ``inputs`` is a dict of the
+name of a varied property -> its values, one a row, and ``label`` says what the output is, with its unit in brackets.
+"""
+
+import numpy as np
+from scipy import stats
+
+from ..comparison import COLOURS, DASHES
+from ..figures import _drawing, _save, _style
+from . import statistics
+
+DPI = 200
+BAND = 0.05, 0.95  # quantiles between which a fan is shaded
+POINTS = 400  # along the axis of a fan, and of a fragility curve
+SMALL = {"font.size": 8, "axes.titlesize": 9, "legend.fontsize": 7.5, "axes.axisbelow": True}  # fmt: skip
+POINT, LINE, BARS = COLOURS[0], COLOURS[1], COLOURS[0]
+
+
+class _Picture:
+    """A figure [inch] that is written at the end of its block."""
+
+    def __init__(self, path, width, height):
+        self.path, self.size, self.style = path, (width, height), _style()
+
+    def __enter__(self):
+        import matplotlib
+
+        self.style.__enter__()
+        matplotlib.rcParams.update(SMALL)
+        self.figure = _drawing(*self.size)
+        return self.figure
+
+    def __exit__(self, kind, problem, trace):
+        try:
+            if kind is None:
+                self.figure.tight_layout()
+                _save(self.figure, self.path, DPI)
+        finally:
+            self.style.__exit__(kind, problem, trace)
+
+
+# -- one property against another -------------------------------------------------------------------------------------
+
+
+def scatter(path, inputs, output, label):
+    """Every varied property and the output against each other, with histograms on the diagonal.
+
+    The number in a panel is Spearman's correlation of ranks; k and M at a number stand for a thousand and a million.
+    Properties with one value throughout are left out.
+    """
+    from matplotlib.ticker import EngFormatter
+
+    columns = {name: np.asarray(values, float) for name, values in inputs.items() if np.ptp(values) > 0}  # fmt: skip
+    columns[label] = np.asarray(output, float)
+    names, k = list(columns), len(columns)
+    size = max(6.0, min(1.35 * k, 11.0))
+    dot = float(np.clip(60 / np.sqrt(len(columns[label])), 1.0, 10.0))
+    with _Picture(path, size, size) as figure:
+        axes = figure.subplots(k, k, squeeze=False)
+        for i, down in enumerate(names):
+            for j, right in enumerate(names):
+                axis = axes[i, j]
+                if j > i:
+                    axis.set_visible(False)
+                    continue
+                x, y = columns[right], columns[down]
+                if i == j:
+                    axis.hist(x, bins=_bins(x), color=BARS, alpha=0.6)
+                    axis.set_yticks([])
+                else:
+                    colour = LINE if i == k - 1 else POINT
+                    axis.scatter(x, y, s=dot, color=colour, lw=0, alpha=0.7, rasterized=True)  # fmt: skip
+                    rank = stats.spearmanr(x, y).statistic
+                    axis.set_title(f"{rank:+.2f}", fontsize=7, pad=2)
+                axis.tick_params(labelsize=6)
+                axis.locator_params(nbins=3)
+                for line, name in ((axis.xaxis, right), (axis.yaxis, down)):
+                    if name != label and np.abs(columns[name]).max() >= 1e4:
+                        line.set_major_formatter(EngFormatter(sep=""))
+                if i < k - 1:
+                    axis.set_xticklabels([])
+                if j > 0:
+                    axis.set_yticklabels([])
+            if i:
+                axes[i, 0].set_ylabel(_broken(down), fontsize=7)
+        for j, right in enumerate(names):
+            axes[-1, j].set_xlabel(_broken(right), fontsize=7)
+        figure.align_labels()
+
+
+# -- what decides -----------------------------------------------------------------------------------------------------
+
+
+def tornado(path, effects, label):
+    """Change of the output by every property, largest on top, with its interval, and the correlations of ranks.
+
+    :param effects: what :func:`masonry.study.sensitivity.effects` returns
+    """
+    names = list(effects)[::-1]
+    with _Picture(path, 6.8, 1.1 + 0.3 * len(names)) as figure:
+        left, right = figure.subplots(1, 2, sharey=True, width_ratios=[3, 2])
+        rows = np.arange(len(names))
+        for axis, field in ((left, "change"), (right, "rank")):
+            found = [getattr(effects[name], field) for name in names]
+            colours = [LINE if interval.value < 0 else POINT for interval in found]
+            axis.barh(rows, [f.value for f in found], color=colours, alpha=0.75, height=0.65)  # fmt: skip
+            axis.errorbar([f.value for f in found], rows, xerr=_errors(found), fmt="none", ecolor="black", elinewidth=0.8, capsize=2.5)  # fmt: skip
+            axis.axvline(0, color="black", lw=0.8)
+            axis.grid(axis="x", alpha=0.3)
+        left.set_yticks(rows, map(_shown, names))
+        left.set_xlabel(f"change of {label}\nfrom the 5 % to the 95 % quantile of a property")  # fmt: skip
+        right.set_xlim(-1.05, 1.05)
+        right.set_xlabel("correlation of ranks [-]")
+
+
+def sobol(path, found, label):
+    """First and total Sobol indices with their intervals, largest on top.
+
+    :param found: what :func:`masonry.study.sensitivity.sobol` returns
+    """
+    names = list(found.indices)[::-1]
+    with _Picture(path, 6.0, 1.3 + 0.38 * len(names)) as figure:
+        axis = figure.subplots()
+        rows = np.arange(len(names))
+        for field, shift, colour, text in (
+            ("total", 0.18, LINE, "total, with all interactions"),
+            ("first", -0.18, POINT, "first, alone"),
+        ):
+            values = [getattr(found.indices[name], field) for name in names]
+            axis.barh(rows - shift, [v.value for v in values], height=0.34, color=colour, alpha=0.75, label=text)  # fmt: skip
+            axis.errorbar([v.value for v in values], rows - shift, xerr=_errors(values), fmt="none", ecolor="black", elinewidth=0.8, capsize=2)  # fmt: skip
+        axis.set_yticks(rows, map(_shown, names))
+        axis.set_xlim(0, 1.05)
+        axis.grid(axis="x", alpha=0.3)
+        axis.set_xlabel("share of the variance [-]")
+        figure.suptitle(f"{label}: Sobol indices,\nof a polynomial chaos that explains {100 * found.explained:.0f} % of the variance", fontsize=9)  # fmt: skip
+        axis.legend(loc="lower right")
+
+
+# -- how it scatters --------------------------------------------------------------------------------------------------
+
+
+def histogram(path, values, label):
+    """Histogram of the output with its quantiles of 5, 50 and 95 %, their intervals, and the fitted lognormal density."""
+    values = np.asarray(values, float)
+    with _Picture(path, 6.0, 3.6) as figure:
+        axis = figure.subplots()
+        axis.hist(values, bins=_bins(values), density=True, color=BARS, alpha=0.45, label=f"{len(values)} rows")  # fmt: skip
+        if values.min() > 0 and len(values) >= 3 and np.ptp(values) > 0:
+            fit = statistics.lognormal(values)
+            x = np.linspace(*axis.get_xlim(), POINTS)
+            x = x[x > 0]
+            density = stats.lognorm.pdf(x, fit.dispersion, scale=fit.median)
+            axis.plot(x, density, color="black", lw=1.2, label=f"lognormal: median {fit.median:.4g}, dispersion {fit.dispersion:.3g}")  # fmt: skip
+        top = axis.get_ylim()[1]
+        for share, dashes in zip((0.05, 0.5, 0.95), DASHES[1:]):
+            found = statistics.quantile(values, share)
+            axis.axvline(found.value, color=LINE, lw=1.2, ls=dashes, label=f"{100 * share:g} % quantile: {found.value:.4g}")  # fmt: skip
+            low, high = np.clip([found.low, found.high], values.min(), values.max())
+            axis.axvspan(low, high, color=LINE, alpha=0.12, lw=0)
+        axis.set_ylim(0, 1.25 * top)
+        axis.set_xlabel(label)
+        axis.set_ylabel("density")
+        axis.legend(loc="upper right")
+
+
+def fragility(path, capacities, label):
+    """Probability that the capacity is not above a demand, with its band, and the fitted lognormal distribution."""
+    capacities = np.asarray(capacities, float)
+    reach = np.ptp(capacities) or abs(capacities[0]) or 1.0
+    demands = np.linspace(capacities.min() - 0.15 * reach, capacities.max() + 0.15 * reach, POINTS)  # fmt: skip
+    probability, low, high = statistics.fragility(capacities, demands)
+    with _Picture(path, 6.0, 3.6) as figure:
+        axis = figure.subplots()
+        axis.fill_between(demands, low, high, step="post", color=POINT, alpha=0.2, lw=0, label=f"{100 * statistics.CONFIDENCE:g} % confidence")  # fmt: skip
+        axis.step(demands, probability, where="post", color=POINT, lw=1.3, label=f"{len(capacities)} rows")  # fmt: skip
+        if capacities.min() > 0 and len(capacities) >= 3 and np.ptp(capacities) > 0:
+            fit = statistics.lognormal(capacities)
+            inside = demands > 0
+            axis.plot(demands[inside], stats.lognorm.cdf(demands[inside], fit.dispersion, scale=fit.median), color="black", lw=1, ls=DASHES[1], label=f"lognormal: median {fit.median:.4g}, dispersion {fit.dispersion:.3g}")  # fmt: skip
+        axis.set_ylim(0, 1)
+        axis.set_xlim(demands[0], demands[-1])
+        axis.set_xlabel(f"demand on {label}")
+        axis.set_ylabel("probability that the capacity is below")
+        axis.legend(loc="lower right")
+        axis.grid(alpha=0.3)
+
+
+# -- all curves -------------------------------------------------------------------------------------------------------
+
+
+def fan(path, curves, xLabel, yLabel):
+    """All curves over each other, with their median and the band that 90 % of them are in.
+
+    Where some have ended, the median and the band are those of the others; they end where half have.
+
+    :param curves: list of (x, y), of which the first is made increasing by leaving out what goes back
+    """
+    from matplotlib.collections import LineCollection
+
+    curves = [_increasing(*curve) for curve in curves]
+    end = np.median([x[-1] for x, _ in curves])
+    grid = np.linspace(min(x[0] for x, _ in curves), end, POINTS)
+    values = np.array([np.interp(grid, x, y, left=np.nan, right=np.nan) for x, y in curves])  # fmt: skip
+    low, median, high = np.nanquantile(values, (BAND[0], 0.5, BAND[1]), axis=0)  # fmt: skip
+    with _Picture(path, 6.0, 4.0) as figure:
+        axis = figure.subplots()
+        alpha = float(np.clip(12 / len(curves), 0.05, 0.6))
+        axis.add_collection(LineCollection([np.column_stack(c) for c in curves], color="0.35", lw=0.5, alpha=alpha, zorder=1))  # fmt: skip
+        axis.fill_between(grid, low, high, color=POINT, alpha=0.25, lw=0, zorder=2, label="between the 5 % and the 95 % quantile")  # fmt: skip
+        axis.plot(grid, median, color=LINE, lw=1.8, zorder=3, label="median")
+        axis.plot([], [], color="0.35", lw=0.5, label=f"{len(curves)} curves")
+        axis.autoscale_view()
+        axis.set_xlabel(xLabel)
+        axis.set_ylabel(yLabel)
+        axis.legend(loc="lower right")
+        axis.grid(alpha=0.3)
+
+
+def _increasing(x, y):
+    """A curve without the rows that go back, thinned to no more than twice POINTS rows."""
+    x, y = np.asarray(x, float), np.asarray(y, float)
+    rows = np.flatnonzero(x > np.concatenate([[-np.inf], np.maximum.accumulate(x)[:-1]]))  # fmt: skip
+    rows = rows[:: max(1, len(rows) // (2 * POINTS))]
+    return x[rows], y[rows]
+
+
+def _bins(values):
+    """How many bins a histogram has: by the rule of Freedman and Diaconis, between 5 and 40."""
+    return int(np.clip(len(np.histogram_bin_edges(values, "fd")) - 1, 5, 40))
+
+
+def _errors(intervals):
+    """Lengths of error bars below and above."""
+    return np.array([[max(i.value - i.low, 0), max(i.high - i.value, 0)] for i in intervals]).T  # fmt: skip
+
+
+def _shown(name):
+    """A varied name for readers: kinds of joints that share their properties stand together, ``bed, head: cohesion``."""
+    pairs = [part.partition(".") for part in name.split("+")]
+    kinds = list(dict.fromkeys(kind for kind, _, _ in pairs))
+    properties = list(dict.fromkeys(text for _, _, text in pairs))
+    if not all(properties) or len(kinds) * len(properties) != len(pairs):
+        return name.replace("+", ", ")
+    return f"{', '.join(kinds)}: {', '.join(properties)}"
+
+
+def _broken(name):
+    """A name with line breaks where it can have them."""
+    return _shown(name).replace(": ", ":\n").replace(", ", ",\n").replace(" [", "\n[")  # fmt: skip

@@ -1,0 +1,129 @@
+"""The rows of a study, read from its folder as :mod:`masonry.study.gathering` leaves it. This module needs no YADE."""
+
+import csv
+import os
+
+import numpy as np
+
+from .. import batch
+from ..errors import Refused
+from ..results import readCurve, readWhole
+from .gathering import CSV, TIMES, Folder
+
+
+def _table(path):
+    """A CSV file as a dict of column -> texts. Raises Refused."""
+    try:
+        lines = list(csv.reader(readWhole(path).decode("utf-8").splitlines()))
+    except OSError as error:
+        raise Refused(f"cannot read {path}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise Refused(f"cannot read {path}: it is no text") from None
+    head = lines[0] if lines else []
+    if head[:1] != ["run"] or "status" not in head:
+        raise Refused(f"{path}: this is no table of a study: it needs the columns run and status")  # fmt: skip
+    wrong = [str(i) for i, line in enumerate(lines[1:], 2) if len(line) != len(head)]
+    if wrong:
+        raise Refused(f"{path}: lines {', '.join(wrong[:10])} do not have {len(head)} cells, as the first has")  # fmt: skip
+    if len(lines) < 2:
+        raise Refused(f"{path}: there is no row yet")
+    return {name: [line[i] for line in lines[1:]] for i, name in enumerate(head)}
+
+
+class Record:
+    """The rows of a study.
+
+    :param directory: folder of the study
+    :raises Refused: if there is no such table in it, or it is damaged
+    """
+
+    def __init__(self, directory):
+        #: its path, and texts of every column by its name
+        self.directory = directory
+        self.cells = _table(os.path.join(directory, CSV))
+        names = list(self.cells)
+        #: names of what varied, and of the numbers of a run
+        self.varied = names[1 : names.index("status")]
+        self.measures = names[names.index("status") + 1 :]
+
+    def __len__(self):
+        return len(self.cells["run"])
+
+    def numbers(self, name):
+        """A column as numbers, NaN where a cell has none. Raises Refused if there is no such column."""
+        if name not in self.cells:
+            raise Refused(f"{self.directory}: no column {name}; there are {', '.join(self.cells)}")  # fmt: skip
+        return np.array([_number(text) for text in self.cells[name]])
+
+    def complete(self, measure):
+        """The rows that have this measure: which they are, the inputs by name, and the measure.
+
+        Inputs are those that are numbers; the seed of a random field is none.
+
+        :raises Refused: if no row has it
+        """
+        values = self.numbers(measure)
+        rows = np.flatnonzero(np.isfinite(values))
+        if not len(rows):
+            raise Refused(f"{self.directory}: no row has a {measure}")
+        drawn = [name for name in self.varied if not name.startswith(batch.FIELD)]
+        inputs = {name: self.numbers(name)[rows] for name in drawn}
+        numbers = {k: v for k, v in inputs.items() if np.isfinite(v).all()}
+        return rows, numbers, values[rows]
+
+    def curves(self, rows, x, y):
+        """Columns x and y of the curves of rows: a list of pairs. Rows without a curve are left out."""
+        folder, found = Folder(self.directory), []
+        for row in rows:
+            try:
+                curve = readCurve(folder.row(int(self.cells["run"][row])))
+            except Refused:
+                continue
+            if x in curve and y in curve:
+                found.append((curve[x], curve[y]))
+        return found
+
+    def price(self, rows):
+        """Mean time of the jobs of rows [s], from times.csv; NaN if none tells."""
+        times = _table(os.path.join(self.directory, TIMES))["job_seconds"]
+        known = [_number(times[row]) for row in rows]
+        known = [seconds for seconds in known if seconds > 0]
+        return float(np.mean(known)) if known else np.nan
+
+
+def paired(dear, cheap, measure, other=None):
+    """A measure of two studies that share rows: that of the shared rows of ``dear``, and that of all rows of ``cheap``.
+
+    Rows are shared if every varied property has the same text in both tables. Those of ``cheap`` that are shared come
+    first, in the order of ``dear``.
+
+    :param dear: :class:`Record`, and ``cheap`` one
+    :param measure: column of ``dear``; ``other`` is that of ``cheap``, None: the same
+    :returns: two arrays for :mod:`masonry.study.estimate`, and two lists: the rows of ``dear`` and those of ``cheap``
+    :raises Refused: if something else varies in both, or rows of one study are the same
+    """
+    problems = []
+    if sorted(dear.varied) != sorted(cheap.varied):
+        problems.append(f"{dear.directory} varies {', '.join(dear.varied)}, and {cheap.directory} {', '.join(cheap.varied)}")  # fmt: skip
+    else:
+        keys = {}
+        for study in (dear, cheap):
+            columns = [study.cells[name] for name in dear.varied]
+            keys[study] = list(zip(*columns))
+            if len(set(keys[study])) < len(keys[study]):
+                problems.append(f"{study.directory}: rows have the same properties, so that it cannot be told which are shared")  # fmt: skip
+    if problems:
+        raise Refused("\n".join(problems))
+    y, x = dear.numbers(measure), cheap.numbers(other or measure)
+    place = {key: row for row, key in enumerate(keys[cheap]) if np.isfinite(x[row])}
+    shared = [row for row, key in enumerate(keys[dear]) if key in place and np.isfinite(y[row])]  # fmt: skip
+    first = [place[keys[dear][row]] for row in shared]
+    others = sorted(set(place.values()) - set(first))
+    return y[shared], x[first + others], shared, first + others
+
+
+def _number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return np.nan

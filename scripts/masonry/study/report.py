@@ -1,0 +1,188 @@
+"""What a study says: a table of statistics, and pictures.
+
+/usr/bin/python3 -m masonry.study.report DIR
+/usr/bin/python3 -m masonry.study.report DIR --measure base_shear_end_kN --demand 90,100,110
+/usr/bin/python3 -m masonry.study.report ACCURATE --cheap FAST
+
+The pictures go into the folder of the study. With ``--cheap`` its rows are the dear ones and those of the other study
+the cheap ones; see :mod:`masonry.study.estimate`.
+"""
+
+import argparse
+import math
+import os
+import sys
+
+import numpy as np
+
+from ..errors import Refused
+from . import estimate, pictures, sensitivity, statistics
+from .records import Record, paired
+
+MEASURE = "peak_base_shear_kN"
+CURVE = "displacement_mm", "base_shear_kN"
+MODE = "failure_mode"
+
+
+def label(name):
+    """A column as the label of an axis: its unit, at the end of the name, goes into brackets."""
+    words = name.split("_")
+    units = {"kN": "kN", "mm": "mm", "J": "J", "s": "s", "m": "m"}
+    if len(words) > 1 and words[-1] in units:
+        return f"{' '.join(words[:-1])} [{units[words[-1]]}]"
+    return " ".join(words)
+
+
+def table(record, measure):
+    """Lines of the table of statistics of a measure."""
+    rows, _, values = record.complete(measure)
+    yield f"{label(measure)}: {len(rows)} of {len(record)} rows"
+    for name, find in (
+        ("mean", statistics.mean),
+        ("standard deviation", statistics.deviation),
+        *((f"{100 * q:g} % quantile", lambda v, q=q: statistics.quantile(v, q)) for q in estimate.QUANTILES),
+    ):  # fmt: skip
+        try:
+            yield line(name, find(values))
+        except Refused as refused:
+            yield f"  {name:20} {refused}"
+    if len(values) >= 3 and values.min() > 0 and np.ptp(values) > 0:
+        fit = statistics.lognormal(values)
+        doubt = "" if not fit.fits < 0.05 else ", which does not fit"
+        yield f"  lognormal            median {fit.median:.5g}, dispersion {fit.dispersion:.3g} (p = {fit.fits:.2g}{doubt})"
+
+
+def line(name, interval, form="{:.5g}"):
+    """A number and its interval as a line of a table."""
+    ends = [form.format(end) if math.isfinite(end) else "unknown" for end in (interval.low, interval.high)]  # fmt: skip
+    return f"  {name:20} {form.format(interval.value):>9}   {ends[0]} … {ends[1]}"
+
+
+def modes(record):
+    """Lines of the shares of failure modes, if the study has them."""
+    labels = [text for text in record.cells.get(MODE, []) if text]
+    if labels:
+        yield "share of the rows that fail by"
+        for mode, found in statistics.shares(labels).items():
+            yield line(mode, found, "{:.3f}")
+
+
+def statuses(record):
+    """A line about rows that have no results, if there are some."""
+    others = [text for text in record.cells["status"] if text != "ended"]
+    if others:
+        told = ", ".join(f"{others.count(s)} {s or 'not run'}" for s in sorted(set(others)))  # fmt: skip
+        yield f"rows that have not ended: {told}"
+
+
+def draw(record, measure):
+    """Write the pictures that the rows allow, and yield a line for each, or why there is none."""
+    rows, inputs, values = record.complete(measure)
+    told = label(measure)
+    inputs = {name: column for name, column in inputs.items() if np.ptp(column) > 0}
+    curves = record.curves(rows, *CURVE)
+
+    def tornado(path):
+        pictures.tornado(path, sensitivity.effects(inputs, values), told)
+
+    def sobol(path):
+        pictures.sobol(path, sensitivity.sobol(inputs, values), told)
+
+    def fan(path):
+        if not curves:
+            raise Refused("no row has a curve of " + " and ".join(CURVE))
+        pictures.fan(path, curves, *map(label, CURVE))
+
+    for name, make in {
+        "scatter": lambda path: pictures.scatter(path, inputs, values, told),
+        "tornado": tornado,
+        "sobol": sobol,
+        "histogram": lambda path: pictures.histogram(path, values, told),
+        "fragility": lambda path: pictures.fragility(path, values, told),
+        "curves": fan,
+    }.items():
+        path = os.path.join(record.directory, name + ".png")
+        try:
+            make(path)
+        except Refused as refused:
+            yield f"no {name}.png: {refused}"
+        else:
+            yield path
+
+
+def compare(dear, cheap, measure, other, method, prices=None):
+    """Lines of what two studies of the same rows say together.
+
+    :param other: measure of the cheap study, None: the same
+    :param prices: of a dear and of a cheap run [s]; None: the mean times of their runs
+    """
+    y, x, shared, rows = paired(dear, cheap, measure, other)
+    found = estimate.estimate(y, x, method)
+    prices = prices or (dear.price(shared), cheap.price(rows))
+    names = [os.path.basename(os.path.abspath(study.directory)) for study in (dear, cheap)]  # fmt: skip
+    if not all(math.isfinite(price) and price > 0 for price in prices):
+        raise Refused("the prices of the runs are unknown, since times.csv has none: give --prices")  # fmt: skip
+    unit = label(measure).partition("[")[2].rstrip("]")
+    yield f"{label(measure)} from {len(shared)} rows of both and {len(rows)} of {names[1]}; correlation {np.corrcoef(y, x[:len(y)])[0, 1]:.4f}, a run costs {prices[0]:.3g} and {prices[1]:.3g} s"  # fmt: skip
+    for one in found:
+        yield "  " + estimate.sentence(one, prices, unit, names)
+        same = (one.dear / one.shared) + one.cheap / one.rows
+        best = estimate.allocate(one, prices, variance=same)
+        yield f"    cheapest for it: {best.shared} shared rows and {best.rows} cheap ones, {100 * best.share:.0f} % of the cost of {names[0]} alone"  # fmt: skip
+    yield from ("  note: " + doubt for doubt in estimate.doubts(y, x))
+
+
+def main(words=None):
+    parser = argparse.ArgumentParser(
+        prog="python3 -m masonry.study.report",
+        description="Statistics and pictures of a study.",
+    )
+    parser.add_argument("study", help="folder of a study, with its study.csv")
+    parser.add_argument("--measure", default=MEASURE, help=f"column of study.csv; {MEASURE} by default")  # fmt: skip
+    parser.add_argument("--demand", help="demands, with commas between them, for which the probability that the measure is not above them is told")  # fmt: skip
+    parser.add_argument("--cheap", help="folder of a study of the same rows and more with a cheaper preset")  # fmt: skip
+    parser.add_argument("--cheap-measure", help="column of that study, if it is another one: bound_base_shear_kN of the preset bound")  # fmt: skip
+    parser.add_argument("--method", default="bridge", choices=("bridge", "indicator"), help="how --cheap finds quantiles; help(\"masonry.study.estimate\") tells")  # fmt: skip
+    parser.add_argument("--prices", help="seconds of a run of the study and of one of --cheap, with a comma; the mean times of the runs by default")  # fmt: skip
+    parser.add_argument("--no-pictures", action="store_true", help="the table alone")
+    args = parser.parse_args(words)
+    try:
+        demands, prices = _listed("--demand", args.demand), _listed("--prices", args.prices)  # fmt: skip
+        if prices and len(prices) != 2:
+            raise Refused(f"--prices {args.prices} must be two numbers, for example 60,4")  # fmt: skip
+        record = Record(args.study)
+        for text in (*table(record, args.measure), *modes(record), *statuses(record)):
+            print(text)
+        if demands:
+            values = record.complete(args.measure)[2]
+            print(f"probability that {label(args.measure)} is not above")
+            for demand, *found in zip(demands, *statistics.fragility(values, demands)):
+                print(line(f"{demand:g}", statistics.Interval(*found), "{:.3f}"))
+        if args.cheap:
+            for text in compare(record, Record(args.cheap), args.measure, args.cheap_measure, args.method, prices):  # fmt: skip
+                print(text)
+        if not args.no_pictures:
+            for text in draw(record, args.measure):
+                print(text)
+    except Refused as refused:
+        print(refused, file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"cannot write to {args.study}: {error.strerror}", file=sys.stderr)
+        return 2
+    return 0
+
+
+def _listed(option, text):
+    """Numbers with commas between them."""
+    try:
+        numbers = sorted(map(float, text.split(","))) if option == "--demand" and text else list(map(float, text.split(",")) if text else ())  # fmt: skip
+    except ValueError:
+        raise Refused(f"{option} {text} must be numbers with commas between them") from None  # fmt: skip
+    if not all(map(math.isfinite, numbers)):
+        raise Refused(f"{option} {text} must be finite numbers")
+    return numbers
+
+
+if __name__ == "__main__":
+    sys.exit(main())

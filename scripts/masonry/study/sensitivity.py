@@ -1,0 +1,189 @@
+"""How much every varied property decides: changes, rank correlations and Sobol indices. This module needs no YADE.
+
+Everything here is found from the rows that a study has, whatever their design, with varied properties that are drawn
+independently of each other. OpenTURNS fits the polynomials.
+"""
+
+import math
+from collections import namedtuple
+
+import numpy as np
+from scipy import special, stats
+
+from ..errors import Refused
+from .statistics import CONFIDENCE, Interval
+
+#: What a varied property does. ``change`` of the output, an :class:`Interval`, when the property goes from its 5 % to
+#: its 95 % quantile and the others stay, by the regression on all of them; ``rank``, Spearman's correlation of ranks,
+#: an interval, too.
+Effect = namedtuple("Effect", "change rank")
+
+#: Sobol indices of a varied property, each an :class:`Interval`: the share of the variance that it makes alone, and the
+#: share that it makes alone and together with others.
+Indices = namedtuple("Indices", "first total")
+
+#: The variance that :func:`sobol` could explain [-], by leaving out each row in turn, and the indices by name.
+Sobol = namedtuple("Sobol", "explained indices")
+
+SPAN = 0.05, 0.95  # quantiles of a property between which its change is told
+DEGREE = 9  # highest degree of a polynomial in one property
+HYPERBOLIC = 0.6  # norm that keeps products of high powers out
+RESAMPLES = 300  # of the rows, for the intervals of Sobol indices
+DEPENDENT = 1e-4  # probability that independent properties are taken as dependent ones, over all pairs
+
+
+def effects(inputs, output, confidence=CONFIDENCE):
+    """What every varied property does: a dict of name -> :class:`Effect`, strongest change first.
+
+    :param inputs: dict of name -> values, one a row; a property that has one value throughout is left out
+    :param output: of every row
+    :raises Refused: if there are fewer than three rows more than properties, or a number is not finite
+    """
+    inputs, x, y = _numbers(inputs, output)
+    n, k = x.shape
+    free = n - k - 1
+    if free < 2:
+        raise Refused(f"the sensitivity of {k} properties needs {k + 3} rows or more, there are {n}")  # fmt: skip
+    scale = x.std(axis=0)
+    design = np.column_stack([np.ones(n), (x - x.mean(axis=0)) / scale])
+    slopes, _, rank, _ = np.linalg.lstsq(design, y, rcond=None)
+    if rank < k + 1:
+        raise Refused("the sensitivity: varied properties follow from each other, which cannot be told apart")  # fmt: skip
+    residuals = y - design @ slopes
+    scatter = residuals @ residuals / free * np.linalg.inv(design.T @ design).diagonal()
+    t = stats.t.ppf((1 + confidence) / 2, free)
+    z = stats.norm.ppf((1 + confidence) / 2)
+    found = {}
+    for i, name in enumerate(inputs):
+        span = np.ptp(np.quantile(x[:, i], SPAN)) / scale[i]
+        value, half = slopes[i + 1] * span, t * math.sqrt(scatter[i + 1]) * span
+        rho = stats.spearmanr(x[:, i], y).statistic if np.ptp(y) else 0.0
+        # D. G. Bonett and T. A. Wright, "Sample size requirements for estimating Pearson, Kendall and Spearman
+        # correlations", Psychometrika 65 (2000): the variance of Fisher's transform
+        wide = z * math.sqrt((1 + rho**2 / 2) / (n - 3))
+        inner = np.arctanh(np.clip(rho, -1 + 1e-12, 1 - 1e-12))
+        found[name] = Effect(
+            Interval(value, value - half, value + half),
+            Interval(rho, math.tanh(inner - wide), math.tanh(inner + wide)),
+        )
+    return dict(sorted(found.items(), key=lambda item: -abs(item[1].change.value)))
+
+
+def sobol(inputs, output, seed=1, confidence=CONFIDENCE):
+    """First and total Sobol indices, from a polynomial chaos on the ranks of the varied properties: a :class:`Sobol`.
+
+    Each property is replaced by its rank, which is uniform whatever its distribution; indices do not change by that.
+    OpenTURNS chooses the polynomials by least angle regression, and the indices are sums of squares of their
+    coefficients. The intervals are those of RESAMPLES samples of the rows, drawn with replacement and ranked again,
+    with the same polynomials; they do not tell what these leave out, which ``explained`` does.
+
+    :param inputs: as of :func:`effects`, drawn independently of each other
+    :param output: of every row
+    :param seed: of the samples
+    :raises Refused: if there are fewer than ten rows a property, or a number is not finite, or properties are dependent
+    """
+    inputs, x, y = _numbers(inputs, output)
+    n, k = x.shape
+    problems = []
+    if n < 10 * k:
+        problems.append(f"Sobol indices of {k} properties need {10 * k} rows or more, there are {n}")  # fmt: skip
+    names = list(inputs)
+    for i in range(k):
+        for j in range(i):
+            found = stats.spearmanr(x[:, i], x[:, j])
+            if found.pvalue < 2 * DEPENDENT / (k * (k - 1)):
+                problems.append(f"Sobol indices need independent properties, {names[j]} and {names[i]} have a rank correlation of {found.statistic:.2f}")  # fmt: skip
+    if np.ptp(y) == 0:
+        problems.append("Sobol indices: all results are the same")
+    if problems:
+        raise Refused("\n".join(problems))
+    ranks = lambda rows: (stats.rankdata(x[rows], axis=0) - 0.5) / n
+    u = ranks(np.arange(n))
+    y = (y - y.mean()) / y.std()
+    powers = _polynomials(u, y)
+    terms = _terms(powers, u)
+    coefficients = _fit(terms, y)
+    hat = np.einsum("ij,ji->i", terms, np.linalg.pinv(terms))
+    errors = (y - terms @ coefficients) / np.maximum(1 - hat, 1e-9)
+    explained = 1 - errors @ errors / n
+    shares = _shares(powers, coefficients)
+    generator, resampled = np.random.default_rng(seed), []
+    for _ in range(RESAMPLES):
+        rows = generator.integers(n, size=n)
+        resampled.append(_shares(powers, _fit(_terms(powers, ranks(rows)), y[rows])))  # fmt: skip
+    half = stats.norm.ppf((1 + confidence) / 2) * np.std(resampled, axis=0)
+    low, high = np.clip([shares - half, shares + half], 0, 1)
+    interval = lambda which, i: Interval(shares[which, i], low[which, i], high[which, i])  # fmt: skip
+    indices = {name: Indices(interval(0, i), interval(1, i)) for i, name in enumerate(names)}  # fmt: skip
+    order = sorted(indices, key=lambda name: -indices[name].total.value)
+    return Sobol(explained, {name: indices[name] for name in order})
+
+
+def _polynomials(u, y):
+    """The Legendre polynomials that OpenTURNS chooses: their degrees, a line each, the first of which is the constant."""
+    import openturns as ot
+
+    k = u.shape[1]
+    uniform = ot.ComposedDistribution([ot.Uniform(0, 1)] * k)
+    count = ot.HyperbolicAnisotropicEnumerateFunction(k, HYPERBOLIC)
+    basis = ot.OrthogonalProductPolynomialFactory([ot.LegendreFactory()] * k, count)
+    # no more candidates than half of the rows, else chance chooses
+    size = k + 1
+    while 2 * (size + 1) <= len(u) and max(count(size)) <= DEGREE:
+        size += 1
+    fitting = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())  # fmt: skip
+    algorithm = ot.FunctionalChaosAlgorithm(
+        ot.Sample(u), ot.Sample(y[:, None]), uniform,
+        ot.FixedStrategy(basis, size), ot.LeastSquaresStrategy(fitting),
+    )  # fmt: skip
+    algorithm.run()
+    # what every property does on its own stays in, so that an index of nothing has an interval, too
+    always = set(range(k + 1))
+    chosen = sorted(always.union(int(i) for i in algorithm.getResult().getIndices()))
+    return np.array([list(count(i)) for i in chosen])
+
+
+def _terms(powers, u):
+    """Values of Legendre polynomials, of variance 1 over uniform properties: a line a row, a column a polynomial."""
+    values = special.eval_legendre(powers[None], 2 * u[:, None, :] - 1)
+    return (values * np.sqrt(2 * powers + 1)).prod(axis=2)
+
+
+def _fit(terms, y):
+    return np.linalg.lstsq(terms, y, rcond=None)[0]
+
+
+def _shares(powers, coefficients):
+    """First and total shares of the variance: an array (2, properties)."""
+    squares = coefficients[1:] ** 2
+    involved = powers[1:] > 0
+    whole = squares.sum()
+    if whole == 0:
+        return np.zeros((2, powers.shape[1]))
+    alone = involved & (involved.sum(axis=1) == 1)[:, None]
+    return np.array([squares @ alone, squares @ involved]) / whole
+
+
+def _numbers(inputs, output):
+    """The properties that vary, their values (rows, properties) and the output. Refuses what is no number."""
+    y = np.asarray(output, float)
+    problems, kept = [], {}
+    for name, values in inputs.items():
+        try:
+            values = np.asarray(values, float)
+        except ValueError:
+            problems.append(f"{name}: choices that are no numbers have no sensitivity of this kind")  # fmt: skip
+            continue
+        if len(values) != len(y):
+            problems.append(f"{name}: {len(values)} values for {len(y)} rows")
+        elif not np.isfinite(values).all():
+            problems.append(f"{name}: a value is not finite")
+        elif np.ptp(values) > 0:
+            kept[name] = values
+    if not np.isfinite(y).all():
+        problems.append("a result is not finite")
+    if not kept and not problems:
+        problems.append("no property varies")
+    if problems:
+        raise Refused("\n".join(problems))
+    return kept, np.column_stack(list(kept.values())), y

@@ -1,0 +1,348 @@
+"""Sensitivities against closed forms, and pictures of what they must show, drawn from numbers and from a study's folder."""
+
+import math
+import os
+
+import numpy as np
+import pytest
+from masonry.errors import Refused
+from masonry.study import pictures, records, report, sensitivity, statistics
+from scipy import stats
+
+NAMES = "bed.cohesion", "bed.friction", "head.tensileStrength"
+
+
+def uniforms(generator, n, low, high):
+    return {name: generator.uniform(low, high, n) for name in NAMES}
+
+
+def ishigami(x):
+    """Of T. Ishigami and T. Homma, 1990, with a = 7 and b = 0.1."""
+    a, b, c = x.values()
+    return np.sin(a) + 7 * np.sin(b) ** 2 + 0.1 * c**4 * np.sin(a)
+
+
+#: Shares of its variance in closed form: (first, total).
+PARTS = 0.5 * (1 + 0.1 * math.pi**4 / 5) ** 2, 49 / 8, 0.1**2 * math.pi**8 * (1 / 18 - 1 / 50)  # fmt: skip
+ISHIGAMI = dict(zip(NAMES, ((PARTS[0], PARTS[0] + PARTS[2]), (PARTS[1], PARTS[1]), (0, PARTS[2]))))  # fmt: skip
+
+
+def test_sobol_indices_of_ishigamis_function_are_its_closed_form():
+    """First and total ones in 10 samples of 300 rows, of which intervals of 95 % may miss a few."""
+    generator, missed = np.random.default_rng(1), 0
+    for _ in range(10):
+        x = uniforms(generator, 300, -math.pi, math.pi)
+        found = sensitivity.sobol(x, ishigami(x))
+        assert 0.93 < found.explained <= 1
+        for name, truth in ISHIGAMI.items():
+            for index, part in zip(found.indices[name], truth):
+                share = part / sum(PARTS)
+                assert index.value == pytest.approx(share, abs=0.12)
+                missed += not index.low - 0.002 <= share <= index.high + 0.002
+    assert missed <= stats.binom.ppf(0.999, 60, 0.05)
+
+
+def test_sobol_indices_do_not_depend_on_the_distribution_of_a_property():
+    generator = np.random.default_rng(2)
+    x = uniforms(generator, 200, -math.pi, math.pi)
+    y = ishigami(x)
+    bent = {name: np.exp(3 * values) for name, values in x.items()}
+    assert sensitivity.sobol(bent, y) == sensitivity.sobol(x, y)
+
+
+def test_a_product_has_total_indices_above_its_first_ones():
+    """y = a b of standard uniform numbers about 0: no first index, and all of the variance in both totals."""
+    x = uniforms(np.random.default_rng(3), 300, -1, 1)
+    found = sensitivity.sobol(x, x[NAMES[0]] * x[NAMES[1]]).indices
+    for name in NAMES[:2]:
+        assert found[name].first.value < 0.05 and found[name].total.value > 0.9
+    assert found[NAMES[2]].total.high < 0.05
+
+
+def test_effects_are_the_changes_of_a_linear_model():
+    generator = np.random.default_rng(4)
+    x = uniforms(generator, 400, 0, 1)
+    y = 5 * x[NAMES[0]] - 2 * x[NAMES[1]] + 0.5 * generator.standard_normal(400)
+    found = sensitivity.effects(x, y)
+    assert list(found) == list(NAMES)
+    for name, slope in zip(NAMES, (5, -2, 0)):
+        span = np.ptp(np.quantile(x[name], sensitivity.SPAN))
+        error = 0.5 / math.sqrt(400 / 12) * span  # standard error of a slope
+        change = found[name].change
+        assert change.value == pytest.approx(slope * span, abs=3.5 * error)
+        assert change.high - change.low == pytest.approx(2 * 1.966 * error, rel=0.15)
+        assert found[name].rank.value == pytest.approx(stats.spearmanr(x[name], y).statistic)  # fmt: skip
+        assert found[name].rank.low < found[name].rank.value < found[name].rank.high
+
+
+def test_intervals_of_rank_correlations_have_nothing_as_often_as_they_say():
+    generator, inside = np.random.default_rng(5), 0
+    for _ in range(600):
+        x = {"bed.cohesion": generator.standard_normal(40)}
+        rank = sensitivity.effects(x, generator.standard_normal(40))["bed.cohesion"].rank  # fmt: skip
+        inside += rank.low <= 0 <= rank.high
+    assert inside / 600 == pytest.approx(0.95, abs=3 * math.sqrt(0.95 * 0.05 / 600))
+
+
+def tied(n=40):
+    a = np.random.default_rng(6).standard_normal(n)
+    return {"bed.cohesion": a, "head.cohesion": 2 * a}, a
+
+
+@pytest.mark.parametrize(
+    "call, told",
+    [
+        (lambda: sensitivity.sobol(*tied()), "independent properties, bed.cohesion and head.cohesion have a rank correlation of 1.00"),  # fmt: skip
+        (lambda: sensitivity.sobol({"a": range(9)}, range(9)), "need 10 rows or more, there are 9"),  # fmt: skip
+        (lambda: sensitivity.sobol({"a": range(20)}, [1] * 20), "results are the same"),
+        (lambda: sensitivity.effects(*tied()), "cannot be told apart"),
+        (lambda: sensitivity.effects({"a": [1, 2, 4]}, [1, 2, 3]), "4 rows or more"),
+        (lambda: sensitivity.effects({"a": [1, 1]}, [1, 2]), "no property varies"),
+        (lambda: sensitivity.effects({"law": ["x", "y"]}, [1, 2]), "law: choices"),
+        (lambda: sensitivity.effects({"a": [1, math.nan]}, [1, 2]), "a: a value is not finite"),  # fmt: skip
+    ],
+)
+def test_what_no_sensitivity_can_be_made_of_is_refused(call, told):
+    with pytest.raises(Refused, match=told):
+        call()
+
+
+# -- pictures --------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """Figures that would be saved, by the name of their file."""
+    found = {}
+    monkeypatch.setattr(pictures, "_save", lambda figure, path, dpi: found.update({os.path.basename(path): figure}))  # fmt: skip
+    return found
+
+
+PEAK = "peak base shear [kN]"
+VALUES = 110 * np.exp(0.05 * np.random.default_rng(7).standard_normal(200))
+
+
+def byLabel(axis):
+    return {thing.get_label(): thing for thing in (*axis.lines, *axis.collections)}
+
+
+def test_a_histogram_has_an_area_of_one_and_the_quantiles_of_the_rows(drawn):
+    pictures.histogram("h.png", VALUES, PEAK)
+    (axis,) = drawn["h.png"].axes
+    assert sum(bar.get_width() * bar.get_height() for bar in axis.patches if hasattr(bar, "get_width")) == pytest.approx(1)  # fmt: skip
+    for share in (0.05, 0.5, 0.95):
+        value = np.quantile(VALUES, share)
+        told = byLabel(axis)[f"{100 * share:g} % quantile: {value:.4g}"]
+        assert told.get_xdata() == [value, value]
+    (density,) = [line for label, line in byLabel(axis).items() if label.startswith("lognormal")]  # fmt: skip
+    x, y = density.get_data()
+    assert np.trapz(y, x) == pytest.approx(1, abs=0.02)
+    assert axis.get_xlabel() == PEAK
+
+
+def test_a_fragility_curve_goes_from_0_to_1_within_its_band(drawn):
+    pictures.fragility("f.png", VALUES, PEAK)
+    (axis,) = drawn["f.png"].axes
+    x, y = byLabel(axis)["200 rows"].get_data()
+    assert y[0] == 0 and y[-1] == 1 and (np.diff(y) >= 0).all()
+    middle = np.searchsorted(x, np.median(VALUES))
+    assert y[middle] == pytest.approx(0.5, abs=0.02)
+    band = byLabel(axis)["95 % confidence"].get_paths()[0].vertices
+    assert band[:, 1].min() == 0 and band[:, 1].max() == 1
+    low, high = statistics.fragility(VALUES, [x[middle]])[1:]
+    here = band[np.isclose(band[:, 0], x[middle])][:, 1]
+    assert here.min() <= low[0] <= 0.5 <= high[0] <= here.max()
+
+
+def test_a_fan_has_all_curves_and_the_median_of_those_that_go_on(drawn):
+    """Nine curves k x, of which the last four end halfway; one goes back for some rows."""
+    curves = []
+    for k in range(1, 10):
+        x = np.linspace(0, 10 if k < 6 else 5, 101)
+        curves.append((x, k * x))
+    x, y = curves[0]
+    curves[0] = np.insert(x, 50, [1, 2]), np.insert(y, 50, [99, 99])
+    pictures.fan("c.png", curves, "x [mm]", "y [kN]")
+    (axis,) = drawn["c.png"].axes
+    x, y = byLabel(axis)["median"].get_data()
+    assert y[x < 4.9] == pytest.approx(5 * x[x < 4.9])
+    assert y[x > 5.1] == pytest.approx(3 * x[x > 5.1])
+    assert x[-1] == 10
+    assert len(axis.collections[0].get_segments()) == 9
+    assert max(segment[:, 1].max() for segment in axis.collections[0].get_segments()) < 51  # fmt: skip
+    assert "9 curves" in byLabel(axis)
+
+
+def test_a_median_ends_where_half_of_the_curves_have(drawn):
+    curves = [(np.linspace(0, end, 51), np.linspace(0, end, 51)) for end in (5, 5, 10)]
+    pictures.fan("c.png", curves, "x [mm]", "y [kN]")
+    assert byLabel(drawn["c.png"].axes[0])["median"].get_xdata()[-1] == 5
+
+
+def test_a_scatter_matrix_shows_what_varies_and_leaves_out_what_does_not(drawn):
+    x = uniforms(np.random.default_rng(8), 50, 1e5, 2e5)
+    x["head.friction"] = np.full(50, 0.4)
+    y = x[NAMES[0]] / 1e3
+    pictures.scatter("s.png", x, y, PEAK)
+    seen = [axis for axis in drawn["s.png"].axes if axis.get_visible()]
+    assert len(seen) == 10  # the lower half of 4 × 4
+    shown = drawn["s.png"].axes[12]  # the peak over the first property
+    assert shown.get_title() == "+1.00"
+    assert np.array(shown.collections[0].get_offsets()) == pytest.approx(np.column_stack([x[NAMES[0]], y]))  # fmt: skip
+
+
+def test_bars_stand_for_the_numbers_with_the_largest_on_top(drawn):
+    x = uniforms(np.random.default_rng(9), 200, 0, 1)
+    y = 5 * x[NAMES[0]] - 9 * x[NAMES[1]]
+    effects, found = sensitivity.effects(x, y), sensitivity.sobol(x, y)
+    pictures.tornado("t.png", effects, PEAK)
+    pictures.sobol("i.png", found, PEAK)
+    left, _ = drawn["t.png"].axes
+    assert [bar.get_width() for bar in left.patches] == [e.change.value for e in effects.values()][::-1]  # fmt: skip
+    assert left.get_yticklabels()[-1].get_text() == "bed: friction"
+    (axis,) = drawn["i.png"].axes
+    totals = [bar.get_width() for bar in axis.patches][:3]
+    assert totals == [found.indices[t.get_text().replace(": ", ".")].total.value for t in axis.get_yticklabels()]  # fmt: skip
+    assert totals[-1] == max(totals)
+
+
+@pytest.mark.parametrize(
+    "name, shown",
+    [
+        ("bed.cohesion", "bed: cohesion"),
+        ("bed.cohesion+head.cohesion", "bed, head: cohesion"),
+        ("bed.friction+bed.residualFriction", "bed: friction, residualFriction"),
+        ("bed.friction+head.cohesion", "bed.friction, head.cohesion"),
+        ("rate", "rate"),
+    ],
+)
+def test_names_that_are_tied_are_shown_in_short(name, shown, drawn):
+    x = {name: np.arange(20.0)}
+    pictures.tornado("t.png", sensitivity.effects(x, np.sin(x[name])), PEAK)
+    assert drawn["t.png"].axes[0].get_yticklabels()[0].get_text() == shown
+
+
+# -- a study's folder ------------------------------------------------------------------------------------------------
+
+
+def writeStudy(folder, rows, measures, curves=0):
+    """A folder as gathering leaves it. Of ``rows`` and ``measures`` a cell that is empty has no number."""
+    os.makedirs(folder)
+    heads = ["run", *NAMES, "status", *measures]
+    lines = [[f"{n:04d}", *map(repr, row), "ended" if any(cells) else "failed", *cells] for n, (row, cells) in enumerate(zip(rows, zip(*measures.values())), 1)]  # fmt: skip
+    with open(os.path.join(folder, "study.csv"), "w") as f:
+        f.writelines(",".join(line) + "\n" for line in [heads, *lines])
+    with open(os.path.join(folder, "times.csv"), "w") as f:
+        f.write("run,status,host,run_seconds,job_seconds,commit,told\n")
+        f.writelines(f"{line[0]},{line[4]},here,9,{10 + n % 2},,\n" for n, line in enumerate(lines))  # fmt: skip
+    for n in range(curves):
+        os.makedirs(os.path.join(folder, "rows", lines[n][0]))
+        with open(os.path.join(folder, "rows", lines[n][0], "curve.csv"), "w") as f:
+            f.write("displacement_mm,base_shear_kN\r\n0,0\r\n1,100\r\n3,80\r\n")
+    return str(folder)
+
+
+@pytest.fixture
+def studies(tmp_path):
+    """A dear study with the first 15 rows of a cheap one of 120, whose peaks miss those of the dear one by a little."""
+    generator = np.random.default_rng(10)
+    rows = generator.uniform(0, 1, (120, 3)).tolist()
+    dear = [100 + 20 * a - 10 * b + 0.3 * generator.standard_normal() for a, b, _ in rows]  # fmt: skip
+    cheap = [1.1 * y - 3 + 0.3 * generator.standard_normal() for y in dear]
+    order = generator.permutation(120)
+    shuffled = {"peak_base_shear_kN": [repr(cheap[i]) for i in order]}
+    modes = ["slides"] * 5 + ["rocks"] * 10
+    few = {"failure_mode": modes, "peak_base_shear_kN": list(map(repr, dear[:15]))}
+    return (
+        writeStudy(tmp_path / "accurate", rows[:15], few, curves=15),
+        writeStudy(tmp_path / "fast", [rows[i] for i in order], shuffled),
+        np.array(dear),
+    )
+
+
+def test_shared_rows_are_found_by_what_varied_in_them(studies):
+    dear, cheap, peaks = studies
+    y, x, shared, rows = records.paired(records.Record(dear), records.Record(cheap), "peak_base_shear_kN")  # fmt: skip
+    assert y == pytest.approx(peaks[:15]) and shared == list(range(15))
+    assert len(x) == 120 and sorted(rows) == list(range(120))
+    assert x[:15] == pytest.approx(1.1 * y - 3, abs=1.5)
+
+
+def test_rows_without_a_number_in_either_study_are_not_shared(studies):
+    dear, cheap, peaks = studies
+    few, many = records.Record(dear), records.Record(cheap)
+    few.cells["peak_base_shear_kN"][2] = ""
+    keys = list(zip(*(many.cells[name] for name in NAMES)))
+    lost = keys.index(tuple(few.cells[name][4] for name in NAMES))
+    many.cells["peak_base_shear_kN"][lost] = ""
+    y, x, shared, rows = records.paired(few, many, "peak_base_shear_kN")
+    assert shared == [n for n in range(15) if n not in (2, 4)] and len(y) == 13
+    assert np.isfinite(y).all() and np.isfinite(x).all() and len(x) == 119
+    assert y == pytest.approx(peaks[shared])
+
+
+def test_studies_of_which_it_cannot_be_told_what_they_share_are_refused(studies):
+    few, many = map(records.Record, studies[:2])
+    many.varied = many.varied[:2]
+    with pytest.raises(Refused, match="varies bed.cohesion, bed.friction, head.tensileStrength, and"):  # fmt: skip
+        records.paired(few, many, "peak_base_shear_kN")
+    few, many = map(records.Record, studies[:2])
+    for name in NAMES:
+        many.cells[name][1] = many.cells[name][0]
+    with pytest.raises(Refused, match="rows have the same properties"):
+        records.paired(few, many, "peak_base_shear_kN")
+
+
+def test_the_seed_of_a_random_field_is_no_input(studies):
+    record = records.Record(studies[0])
+    record.varied.append("field:bed.cohesion")
+    record.cells["field:bed.cohesion"] = list(map(str, range(15)))
+    assert list(record.complete("peak_base_shear_kN")[1]) == list(NAMES)
+
+
+def test_the_report_tells_and_draws_all(studies, capsys):
+    dear, cheap, peaks = studies
+    words = [dear, "--cheap", cheap, "--demand", "100,120", "--prices", "60,3"]
+    assert report.main(words) == 0
+    said = capsys.readouterr().out
+    low, high = statistics.mean(peaks[:15])[1:]
+    assert f"{low:.5g} … {high:.5g}" in said
+    assert "peak base shear [kN]: 15 of 15 rows" in said
+    assert "rocks                    0.667" in said
+    assert "unknown" in said  # 15 rows do not tell the ends of the 5 % quantile
+    assert "15 runs of accurate and 120 of fast in 21 min" in said
+    for name in ("scatter", "tornado", "histogram", "fragility", "curves"):
+        path = os.path.join(dear, name + ".png")
+        assert path in said and 5e3 < os.path.getsize(path) < 3e5
+    assert "no sobol.png: Sobol indices of 3 properties need 30 rows" in said
+
+
+def test_prices_are_the_times_of_the_jobs(studies):
+    assert records.Record(studies[0]).price([0, 1]) == 10.5
+
+
+def test_rows_that_failed_are_told_and_left_out(tmp_path, capsys):
+    rows = np.random.default_rng(11).uniform(0, 1, (40, 3)).tolist()
+    peaks = {"peak_base_shear_kN": [repr(float(n)) if n % 4 else "" for n in range(40)]}
+    folder = writeStudy(tmp_path / "study", rows, peaks)
+    assert report.main([folder, "--no-pictures"]) == 0
+    said = capsys.readouterr().out
+    assert "30 of 40 rows" in said and "rows that have not ended: 10 failed" in said
+
+
+def test_what_is_no_study_is_refused_with_its_name(tmp_path, studies, capsys):
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "study.csv").write_text("a,b\n1,2\n")
+    for words, told in (
+        ([str(tmp_path / "nowhere")], "nowhere"),
+        ([str(other)], "no table of a study"),
+        (
+            [studies[0], "--measure", "peak"],
+            "no column peak; there are run, bed.cohesion",
+        ),  # fmt: skip
+        ([studies[0], "--demand", "a"], "--demand a must be numbers"),
+        ([studies[0], "--prices", "1"], "--prices 1 must be two numbers"),
+    ):
+        assert report.main([*words, "--no-pictures"]) == 2
+        assert told in capsys.readouterr().err

@@ -1,0 +1,10 @@
+"""COMP-1 with all values that the paper leaves open, each anywhere in its range. A file for masonry.study; README.md says how."""
+
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from masonry.study import Study
+from ranges import VARY
+
+study = Study("wall_comp1", options={"preset": "fast", "until": 25}, runs=600, seed=1, vary=VARY, design="latin")  # fmt: skip

@@ -1,0 +1,10 @@
+"""COMP-4 with all values that the paper leaves open, each anywhere in its range. A file for masonry.study; README.md says how."""
+
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from masonry.study import Study
+from ranges import VARY
+
+study = Study("wall_comp4", options={"preset": "fast", "until": 12}, runs=600, seed=1, vary=VARY, design="latin")  # fmt: skip
