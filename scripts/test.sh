@@ -16,7 +16,7 @@ if [[ "${1:-}" == quick ]]; then
     workers=$(nproc)
 else
     # for fuzz and sanitizers, and for studies
-    bash scripts/setup.sh python3-pytest-xdist clang libclang-rt-dev libomp-dev python3-openturns slurm-wlm munge
+    bash scripts/setup.sh python3-pytest-xdist clang libclang-rt-dev libomp-dev slurm-wlm munge
     races=tests/sanitizers/test_sanitizers.py::test_no_two_threads_race
     (($#)) && tests=("$@") || tests=(tests --deselect "$races")
     workers=$(($# ? 0 : $(nproc)))

@@ -31,15 +31,15 @@ def points(design, count, dimension, seed):
         return [[] for _ in range(count)]
     ot = openturns()
     cube = ot.ComposedDistribution([ot.Uniform(0, 1)] * dimension)
+    inside = lambda u: min(max(u, EDGE), 1 - EDGE)
     with _seeded(ot, seed):
-        if design == "random":
-            made = ot.MonteCarloExperiment(cube, count)
-        elif design == "latin":
+        if design == "random":  # one after the other, so that more rows begin with the same ones
+            return [[*map(inside, cube.getRealization())] for _ in range(count)]
+        if design == "latin":
             made = ot.LHSExperiment(cube, count, True, True)
         else:
             made = ot.LowDiscrepancyExperiment(ot.SobolSequence(), cube, count, True)
             made.setRandomize(True)
-        inside = lambda u: min(max(u, EDGE), 1 - EDGE)
         return [list(map(inside, point)) for point in made.generate()]
 
 
