@@ -72,7 +72,9 @@ def cluster(tasks=1001):
 
     :param tasks: the largest number of a task in an array is one less
     """
-    with tempfile.TemporaryDirectory(prefix="slurm") as folder, contextlib.ExitStack() as stack:  # fmt: skip
+    with tempfile.TemporaryDirectory(
+        prefix="slurm"
+    ) as folder, contextlib.ExitStack() as stack:
         for name in ("state", "spool"):
             os.mkdir(os.path.join(folder, name))
         key = os.path.join(folder, "munge.key")
@@ -82,27 +84,55 @@ def cluster(tasks=1001):
         path = os.path.join(folder, "slurm.conf")
         host = socket.gethostname().split(".")[0]
         with open(path, "w") as f:
-            f.write(CONFIGURATION.format(host=host, user=getpass.getuser(), folder=folder, controller=controller, node=node, tasks=tasks))  # fmt: skip
+            f.write(
+                CONFIGURATION.format(
+                    host=host,
+                    user=getpass.getuser(),
+                    folder=folder,
+                    controller=controller,
+                    node=node,
+                    tasks=tasks,
+                )
+            )
         env = {**os.environ, "SLURM_CONF": path, "PATH": os.environ["PATH"] + SBIN}
         log = stack.enter_context(open(os.path.join(folder, "log"), "ab"))
 
         def start(*words):
-            process = subprocess.Popen(words, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=log)  # fmt: skip
+            process = subprocess.Popen(
+                words, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=log
+            )
             stack.callback(_end, process)
 
         def asked(*words):
             done = subprocess.run(words, env=env, capture_output=True, text=True)
             return done.stdout if done.returncode == 0 else ""
 
-        files = {"socket": "munge.socket", "pid-file": "munge.pid", "log-file": "munge.log", "seed-file": "munge.seed"}  # fmt: skip
-        start("munged", "--foreground", "--force", f"--key-file={key}", *(f"--{k}={folder}/{v}" for k, v in files.items()))  # fmt: skip
+        files = {
+            "socket": "munge.socket",
+            "pid-file": "munge.pid",
+            "log-file": "munge.log",
+            "seed-file": "munge.seed",
+        }
+        start(
+            "munged",
+            "--foreground",
+            "--force",
+            f"--key-file={key}",
+            *(f"--{k}={folder}/{v}" for k, v in files.items()),
+        )
         try:
             _until(lambda: os.path.exists(f"{folder}/munge.socket"), 20, "munged")
             start("slurmctld", "-D", "-f", path)
             start("slurmd", "-D", "-f", path, "-N", host)
-            _until(lambda: "idle" in asked("sinfo", "--noheader", "-o", "%t"), 30, "slurmd")  # fmt: skip
+            _until(
+                lambda: "idle" in asked("sinfo", "--noheader", "-o", "%t"), 30, "slurmd"
+            )
         except TimeoutError as error:
-            told = "".join(open(os.path.join(folder, n), errors="replace").read()[-2000:] for n in os.listdir(folder) if n.endswith("log"))  # fmt: skip
+            told = "".join(
+                open(os.path.join(folder, n), errors="replace").read()[-2000:]
+                for n in os.listdir(folder)
+                if n.endswith("log")
+            )
             raise TimeoutError(f"{error} did not start:\n{told}") from None
         yield env
         asked("scancel", "--user", getpass.getuser())

@@ -43,8 +43,14 @@ def test_values_have_the_moments_of_their_distribution(law, design):
     width=st.floats(1e-3, 1e3),
 )
 @settings(max_examples=40, deadline=None)
-def test_values_lie_in_their_bounds_and_are_the_same_again(seed, runs, design, low, width):  # fmt: skip
-    vary = {"a.b": uniform(low, low + width), "a.c": normal(1.0, 0.5, low=0.5, high=2.0), "d": ["x", "y"]}  # fmt: skip
+def test_values_lie_in_their_bounds_and_are_the_same_again(
+    seed, runs, design, low, width
+):
+    vary = {
+        "a.b": uniform(low, low + width),
+        "a.c": normal(1.0, 0.5, low=0.5, high=2.0),
+        "d": ["x", "y"],
+    }
     made = lambda: Study("any", runs=runs, seed=seed, vary=vary, design=design)
     rows = made().rows()
     assert rows == made().rows() and made().table() == made().table()
@@ -94,9 +100,18 @@ def test_sobol_fills_the_square_evenly():
 
 @pytest.mark.parametrize("design", ["random", "latin", "sobol"])
 @pytest.mark.parametrize("rank", [0.5, -0.8])
-def test_correlated_numbers_have_their_rank_correlation_and_their_distributions(design, rank):  # fmt: skip
+def test_correlated_numbers_have_their_rank_correlation_and_their_distributions(
+    design, rank
+):
     vary = {"a.b": lognormal(2.0, 0.5), "t": choice("x", "y"), "a.c": uniform(0, 1)}
-    rows = Study("any", runs=1000, seed=2, vary=vary, design=design, correlation={("a.b", "a.c"): rank}).rows()  # fmt: skip
+    rows = Study(
+        "any",
+        runs=1000,
+        seed=2,
+        vary=vary,
+        design=design,
+        correlation={("a.b", "a.c"): rank},
+    ).rows()
     one, two = (np.array([row[n] for row in rows]) for n in ("a.b", "a.c"))
     ranks = [np.argsort(np.argsort(v)) for v in (one, two)]
     # the standard error of 1,000 rows is 0.03 at most
@@ -119,6 +134,10 @@ def test_weights_of_a_choice():
 
 
 def test_a_grid_has_all_combinations():
-    study = Study("any", vary={"rate": [20, 40], "joints": ["softening", "brittle", "cyclic"]}, design="grid")  # fmt: skip
+    study = Study(
+        "any",
+        vary={"rate": [20, 40], "joints": ["softening", "brittle", "cyclic"]},
+        design="grid",
+    )
     rows = [(row["rate"], row["joints"]) for row in study.rows()]
     assert study.runs == len(set(rows)) == 6

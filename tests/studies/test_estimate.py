@@ -27,7 +27,13 @@ def bent(generator, shared, rows):
     return near**2 + 0.3 * near * generator.standard_normal(shared), x
 
 
-TRUTH = {"mean": 7, "standard deviation": 5, **{f"{100 * p:g} % quantile": 7 + 5 * stats.norm.ppf(p) for p in estimate.QUANTILES}}  # fmt: skip
+TRUTH = {
+    "mean": 7,
+    "standard deviation": 5,
+    **{
+        f"{100 * p:g} % quantile": 7 + 5 * stats.norm.ppf(p) for p in estimate.QUANTILES
+    },
+}
 
 
 def repeated(find, draw, seed=1):
@@ -61,13 +67,19 @@ def test_the_predicted_variance_is_that_of_repetitions(ofLine):
     predicted = np.mean([e.dear / e.shared + e.cheap / e.rows for e in found])
     truth = 25 * (1 - 0.97**2) / 20 + 25 * 0.97**2 / 200
     scatter = math.sqrt(2 / REPEATS)  # of the variance of normal numbers, relative
-    assert np.var([e.value for e in found]) == pytest.approx(truth, rel=3 * scatter + 1 / 17)  # fmt: skip
+    assert np.var([e.value for e in found]) == pytest.approx(
+        truth, rel=3 * scatter + 1 / 17
+    )
     assert predicted == pytest.approx(truth, rel=0.15)  # residuals have leverage
 
 
 def test_few_shared_rows_make_no_spread_too_small():
     """Residuals of a line that is fitted to 12 rows are smaller than the errors they show: by a sixth of their variance."""
-    find = lambda y, x: [estimate.deviation(y, x), estimate.quantile(y, x, 0.1), estimate.quantile(y, x, 0.9)]  # fmt: skip
+    find = lambda y, x: [
+        estimate.deviation(y, x),
+        estimate.quantile(y, x, 0.1),
+        estimate.quantile(y, x, 0.9),
+    ]
     spread, low, high = repeated(find, lambda g: line(g, 12, 60, 0.5), seed=3)
     squares = np.array([e.value**2 for e in spread])
     error = squares.std() / math.sqrt(REPEATS)
@@ -104,7 +116,9 @@ def test_the_mean_needs_no_line():
 def test_indicators_find_a_quantile_where_the_bridge_is_wrong():
     truth = np.quantile(bent(np.random.default_rng(9), 2_000_000, 2_000_000)[0], 0.05)
     draw = lambda g: bent(g, 120, 1000)
-    find = lambda y, x: [estimate.quantile(y, x, 0.05, method) for method in ("indicator", "bridge")]  # fmt: skip
+    find = lambda y, x: [
+        estimate.quantile(y, x, 0.05, method) for method in ("indicator", "bridge")
+    ]
     generator = np.random.default_rng(4)
     found = list(zip(*(find(*draw(generator)) for _ in range(50))))
     inside = [np.mean([e.low <= truth <= e.high for e in one]) for one in found]
@@ -147,11 +161,15 @@ def test_cheap_rows_that_tell_nothing_do_no_harm():
 def test_what_is_saved_is_the_rule_of_two_models():
     """Of Peherstorfer, Willcox and Gunzburger: cost over cost alone is (sqrt(1 - ρ²) + sqrt(d/c ρ²))², at the best ratio."""
     rho, prices = 0.98, (60.0, 3.0)
-    pilot = estimate.Estimate("mean", 0, -1, 1, 25 * (1 - rho**2), 25 * rho**2, 25, 20, 200)  # fmt: skip
+    pilot = estimate.Estimate(
+        "mean", 0, -1, 1, 25 * (1 - rho**2), 25 * rho**2, 25, 20, 200
+    )
     best = estimate.allocate(pilot, prices, variance=0.02)
     rule = (math.sqrt(1 - rho**2) + math.sqrt(rho**2 * 3 / 60)) ** 2
     assert best.share == pytest.approx(rule, rel=0.02)  # whole runs
-    assert best.rows / best.shared == pytest.approx(math.sqrt(rho**2 * 60 / (1 - rho**2) / 3), rel=0.03)  # fmt: skip
+    assert best.rows / best.shared == pytest.approx(
+        math.sqrt(rho**2 * 60 / (1 - rho**2) / 3), rel=0.03
+    )
     assert pilot.dear / best.shared + pilot.cheap / best.rows <= 0.02
     assert best.alone == pytest.approx(25 / 0.02, rel=0.01)
     assert best.cost == 60 * best.shared + 3 * best.rows
@@ -170,11 +188,15 @@ def test_no_other_allocation_is_cheaper(shared):
 
 
 def test_an_allocation_gives_the_variance_that_it_promises():
-    truth = estimate.Estimate("mean", 0, -1, 1, 25 * (1 - 0.95**2), 25 * 0.95**2, 25, 0, 0)  # fmt: skip
+    truth = estimate.Estimate(
+        "mean", 0, -1, 1, 25 * (1 - 0.95**2), 25 * 0.95**2, 25, 0, 0
+    )
     best = estimate.allocate(truth, (20, 1), variance=0.1)
     draw = lambda g: line(g, best.shared, best.rows, 0.95)
     (found,) = repeated(lambda y, x: [estimate.mean(y, x)], draw, seed=7)
-    assert np.var([e.value for e in found]) == pytest.approx(0.1, rel=3 * math.sqrt(2 / REPEATS) + 1 / best.shared)  # fmt: skip
+    assert np.var([e.value for e in found]) == pytest.approx(
+        0.1, rel=3 * math.sqrt(2 / REPEATS) + 1 / best.shared
+    )
 
 
 def test_a_budget_is_never_exceeded_and_all_of_it_is_used():
@@ -213,10 +235,16 @@ y30, x30 = line(np.random.default_rng(1), 30, 100, 0.9)
         (lambda: estimate.mean(y30, np.ones(100)), "cheap numbers of all shared rows"),
         (lambda: estimate.quantile(y30, x30, 1), "quantile of 1"),
         (lambda: estimate.quantile(y30, x30, 0.5, "magic"), "'magic' must be"),
-        (lambda: estimate.quantile(y30, x30, 0.05, "indicator"), "100 shared rows or more, there are 30"),  # fmt: skip
+        (
+            lambda: estimate.quantile(y30, x30, 0.05, "indicator"),
+            "100 shared rows or more, there are 30",
+        ),
         (lambda: estimate.allocate(estimate.mean(y30, x30), (0, 1)), "dear run is 0"),
         (lambda: estimate.allocate(estimate.mean(y30, x30), (9, 1)), "either"),
-        (lambda: estimate.allocate(estimate.mean(y30, x30), (9, 1), budget=99), "10 shared rows cost 100"),  # fmt: skip
+        (
+            lambda: estimate.allocate(estimate.mean(y30, x30), (9, 1), budget=99),
+            "10 shared rows cost 100",
+        ),
     ],
 )
 def test_what_no_estimate_can_be_made_of_is_refused(call, told):

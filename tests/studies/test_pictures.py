@@ -23,8 +23,14 @@ def ishigami(x):
 
 
 #: Shares of its variance in closed form: (first, total).
-PARTS = 0.5 * (1 + 0.1 * math.pi**4 / 5) ** 2, 49 / 8, 0.1**2 * math.pi**8 * (1 / 18 - 1 / 50)  # fmt: skip
-ISHIGAMI = dict(zip(NAMES, ((PARTS[0], PARTS[0] + PARTS[2]), (PARTS[1], PARTS[1]), (0, PARTS[2]))))  # fmt: skip
+PARTS = (
+    0.5 * (1 + 0.1 * math.pi**4 / 5) ** 2,
+    49 / 8,
+    0.1**2 * math.pi**8 * (1 / 18 - 1 / 50),
+)
+ISHIGAMI = dict(
+    zip(NAMES, ((PARTS[0], PARTS[0] + PARTS[2]), (PARTS[1], PARTS[1]), (0, PARTS[2])))
+)
 
 
 def test_sobol_indices_of_ishigamis_function_are_its_closed_form():
@@ -71,7 +77,9 @@ def test_effects_are_the_changes_of_a_linear_model():
         change = found[name].change
         assert change.value == pytest.approx(slope * span, abs=3.5 * error)
         assert change.high - change.low == pytest.approx(2 * 1.966 * error, rel=0.15)
-        assert found[name].rank.value == pytest.approx(stats.spearmanr(x[name], y).statistic)  # fmt: skip
+        assert found[name].rank.value == pytest.approx(
+            stats.spearmanr(x[name], y).statistic
+        )
         assert found[name].rank.low < found[name].rank.value < found[name].rank.high
 
 
@@ -79,7 +87,9 @@ def test_intervals_of_rank_correlations_have_nothing_as_often_as_they_say():
     generator, inside = np.random.default_rng(5), 0
     for _ in range(600):
         x = {"bed.cohesion": generator.standard_normal(40)}
-        rank = sensitivity.effects(x, generator.standard_normal(40))["bed.cohesion"].rank  # fmt: skip
+        rank = sensitivity.effects(x, generator.standard_normal(40))[
+            "bed.cohesion"
+        ].rank
         inside += rank.low <= 0 <= rank.high
     assert inside / 600 == pytest.approx(0.95, abs=3 * math.sqrt(0.95 * 0.05 / 600))
 
@@ -92,14 +102,23 @@ def tied(n=40):
 @pytest.mark.parametrize(
     "call, told",
     [
-        (lambda: sensitivity.sobol(*tied()), "independent properties, bed.cohesion and head.cohesion have a rank correlation of 1.00"),  # fmt: skip
-        (lambda: sensitivity.sobol({"a": range(9)}, range(9)), "need 10 rows or more, there are 9"),  # fmt: skip
+        (
+            lambda: sensitivity.sobol(*tied()),
+            "independent properties, bed.cohesion and head.cohesion have a rank correlation of 1.00",
+        ),
+        (
+            lambda: sensitivity.sobol({"a": range(9)}, range(9)),
+            "need 10 rows or more, there are 9",
+        ),
         (lambda: sensitivity.sobol({"a": range(20)}, [1] * 20), "results are the same"),
         (lambda: sensitivity.effects(*tied()), "cannot be told apart"),
         (lambda: sensitivity.effects({"a": [1, 2, 4]}, [1, 2, 3]), "4 rows or more"),
         (lambda: sensitivity.effects({"a": [1, 1]}, [1, 2]), "no property varies"),
         (lambda: sensitivity.effects({"law": ["x", "y"]}, [1, 2]), "law: choices"),
-        (lambda: sensitivity.effects({"a": [1, math.nan]}, [1, 2]), "a: a value is not finite"),  # fmt: skip
+        (
+            lambda: sensitivity.effects({"a": [1, math.nan]}, [1, 2]),
+            "a: a value is not finite",
+        ),
     ],
 )
 def test_what_no_sensitivity_can_be_made_of_is_refused(call, told):
@@ -114,7 +133,11 @@ def test_what_no_sensitivity_can_be_made_of_is_refused(call, told):
 def drawn(monkeypatch):
     """Figures that would be saved, by the name of their file."""
     found = {}
-    monkeypatch.setattr(pictures, "_save", lambda figure, path, dpi: found.update({os.path.basename(path): figure}))  # fmt: skip
+    monkeypatch.setattr(
+        pictures,
+        "_save",
+        lambda figure, path, dpi: found.update({os.path.basename(path): figure}),
+    )
     return found
 
 
@@ -129,12 +152,18 @@ def byLabel(axis):
 def test_a_histogram_has_an_area_of_one_and_the_quantiles_of_the_rows(drawn):
     pictures.histogram("h.png", VALUES, PEAK)
     (axis,) = drawn["h.png"].axes
-    assert sum(bar.get_width() * bar.get_height() for bar in axis.patches if hasattr(bar, "get_width")) == pytest.approx(1)  # fmt: skip
+    assert sum(
+        bar.get_width() * bar.get_height()
+        for bar in axis.patches
+        if hasattr(bar, "get_width")
+    ) == pytest.approx(1)
     for share in (0.05, 0.5, 0.95):
         value = np.quantile(VALUES, share)
         told = byLabel(axis)[f"{100 * share:g} % quantile: {value:.4g}"]
         assert told.get_xdata() == [value, value]
-    (density,) = [line for label, line in byLabel(axis).items() if label.startswith("lognormal")]  # fmt: skip
+    (density,) = [
+        line for label, line in byLabel(axis).items() if label.startswith("lognormal")
+    ]
     x, y = density.get_data()
     assert np.trapz(y, x) == pytest.approx(1, abs=0.02)
     assert axis.get_xlabel() == PEAK
@@ -169,7 +198,9 @@ def test_a_fan_has_all_curves_and_the_median_of_those_that_go_on(drawn):
     assert y[x > 5.1] == pytest.approx(3 * x[x > 5.1])
     assert x[-1] == 10
     assert len(axis.collections[0].get_segments()) == 9
-    assert max(segment[:, 1].max() for segment in axis.collections[0].get_segments()) < 51  # fmt: skip
+    assert (
+        max(segment[:, 1].max() for segment in axis.collections[0].get_segments()) < 51
+    )
     assert "9 curves" in byLabel(axis)
 
 
@@ -188,7 +219,9 @@ def test_a_scatter_matrix_shows_what_varies_and_leaves_out_what_does_not(drawn):
     assert len(seen) == 10  # the lower half of 4 × 4
     shown = drawn["s.png"].axes[12]  # the peak over the first property
     assert shown.get_title() == "+1.00"
-    assert np.array(shown.collections[0].get_offsets()) == pytest.approx(np.column_stack([x[NAMES[0]], y]))  # fmt: skip
+    assert np.array(shown.collections[0].get_offsets()) == pytest.approx(
+        np.column_stack([x[NAMES[0]], y])
+    )
 
 
 def test_bars_stand_for_the_numbers_with_the_largest_on_top(drawn):
@@ -198,11 +231,16 @@ def test_bars_stand_for_the_numbers_with_the_largest_on_top(drawn):
     pictures.tornado("t.png", effects, PEAK)
     pictures.sobol("i.png", found, PEAK)
     left, _ = drawn["t.png"].axes
-    assert [bar.get_width() for bar in left.patches] == [e.change.value for e in effects.values()][::-1]  # fmt: skip
+    assert [bar.get_width() for bar in left.patches] == [
+        e.change.value for e in effects.values()
+    ][::-1]
     assert left.get_yticklabels()[-1].get_text() == "bed: friction"
     (axis,) = drawn["i.png"].axes
     totals = [bar.get_width() for bar in axis.patches][:3]
-    assert totals == [found.indices[t.get_text().replace(": ", ".")].total.value for t in axis.get_yticklabels()]  # fmt: skip
+    assert totals == [
+        found.indices[t.get_text().replace(": ", ".")].total.value
+        for t in axis.get_yticklabels()
+    ]
     assert totals[-1] == max(totals)
 
 
@@ -229,12 +267,18 @@ def writeStudy(folder, rows, measures, curves=0):
     """A folder as gathering leaves it. Of ``rows`` and ``measures`` a cell that is empty has no number."""
     os.makedirs(folder)
     heads = ["run", *NAMES, "status", *measures]
-    lines = [[f"{n:04d}", *map(repr, row), "ended" if any(cells) else "failed", *cells] for n, (row, cells) in enumerate(zip(rows, zip(*measures.values())), 1)]  # fmt: skip
+    lines = [
+        [f"{n:04d}", *map(repr, row), "ended" if any(cells) else "failed", *cells]
+        for n, (row, cells) in enumerate(zip(rows, zip(*measures.values())), 1)
+    ]
     with open(os.path.join(folder, "study.csv"), "w") as f:
         f.writelines(",".join(line) + "\n" for line in [heads, *lines])
     with open(os.path.join(folder, "times.csv"), "w") as f:
         f.write("run,status,host,run_seconds,job_seconds,commit,told\n")
-        f.writelines(f"{line[0]},{line[4]},here,9,{10 + n % 2},,\n" for n, line in enumerate(lines))  # fmt: skip
+        f.writelines(
+            f"{line[0]},{line[4]},here,9,{10 + n % 2},,\n"
+            for n, line in enumerate(lines)
+        )
     for n in range(curves):
         os.makedirs(os.path.join(folder, "rows", lines[n][0]))
         with open(os.path.join(folder, "rows", lines[n][0], "curve.csv"), "w") as f:
@@ -247,7 +291,9 @@ def studies(tmp_path):
     """A dear study with the first 15 rows of a cheap one of 120, whose peaks miss those of the dear one by a little."""
     generator = np.random.default_rng(10)
     rows = generator.uniform(0, 1, (120, 3)).tolist()
-    dear = [100 + 20 * a - 10 * b + 0.3 * generator.standard_normal() for a, b, _ in rows]  # fmt: skip
+    dear = [
+        100 + 20 * a - 10 * b + 0.3 * generator.standard_normal() for a, b, _ in rows
+    ]
     cheap = [1.1 * y - 3 + 0.3 * generator.standard_normal() for y in dear]
     order = generator.permutation(120)
     shuffled = {"peak_base_shear_kN": [repr(cheap[i]) for i in order]}
@@ -262,7 +308,9 @@ def studies(tmp_path):
 
 def test_shared_rows_are_found_by_what_varied_in_them(studies):
     dear, cheap, peaks = studies
-    y, x, shared, rows = records.paired(records.Record(dear), records.Record(cheap), "peak_base_shear_kN")  # fmt: skip
+    y, x, shared, rows = records.paired(
+        records.Record(dear), records.Record(cheap), "peak_base_shear_kN"
+    )
     assert y == pytest.approx(peaks[:15]) and shared == list(range(15))
     assert len(x) == 120 and sorted(rows) == list(range(120))
     assert x[:15] == pytest.approx(1.1 * y - 3, abs=1.5)
@@ -284,7 +332,9 @@ def test_rows_without_a_number_in_either_study_are_not_shared(studies):
 def test_studies_of_which_it_cannot_be_told_what_they_share_are_refused(studies):
     few, many = map(records.Record, studies[:2])
     many.varied = many.varied[:2]
-    with pytest.raises(Refused, match="varies bed.cohesion, bed.friction, head.tensileStrength, and"):  # fmt: skip
+    with pytest.raises(
+        Refused, match="varies bed.cohesion, bed.friction, head.tensileStrength, and"
+    ):
         records.paired(few, many, "peak_base_shear_kN")
     few, many = map(records.Record, studies[:2])
     for name in NAMES:
@@ -340,7 +390,7 @@ def test_what_is_no_study_is_refused_with_its_name(tmp_path, studies, capsys):
         (
             [studies[0], "--measure", "peak"],
             "no column peak; there are run, bed.cohesion",
-        ),  # fmt: skip
+        ),
         ([studies[0], "--demand", "a"], "--demand a must be numbers"),
         ([studies[0], "--prices", "1"], "--prices 1 must be two numbers"),
     ):

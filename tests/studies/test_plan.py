@@ -11,11 +11,24 @@ from masonry import batch, fields
 from masonry.errors import Refused
 from masonry.study import Study, choice, field, lognormal, normal, uniform
 
-GRID = {"rate": [20, 40.5], "bed.cohesion+bed.tensileStrength": [1], "joints": ["softening"]}  # fmt: skip
+GRID = {
+    "rate": [20, 40.5],
+    "bed.cohesion+bed.tensileStrength": [1],
+    "joints": ["softening"],
+}
 
 
 def table(tmp_path):
-    study = Study("any", options={"quick": True, "preset": None}, vary={"rate": [20, 40.5], "joints": ["softening"], ("bed.friction", "head.friction"): [0.1, 0.43]}, design="grid")  # fmt: skip
+    study = Study(
+        "any",
+        options={"quick": True, "preset": None},
+        vary={
+            "rate": [20, 40.5],
+            "joints": ["softening"],
+            ("bed.friction", "head.friction"): [0.1, 0.43],
+        },
+        design="grid",
+    )
     path = tmp_path / "table.txt"
     path.write_text(study.table())
     return path
@@ -27,24 +40,45 @@ def test_yade_reads_the_table(tmp_path):
     path = table(tmp_path)
     rows = utils.TableParamReader(str(path)).paramDict()
     assert rows == batch.readTable(str(path))
-    assert [row["description"] for row in rows.values()] == ["0001", "0002", "0003", "0004"]  # fmt: skip
+    assert [row["description"] for row in rows.values()] == [
+        "0001",
+        "0002",
+        "0003",
+        "0004",
+    ]
     assert utils.readParamsFromTable(f"{path}:4", unknownOk=True) == 6
     from yade.params import table as read
 
-    assert (read.rate, read.joints, read.quick, read.preset) == (40.5, "softening", True, None)  # fmt: skip
+    assert (read.rate, read.joints, read.quick, read.preset) == (
+        40.5,
+        "softening",
+        True,
+        None,
+    )
     assert getattr(read, "bed.friction+head.friction") == 0.1
 
 
 def test_a_row_is_the_words_of_a_command_line(tmp_path):
     rows = batch.readTable(str(table(tmp_path)))
-    assert batch.optionWords(rows[5]) == ["--lean", "--quick", "--rate=40.5", "--joints=softening", "--set=bed.friction=0.43", "--set=head.friction=0.43"]  # fmt: skip
+    assert batch.optionWords(rows[5]) == [
+        "--lean",
+        "--quick",
+        "--rate=40.5",
+        "--joints=softening",
+        "--set=bed.friction=0.43",
+        "--set=head.friction=0.43",
+    ]
 
 
 def test_a_table_of_the_users_own(tmp_path):
     path = tmp_path / "t"
     path.write_text("# mine\nrate! until # both in mm\n\n20 1\n= 2\n40 *\n")
     rows = batch.readTable(str(path))
-    assert {n: batch.optionWords(r) for n, r in rows.items()} == {4: ["--rate=20", "--until=1"], 5: ["--rate=20", "--until=2"], 6: ["--rate=40"]}  # fmt: skip
+    assert {n: batch.optionWords(r) for n, r in rows.items()} == {
+        4: ["--rate=20", "--until=1"],
+        5: ["--rate=20", "--until=2"],
+        6: ["--rate=40"],
+    }
     path.write_text("rate until\n20\n")
     with pytest.raises(Refused, match="line 2: 1 values in 2 columns"):
         batch.readTable(str(path))
@@ -57,7 +91,11 @@ def test_a_field_is_read_as_it_is_written():
     assert names == ["bed.cohesion", "head.cohesion"]
     same = fields.lognormal(0.3, 0.5, 7)
     assert function(1, 0, 0.5) == same(1, 0, 0.5) != 1
-    for wrong in ("bed.cohesion=lognormal(0.3)", "bed=lognormal(cov=0.3,length=0,seed=1)", "bed.cohesion=lognormal(cov=x,length=0,seed=1)"):  # fmt: skip
+    for wrong in (
+        "bed.cohesion=lognormal(0.3)",
+        "bed=lognormal(cov=0.3,length=0,seed=1)",
+        "bed.cohesion=lognormal(cov=x,length=0,seed=1)",
+    ):
         with pytest.raises(ValueError, match="bed"):
             fields.read(wrong)
 
@@ -70,12 +108,18 @@ WRONG = {
     "must be a list of values": dict(vary={"rate": uniform(1, 2)}, design="grid"),
     "design 'best' must be random": dict(runs=1, vary={"rate": [1]}, design="best"),
     "seed -1 must be": dict(runs=1, vary={"rate": [1]}, seed=-1),
-    "option 'out' is the study's own": dict(runs=1, vary={"rate": [1]}, options={"out": "x"}),  # fmt: skip
+    "option 'out' is the study's own": dict(
+        runs=1, vary={"rate": [1]}, options={"out": "x"}
+    ),
     "rate: given twice": dict(runs=1, vary={"rate": [1]}, options={"rate": 2}),
-    "only a property of joints can be a field": dict(runs=1, vary={"rate": field(cov=0.1)}),  # fmt: skip
+    "only a property of joints can be a field": dict(
+        runs=1, vary={"rate": field(cov=0.1)}
+    ),
     "has a blank or #": dict(runs=1, vary={"joints": ["soft ening"]}),
     "is no number, list, distribution": dict(runs=1, vary={"rate": {}}),
-    "of two names that have distributions": dict(runs=1, vary={"rate": [1]}, correlation={("rate", "until"): 0.5}),  # fmt: skip
+    "of two names that have distributions": dict(
+        runs=1, vary={"rate": [1]}, correlation={("rate", "until"): 0.5}
+    ),
     "must be an option, with underscores": dict(runs=1, vary={"no-vtk": [True]}),
 }
 
@@ -115,14 +159,27 @@ def test_wrong_variables_are_refused(make, told):
 
 def test_without_openturns_one_sentence_names_the_package(tmp_path):
     (tmp_path / "openturns.py").write_text("raise ImportError('none')")
-    code = "from masonry.study import *; Study('any', runs=2, vary={'rate': uniform(1, 2)}).rows()"  # fmt: skip
+    code = "from masonry.study import *; Study('any', runs=2, vary={'rate': uniform(1, 2)}).rows()"
     paths = os.pathsep.join([str(tmp_path), *filter(None, sys.path)])
-    done = subprocess.run([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": paths}, capture_output=True, text=True)  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        env={**os.environ, "PYTHONPATH": paths},
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode == 1
-    assert done.stderr.splitlines()[-1].endswith("apt-get install --no-install-recommends python3-openturns")  # fmt: skip
+    assert done.stderr.splitlines()[-1].endswith(
+        "apt-get install --no-install-recommends python3-openturns"
+    )
     # a grid of numbers needs none
-    grid = code.replace("runs=2, vary={'rate': uniform(1, 2)}", "design='grid', vary={'rate': [1, 2]}")  # fmt: skip
-    subprocess.run([sys.executable, "-c", grid], env={**os.environ, "PYTHONPATH": paths}, check=True)  # fmt: skip
+    grid = code.replace(
+        "runs=2, vary={'rate': uniform(1, 2)}", "design='grid', vary={'rate': [1, 2]}"
+    )
+    subprocess.run(
+        [sys.executable, "-c", grid],
+        env={**os.environ, "PYTHONPATH": paths},
+        check=True,
+    )
 
 
 def test_scenes_are_found_by_their_name():

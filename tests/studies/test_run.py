@@ -40,16 +40,29 @@ def write(folder, text=STUDY):
 
 
 def study(*words, env=None, **settings):
-    return subprocess.run([*COMMAND, *map(str, words)], capture_output=True, text=True, env=env, **settings)  # fmt: skip
+    return subprocess.run(
+        [*COMMAND, *map(str, words)],
+        capture_output=True,
+        text=True,
+        env=env,
+        **settings,
+    )
 
 
 def start(path, out):
-    return subprocess.Popen([*COMMAND, path, "--out", out, "--jobs", "2"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)  # fmt: skip
+    return subprocess.Popen(
+        [*COMMAND, path, "--out", out, "--jobs", "2"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
 
 
 def family(process):
     """Ids and command lines of a process and of all that it has started and that live."""
-    listed = subprocess.run(["ps", "-e", "-o", "pid=,ppid=,args="], capture_output=True, text=True).stdout  # fmt: skip
+    listed = subprocess.run(
+        ["ps", "-e", "-o", "pid=,ppid=,args="], capture_output=True, text=True
+    ).stdout
     told = [line.split(None, 2) for line in listed.splitlines()]
     found = {str(process.pid)}
     while True:
@@ -61,8 +74,12 @@ def family(process):
 
 def listening(pids):
     """Addresses on which processes listen, as ss tells."""
-    lines = subprocess.run(["ss", "-ltnp"], capture_output=True, text=True).stdout.splitlines()[1:]  # fmt: skip
-    return {line.split()[3] for line in lines if any(f"pid={pid}," in line for pid in pids)}  # fmt: skip
+    lines = subprocess.run(
+        ["ss", "-ltnp"], capture_output=True, text=True
+    ).stdout.splitlines()[1:]
+    return {
+        line.split()[3] for line in lines if any(f"pid={pid}," in line for pid in pids)
+    }
 
 
 def read(out, name="study.csv"):
@@ -99,11 +116,21 @@ def test_a_study_runs_all_rows_once(whole):
     for number, (row, asked) in enumerate(zip(rows, table), 1):
         run = readRun(str(out / "rows" / f"{number:04d}"))
         assert float(row["peak_base_shear_kN"]) == run["peak_base_shear_kN"] > 1
-        assert float(row["bed.friction"]) == run["joints"]["bed"]["friction"] == float(asked["bed.friction"])  # fmt: skip
+        assert (
+            float(row["bed.friction"])
+            == run["joints"]["bed"]["friction"]
+            == float(asked["bed.friction"])
+        )
         assert run["options"]["joints"] == row["joints"] == batch.value(asked["joints"])
-        assert run["options"]["field"] == ["bed.cohesion+bed.tensileStrength=" + batch.value(asked["field:bed.cohesion+bed.tensileStrength"])]  # fmt: skip
+        assert run["options"]["field"] == [
+            "bed.cohesion+bed.tensileStrength="
+            + batch.value(asked["field:bed.cohesion+bed.tensileStrength"])
+        ]
         assert row["failure_mode"] and float(row["push_work_J"]) > 0
-        assert sorted(os.listdir(out / "rows" / f"{number:04d}")) == ["curve.csv", "run.json"]  # fmt: skip
+        assert sorted(os.listdir(out / "rows" / f"{number:04d}")) == [
+            "curve.csv",
+            "run.json",
+        ]
     assert len({row["peak_base_shear_kN"] for row in rows}) == 4
     assert not any("seconds" in name or "host" in name for name in rows[0])
 
@@ -132,7 +159,11 @@ def test_a_row_by_hand_gives_the_same(whole, tmp_path):
     out, *_ = whole
     words = batch.optionWords(batch.readTable(str(out / "table.txt"))[3])
     words.remove("--lean")
-    subprocess.run(["yade", "-n", "-x", SMALL, *words, "--out", str(tmp_path / "r")], check=True, capture_output=True)  # fmt: skip
+    subprocess.run(
+        ["yade", "-n", "-x", SMALL, *words, "--out", str(tmp_path / "r")],
+        check=True,
+        capture_output=True,
+    )
     curve = (tmp_path / "r" / "curve.csv").read_bytes()
     assert curve == (out / "rows" / "0002" / "curve.csv").read_bytes()
     numbers = measure(str(tmp_path / "r"))
@@ -144,7 +175,9 @@ def test_a_row_by_hand_gives_the_same(whole, tmp_path):
             assert float(row[name]) == pytest.approx(numbers[name], rel=1e-6), name
             compared += 1
     assert compared > 20
-    assert row["failure_mode"] == failureMode(numbers, readRun(str(tmp_path / "r"))["wall"])  # fmt: skip
+    assert row["failure_mode"] == failureMode(
+        numbers, readRun(str(tmp_path / "r"))["wall"]
+    )
 
 
 def test_plain_yade_batch_runs_the_table(whole, tmp_path):
@@ -152,7 +185,17 @@ def test_plain_yade_batch_runs_the_table(whole, tmp_path):
     (tmp_path / "t").mkdir()
     for name in ("table.txt", "study.json"):
         shutil.copy(out / name, tmp_path / "t")
-    command = ["yade-batch", "-j", "2", "--lines", "2,4", "--log", "t/@.log", "t/table.txt", SMALL]  # fmt: skip
+    command = [
+        "yade-batch",
+        "-j",
+        "2",
+        "--lines",
+        "2,4",
+        "--log",
+        "t/@.log",
+        "t/table.txt",
+        SMALL,
+    ]
     # its own port stays closed in a network of its own, if that can be had
     alone = ["unshare", "--user", "--map-current-user", "--net"]
     if subprocess.run([*alone, "true"], capture_output=True).returncode == 0:
@@ -167,7 +210,11 @@ def test_plain_yade_batch_runs_the_table(whole, tmp_path):
 def kill(process, who):
     """Kill the command, its yade-batch, or one of its jobs. Returns whether there was one."""
     marks = {"batch": "study.yadebatch", "job": JOB}
-    found = [pid for pid, args in family(process).items() if (pid == process.pid if who == "command" else marks[who] in args)]  # fmt: skip
+    found = [
+        pid
+        for pid, args in family(process).items()
+        if (pid == process.pid if who == "command" else marks[who] in args)
+    ]
     if not found:
         return False
     with contextlib.suppress(ProcessLookupError):
@@ -179,10 +226,16 @@ def kill(process, who):
 def test_kills_at_random_moments_change_no_number(whole, tmp_path, seed):
     random.seed(seed)
     path, out, kills = write(tmp_path), tmp_path / "out", []
-    for victims in (["job", "batch", "command"], ["batch", "command"], ["job", "batch"]):  # fmt: skip
+    for victims in (
+        ["job", "batch", "command"],
+        ["batch", "command"],
+        ["job", "batch"],
+    ):
         process = start(path, out)
         for who in victims:
-            while process.poll() is None and not any(JOB in a for a in family(process).values()):  # fmt: skip
+            while process.poll() is None and not any(
+                JOB in a for a in family(process).values()
+            ):
                 time.sleep(0.05)
             time.sleep(random.uniform(0, 2))
             if process.poll() is None and kill(process, who):
@@ -214,7 +267,11 @@ def test_ctrl_c_leaves_checkpoints_and_the_study_goes_on(whole, tmp_path):
     assert any(readRun(str(folder))["resumed_at_s"] for folder in interrupted)
 
 
-FAILS = STUDY.replace('"joints": ["softening", "cyclic"]', '"fall": [False, True]').replace("runs=4", 'design="grid"').replace("lognormal(mean=0.43, cov=0.05)", "[0.43]")  # fmt: skip
+FAILS = (
+    STUDY.replace('"joints": ["softening", "cyclic"]', '"fall": [False, True]')
+    .replace("runs=4", 'design="grid"')
+    .replace("lognormal(mean=0.43, cov=0.05)", "[0.43]")
+)
 
 
 def test_a_row_that_fails_is_named_and_the_others_run(tmp_path):
@@ -239,7 +296,9 @@ def refused(tmp_path, text, *words, env=None):
     assert done.returncode == 2, done.stdout + done.stderr
     assert "Traceback" not in done.stderr
     assert not out.exists()
-    assert not (tmp_path / "results").exists() and not os.path.exists(os.path.join(HERE, "results"))  # fmt: skip
+    assert not (tmp_path / "results").exists() and not os.path.exists(
+        os.path.join(HERE, "results")
+    )
     return done.stderr
 
 
@@ -262,8 +321,8 @@ study = Study({SMALL!r}, runs=20, seed=1, options={{"until": 1, "dance": 3}}, va
     for sentence in (
         "dance: the scene has no such option",
         "color: the scene has no such option",
-        "bed.friction: normal(mean=0.43, cov=0.5) gives impossible values in 2.3 % of all rows: it must be at least 0",  # fmt: skip
-        "support.cohesion: support joints of the scene are linear elastic and ignore it",  # fmt: skip
+        "bed.friction: normal(mean=0.43, cov=0.5) gives impossible values in 2.3 % of all rows: it must be at least 0",
+        "support.cohesion: support joints of the scene are linear elastic and ignore it",
         "bed.stickiness: a MasonryJoint has no such property",
         "no joint 'wall', there are ",
         "argument --rate: -",
@@ -272,10 +331,15 @@ study = Study({SMALL!r}, runs=20, seed=1, options={{"until": 1, "dance": 3}}, va
 
 
 def test_rows_that_contradict_themselves_are_told_by_their_number(tmp_path):
-    vary = '{"bed.tensileStrength": uniform(1e4, 5e5), ("head.tensileStrength",): field(cov=0.5)}'  # fmt: skip
-    told = refused(tmp_path, f"from masonry.study import *\nstudy = Study({SMALL!r}, runs=8, seed=1, vary={vary})")  # fmt: skip
+    vary = '{"bed.tensileStrength": uniform(1e4, 5e5), ("head.tensileStrength",): field(cov=0.5)}'
+    told = refused(
+        tmp_path,
+        f"from masonry.study import *\nstudy = Study({SMALL!r}, runs=8, seed=1, vary={vary})",
+    )
     assert re.search(r'row 000\d.*: joint "bed": tensile strength', told), told
-    assert re.search(r"--field head.tensileStrength=.*where the field is [\d.]+ of the mean", told), told  # fmt: skip
+    assert re.search(
+        r"--field head.tensileStrength=.*where the field is [\d.]+ of the mean", told
+    ), told
 
 
 DEAF = """
@@ -288,7 +352,7 @@ scene.finish()
 
 
 def test_a_scene_that_ignores_what_varies_is_refused(tmp_path):
-    text = "from masonry.study import *\nstudy = Study('scene.py', vary={'bed.friction': [0.4, 0.5]}, design='grid')"  # fmt: skip
+    text = "from masonry.study import *\nstudy = Study('scene.py', vary={'bed.friction': [0.4, 0.5]}, design='grid')"
     (tmp_path / "scene.py").write_text(DEAF)
     told = refused(tmp_path, text)
     assert "takes no options from the command line" in told
@@ -307,13 +371,21 @@ def test_another_study_in_the_folder_is_refused(whole, tmp_path):
     path = write(tmp_path, STUDY.replace("seed=1", "seed=2").replace("0.05", "0.06"))
     done = study(path, "--out", out)
     assert done.returncode == 2
-    for told in ("holds another study", "seed is 1, not 2", '"cov": 0.05}', '"cov": 0.06}'):  # fmt: skip
+    for told in (
+        "holds another study",
+        "seed is 1, not 2",
+        '"cov": 0.05}',
+        '"cov": 0.06}',
+    ):
         assert told in done.stderr, done.stderr
     assert before == {path: path.read_bytes() for path in out.glob("*.*")}
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "letter.txt").write_text("dear")
     done = study(path, "--out", tmp_path / "mine")
-    assert done.returncode == 2 and "is not empty (letter.txt) and holds no study" in done.stderr  # fmt: skip
+    assert (
+        done.returncode == 2
+        and "is not empty (letter.txt) and holds no study" in done.stderr
+    )
     assert os.listdir(tmp_path / "mine") == ["letter.txt"]
 
 
@@ -340,7 +412,9 @@ def test_a_missing_engine_is_told_before_anything_runs(tmp_path, engine, words):
 def disk(place, size):
     """A small file system of its own."""
     place.mkdir()
-    if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", place]).returncode:  # fmt: skip
+    if subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", place]
+    ).returncode:
         pytest.skip("no file system can be mounted here")
     try:
         yield place
@@ -395,16 +469,24 @@ def test_slurm_gives_the_same(whole, slurm, tmp_path):
     assert "#SBATCH --array=0-1" in (out / "slurm.sh").read_text()
     again = study(path, "--out", out, "--slurm", env=slurm)
     assert again.returncode == 2 and f"job array {job} still has tasks" in again.stderr
-    asked = lambda *words: subprocess.run(words, env=slurm, capture_output=True, text=True).stdout  # fmt: skip
+    asked = lambda *words: subprocess.run(
+        words, env=slurm, capture_output=True, text=True
+    ).stdout
     wait(lambda: [*out.glob("rows/*/run.checkpoint")], 60)
-    asked("scancel", "--signal=USR1", "--batch", f"{job}_0")  # as at the end of its time
+    asked(
+        "scancel", "--signal=USR1", "--batch", f"{job}_0"
+    )  # as at the end of its time
     asked("scontrol", "requeue", f"{job}_1")
     wait(lambda: not asked("squeue", "--noheader"), 120)
     done = study("--out", out, "--gather", env=slurm)
-    assert done.returncode == 0, done.stdout + "".join(p.read_text() for p in out.glob("rows/*.out"))  # fmt: skip
+    assert done.returncode == 0, done.stdout + "".join(
+        p.read_text() for p in out.glob("rows/*.out")
+    )
     assert read(out) == read(whole[0])
     assert sorted(ended(out)) == sorted(set(ended(out))), "a row was run twice"
-    resumed = [readRun(str(p.parent))["resumed_at_s"] for p in out.glob("rows/*/run.json")]  # fmt: skip
+    resumed = [
+        readRun(str(p.parent))["resumed_at_s"] for p in out.glob("rows/*/run.json")
+    ]
     assert any(resumed)
 
 

@@ -29,7 +29,11 @@ def test_intervals_of_a_mean_have_it_as_often_as_they_say():
 def test_intervals_of_a_standard_deviation_have_it_as_often_as_they_say(normal):
     """Also of a distribution that is not normal: the lognormal one of a strength that scatters by 20 %."""
     scale = math.sqrt(math.log(1.04))
-    draw = lambda g: g.standard_normal(60) if normal else g.lognormal(-(scale**2) / 2, scale, 60)  # fmt: skip
+    draw = (
+        lambda g: g.standard_normal(60)
+        if normal
+        else g.lognormal(-(scale**2) / 2, scale, 60)
+    )
     found = covered(statistics.deviation, draw, 1 if normal else 0.2)
     # Bonett's interval is an approximation: it may have the truth somewhat more often, or 1 % less
     assert 0.94 - CHANCE <= found <= 0.975
@@ -64,7 +68,9 @@ def test_shares_are_counted_with_the_most_frequent_first():
     assert found["rocks"].value == 0.8
     # Wilson's interval of 8 of 10, by its formula with z = 1.96
     z = stats.norm.ppf(0.975)
-    centre, half = (0.8 + z * z / 20) / (1 + z * z / 10), z * math.sqrt(0.8 * 0.2 / 10 + z * z / 400) / (1 + z * z / 10)  # fmt: skip
+    centre, half = (0.8 + z * z / 20) / (1 + z * z / 10), z * math.sqrt(
+        0.8 * 0.2 / 10 + z * z / 400
+    ) / (1 + z * z / 10)
     assert found["rocks"][1:] == pytest.approx((centre - half, centre + half))
 
 
@@ -92,7 +98,9 @@ def test_a_lognormal_distribution_is_found_and_another_one_is_doubted():
     assert found.median == pytest.approx(100, rel=4 * 0.2 / math.sqrt(2000))
     assert found.dispersion == pytest.approx(0.2, rel=4 / math.sqrt(4000))
     assert found.fits > 0.01
-    twoModes = np.concatenate([generator.normal(100, 2, 100), generator.normal(130, 2, 100)])  # fmt: skip
+    twoModes = np.concatenate(
+        [generator.normal(100, 2, 100), generator.normal(130, 2, 100)]
+    )
     assert statistics.lognormal(twoModes).fits < 1e-4
 
 

@@ -42,7 +42,7 @@ VARY = {
 STUDIES = {
     "few": ("accurate", 12, 1),
     "many": ("fast", 150, 1),
-    "alone": ("accurate", 100, 2),
+    "alone": ("accurate", 24, 2),
 }
 
 #: The most that few and many may cost, over the cost of accurate runs alone [-].
@@ -50,20 +50,36 @@ SHARE = 0.2
 
 
 def folder(wall, name):
-    return os.path.join(RESULTS, "validation", "multifidelity", wall.replace("-", "_").lower() + "_" + name)  # fmt: skip
+    return os.path.join(
+        RESULTS,
+        "validation",
+        "multifidelity",
+        wall.replace("-", "_").lower() + "_" + name,
+    )
 
 
 def study(wall, name):
     scene, until = WALLS[wall]
     preset, runs, seed = STUDIES[name]
-    return Study(scene, options={"preset": preset, "until": until}, runs=runs, seed=seed, vary=VARY)  # fmt: skip
+    return Study(
+        scene,
+        options={"preset": preset, "until": until},
+        runs=runs,
+        seed=seed,
+        vary=VARY,
+    )
 
 
 def check(wall):
     """Refuse studies of which the first rows of *many* are not those of *few*."""
-    few, many = ([{n: row[n] for n in made.vary} for row in made.rows()] for made in (study(wall, "few"), study(wall, "many")))  # fmt: skip
+    few, many = (
+        [{n: row[n] for n in made.vary} for row in made.rows()]
+        for made in (study(wall, "few"), study(wall, "many"))
+    )
     if few != many[: len(few)]:
-        raise Refused(f"{wall}: the first {len(few)} of {len(many)} rows are not the {len(few)} rows of the same seed")  # fmt: skip
+        raise Refused(
+            f"{wall}: the first {len(few)} of {len(many)} rows are not the {len(few)} rows of the same seed"
+        )
 
 
 def run(jobs):
@@ -116,7 +132,17 @@ def compare(wall):
         met[1] &= paid.share <= SHARE
         if found.name == "mean":
             met[2] &= _half(found) <= _half(known)
-        lines.append([wall, found.name, _told(known), _told(found), "yes" if agrees else "no", f"{paid.alone:.0f}", f"{100 * paid.share:.0f} %"])  # fmt: skip
+        lines.append(
+            [
+                wall,
+                found.name,
+                _told(known),
+                _told(found),
+                "yes" if agrees else "no",
+                f"{paid.alone:.0f}",
+                f"{100 * paid.share:.0f} %",
+            ]
+        )
     correlation = np.corrcoef(y, x[: len(y)])[0, 1]
     summary = (
         f"{wall}: correlation {correlation:.4f} over {len(y)} shared rows; a run of accurate takes {prices[0]:.1f} s, one of fast "
@@ -143,11 +169,21 @@ def draw(found):
 
     with _style():
         figure = _drawing(7, 3.2)
-        for axis, (wall, (y, x, values)) in zip(figure.subplots(1, len(found), squeeze=False)[0], found.items()):  # fmt: skip
+        for axis, (wall, (y, x, values)) in zip(
+            figure.subplots(1, len(found), squeeze=False)[0], found.items()
+        ):
             axis.plot(x, y, "o", color=COLOURS[0], ms=4, label="shared rows")
             ends = np.array([min(*x, *y), max(*x, *y)])
             axis.plot(ends, ends, color="0.6", lw=0.8, label="fast = accurate")
-            axis.plot(np.full(len(values), ends[0]), values, "_", color=COLOURS[1], ms=8, alpha=0.5, label="accurate alone")  # fmt: skip
+            axis.plot(
+                np.full(len(values), ends[0]),
+                values,
+                "_",
+                color=COLOURS[1],
+                ms=8,
+                alpha=0.5,
+                label="accurate alone",
+            )
             axis.set_title(wall, fontsize=10)
             axis.set_xlabel("peak of fast [kN]")
             axis.set_ylabel("peak of accurate [kN]")
@@ -159,8 +195,12 @@ def draw(found):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="runs at a time")  # fmt: skip
-    parser.add_argument("--compare", action="store_true", help="compare what is there, run nothing")  # fmt: skip
+    parser.add_argument(
+        "--jobs", type=int, default=os.cpu_count(), help="runs at a time"
+    )
+    parser.add_argument(
+        "--compare", action="store_true", help="compare what is there, run nothing"
+    )
     args = parser.parse_args()
     try:
         if not args.compare and not run(args.jobs):
@@ -174,9 +214,22 @@ def main():
     except Refused as refused:
         print(refused, file=sys.stderr)
         return 2
-    heads = ["wall", "peak, kN", "accurate alone", "few and many", "agree", "accurate runs for the same", "cost over theirs"]  # fmt: skip
+    heads = [
+        "wall",
+        "peak, kN",
+        "accurate alone",
+        "few and many",
+        "agree",
+        "accurate runs for the same",
+        "cost over theirs",
+    ]
     print(table(heads, lines), "", *told, "", sep="\n")
-    print(table(["wall", "agrees", f"cost at most {100 * SHARE:.0f} %", "mean as narrow"], limits))  # fmt: skip
+    print(
+        table(
+            ["wall", "agrees", f"cost at most {100 * SHARE:.0f} %", "mean as narrow"],
+            limits,
+        )
+    )
     draw(pictures)
     return 0
 

@@ -7,4 +7,11 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from masonry.study import Study
 from ranges import VARY
 
-study = Study("wall_comp1", options={"preset": "fast", "until": 25}, runs=600, seed=1, vary=VARY, design="latin")  # fmt: skip
+study = Study(
+    "wall_comp1",
+    options={"preset": "fast", "until": 25},
+    runs=600,
+    seed=1,
+    vary=VARY,
+    design="latin",
+)

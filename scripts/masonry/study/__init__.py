@@ -22,7 +22,15 @@ import importlib
 #: Public names by the module that has them. They are loaded when they are used first, because a row needs none of them.
 _NAMES = {
     "plan": ["Study"],
-    "variables": ["Distribution", "Field", "choice", "field", "lognormal", "normal", "uniform"],  # fmt: skip
+    "variables": [
+        "Distribution",
+        "Field",
+        "choice",
+        "field",
+        "lognormal",
+        "normal",
+        "uniform",
+    ],
 }
 __all__ = [name for names in _NAMES.values() for name in names]
 

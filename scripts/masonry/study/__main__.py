@@ -15,13 +15,38 @@ from .start import begin
 
 
 def parser():
-    p = argparse.ArgumentParser(prog="python3 -m masonry.study", description="Run a scene many times with values that vary; go on with a study that was stopped; gather what came out.", epilog="With --slurm all other options, for example --partition=long --time=2:00:00, are those of sbatch.")  # fmt: skip
-    p.add_argument("file", metavar="FILE", nargs="?", help="Python file that makes one masonry.study.Study; not needed to --gather")  # fmt: skip
+    p = argparse.ArgumentParser(
+        prog="python3 -m masonry.study",
+        description="Run a scene many times with values that vary; go on with a study that was stopped; gather what came out.",
+        epilog="With --slurm all other options, for example --partition=long --time=2:00:00, are those of sbatch.",
+    )
+    p.add_argument(
+        "file",
+        metavar="FILE",
+        nargs="?",
+        help="Python file that makes one masonry.study.Study; not needed to --gather",
+    )
     p.add_argument("--out", metavar="DIR", required=True, help="folder of the study")
-    p.add_argument("--jobs", metavar="N", type=int, default=os.cpu_count(), help="runs at a time (default: %(default)s, all cores)")  # fmt: skip
-    p.add_argument("--slurm", action="store_true", help="run the rows on a cluster: one job array")  # fmt: skip
-    p.add_argument("--prepare", action="store_true", help="check the study and make its folder; run nothing")  # fmt: skip
-    p.add_argument("--gather", action="store_true", help="write study.csv of what is there; run nothing")  # fmt: skip
+    p.add_argument(
+        "--jobs",
+        metavar="N",
+        type=int,
+        default=os.cpu_count(),
+        help="runs at a time (default: %(default)s, all cores)",
+    )
+    p.add_argument(
+        "--slurm", action="store_true", help="run the rows on a cluster: one job array"
+    )
+    p.add_argument(
+        "--prepare",
+        action="store_true",
+        help="check the study and make its folder; run nothing",
+    )
+    p.add_argument(
+        "--gather",
+        action="store_true",
+        help="write study.csv of what is there; run nothing",
+    )
     return p
 
 
@@ -32,7 +57,9 @@ def load(path):
     made = runpy.run_path(path)
     studies = {id(v): v for v in made.values() if isinstance(v, Study)}
     if len(studies) != 1:
-        raise Refused(f"{path} must make one masonry.study.Study, it makes {len(studies)}")  # fmt: skip
+        raise Refused(
+            f"{path} must make one masonry.study.Study, it makes {len(studies)}"
+        )
     return [*studies.values()][0]
 
 

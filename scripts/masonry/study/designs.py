@@ -33,7 +33,9 @@ def points(design, count, dimension, seed):
     cube = ot.ComposedDistribution([ot.Uniform(0, 1)] * dimension)
     inside = lambda u: min(max(u, EDGE), 1 - EDGE)
     with _seeded(ot, seed):
-        if design == "random":  # one after the other, so that more rows begin with the same ones
+        if (
+            design == "random"
+        ):  # one after the other, so that more rows begin with the same ones
             return [[*map(inside, cube.getRealization())] for _ in range(count)]
         if design == "latin":
             made = ot.LHSExperiment(cube, count, True, True)
@@ -72,7 +74,10 @@ def values(design, count, seed, vary, correlation):
     :param vary: dict of name -> Distribution or Choice
     """
     if design == "grid":
-        return [dict(zip(vary, row)) for row in itertools.product(*(c.values for c in vary.values()))]  # fmt: skip
+        return [
+            dict(zip(vary, row))
+            for row in itertools.product(*(c.values for c in vary.values()))
+        ]
     names = [n for n, v in vary.items() if isinstance(v, Distribution)]
     chosen = [n for n in vary if n not in names]
     cube = points(design, count, len(vary), seed)

@@ -73,7 +73,17 @@ def mean(dear, cheap, confidence=CONFIDENCE):
     y, x = _rows(dear, cheap)
     found = _controlled(y, x[:, None])
     half = _halfWidth(found, confidence)
-    return Estimate("mean", found.value, found.value - half, found.value + half, found.dear, found.cheap, found.dear + found.cheap, len(y), len(x))  # fmt: skip
+    return Estimate(
+        "mean",
+        found.value,
+        found.value - half,
+        found.value + half,
+        found.dear,
+        found.cheap,
+        found.dear + found.cheap,
+        len(y),
+        len(x),
+    )
 
 
 def deviation(dear, cheap, confidence=CONFIDENCE):
@@ -95,7 +105,9 @@ def deviation(dear, cheap, confidence=CONFIDENCE):
     found = _Found(value**2, (shared / n, many / m), (n - 2, m - 1), shared, many)
     relative = _halfWidth(found, confidence) / value**2
     low, high = (value * math.exp(sign * relative / 2) for sign in (-1, 1))
-    return Estimate("standard deviation", value, low, high, shared, many, shared + many, n, m)  # fmt: skip
+    return Estimate(
+        "standard deviation", value, low, high, shared, many, shared + many, n, m
+    )
 
 
 def quantile(dear, cheap, share, method="bridge", confidence=CONFIDENCE):
@@ -128,10 +140,22 @@ def _quantile(bridge, share, method, confidence):
             "run more of them, or take the bridge"
         )
     value = _quantileAt(bridge, method, share)
-    found = bridge.probability(value) if method == "bridge" else bridge.controlled(value)  # fmt: skip
+    found = (
+        bridge.probability(value) if method == "bridge" else bridge.controlled(value)
+    )
     half = _halfWidth(found, confidence)
     low, high = (_quantileAt(bridge, method, share + sign * half) for sign in (-1, 1))
-    return Estimate(f"{100 * share:g} % quantile", value, low, high, found.dear, found.cheap, share * (1 - share), n, len(bridge.x))  # fmt: skip
+    return Estimate(
+        f"{100 * share:g} % quantile",
+        value,
+        low,
+        high,
+        found.dear,
+        found.cheap,
+        share * (1 - share),
+        n,
+        len(bridge.x),
+    )
 
 
 def estimate(dear, cheap, method="bridge", confidence=CONFIDENCE):
@@ -164,12 +188,16 @@ def doubts(dear, cheap):
     if scatter > 0:
         p = 2 * stats.t.sf(abs(slopes[2]) / math.sqrt(scatter), free)
         if p < DOUBT:
-            told.append(f"the dear numbers bend over the cheap ones (p = {p:.2g}): quantiles by the bridge are biased")  # fmt: skip
+            told.append(
+                f"the dear numbers bend over the cheap ones (p = {p:.2g}): quantiles by the bridge are biased"
+            )
     line = np.polyfit(moved, y, 1)
     size = np.abs(y - np.polyval(line, moved))
     p = stats.spearmanr(size, x).pvalue
     if p < DOUBT:
-        told.append(f"the dear numbers scatter about the cheap ones more at one end than at the other (p = {p:.2g}): quantiles by the bridge are biased")  # fmt: skip
+        told.append(
+            f"the dear numbers scatter about the cheap ones more at one end than at the other (p = {p:.2g}): quantiles by the bridge are biased"
+        )
     return told
 
 
@@ -204,7 +232,9 @@ def allocate(pilot, prices, variance=None, budget=None):
     c, d = prices
     least = SHARED * (c + d)
     if budget is not None and budget < least:
-        raise Refused(f"a budget of {budget:g} is too small: {SHARED} shared rows cost {least:g}")  # fmt: skip
+        raise Refused(
+            f"a budget of {budget:g} is too small: {SHARED} shared rows cost {least:g}"
+        )
     a, b = pilot.dear, pilot.cheap
     ratio = math.sqrt(b * c / (a * d)) if a > 0 else math.inf
     ratio = max(1.0, min(ratio, 1e6))
@@ -276,15 +306,23 @@ def _rows(dear, cheap):
     y, x = np.asarray(dear, float).ravel(), np.asarray(cheap, float).ravel()
     problems = []
     if len(y) < SHARED:
-        problems.append(f"{len(y)} shared rows are too few: run {SHARED} or more with both fidelities")  # fmt: skip
+        problems.append(
+            f"{len(y)} shared rows are too few: run {SHARED} or more with both fidelities"
+        )
     if len(x) < len(y):
-        problems.append(f"{len(x)} cheap rows for {len(y)} dear ones: every dear row needs its cheap one")  # fmt: skip
+        problems.append(
+            f"{len(x)} cheap rows for {len(y)} dear ones: every dear row needs its cheap one"
+        )
     for what, values in (("dear", y), ("cheap", x)):
         strange = np.flatnonzero(~np.isfinite(values))
         if len(strange):
-            problems.append(f"{what} rows {', '.join(str(i + 1) for i in strange[:10])} have no finite number")  # fmt: skip
+            problems.append(
+                f"{what} rows {', '.join(str(i + 1) for i in strange[:10])} have no finite number"
+            )
         elif len(values[: len(y)]) > 1 and np.ptp(values[: len(y)]) == 0:
-            problems.append(f"the {what} numbers of all shared rows are {values[0]:g}: there is nothing to learn from them")  # fmt: skip
+            problems.append(
+                f"the {what} numbers of all shared rows are {values[0]:g}: there is nothing to learn from them"
+            )
     if problems:
         raise Refused("\n".join(problems))
     return y, x
@@ -348,7 +386,7 @@ class _Bridge:
         self.turned = [
             np.sort(
                 np.add.outer(self._centred((y - other[:n]) * grown), other), axis=None
-            )  # fmt: skip
+            )
             for other in (line + sign * error * (x - x[:n].mean()) for sign in (-1, 1))
         ]
         self.turn = 2 * error
@@ -370,7 +408,9 @@ class _Bridge:
         if self.turn > 0:
             low, high = (self._below(sums, q) for sums in self.turned)
             bySlope = (high - low) / self.turn
-            ofResidual = ofResidual + bySlope * n * self.near * self.residuals / self.squares  # fmt: skip
+            ofResidual = (
+                ofResidual + bySlope * n * self.near * self.residuals / self.squares
+            )
         ofLine = self._below(self.sortedResiduals, q - self.line)
         dear, cheap = ofResidual.var() * n / (n - 2), ofLine.var(ddof=1)
         return _Found(value, (dear / n, cheap / m), (n - 2, max(m - 1, 1)), dear, cheap)

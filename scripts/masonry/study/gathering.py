@@ -76,7 +76,9 @@ class Folder:
             told["study"]["runs"], told["script"]
             return told
         except (OSError, ValueError, KeyError, TypeError):
-            raise Refused(f"{self.path} is no folder of a study: it has no {STUDY}") from None  # fmt: skip
+            raise Refused(
+                f"{self.path} is no folder of a study: it has no {STUDY}"
+            ) from None
 
     def lastJob(self, number):
         """How the last attempt at a row ended: a dict with ``host``, ``status``, ``seconds``, ``told``; or an empty one."""
@@ -129,7 +131,10 @@ _ERROR = re.compile(r"[\w.]*(Error|Exception|Exit|Interrupt)\b")
 
 def reason(log):
     """What a scene said at last before it failed, of the text of its log: sentences, or an empty list."""
-    lines = [line.strip() for line in log.partition("error: ")[2 if " error: " in log else 0].splitlines()]  # fmt: skip
+    lines = [
+        line.strip()
+        for line in log.partition("error: ")[2 if " error: " in log else 0].splitlines()
+    ]
     lines = [line for line in lines if line and not line.startswith(_CHATTER)]
     if "Traceback (most recent call last):" in log:
         lines = [line for line in lines if _ERROR.match(line)][-1:] or lines[-1:]
@@ -151,12 +156,31 @@ def gather(folder):
     for number, row in enumerate(table, 1):
         run, status = batch.ended(folder.row(number)) or {}, folder.status(number)
         counts[status] = counts.get(status, 0) + 1
-        measures = {n: v for n, v in run.items() if n not in ASIDE and (v is None or isinstance(v, (bool, int, float, str)))}  # fmt: skip
-        found.append(([batch.named(number), *(_varied(n, row[n]) for n in names), status], measures))  # fmt: skip
+        measures = {
+            n: v
+            for n, v in run.items()
+            if n not in ASIDE and (v is None or isinstance(v, (bool, int, float, str)))
+        }
+        found.append(
+            (
+                [batch.named(number), *(_varied(n, row[n]) for n in names), status],
+                measures,
+            )
+        )
         job = folder.lastJob(number)
         why = job.get("told", "") if status == "failed" else ""
         cost = run.get("wall_clock_s")
-        times.append([batch.named(number), status, job.get("host", run.get("host", "")), _text(cost), _text(job.get("seconds")), run.get("commit", ""), why])  # fmt: skip
+        times.append(
+            [
+                batch.named(number),
+                status,
+                job.get("host", run.get("host", "")),
+                _text(cost),
+                _text(job.get("seconds")),
+                run.get("commit", ""),
+                why,
+            ]
+        )
     known = {n for _, measures in found for n in measures}
     heads = [n for n in FIRST if n in known] + sorted(known - set(FIRST))
     lines = [[*begin, *(_text(m.get(n)) for n in heads)] for begin, m in found]

@@ -35,7 +35,9 @@ def yadeBatch():
     """Path of yade-batch. Raises Refused where it is missing."""
     path = shutil.which("yade-batch")
     if not path:
-        raise Refused("a study needs yade-batch: apt-get install --no-install-recommends yade")  # fmt: skip
+        raise Refused(
+            "a study needs yade-batch: apt-get install --no-install-recommends yade"
+        )
     return path
 
 
@@ -58,7 +60,10 @@ class Local:
 
     def run(self):
         """Run them. Returns the numbers of rows that failed. Raises Interrupted after Ctrl-C and SIGTERM."""
-        handlers = {n: signal.signal(n, self._interrupt) for n in (signal.SIGINT, signal.SIGTERM)}  # fmt: skip
+        handlers = {
+            n: signal.signal(n, self._interrupt)
+            for n in (signal.SIGINT, signal.SIGTERM)
+        }
         try:
             idle = 0
             while self.open and idle < TRIES and not self.interrupted:
@@ -97,7 +102,15 @@ class Local:
         env = {**os.environ, "OMP_NUM_THREADS": "1"}
         env.pop(batch.VARIABLE, None)
         with open(self.folder.of(LOG), "ab") as log:
-            self._process = subprocess.Popen(command, cwd=self.folder.path, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True)  # fmt: skip
+            self._process = subprocess.Popen(
+                command,
+                cwd=self.folder.path,
+                env=env,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+                start_new_session=True,
+            )
         self._groups.append(self._process.pid)
         while self._process.poll() is None and not self.interrupted:
             time.sleep(LOOK_EVERY)
@@ -151,7 +164,13 @@ class Local:
         self._told = final
         done = self.runs - len(self.open)
         failed = f", {len(self.failed)} failed" if self.failed else ""
-        self.progress.show("study", done / self.runs, lambda: f"{done - len(self.failed)} of {self.runs} rows{failed}", None, final)  # fmt: skip
+        self.progress.show(
+            "study",
+            done / self.runs,
+            lambda: f"{done - len(self.failed)} of {self.runs} rows{failed}",
+            None,
+            final,
+        )
 
     def _job(self, number):
         """How an attempt at a row in this yade-batch ended, or None."""

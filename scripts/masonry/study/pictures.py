@@ -14,7 +14,12 @@ from . import statistics
 DPI = 200
 BAND = 0.05, 0.95  # quantiles between which a fan is shaded
 POINTS = 400  # along the axis of a fan, and of a fragility curve
-SMALL = {"font.size": 8, "axes.titlesize": 9, "legend.fontsize": 7.5, "axes.axisbelow": True}  # fmt: skip
+SMALL = {
+    "font.size": 8,
+    "axes.titlesize": 9,
+    "legend.fontsize": 7.5,
+    "axes.axisbelow": True,
+}
 POINT, LINE, BARS = COLOURS[0], COLOURS[1], COLOURS[0]
 
 
@@ -52,7 +57,11 @@ def scatter(path, inputs, output, label):
     """
     from matplotlib.ticker import EngFormatter
 
-    columns = {name: np.asarray(values, float) for name, values in inputs.items() if np.ptp(values) > 0}  # fmt: skip
+    columns = {
+        name: np.asarray(values, float)
+        for name, values in inputs.items()
+        if np.ptp(values) > 0
+    }
     columns[label] = np.asarray(output, float)
     names, k = list(columns), len(columns)
     size = max(6.0, min(1.35 * k, 11.0))
@@ -71,7 +80,9 @@ def scatter(path, inputs, output, label):
                     axis.set_yticks([])
                 else:
                     colour = LINE if i == k - 1 else POINT
-                    axis.scatter(x, y, s=dot, color=colour, lw=0, alpha=0.7, rasterized=True)  # fmt: skip
+                    axis.scatter(
+                        x, y, s=dot, color=colour, lw=0, alpha=0.7, rasterized=True
+                    )
                     rank = stats.spearmanr(x, y).statistic
                     axis.set_title(f"{rank:+.2f}", fontsize=7, pad=2)
                 axis.tick_params(labelsize=6)
@@ -105,12 +116,24 @@ def tornado(path, effects, label):
         for axis, field in ((left, "change"), (right, "rank")):
             found = [getattr(effects[name], field) for name in names]
             colours = [LINE if interval.value < 0 else POINT for interval in found]
-            axis.barh(rows, [f.value for f in found], color=colours, alpha=0.75, height=0.65)  # fmt: skip
-            axis.errorbar([f.value for f in found], rows, xerr=_errors(found), fmt="none", ecolor="black", elinewidth=0.8, capsize=2.5)  # fmt: skip
+            axis.barh(
+                rows, [f.value for f in found], color=colours, alpha=0.75, height=0.65
+            )
+            axis.errorbar(
+                [f.value for f in found],
+                rows,
+                xerr=_errors(found),
+                fmt="none",
+                ecolor="black",
+                elinewidth=0.8,
+                capsize=2.5,
+            )
             axis.axvline(0, color="black", lw=0.8)
             axis.grid(axis="x", alpha=0.3)
         left.set_yticks(rows, map(_shown, names))
-        left.set_xlabel(f"change of {label}\nfrom the 5 % to the 95 % quantile of a property")  # fmt: skip
+        left.set_xlabel(
+            f"change of {label}\nfrom the 5 % to the 95 % quantile of a property"
+        )
         right.set_xlim(-1.05, 1.05)
         right.set_xlabel("correlation of ranks [-]")
 
@@ -129,13 +152,31 @@ def sobol(path, found, label):
             ("first", -0.18, POINT, "first, alone"),
         ):
             values = [getattr(found.indices[name], field) for name in names]
-            axis.barh(rows - shift, [v.value for v in values], height=0.34, color=colour, alpha=0.75, label=text)  # fmt: skip
-            axis.errorbar([v.value for v in values], rows - shift, xerr=_errors(values), fmt="none", ecolor="black", elinewidth=0.8, capsize=2)  # fmt: skip
+            axis.barh(
+                rows - shift,
+                [v.value for v in values],
+                height=0.34,
+                color=colour,
+                alpha=0.75,
+                label=text,
+            )
+            axis.errorbar(
+                [v.value for v in values],
+                rows - shift,
+                xerr=_errors(values),
+                fmt="none",
+                ecolor="black",
+                elinewidth=0.8,
+                capsize=2,
+            )
         axis.set_yticks(rows, map(_shown, names))
         axis.set_xlim(0, 1.05)
         axis.grid(axis="x", alpha=0.3)
         axis.set_xlabel("share of the variance [-]")
-        figure.suptitle(f"{label}: Sobol indices,\nof a polynomial chaos that explains {100 * found.explained:.0f} % of the variance", fontsize=9)  # fmt: skip
+        figure.suptitle(
+            f"{label}: Sobol indices,\nof a polynomial chaos that explains {100 * found.explained:.0f} % of the variance",
+            fontsize=9,
+        )
         axis.legend(loc="lower right")
 
 
@@ -147,17 +188,36 @@ def histogram(path, values, label):
     values = np.asarray(values, float)
     with _Picture(path, 6.0, 3.6) as figure:
         axis = figure.subplots()
-        axis.hist(values, bins=_bins(values), density=True, color=BARS, alpha=0.45, label=f"{len(values)} rows")  # fmt: skip
+        axis.hist(
+            values,
+            bins=_bins(values),
+            density=True,
+            color=BARS,
+            alpha=0.45,
+            label=f"{len(values)} rows",
+        )
         if values.min() > 0 and len(values) >= 3 and np.ptp(values) > 0:
             fit = statistics.lognormal(values)
             x = np.linspace(*axis.get_xlim(), POINTS)
             x = x[x > 0]
             density = stats.lognorm.pdf(x, fit.dispersion, scale=fit.median)
-            axis.plot(x, density, color="black", lw=1.2, label=f"lognormal: median {fit.median:.4g}, dispersion {fit.dispersion:.3g}")  # fmt: skip
+            axis.plot(
+                x,
+                density,
+                color="black",
+                lw=1.2,
+                label=f"lognormal: median {fit.median:.4g}, dispersion {fit.dispersion:.3g}",
+            )
         top = axis.get_ylim()[1]
         for share, dashes in zip((0.05, 0.5, 0.95), DASHES[1:]):
             found = statistics.quantile(values, share)
-            axis.axvline(found.value, color=LINE, lw=1.2, ls=dashes, label=f"{100 * share:g} % quantile: {found.value:.4g}")  # fmt: skip
+            axis.axvline(
+                found.value,
+                color=LINE,
+                lw=1.2,
+                ls=dashes,
+                label=f"{100 * share:g} % quantile: {found.value:.4g}",
+            )
             low, high = np.clip([found.low, found.high], values.min(), values.max())
             axis.axvspan(low, high, color=LINE, alpha=0.12, lw=0)
         axis.set_ylim(0, 1.25 * top)
@@ -170,16 +230,41 @@ def fragility(path, capacities, label):
     """Probability that the capacity is not above a demand, with its band, and the fitted lognormal distribution."""
     capacities = np.asarray(capacities, float)
     reach = np.ptp(capacities) or abs(capacities[0]) or 1.0
-    demands = np.linspace(capacities.min() - 0.15 * reach, capacities.max() + 0.15 * reach, POINTS)  # fmt: skip
+    demands = np.linspace(
+        capacities.min() - 0.15 * reach, capacities.max() + 0.15 * reach, POINTS
+    )
     probability, low, high = statistics.fragility(capacities, demands)
     with _Picture(path, 6.0, 3.6) as figure:
         axis = figure.subplots()
-        axis.fill_between(demands, low, high, step="post", color=POINT, alpha=0.2, lw=0, label=f"{100 * statistics.CONFIDENCE:g} % confidence")  # fmt: skip
-        axis.step(demands, probability, where="post", color=POINT, lw=1.3, label=f"{len(capacities)} rows")  # fmt: skip
+        axis.fill_between(
+            demands,
+            low,
+            high,
+            step="post",
+            color=POINT,
+            alpha=0.2,
+            lw=0,
+            label=f"{100 * statistics.CONFIDENCE:g} % confidence",
+        )
+        axis.step(
+            demands,
+            probability,
+            where="post",
+            color=POINT,
+            lw=1.3,
+            label=f"{len(capacities)} rows",
+        )
         if capacities.min() > 0 and len(capacities) >= 3 and np.ptp(capacities) > 0:
             fit = statistics.lognormal(capacities)
             inside = demands > 0
-            axis.plot(demands[inside], stats.lognorm.cdf(demands[inside], fit.dispersion, scale=fit.median), color="black", lw=1, ls=DASHES[1], label=f"lognormal: median {fit.median:.4g}, dispersion {fit.dispersion:.3g}")  # fmt: skip
+            axis.plot(
+                demands[inside],
+                stats.lognorm.cdf(demands[inside], fit.dispersion, scale=fit.median),
+                color="black",
+                lw=1,
+                ls=DASHES[1],
+                label=f"lognormal: median {fit.median:.4g}, dispersion {fit.dispersion:.3g}",
+            )
         axis.set_ylim(0, 1)
         axis.set_xlim(demands[0], demands[-1])
         axis.set_xlabel(f"demand on {label}")
@@ -203,13 +288,32 @@ def fan(path, curves, xLabel, yLabel):
     curves = [_increasing(*curve) for curve in curves]
     end = np.median([x[-1] for x, _ in curves])
     grid = np.linspace(min(x[0] for x, _ in curves), end, POINTS)
-    values = np.array([np.interp(grid, x, y, left=np.nan, right=np.nan) for x, y in curves])  # fmt: skip
-    low, median, high = np.nanquantile(values, (BAND[0], 0.5, BAND[1]), axis=0)  # fmt: skip
+    values = np.array(
+        [np.interp(grid, x, y, left=np.nan, right=np.nan) for x, y in curves]
+    )
+    low, median, high = np.nanquantile(values, (BAND[0], 0.5, BAND[1]), axis=0)
     with _Picture(path, 6.0, 4.0) as figure:
         axis = figure.subplots()
         alpha = float(np.clip(12 / len(curves), 0.05, 0.6))
-        axis.add_collection(LineCollection([np.column_stack(c) for c in curves], color="0.35", lw=0.5, alpha=alpha, zorder=1))  # fmt: skip
-        axis.fill_between(grid, low, high, color=POINT, alpha=0.25, lw=0, zorder=2, label="between the 5 % and the 95 % quantile")  # fmt: skip
+        axis.add_collection(
+            LineCollection(
+                [np.column_stack(c) for c in curves],
+                color="0.35",
+                lw=0.5,
+                alpha=alpha,
+                zorder=1,
+            )
+        )
+        axis.fill_between(
+            grid,
+            low,
+            high,
+            color=POINT,
+            alpha=0.25,
+            lw=0,
+            zorder=2,
+            label="between the 5 % and the 95 % quantile",
+        )
         axis.plot(grid, median, color=LINE, lw=1.8, zorder=3, label="median")
         axis.plot([], [], color="0.35", lw=0.5, label=f"{len(curves)} curves")
         axis.autoscale_view()
@@ -222,7 +326,9 @@ def fan(path, curves, xLabel, yLabel):
 def _increasing(x, y):
     """A curve without the rows that go back, thinned to no more than twice POINTS rows."""
     x, y = np.asarray(x, float), np.asarray(y, float)
-    rows = np.flatnonzero(x > np.concatenate([[-np.inf], np.maximum.accumulate(x)[:-1]]))  # fmt: skip
+    rows = np.flatnonzero(
+        x > np.concatenate([[-np.inf], np.maximum.accumulate(x)[:-1]])
+    )
     rows = rows[:: max(1, len(rows) // (2 * POINTS))]
     return x[rows], y[rows]
 
@@ -234,7 +340,9 @@ def _bins(values):
 
 def _errors(intervals):
     """Lengths of error bars below and above."""
-    return np.array([[max(i.value - i.low, 0), max(i.high - i.value, 0)] for i in intervals]).T  # fmt: skip
+    return np.array(
+        [[max(i.value - i.low, 0), max(i.high - i.value, 0)] for i in intervals]
+    ).T
 
 
 def _shown(name):
@@ -249,4 +357,4 @@ def _shown(name):
 
 def _broken(name):
     """A name with line breaks where it can have them."""
-    return _shown(name).replace(": ", ":\n").replace(", ", ",\n").replace(" [", "\n[")  # fmt: skip
+    return _shown(name).replace(": ", ":\n").replace(", ", ",\n").replace(" [", "\n[")

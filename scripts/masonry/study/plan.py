@@ -34,7 +34,16 @@ class Study:
     :raises Refused: with all problems at once
     """
 
-    def __init__(self, scene, options=None, runs=None, seed=0, vary=None, design="random", correlation=None):  # fmt: skip
+    def __init__(
+        self,
+        scene,
+        options=None,
+        runs=None,
+        seed=0,
+        vary=None,
+        design="random",
+        correlation=None,
+    ):
         problems = []
         self.scene, self.seed, self.design = str(scene), seed, design
         self.options, self.runs = dict(options or {}), runs
@@ -59,7 +68,13 @@ class Study:
             raise Refused("study: " + "\n  ".join(problems))
 
     def _take(self, key, what, problems):
-        names = (key,) if isinstance(key, str) else tuple(key) if isinstance(key, tuple) else ()  # fmt: skip
+        names = (
+            (key,)
+            if isinstance(key, str)
+            else tuple(key)
+            if isinstance(key, tuple)
+            else ()
+        )
         if not names or not all(isinstance(n, str) for n in names):
             problems.append(f"vary: {key!r} must be a name or a tuple of names")
             return
@@ -71,22 +86,38 @@ class Study:
             problems.append(f"vary {key!r}: {refused}")
             return
         if not isinstance(what, (Choice, Distribution, Field)):
-            problems.append(f"vary {key!r}: {what!r} is no number, list, distribution or field")  # fmt: skip
+            problems.append(
+                f"vary {key!r}: {what!r} is no number, list, distribution or field"
+            )
             return
         properties = all("." in n for n in names)
         if isinstance(what, Field):
             if not properties:
-                problems.append(f"vary {key!r}: only a property of joints can be a field")  # fmt: skip
+                problems.append(
+                    f"vary {key!r}: only a property of joints can be a field"
+                )
             if what.mean is not None and len(names) > 1:
-                problems.append(f"vary {key!r}: a field of several properties is about their own values: field(cov=..., length=...)")  # fmt: skip
+                problems.append(
+                    f"vary {key!r}: a field of several properties is about their own values: field(cov=..., length=...)"
+                )
             column = batch.FIELD + "+".join(names)
         else:
             if len(names) > 1 and not properties:
-                problems.append(f"vary {key!r}: only properties of joints can be tied in a tuple")  # fmt: skip
+                problems.append(
+                    f"vary {key!r}: only properties of joints can be tied in a tuple"
+                )
             column = "+".join(names)
         values = what.values if isinstance(what, Choice) else [0]
         problems += [p for n in names for v in values for p in _wrongOption(n, v)]
-        twice = [n for n in names if n in self.options or any(n in _namesOf(c) and isinstance(w, Field) == isinstance(what, Field) for c, w in self.vary.items())]  # fmt: skip
+        twice = [
+            n
+            for n in names
+            if n in self.options
+            or any(
+                n in _namesOf(c) and isinstance(w, Field) == isinstance(what, Field)
+                for c, w in self.vary.items()
+            )
+        ]
         if twice:
             problems.append(f"{', '.join(twice)}: given twice")
         self.vary[column] = what
@@ -95,14 +126,22 @@ class Study:
         if self.design == "grid":
             odd = [c for c, w in self.vary.items() if isinstance(w, Distribution)]
             if odd:
-                problems.append(f"design 'grid': {', '.join(odd)} must be a list of values")  # fmt: skip
+                problems.append(
+                    f"design 'grid': {', '.join(odd)} must be a list of values"
+                )
             sizes = [len(w.values) for w in self.vary.values() if isinstance(w, Choice)]
             size = int(np.prod(sizes)) if sizes else 1
             if self.runs not in (None, size):
                 problems.append(f"runs {self.runs}: the grid has {size} points")
             self.runs = size
-        if isinstance(self.runs, bool) or not isinstance(self.runs, int) or not 1 <= self.runs <= MOST:  # fmt: skip
-            problems.append(f"runs {self.runs!r} must be a whole number from 1 to {MOST}")  # fmt: skip
+        if (
+            isinstance(self.runs, bool)
+            or not isinstance(self.runs, int)
+            or not 1 <= self.runs <= MOST
+        ):
+            problems.append(
+                f"runs {self.runs!r} must be a whole number from 1 to {MOST}"
+            )
 
     def _correlate(self, correlation, problems):
         joined = lambda key: "+".join(key) if isinstance(key, tuple) else key
@@ -111,9 +150,18 @@ class Study:
                 problems.append(f"correlation {pair!r}: must be of two names")
                 continue
             one, two = map(joined, pair)
-            odd = [n for n in (one, two) if not isinstance(self.vary.get(n), Distribution)]  # fmt: skip
-            if odd or one == two or not isinstance(value, (int, float)) or not -1 < value < 1:  # fmt: skip
-                problems.append(f"correlation {pair!r} = {value!r}: must be above -1 and below 1, of two names that have distributions")  # fmt: skip
+            odd = [
+                n for n in (one, two) if not isinstance(self.vary.get(n), Distribution)
+            ]
+            if (
+                odd
+                or one == two
+                or not isinstance(value, (int, float))
+                or not -1 < value < 1
+            ):
+                problems.append(
+                    f"correlation {pair!r} = {value!r}: must be above -1 and below 1, of two names that have distributions"
+                )
             elif (two, one) in self.correlation:
                 problems.append(f"correlation {pair!r}: given twice")
             else:
@@ -137,11 +185,20 @@ class Study:
         """The values of every row: a list of dicts, with the options that all have. Raises Refused."""
         drawn = {n: w for n, w in self.vary.items() if not isinstance(w, Field)}
         fields = {n: w for n, w in self.vary.items() if isinstance(w, Field)}
-        found = designs.values(self.design, self.runs, self.seed, drawn, self.correlation)  # fmt: skip
-        means = {n[len(batch.FIELD) :]: w.mean for n, w in fields.items() if w.mean is not None}  # fmt: skip
+        found = designs.values(
+            self.design, self.runs, self.seed, drawn, self.correlation
+        )
+        means = {
+            n[len(batch.FIELD) :]: w.mean
+            for n, w in fields.items()
+            if w.mean is not None
+        }
         rows = []
         for number, values in enumerate(found, 1):
-            seeds = {n: w.written(self._seed(k, number)) for k, (n, w) in enumerate(fields.items())}  # fmt: skip
+            seeds = {
+                n: w.written(self._seed(k, number))
+                for k, (n, w) in enumerate(fields.items())
+            }
             rows.append({"lean": True, **self.options, **means, **values, **seeds})
         return rows
 
@@ -169,11 +226,17 @@ class Study:
             above = [near]
             while os.path.dirname(above[-1]) != above[-1]:
                 above.append(os.path.dirname(above[-1]))
-            folders = [near, os.getcwd(), *(os.path.join(f, "scripts") for f in [*above, os.getcwd()])]  # fmt: skip
+            folders = [
+                near,
+                os.getcwd(),
+                *(os.path.join(f, "scripts") for f in [*above, os.getcwd()]),
+            ]
             places = [os.path.join(f, self.scene + ".py") for f in folders]
         path = next((os.path.abspath(p) for p in places if os.path.isfile(p)), None)
         if path is None:
-            looked = ", ".join(dict.fromkeys(os.path.dirname(os.path.abspath(p)) for p in places))  # fmt: skip
+            looked = ", ".join(
+                dict.fromkeys(os.path.dirname(os.path.abspath(p)) for p in places)
+            )
             raise Refused(f"study: no scene {self.scene}; looked in {looked}")
         with open(path, "rb") as f:
             return path, hashlib.sha256(f.read()).hexdigest()
@@ -186,11 +249,15 @@ def _namesOf(column):
 def _wrongOption(name, value):
     """What is wrong with an option or a property, as a list."""
     if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z_]\w*(\.\w+)?", name):
-        return [f"{name!r} must be an option, with underscores for dashes, or JOINT.PROPERTY"]  # fmt: skip
+        return [
+            f"{name!r} must be an option, with underscores for dashes, or JOINT.PROPERTY"
+        ]
     if name in OWN:
         return [f"option {name!r} is the study's own"]
     if value is not None and not isinstance(value, (bool, int, float, str)):
         return [f"{name}: {value!r} must be a number, a text, or True or False"]
     if isinstance(value, str) and re.search(r"[\s#]|^[=*]?$", value):
-        return [f"{name}: {value!r} cannot stand in a table of YADE: it is empty or has a blank or #"]  # fmt: skip
+        return [
+            f"{name}: {value!r} cannot stand in a table of YADE: it is empty or has a blank or #"
+        ]
     return []

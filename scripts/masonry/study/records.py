@@ -21,10 +21,14 @@ def _table(path):
         raise Refused(f"cannot read {path}: it is no text") from None
     head = lines[0] if lines else []
     if head[:1] != ["run"] or "status" not in head:
-        raise Refused(f"{path}: this is no table of a study: it needs the columns run and status")  # fmt: skip
+        raise Refused(
+            f"{path}: this is no table of a study: it needs the columns run and status"
+        )
     wrong = [str(i) for i, line in enumerate(lines[1:], 2) if len(line) != len(head)]
     if wrong:
-        raise Refused(f"{path}: lines {', '.join(wrong[:10])} do not have {len(head)} cells, as the first has")  # fmt: skip
+        raise Refused(
+            f"{path}: lines {', '.join(wrong[:10])} do not have {len(head)} cells, as the first has"
+        )
     if len(lines) < 2:
         raise Refused(f"{path}: there is no row yet")
     return {name: [line[i] for line in lines[1:]] for i, name in enumerate(head)}
@@ -52,7 +56,9 @@ class Record:
     def numbers(self, name):
         """A column as numbers, NaN where a cell has none. Raises Refused if there is no such column."""
         if name not in self.cells:
-            raise Refused(f"{self.directory}: no column {name}; there are {', '.join(self.cells)}")  # fmt: skip
+            raise Refused(
+                f"{self.directory}: no column {name}; there are {', '.join(self.cells)}"
+            )
         return np.array([_number(text) for text in self.cells[name]])
 
     def complete(self, measure):
@@ -104,19 +110,27 @@ def paired(dear, cheap, measure, other=None):
     """
     problems = []
     if sorted(dear.varied) != sorted(cheap.varied):
-        problems.append(f"{dear.directory} varies {', '.join(dear.varied)}, and {cheap.directory} {', '.join(cheap.varied)}")  # fmt: skip
+        problems.append(
+            f"{dear.directory} varies {', '.join(dear.varied)}, and {cheap.directory} {', '.join(cheap.varied)}"
+        )
     else:
         keys = {}
         for study in (dear, cheap):
             columns = [study.cells[name] for name in dear.varied]
             keys[study] = list(zip(*columns))
             if len(set(keys[study])) < len(keys[study]):
-                problems.append(f"{study.directory}: rows have the same properties, so that it cannot be told which are shared")  # fmt: skip
+                problems.append(
+                    f"{study.directory}: rows have the same properties, so that it cannot be told which are shared"
+                )
     if problems:
         raise Refused("\n".join(problems))
     y, x = dear.numbers(measure), cheap.numbers(other or measure)
     place = {key: row for row, key in enumerate(keys[cheap]) if np.isfinite(x[row])}
-    shared = [row for row, key in enumerate(keys[dear]) if key in place and np.isfinite(y[row])]  # fmt: skip
+    shared = [
+        row
+        for row, key in enumerate(keys[dear])
+        if key in place and np.isfinite(y[row])
+    ]
     first = [place[keys[dear][row]] for row in shared]
     others = sorted(set(place.values()) - set(first))
     return y[shared], x[first + others], shared, first + others

@@ -40,8 +40,11 @@ def table(record, measure):
     for name, find in (
         ("mean", statistics.mean),
         ("standard deviation", statistics.deviation),
-        *((f"{100 * q:g} % quantile", lambda v, q=q: statistics.quantile(v, q)) for q in estimate.QUANTILES),
-    ):  # fmt: skip
+        *(
+            (f"{100 * q:g} % quantile", lambda v, q=q: statistics.quantile(v, q))
+            for q in estimate.QUANTILES
+        ),
+    ):
         try:
             yield line(name, find(values))
         except Refused as refused:
@@ -54,7 +57,10 @@ def table(record, measure):
 
 def line(name, interval, form="{:.5g}"):
     """A number and its interval as a line of a table."""
-    ends = [form.format(end) if math.isfinite(end) else "unknown" for end in (interval.low, interval.high)]  # fmt: skip
+    ends = [
+        form.format(end) if math.isfinite(end) else "unknown"
+        for end in (interval.low, interval.high)
+    ]
     return f"  {name:20} {form.format(interval.value):>9}   {ends[0]} … {ends[1]}"
 
 
@@ -71,7 +77,9 @@ def statuses(record):
     """A line about rows that have no results, if there are some."""
     others = [text for text in record.cells["status"] if text != "ended"]
     if others:
-        told = ", ".join(f"{others.count(s)} {s or 'not run'}" for s in sorted(set(others)))  # fmt: skip
+        told = ", ".join(
+            f"{others.count(s)} {s or 'not run'}" for s in sorted(set(others))
+        )
         yield f"rows that have not ended: {told}"
 
 
@@ -119,16 +127,20 @@ def compare(dear, cheap, measure, other, method, prices=None):
     y, x, shared, rows = paired(dear, cheap, measure, other)
     found = estimate.estimate(y, x, method)
     prices = prices or (dear.price(shared), cheap.price(rows))
-    names = [os.path.basename(os.path.abspath(study.directory)) for study in (dear, cheap)]  # fmt: skip
+    names = [
+        os.path.basename(os.path.abspath(study.directory)) for study in (dear, cheap)
+    ]
     if not all(math.isfinite(price) and price > 0 for price in prices):
-        raise Refused("the prices of the runs are unknown, since times.csv has none: give --prices")  # fmt: skip
+        raise Refused(
+            "the prices of the runs are unknown, since times.csv has none: give --prices"
+        )
     unit = label(measure).partition("[")[2].rstrip("]")
-    yield f"{label(measure)} from {len(shared)} rows of both and {len(rows)} of {names[1]}; correlation {np.corrcoef(y, x[:len(y)])[0, 1]:.4f}, a run costs {prices[0]:.3g} and {prices[1]:.3g} s"  # fmt: skip
+    yield f"{label(measure)} from {len(shared)} rows of both and {len(rows)} of {names[1]}; correlation {np.corrcoef(y, x[:len(y)])[0, 1]:.4f}, a run costs {prices[0]:.3g} and {prices[1]:.3g} s"
     for one in found:
         yield "  " + estimate.sentence(one, prices, unit, names)
         same = (one.dear / one.shared) + one.cheap / one.rows
         best = estimate.allocate(one, prices, variance=same)
-        yield f"    cheapest for it: {best.shared} shared rows and {best.rows} cheap ones, {100 * best.share:.0f} % of the cost of {names[0]} alone"  # fmt: skip
+        yield f"    cheapest for it: {best.shared} shared rows and {best.rows} cheap ones, {100 * best.share:.0f} % of the cost of {names[0]} alone"
     yield from ("  note: " + doubt for doubt in estimate.doubts(y, x))
 
 
@@ -138,18 +150,41 @@ def main(words=None):
         description="Statistics and pictures of a study.",
     )
     parser.add_argument("study", help="folder of a study, with its study.csv")
-    parser.add_argument("--measure", default=MEASURE, help=f"column of study.csv; {MEASURE} by default")  # fmt: skip
-    parser.add_argument("--demand", help="demands, with commas between them, for which the probability that the measure is not above them is told")  # fmt: skip
-    parser.add_argument("--cheap", help="folder of a study of the same rows and more with a cheaper preset")  # fmt: skip
-    parser.add_argument("--cheap-measure", help="column of that study, if it is another one: bound_base_shear_kN of the preset bound")  # fmt: skip
-    parser.add_argument("--method", default="bridge", choices=("bridge", "indicator"), help="how --cheap finds quantiles; help(\"masonry.study.estimate\") tells")  # fmt: skip
-    parser.add_argument("--prices", help="seconds of a run of the study and of one of --cheap, with a comma; the mean times of the runs by default")  # fmt: skip
+    parser.add_argument(
+        "--measure", default=MEASURE, help=f"column of study.csv; {MEASURE} by default"
+    )
+    parser.add_argument(
+        "--demand",
+        help="demands, with commas between them, for which the probability that the measure is not above them is told",
+    )
+    parser.add_argument(
+        "--cheap",
+        help="folder of a study of the same rows and more with a cheaper preset",
+    )
+    parser.add_argument(
+        "--cheap-measure",
+        help="column of that study, if it is another one: bound_base_shear_kN of the preset bound",
+    )
+    parser.add_argument(
+        "--method",
+        default="bridge",
+        choices=("bridge", "indicator"),
+        help='how --cheap finds quantiles; help("masonry.study.estimate") tells',
+    )
+    parser.add_argument(
+        "--prices",
+        help="seconds of a run of the study and of one of --cheap, with a comma; the mean times of the runs by default",
+    )
     parser.add_argument("--no-pictures", action="store_true", help="the table alone")
     args = parser.parse_args(words)
     try:
-        demands, prices = _listed("--demand", args.demand), _listed("--prices", args.prices)  # fmt: skip
+        demands, prices = _listed("--demand", args.demand), _listed(
+            "--prices", args.prices
+        )
         if prices and len(prices) != 2:
-            raise Refused(f"--prices {args.prices} must be two numbers, for example 60,4")  # fmt: skip
+            raise Refused(
+                f"--prices {args.prices} must be two numbers, for example 60,4"
+            )
         record = Record(args.study)
         for text in (*table(record, args.measure), *modes(record), *statuses(record)):
             print(text)
@@ -159,7 +194,14 @@ def main(words=None):
             for demand, *found in zip(demands, *statistics.fragility(values, demands)):
                 print(line(f"{demand:g}", statistics.Interval(*found), "{:.3f}"))
         if args.cheap:
-            for text in compare(record, Record(args.cheap), args.measure, args.cheap_measure, args.method, prices):  # fmt: skip
+            for text in compare(
+                record,
+                Record(args.cheap),
+                args.measure,
+                args.cheap_measure,
+                args.method,
+                prices,
+            ):
                 print(text)
         if not args.no_pictures:
             for text in draw(record, args.measure):
@@ -176,9 +218,15 @@ def main(words=None):
 def _listed(option, text):
     """Numbers with commas between them."""
     try:
-        numbers = sorted(map(float, text.split(","))) if option == "--demand" and text else list(map(float, text.split(",")) if text else ())  # fmt: skip
+        numbers = (
+            sorted(map(float, text.split(",")))
+            if option == "--demand" and text
+            else list(map(float, text.split(",")) if text else ())
+        )
     except ValueError:
-        raise Refused(f"{option} {text} must be numbers with commas between them") from None  # fmt: skip
+        raise Refused(
+            f"{option} {text} must be numbers with commas between them"
+        ) from None
     if not all(map(math.isfinite, numbers)):
         raise Refused(f"{option} {text} must be finite numbers")
     return numbers

@@ -60,7 +60,12 @@ class Job:
             if own:
                 log.close()
         told = "" if status == 0 else self._reason(number)
-        record = {"host": socket.gethostname(), "status": status, "seconds": round(time.time() - began, 3), "told": told}  # fmt: skip
+        record = {
+            "host": socket.gethostname(),
+            "status": status,
+            "seconds": round(time.time() - began, 3),
+            "told": told,
+        }
         if status == 0 or not (folder.isHeld(number) or folder.isEnded(number)):
             with open(folder.job(number) + f".{os.getpid()}", "w") as f:
                 json.dump(record, f)
@@ -93,7 +98,14 @@ class Job:
         env = {**os.environ, batch.VARIABLE: place, "OMP_NUM_THREADS": "1"}
         command = ["yade", "-n", *self.more, "-x", self.script]
         where = os.path.dirname(self.script)
-        self._child = subprocess.Popen(command, env=env, cwd=where, stdin=subprocess.DEVNULL, stdout=log, stderr=log)  # fmt: skip
+        self._child = subprocess.Popen(
+            command,
+            env=env,
+            cwd=where,
+            stdin=subprocess.DEVNULL,
+            stdout=log,
+            stderr=log,
+        )
         if self.stopped:
             self._child.send_signal(signal.SIGTERM)
         while True:
@@ -151,7 +163,10 @@ def main(words):
     for word in words[1:]:
         status = job.run(int(word))
         if status:
-            print(f"row {batch.named(int(word))}: {job.folder.lastJob(int(word)).get('told') or f'exit status {status}'}", file=sys.stderr)  # fmt: skip
+            print(
+                f"row {batch.named(int(word))}: {job.folder.lastJob(int(word)).get('told') or f'exit status {status}'}",
+                file=sys.stderr,
+            )
         worst = max(worst, status if status >= 0 else 128 - status)
         if job.stopped:
             requeue(job)

@@ -43,12 +43,16 @@ def effects(inputs, output, confidence=CONFIDENCE):
     n, k = x.shape
     free = n - k - 1
     if free < 2:
-        raise Refused(f"the sensitivity of {k} properties needs {k + 3} rows or more, there are {n}")  # fmt: skip
+        raise Refused(
+            f"the sensitivity of {k} properties needs {k + 3} rows or more, there are {n}"
+        )
     scale = x.std(axis=0)
     design = np.column_stack([np.ones(n), (x - x.mean(axis=0)) / scale])
     slopes, _, rank, _ = np.linalg.lstsq(design, y, rcond=None)
     if rank < k + 1:
-        raise Refused("the sensitivity: varied properties follow from each other, which cannot be told apart")  # fmt: skip
+        raise Refused(
+            "the sensitivity: varied properties follow from each other, which cannot be told apart"
+        )
     residuals = y - design @ slopes
     scatter = residuals @ residuals / free * np.linalg.inv(design.T @ design).diagonal()
     t = stats.t.ppf((1 + confidence) / 2, free)
@@ -86,13 +90,17 @@ def sobol(inputs, output, seed=1, confidence=CONFIDENCE):
     n, k = x.shape
     problems = []
     if n < 10 * k:
-        problems.append(f"Sobol indices of {k} properties need {10 * k} rows or more, there are {n}")  # fmt: skip
+        problems.append(
+            f"Sobol indices of {k} properties need {10 * k} rows or more, there are {n}"
+        )
     names = list(inputs)
     for i in range(k):
         for j in range(i):
             found = stats.spearmanr(x[:, i], x[:, j])
             if found.pvalue < 2 * DEPENDENT / (k * (k - 1)):
-                problems.append(f"Sobol indices need independent properties, {names[j]} and {names[i]} have a rank correlation of {found.statistic:.2f}")  # fmt: skip
+                problems.append(
+                    f"Sobol indices need independent properties, {names[j]} and {names[i]} have a rank correlation of {found.statistic:.2f}"
+                )
     if np.ptp(y) == 0:
         problems.append("Sobol indices: all results are the same")
     if problems:
@@ -110,11 +118,15 @@ def sobol(inputs, output, seed=1, confidence=CONFIDENCE):
     generator, resampled = np.random.default_rng(seed), []
     for _ in range(RESAMPLES):
         rows = generator.integers(n, size=n)
-        resampled.append(_shares(powers, _fit(_terms(powers, ranks(rows)), y[rows])))  # fmt: skip
+        resampled.append(_shares(powers, _fit(_terms(powers, ranks(rows)), y[rows])))
     half = stats.norm.ppf((1 + confidence) / 2) * np.std(resampled, axis=0)
     low, high = np.clip([shares - half, shares + half], 0, 1)
-    interval = lambda which, i: Interval(shares[which, i], low[which, i], high[which, i])  # fmt: skip
-    indices = {name: Indices(interval(0, i), interval(1, i)) for i, name in enumerate(names)}  # fmt: skip
+    interval = lambda which, i: Interval(
+        shares[which, i], low[which, i], high[which, i]
+    )
+    indices = {
+        name: Indices(interval(0, i), interval(1, i)) for i, name in enumerate(names)
+    }
     order = sorted(indices, key=lambda name: -indices[name].total.value)
     return Sobol(explained, {name: indices[name] for name in order})
 
@@ -131,11 +143,16 @@ def _polynomials(u, y):
     size = k + 1
     while 2 * (size + 1) <= len(u) and max(count(size)) <= DEGREE:
         size += 1
-    fitting = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())  # fmt: skip
+    fitting = ot.LeastSquaresMetaModelSelectionFactory(
+        ot.LARS(), ot.CorrectedLeaveOneOut()
+    )
     algorithm = ot.FunctionalChaosAlgorithm(
-        ot.Sample(u), ot.Sample(y[:, None]), uniform,
-        ot.FixedStrategy(basis, size), ot.LeastSquaresStrategy(fitting),
-    )  # fmt: skip
+        ot.Sample(u),
+        ot.Sample(y[:, None]),
+        uniform,
+        ot.FixedStrategy(basis, size),
+        ot.LeastSquaresStrategy(fitting),
+    )
     algorithm.run()
     # what every property does on its own stays in, so that an index of nothing has an interval, too
     always = set(range(k + 1))
@@ -172,7 +189,9 @@ def _numbers(inputs, output):
         try:
             values = np.asarray(values, float)
         except ValueError:
-            problems.append(f"{name}: choices that are no numbers have no sensitivity of this kind")  # fmt: skip
+            problems.append(
+                f"{name}: choices that are no numbers have no sensitivity of this kind"
+            )
             continue
         if len(values) != len(y):
             problems.append(f"{name}: {len(values)} values for {len(y)} rows")

@@ -21,21 +21,29 @@ ARRAY = 1001  # tasks that an array has at most where Slurm does not say
 
 def check():
     """Refuse a machine without Slurm."""
-    missing = [name for name in ("sbatch", "squeue", "scontrol") if not shutil.which(name)]  # fmt: skip
+    missing = [
+        name for name in ("sbatch", "squeue", "scontrol") if not shutil.which(name)
+    ]
     if missing:
-        raise Refused(f"--slurm: no {', '.join(missing)} here: run this where jobs are submitted, or apt-get install slurm-client")  # fmt: skip
+        raise Refused(
+            f"--slurm: no {', '.join(missing)} here: run this where jobs are submitted, or apt-get install slurm-client"
+        )
 
 
 def _asked(command):
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
-        raise Refused(f"--slurm: {command[0]}: {done.stderr.strip() or f'exit status {done.returncode}'}")  # fmt: skip
+        raise Refused(
+            f"--slurm: {command[0]}: {done.stderr.strip() or f'exit status {done.returncode}'}"
+        )
     return done.stdout
 
 
 def _largest():
     """How many tasks an array may have."""
-    found = re.search(r"MaxArraySize\s*=\s*(\d+)", _asked(["scontrol", "show", "config"]))  # fmt: skip
+    found = re.search(
+        r"MaxArraySize\s*=\s*(\d+)", _asked(["scontrol", "show", "config"])
+    )
     return max(1, int(found[1] if found else ARRAY) - 1)
 
 
@@ -45,7 +53,9 @@ def waiting(folder):
         job = readWhole(folder.of(JOB)).decode().strip()
     except OSError:
         return None
-    done = subprocess.run(["squeue", "--noheader", "--jobs", job], capture_output=True, text=True)  # fmt: skip
+    done = subprocess.run(
+        ["squeue", "--noheader", "--jobs", job], capture_output=True, text=True
+    )
     return job if done.returncode == 0 and done.stdout.strip() else None
 
 
@@ -74,14 +84,25 @@ def submit(folder, runs, words):
     """
     before = waiting(folder)
     if before:
-        raise Refused(f"--slurm: job array {before} still has tasks of this study: wait for them, or scancel {before}")  # fmt: skip
+        raise Refused(
+            f"--slurm: job array {before} still has tasks of this study: wait for them, or scancel {before}"
+        )
     rows = [n for n in range(1, runs + 1) if not folder.isEnded(n)]
     if not rows:
         say("all rows are ended: --gather writes study.csv")
         return 0
     written(folder.of(SCRIPT), script(folder, rows, _largest()))
-    command = ["sbatch", "--parsable", f"--output={folder.of(batch.ROWS)}/slurm-%a.out", f"--chdir={folder.path}", *words, folder.of(SCRIPT)]  # fmt: skip
+    command = [
+        "sbatch",
+        "--parsable",
+        f"--output={folder.of(batch.ROWS)}/slurm-%a.out",
+        f"--chdir={folder.path}",
+        *words,
+        folder.of(SCRIPT),
+    ]
     job = _asked(command).strip().split(";")[0]
     written(folder.of(JOB), job + "\n")
-    say(f"{len(rows)} rows in job array {job}: squeue --jobs {job} shows it, --gather writes study.csv")  # fmt: skip
+    say(
+        f"{len(rows)} rows in job array {job}: squeue --jobs {job} shows it, --gather writes study.csv"
+    )
     return 0

@@ -51,7 +51,11 @@ def begin(study, path, near):
 def _compare(folder, known, now):
     """Refuse another study than the one that a folder holds."""
     was, told = known["study"], now["study"]
-    other = [f"{n} is {json.dumps(was.get(n))}, not {json.dumps(told.get(n))}" for n in {**was, **told} if was.get(n) != told.get(n)]  # fmt: skip
+    other = [
+        f"{n} is {json.dumps(was.get(n))}, not {json.dumps(told.get(n))}"
+        for n in {**was, **told}
+        if was.get(n) != told.get(n)
+    ]
     if not other and known.get("scene_sha256") != now["scene_sha256"]:
         other = [f"the file of its scene {told['scene']} was another one"]
     if other or known.get("version") != VERSION:
@@ -73,7 +77,9 @@ def _checkEmpty(folder):
         raise Refused(f"--out: {folder.path}: {error.strerror}") from None
     if names:
         some = ", ".join(sorted(names)[:3])
-        raise Refused(f"--out: {folder.path} is not empty ({some}) and holds no study: name another folder")  # fmt: skip
+        raise Refused(
+            f"--out: {folder.path} is not empty ({some}) and holds no study: name another folder"
+        )
 
 
 def _checkRoom(folder, needed):
@@ -84,21 +90,28 @@ def _checkRoom(folder, needed):
         return [f"--out: {at} cannot be written"]
     free = shutil.disk_usage(at).free
     if free < needed + SPARE:
-        return [f"--out: {at} has {1e-6 * free:.0f} MB free, the study writes some {1e-6 * needed:.0f} MB"]  # fmt: skip
+        return [
+            f"--out: {at} has {1e-6 * free:.0f} MB free, the study writes some {1e-6 * needed:.0f} MB"
+        ]
     return []
 
 
 def _look(study, script, table):
     """Problems of the study that its scene tells when it is built, and the bytes that a row writes."""
     if not shutil.which("yade"):
-        raise Refused("a study needs yade: apt-get install --no-install-recommends yade")  # fmt: skip
+        raise Refused(
+            "a study needs yade: apt-get install --no-install-recommends yade"
+        )
     with tempfile.TemporaryDirectory() as place:
         path = os.path.join(place, TABLE)
         with open(path, "w") as f:
             f.write(table)
         found = _probed(script, path, os.path.join(place, "probe.json"))
         if isinstance(found, str):  # the first row may be to blame
-            found = _probed(script, path, os.path.join(place, "probe.json"), line=1) or found  # fmt: skip
+            found = (
+                _probed(script, path, os.path.join(place, "probe.json"), line=1)
+                or found
+            )
     if isinstance(found, str):
         return [f"its scene cannot be built: {found}"], 0
     problems = _names(study, found) + _ranges(study, found) + found["problems"]
@@ -113,9 +126,23 @@ def _probed(script, table, path, line=2):
 
     :param line: of the table: the options with which the scene is built; 1: it is built without options
     """
-    env = {**os.environ, batch.VARIABLE: f"{table}:{line}", batch.PROBE: path, "OMP_NUM_THREADS": "1"}  # fmt: skip
+    env = {
+        **os.environ,
+        batch.VARIABLE: f"{table}:{line}",
+        batch.PROBE: path,
+        "OMP_NUM_THREADS": "1",
+    }
     try:
-        done = subprocess.run(["yade", "-n", "--threads=1", "-x", script], env=env, cwd=os.path.dirname(script), stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", timeout=PROBING)  # fmt: skip
+        done = subprocess.run(
+            ["yade", "-n", "--threads=1", "-x", script],
+            env=env,
+            cwd=os.path.dirname(script),
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=PROBING,
+        )
     except subprocess.TimeoutExpired:
         return f"it is not built after {PROBING} s"
     try:
@@ -129,7 +156,9 @@ def _probed(script, table, path, line=2):
 def _names(study, found):
     """Names that the scene ignores."""
     if not found["heard"]:
-        return ["its scene takes no options from the command line (arguments=...), and would ignore all that varies"]  # fmt: skip
+        return [
+            "its scene takes no options from the command line (arguments=...), and would ignore all that varies"
+        ]
     problems, joints = [], found["joints"]
     for name in [*study.options, *study.vary]:
         for one in name.removeprefix(batch.FIELD).split("+"):
@@ -138,17 +167,27 @@ def _names(study, found):
                 if one not in found["options"]:
                     problems.append(f"{one}: the scene has no such option")
                 elif one in found["unused"]:
-                    problems.append(f"{one}: the scene ignores it: {found['unused'][one]}")  # fmt: skip
+                    problems.append(
+                        f"{one}: the scene ignores it: {found['unused'][one]}"
+                    )
                 continue
             if kind not in joints or attribute not in found["bounds"]:
                 continue  # the rows tell that
             properties = joints[kind]
             if not found["counts"][kind]:
-                problems.append(f"{one}: the scene has no {kind} joint and would ignore it")  # fmt: skip
+                problems.append(
+                    f"{one}: the scene has no {kind} joint and would ignore it"
+                )
             elif properties.get("elastic") and "Stiffness" not in attribute:
-                problems.append(f"{one}: {kind} joints of the scene are linear elastic and ignore it")  # fmt: skip
-            elif properties.get("cap") is False and (attribute.startswith(("compressive", "peakRatio"))):  # fmt: skip
-                problems.append(f"{one}: {kind} joints of the scene do not crush and ignore it")  # fmt: skip
+                problems.append(
+                    f"{one}: {kind} joints of the scene are linear elastic and ignore it"
+                )
+            elif properties.get("cap") is False and (
+                attribute.startswith(("compressive", "peakRatio"))
+            ):
+                problems.append(
+                    f"{one}: {kind} joints of the scene do not crush and ignore it"
+                )
     return problems
 
 
@@ -156,7 +195,12 @@ def _ranges(study, found):
     """Distributions that can give what a property cannot be."""
     problems = []
     for column, what in study.vary.items():
-        if isinstance(what, Field) and what.kind == "normal" and what.mean is not None and what.mean < 0:  # fmt: skip
+        if (
+            isinstance(what, Field)
+            and what.kind == "normal"
+            and what.mean is not None
+            and what.mean < 0
+        ):
             problems.append(f"{column}: mean {what.mean:g} must be above 0")
         if not isinstance(what, Distribution):
             continue
@@ -166,7 +210,13 @@ def _ranges(study, found):
                 continue
             share = what.beyond(bounds["low"], bounds["high"])
             if share > NEVER:
-                ends = [f"{word} {bounds[e]:g}" for e, word in (("low", "at least"), ("high", "at most")) if bounds[e] is not None]  # fmt: skip
+                ends = [
+                    f"{word} {bounds[e]:g}"
+                    for e, word in (("low", "at least"), ("high", "at most"))
+                    if bounds[e] is not None
+                ]
                 unit = f" {bounds['unit']}" if bounds["unit"] not in ("", "-") else ""
-                problems.append(f"{name}: {what} gives impossible values in {100 * share:.2g} % of all rows: it must be {' and '.join(ends)}{unit}; low=... or high=... cuts it off")  # fmt: skip
+                problems.append(
+                    f"{name}: {what} gives impossible values in {100 * share:.2g} % of all rows: it must be {' and '.join(ends)}{unit}; low=... or high=... cuts it off"
+                )
     return problems

@@ -150,7 +150,9 @@ def _numbers(values, least, what):
     if len(values) < least:
         problems.append(f"{what} needs {least} rows or more, there are {len(values)}")
     if len(strange):
-        problems.append(f"{what}: rows {', '.join(str(i + 1) for i in strange[:10])} have no finite number")  # fmt: skip
+        problems.append(
+            f"{what}: rows {', '.join(str(i + 1) for i in strange[:10])} have no finite number"
+        )
     if problems:
         raise Refused("\n".join(problems))
     return values

@@ -79,7 +79,9 @@ class Distribution:
 
 def _aboutMean(kind, mean, cov, low, high):
     parameters = {"mean": mean, "cov": cov}
-    parameters.update({n: v for n, v in (("low", low), ("high", high)) if v is not None})  # fmt: skip
+    parameters.update(
+        {n: v for n, v in (("low", low), ("high", high)) if v is not None}
+    )
     _finite(**parameters)
     if not cov > 0:
         raise Refused(f"{kind}: coefficient of variation {cov} must be above 0")
@@ -130,7 +132,11 @@ class Choice:
         return self.values[-1]
 
     def describe(self):
-        return {"kind": "choice", "values": list(self.values), "weights": list(self.weights)}  # fmt: skip
+        return {
+            "kind": "choice",
+            "values": list(self.values),
+            "weights": list(self.weights),
+        }
 
 
 def choice(*values, weights=None):
@@ -142,7 +148,9 @@ def choice(*values, weights=None):
         raise Refused("choice: needs at least one value")
     wrong = [v for v in values if not isinstance(v, (bool, int, float, str))]
     if wrong:
-        raise Refused(f"choice: {wrong[0]!r} must be a number, a text, or True or False")  # fmt: skip
+        raise Refused(
+            f"choice: {wrong[0]!r} must be a number, a text, or True or False"
+        )
     if len(set(values)) != len(values):
         raise Refused(f"choice: {list(values)} has a value twice")
     weights = [1] * len(values) if weights is None else list(weights)
@@ -161,7 +169,13 @@ class Field:
     length: float
 
     def describe(self):
-        return {"kind": "field", "of": self.kind, "mean": self.mean, "cov": self.cov, "length": self.length}  # fmt: skip
+        return {
+            "kind": "field",
+            "of": self.kind,
+            "mean": self.mean,
+            "cov": self.cov,
+            "length": self.length,
+        }
 
     def written(self, seed):
         """As a table has it."""
@@ -186,7 +200,10 @@ def field(distribution=None, length=0.0, cov=None):
         return Field("lognormal", None, float(cov), float(length))
     if cov is not None:
         raise Refused("field: cov goes with no distribution, which has its own")
-    if not isinstance(distribution, Distribution) or distribution.kind not in fields.KINDS:  # fmt: skip
+    if (
+        not isinstance(distribution, Distribution)
+        or distribution.kind not in fields.KINDS
+    ):
         raise Refused(f"field: {distribution} must be lognormal or normal")
     p = dict(distribution.parameters)
     if "low" in p or "high" in p:
