@@ -213,6 +213,7 @@ def sliding(bed):
     - sliding_course: courses between it and the base
     - sliding_energy_share [-]: of the energy lost in shear by all bed joints, what it lost
     - slid_share [-]: of its length, what slid more than CRACK
+    - slid_mm: its slide, the median over its length
     """
     energy = bed["shear"].sum(axis=1)
     course, whole = int(energy.argmax()), energy.sum()
@@ -220,6 +221,7 @@ def sliding(bed):
         "sliding_course": course + 1,
         "sliding_energy_share": energy[course] / whole if whole > 0 else 0.0,
         "slid_share": (bed["slide"][course] > CRACK).mean(),
+        "slid_mm": 1e3 * np.median(bed["slide"][course]),
     }
 
 
@@ -234,17 +236,15 @@ def pattern(frame, wall):
     return patternNumbers(*layOut(frame, wall))
 
 
-SLID = (
-    0.9,
-    0.5,
-)  # of a bed joint's length, and of the energy: a wall that slides along a bed joint slid there
+#: Of a wall that slides along a bed joint: share of that joint's length that slid, and of the energy in shear [-].
+SLID = 0.9, 0.5
 
 
 def failureMode(numbers, wall):
     """A plain name of how a wall gave way, from its crack pattern at the end. The first that applies is given:
 
-    - ``bed sliding``: one bed joint slid along nine tenths of the wall's length, and lost half of the energy that bed
-      joints lost in shear
+    - ``bed sliding``: one bed joint slid along nine tenths of the wall's length, by more than bed joints opened at its
+      sides, and lost half of the energy that bed joints lost in shear
     - ``diagonal cracking``: a stepped crack reaches over half of the shorter side of the wall, in courses or half units
     - ``toe crushing``: bed joints of more than one half unit closed past the peak of their compression curve
     - ``rocking``: a bed joint opened at a side of the wall by more than CRACK
@@ -255,7 +255,12 @@ def failureMode(numbers, wall):
     :param numbers: of :func:`patternNumbers`
     :param wall: the entry ``wall`` of run.json
     """
-    if numbers["slid_share"] >= SLID[0] and numbers["sliding_energy_share"] >= SLID[1]:
+    opened = max(numbers[f"flexural_opening_{side}_mm"] for side in ("base", "top"))
+    if (
+        numbers["slid_share"] >= SLID[0]
+        and numbers["sliding_energy_share"] >= SLID[1]
+        and numbers["slid_mm"] > opened
+    ):
         return "bed sliding"
     if numbers["diagonal_reach"] >= 0.5 * min(wall["courses"], wall["half_units"]):
         return "diagonal cracking"

@@ -175,3 +175,40 @@ def test_heights_above_the_diagonal_vanish_on_it():
     upright = measure.acrossDiagonal((COURSES, COLUMNS - 1), upright=True)
     assert upright[5, 5] == pytest.approx(-0.5)
     assert np.isnan(bed[0]).all() and np.isnan(upright[:2]).all()
+
+
+#: Numbers of a wall of which nothing is cracked.
+WHOLE = {
+    "slid_share": 0.0,
+    "slid_mm": 0.0,
+    "sliding_energy_share": 0.0,
+    "diagonal_reach": 0,
+    "past_peak_area_cm2": 0.0,
+    "flexural_cracks_base": 0,
+    "flexural_cracks_top": 0,
+    "flexural_opening_base_mm": 0.0,
+    "flexural_opening_top_mm": 0.0,
+}
+SLID = {"slid_share": 1.0, "slid_mm": 5.0, "sliding_energy_share": 0.8}
+LEANS = {"flexural_cracks_base": 2, "flexural_opening_base_mm": 6.0}
+
+
+@pytest.mark.parametrize(
+    "found, mode",
+    [
+        ({}, "none"),
+        (LEANS, "rocking"),
+        ({**LEANS, "past_peak_area_cm2": 200}, "toe crushing"),
+        ({**LEANS, "past_peak_area_cm2": 100}, "rocking"),  # less than half a unit
+        ({**LEANS, "diagonal_reach": 5}, "diagonal cracking"),
+        (SLID, "bed sliding"),
+        ({**SLID, "diagonal_reach": 10}, "bed sliding"),
+        ({**SLID, "slid_share": 0.8}, "none"),
+        ({**SLID, "sliding_energy_share": 0.4}, "none"),
+        # a wall that rocks on a bed joint slides along all of it, too, but opens it by far more
+        ({**SLID, **LEANS}, "rocking"),
+    ],
+)
+def test_a_failure_mode_is_the_first_that_applies(found, mode):
+    wall = {"courses": 10, "half_units": 36, "unit_m": (0.22, 0.102, 0.081)}
+    assert measure.failureMode({**WHOLE, **found}, wall) == mode
