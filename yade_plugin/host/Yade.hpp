@@ -386,5 +386,4 @@ public:
     static T& instance();
 };
 
-#undef MASONRY_HOST_CLASS
 #undef MASONRY_HOST_INDEX

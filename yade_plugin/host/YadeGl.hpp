@@ -7,18 +7,6 @@ namespace yade {
 // What the view tells about itself. Nothing of it is used here, so its members are not declared.
 struct GLViewInfo;
 
-#define MASONRY_HOST_CLASS(Class)                                                                                      \
-public:                                                                                                                \
-    virtual ~Class();                                                                                                  \
-    std::string getBaseClassName(unsigned = 0) const override;                                                         \
-    int getBaseClassNumber() const override;                                                                           \
-    std::string getClassName() const override;                                                                         \
-    void pySetAttr(const std::string& key, const py::object& value) override;                                          \
-    py::dict pyDict() const override;                                                                                  \
-    void callPostLoad() override;                                                                                      \
-    void pyRegisterClass(py::object scope) override;                                                                   \
-    template <class Archive> void serialize(Archive&, unsigned) {}
-
 // Draws shapes of one class. The view has moved the axes to those of the body when it calls `go`.
 class GlShapeFunctor
     : public Functor,
@@ -57,7 +45,5 @@ class OpenGLRenderer {
 public:
     static bool initDone;
 };
-
-#undef MASONRY_HOST_CLASS
 
 } // namespace yade

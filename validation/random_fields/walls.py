@@ -1,0 +1,25 @@
+"""Walls whose bond strengths vary from joint to joint. The studies beside this file differ in their correlation length."""
+
+from masonry.study import Study, field
+
+#: Cohesion and tensile strength of bed and head joints, which are strong and weak together.
+BONDS = (
+    "bed.cohesion",
+    "bed.tensileStrength",
+    "head.cohesion",
+    "head.tensileStrength",
+)
+
+
+def walls(length):
+    """1,000 walls COMP-4 with a lognormal field of bond strengths about those of the scene.
+
+    :param length: correlation length [m]
+    """
+    return Study(
+        "wall_comp4",
+        options={"preset": "fast", "until": 6},
+        runs=1000,
+        seed=1,
+        vary={BONDS: field(cov=0.3, length=length)},
+    )
