@@ -12,12 +12,21 @@ import subprocess
 import sys
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 BUILD = os.path.join(ROOT, "build")
 RINGS = ["law", "blocks", "files", "host", "package", "sanitizers", "fuzz", "studies", "scenes"]  # fmt: skip
 SLOW = ["sanitizers", "fuzz", "studies", "scenes"]  # rings of which every test is slow
 TOGETHER = ["programs", "targets", "squat", "whole"]  # fixtures that many tests share
+
+#: On a busy machine examples take longer than hypothesis expects, and some are large.
+settings.register_profile(
+    "busy",
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+settings.load_profile("busy")
 
 sys.path.insert(1, "/usr/lib/x86_64-linux-gnu/yade-double/py")  # as /usr/bin/yade does
 sys.path.insert(1, os.path.join(ROOT, "tests", "references"))

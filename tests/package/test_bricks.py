@@ -30,7 +30,7 @@ from masonry.bricks import (
 
 L, T, H = bricks.walls.UNIT
 
-few = settings(max_examples=25, deadline=None)
+few = settings(max_examples=25)
 units = some.tuples(
     some.floats(0.1, 1.2), some.floats(0.05, 0.6), some.floats(0.03, 0.5)
 )
@@ -185,7 +185,7 @@ def test_free_faces_are_what_no_joint_covers():
 # -- bonds ------------------------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     some.sampled_from(["running", "header", "english", "flemish"]),
     some.integers(2, 26),
@@ -286,7 +286,7 @@ def test_courses_of_different_height():
 # -- openings ---------------------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(
     some.integers(1, 30),
     some.integers(0, 8),
@@ -328,7 +328,7 @@ def test_an_opening_takes_its_volume_and_nothing_else(
     assert not [p for p in wall.problems() if "odd size" not in p]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(*[some.floats(0.0, 2.5) for _ in range(4)])
 def test_any_opening_is_cut_out_or_refused(x, z, width, height):
     try:
@@ -591,7 +591,7 @@ anything = some.one_of(
 )
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(
     some.dictionaries(
         some.sampled_from(

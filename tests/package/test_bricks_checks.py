@@ -12,7 +12,7 @@ from hypothesis import strategies as some
 from masonry.bricks import Arch, Block, Bricks, Dome, Wall, block, stack
 from masonry.bricks.geometry import Solids, hull
 
-few = settings(max_examples=40, deadline=None)
+few = settings(max_examples=40)
 CUBE = ((0, 0, 0), (1, 1, 1))
 
 

@@ -303,7 +303,6 @@ def test_a_corner_beyond_all_masonry_is_refused(tmp_path):
 
 @settings(
     max_examples=150,
-    deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 @given(some.data())

@@ -9,7 +9,7 @@ from hypothesis import strategies as some
 
 from masonry.bricks import Arch, BarrelVault, Dome
 
-few = settings(max_examples=40, deadline=None)
+few = settings(max_examples=40)
 sizes = some.floats(0.05, 3.0)
 angles = some.one_of(some.just(180.0), some.floats(20, 179))
 

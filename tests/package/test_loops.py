@@ -26,7 +26,7 @@ def path(*corners, rows=400):
     stiffness=st.floats(0.1, 300),
     damping=st.floats(0.01, 0.5),
 )
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_an_ellipse_has_the_damping_that_drew_it(amplitude, stiffness, damping):
     # d = A sin p, F = K d + 2 ξ K A cos p: a spring and a dashpot, with work 2 π ξ K A² in a cycle
     p = np.linspace(0, 2 * np.pi, FINE)
@@ -91,7 +91,7 @@ def test_unequal_amplitudes_and_cycles_that_begin_with_the_negative_side():
 
 
 @given(st.integers(0, 2**32 - 1), st.floats(0, 0.05))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_noise_below_the_threshold_changes_no_count(seed, noise):
     amplitudes = [1, 1, 3, 3, 6]
     corners = [(0, 0)] + [(s * a, s * a) for a in amplitudes for s in (1, -1)]

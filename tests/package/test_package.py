@@ -171,7 +171,7 @@ def test_a_preset_promises_nothing_of_a_wall_it_was_not_measured_on():
     assert presets.presetOf(parse(), "wall_comp4") is None
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.text("0123456789.:,+-_einfax ", max_size=40))
 def test_any_text_for_a_table_is_refused_in_words_or_makes_a_joint(text):
     joints = {"bed": materials.MasonryJoint()}

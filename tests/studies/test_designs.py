@@ -42,7 +42,7 @@ def test_values_have_the_moments_of_their_distribution(law, design):
     low=st.floats(-1e3, 1e3),
     width=st.floats(1e-3, 1e3),
 )
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_values_lie_in_their_bounds_and_are_the_same_again(
     seed, runs, design, low, width
 ):
