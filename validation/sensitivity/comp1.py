@@ -1,4 +1,4 @@
-"""COMP-1 with all values that the paper leaves open, each anywhere in its range. A file for masonry.study; README.md says how."""
+"""COMP-1 with all values that the paper leaves open, each anywhere in its range. README.md says how to run it."""
 
 import os
 import sys

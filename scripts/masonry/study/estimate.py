@@ -196,7 +196,8 @@ def doubts(dear, cheap):
     p = stats.spearmanr(size, x).pvalue
     if p < DOUBT:
         told.append(
-            f"the dear numbers scatter about the cheap ones more at one end than at the other (p = {p:.2g}): quantiles by the bridge are biased"
+            f"the dear numbers scatter about the cheap ones more at one end than at the other (p = {p:.2g}): quantiles by the "
+            "bridge are biased"
         )
     return told
 

@@ -135,12 +135,19 @@ def compare(dear, cheap, measure, other, method, prices=None):
             "the prices of the runs are unknown, since times.csv has none: give --prices"
         )
     unit = label(measure).partition("[")[2].rstrip("]")
-    yield f"{label(measure)} from {len(shared)} rows of both and {len(rows)} of {names[1]}; correlation {np.corrcoef(y, x[:len(y)])[0, 1]:.4f}, a run costs {prices[0]:.3g} and {prices[1]:.3g} s"
+    correlation = np.corrcoef(y, x[: len(y)])[0, 1]
+    yield (
+        f"{label(measure)} from {len(shared)} rows of both and {len(rows)} of {names[1]}; correlation {correlation:.4f}, a run "
+        f"costs {prices[0]:.3g} and {prices[1]:.3g} s"
+    )
     for one in found:
         yield "  " + estimate.sentence(one, prices, unit, names)
         same = (one.dear / one.shared) + one.cheap / one.rows
         best = estimate.allocate(one, prices, variance=same)
-        yield f"    cheapest for it: {best.shared} shared rows and {best.rows} cheap ones, {100 * best.share:.0f} % of the cost of {names[0]} alone"
+        yield (
+            f"    cheapest for it: {best.shared} shared rows and {best.rows} cheap ones, {100 * best.share:.0f} % of the cost of "
+            f"{names[0]} alone"
+        )
     yield from ("  note: " + doubt for doubt in estimate.doubts(y, x))
 
 

@@ -99,7 +99,8 @@ def sobol(inputs, output, seed=1, confidence=CONFIDENCE):
             found = stats.spearmanr(x[:, i], x[:, j])
             if found.pvalue < 2 * DEPENDENT / (k * (k - 1)):
                 problems.append(
-                    f"Sobol indices need independent properties, {names[j]} and {names[i]} have a rank correlation of {found.statistic:.2f}"
+                    f"Sobol indices need independent properties, {names[j]} and {names[i]} have a rank correlation of "
+                    f"{found.statistic:.2f}"
                 )
     if np.ptp(y) == 0:
         problems.append("Sobol indices: all results are the same")

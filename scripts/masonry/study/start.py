@@ -217,6 +217,7 @@ def _ranges(study, found):
                 ]
                 unit = f" {bounds['unit']}" if bounds["unit"] not in ("", "-") else ""
                 problems.append(
-                    f"{name}: {what} gives impossible values in {100 * share:.2g} % of all rows: it must be {' and '.join(ends)}{unit}; low=... or high=... cuts it off"
+                    f"{name}: {what} gives impossible values in {100 * share:.2g} % of all rows: it must be "
+                    f"{' and '.join(ends)}{unit}; low=... or high=... cuts it off"
                 )
     return problems
