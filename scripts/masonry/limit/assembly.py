@@ -37,7 +37,8 @@ class Assembly:
     :param ids: numbers by which messages name the blocks (n), YADE's
     :param polygons: corners of the joints, a list of arrays (k, 3) [m]
     :param corners: corners of the blocks, a list of arrays (k, 3) [m]
-    :param longest: time that the solver may take for one programme, and after which facets are not turned again [s]
+    :param longest: time that the solver may take for one programme, and after which neither facets are turned nor joints
+        lose their friction once more [s]
     :param props: points of blocks that cannot move in a direction, whatever force that takes: a list of (number of the
         block, unit vector, point [m])
     """

@@ -7,6 +7,7 @@ solves programmes of the same structure with less friction where nothing presses
 cohesion. A mechanism counts only if hardly any friction is missing in it (:func:`_belongs`).
 """
 
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -26,9 +27,10 @@ def loosened(assembly, live, dead):
 
     It begins with the head joints. Then other joints that carry nothing lose their friction, too, and so on.
     """
+    began = time.monotonic()
     smooth, least = _smooth(assembly, dead), None
     for _ in range(LOOSENED):
-        if smooth is None:
+        if smooth is None or time.monotonic() - began > assembly.longest:
             break
         try:
             bound = smooth.associated(live, dead)
