@@ -11,10 +11,12 @@ underscores for dashes, and properties of joints. Values are written as in Pytho
 - ``field:JOINT.PROPERTY``: as ``--field``; several of them that vary alike are joined by ``+``
 - ``description``: names the row; its results are in the folder ``rows/DESCRIPTION`` beside the table
 
-A row that was run to its end is not run again, and one that was stopped goes on from its checkpoint.
+A row that was run to its end is not run again, and one that was stopped goes on from its checkpoint, with the values that it
+began with. So a row with other values needs another description.
 """
 
 import ast
+import collections
 import os
 import re
 
@@ -49,6 +51,10 @@ def readTable(path):
             )
         row = {h: before.get(h, w) if w == "=" else w for h, w in zip(heads, words)}
         rows[number] = before = row
+    names = collections.Counter(folder(path, row, line) for line, row in rows.items())
+    twice = [os.path.basename(name) for name, count in names.items() if count > 1]
+    if twice:
+        raise Refused(f"{path}: description {', '.join(twice)} names several rows")
     return rows
 
 

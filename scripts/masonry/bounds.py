@@ -6,6 +6,7 @@ what they are.
 
 import math
 import os
+import time
 
 import numpy as np
 
@@ -18,8 +19,8 @@ from .progress import say
 SMALL = 500
 EVERY = math.inf  # it is looked for however many joints there are
 JOINTS = 3000  # up to so many joints every run has its bounds; limit analysis of more takes longer than seconds
-#: Time that the solver may take for a programme that nobody asked for [s]
-UNASKED = 10.0
+#: Time that limit analysis may take for a load, if nobody asked for it, and if somebody did [s]
+UNASKED, ASKED = 10.0, 600.0
 #: By how much a run may be above its bound [-]: joints of finite stiffness, displacements that are not small, and motion,
 #: whose measured share is added.
 TOLERANCE = 0.02
@@ -59,7 +60,7 @@ class Bounds:
         """Live load, and what is added to its factor to give the base shear [kN]."""
         load = self.model.loads["push"]
         block = assembly.ids.index(load.body)
-        point = load.point + load.displacement()
+        point = _pointOf(load, assembly)
         free = ~assembly.held[:, :3]
         return (
             assembly.force(block, 1e3 * way, point),
@@ -103,8 +104,8 @@ class Bounds:
             return entry
         try:
             assembly = limit.read()
-            if not lowerUpTo:
-                assembly.longest = UNASKED
+            seconds = ASKED if lowerUpTo else UNASKED
+            assembly.deadline = time.monotonic() + seconds
             down = assembly.weights(model.now)
             forces = self._forces(assembly)
             live, beside = load(assembly, down + forces)
@@ -130,7 +131,7 @@ class Bounds:
         """Presses, dead loads and wind with their whole, and props at the points that other drives hold."""
         loads = np.zeros_like(assembly.held, float)
         for load, force in self.model.deadLoads():
-            block, point = assembly.ids.index(load.body), load.point + load.displacement()  # fmt: skip
+            block, point = assembly.ids.index(load.body), _pointOf(load, assembly)
             if force.norm():
                 loads += assembly.force(block, np.array(force), point)
             if load.driven and load is not self.model.loads["push"]:
@@ -200,6 +201,11 @@ class Bounds:
             told = f"{title}\nlimit analysis, {entry['load']}: {entry['factor']:.4g} {entry['unit']}".rstrip()
             bound.save(directory)
             bound.draw(os.path.join(directory, FIGURE), told, parts, views)
+
+
+def _pointOf(load, assembly):
+    """Where a MasonryLoad acts, on blocks as the assembly has them [m]."""
+    return load.point if assembly.stood else load.point + load.displacement()
 
 
 def _told(way):

@@ -16,6 +16,21 @@ from .errors import Refused
 STEEP = math.cos(math.radians(45))
 
 
+def withResidual(names, joints):
+    """Names of properties that change alike, and with them the residual friction of joints that have one value of friction.
+
+    :param names: as ``"bed.friction"``
+    :param joints: dict of MasonryJoint by name
+    """
+    one = [n.partition(".")[0] for n in names if n.endswith(".friction")]
+    one = [
+        n
+        for n in one
+        if n in joints and joints[n].friction == joints[n].residualFriction
+    ]
+    return [*dict.fromkeys([*names, *(n + ".residualFriction" for n in one)])]
+
+
 @dataclass
 class Masonry:
     """Bricks and joints of a structure, and which joint a pair of blocks gets.
@@ -117,6 +132,7 @@ class Masonry:
         )
         for text in args.field:
             names, function = fields.read(text)
+            names = withResidual(names, copies)
             try:
                 own.vary(names, function)
             except ValueError as error:

@@ -11,6 +11,7 @@ from yade.wrapper import MasonryJoint
 
 from . import batch, fields
 from .errors import Refused
+from .materials import withResidual
 from .options import Parser, check
 from .scene import properties
 
@@ -123,6 +124,7 @@ def _refused(scene, parser, words):
 
 def _far(text, joints):
     names, kind, cov, length, seed = fields.parts(text)
+    names = withResidual(names, joints)
     ends = fields.ends(kind, cov, FAR)
     for factor in ends:
         changes = {}

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import time
 
 import numpy as np
 import pytest
@@ -172,11 +173,20 @@ def test_dry_walls_fall_where_another_programme_says(
 # -- against itself ----------------------------------------------------------------------------------------------------
 
 
+def test_what_is_not_solved_in_time_is_refused(scene):
+    a = wall(6, 4, 0.6)
+    a.deadline = time.monotonic() - 1
+    with pytest.raises(Refused, match="limit analysis: it was not solved in time"):
+        sideways(a)
+
+
 def test_both_solvers_agree(scene, monkeypatch):
     a = wall(6, 4, 0.6)
     first = sideways(a).factor
     calls = []
-    monkeypatch.setattr(limit.programme, "_clp", lambda *words: calls.append(1) or gone())
+    monkeypatch.setattr(
+        limit.programme, "_clp", lambda *words: calls.append(1) or gone()
+    )
 
     def gone():
         raise OSError("no library")

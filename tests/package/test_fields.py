@@ -1,10 +1,12 @@
 """Random fields: mean, spread and correlation are those that were asked for."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from masonry import fields
+from masonry.materials import withResidual
 
 POINTS = np.random.default_rng(7).uniform(-50, 50, (2000, 3))
 
@@ -50,3 +52,14 @@ def test_a_seed_gives_the_same_field_again_and_another_seed_another_one():
 def test_wrong_parameters_are_refused(wrong, told):
     with pytest.raises(ValueError, match=told):
         fields.lognormal(**wrong)
+
+
+def test_residual_friction_that_is_the_friction_varies_with_it():
+    joints = {
+        "bed": SimpleNamespace(friction=0.43, residualFriction=0.43),
+        "head": SimpleNamespace(friction=0.43, residualFriction=0.3),
+    }
+    names = ["bed.friction", "head.friction", "bed.cohesion"]
+    assert withResidual(names, joints) == [*names, "bed.residualFriction"]
+    known = [*names, "bed.residualFriction"]
+    assert withResidual(known, joints) == known

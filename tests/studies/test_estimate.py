@@ -64,7 +64,7 @@ def test_estimates_are_right_in_the_mean(ofLine, name):
 
 def test_the_predicted_variance_is_that_of_repetitions(ofLine):
     found = ofLine["mean"]
-    predicted = np.mean([e.dear / e.shared + e.cheap / e.rows for e in found])
+    predicted = np.mean([e.expensive / e.shared + e.cheap / e.rows for e in found])
     truth = 25 * (1 - 0.97**2) / 20 + 25 * 0.97**2 / 200
     scatter = math.sqrt(2 / REPEATS)  # of the variance of normal numbers, relative
     assert np.var([e.value for e in found]) == pytest.approx(
@@ -101,7 +101,7 @@ def test_a_dear_row_alone_is_told_with_its_own_variance(ofLine):
 def test_the_mean_needs_no_line():
     """The control variate is right whatever the cheap numbers are; only its gain depends on them.
 
-    Where the dear numbers bend, its slope depends on which rows are shared. That is a bias of order 1/N: a tenth of the
+    Where the expensive numbers bend, its slope depends on which rows are shared. That is a bias of order 1/N: a tenth of the
     scatter with 60 shared rows, which takes 1 % from the coverage.
     """
     draw = lambda g: bent(g, 60, 600)
@@ -146,7 +146,7 @@ def test_doubts_come_as_seldom_as_they_say_where_the_bridge_holds():
 
 
 def test_cheap_rows_that_tell_nothing_do_no_harm():
-    """Then the mean and its interval are those of the dear rows alone, but for one degree of freedom."""
+    """Then the mean and its interval are those of the expensive rows alone, but for one degree of freedom."""
     generator, ratios = np.random.default_rng(6), []
     for _ in range(200):
         y, x = generator.standard_normal(40), generator.standard_normal(400)
@@ -170,7 +170,7 @@ def test_what_is_saved_is_the_rule_of_two_models():
     assert best.rows / best.shared == pytest.approx(
         math.sqrt(rho**2 * 60 / (1 - rho**2) / 3), rel=0.03
     )
-    assert pilot.dear / best.shared + pilot.cheap / best.rows <= 0.02
+    assert pilot.expensive / best.shared + pilot.cheap / best.rows <= 0.02
     assert best.alone == pytest.approx(25 / 0.02, rel=0.01)
     assert best.cost == 60 * best.shared + 3 * best.rows
     again = estimate.allocate(pilot, prices, budget=best.cost)
@@ -183,7 +183,7 @@ def test_no_other_allocation_is_cheaper(shared):
     pilot = estimate.Estimate("mean", 0, -1, 1, 1.0, 24.0, 25, 20, 200)
     best = estimate.allocate(pilot, (60, 3), variance=0.02)
     other = shared * best.shared
-    left = 0.02 - pilot.dear / other
+    left = 0.02 - pilot.expensive / other
     assert left < 0 or 60 * other + 3 * pilot.cheap / left > 1.01 * best.cost
 
 
@@ -230,8 +230,8 @@ y30, x30 = line(np.random.default_rng(1), 30, 100, 0.9)
     "call, told",
     [
         (lambda: estimate.mean(y30[:9], x30), "9 shared rows are too few"),
-        (lambda: estimate.mean(y30, x30[:29]), "29 cheap rows for 30 dear ones"),
-        (lambda: estimate.mean([*y30[:-1], math.nan], x30), "dear rows 30 have"),
+        (lambda: estimate.mean(y30, x30[:29]), "29 cheap rows for 30 expensive ones"),
+        (lambda: estimate.mean([*y30[:-1], math.nan], x30), "expensive rows 30 have"),
         (lambda: estimate.mean(y30, np.ones(100)), "cheap numbers of all shared rows"),
         (lambda: estimate.quantile(y30, x30, 1), "quantile of 1"),
         (lambda: estimate.quantile(y30, x30, 0.5, "magic"), "'magic' must be"),
@@ -239,7 +239,10 @@ y30, x30 = line(np.random.default_rng(1), 30, 100, 0.9)
             lambda: estimate.quantile(y30, x30, 0.05, "indicator"),
             "100 shared rows or more, there are 30",
         ),
-        (lambda: estimate.allocate(estimate.mean(y30, x30), (0, 1)), "dear run is 0"),
+        (
+            lambda: estimate.allocate(estimate.mean(y30, x30), (0, 1)),
+            "expensive run is 0",
+        ),
         (lambda: estimate.allocate(estimate.mean(y30, x30), (9, 1)), "either"),
         (
             lambda: estimate.allocate(estimate.mean(y30, x30), (9, 1), budget=99),

@@ -1,7 +1,9 @@
 """Sensitivities against closed forms, and pictures of what they must show, drawn from numbers and from a study's folder."""
 
+import json
 import math
 import os
+import pathlib
 
 import numpy as np
 import pytest
@@ -288,28 +290,28 @@ def writeStudy(folder, rows, measures, curves=0):
 
 @pytest.fixture
 def studies(tmp_path):
-    """A dear study with the first 15 rows of a cheap one of 120, whose peaks miss those of the dear one by a little."""
+    """An expensive study with the first 15 rows of a cheap one of 120, whose peaks miss those of the expensive one by a little."""
     generator = np.random.default_rng(10)
     rows = generator.uniform(0, 1, (120, 3)).tolist()
-    dear = [
+    expensive = [
         100 + 20 * a - 10 * b + 0.3 * generator.standard_normal() for a, b, _ in rows
     ]
-    cheap = [1.1 * y - 3 + 0.3 * generator.standard_normal() for y in dear]
+    cheap = [1.1 * y - 3 + 0.3 * generator.standard_normal() for y in expensive]
     order = generator.permutation(120)
     shuffled = {"peak_base_shear_kN": [repr(cheap[i]) for i in order]}
     modes = ["slides"] * 5 + ["rocks"] * 10
-    few = {"failure_mode": modes, "peak_base_shear_kN": list(map(repr, dear[:15]))}
+    few = {"failure_mode": modes, "peak_base_shear_kN": list(map(repr, expensive[:15]))}
     return (
         writeStudy(tmp_path / "accurate", rows[:15], few, curves=15),
         writeStudy(tmp_path / "fast", [rows[i] for i in order], shuffled),
-        np.array(dear),
+        np.array(expensive),
     )
 
 
 def test_shared_rows_are_found_by_what_varied_in_them(studies):
-    dear, cheap, peaks = studies
+    expensive, cheap, peaks = studies
     y, x, shared, rows = records.paired(
-        records.Record(dear), records.Record(cheap), "peak_base_shear_kN"
+        records.Record(expensive), records.Record(cheap), "peak_base_shear_kN"
     )
     assert y == pytest.approx(peaks[:15]) and shared == list(range(15))
     assert len(x) == 120 and sorted(rows) == list(range(120))
@@ -317,8 +319,8 @@ def test_shared_rows_are_found_by_what_varied_in_them(studies):
 
 
 def test_rows_without_a_number_in_either_study_are_not_shared(studies):
-    dear, cheap, peaks = studies
-    few, many = records.Record(dear), records.Record(cheap)
+    expensive, cheap, peaks = studies
+    few, many = records.Record(expensive), records.Record(cheap)
     few.cells["peak_base_shear_kN"][2] = ""
     keys = list(zip(*(many.cells[name] for name in NAMES)))
     lost = keys.index(tuple(few.cells[name][4] for name in NAMES))
@@ -343,6 +345,25 @@ def test_studies_of_which_it_cannot_be_told_what_they_share_are_refused(studies)
         records.paired(few, many, "peak_base_shear_kN")
 
 
+def test_studies_of_other_walls_or_options_are_not_joined(studies):
+    options = {"accurate": {"preset": "accurate"}, "fast": {"preset": "fast"}}
+
+    def write(scene="wall_comp4", **more):
+        for (name, own), directory in zip(options.items(), studies):
+            study = {"scene": "wall_comp4", "runs": 15, "options": own}
+            if name == "fast":
+                study = {**study, "scene": scene, "options": {**own, **more}}
+            told = {"study": study, "script": scene + ".py"}
+            (pathlib.Path(directory) / "study.json").write_text(json.dumps(told))
+        return [records.Record(directory) for directory in studies[:2]]
+
+    assert len(records.paired(*write(), "peak_base_shear_kN")[0]) == 15
+    with pytest.raises(Refused, match="has scene 'wall_comp4', and .* 'wall_comp1'"):
+        records.paired(*write("wall_comp1"), "peak_base_shear_kN")
+    with pytest.raises(Refused, match="has until None, and .* 6"):
+        records.paired(*write(until=6), "peak_base_shear_kN")
+
+
 def test_the_seed_of_a_random_field_is_no_input(studies):
     record = records.Record(studies[0])
     record.varied.append("field:bed.cohesion")
@@ -351,8 +372,8 @@ def test_the_seed_of_a_random_field_is_no_input(studies):
 
 
 def test_the_report_tells_and_draws_all(studies, capsys):
-    dear, cheap, peaks = studies
-    words = [dear, "--cheap", cheap, "--demand", "100,120", "--prices", "60,3"]
+    expensive, cheap, peaks = studies
+    words = [expensive, "--cheap", cheap, "--demand", "100,120", "--prices", "60,3"]
     assert report.main(words) == 0
     said = capsys.readouterr().out
     low, high = statistics.mean(peaks[:15])[1:]
@@ -362,7 +383,7 @@ def test_the_report_tells_and_draws_all(studies, capsys):
     assert "unknown" in said  # 15 rows do not tell the ends of the 5 % quantile
     assert "15 runs of accurate and 120 of fast in 21 min" in said
     for name in ("scatter", "tornado", "histogram", "fragility", "curves"):
-        path = os.path.join(dear, name + ".png")
+        path = os.path.join(expensive, name + ".png")
         assert path in said and 5e3 < os.path.getsize(path) < 3e5
     assert "no sobol.png: Sobol indices of 3 properties need 30 rows" in said
 

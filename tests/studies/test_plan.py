@@ -82,6 +82,9 @@ def test_a_table_of_the_users_own(tmp_path):
     path.write_text("rate until\n20\n")
     with pytest.raises(Refused, match="line 2: 1 values in 2 columns"):
         batch.readTable(str(path))
+    path.write_text("description rate\nslow 20\nslow 40\n")
+    with pytest.raises(Refused, match="description slow names several rows"):
+        batch.readTable(str(path))
 
 
 def test_a_field_is_read_as_it_is_written():

@@ -380,7 +380,7 @@ def test_another_study_in_the_folder_is_refused(whole, tmp_path):
         assert told in done.stderr, done.stderr
     assert before == {path: path.read_bytes() for path in out.glob("*.*")}
     (tmp_path / "mine").mkdir()
-    (tmp_path / "mine" / "letter.txt").write_text("dear")
+    (tmp_path / "mine" / "letter.txt").write_text("expensive")
     done = study(path, "--out", tmp_path / "mine")
     assert (
         done.returncode == 2

@@ -127,8 +127,11 @@ def compare(wall):
         known = reference[found.name]
         paid = estimate.saved(found, prices)
         reach = math.hypot(_half(found), _half(known))
+        told = math.isfinite(
+            reach
+        )  # a few rows alone give no interval of a quantile far out
         agrees = abs(found.value - known.value) <= reach
-        met[0] &= agrees
+        met[0] &= agrees or not told
         met[1] &= paid.share <= SHARE
         if found.name == "mean":
             met[2] &= _half(found) <= _half(known)
@@ -138,7 +141,7 @@ def compare(wall):
                 found.name,
                 _told(known),
                 _told(found),
-                "yes" if agrees else "no",
+                ("yes" if agrees else "no") if told else "not told",
                 f"{paid.alone:.0f}",
                 f"{100 * paid.share:.0f} %",
             ]
@@ -196,7 +199,7 @@ def draw(found):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument(
-        "--jobs", type=int, default=os.cpu_count(), help="runs at a time"
+        "--jobs", type=int, default=len(os.sched_getaffinity(0)), help="runs at a time"
     )
     parser.add_argument(
         "--compare", action="store_true", help="compare what is there, run nothing"

@@ -34,7 +34,7 @@ that are open slip freely, and a wall can tip over a stepped crack at a lower fa
 which lies below.
 
 Friction in space is a polygon around the circle, :data:`FACETS` sides a point. At every point it is turned to where the
-force there points, until the factor stands still. :attr:`Bound.facetError` is how much the last turn changed the factor.
+force there points, as long as that lowers the factor. :attr:`Bound.facetError` is how much the last turn changed the factor.
 """
 
 from .assembly import Assembly

@@ -37,8 +37,8 @@ class Assembly:
     :param ids: numbers by which messages name the blocks (n), YADE's
     :param polygons: corners of the joints, a list of arrays (k, 3) [m]
     :param corners: corners of the blocks, a list of arrays (k, 3) [m]
-    :param longest: time that the solver may take for one programme, and after which neither facets are turned nor joints
-        lose their friction once more [s]
+    :param stood: whether blocks are where they stood when the joints were made
+    :param deadline: end of the time that the solver has for all programmes together, as time.monotonic() counts [s]
     :param props: points of blocks that cannot move in a direction, whatever force that takes: a list of (number of the
         block, unit vector, point [m])
     """
@@ -60,7 +60,8 @@ class Assembly:
     polygons: list
     corners: list
     props: list = field(default_factory=list)
-    longest: float = 600.0
+    stood: bool = True
+    deadline: float = math.inf
 
     def __post_init__(self):
         free = ~self.held.all(axis=1)
@@ -159,25 +160,22 @@ class Assembly:
 
     def _turned(self, solve, turns=TURNS):
         """Solve with facets of friction that turn to where forces point."""
-        began = time.monotonic()
         turn = np.zeros(len(self.contacts.at))
         best = solve(turn)
         if self.plane:
             return best
         best.facetError = 1 / math.cos(math.pi / FACETS) - 1  # before any turn
         for _ in range(turns):
-            if time.monotonic() - began > self.longest:
-                break
             turn = best.directions - math.pi / FACETS
             try:
                 again = solve(turn)
-            except Refused:  # it takes too long
+            except Refused:  # time is over
                 break
             change = abs(again.value - best.value) / max(abs(best.value), 1e-12)
             if again.value < best.value:
                 best = again
             best.facetError = change
-            if change < STILL:
+            if change < STILL or again is not best:
                 break
         return best
 
@@ -205,7 +203,8 @@ class Assembly:
         cost[last] = -1
         try:
             loads = np.append(-still, np.zeros(programme.links))
-            values, dual = solve(programme, cost, loads, self.longest)
+            left = self.deadline - time.monotonic()
+            values, dual = solve(programme, cost, loads, left)
             if most is None and values[last] / step > self._endless(live, dead):
                 raise Unsolved("it has no end")
         except Unsolved as unsolved:

@@ -10,6 +10,7 @@ KEPT = 1e-6  # how well equilibrium and strength must be kept, relative to the l
 SIMPLEX = 1500  # from so many variables on HiGHS uses its interior-point method
 INTERIOR_POINT = 4  # a method of Clp, as its ClpSolve.hpp counts them
 NO_PRESOLVE = 1  # so, too
+FOREVER = 1e9  # time that is none for Clp [s]
 STOPPED = 3  # the status of Clp after its longest time
 
 
@@ -194,13 +195,13 @@ class Unsolved(Exception):
 
 
 class Late(Unsolved):
-    """The solver took longer than it may."""
+    """The time of the solver is over."""
 
-    def __init__(self, longest):
-        super().__init__(f"it was not solved within {longest:g} s")
+    def __init__(self):
+        super().__init__("it was not solved in time")
 
 
-def solve(programme, cost, loads, longest):
+def solve(programme, cost, loads, left):
     """Solve a programme, with Clp's interior-point method if its library is there, else with HiGHS.
 
     On the many contacts of a wall in which forces can be shared in many ways, Clp's method takes a twentieth of the time
@@ -209,17 +210,19 @@ def solve(programme, cost, loads, longest):
     :param programme: :class:`Programme`
     :param cost: of each variable
     :param loads: right-hand side of equilibrium
-    :param longest: time that the solver may take [s]
+    :param left: time that the solver may take [s]
     :returns: the variables, and the multipliers of equilibrium
     :raises Unsolved:
     """
+    if left <= 0:
+        raise Late
     equal, unequal = programme.matrices()
     if not (np.isfinite(equal.data).all() and np.isfinite(loads).all()):
         raise Unsolved("the programme has numbers that are not finite")
     try:
-        values, dual = _clp(programme, cost, loads, equal, unequal, longest)
+        values, dual = _clp(programme, cost, loads, equal, unequal, left)
     except OSError:
-        values, dual = _highs(programme, cost, loads, equal, unequal, longest)
+        values, dual = _highs(programme, cost, loads, equal, unequal, left)
     off = np.abs(equal @ values - loads).max()
     over = (unequal @ values - programme.limits).max(initial=0)
     if max(off, over) > KEPT * max(1, np.abs(values).max()):
@@ -229,7 +232,7 @@ def solve(programme, cost, loads, longest):
     return values, dual
 
 
-def _highs(programme, cost, loads, equal, unequal, longest):
+def _highs(programme, cost, loads, equal, unequal, left):
     from scipy.optimize import linprog
 
     found = linprog(
@@ -240,16 +243,16 @@ def _highs(programme, cost, loads, equal, unequal, longest):
         b_ub=programme.limits if unequal.shape[0] else None,
         bounds=np.column_stack([programme.low, programme.high]),
         method="highs-ds" if programme.columns < SIMPLEX else "highs-ipm",
-        options={"time_limit": longest},
+        options={"time_limit": left},
     )
     if found.status == 1:
-        raise Late(longest)
+        raise Late
     if found.status:
         raise Unsolved(found.message.strip())
     return found.x, found.eqlin.marginals
 
 
-def _clp(programme, cost, loads, equal, unequal, longest):
+def _clp(programme, cost, loads, equal, unequal, left):
     import ctypes
 
     from scipy.sparse import vstack
@@ -272,7 +275,7 @@ def _clp(programme, cost, loads, equal, unequal, longest):
     model = ctypes.c_void_p(clp.Clp_newModel())
     try:
         clp.Clp_setLogLevel(model, 0)
-        clp.Clp_setMaximumSeconds(model, ctypes.c_double(longest))
+        clp.Clp_setMaximumSeconds(model, ctypes.c_double(min(left, FOREVER)))
         places = [ctypes.c_void_p(array.ctypes.data) for array in arrays]
         clp.Clp_loadProblem(model, columns, rows, *places)
         how = ctypes.c_void_p(clp.ClpSolve_new())
@@ -283,7 +286,7 @@ def _clp(programme, cost, loads, equal, unequal, longest):
         status = clp.Clp_status(model)
         if status:
             if status == STOPPED:
-                raise Late(longest)
+                raise Late
             said = {1: "it has no solution", 2: "it has no end"}
             raise Unsolved(said.get(status, f"Clp ended with status {status}"))
         values = np.array(clp.Clp_primalColumnSolution(model)[:columns])

@@ -55,7 +55,8 @@ def read():
         elastic=strengths[4] > 0,
         ids=[b.id for b in blocks],
         polygons=np.split(moved, np.cumsum([len(p) for p in polygons])[:-1]),
-        corners=[_corners(b) for b in blocks],
+        corners=[_corners(b, place.stood) for b in blocks],
+        stood=place.stood,
     )
 
 
@@ -91,7 +92,8 @@ class _Placement:
         sizes = np.array([max(v.norm() for v in b.shape.v) for b in blocks])
         angles = np.linalg.norm(self.turns - np.eye(3), axis=(1, 2))
         moved = np.linalg.norm(self.now - self.was, axis=1) + sizes * angles
-        if (moved < STOOD * np.median(sizes)).all():
+        self.stood = bool((moved < STOOD * np.median(sizes)).all())
+        if self.stood:
             self.now, self.turns = self.was, np.tile(np.eye(3), (len(blocks), 1, 1))
 
     def turned(self, pairs, vectors):
@@ -129,7 +131,8 @@ def _strengths(p):
     return *values, crushing, p.elastic
 
 
-def _corners(body):
-    """Corners of a block as it stands now (k, 3) [m]."""
-    turn = _matrix(body.state.ori)
-    return np.array(_rows(body.shape.v)) @ turn.T + np.array(body.state.pos)
+def _corners(body, stood):
+    """Corners of a block as it stands now, or as it stood when the joints were made (k, 3) [m]."""
+    state = body.state
+    turn, at = (state.refOri, state.refPos) if stood else (state.ori, state.pos)
+    return np.array(_rows(body.shape.v)) @ _matrix(turn).T + np.array(at)

@@ -7,7 +7,6 @@ solves programmes of the same structure with less friction where nothing presses
 cohesion. A mechanism counts only if hardly any friction is missing in it (:func:`_belongs`).
 """
 
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -27,14 +26,13 @@ def loosened(assembly, live, dead):
 
     It begins with the head joints. Then other joints that carry nothing lose their friction, too, and so on.
     """
-    began = time.monotonic()
     smooth, least = _smooth(assembly, dead), None
     for _ in range(LOOSENED):
-        if smooth is None or time.monotonic() - began > assembly.longest:
+        if smooth is None:
             break
         try:
             bound = smooth.associated(live, dead)
-        except Refused:  # without that friction it does not stand
+        except Refused:  # without that friction it does not stand, or time is over
             break
         if _belongs(assembly, bound) and (least is None or bound.factor < least.factor):
             least = bound

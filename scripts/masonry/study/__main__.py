@@ -31,7 +31,7 @@ def parser():
         "--jobs",
         metavar="N",
         type=int,
-        default=os.cpu_count(),
+        default=len(os.sched_getaffinity(0)),
         help="runs at a time (default: %(default)s, all cores)",
     )
     p.add_argument(
@@ -102,7 +102,7 @@ def main(words):
             return 130
         return tell(folder)
     except KeyboardInterrupt:
-        say("interrupted: nothing was run")
+        say("interrupted: what was computed is kept; the same command goes on")
         return 130
     except (Refused, Unwritable) as problem:
         print(problem, file=sys.stderr)

@@ -1,10 +1,10 @@
-"""Mean, spread and quantiles from few dear runs and many cheap ones. This module needs no YADE.
+"""Mean, spread and quantiles from few expensive runs and many cheap ones. This module needs no YADE.
 
 A preset is a fidelity: ``fast`` and ``bound`` miss the peak of ``accurate`` by a little, but they move with it when a
 strength moves. So a few rows are run with both, and many more with the cheap one alone. The shared rows tell how the
-dear number follows from the cheap one, and the many cheap ones tell how that one scatters.
+expensive number follows from the cheap one, and the many cheap ones tell how that one scatters.
 
-In the formulas y is the dear and x the cheap number of a row, N rows are shared, and M rows, these among them, are
+In the formulas y is the expensive and x the cheap number of a row, N rows are shared, and M rows, these among them, are
 cheap. The variance of every estimate here has two parts, A/N + B/M: what the shared rows leave open, and what the cheap
 ones do.
 
@@ -50,27 +50,29 @@ DOUBT = 0.01
 #: A correlation that is as near to 1 leaves nothing to doubt [-].
 ROUNDING = 1e-9
 
-#: An estimate. ``name`` says of what, ``value``, ``low`` and ``high`` are in the unit of the numbers. ``dear`` and
-#: ``cheap`` are A and B, and ``alone`` is the variance of one dear row without any cheap ones; the three have one
+#: An estimate. ``name`` says of what, ``value``, ``low`` and ``high`` are in the unit of the numbers. ``expensive`` and
+#: ``cheap`` are A and B, and ``alone`` is the variance of one expensive row without any cheap ones; the three have one
 #: scale, which is that of probability for a quantile. ``shared`` and ``rows`` are N and M.
-Estimate = namedtuple("Estimate", "name value low high dear cheap alone shared rows")
+Estimate = namedtuple(
+    "Estimate", "name value low high expensive cheap alone shared rows"
+)
 
 #: How many runs to make: ``shared`` rows with both, ``rows`` with the cheap one in all, and what they cost; ``alone``,
-#: how many dear runs alone reach the same interval, and ``share``, the cost over the cost of those.
+#: how many expensive runs alone reach the same interval, and ``share``, the cost over the cost of those.
 Allocation = namedtuple("Allocation", "shared rows cost alone share")
 
 
 # -- estimates --------------------------------------------------------------------------------------------------------
 
 
-def mean(dear, cheap, confidence=CONFIDENCE):
-    """The mean of the dear number: an :class:`Estimate`.
+def mean(expensive, cheap, confidence=CONFIDENCE):
+    """The mean of the expensive number: an :class:`Estimate`.
 
-    :param dear: y of the shared rows
+    :param expensive: y of the shared rows
     :param cheap: x of all rows, those of the shared rows first, in the same order
     :raises Refused: if there are fewer than SHARED shared rows, or a number is not finite
     """
-    y, x = _rows(dear, cheap)
+    y, x = _rows(expensive, cheap)
     found = _controlled(y, x[:, None])
     half = _halfWidth(found, confidence)
     return Estimate(
@@ -78,20 +80,20 @@ def mean(dear, cheap, confidence=CONFIDENCE):
         found.value,
         found.value - half,
         found.value + half,
-        found.dear,
+        found.expensive,
         found.cheap,
-        found.dear + found.cheap,
+        found.expensive + found.cheap,
         len(y),
         len(x),
     )
 
 
-def deviation(dear, cheap, confidence=CONFIDENCE):
-    """The standard deviation of the dear number: an :class:`Estimate`. Its logarithm is taken as normal.
+def deviation(expensive, cheap, confidence=CONFIDENCE):
+    """The standard deviation of the expensive number: an :class:`Estimate`. Its logarithm is taken as normal.
 
     Parameters and errors are those of :func:`mean`.
     """
-    y, x = _rows(dear, cheap)
+    y, x = _rows(expensive, cheap)
     n, m = len(y), len(x)
     bridge = _Bridge(y, x)
     b, residuals = bridge.slope, bridge.residuals
@@ -110,8 +112,8 @@ def deviation(dear, cheap, confidence=CONFIDENCE):
     )
 
 
-def quantile(dear, cheap, share, method="bridge", confidence=CONFIDENCE):
-    """The value below which a share of the dear numbers lies: an :class:`Estimate`.
+def quantile(expensive, cheap, share, method="bridge", confidence=CONFIDENCE):
+    """The value below which a share of the expensive numbers lies: an :class:`Estimate`.
 
     Its interval is that of R. S. Woodruff, "Confidence intervals for medians and other position measures", Journal of
     the American Statistical Association 47 (1952): from the value where the estimated probability is the share less its
@@ -129,7 +131,7 @@ def quantile(dear, cheap, share, method="bridge", confidence=CONFIDENCE):
         problems.append(f"method '{method}' must be 'bridge' or 'indicator'")
     if problems:
         raise Refused("\n".join(problems))
-    return _quantile(_Bridge(*_rows(dear, cheap)), share, method, confidence)
+    return _quantile(_Bridge(*_rows(expensive, cheap)), share, method, confidence)
 
 
 def _quantile(bridge, share, method, confidence):
@@ -150,7 +152,7 @@ def _quantile(bridge, share, method, confidence):
         value,
         low,
         high,
-        found.dear,
+        found.expensive,
         found.cheap,
         share * (1 - share),
         n,
@@ -158,24 +160,27 @@ def _quantile(bridge, share, method, confidence):
     )
 
 
-def estimate(dear, cheap, method="bridge", confidence=CONFIDENCE):
+def estimate(expensive, cheap, method="bridge", confidence=CONFIDENCE):
     """Mean, standard deviation and the quantiles QUANTILES: a list of :class:`Estimate`.
 
     Parameters and errors are those of :func:`mean` and :func:`quantile`.
     """
-    found = [mean(dear, cheap, confidence), deviation(dear, cheap, confidence)]
-    bridge = _Bridge(*_rows(dear, cheap))
+    found = [
+        mean(expensive, cheap, confidence),
+        deviation(expensive, cheap, confidence),
+    ]
+    bridge = _Bridge(*_rows(expensive, cheap))
     return found + [_quantile(bridge, share, method, confidence) for share in QUANTILES]
 
 
-def doubts(dear, cheap):
+def doubts(expensive, cheap):
     """What the shared rows say against the bridge: a list of sentences, empty if nothing does.
 
     One test asks whether y bends over x, by the square of x in the regression. The other asks whether the residuals
     grow along x, by the rank correlation of their size with x. Each tells in one of a hundred samples of which the
     bridge holds that it does not.
     """
-    y, x = _rows(dear, cheap)
+    y, x = _rows(expensive, cheap)
     told, x = [], x[: len(y)]
     if 1 - abs(np.corrcoef(x, y)[0, 1]) < ROUNDING:
         return told  # what is left is rounding
@@ -189,14 +194,14 @@ def doubts(dear, cheap):
         p = 2 * stats.t.sf(abs(slopes[2]) / math.sqrt(scatter), free)
         if p < DOUBT:
             told.append(
-                f"the dear numbers bend over the cheap ones (p = {p:.2g}): quantiles by the bridge are biased"
+                f"the expensive numbers bend over the cheap ones (p = {p:.2g}): quantiles by the bridge are biased"
             )
     line = np.polyfit(moved, y, 1)
     size = np.abs(y - np.polyval(line, moved))
     p = stats.spearmanr(size, x).pvalue
     if p < DOUBT:
         told.append(
-            f"the dear numbers scatter about the cheap ones more at one end than at the other (p = {p:.2g}): quantiles by the "
+            f"the expensive numbers scatter about the cheap ones more at one end than at the other (p = {p:.2g}): quantiles by the "
             "bridge are biased"
         )
     return told
@@ -208,19 +213,19 @@ def doubts(dear, cheap):
 def allocate(pilot, prices, variance=None, budget=None):
     """The runs that reach a variance at the least cost, or the least variance for a budget: an :class:`Allocation`.
 
-    N = sqrt(A/c) S/V and M = sqrt(B/d) S/V, with S = sqrt(A c) + sqrt(B d), cost S²/V; c is the price of a dear run and
-    d that of a cheap one. M is never below N: if the rule has it so, the dear runs are better alone, and all M are
+    N = sqrt(A/c) S/V and M = sqrt(B/d) S/V, with S = sqrt(A c) + sqrt(B d), cost S²/V; c is the price of an expensive run and
+    d that of a cheap one. M is never below N: if the rule has it so, the expensive runs are better alone, and all M are
     shared.
 
     :param pilot: an :class:`Estimate` from a few shared rows
-    :param prices: of a dear and of a cheap run, in any one unit
+    :param prices: of an expensive and of a cheap run, in any one unit
     :param variance: that is wanted, on the scale of ``pilot.alone``
     :param budget: in the unit of the prices, in place of the variance
     :raises Refused: if a price is not above 0, or neither or both of variance and budget are given, or the one is not
         above 0, or the budget is below that of SHARED shared rows
     """
     problems = []
-    for price, of in zip(prices, ("dear", "cheap")):
+    for price, of in zip(prices, ("expensive", "cheap")):
         if not (math.isfinite(price) and price > 0):
             problems.append(f"the price of a {of} run is {price:g}: it must be above 0")
     if (variance is None) == (budget is None):
@@ -236,7 +241,7 @@ def allocate(pilot, prices, variance=None, budget=None):
         raise Refused(
             f"a budget of {budget:g} is too small: {SHARED} shared rows cost {least:g}"
         )
-    a, b = pilot.dear, pilot.cheap
+    a, b = pilot.expensive, pilot.cheap
     ratio = math.sqrt(b * c / (a * d)) if a > 0 else math.inf
     ratio = max(1.0, min(ratio, 1e6))
     per = a + b / ratio  # variance times N
@@ -253,23 +258,25 @@ def allocate(pilot, prices, variance=None, budget=None):
 
 
 def saved(found, prices):
-    """What an estimate cost, and what dear runs alone would have cost for the same variance: an :class:`Allocation`.
+    """What an estimate cost, and what expensive runs alone would have cost for the same variance: an :class:`Allocation`.
 
     :param found: an :class:`Estimate`
-    :param prices: of a dear and of a cheap run, in any one unit
+    :param prices: of an expensive and of a cheap run, in any one unit
     """
     c, d = prices
     cost = c * found.shared + d * found.rows
-    alone = found.alone / (found.dear / found.shared + found.cheap / found.rows)
+    alone = found.alone / (found.expensive / found.shared + found.cheap / found.rows)
     return Allocation(found.shared, found.rows, cost, alone, cost / (c * alone))
 
 
-def sentence(found, prices, unit="", names=("dear", "cheap"), confidence=CONFIDENCE):
+def sentence(
+    found, prices, unit="", names=("expensive", "cheap"), confidence=CONFIDENCE
+):
     """An estimate and what it saved, in words.
 
-    :param prices: of a dear and of a cheap run [s]
+    :param prices: of an expensive and of a cheap run [s]
     :param unit: of the numbers
-    :param names: of the dear and of the cheap fidelity
+    :param names: of the expensive and of the cheap fidelity
     """
     paid = saved(found, prices)
     unit = f" {unit}" if unit else ""
@@ -298,13 +305,13 @@ def _time(seconds):
 # -- mathematics ------------------------------------------------------------------------------------------------------
 
 #: A mean with control variates, or a probability by the bridge. ``parts`` of its variance are those of the shared and
-#: of the cheap rows, ``freedom`` are the degrees of freedom of both; ``dear`` and ``cheap`` are A and B.
-_Found = namedtuple("_Found", "value parts freedom dear cheap")
+#: of the cheap rows, ``freedom`` are the degrees of freedom of both; ``expensive`` and ``cheap`` are A and B.
+_Found = namedtuple("_Found", "value parts freedom expensive cheap")
 
 
-def _rows(dear, cheap):
+def _rows(expensive, cheap):
     """Both as arrays. Refuses what no interval can be made of, with all problems at once."""
-    y, x = np.asarray(dear, float).ravel(), np.asarray(cheap, float).ravel()
+    y, x = np.asarray(expensive, float).ravel(), np.asarray(cheap, float).ravel()
     problems = []
     if len(y) < SHARED:
         problems.append(
@@ -312,9 +319,9 @@ def _rows(dear, cheap):
         )
     if len(x) < len(y):
         problems.append(
-            f"{len(x)} cheap rows for {len(y)} dear ones: every dear row needs its cheap one"
+            f"{len(x)} cheap rows for {len(y)} expensive ones: every expensive row needs its cheap one"
         )
-    for what, values in (("dear", y), ("cheap", x)):
+    for what, values in (("expensive", y), ("cheap", x)):
         strange = np.flatnonzero(~np.isfinite(values))
         if len(strange):
             problems.append(
@@ -346,12 +353,12 @@ def _controlled(g, z):
     # each residual is smaller than the error that it shows, by its leverage
     squares = (residuals / np.maximum(1 - leverage, 1 / n)) ** 2
     weights = 1 / n + design @ inverse @ away
-    dear, cheap = float(weights**2 @ squares), float((z @ slopes).var(ddof=1))
+    expensive, cheap = float(weights**2 @ squares), float((z @ slopes).var(ddof=1))
     return _Found(
         float(g.mean() + away @ slopes),
-        (dear, cheap / m),
+        (expensive, cheap / m),
         (n - 1 - z.shape[1], max(m - 1, 1)),
-        dear * n,
+        expensive * n,
         cheap,
     )
 
@@ -413,8 +420,10 @@ class _Bridge:
                 ofResidual + bySlope * n * self.near * self.residuals / self.squares
             )
         ofLine = self._below(self.sortedResiduals, q - self.line)
-        dear, cheap = ofResidual.var() * n / (n - 2), ofLine.var(ddof=1)
-        return _Found(value, (dear / n, cheap / m), (n - 2, max(m - 1, 1)), dear, cheap)
+        expensive, cheap = ofResidual.var() * n / (n - 2), ofLine.var(ddof=1)
+        return _Found(
+            value, (expensive / n, cheap / m), (n - 2, max(m - 1, 1)), expensive, cheap
+        )
 
     def controlled(self, q):
         """The probability that y is not above q, by the indicator: a :class:`_Found`."""

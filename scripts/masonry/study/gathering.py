@@ -101,7 +101,7 @@ class Folder:
         if self.isHeld(number):
             return "running"
         status = self.lastJob(number).get("status", 0)
-        return "failed" if status not in (0, 130) and status > 0 else "missing"
+        return "failed" if status not in (0, 130) else "missing"
 
 
 def written(path, text):

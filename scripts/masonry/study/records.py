@@ -97,26 +97,29 @@ class Record:
         return float(np.mean(known)) if known else np.nan
 
 
-def paired(dear, cheap, measure, other=None):
-    """A measure of two studies that share rows: that of the shared rows of ``dear``, and that of all rows of ``cheap``.
+def paired(expensive, cheap, measure, other=None):
+    """A measure of two studies that share rows: that of the shared rows of ``expensive``, and that of all rows of ``cheap``.
 
     Rows are shared if every varied property has the same text in both tables. Those of ``cheap`` that are shared come
-    first, in the order of ``dear``.
+    first, in the order of ``expensive``.
 
-    :param dear: :class:`Record`, and ``cheap`` one
-    :param measure: column of ``dear``; ``other`` is that of ``cheap``, None: the same
-    :returns: two arrays for :mod:`masonry.study.estimate`, and two lists: the rows of ``dear`` and those of ``cheap``
-    :raises Refused: if something else varies in both, or rows of one study are the same
+    :param expensive: :class:`Record`, and ``cheap`` one
+    :param measure: column of ``expensive``; ``other`` is that of ``cheap``, None: the same
+    :returns: two arrays for :mod:`masonry.study.estimate`, and two lists: the rows of ``expensive`` and those of ``cheap``
+    :raises Refused: if their scenes or options differ in more than the preset, if something else varies in both, or rows of one study are the same
     """
-    problems = []
-    if sorted(dear.varied) != sorted(cheap.varied):
+    problems = [
+        f"{expensive.directory} has {what} {one!r}, and {cheap.directory} {two!r}"
+        for what, one, two in _unlike(expensive, cheap)
+    ]
+    if sorted(expensive.varied) != sorted(cheap.varied):
         problems.append(
-            f"{dear.directory} varies {', '.join(dear.varied)}, and {cheap.directory} {', '.join(cheap.varied)}"
+            f"{expensive.directory} varies {', '.join(expensive.varied)}, and {cheap.directory} {', '.join(cheap.varied)}"
         )
     else:
         keys = {}
-        for study in (dear, cheap):
-            columns = [study.cells[name] for name in dear.varied]
+        for study in (expensive, cheap):
+            columns = [study.cells[name] for name in expensive.varied]
             keys[study] = list(zip(*columns))
             if len(set(keys[study])) < len(keys[study]):
                 problems.append(
@@ -124,16 +127,30 @@ def paired(dear, cheap, measure, other=None):
                 )
     if problems:
         raise Refused("\n".join(problems))
-    y, x = dear.numbers(measure), cheap.numbers(other or measure)
+    y, x = expensive.numbers(measure), cheap.numbers(other or measure)
     place = {key: row for row, key in enumerate(keys[cheap]) if np.isfinite(x[row])}
     shared = [
         row
-        for row, key in enumerate(keys[dear])
+        for row, key in enumerate(keys[expensive])
         if key in place and np.isfinite(y[row])
     ]
-    first = [place[keys[dear][row]] for row in shared]
+    first = [place[keys[expensive][row]] for row in shared]
     others = sorted(set(place.values()) - set(first))
     return y[shared], x[first + others], shared, first + others
+
+
+def _unlike(one, two):
+    """What two studies differ in beside their preset: name and both values, as far as their study.json tells."""
+    try:
+        told = [Folder(study.directory).description()["study"] for study in (one, two)]
+    except Refused:
+        return
+    first, second = (
+        {"scene": study["scene"], **study["options"], "preset": None} for study in told
+    )
+    for name in sorted({*first, *second}):
+        if first.get(name) != second.get(name):
+            yield name, first.get(name), second.get(name)
 
 
 def _number(text):

@@ -4,7 +4,7 @@
 /usr/bin/python3 -m masonry.study.report DIR --measure base_shear_end_kN --demand 90,100,110
 /usr/bin/python3 -m masonry.study.report ACCURATE --cheap FAST
 
-The pictures go into the folder of the study. With ``--cheap`` its rows are the dear ones and those of the other study
+The pictures go into the folder of the study. With ``--cheap`` its rows are the expensive ones and those of the other study
 the cheap ones; see :mod:`masonry.study.estimate`.
 """
 
@@ -37,6 +37,12 @@ def table(record, measure):
     """Lines of the table of statistics of a measure."""
     rows, _, values = record.complete(measure)
     yield f"{label(measure)}: {len(rows)} of {len(record)} rows"
+    ended = record.cells["status"].count("ended")
+    if ended > len(rows) or "failed" in record.cells["status"]:
+        yield (
+            f"  note: rows that have no {label(measure)} are left out. If they collapsed, or were refused for their values, "
+            "the numbers below are on the unsafe side"
+        )
     for name, find in (
         ("mean", statistics.mean),
         ("standard deviation", statistics.deviation),
@@ -118,17 +124,18 @@ def draw(record, measure):
             yield path
 
 
-def compare(dear, cheap, measure, other, method, prices=None):
+def compare(expensive, cheap, measure, other, method, prices=None):
     """Lines of what two studies of the same rows say together.
 
     :param other: measure of the cheap study, None: the same
-    :param prices: of a dear and of a cheap run [s]; None: the mean times of their runs
+    :param prices: of an expensive and of a cheap run [s]; None: the mean times of their runs
     """
-    y, x, shared, rows = paired(dear, cheap, measure, other)
+    y, x, shared, rows = paired(expensive, cheap, measure, other)
     found = estimate.estimate(y, x, method)
-    prices = prices or (dear.price(shared), cheap.price(rows))
+    prices = prices or (expensive.price(shared), cheap.price(rows))
     names = [
-        os.path.basename(os.path.abspath(study.directory)) for study in (dear, cheap)
+        os.path.basename(os.path.abspath(study.directory))
+        for study in (expensive, cheap)
     ]
     if not all(math.isfinite(price) and price > 0 for price in prices):
         raise Refused(
@@ -142,7 +149,7 @@ def compare(dear, cheap, measure, other, method, prices=None):
     )
     for one in found:
         yield "  " + estimate.sentence(one, prices, unit, names)
-        same = (one.dear / one.shared) + one.cheap / one.rows
+        same = (one.expensive / one.shared) + one.cheap / one.rows
         best = estimate.allocate(one, prices, variance=same)
         yield (
             f"    cheapest for it: {best.shared} shared rows and {best.rows} cheap ones, {100 * best.share:.0f} % of the cost of "

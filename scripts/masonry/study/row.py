@@ -19,6 +19,9 @@ from ..results import readRun
 from .gathering import TABLE, Folder, reason
 
 REFUSED = 2  # exit status of a scene that refuses its input
+ATTEMPTS = (
+    20  # of a row at most, while its folder is still held or its checkpoint is refused
+)
 TAIL = 4000  # bytes at the end of a log in which the reason of a failure stands
 
 
@@ -52,7 +55,13 @@ class Job:
             return 0
         os.makedirs(folder.of(batch.ROWS), exist_ok=True)
         own = log is None
+        if own and folder.isHeld(number):
+            return REFUSED  # somebody else runs it, and writes this log
         log = open(folder.row(number) + ".log", "wb") if own else log
+        # what an attempt took that left a checkpoint belongs to the price of the row
+        checkpoint = os.path.join(folder.row(number), "run.checkpoint")
+        spent = folder.lastJob(number).get("seconds", 0)
+        spent = spent if os.path.exists(checkpoint) else 0
         began = time.time()
         try:
             status = self._attempts(number, log)
@@ -63,7 +72,7 @@ class Job:
         record = {
             "host": socket.gethostname(),
             "status": status,
-            "seconds": round(time.time() - began, 3),
+            "seconds": round(spent + time.time() - began, 3),
             "told": told,
         }
         if status == 0 or not (folder.isHeld(number) or folder.isEnded(number)):
@@ -76,8 +85,9 @@ class Job:
         """Run it; once more from the beginning if its checkpoint is refused. Returns the exit status."""
         folder = self.folder
         checkpoint = os.path.join(folder.row(number), "run.checkpoint")
-        while True:
+        for _ in range(ATTEMPTS):
             goesOn = os.path.exists(checkpoint)
+            before = self._said(number)
             status = self._yade(number, log)
             if self.stopped:
                 return 130
@@ -85,13 +95,14 @@ class Job:
                 return 1
             if status != REFUSED or folder.isEnded(number) or folder.isHeld(number):
                 return status
-            said = self._tail(number)
+            said = self._tail(number, before)
             if "is writing to" in said:  # it has just ended, or was killed
                 time.sleep(0.2)
             elif goesOn and "--resume" in said:
                 os.replace(checkpoint, checkpoint + ".refused")
             else:
                 return status
+        return status
 
     def _yade(self, number, log):
         place = f"{self.folder.of(TABLE)}:{number + 1}"
@@ -114,10 +125,18 @@ class Job:
             except InterruptedError:
                 pass
 
-    def _tail(self, number):
+    def _said(self, number):
+        """Bytes of the log so far."""
+        try:
+            return os.path.getsize(self.folder.row(number) + ".log")
+        except OSError:
+            return 0
+
+    def _tail(self, number, begin=0):
+        """The end of the log, of what was written after its first bytes."""
         try:
             with open(self.folder.row(number) + ".log", "rb") as f:
-                f.seek(max(0, os.fstat(f.fileno()).st_size - TAIL))
+                f.seek(max(begin, os.fstat(f.fileno()).st_size - TAIL))
                 return f.read().decode(errors="replace")
         except OSError:
             return ""
