@@ -19,8 +19,9 @@ A scene of one's own is bricks, materials and stages::
 - :mod:`masonry.scene`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by body
 - :mod:`masonry.window`: the scene in YADE's own 3-D view while it runs
 - :mod:`masonry.limit`: limit analysis, the bound beside every run
+- :mod:`masonry.study`: one scene, run many times with values that vary
 - :mod:`masonry.results`, :mod:`masonry.figures`, :mod:`masonry.measure`, :mod:`masonry.loops`: what a run leaves, and
-  how to read it; these, :mod:`masonry.bricks` and :mod:`masonry.presets` work without YADE
+  how to read it; these, :mod:`masonry.study`, :mod:`masonry.bricks` and :mod:`masonry.presets` work without YADE
 
 Import it from a YADE script (or after ``import yade``). The classes that it registers in YADE (``masonry.classes``) are
 also in ``yade.wrapper``; ``help(MasonryJoint)`` and the others are their manual.
@@ -38,8 +39,9 @@ __version__ = "2.0"
 
 #: Modules that are loaded when they are used first.
 _MODULES = (
-    "batch bounds bricks checkpoints columns comparison curves described errors fields figures frames ground history limit loading "
-    "loops materials measure model options plotting ports presets probing progress results run scene stages structure study viewer window"
+    "batch bounds bricks checkpoints columns comparison curves described errors fields figures frames ground history "
+    "limit loading loops materials measure model options plotting ports presets probing progress results run scene "
+    "stages structure study viewer window"
 ).split()
 
 
