@@ -247,7 +247,8 @@ def failureMode(numbers, wall):
       sides, and lost half of the energy that bed joints lost in shear
     - ``diagonal cracking``: a stepped crack reaches over half of the shorter side of the wall, in courses or half units
     - ``toe crushing``: bed joints of more than one half unit closed past the peak of their compression curve
-    - ``rocking``: a bed joint opened at a side of the wall by more than CRACK
+    - ``rocking``: a bed joint opened at a side of the wall by more than CRACK, and by more than bed joints slid
+    - ``partial cracking``: bed joints opened or slid by more than CRACK, but none of the above applies
     - ``none``: the wall is not cracked
 
     A wall that has several of these has the name of one: the numbers beside it tell of the others.
@@ -267,9 +268,10 @@ def failureMode(numbers, wall):
     half = 1e4 * wall["unit_m"][0] / 2 * wall["unit_m"][1]  # [cm²]
     if numbers["past_peak_area_cm2"] > half:
         return "toe crushing"
-    if numbers["flexural_cracks_base"] + numbers["flexural_cracks_top"]:
+    if opened > max(1e3 * CRACK, numbers["slid_mm"]):
         return "rocking"
-    return "none"
+    cracked = max(opened, numbers["slid_mm"]) > 1e3 * CRACK
+    return "partial cracking" if cracked else "none"
 
 
 def frameAt(directory, time):

@@ -203,8 +203,9 @@ LEANS = {"flexural_cracks_base": 2, "flexural_opening_base_mm": 6.0}
         ({**LEANS, "diagonal_reach": 5}, "diagonal cracking"),
         (SLID, "bed sliding"),
         ({**SLID, "diagonal_reach": 10}, "bed sliding"),
-        ({**SLID, "slid_share": 0.8}, "none"),
-        ({**SLID, "sliding_energy_share": 0.4}, "none"),
+        ({**SLID, "slid_share": 0.8}, "partial cracking"),
+        ({**SLID, "sliding_energy_share": 0.4}, "partial cracking"),
+        ({**SLID, "slid_share": 0.8, **LEANS, "slid_mm": 7.0}, "partial cracking"),
         # a wall that rocks on a bed joint slides along all of it, too, but opens it by far more
         ({**SLID, **LEANS}, "rocking"),
     ],
