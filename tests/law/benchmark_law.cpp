@@ -1,6 +1,7 @@
 // Measures the time that the law takes for one subcontact and one step, in columns and one by one. It is a program of
 // its own and not a test:
 //   cmake -S . -B build -DMASONRY_BENCHMARKS=ON && make -C build benchmark_law && build/benchmark_law
+#include "law/cyclic_softening/CyclicColumns.hpp"
 #include "law/piecewise_softening/JointColumns.hpp"
 #include <algorithm>
 #include <benchmark/benchmark.h>
@@ -52,10 +53,10 @@ void report(benchmark::State& state) {
         benchmark::Counter(double(size), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void columns(benchmark::State& state, const Regime& regime) {
-    const auto law = std::make_shared<const JointLaw>(kind(regime));
+template <class LawType> void columns(benchmark::State& state, const Regime& regime) {
+    const auto law = std::make_shared<const LawType>(kind(regime));
     const auto& bed = law->properties();
-    JointColumns all(law, {bed.normalStiffness, bed.shearStiffness}, joints, points);
+    ColumnsWith<LawType> all(law, {bed.normalStiffness, bed.shearStiffness}, joints, points);
     std::vector<double> n(joints), a(joints), sigma(joints);
     const auto jump = [&](double sign) {
         for (int j = 0; j < joints; ++j) {
@@ -118,7 +119,8 @@ void energies(benchmark::State& state, const Regime& regime) {
 int main(int count, char** words) {
     for (const auto& regime : regimes) {
         const auto named = [&](const char* way) { return std::string(way) + "/" + regime.name; };
-        benchmark::RegisterBenchmark(named("columns").c_str(), columns, regime)->Iterations(300);
+        benchmark::RegisterBenchmark(named("columns").c_str(), columns<JointLaw>, regime)->Iterations(300);
+        benchmark::RegisterBenchmark(named("cyclic columns").c_str(), columns<CyclicLaw>, regime)->Iterations(300);
         benchmark::RegisterBenchmark(named("one by one").c_str(), oneByOne, regime)->Iterations(300);
     }
     benchmark::RegisterBenchmark("energies/elastic", energies, regimes[0])->Iterations(300);

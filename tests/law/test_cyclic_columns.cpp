@@ -1,5 +1,6 @@
 // The cyclic law in columns against the law for one subcontact: the same bits, whatever kind of joint and path.
 #include "law/cyclic_softening/CyclicColumns.hpp"
+#include "law/cyclic_softening/CyclicSideBySide.hpp"
 #include <doctest/doctest.h>
 #include <random>
 #include <string>
@@ -132,6 +133,81 @@ TEST_CASE("cyclic: subcontacts in columns follow the law for one to the last bit
     }
     for (int each : regimes)
         CHECK(each > 1000);
+}
+
+TEST_CASE("cyclic: subcontacts that wait among others follow the law for one with all vector units of this processor") {
+    constexpr int many = 29;
+    const auto ways = cyclic::ways();
+    REQUIRE(ways.size() >= 1);
+    Dice dice{std::mt19937_64(13)};
+    int regimes[4] = {};
+    for (int kind = 0; kind < 100; ++kind) {
+        const auto p = someKind(dice);
+        const auto law = std::make_shared<const CyclicLaw>(p);
+        const auto e = law->equations({p.normalStiffness, p.shearStiffness});
+        const double normal = dice.scale(1e-8, 1e-3), shear = dice.scale(1e-8, 1e-3);
+        const auto some = [&](double opens) {
+            return Jump{normal * (dice.between(-1, 1) + opens),
+                        {shear * dice.between(-2, 2), shear * dice.between(-1, 1)}};
+        };
+        std::vector<double> memory(std::size_t(Columns::count) * many);
+        const Columns columns{memory.data(), many};
+        std::vector<JointState> states(many);
+        std::vector<double> opening(many), a(many), b(many);
+        std::vector<Mask> waits(many);
+        const double share = dice.between(0, 1);
+        for (int j = 0; j < many; ++j) {
+            for (int step = 0; step < 10; ++step)
+                law->advance(e, states[j], some(j % 2 ? -1 : 0.5));
+            const JointState& s = states[j];
+            columns[Columns::Opening][j] = s.opening;
+            columns[Columns::ShearStressA][j] = s.shearStress.a;
+            columns[Columns::ShearStressB][j] = s.shearStress.b;
+            columns[Columns::LargestOpening][j] = s.largestOpening;
+            columns[Columns::LargestClosure][j] = s.largestClosure;
+            write(e, columns, j, s);
+            keep(consequences(e, s), columns, j);
+            const Jump jump = some(dice.between(-2, 2));
+            opening[j] = jump.opening, a[j] = jump.slide.a, b[j] = jump.slide.b;
+            waits[j] = dice.once(share);
+        }
+        for (const auto& way : ways) {
+            std::vector<double> copy = memory;
+            const Columns own{copy.data(), many};
+            std::vector<TableRows> rows(many, {0, 0});
+            std::vector<Regime> regime(many, Regime::Elastic);
+            std::vector<double> stress(many, -1);
+            way.advance({e, law->tension(), law->shear(), law->shear().lastRatio() - 1}, own, rows.data(),
+                        regime.data(), {opening.data(), a.data(), b.data(), false}, waits.data(), many, stress.data());
+            for (int j = 0; j < many; ++j) {
+                CAPTURE(way.name);
+                CAPTURE(kind);
+                CAPTURE(j);
+                if (!waits[j]) { // nothing happened to it
+                    for (int column = 0; column < Columns::count; ++column)
+                        REQUIRE(own[column][j] == columns[column][j]);
+                    REQUIRE(stress[j] == -1);
+                    continue;
+                }
+                JointState one = states[j], fromColumns = states[j];
+                const auto lost = law->advance(e, one, {opening[j], {a[j], b[j]}});
+                read(e, own, j, fromColumns);
+                fromColumns.opening = own[Columns::Opening][j];
+                fromColumns.shearStress = {own[Columns::ShearStressA][j], own[Columns::ShearStressB][j]};
+                fromColumns.largestOpening = own[Columns::LargestOpening][j];
+                fromColumns.largestClosure = own[Columns::LargestClosure][j];
+                fromColumns.normalStress = stress[j];
+                fromColumns.regime = regime[j];
+                const auto found = difference(one, lost, fromColumns,
+                                              {own[Columns::LostTension][j], own[Columns::LostShear][j],
+                                               own[Columns::LostCompression][j]});
+                REQUIRE_MESSAGE(found.empty(), found);
+                ++regimes[int(one.regime)];
+            }
+        }
+    }
+    for (int each : regimes)
+        CHECK(each > 100);
 }
 
 TEST_CASE("cyclic: energies of columns are those of the subcontacts times their areas") {

@@ -1,34 +1,42 @@
-// Eight numbers side by side, which are calculated with like one. A function template for a number type T holds for
-// double and for Pack, and gives the same bits for both.
+// Numbers side by side, which are calculated with like one. A function template for a number type T holds for double and
+// for Pack, and gives the same bits for both.
 #pragma once
 #include "Vectorised.hpp"
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 
+// As many bytes as the vector units take that a file is compiled for: the compiler splits wider packs into single
+// numbers. A file that is compiled for wider ones than those of any processor says so before it includes this.
+#ifndef MASONRY_PACK_BYTES
+#define MASONRY_PACK_BYTES 16
+#endif
+#if MASONRY_PACK_BYTES > 16
+#include <immintrin.h>
+#endif
+
 namespace masonry {
 
-using Pack = double __attribute__((vector_size(64)));
-using PackMask = std::int64_t __attribute__((vector_size(64))); // what comparing two packs gives
+using Pack = double __attribute__((vector_size(MASONRY_PACK_BYTES)));
+using PackMask = std::int64_t __attribute__((vector_size(MASONRY_PACK_BYTES))); // what comparing two packs gives
+constexpr int packed = MASONRY_PACK_BYTES / sizeof(double);
 
 MASONRY_INLINED bool any(bool m) { return m; }
-MASONRY_INLINED bool any(const PackMask& m) { // by halves, which stay in the vector units
-    using Four = std::int64_t __attribute__((vector_size(32)));
-    using Two = std::int64_t __attribute__((vector_size(16)));
-    Four half[2];
-    std::memcpy(half, &m, sizeof m);
-    const Four four = half[0] | half[1];
-    Two quarter[2];
-    std::memcpy(quarter, &four, sizeof four);
-    const Two two = quarter[0] | quarter[1];
-    return (two[0] | two[1]) != 0;
+MASONRY_INLINED bool any(const PackMask& m) {
+#if MASONRY_PACK_BYTES == 64
+    return _mm512_movepi64_mask(__m512i(m)) != 0;
+#elif MASONRY_PACK_BYTES == 32
+    return _mm256_movemask_pd(__m256d(m)) != 0;
+#else
+    return (m[0] | m[1]) != 0;
+#endif
 }
 
 MASONRY_INLINED double root(double x) { return std::sqrt(x); }
 MASONRY_INLINED Pack root(const Pack& x) { // in memory, where the compiler sees a loop for the vector units
-    alignas(64) double y[lanes];
+    alignas(64) double y[packed];
     std::memcpy(y, &x, sizeof x);
-    for (int i = 0; i < lanes; ++i)
+    for (int i = 0; i < packed; ++i)
         y[i] = std::sqrt(y[i]);
     Pack z;
     std::memcpy(&z, y, sizeof z);

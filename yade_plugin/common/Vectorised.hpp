@@ -9,6 +9,14 @@
 #define MASONRY_VECTORISED
 #endif
 
+// Whether files of their own are compiled for AVX2 and AVX-512, which takes a pragma of GCC.
+#if defined(__x86_64__) && defined(__OPTIMIZE__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define MASONRY_VECTOR_UNITS 1
+#else
+#define MASONRY_VECTOR_UNITS 0
+#endif
+
 // A function that is compiled into its callers, so that it uses the instruction set of a vectorised one.
 #define MASONRY_INLINED [[gnu::always_inline]] inline
 

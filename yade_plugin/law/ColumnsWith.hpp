@@ -1,6 +1,8 @@
 // LawColumns with a law. A law gives, beside what Law.hpp asks for:
 //
 //   Equations                          its equations with the numbers of a kind of joint; `equations(k)` makes them
+//   columnCount                        how many columns it has
+//   worthSideBySide                    how many subcontacts that need the whole law cost less side by side than one by one
 //   advance(equations, state, jump)    one step of one subcontact; returns what it dissipated
 //
 // and, for these equations, the functions
@@ -161,7 +163,7 @@ void ColumnsWith<LawType>::advance(int point, int from, int count, const double*
     int many = 0;
     for (int n = 0; n < count; ++n)
         if (waits[n]) waiting[many++] = n;
-    if (many < 5) { // side by side, the others would be calculated for nothing
+    if (many < LawType::worthSideBySide) {
         for (int n = 0; n < many; ++n) {
             const int i = waiting[n];
             normalStress[i] = advanceOne(point, from + i, {opening[i], {slideA[i], jumps.slideB[i]}});

@@ -1,4 +1,5 @@
 #include "CyclicColumns.hpp"
+#include "CyclicSideBySide.hpp"
 
 namespace masonry {
 
@@ -74,96 +75,6 @@ MASONRY_INLINED Mask stayElasticOn(const CyclicEquations& e, const CyclicConsequ
                     : stayElasticAs<spatial, yielded, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
 }
 
-// What is looked up one by one. These functions are not compiled into their callers, which would become too large for
-// the processor's cache of instructions. The numbers stand in memory, where each can be reached.
-struct Asked {
-    alignas(64) double at[lanes], shift[lanes], found[lanes];
-    alignas(64) Mask asks[lanes];
-};
-
-[[gnu::noinline]] void readTable(const SofteningTable& table, std::int32_t TableRows::*row, TableRows* rows,
-                                 const int* places, Asked& a) {
-    for (int i = 0; i < lanes; ++i)
-        if (a.asks[i]) a.found[i] = larger<double>(a.found[i], table.damage(a.at[i], a.shift[i], rows[places[i]].*row));
-}
-[[gnu::noinline]] void readCurve(const CyclicEquations& e, Asked& a) {
-    for (int i = 0; i < lanes; ++i)
-        if (a.asks[i]) a.found[i] = e.curve.strength(a.at[i], e.stretch);
-}
-[[gnu::noinline]] void readDecay(const CyclicEquations& e, Asked& a) {
-    for (int i = 0; i < lanes; ++i)
-        if (a.asks[i]) a.found[i] = e.dilatancy(a.at[i]);
-}
-[[gnu::noinline]] void readEnergy(const CyclicEquations& e, Asked& a) {
-    for (int i = 0; i < lanes; ++i)
-        if (a.asks[i]) a.found[i] = e.storedNormal(a.at[i], a.shift[i]);
-}
-
-struct LookAtEight {
-    const CyclicEquations& e;
-    const SofteningTable &tensionTable, &shearTable;
-    TableRows* rows;
-    const int* places; // of the eight, in `rows`
-    PackMask waits;    // the others are not looked up
-
-    MASONRY_INLINED Asked asked(const Pack& found, const Pack& at, const Pack& shift, const PackMask& asks) const {
-        Asked a;
-        store(a.at, at);
-        store(a.shift, shift);
-        store(a.found, found);
-        const PackMask both = asks & waits;
-        std::memcpy(a.asks, &both, sizeof both);
-        return a;
-    }
-    MASONRY_INLINED Pack tension(const Pack& damage, const Pack& ratio, const Pack& shift, const PackMask& asks) const {
-        Asked a = asked(damage, ratio, shift, asks);
-        readTable(tensionTable, &TableRows::tension, rows, places, a);
-        return load(a.found);
-    }
-    MASONRY_INLINED Pack shear(const Pack& damage, const Pack& ratio, const Pack& shift, const PackMask& asks) const {
-        Asked a = asked(damage, ratio, shift, asks);
-        readTable(shearTable, &TableRows::shear, rows, places, a);
-        return load(a.found);
-    }
-    double lastRatio() const { return shearTable.lastRatio() - 1; }
-    MASONRY_INLINED Pack strength(const Pack& fc, const Pack& kappa, const PackMask& asks) const {
-        Asked a = asked(fc, kappa, kappa, asks);
-        readCurve(e, a);
-        return load(a.found);
-    }
-    MASONRY_INLINED Pack decay(const Pack& slip, const PackMask& asks) const {
-        Asked a = asked(Pack{}, slip, slip, asks);
-        readDecay(e, a);
-        return load(a.found);
-    }
-    MASONRY_INLINED Pack normalEnergy(const Pack& sigma, const Pack& w) const {
-        Asked a = asked(Pack{}, sigma, w, waits);
-        readEnergy(e, a);
-        return load(a.found);
-    }
-};
-
-// Eight subcontacts of a column, wherever they stand in it.
-struct Places {
-    int at[lanes]; // the last one stands for those that are missing
-    int many;
-
-    MASONRY_INLINED Pack get(const double* column) const {
-        alignas(64) double x[lanes];
-        for (int i = 0; i < lanes; ++i)
-            x[i] = column[at[i]];
-        return load(x);
-    }
-    MASONRY_INLINED void put(double* column, const Pack& x) const {
-        for (int i = 0; i < many; ++i)
-            column[at[i]] = x[i];
-    }
-    MASONRY_INLINED void add(double* column, const Pack& x) const {
-        for (int i = 0; i < many; ++i)
-            column[at[i]] += x[i];
-    }
-};
-
 } // namespace
 
 MASONRY_VECTORISED
@@ -178,92 +89,46 @@ Mask stayElastic(const CyclicEquations& e, const CyclicConsequences* neverYielde
                    : stayElasticOn<true, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
 }
 
-MASONRY_VECTORISED
-void advanceSideBySide(const CyclicEquations& given, const SofteningTable& tension, const SofteningTable& shear,
+// ---- subcontacts that need the whole law ----------------------------------------------------------------------------
+
+namespace cyclic {
+
+void readTable(const SofteningTable& table, std::int32_t TableRows::*row, TableRows* rows, const int* places,
+               Asked& a) {
+    for (int i = 0; i < a.many; ++i)
+        if (a.asks[i]) a.found[i] = larger<double>(a.found[i], table.damage(a.at[i], a.shift[i], rows[places[i]].*row));
+}
+void readCurve(const CyclicEquations& e, Asked& a) {
+    for (int i = 0; i < a.many; ++i)
+        if (a.asks[i]) a.found[i] = e.curve.strength(a.at[i], e.stretch);
+}
+void readDecay(const CyclicEquations& e, Asked& a) {
+    for (int i = 0; i < a.many; ++i)
+        if (a.asks[i]) a.found[i] = e.dilatancy(a.at[i]);
+}
+void readEnergy(const CyclicEquations& e, Asked& a) {
+    for (int i = 0; i < a.many; ++i)
+        if (a.asks[i]) a.found[i] = e.storedNormal(a.at[i], a.shift[i]);
+}
+
+std::vector<Way> ways() {
+    std::vector<Way> found{{"any processor", advanceOnAny}};
+#if MASONRY_VECTOR_UNITS
+    if (__builtin_cpu_supports("avx2")) found.push_back({"AVX2", advanceOnAvx2});
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+        found.push_back({"AVX-512", advanceOnAvx512});
+#endif
+    return found;
+}
+
+} // namespace cyclic
+
+void advanceSideBySide(const CyclicEquations& e, const SofteningTable& tension, const SofteningTable& shear,
                        const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* waits,
                        int count, double* normalStress) {
-    const CyclicEquations e = given;
-    Places eight;
-    for (int from = 0; from < count;) {
-        // those that wait stand scattered among others, and few of them fill eight places
-        int last = 0;
-        for (eight.many = 0; from < count && eight.many < lanes; ++from)
-            if (waits[from]) eight.at[eight.many++] = last = from;
-        if (eight.many == 0) return;
-        PackMask mask{};
-        for (int i = 0; i < lanes; ++i) {
-            mask[i] = i < eight.many ? -1 : 0;
-            if (i >= eight.many) eight.at[i] = last;
-        }
-        const Pack opening = eight.get(jumps.opening), slideA = eight.get(jumps.slideA),
-                   slideB = eight.get(jumps.slideB);
-        const Columns& c = columns;
-        CyclicPoint<Pack> p;
-        p.opening = eight.get(c[Columns::Opening]);
-        p.crushing = eight.get(c[Columns::Crushing]);
-        p.dilation = eight.get(c[Columns::Dilation]);
-        p.slip = eight.get(c[Columns::Slip]);
-        p.largestOpening = eight.get(c[Columns::LargestOpening]);
-        p.largestClosure = eight.get(c[Columns::LargestClosure]);
-        p.tensionDamage = eight.get(c[Columns::TensionDamage]);
-        p.shearDamage = eight.get(c[Columns::ShearDamage]);
-        p.shearA = eight.get(c[Columns::ShearStressA]);
-        p.shearB = eight.get(c[Columns::ShearStressB]);
-        p.plasticA = eight.get(c[Columns::PlasticSlipA]);
-        p.plasticB = eight.get(c[Columns::PlasticSlipB]);
-        p.shearSoftening = eight.get(c[Columns::ShearSoftening]);
-        p.shearStiffnessLoss = eight.get(c[Columns::ShearStiffnessLoss]);
-        p.capDisplacement = eight.get(c[Columns::CapDisplacement]);
-        p.strength = root(eight.get(c[Columns::CapSquared]));
-        p.closing = eight.get(c[Columns::ClosingStiffness]);
-        p.shearing = eight.get(c[Columns::ShearStiffness]);
-        p.left = eight.get(c[Columns::Intact]);
-        p.secant = eight.get(c[Columns::Secant]);
-        p.hardening = eight.get(c[Columns::SquaredHardening]);
-        p.normalStress = e.normal<Pack>(p.opening + eight.get(c[Columns::Irreversible]), p.secant, p.closing);
-        const auto out =
-            advance<Pack>(e, LookAtEight{e, tension, shear, rows, eight.at, mask}, p, opening, slideA, slideB);
-        // what did not happen to one of them changes no column
-        eight.put(c[Columns::Opening], p.opening);
-        eight.put(c[Columns::ShearStressA], p.shearA);
-        eight.put(c[Columns::ShearStressB], p.shearB);
-        if (out.tore | out.dilated) {
-            eight.put(c[Columns::LargestOpening], p.largestOpening);
-            eight.put(c[Columns::TensionDamage], p.tensionDamage);
-            eight.put(c[Columns::ShearDamage], p.shearDamage);
-            eight.put(c[Columns::Intact], p.left);
-            eight.put(c[Columns::Secant], p.secant);
-            eight.put(c[Columns::Reach], e.reach<Pack>(p.left, p.largestOpening));
-        }
-        if (out.slid) {
-            eight.put(c[Columns::Slip], p.slip);
-            eight.put(c[Columns::PlasticSlipA], p.plasticA);
-            eight.put(c[Columns::PlasticSlipB], p.plasticB);
-            eight.put(c[Columns::ShearSoftening], p.shearSoftening);
-            eight.add(c[Columns::LostShear], out.lostShear);
-            if (e.omegaM > 0) {
-                eight.put(c[Columns::ShearStiffnessLoss], p.shearStiffnessLoss);
-                eight.put(c[Columns::ShearStiffness], p.shearing);
-            }
-        }
-        if (out.crushed) {
-            eight.put(c[Columns::LargestClosure], p.largestClosure);
-            eight.put(c[Columns::CapDisplacement], p.capDisplacement);
-            eight.put(c[Columns::CapSquared], p.strength * p.strength);
-            eight.put(c[Columns::ClosingStiffness], p.closing);
-            eight.put(c[Columns::SquaredHardening], p.hardening);
-        }
-        if (out.crushed | out.dilated) {
-            eight.put(c[Columns::Crushing], p.crushing);
-            eight.put(c[Columns::Dilation], p.dilation);
-            eight.put(c[Columns::Irreversible], p.crushing - p.dilation);
-        }
-        eight.add(c[Columns::LostTension], out.lostTension);
-        eight.add(c[Columns::LostCompression], out.lostCompression);
-        eight.put(normalStress, p.normalStress);
-        for (int i = 0; i < eight.many; ++i)
-            regime[eight.at[i]] = Regime(int(out.regime[i]));
-    }
+    static const auto fastest = cyclic::ways().back().advance;
+    fastest({e, tension, shear, shear.lastRatio() - 1}, columns, rows, regime, jumps, waits, count, normalStress);
 }
 
 namespace {

@@ -1,6 +1,6 @@
 // The equations of the cyclic law at one subcontact, beside those that it shares with the paper's law. They are
-// templates for a number type T, so that one subcontact (double) and eight (Pack) follow the same lines. README.md says
-// them in words.
+// templates for a number type T, so that one subcontact (double) and several (Pack) follow the same lines. README.md
+// says them in words.
 #pragma once
 #include "common/Pack.hpp"
 #include "law/piecewise_softening/Equations.hpp"

@@ -10,6 +10,7 @@ class CyclicLaw : public Law {
 public:
     using Equations = CyclicEquations;
     static constexpr int columnCount = Columns::count;
+    static constexpr int worthSideBySide = 3; // see law/ColumnsWith.hpp; they are gathered from among others
 
     // Throws std::invalid_argument with all problems of the properties at once.
     explicit CyclicLaw(const JointProperties& properties) : paper_(properties) {}

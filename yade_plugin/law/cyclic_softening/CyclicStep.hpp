@@ -1,4 +1,4 @@
-// One step of the cyclic law, for one subcontact (T is double) or for eight (T is Pack).
+// One step of the cyclic law, for one subcontact (T is double) or for several (T is Pack).
 #pragma once
 #include "CyclicEquations.hpp"
 

@@ -13,6 +13,7 @@ class JointLaw : public Law {
 public:
     using Equations = masonry::Equations;
     static constexpr int columnCount = Columns::ofPaper;
+    static constexpr int worthSideBySide = 5; // see law/ColumnsWith.hpp; all others are calculated with them, for nothing
 
     // Throws std::invalid_argument with all problems of the properties at once.
     explicit JointLaw(const JointProperties& properties);

@@ -1,0 +1,7 @@
+// The cyclic law side by side with the vector units that any processor has.
+#include "CyclicSideBySide.hpp"
+
+void masonry::cyclic::advanceOnAny(const Numbers& numbers, const Columns& columns, TableRows* rows, Regime* regime,
+                                   const Jumps& jumps, const Mask* waits, int count, double* normalStress) {
+    advanceAs(numbers, columns, rows, regime, jumps, waits, count, normalStress);
+}

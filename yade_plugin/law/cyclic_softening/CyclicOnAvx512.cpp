@@ -1,0 +1,21 @@
+// The cyclic law side by side with the vector units of AVX-512. What is of the standard library is read before them.
+#include "common/Vectorised.hpp"
+#if MASONRY_VECTOR_UNITS
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <immintrin.h>
+#include <memory>
+#include <string>
+#include <vector>
+#pragma GCC target("arch=x86-64-v4")
+#define MASONRY_PACK_BYTES 64
+#include "CyclicSideBySide.hpp"
+
+void masonry::cyclic::advanceOnAvx512(const Numbers& numbers, const Columns& columns, TableRows* rows, Regime* regime,
+                                      const Jumps& jumps, const Mask* waits, int count, double* normalStress) {
+    advanceAs(numbers, columns, rows, regime, jumps, waits, count, normalStress);
+}
+#endif

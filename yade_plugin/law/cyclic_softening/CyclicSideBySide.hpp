@@ -1,0 +1,186 @@
+// One step of the cyclic law for several subcontacts side by side, as many as the vector units of a processor take. A
+// file for each kind of vector units includes this header and compiles `advanceAs` for it (common/Pack.hpp); that file
+// must not compile anything else, because the linker would take it for all processors.
+#pragma once
+#include "CyclicStep.hpp"
+#include "law/Columns.hpp"
+#include "law/SofteningTable.hpp"
+#include <vector>
+
+namespace masonry::cyclic {
+
+struct Numbers { // of a kind of joint
+    const CyclicEquations& equations;
+    const SofteningTable &tension, &shear;
+    double lastRatio; // [-] of the shear table, less 1
+};
+
+using Advance = void(const Numbers& numbers, const Columns& columns, TableRows* rows, Regime* regime,
+                     const Jumps& jumps, const Mask* waits, int count, double* normalStress);
+Advance advanceOnAny, advanceOnAvx2, advanceOnAvx512;
+
+struct Way {
+    const char* name;
+    Advance* advance;
+};
+std::vector<Way> ways(); // that this processor has, the fastest one last
+
+// What is looked up one by one. The numbers stand in memory, where each can be reached.
+struct Asked {
+    int many;
+    alignas(64) double at[lanes], shift[lanes], found[lanes];
+    alignas(64) Mask asks[lanes];
+};
+void readTable(const SofteningTable& table, std::int32_t TableRows::*row, TableRows* rows, const int* places, Asked& a);
+void readCurve(const CyclicEquations& e, Asked& a);
+void readDecay(const CyclicEquations& e, Asked& a);
+void readEnergy(const CyclicEquations& e, Asked& a);
+
+namespace {
+
+// Subcontacts of a column, wherever they stand in it.
+struct Places {
+    int at[packed];
+    bool together; // whether they stand side by side
+
+    MASONRY_INLINED Pack get(const double* column) const {
+        if (together) return load(column + at[0]);
+        alignas(64) double x[packed];
+        for (int i = 0; i < packed; ++i)
+            x[i] = column[at[i]];
+        return load(x);
+    }
+    MASONRY_INLINED void put(double* column, const Pack& x) const {
+        if (together) return store(column + at[0], x);
+        for (int i = 0; i < packed; ++i)
+            column[at[i]] = x[i];
+    }
+    MASONRY_INLINED void add(double* column, const Pack& x) const { put(column, get(column) + x); }
+};
+
+struct Look { // see advance() in CyclicStep.hpp
+    const Numbers& numbers;
+    TableRows* rows;
+    const int* places; // in `rows`
+
+    MASONRY_INLINED Asked asked(const Pack& found, const Pack& at, const Pack& shift, const PackMask& asks) const {
+        Asked a;
+        a.many = packed;
+        store(a.at, at);
+        store(a.shift, shift);
+        store(a.found, found);
+        std::memcpy(a.asks, &asks, sizeof asks);
+        return a;
+    }
+    MASONRY_INLINED Pack tension(const Pack& damage, const Pack& ratio, const Pack& shift, const PackMask& asks) const {
+        Asked a = asked(damage, ratio, shift, asks);
+        readTable(numbers.tension, &TableRows::tension, rows, places, a);
+        return load(a.found);
+    }
+    MASONRY_INLINED Pack shear(const Pack& damage, const Pack& ratio, const Pack& shift, const PackMask& asks) const {
+        Asked a = asked(damage, ratio, shift, asks);
+        readTable(numbers.shear, &TableRows::shear, rows, places, a);
+        return load(a.found);
+    }
+    MASONRY_INLINED double lastRatio() const { return numbers.lastRatio; }
+    MASONRY_INLINED Pack strength(const Pack& fc, const Pack& kappa, const PackMask& asks) const {
+        Asked a = asked(fc, kappa, kappa, asks);
+        readCurve(numbers.equations, a);
+        return load(a.found);
+    }
+    MASONRY_INLINED Pack decay(const Pack& slip, const PackMask& asks) const {
+        Asked a = asked(Pack{}, slip, slip, asks);
+        readDecay(numbers.equations, a);
+        return load(a.found);
+    }
+    MASONRY_INLINED Pack normalEnergy(const Pack& sigma, const Pack& w) const {
+        Asked a = asked(Pack{}, sigma, w, sigma == sigma);
+        readEnergy(numbers.equations, a);
+        return load(a.found);
+    }
+};
+
+MASONRY_INLINED void advanceAs(const Numbers& numbers, const Columns& columns, TableRows* rows, Regime* regime,
+                               const Jumps& jumps, const Mask* waits, int count, double* normalStress) {
+    const CyclicEquations e = numbers.equations;
+    Places some;
+    for (int from = 0;;) {
+        int many = 0; // those that wait may stand scattered among others
+        for (; from < count && many < packed; ++from)
+            if (waits[from]) some.at[many++] = from;
+        if (many == 0) return;
+        for (int i = many; i < packed; ++i) // what is missing is the last one again, which does no harm
+            some.at[i] = some.at[many - 1];
+        some.together = many == packed && some.at[packed - 1] - some.at[0] == packed - 1;
+        const Columns& c = columns;
+        const Pack opening = some.get(jumps.opening), slideA = some.get(jumps.slideA), slideB = some.get(jumps.slideB);
+        CyclicPoint<Pack> p;
+        p.opening = some.get(c[Columns::Opening]);
+        p.crushing = some.get(c[Columns::Crushing]);
+        p.dilation = some.get(c[Columns::Dilation]);
+        p.slip = some.get(c[Columns::Slip]);
+        p.largestOpening = some.get(c[Columns::LargestOpening]);
+        p.largestClosure = some.get(c[Columns::LargestClosure]);
+        p.tensionDamage = some.get(c[Columns::TensionDamage]);
+        p.shearDamage = some.get(c[Columns::ShearDamage]);
+        p.shearA = some.get(c[Columns::ShearStressA]);
+        p.shearB = some.get(c[Columns::ShearStressB]);
+        p.plasticA = some.get(c[Columns::PlasticSlipA]);
+        p.plasticB = some.get(c[Columns::PlasticSlipB]);
+        p.shearSoftening = some.get(c[Columns::ShearSoftening]);
+        p.shearStiffnessLoss = some.get(c[Columns::ShearStiffnessLoss]);
+        p.capDisplacement = some.get(c[Columns::CapDisplacement]);
+        p.strength = root(some.get(c[Columns::CapSquared]));
+        p.closing = some.get(c[Columns::ClosingStiffness]);
+        p.shearing = some.get(c[Columns::ShearStiffness]);
+        p.left = some.get(c[Columns::Intact]);
+        p.secant = some.get(c[Columns::Secant]);
+        p.hardening = some.get(c[Columns::SquaredHardening]);
+        p.normalStress = e.normal<Pack>(p.opening + some.get(c[Columns::Irreversible]), p.secant, p.closing);
+        const auto out = masonry::advance<Pack>(e, Look{numbers, rows, some.at}, p, opening, slideA, slideB);
+        // what did not happen to one of them changes no column
+        some.put(c[Columns::Opening], p.opening);
+        some.put(c[Columns::ShearStressA], p.shearA);
+        some.put(c[Columns::ShearStressB], p.shearB);
+        if (out.tore | out.dilated) {
+            some.put(c[Columns::LargestOpening], p.largestOpening);
+            some.put(c[Columns::TensionDamage], p.tensionDamage);
+            some.put(c[Columns::ShearDamage], p.shearDamage);
+            some.put(c[Columns::Intact], p.left);
+            some.put(c[Columns::Secant], p.secant);
+            some.put(c[Columns::Reach], e.reach<Pack>(p.left, p.largestOpening));
+        }
+        if (out.slid) {
+            some.put(c[Columns::Slip], p.slip);
+            some.put(c[Columns::PlasticSlipA], p.plasticA);
+            some.put(c[Columns::PlasticSlipB], p.plasticB);
+            some.put(c[Columns::ShearSoftening], p.shearSoftening);
+            some.add(c[Columns::LostShear], out.lostShear);
+            if (e.omegaM > 0) {
+                some.put(c[Columns::ShearStiffnessLoss], p.shearStiffnessLoss);
+                some.put(c[Columns::ShearStiffness], p.shearing);
+            }
+        }
+        if (out.crushed) {
+            some.put(c[Columns::LargestClosure], p.largestClosure);
+            some.put(c[Columns::CapDisplacement], p.capDisplacement);
+            some.put(c[Columns::CapSquared], p.strength * p.strength);
+            some.put(c[Columns::ClosingStiffness], p.closing);
+            some.put(c[Columns::SquaredHardening], p.hardening);
+        }
+        if (out.crushed | out.dilated) {
+            some.put(c[Columns::Crushing], p.crushing);
+            some.put(c[Columns::Dilation], p.dilation);
+            some.put(c[Columns::Irreversible], p.crushing - p.dilation);
+        }
+        some.add(c[Columns::LostTension], out.lostTension);
+        some.add(c[Columns::LostCompression], out.lostCompression);
+        some.put(normalStress, p.normalStress);
+        for (int i = 0; i < packed; ++i)
+            regime[some.at[i]] = Regime(int(out.regime[i]));
+    }
+}
+
+} // namespace
+
+} // namespace masonry::cyclic
