@@ -1,5 +1,5 @@
-// Numbers side by side, which are calculated with like one. A function template for a number type T holds for double and
-// for Pack, and gives the same bits for both.
+// Numbers side by side, which are calculated with like one. A function template for a number type T holds for double
+// and for Pack, and gives the same bits for both.
 #pragma once
 #include "Vectorised.hpp"
 #include <cmath>
