@@ -171,6 +171,37 @@ def test_a_histogram_has_an_area_of_one_and_the_quantiles_of_the_rows(drawn):
     assert axis.get_xlabel() == PEAK
 
 
+def test_bars_of_a_histogram_are_divided_by_failure_modes(drawn):
+    modes = ["sliding" if value < 105 else "rocking" for value in VALUES]
+    pictures.histogram("h.png", VALUES, PEAK, modes)
+    (axis,) = drawn["h.png"].axes
+    share = modes.count("sliding") / len(modes)
+    labels = axis.get_legend_handles_labels()[1]
+    named = [label for label in labels if label.startswith(("rocking", "sliding"))]
+    areas = {
+        label: sum(bar.get_width() * bar.get_height() for bar in bars)
+        for label, bars in zip(named, axis.containers, strict=True)
+    }
+    assert areas == {
+        f"rocking, {100 - 100 * share:.0f} %": pytest.approx(1 - share),
+        f"sliding, {100 * share:.0f} %": pytest.approx(share),
+    }
+
+
+def test_a_histogram_of_rows_that_are_all_alike_is_one_bar(drawn):
+    pictures.histogram("h.png", [100.0] * 5, PEAK)
+    (axis,) = drawn["h.png"].axes
+    bars = [bar for bar in axis.containers[0] if bar.get_height() > 0]
+    assert (
+        len(bars) == 1 and bars[0].get_x() < 100 < bars[0].get_x() + bars[0].get_width()
+    )
+
+
+def test_a_scatter_matrix_of_nothing_that_varies_is_refused(drawn):
+    with pytest.raises(Refused, match="no number varies"):
+        pictures.scatter("s.png", {"bed.cohesion": np.full(50, 1e5)}, VALUES[:50], PEAK)
+
+
 def test_a_fragility_curve_goes_from_0_to_1_within_its_band(drawn):
     pictures.fragility("f.png", VALUES, PEAK)
     (axis,) = drawn["f.png"].axes

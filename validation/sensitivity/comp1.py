@@ -10,7 +10,7 @@ from ranges import VARY
 study = Study(
     "wall_comp1",
     options={"preset": "fast", "until": 25},
-    runs=600,
+    runs=300,
     seed=1,
     vary=VARY,
     design="latin",

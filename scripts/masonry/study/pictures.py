@@ -8,6 +8,7 @@ import numpy as np
 from scipy import stats
 
 from ..comparison import COLOURS, DASHES
+from ..errors import Refused
 from ..figures import _drawing, _save, _style
 from . import statistics
 
@@ -21,6 +22,7 @@ SMALL = {
     "axes.axisbelow": True,
 }
 POINT, LINE, BARS = COLOURS[0], COLOURS[1], COLOURS[0]
+SHARES = [BARS, *COLOURS[2:]]  # colours of the parts of bars
 
 
 class _Picture:
@@ -54,6 +56,8 @@ def scatter(path, inputs, output, label):
 
     The number in a panel is Spearman's correlation of ranks; k and M at a number stand for a thousand and a million.
     Properties with one value throughout are left out.
+
+    :raises Refused: if no property is left
     """
     from matplotlib.ticker import EngFormatter
 
@@ -62,6 +66,8 @@ def scatter(path, inputs, output, label):
         for name, values in inputs.items()
         if np.ptp(values) > 0
     }
+    if not columns:
+        raise Refused(f"no number varies in this study beside {label}")
     columns[label] = np.asarray(output, float)
     names, k = list(columns), len(columns)
     size = max(6.0, min(1.35 * k, 11.0))
@@ -183,18 +189,31 @@ def sobol(path, found, label):
 # -- how it scatters --------------------------------------------------------------------------------------------------
 
 
-def histogram(path, values, label):
-    """Histogram of the output with its quantiles of 5, 50 and 95 %, their intervals, and the fitted lognormal density."""
+def histogram(path, values, label, modes=None):
+    """Histogram of the output with its quantiles of 5, 50 and 95 %, their intervals, and the fitted lognormal density.
+
+    :param modes: a word for every value, by which bars are divided into colours; None divides none
+    """
     values = np.asarray(values, float)
-    with _Picture(path, 6.0, 3.6) as figure:
+    words = np.asarray(
+        [f"{len(values)} rows"] * len(values) if modes is None else modes
+    )
+    named = sorted(set(words), key=lambda word: (-np.sum(words == word), word))
+    with _Picture(path, 6.0, 3.8) as figure:
         axis = figure.subplots()
         axis.hist(
-            values,
-            bins=_bins(values),
+            [values[words == word] for word in named],
+            bins=np.linspace(*_ends(values), _bins(values) + 1),
             density=True,
-            color=BARS,
-            alpha=0.45,
-            label=f"{len(values)} rows",
+            stacked=True,
+            color=[SHARES[n % len(SHARES)] for n in range(len(named))],
+            alpha=0.5,
+            label=[
+                word
+                if len(named) == 1
+                else f"{word}, {100 * np.mean(words == word):.0f} %"
+                for word in named
+            ],
         )
         if values.min() > 0 and len(values) >= 3 and np.ptp(values) > 0:
             fit = statistics.lognormal(values)
@@ -208,7 +227,6 @@ def histogram(path, values, label):
                 lw=1.2,
                 label=f"lognormal: median {fit.median:.4g}, dispersion {fit.dispersion:.3g}",
             )
-        top = axis.get_ylim()[1]
         for share, dashes in zip((0.05, 0.5, 0.95), DASHES[1:]):
             found = statistics.quantile(values, share)
             axis.axvline(
@@ -220,10 +238,9 @@ def histogram(path, values, label):
             )
             low, high = np.clip([found.low, found.high], values.min(), values.max())
             axis.axvspan(low, high, color=LINE, alpha=0.12, lw=0)
-        axis.set_ylim(0, 1.25 * top)
         axis.set_xlabel(label)
         axis.set_ylabel("density")
-        axis.legend(loc="upper right")
+        axis.legend(loc="lower center", bbox_to_anchor=(0.5, 1.01), ncols=2)
 
 
 def fragility(path, capacities, label):
@@ -336,6 +353,12 @@ def _increasing(x, y):
 def _bins(values):
     """How many bins a histogram has: by the rule of Freedman and Diaconis, between 5 and 40."""
     return int(np.clip(len(np.histogram_bin_edges(values, "fd")) - 1, 5, 40))
+
+
+def _ends(values):
+    """Where the bins of a histogram begin and end; values that are all the same stand in the middle."""
+    low, high = values.min(), values.max()
+    return (low, high) if high > low else (low - 0.5, high + 0.5)
 
 
 def _errors(intervals):

@@ -95,6 +95,11 @@ def draw(record, measure):
     told = label(measure)
     inputs = {name: column for name, column in inputs.items() if np.ptp(column) > 0}
     curves = record.curves(rows, *CURVE)
+    modes = (
+        [record.cells[MODE][row] or "unknown" for row in rows]
+        if MODE in record.cells
+        else None
+    )
 
     def tornado(path):
         pictures.tornado(path, sensitivity.effects(inputs, values), told)
@@ -111,7 +116,7 @@ def draw(record, measure):
         "scatter": lambda path: pictures.scatter(path, inputs, values, told),
         "tornado": tornado,
         "sobol": sobol,
-        "histogram": lambda path: pictures.histogram(path, values, told),
+        "histogram": lambda path: pictures.histogram(path, values, told, modes),
         "fragility": lambda path: pictures.fragility(path, values, told),
         "curves": fan,
     }.items():
