@@ -73,6 +73,9 @@ RUNS = {
 REPEATED = ["rigid", "preset fast"]
 AGAIN = (0.78, 0.79)
 
+#: Limit analysis alone: a bound of the peak, without a run.
+BOUND = "--preset bound"
+
 #: Patches for the pattern of cracks: half units by courses, 0.22 × 0.24 m.
 PATCH = (2, 3)
 
@@ -109,7 +112,7 @@ def allRuns():
 def runAll(walls, jobs):
     """Run what has no results yet; frames of the start and of the end only."""
     words = lambda wall, o: f"--until {WALLS[wall]} --vtk-every 1000 {o}".split()
-    runs = [(wall, options) for wall in walls for options in allRuns()]
+    runs = [(wall, options) for wall in walls for options in [BOUND, *allRuns()]]
     runMissing([(w, words(w, o), folder(w, o)) for w, o in runs], jobs)
 
 
@@ -201,6 +204,13 @@ def timeOne(wall, kind, threads):
     }
 
 
+def timeBound(wall):
+    """Wall-clock time [s] of the bound of a wall, as a user starts it."""
+    began = time.perf_counter()
+    run(wall, BOUND.split(), os.path.join(RESULTS, "times", wall), quiet=True)
+    return time.perf_counter() - began
+
+
 def readTimes():
     path = os.path.join(RESULTS, "times.json")
     if not os.path.exists(path):
@@ -212,16 +222,21 @@ def readTimes():
 def timeAll(walls, anew):
     """Time every distinct step, once with one thread and once with two; those that are known only if ``anew``."""
     times = readTimes()
+
+    def keep(key, measure):
+        if not anew and key in times:
+            return
+        print("timing", key, flush=True)
+        times[key] = measure()
+        with open(os.path.join(RESULTS, "times.json"), "w") as f:
+            json.dump(times, f, indent=1)
+
     for wall in walls:
+        keep(f"{wall} {BOUND}", lambda: timeBound(wall))
         kinds = [kind(wall, o) for o in allRuns() if done(wall, o)]
         for one in dict.fromkeys(kinds):
             for threads in THREADS:
-                key = f"{wall} {one} {threads}"
-                if anew or key not in times:
-                    print("timing", key, flush=True)
-                    times[key] = timeOne(wall, one, threads)
-                    with open(os.path.join(RESULTS, "times.json"), "w") as f:
-                        json.dump(times, f, indent=1)
+                keep(f"{wall} {one} {threads}", lambda: timeOne(wall, one, threads))
 
 
 def cost(wall, options, threads):
@@ -239,6 +254,22 @@ def cost(wall, options, threads):
 
 
 # -- what comes out -----------------------------------------------------------------------------------------------
+
+
+def bounds(walls):
+    """The bound of the peak of every wall: how far it lies above the reference's [-], and its time [s]."""
+    found, times = {}, readTimes()
+    for wall in walls:
+        peak = np.mean([numbers(wall, r)["peak"] for r in RUNS["reference"]])
+        bound = readRun(folder(wall, BOUND))["bound_base_shear_kN"]
+        found[wall] = {"peak": bound / peak - 1, "seconds": times[f"{wall} {BOUND}"]}
+    if len(found) > 1:
+        found["all_walls"] = {
+            "peak": max(e["peak"] for e in found.values()),
+            "seconds": sum(e["seconds"] for e in found.values()),
+        }
+    return found
+
 
 ERRORS = ["peak", "work", "end", "stiffness", "dissipated", "pattern", "imbalance"]
 
@@ -356,8 +387,11 @@ def front(points):
     return kept
 
 
-def draw(found, wall):
-    """WALL.png: time against the errors of the peak and of the work; the front is numbered, its runs listed below."""
+def draw(found, wall, bound):
+    """WALL.png: time against the errors of the peak and of the work; the front is numbered, its runs listed below.
+
+    :param bound: the wall's entry of :func:`bounds`
+    """
     entries = [e for e in found if e["wall"] == wall and e["series"] != "reference"]
     reference = next(
         e for e in found if e["wall"] == wall and e["series"] == "reference"
@@ -387,6 +421,8 @@ def draw(found, wall):
             )
             if e["options"] in presets:
                 axis.plot(x, 100 * y, "o", ms=14, mfc="none", color="black")
+        if name == "peak":
+            axis.plot(bound["seconds"], 100 * bound["peak"], "D", color="tab:green")
         best = front(points)
         axis.step(
             [points[i][0] for i in best],
@@ -419,7 +455,7 @@ def draw(found, wall):
         figure.text(0.02 + 0.5 * i, 0.01, "\n".join(column), fontsize=7.5, va="bottom")
     figure.suptitle(
         f"{wall}: circles rigid, squares deformable, triangles with two by two cells; white with local damping; "
-        "ringed presets; dashed the reference's time",
+        "ringed presets; diamond the bound; dashed the reference's time",
         fontsize=9,
     )
     figure.tight_layout(rect=(0, 0.03 * len(columns[0]) + 0.02, 1, 1))
@@ -442,16 +478,20 @@ def main():
         if not args.time_only:
             runAll(args.walls, args.jobs)
         timeAll(args.walls, args.time_only)
-    found = study([w for w in args.walls if done(w, RUNS["reference"][0])])
+    walls = [w for w in args.walls if done(w, RUNS["reference"][0])]
+    found, limits = study(walls), bounds(walls)
     with open(os.path.join(HERE, "trade.json"), "w") as f:
         json.dump(found, f, indent=1)
         f.write("\n")
     with open(os.path.join(HERE, "table.md"), "w") as f:
         f.write(f"{summary(found)}\n\n{details(found)}\n")
     print(details(found))
+    heads = ["wall", "bound over the reference's peak", "s"]
+    of = [[w, f"{e['peak']:+.1%}", f"{e['seconds']:.1f}"] for w, e in limits.items()]
+    print(table(heads, of))
     found += worst(found)
     for wall in dict.fromkeys(e["wall"] for e in found):
-        draw(found, wall)
+        draw(found, wall, limits[wall])
 
 
 if __name__ == "__main__":
