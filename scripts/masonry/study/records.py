@@ -5,7 +5,7 @@ import os
 
 import numpy as np
 
-from .. import batch
+from .. import batch, presets
 from ..errors import Refused
 from ..results import readCurve, readWhole
 from .gathering import CSV, TIMES, Folder
@@ -106,7 +106,7 @@ def paired(expensive, cheap, measure, other=None):
     :param expensive: :class:`Record`, and ``cheap`` one
     :param measure: column of ``expensive``; ``other`` is that of ``cheap``, None: the same
     :returns: two arrays for :mod:`masonry.study.estimate`, and two lists: the rows of ``expensive`` and those of ``cheap``
-    :raises Refused: if their scenes or options differ in more than the preset, if something else varies in both, or rows of one study are the same
+    :raises Refused: if their scenes or options differ in more than FIDELITY, if something else varies in both, or rows of one study are the same
     """
     problems = [
         f"{expensive.directory} has {what} {one!r}, and {cheap.directory} {two!r}"
@@ -139,16 +139,18 @@ def paired(expensive, cheap, measure, other=None):
     return y[shared], x[first + others], shared, first + others
 
 
+#: Options that decide how accurate and how dear a run is; studies of one wall may differ in them.
+FIDELITY = {"preset", "density_scaling", *presets.USUAL}
+
+
 def _unlike(one, two):
-    """What two studies differ in beside their preset: name and both values, as far as their study.json tells."""
+    """What two studies differ in beside FIDELITY: name and both values, as far as their study.json tells."""
     try:
         told = [Folder(study.directory).description()["study"] for study in (one, two)]
     except Refused:
         return
-    first, second = (
-        {"scene": study["scene"], **study["options"], "preset": None} for study in told
-    )
-    for name in sorted({*first, *second}):
+    first, second = ({"scene": study["scene"], **study["options"]} for study in told)
+    for name in sorted({*first, *second} - FIDELITY):
         if first.get(name) != second.get(name):
             yield name, first.get(name), second.get(name)
 
