@@ -38,17 +38,23 @@ VARY = {
     "bed.capNormal": lognormal(mean=1.0, cov=0.2),
 }
 
-#: Options, rows and seed of each study. The rows of ``few`` are the first of ``many`` and of ``slower``; those of
-#: ``alone`` are others.
+#: Options, rows and seed of each study. The rows of ``few`` are the first of those with the same seed, ``alone``
+#: has others.
 STUDIES = {
     "few": ({"preset": "accurate"}, 12, 1),
     "many": ({"preset": "fast"}, 150, 1),
     "alone": ({"preset": "accurate"}, 24, 2),
     "slower": ({"preset": "fast", "rate": 50}, 150, 1),
+    "slowest": ({"preset": "fast", "rate": 20}, 150, 1),
 }
 
-#: Walls and cheap studies that are compared. The last one was added when the others had been run; README.md has why.
-COMPARED = [("COMP-4", "many"), ("COMP-1", "many"), ("COMP-1", "slower")]
+#: Walls and cheap studies that are compared. The last two were added when those before had been run; README.md has why.
+COMPARED = [
+    ("COMP-4", "many"),
+    ("COMP-1", "many"),
+    ("COMP-1", "slower"),
+    ("COMP-1", "slowest"),
+]
 
 #: The most that few and many may cost, over the cost of accurate runs alone [-].
 SHARE = 0.2
