@@ -21,6 +21,8 @@ using Pack = double __attribute__((vector_size(MASONRY_PACK_BYTES)));
 using PackMask = std::int64_t __attribute__((vector_size(MASONRY_PACK_BYTES))); // what comparing two packs gives
 constexpr int packed = MASONRY_PACK_BYTES / sizeof(double);
 
+template <class T> using MaskOf = decltype(T{} > T{}); // bool or PackMask
+
 MASONRY_INLINED bool any(bool m) { return m; }
 MASONRY_INLINED bool any(const PackMask& m) {
 #if MASONRY_PACK_BYTES == 64

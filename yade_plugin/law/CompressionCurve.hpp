@@ -1,7 +1,7 @@
 // Strength in compression as a function of the largest closure: hardening to the peak, softening to the residual,
 // paper eqs. (18)-(25); law/README.md, Compression. Closure and stress are positive here.
 #pragma once
-#include "common/Vectorised.hpp"
+#include "common/Pack.hpp"
 #include <cmath>
 
 namespace masonry {
@@ -35,28 +35,30 @@ struct CompressionCurve {
 
     // The strength up to ucm, without branches, so that it is found for several subcontacts at a time. Both parts are
     // roots of a quadratic equation, written so that nothing cancels.
-    MASONRY_INLINED double upToMiddle(double u, double stretch) const {
+    template <class T> MASONRY_INLINED T upToMiddle(const T& u, double stretch) const {
         const double start = limit(stretch);
         const double top = peakAt(stretch);
-        const bool hardens = u < top;
+        const auto hardens = u < top;
         // eq. (18), with the peak at ucp [decided]: a x + b sqrt(x (2 - x)) = v
         const double a = peakClosure - limitClosure;
         const double b = stretch * (peak - elasticLimit);
-        const double v = u - start;
+        const T v = u - start;
         // eqs. (20), (21), second row: w = W xi - A xi²
         const double W = width();
         const double A = stretch * (peak - middle);
-        const double w = u - top;
-        const double inside = hardens ? b * b + 2 * a * v - v * v : W * W - 4 * A * w;
-        const double root = std::sqrt(inside > 0 ? inside : 0);
-        const double fraction = (hardens ? v * v : 2 * w) / (hardens ? a * v + b * b + b * root : W + root);
-        const double beforePeak = elasticLimit + (peak - elasticLimit) * std::sqrt(fraction * (2 - fraction));
-        const double afterPeak = peak + (middle - peak) * fraction * fraction;
-        return u <= start ? elasticLimit : hardens ? beforePeak : afterPeak;
+        const T w = u - top;
+        const T inside = choose(hardens, b * b + 2 * a * v - v * v, W * W - 4 * A * w);
+        const T side = root(larger(inside, T{}));
+        const T fraction = choose(hardens, v * v, 2 * w) / choose(hardens, a * v + b * b + b * side, W + side);
+        const T beforePeak = elasticLimit + (peak - elasticLimit) * root(T(fraction * (2 - fraction)));
+        const T afterPeak = peak + (middle - peak) * fraction * fraction;
+        return choose(u <= start, all<T>(elasticLimit), choose(hardens, beforePeak, afterPeak));
     }
 
     // The strength beyond ucm, eqs. (20), (21), third row.
-    MASONRY_INLINED bool isBeyondMiddle(double u, double stretch) const { return u - peakAt(stretch) >= fall(stretch); }
+    template <class T> MASONRY_INLINED MaskOf<T> isBeyondMiddle(const T& u, double stretch) const {
+        return u - peakAt(stretch) >= fall(stretch);
+    }
     double beyondMiddle(double u, double stretch) const {
         const double alpha = 2 * (middle - peak) / width(); // eq. (22)
         const double height = middle - residual;

@@ -100,7 +100,7 @@ void readTable(const SofteningTable& table, std::int32_t TableRows::*row, TableR
 }
 void readCurve(const CyclicEquations& e, Asked& a) {
     for (int i = 0; i < a.many; ++i)
-        if (a.asks[i]) a.found[i] = e.curve.strength(a.at[i], e.stretch);
+        if (a.asks[i]) a.found[i] = e.curve.beyondMiddle(a.at[i], e.stretch);
 }
 void readDecay(const CyclicEquations& e, Asked& a) {
     for (int i = 0; i < a.many; ++i)

@@ -32,7 +32,7 @@ struct Asked {
     alignas(64) Mask asks[lanes];
 };
 void readTable(const SofteningTable& table, std::int32_t TableRows::*row, TableRows* rows, const int* places, Asked& a);
-void readCurve(const CyclicEquations& e, Asked& a);
+void readCurve(const CyclicEquations& e, Asked& a); // beyond ucm
 void readDecay(const CyclicEquations& e, Asked& a);
 void readEnergy(const CyclicEquations& e, Asked& a);
 
@@ -84,8 +84,12 @@ struct Look { // see advance() in CyclicStep.hpp
     }
     MASONRY_INLINED double lastRatio() const { return numbers.lastRatio; }
     MASONRY_INLINED Pack strength(const Pack& fc, const Pack& kappa, const PackMask& asks) const {
-        Asked a = asked(fc, kappa, kappa, asks);
-        readCurve(numbers.equations, a);
+        const CyclicEquations& e = numbers.equations;
+        const Pack found = choose(asks, e.curve.upToMiddle(kappa, e.stretch), fc);
+        const PackMask beyond = asks & e.curve.isBeyondMiddle(kappa, e.stretch);
+        if (!any(beyond)) return found;
+        Asked a = asked(found, kappa, kappa, beyond);
+        readCurve(e, a);
         return load(a.found);
     }
     MASONRY_INLINED Pack decay(const Pack& slip, const PackMask& asks) const {
