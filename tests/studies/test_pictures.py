@@ -393,6 +393,19 @@ def test_studies_of_other_walls_or_options_are_not_joined(studies):
         records.paired(*write("wall_comp1"), "peak_base_shear_kN")
     with pytest.raises(Refused, match="has until None, and .* 6"):
         records.paired(*write(until=6), "peak_base_shear_kN")
+    with pytest.raises(Refused, match="has joints None, and .* 'cyclic'"):
+        records.paired(*write(joints="cyclic", rate=20), "peak_base_shear_kN")
+
+
+def test_studies_of_other_rates_and_meshes_are_joined(studies):
+    for (name, more), directory in zip(
+        {"accurate": {}, "fast": {"rate": 20, "subcontacts": 2}}.items(), studies
+    ):
+        study = {"scene": "wall_comp4", "runs": 15, "options": {"preset": name, **more}}
+        told = json.dumps({"study": study, "script": "wall_comp4.py"})
+        (pathlib.Path(directory) / "study.json").write_text(told)
+    few, many = map(records.Record, studies[:2])
+    assert len(records.paired(few, many, "peak_base_shear_kN")[0]) == 15
 
 
 def test_the_seed_of_a_random_field_is_no_input(studies):

@@ -1,0 +1,50 @@
+"""What the build makes: objects for one kind of vector units alone, and an installed package without old modules."""
+
+import glob
+import os
+import pathlib
+import subprocess
+
+import pytest
+from conftest import BUILD, ROOT
+
+FILES = glob.glob(os.path.join(BUILD, "**", "CyclicOn*.cpp.o"), recursive=True)
+
+
+@pytest.mark.parametrize("name", sorted({os.path.basename(file) for file in FILES}))
+def test_a_file_for_vector_units_defines_its_own_function_alone(name):
+    """A processor without these vector units would otherwise run instructions that it does not have."""
+    for file in FILES:
+        if os.path.basename(file) != name:
+            continue
+        lines = subprocess.run(
+            ["nm", "--demangle", "--defined-only", file],
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        found = [line.split(maxsplit=2)[1:] for line in lines.stdout.splitlines()]
+        shared = [words for kind, words in found if not kind.islower() or kind in "uvw"]
+        function = "masonry::cyclic::advance" + name[len("Cyclic") : -len(".cpp.o")]
+        assert [words.split("(")[0] for words in shared] == [function]
+
+
+def test_there_are_three_such_files():
+    assert len({os.path.basename(file) for file in FILES}) == 3
+
+
+def test_an_installation_leaves_no_module_of_an_earlier_version(tmp_path):
+    install = ["cmake", "--install", BUILD]
+    environment = {**os.environ, "DESTDIR": str(tmp_path)}
+    for _ in range(2):
+        subprocess.run(install, check=True, capture_output=True, env=environment)
+        (package,) = tmp_path.glob("**/masonry/__init__.py")
+        modules = sorted(
+            p.relative_to(package.parent) for p in package.parent.rglob("*.py")
+        )
+        source = os.path.join(ROOT, "scripts", "masonry")
+        assert modules == sorted(
+            p.relative_to(source) for p in pathlib.Path(source).rglob("*.py")
+        )
+        (package.parent / "gone.py").write_text("")
+        (package.parent / "study" / "gone.py").write_text("")
