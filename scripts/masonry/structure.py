@@ -16,7 +16,13 @@ from ._masonry import criticalTimeStep
 from .bounds import Bounds
 from .bricks import boxCorners
 from .columns import Column
-from .curves import cycleNumbers, dampedShare, dynamicImbalance, initialStiffness
+from .curves import (
+    cycleNumbers,
+    dampedShare,
+    dynamicImbalance,
+    initialStiffness,
+    peakAtBothEnds,
+)
 from .described import OF_JOINTS
 from .errors import Collapsed, Refused, Unwritable
 from .frames import readFrame
@@ -676,6 +682,7 @@ class Structure(Model):
         found.update(
             peak_base_shear_kN=shear[at],
             displacement_at_peak_mm=moved[at],
+            peak_at_both_ends_kN=peakAtBothEnds(column("top_shear_kN"), shear),
             base_shear_end_kN=shear[-1],
             displacement_end_mm=moved[-1],
             initial_stiffness_kN_per_mm=initialStiffness(moved, shear),

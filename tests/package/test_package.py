@@ -242,6 +242,14 @@ def test_rows_that_a_full_disk_takes_stay_whole(tmp_path):
     assert results.readCurve(folder)["a_mm"] == [1] * 3 + [3] * 17
 
 
+def test_a_pulse_at_one_end_is_no_peak_at_both():
+    base = [0.0, 10.0, 11.0, 13.0, 11.5, 9.0]
+    top = [0.5, 10.2, 11.1, 11.2, 12.9, 9.0]
+    assert curves.peakAtBothEnds(top, base) == 11.5
+    assert curves.peakAtBothEnds(base, base) == 13
+    assert curves.peakAtBothEnds([], []) == 0
+
+
 def test_dynamic_imbalance_is_the_share_of_the_force_that_does_not_arrive():
     base = [min(0.01 * i, 1.0) for i in range(200)]
     assert (

@@ -46,6 +46,7 @@ FIRST = (
     "ended",
     "peak_base_shear_kN",
     "displacement_at_peak_mm",
+    "peak_at_both_ends_kN",
     "base_shear_end_kN",
     "displacement_end_mm",
     "push_work_J",
