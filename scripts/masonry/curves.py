@@ -25,7 +25,7 @@ def dynamicImbalance(top, base):
 
 
 def peakAtBothEnds(top, base):
-    """The largest force that top and base carried at once: in every row the smaller of both counts; 0 of no rows.
+    """The largest force that top and base carried at once: in every row the smaller of both counts. It is 0 if there are no rows.
 
     When a crack tears at once, a wave runs through the wall, and for some hundredths of a millimetre one end feels a force
     that the other does not. Such a pulse counts in the peak at the base, but not here.

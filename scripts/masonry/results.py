@@ -62,7 +62,7 @@ A run that pushes, leans or tilts has these, if limit analysis (:mod:`masonry.li
 A run with a push has these, too:
 
 - ``peak_base_shear_kN``, ``displacement_at_peak_mm``: the largest force at the base, and where it is reached
-- ``peak_at_both_ends_kN``: as of :func:`masonry.curves.peakAtBothEnds`, without pulses that one end alone feels
+- ``peak_at_both_ends_kN``: the largest force that top and base carried at once (:func:`masonry.curves.peakAtBothEnds`)
 - ``base_shear_end_kN``, ``displacement_end_mm``: the last row
 - ``initial_stiffness_kN_per_mm``: as :func:`masonry.curves.initialStiffness` fits it
 - with --lean, which leaves no frames to measure: the numbers of :func:`masonry.measure.pushNumbers`, and of a wall in running

@@ -28,7 +28,8 @@ MEASURE = "peak_base_shear_kN"
 #: The measure without pulses that one end alone feels. It was added when all studies had been run; README.md has why.
 BOTH_ENDS = "peak_at_both_ends_kN"
 
-# All numbers below were fixed before any run of these studies was made; README.md has the reasons.
+# All numbers below were fixed before any run of these studies was made, but for slower and slowest, which were fixed when
+# the others had been run; README.md has the reasons.
 
 #: Scene, and how far it is pushed [mm].
 WALLS = {"COMP-4": ("wall_comp4", 4), "COMP-1": ("wall_comp1", 25)}

@@ -257,9 +257,9 @@ def cost(wall, options, threads):
 
 
 def bounds(walls):
-    """The bound of the peak of every wall: how far it lies above the reference's [-], and its time [s]."""
+    """The bound of the peak of every wall that has one: how far it is above the reference's [-], and its time [s]."""
     found, times = {}, readTimes()
-    for wall in walls:
+    for wall in [w for w in walls if done(w, BOUND)]:
         peak = np.mean([numbers(wall, r)["peak"] for r in RUNS["reference"]])
         run = readRun(folder(wall, BOUND))
         spent = times.get(f"{wall} {BOUND}", run["wall_clock_s"])
@@ -267,7 +267,7 @@ def bounds(walls):
             "peak": run["bound_base_shear_kN"] / peak - 1,
             "seconds": spent,
         }
-    if len(found) > 1:
+    if len(found) == len(walls) > 1:
         found["all_walls"] = {
             "peak": max(e["peak"] for e in found.values()),
             "seconds": sum(e["seconds"] for e in found.values()),
@@ -394,7 +394,7 @@ def front(points):
 def draw(found, wall, bound):
     """WALL.png: time against the errors of the peak and of the work; the front is numbered, its runs listed below.
 
-    :param bound: the wall's entry of :func:`bounds`
+    :param bound: the wall's entry of :func:`bounds`, or None
     """
     entries = [e for e in found if e["wall"] == wall and e["series"] != "reference"]
     reference = next(
@@ -425,7 +425,7 @@ def draw(found, wall, bound):
             )
             if e["options"] in presets:
                 axis.plot(x, 100 * y, "o", ms=14, mfc="none", color="black")
-        if name == "peak":
+        if bound and name == "peak":
             axis.plot(bound["seconds"], 100 * bound["peak"], "D", color="tab:green")
         best = front(points)
         axis.step(
@@ -493,9 +493,10 @@ def main():
     heads = ["wall", "bound over the reference's peak", "s"]
     of = [[w, f"{e['peak']:+.1%}", f"{e['seconds']:.1f}"] for w, e in limits.items()]
     print(table(heads, of))
-    found += worst(found)
+    if len(walls) > 1:
+        found += worst(found)
     for wall in dict.fromkeys(e["wall"] for e in found):
-        draw(found, wall, limits[wall])
+        draw(found, wall, limits.get(wall))
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 //
 //   Equations                          its equations with the numbers of a kind of joint; `equations(k)` makes them
 //   columnCount                        how many columns it has
-//   worthSideBySide                    how many subcontacts that need the whole law cost less side by side than one by one
+//   worthSideBySide                    from how many subcontacts on the whole law costs less side by side than one by one
 //   advance(equations, state, jump)    one step of one subcontact; returns what it dissipated
 //
 // and, for these equations, the functions

@@ -22,7 +22,7 @@ SMALL = {
     "axes.axisbelow": True,
 }
 POINT, LINE, BARS = COLOURS[0], COLOURS[1], COLOURS[0]
-SHARES = [BARS, *COLOURS[2:]]  # colours of the parts of bars
+SHARES = [BARS, *COLOURS[2:], "#F0E442"]  # colours of the parts of bars
 
 
 class _Picture:

@@ -178,7 +178,7 @@ def main(words=None):
     )
     parser.add_argument(
         "--cheap",
-        help="folder of a study of the same rows and more with a cheaper preset",
+        help="folder of a study of the same rows and more whose runs are cheaper: another preset, rate, time step or mesh",
     )
     parser.add_argument(
         "--cheap-measure",

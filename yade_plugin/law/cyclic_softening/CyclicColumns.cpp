@@ -115,9 +115,7 @@ std::vector<Way> ways() {
     std::vector<Way> found{{"any processor", advanceOnAny}};
 #if MASONRY_VECTOR_UNITS
     if (__builtin_cpu_supports("avx2")) found.push_back({"AVX2", advanceOnAvx2});
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
-        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-        found.push_back({"AVX-512", advanceOnAvx512});
+    if (__builtin_cpu_supports("x86-64-v4")) found.push_back({"AVX-512", advanceOnAvx512});
 #endif
     return found;
 }

@@ -1,4 +1,4 @@
-// The cyclic law side by side with the vector units that any processor has.
+// The cyclic law side by side with the vector units that every processor has.
 #include "CyclicSideBySide.hpp"
 
 void masonry::cyclic::advanceOnAny(const Numbers& numbers, const Columns& columns, TableRows* rows, Regime* regime,

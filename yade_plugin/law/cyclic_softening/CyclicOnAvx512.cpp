@@ -1,4 +1,5 @@
-// The cyclic law side by side with the vector units of AVX-512. What is of the standard library is read before them.
+// The cyclic law side by side with the vector units of AVX-512. The standard headers stand before the pragma, so that
+// their functions are not compiled for these units.
 #include "common/Vectorised.hpp"
 #if MASONRY_VECTOR_UNITS
 #include <algorithm>
