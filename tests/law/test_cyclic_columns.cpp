@@ -139,7 +139,7 @@ TEST_CASE("cyclic: subcontacts that wait among others follow the law for one wit
     constexpr int many = 29;
     const auto ways = cyclic::ways();
     for (const auto& way : ways)
-        MESSAGE("vector units: ", way.name);
+        MESSAGE("vector units: ", std::string(way.name));
     Dice dice{std::mt19937_64(13)};
     int regimes[4] = {};
     for (int kind = 0; kind < 100; ++kind) {
@@ -181,7 +181,7 @@ TEST_CASE("cyclic: subcontacts that wait among others follow the law for one wit
             way.advance({e, law->tension(), law->shear(), law->shear().lastRatio() - 1}, own, rows.data(),
                         regime.data(), {opening.data(), a.data(), b.data(), false}, waits.data(), many, stress.data());
             for (int j = 0; j < many; ++j) {
-                CAPTURE(way.name);
+                CAPTURE(std::string(way.name));
                 CAPTURE(kind);
                 CAPTURE(j);
                 if (!waits[j]) { // nothing happened to it
