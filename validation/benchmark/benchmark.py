@@ -190,6 +190,8 @@ CASES = {
     "rigid units": lambda: plugin(),
     "rigid units, at the peak": lambda: plugin(until=2.5),
     "rigid units, at the end": lambda: plugin(until=12),
+    "    cyclic law, at the peak": lambda: plugin("--joints cyclic", until=2.5),
+    "    cyclic law, at the end": lambda: plugin("--joints cyclic", until=12),
     "    local damping": lambda: plugin("--damping-kind local"),
     "    no crack surfaces": lambda: plugin("--crack-surfaces off"),
     "    dilatancy": lambda: plugin(
