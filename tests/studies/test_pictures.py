@@ -183,8 +183,8 @@ def test_bars_of_a_histogram_are_divided_by_failure_modes(drawn):
         for label, bars in zip(named, axis.containers, strict=True)
     }
     assert areas == {
-        f"rocking, {100 - 100 * share:.2g} %": pytest.approx(1 - share),
-        f"sliding, {100 * share:.2g} %": pytest.approx(share),
+        f"rocking, {100 - 100 * share:.3g} %": pytest.approx(1 - share),
+        f"sliding, {100 * share:.3g} %": pytest.approx(share),
     }
 
 

@@ -211,7 +211,7 @@ def histogram(path, values, label, modes=None):
             label=[
                 word
                 if len(named) == 1
-                else f"{word}, {100 * np.mean(words == word):.2g} %"
+                else f"{word}, {100 * np.mean(words == word):.3g} %"
                 for word in named
             ],
         )
