@@ -137,6 +137,7 @@ def tornado(path, effects, label):
             axis.axvline(0, color="black", lw=0.8)
             axis.grid(axis="x", alpha=0.3)
         left.set_yticks(rows, map(_shown, names))
+        left.set_ylim(-0.7, len(names) - 0.3)
         left.set_xlabel(
             f"change of {label}\nfrom the 5 % to the 95 % quantile of a property"
         )
@@ -176,6 +177,7 @@ def sobol(path, found, label):
                 capsize=2,
             )
         axis.set_yticks(rows, map(_shown, names))
+        axis.set_ylim(-0.7, len(names) - 0.3)
         axis.set_xlim(0, 1.05)
         axis.grid(axis="x", alpha=0.3)
         axis.set_xlabel("share of the variance [-]")
