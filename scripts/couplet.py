@@ -5,7 +5,7 @@ yade_plugin/law/README.md (yield surfaces, softening tables, compression).
 """
 
 from masonry import Scene, bricks, materials
-from masonry.scene import description, options
+from masonry.scene import options
 from yade import O
 
 *_, HEIGHT = UNIT = (0.220, 0.102, 0.081)  # [m] of a brick
@@ -39,7 +39,8 @@ scene = Scene(
     bricks.stack(2, UNIT),
     materials.calciumSilicate(),
     gravity=0,
-    columns=["time_s", *description.OF_JOINTS, "normal_force_kN", "shear_force_kN"],
+    columns="time_s opening_mm slide_mm normal_stress_MPa shear_stress_MPa "
+    "normal_force_kN shear_force_kN".split(),
     arguments=args,
 )
 base = scene.platen("bottom", height=HEIGHT)

@@ -79,6 +79,7 @@ if "yade" in sys.modules:
     from .run.checkpoints import loadCheckpoint, readCheckpoint, saveCheckpoint
     from .assembly.blocks import addBlock, advance, connect, engine, engines
     from .scene.ground import rayleigh
-    from .scene.scene import AT_REST, COLLAPSED, DONE, MOVING, Scene
+    from .scene.scene import Scene
+    from .scene.stages import AT_REST, COLLAPSED, DONE, MOVING
 
     ports.close()

@@ -11,7 +11,7 @@ from conftest import ROOT
 from masonry import readCheckpoint, saveCheckpoint
 from masonry.read.files import readCurve, readRun
 from masonry.run.run import Run
-from masonry.scene.structure import Structure
+from masonry.assembly.structure import Structure
 from small import SMALL, Wall, carryOut, parsed, scene as runScript
 
 
@@ -105,7 +105,7 @@ def at(monkeypatch):
 
 
 def interrupt(run):
-    os.kill(os.getpid(), signal.SIGINT if run.at.steps % 2 else signal.SIGTERM)
+    os.kill(os.getpid(), signal.SIGINT if run.running.at.steps % 2 else signal.SIGTERM)
 
 
 CANTILEVER = Wall(loadHeight=0.6, riding=False)  # under rollers

@@ -21,7 +21,7 @@ from masonry.basics import Refused
 from masonry.read import files
 from masonry.read.files import readRun
 from masonry.run.results import Results
-from masonry.scene.structure import Structure
+from masonry.assembly.structure import Structure
 from small import SMALL, Wall, carryOut, parsed
 
 SHORT = ["--until", "0.05", "--rate", "40", "--no-vtk"]

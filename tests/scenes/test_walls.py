@@ -15,7 +15,7 @@ from masonry.run import results
 from masonry.scene import loading, options
 from masonry.read.figures import readFrame
 from masonry.read.files import readCurve, readRun
-from masonry.scene.structure import Structure
+from masonry.assembly.structure import Structure
 from small import SMALL, carryOut, parsed, settled
 from yade import O
 

@@ -339,20 +339,26 @@ def loopNumbers(run, displacement, shear):
     return numbers
 
 
-def coupletNumbers(directory):
-    """Areas under the curves of a couplet's joint, which are its fracture energies.
+def jointNumbers(directory, name):
+    """Areas under the curves of a joint whose means are recorded: its fracture energies, if it was torn, sheared or crushed.
+
+    :param name: of the joint, which stands before the names of its columns and of these numbers; it may be empty
 
     - opening_work_J_per_m2, closure_work_J_per_m2: under tension over the opening, and under compression over the closure
     - softening_work_J_per_m2: under the shear stress over the slide, above the shear stress at the end
     """
-    curve = {name: np.array(v) for name, v in readCurve(directory).items()}
-    normal, shear = curve["normal_stress_MPa"], curve["shear_stress_MPa"]
+    curve, prefix = readCurve(directory), name + "_" if name else ""
+    opening, slide, normal, shear = (
+        np.array(curve[prefix + end])
+        for end in ("opening_mm", "slide_mm", "normal_stress_MPa", "shear_stress_MPa")
+    )
     area = lambda stress, mm: 1e3 * np.trapz(np.maximum(stress, 0), mm)
-    return {
-        "opening_work_J_per_m2": area(normal, curve["opening_mm"]),
-        "closure_work_J_per_m2": area(-normal, -curve["opening_mm"]),
-        "softening_work_J_per_m2": area(shear - shear[-1], curve["slide_mm"]),
+    found = {
+        "opening_work_J_per_m2": area(normal, opening),
+        "closure_work_J_per_m2": area(-normal, -opening),
+        "softening_work_J_per_m2": area(shear - shear[-1], slide),
     }
+    return {prefix + end: value for end, value in found.items()}
 
 
 def measure(directory):
@@ -370,8 +376,8 @@ def measure(directory):
         numbers["balance_error"] = numbers.pop("energy_balance_error")
         if "wall" in run:
             numbers.update(wallNumbers(directory))
-        elif run["scene"] == "couplet":
-            numbers.update(coupletNumbers(directory))
+        for joint in run.get("recorded_joints", []):
+            numbers.update(jointNumbers(directory, joint))
     return numbers
 
 

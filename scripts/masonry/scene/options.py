@@ -8,8 +8,9 @@ import sys
 
 from ..run import batch
 from . import fields, history
-from ..run.checkpoints import alike, readProgress
-from ..basics import Refused
+from ..run.checkpoints import alike
+from ..run.place import Saved
+from ..basics import Refused, say
 from ..run.presets import BOUND, HARMLESS, PRESETS, USUAL, asOption
 
 #: Units of the options that have one.
@@ -206,7 +207,8 @@ class Parser(argparse.ArgumentParser):
 
     def _resumed(self, args, folder):
         try:
-            known = readProgress(folder)["options"]
+            saved = Saved(folder)
+            known = saved.options
             self._checkKnown(known, folder)
         except Refused as refused:
             self.exit(2, f"{refused}\n")
@@ -231,6 +233,7 @@ class Parser(argparse.ArgumentParser):
             )
         if fixed:
             self.exit(2, f"--resume: a run goes on as it began: {', '.join(fixed)}\n")
+        given.saved = saved
         return given
 
 
@@ -411,6 +414,30 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         "run.json has the numbers of the crack pattern of a wall and its failure mode",
     )
     return p
+
+
+def ofScene(name, words, usual):
+    """The options of a scene that has no parser of its own.
+
+    :param words: a list of words; None: those of the command line
+    :param usual: options whose default is another one in this scene
+    :raises Refused: if there is no such option
+    """
+    main = sys.modules.get("__main__")
+    own = parser(getattr(main, "__doc__", None), until=None)
+    known = {action.dest for action in own._actions}
+    if set(usual) - known:
+        raise Refused(
+            f"scene {name}: no option {', '.join(sorted(set(usual) - known))}; there are {', '.join(sorted(known))}"
+        )
+    own.set_defaults(**usual)
+    found = own.parse_args(words)
+    for option, value in usual.items():
+        if found.preset and getattr(found, option) != value:
+            say(
+                f"note: --preset {found.preset}: {option} is {getattr(found, option)}, the scene has {value}"
+            )
+    return found
 
 
 def check(args, joints, more=()):
