@@ -105,7 +105,7 @@ def at(monkeypatch):
 
 
 def interrupt(run):
-    os.kill(os.getpid(), signal.SIGINT if run.running.at.steps % 2 else signal.SIGTERM)
+    os.kill(os.getpid(), signal.SIGINT if run.at.steps % 2 else signal.SIGTERM)
 
 
 CANTILEVER = Wall(loadHeight=0.6, riding=False)  # under rollers

@@ -5,7 +5,7 @@ from masonry import Scene, bricks, materials
 from masonry.basics import Refused
 from masonry.scene.ground import readRecord
 from masonry.read.files import readCurve, readRun
-from masonry.scene.scene import AT_REST, COLLAPSED, DONE
+from masonry import AT_REST, COLLAPSED, DONE
 from yade import O
 
 STONE = 2600 * 9.81  # [N/m³]
