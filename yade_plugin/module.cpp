@@ -1,6 +1,5 @@
 // The Python module masonry._masonry. When it is imported it checks whether it fits the running YADE, and registers its
 // classes there.
-#include "adapters/CriticalTimeStep.hpp"
 #include "adapters/Gl1_MasonryBlock.hpp"
 #include "adapters/Gl1_MasonryJointPhys.hpp"
 #include "adapters/GlExtra_MasonryLegend.hpp"
@@ -15,11 +14,12 @@
 #include "adapters/MasonryLoad.hpp"
 #include "adapters/MasonryVtkRecorder.hpp"
 #include "adapters/MasonryZones.hpp"
-#include "adapters/Neighbours.hpp"
-#include "adapters/SceneCheckpoint.hpp"
-#include "adapters/SceneStore.hpp"
 #include "common/Text.hpp"
 #include "host/SelfCheck.hpp"
+#include "scene/CriticalTimeStep.hpp"
+#include "scene/Neighbours.hpp"
+#include "scene/SceneCheckpoint.hpp"
+#include "scene/SceneStore.hpp"
 
 namespace {
 

@@ -12,10 +12,10 @@
 //     std::string title()                           gives the name of the object in messages
 //     template <class PyClass> static void extras(PyClass&)    adds more properties and functions for Python
 #pragma once
-#include "StepGate.hpp"
-#include "Transfer.hpp"
 #include "common/Property.hpp"
 #include "host/Yade.hpp"
+#include "scene/StepGate.hpp"
+#include "scene/Transfer.hpp"
 #include <atomic>
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>

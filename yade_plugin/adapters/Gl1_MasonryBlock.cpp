@@ -13,13 +13,13 @@ namespace masonry {
 
 namespace {
 
-struct Settings {
+struct BlockSettings {
     std::string colours = "displacement";
     double most = 0;
     bool edges = true;
 };
-Settings settings;
-double largest = 0; // of the values that were drawn since the settings changed
+BlockSettings blockSettings;
+double largestMotion = 0; // of the values that were drawn since the settings changed
 
 // Colours of materials, by the order in which the scene names them.
 const std::vector<Colour> materials = {{0.85f, 0.55f, 0.4f}, {0.55f, 0.65f, 0.75f}, {0.8f, 0.75f, 0.5f},
@@ -45,10 +45,10 @@ struct Materials {
 Materials known;
 
 ColourScale scaleOfBlocks() {
-    const double most = settings.most > 0 ? settings.most : largest;
-    if (settings.colours == "displacement") return scaleOf("displacement [m]", most, false);
-    if (settings.colours == "velocity") return scaleOf("velocity [m/s]", most, false);
-    if (settings.colours == "material") return {"material", 0, known.names, materials};
+    const double most = blockSettings.most > 0 ? blockSettings.most : largestMotion;
+    if (blockSettings.colours == "displacement") return scaleOf("displacement [m]", most, false);
+    if (blockSettings.colours == "velocity") return scaleOf("velocity [m/s]", most, false);
+    if (blockSettings.colours == "material") return {"material", 0, known.names, materials};
     return {};
 }
 
@@ -63,20 +63,20 @@ void corner(const Vector3r& p) { glVertex3d(p[0], p[1], p[2]); }
 
 } // namespace
 
-std::string Gl1_MasonryBlock::colours() { return settings.colours; }
+std::string Gl1_MasonryBlock::colours() { return blockSettings.colours; }
 void Gl1_MasonryBlock::setColours(const std::string& value) {
-    if (value != settings.colours) largest = 0;
-    settings.colours = value;
+    if (value != blockSettings.colours) largestMotion = 0;
+    blockSettings.colours = value;
 }
-double Gl1_MasonryBlock::most() { return settings.most; }
-void Gl1_MasonryBlock::setMost(const double& value) { settings.most = value; }
-bool Gl1_MasonryBlock::edges() { return settings.edges; }
-void Gl1_MasonryBlock::setEdges(const bool& value) { settings.edges = value; }
+double Gl1_MasonryBlock::most() { return blockSettings.most; }
+void Gl1_MasonryBlock::setMost(const double& value) { blockSettings.most = value; }
+bool Gl1_MasonryBlock::edges() { return blockSettings.edges; }
+void Gl1_MasonryBlock::setEdges(const bool& value) { blockSettings.edges = value; }
 
 std::vector<std::string> Gl1_MasonryBlock::problems() const {
     for (const char* choice : {"displacement", "velocity", "material", "own"})
-        if (settings.colours == choice) return {};
-    return {"colours '" + settings.colours + "' must be 'displacement', 'velocity', 'material' or 'own'"};
+        if (blockSettings.colours == choice) return {};
+    return {"colours '" + blockSettings.colours + "' must be 'displacement', 'velocity', 'material' or 'own'"};
 }
 
 void Gl1_MasonryBlock::go(const shared_ptr<yade::Shape>& shape, const shared_ptr<yade::State>& state, bool wire,
@@ -85,19 +85,19 @@ void Gl1_MasonryBlock::go(const shared_ptr<yade::Shape>& shape, const shared_ptr
     const auto& v = block.v;
     const auto& t = block.triangles;
     Colour colour;
-    if (settings.colours == "material") {
+    if (blockSettings.colours == "material") {
         if (!known.ofShape.count(shape.get())) known.read();
         const auto number = known.ofShape.find(shape.get());
         drawnScales().blocks = scaleOfBlocks();
         colour = drawnScales().blocks.of(number == known.ofShape.end() ? 0 : number->second);
-    } else if (settings.colours == "own") {
+    } else if (blockSettings.colours == "own") {
         drawnScales().blocks = {};
         for (int c = 0; c < 3; ++c)
             colour[c] = float(shape->color[c]);
     } else {
         const double value =
-            settings.colours == "velocity" ? state->vel.norm() : Vector3r(state->pos - state->refPos).norm();
-        largest = std::max(largest, value);
+            blockSettings.colours == "velocity" ? state->vel.norm() : Vector3r(state->pos - state->refPos).norm();
+        largestMotion = std::max(largestMotion, value);
         drawnScales().blocks = scaleOfBlocks();
         colour = drawnScales().blocks.at(value);
     }
@@ -119,7 +119,7 @@ void Gl1_MasonryBlock::go(const shared_ptr<yade::Shape>& shape, const shared_ptr
         glEnd();
         glDisable(GL_POLYGON_OFFSET_FILL);
     }
-    if (!wire && !settings.edges) {
+    if (!wire && !blockSettings.edges) {
         glEnable(GL_LIGHTING);
         return;
     }

@@ -2,7 +2,7 @@
 #include "Colours.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
-#include "SceneStore.hpp"
+#include "scene/SceneStore.hpp"
 #include <GL/gl.h>
 #include <algorithm>
 #include <unordered_map>
@@ -14,13 +14,13 @@ namespace masonry {
 
 namespace {
 
-struct Settings {
+struct JointSettings {
     std::string colours = "damage";
     double most = 0;
     double scale = 1;
 };
-Settings settings;
-double largest = 0; // of the openings that were drawn since the settings changed
+JointSettings jointSettings;
+double largestOpening = 0; // of the openings that were drawn since the settings changed
 
 // A joint as it is drawn: the polygons of its subcontacts at their places, and the value of each.
 struct Drawing {
@@ -65,18 +65,19 @@ private:
             for (int p = 0; p < joint.phys->points(); ++p) {
                 const auto s = joint.phys->state(p);
                 const double crushed = joint.phys->law().compressionDamage(joint.phys->stiffness(), s);
-                drawing.values.push_back(settings.colours == "opening" ? s.opening
-                                         : settings.colours == "regime"
+                drawing.values.push_back(jointSettings.colours == "opening" ? s.opening
+                                         : jointSettings.colours == "regime"
                                              ? double(s.regime)
                                              : std::max({s.tensionDamage, s.shearDamage, crushed}));
-                if (settings.colours == "opening") largest = std::max(largest, s.opening);
+                if (jointSettings.colours == "opening") largestOpening = std::max(largestOpening, s.opening);
             }
             drawing.drawn = false;
         }
-        drawnScales().joints = settings.colours == "regime" ? regimeScale()
-                               : settings.colours == "opening"
-                                   ? scaleOf("opening of joints [m]", settings.most > 0 ? settings.most : largest, true)
-                                   : scaleOf("damage of joints [-]", 1, true);
+        drawnScales().joints =
+            jointSettings.colours == "regime" ? regimeScale()
+            : jointSettings.colours == "opening"
+                ? scaleOf("opening of joints [m]", jointSettings.most > 0 ? jointSettings.most : largestOpening, true)
+                : scaleOf("damage of joints [-]", 1, true);
     }
 
     std::unordered_map<const yade::IPhys*, Drawing> drawings_;
@@ -87,20 +88,20 @@ Picture picture;
 
 } // namespace
 
-std::string Gl1_MasonryJointPhys::colours() { return settings.colours; }
+std::string Gl1_MasonryJointPhys::colours() { return jointSettings.colours; }
 void Gl1_MasonryJointPhys::setColours(const std::string& value) {
-    if (value != settings.colours) largest = 0;
-    settings.colours = value;
+    if (value != jointSettings.colours) largestOpening = 0;
+    jointSettings.colours = value;
 }
-double Gl1_MasonryJointPhys::most() { return settings.most; }
-void Gl1_MasonryJointPhys::setMost(const double& value) { settings.most = value; }
-double Gl1_MasonryJointPhys::scale() { return settings.scale; }
-void Gl1_MasonryJointPhys::setScale(const double& value) { settings.scale = value; }
+double Gl1_MasonryJointPhys::most() { return jointSettings.most; }
+void Gl1_MasonryJointPhys::setMost(const double& value) { jointSettings.most = value; }
+double Gl1_MasonryJointPhys::scale() { return jointSettings.scale; }
+void Gl1_MasonryJointPhys::setScale(const double& value) { jointSettings.scale = value; }
 
 std::vector<std::string> Gl1_MasonryJointPhys::problems() const {
     for (const char* choice : {"damage", "opening", "regime"})
-        if (settings.colours == choice) return {};
-    return {"colours '" + settings.colours + "' must be 'damage', 'opening' or 'regime'"};
+        if (jointSettings.colours == choice) return {};
+    return {"colours '" + jointSettings.colours + "' must be 'damage', 'opening' or 'regime'"};
 }
 
 void Gl1_MasonryJointPhys::go(const shared_ptr<yade::IPhys>& phys, const shared_ptr<yade::Interaction>& interaction,
@@ -117,7 +118,7 @@ void Gl1_MasonryJointPhys::go(const shared_ptr<yade::IPhys>& phys, const shared_
             const Vector3r arm = p - r.sides[side].position;
             both += drawing->motions[side] + drawing->turns[side] * arm - arm;
         }
-        return Vector3r(p + settings.scale * 0.5 * both);
+        return Vector3r(p + jointSettings.scale * 0.5 * both);
     };
     glDisable(GL_LIGHTING);
     glDisable(GL_CULL_FACE);

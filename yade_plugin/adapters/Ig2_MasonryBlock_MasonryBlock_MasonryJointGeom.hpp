@@ -1,6 +1,6 @@
 #pragma once
-#include "Fixed.hpp"
 #include "MasonryJointGeom.hpp"
+#include "scene/Fixed.hpp"
 
 namespace masonry {
 

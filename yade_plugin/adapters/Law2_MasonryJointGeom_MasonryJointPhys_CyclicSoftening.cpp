@@ -1,5 +1,5 @@
 #include "Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening.hpp"
-#include "JointFunctor.hpp"
+#include "scene/JointFunctor.hpp"
 
 template class masonry::Adapter<masonry::Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening, yade::LawFunctor>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening)

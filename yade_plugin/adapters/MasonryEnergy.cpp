@@ -1,12 +1,12 @@
 #include "MasonryEnergy.hpp"
-#include "BodyStep.hpp"
-#include "CriticalTimeStep.hpp"
 #include "MasonryIntegrator.hpp"
 #include "MasonryJointLoop.hpp"
 #include "MasonryLoad.hpp"
 #include "MasonryZones.hpp"
-#include "SceneCheck.hpp"
-#include "SceneStore.hpp"
+#include "scene/BodyStep.hpp"
+#include "scene/CriticalTimeStep.hpp"
+#include "scene/SceneCheck.hpp"
+#include "scene/SceneStore.hpp"
 #include <iostream>
 
 template class masonry::Adapter<masonry::MasonryEnergy, yade::GlobalEngine>;

@@ -1,9 +1,9 @@
 #pragma once
-#include "Collapse.hpp"
-#include "GravityWork.hpp"
-#include "Ledger.hpp"
-#include "SceneCheck.hpp"
 #include "law/JointState.hpp"
+#include "scene/Collapse.hpp"
+#include "scene/GravityWork.hpp"
+#include "scene/Ledger.hpp"
+#include "scene/SceneCheck.hpp"
 
 namespace masonry {
 

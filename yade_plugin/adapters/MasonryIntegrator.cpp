@@ -1,9 +1,9 @@
 #include "MasonryIntegrator.hpp"
-#include "BodyStep.hpp"
 #include "MasonryLoad.hpp"
 #include "MasonryZones.hpp"
-#include "SceneCheck.hpp"
-#include "SceneStore.hpp"
+#include "scene/BodyStep.hpp"
+#include "scene/SceneCheck.hpp"
+#include "scene/SceneStore.hpp"
 #include <cstdint>
 
 template class masonry::Adapter<masonry::MasonryIntegrator, yade::GlobalEngine>;

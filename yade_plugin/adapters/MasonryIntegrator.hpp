@@ -1,8 +1,8 @@
 #pragma once
-#include "GravityWork.hpp"
-#include "Ledger.hpp"
-#include "SceneCheck.hpp"
 #include "motion/RigidMotion.hpp"
+#include "scene/GravityWork.hpp"
+#include "scene/Ledger.hpp"
+#include "scene/SceneCheck.hpp"
 
 namespace masonry {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include "Adapter.hpp"
-#include "Fixed.hpp"
 #include "law/Law.hpp"
+#include "scene/Fixed.hpp"
 #include <memory>
 
 namespace masonry {

@@ -1,8 +1,8 @@
 #pragma once
 #include "Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom.hpp"
 #include "Ip2_MasonryMat_MasonryMat_MasonryJointPhys.hpp"
-#include "JointPlan.hpp"
-#include "SceneCheck.hpp"
+#include "scene/JointPlan.hpp"
+#include "scene/SceneCheck.hpp"
 
 namespace masonry {
 

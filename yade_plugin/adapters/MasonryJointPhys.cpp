@@ -1,5 +1,5 @@
 #include "MasonryJointPhys.hpp"
-#include "SceneStore.hpp"
+#include "scene/SceneStore.hpp"
 
 template class masonry::Adapter<masonry::MasonryJointPhys, yade::IPhys>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJointPhys)

@@ -1,5 +1,5 @@
 #pragma once
-#include "JointHome.hpp"
+#include "scene/JointHome.hpp"
 
 namespace masonry {
 

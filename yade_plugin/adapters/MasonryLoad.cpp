@@ -1,8 +1,8 @@
 #include "MasonryLoad.hpp"
-#include "BodyStep.hpp"
 #include "MasonryZones.hpp"
-#include "SceneCheck.hpp"
-#include "SceneStore.hpp"
+#include "scene/BodyStep.hpp"
+#include "scene/SceneCheck.hpp"
+#include "scene/SceneStore.hpp"
 
 template class masonry::Adapter<masonry::MasonryLoad, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryLoad)

@@ -1,6 +1,6 @@
 #pragma once
 #include "Adapter.hpp"
-#include "SceneCheck.hpp"
+#include "scene/SceneCheck.hpp"
 
 namespace masonry {
 

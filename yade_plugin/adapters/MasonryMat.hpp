@@ -1,6 +1,6 @@
 #pragma once
 #include "Adapter.hpp"
-#include "Fixed.hpp"
+#include "scene/Fixed.hpp"
 
 namespace masonry {
 

@@ -1,9 +1,9 @@
 #include "MasonryVtkRecorder.hpp"
-#include "Blocks.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
 #include "MasonryZones.hpp"
-#include "SceneStore.hpp"
+#include "scene/Blocks.hpp"
+#include "scene/SceneStore.hpp"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cerrno>

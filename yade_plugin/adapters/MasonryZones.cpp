@@ -1,9 +1,9 @@
 #include "MasonryZones.hpp"
-#include "Blocks.hpp"
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointLoop.hpp"
 #include "MasonryMat.hpp"
-#include "SceneStore.hpp"
+#include "scene/Blocks.hpp"
+#include "scene/SceneStore.hpp"
 #include <algorithm>
 
 template class masonry::Adapter<masonry::MasonryZones, yade::GlobalEngine>;

@@ -1,10 +1,10 @@
 #pragma once
-#include "GravityWork.hpp"
-#include "JointHome.hpp"
-#include "Ledger.hpp"
-#include "SceneCheck.hpp"
 #include "blocks/BlockElasticity.hpp"
 #include "blocks/JointPoints.hpp"
+#include "scene/GravityWork.hpp"
+#include "scene/JointHome.hpp"
+#include "scene/Ledger.hpp"
+#include "scene/SceneCheck.hpp"
 #include <memory>
 #include <optional>
 

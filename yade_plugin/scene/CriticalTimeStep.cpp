@@ -1,10 +1,10 @@
 #include "CriticalTimeStep.hpp"
 #include "BodyStep.hpp"
-#include "MasonryJointGeom.hpp"
-#include "MasonryJointPhys.hpp"
-#include "MasonryZones.hpp"
 #include "SceneCheck.hpp"
 #include "SceneStore.hpp"
+#include "adapters/MasonryJointGeom.hpp"
+#include "adapters/MasonryJointPhys.hpp"
+#include "adapters/MasonryZones.hpp"
 #include "motion/LargestEigenvalue.hpp"
 #include <map>
 

@@ -1,9 +1,9 @@
 #include "SceneCheck.hpp"
 #include "Blocks.hpp"
-#include "MasonryJointGeom.hpp"
-#include "MasonryJointPhys.hpp"
-#include "MasonryMat.hpp"
 #include "SceneStore.hpp"
+#include "adapters/MasonryJointGeom.hpp"
+#include "adapters/MasonryJointPhys.hpp"
+#include "adapters/MasonryMat.hpp"
 #include "common/Text.hpp"
 #include <algorithm>
 #include <iostream>

@@ -1,5 +1,5 @@
 #include "Blocks.hpp"
-#include "MasonryBlock.hpp"
+#include "adapters/MasonryBlock.hpp"
 
 namespace masonry {
 

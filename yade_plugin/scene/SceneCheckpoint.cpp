@@ -1,8 +1,8 @@
 #include "SceneCheckpoint.hpp"
 #include "Blocks.hpp"
-#include "MasonryJointGeom.hpp"
-#include "MasonryJointPhys.hpp"
 #include "SceneStore.hpp"
+#include "adapters/MasonryJointGeom.hpp"
+#include "adapters/MasonryJointPhys.hpp"
 #include "common/Text.hpp"
 #include <map>
 

@@ -1,6 +1,6 @@
 // What the functors of the joint laws share: a step of one joint in the host's InteractionLoop.
 #pragma once
-#include "Adapter.hpp"
+#include "adapters/Adapter.hpp"
 #include <atomic>
 
 namespace masonry {

@@ -1,6 +1,6 @@
 #include "JointFunctor.hpp"
-#include "MasonryJointGeom.hpp"
-#include "MasonryJointPhys.hpp"
+#include "adapters/MasonryJointGeom.hpp"
+#include "adapters/MasonryJointPhys.hpp"
 
 namespace masonry {
 

@@ -1,6 +1,6 @@
 // Work of a gravity that may change during a run, as it does when it is raised step by step, or turned to tilt a scene.
 #pragma once
-#include "Adapter.hpp"
+#include "adapters/Adapter.hpp"
 
 namespace masonry {
 

@@ -3,7 +3,7 @@
 // it moves all joints of one kind into common homes, on which the engines work. MasonryJointGeom and MasonryJointPhys
 // are views: each holds a home and the joint's number in it.
 #pragma once
-#include "MasonryJoint.hpp"
+#include "adapters/MasonryJoint.hpp"
 #include "blocks/FaceContact.hpp"
 #include "law/LawColumns.hpp"
 #include "motion/JointFrames.hpp"
