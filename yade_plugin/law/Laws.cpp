@@ -46,7 +46,7 @@ std::vector<std::string> problemsOf(const JointProperties& properties) {
     std::vector<std::string> names;
     for (const auto& law : laws())
         names.push_back(law.name);
-    auto found = properties.problems([](const std::string&) { return false; });
+    auto found = properties.outOfBounds([](const std::string&) { return false; });
     found.push_back("law \"" + properties.law + "\" must be one of: " + joined(names, ", "));
     return found;
 }

@@ -15,7 +15,7 @@ void checkTable(Problems& found, const std::string& what, const std::vector<Tabl
 
 } // namespace
 
-std::vector<std::string> JointProperties::problems(const std::function<bool(const std::string&)>& acts) const {
+std::vector<std::string> JointProperties::outOfBounds(const std::function<bool(const std::string&)>& acts) const {
     using P = JointProperties;
     Problems found;
     if (name.empty()) found.push_back("name must not be empty");

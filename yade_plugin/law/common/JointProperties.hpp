@@ -51,7 +51,7 @@ struct JointProperties {
     // Every value that is out of its bounds, one sentence each, in the user's words; empty if all is well. The name and
     // the two stiffnesses are looked at in any case, of the others those that `acts` says the law reads, and none of
     // them if the joint is elastic. What a law demands beyond these bounds, it checks itself (law/Laws.hpp).
-    std::vector<std::string> problems(const std::function<bool(const std::string& property)>& acts) const;
+    std::vector<std::string> outOfBounds(const std::function<bool(const std::string& property)>& acts) const;
 };
 
 template <class Visit> void JointProperties::describe(Visit&& visit) {

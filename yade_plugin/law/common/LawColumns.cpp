@@ -27,10 +27,24 @@ Energies LawColumns::dissipated(int point, int joint) const {
             columns_[SharedColumn::LostCompression][i]};
 }
 
+int LawColumns::numbersOfState() const {
+    int count = 0;
+    read(0, 0, [&](const char*, double) { ++count; });
+    return count;
+}
+
 double LawColumns::number(int point, int joint, const char* name) const {
     double found = 0;
     read(point, joint, [&](const char* each, double value) {
         if (std::strcmp(each, name) == 0) found = value;
+    });
+    return found;
+}
+
+double LawColumns::shown(int point, int joint, const JointField& field) const {
+    double found = 0;
+    show(point, joint, [&](const JointField& each, double value) {
+        if (std::strcmp(each.name, field.name) == 0) found = value;
     });
     return found;
 }

@@ -36,6 +36,9 @@ public:
     // Damage of the bond in tension [-], null where the law knows no bond.
     virtual const double* tensionDamage(int point, int from) const;
 
+    // Sets the shear stress out of the plane to zero, of which round-off has left something.
+    void dropShearStressB(int point, int joint) { columns_[SharedColumn::ShearStressB][at(point, joint)] = 0; }
+
     // What every law knows of a subcontact.
     virtual JointState state(int point, int joint) const = 0;
     Energies dissipated(int point, int joint) const; // [J/m²] so far
@@ -45,6 +48,7 @@ public:
     // function, `write` takes those that the function leaves.
     virtual void read(int point, int joint, const std::function<void(const char* name, double number)>&) const = 0;
     virtual void write(int point, int joint, const std::function<void(const char* name, double& number)>&) = 0;
+    int numbersOfState() const; // how many numbers these are
     // One of these numbers; zero if the law has none of this name.
     double number(int point, int joint, const char* name) const;
     // Takes the state of a subcontact from other columns, that is all numbers that both laws call the same.
@@ -52,6 +56,7 @@ public:
 
     // What files show of a subcontact beside its stresses.
     virtual void show(int point, int joint, const ShowField&) const = 0;
+    double shown(int point, int joint, const JointField&) const; // one of these; zero if the law does not show it
     virtual Yield yielding(int point, int joint) const = 0;
 
     // One step of one subcontact with the law for one, losses included. Gives its normal stress.

@@ -73,7 +73,7 @@ std::vector<std::string> PiecewiseLaw::problems(const JointProperties& p, bool (
                                       "capShear",
                                       "capLinear",
                                       "compressiveFractureEnergy"};
-    Problems found = p.problems([&](const std::string& property) {
+    Problems found = p.outOfBounds([&](const std::string& property) {
         if (property == "modeIFractureEnergy" && !p.tensionTable.empty()) return false;
         if (property == "modeIIFractureEnergy" && !p.shearTable.empty()) return false;
         return reads(property) && (p.cap || !ofCap.count(property));
@@ -95,7 +95,7 @@ std::vector<std::string> PiecewiseLaw::problems(const JointProperties& p, bool (
         checkExponential(found, "mode II", p.cohesion, p.shearStiffness, p.modeIIFractureEnergy);
     }
 
-    const bool capIsBounded = p.normalStiffness > 0 && p.problems([&](const std::string& property) {
+    const bool capIsBounded = p.normalStiffness > 0 && p.outOfBounds([&](const std::string& property) {
                                                             return ofCap.count(property) > 0;
                                                         }).empty();
     if (!p.cap || !capIsBounded) return found;
