@@ -6,7 +6,7 @@ Limit analysis of rigid blocks: it falls at 0.3736 g. ``--spread`` moves its sup
 import sys
 
 from masonry import AT_REST, Scene, bricks, materials
-from masonry.options import parser
+from masonry.scene.options import parser
 
 options = parser(__doc__, until=None)
 options.add_argument("--spread", metavar="MM", type=float, help="by how much [mm]")

@@ -4,10 +4,11 @@ A fixed block holds the lower brick, a driven one that does not turn the upper. 
 yade_plugin/law/README.md (yield surfaces, softening tables, compression).
 """
 
-from masonry import Scene, bricks, described, materials, options
+from masonry import Scene, bricks, materials
+from masonry.scene import description, options
 from yade import O
 
-LENGTH, THICKNESS, HEIGHT = UNIT = (0.220, 0.102, 0.081)  # [m] of a brick
+*_, HEIGHT = UNIT = (0.220, 0.102, 0.081)  # [m] of a brick
 
 parser = options.parser(__doc__, until=2, rate=2, loops=False)
 parser.add_argument(
@@ -38,16 +39,15 @@ scene = Scene(
     bricks.stack(2, UNIT),
     materials.calciumSilicate(),
     gravity=0,
-    columns=["time_s", *described.OF_JOINTS, "normal_force_kN", "shear_force_kN"],
+    columns=["time_s", *description.OF_JOINTS, "normal_force_kN", "shear_force_kN"],
     arguments=args,
 )
 base = scene.platen("bottom", height=HEIGHT)
-point = LENGTH / 2, THICKNESS / 2, 2 * HEIGHT
-top = scene.platen("top", upTo=3 * HEIGHT, point=point, drive="zx")
+top = scene.platen("top", upTo=3 * HEIGHT, point=(0.110, 0.051, 2 * HEIGHT), drive="zx")
 bed = scene.joint(0, 1, name="")
-carried = lambda i: 1e-3 * O.forces.f(base.body, True)[i]
-scene.column("normal_force_kN", "force on the fixed block, upwards [kN]", lambda: carried(2))  # fmt: skip
-scene.column("shear_force_kN", "force on it along the slide [kN]", lambda: carried(0))
+force = lambda i: 1e-3 * O.forces.f(base.body, True)[i]  # on the fixed block [kN]
+scene.column("normal_force_kN", "force on it, upwards [kN]", lambda: force(2))
+scene.column("shear_force_kN", "force on it, along the slide [kN]", lambda: force(0))
 if args.path in ("opening", "closure"):
     scene.drive(top, z=args.until if args.path == "opening" else -args.until)
 if args.path == "closure-shear":

@@ -5,7 +5,7 @@
 /usr/bin/python3 scripts/plot.py results/shaken --x time_s --y top_mm
 """
 
-from masonry.comparison import main
+from masonry.read.comparison import main
 
 if __name__ == "__main__":
     raise SystemExit(main())

@@ -5,7 +5,7 @@
 /usr/bin/python3 scripts/view.py results/wall_comp4 --film wall.avi
 """
 
-from masonry.viewer import main
+from masonry.read.viewer import main
 
 if __name__ == "__main__":
     raise SystemExit(main())

@@ -3,7 +3,8 @@
 The wall is 4.0 m long, 18.18 units; it is built of 18 units, 3.96 m.
 """
 
-from masonry import Scene, bricks, columns, materials
+from masonry import Scene, bricks, materials
+from masonry.assembly import columns
 
 scene = Scene(
     "wall_comp6",

@@ -3,7 +3,9 @@
 The vertical load is what the top course feels. The granite blocks do not crack.
 """
 
-from masonry import Scene, bricks, columns, materials, options
+from masonry import Scene, bricks, materials
+from masonry.assembly import columns
+from masonry.scene import options
 
 BLOCK = (0.200, 0.200, 0.150)  # [m] length, thickness, height
 LOAD_HEIGHT = 1.325  # [m] above the base; displacements refer to it, too

@@ -12,7 +12,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from masonry.results import readCurve
+from masonry.read.files import readCurve
 from studies import HERE, RESULTS, readCase
 
 STYLES = {"rigid": "-", "deformable": "--"}

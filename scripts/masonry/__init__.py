@@ -13,15 +13,15 @@ A scene of one's own is bricks, materials and stages::
 
 ``help()`` of these leads on:
 
-- :mod:`masonry.stages`: ``Scene``, its platens, loads, stages and records
+- :mod:`masonry.scene.scene`: ``Scene``, its platens, loads, stages and records
 - :mod:`masonry.bricks`: walls, openings, bonds, corners, arches, vaults, blocks from files
-- :mod:`masonry.materials`: published parameter sets, and properties that vary from place to place
-- :mod:`masonry.scene`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by body
-- :mod:`masonry.window`: the scene in YADE's own 3-D view while it runs
+- :mod:`masonry.scene.materials`: published parameter sets, and properties that vary from place to place
+- :mod:`masonry.assembly.blocks`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by body
+- :mod:`masonry.assembly.window`: the scene in YADE's own 3-D view while it runs
 - :mod:`masonry.limit`: limit analysis, the bound beside every run
 - :mod:`masonry.study`: one scene, run many times with values that vary
-- :mod:`masonry.results`, :mod:`masonry.figures`, :mod:`masonry.measure`, :mod:`masonry.loops`: what a run leaves, and
-  how to read it; these, :mod:`masonry.study`, :mod:`masonry.bricks` and :mod:`masonry.presets` work without YADE
+- :mod:`masonry.run.results`, :mod:`masonry.read.figures`, :mod:`masonry.read.measure`, :mod:`masonry.read.loops`: what a run leaves, and
+  how to read it; these, :mod:`masonry.study`, :mod:`masonry.bricks` and :mod:`masonry.run.presets` work without YADE
 
 Import it from a YADE script (or after ``import yade``). The classes that it registers in YADE (``masonry.classes``) are
 also in ``yade.wrapper``; ``help(MasonryJoint)`` and the others are their manual.
@@ -29,7 +29,7 @@ also in ``yade.wrapper``; ``help(MasonryJoint)`` and the others are their manual
 
 import sys
 
-# "python3 -m masonry.figures" searches the present folder first, and would run a file csv.py or token.py that lies there.
+# "python3 -m masonry.read.figures" searches the present folder first, and would run a file csv.py or token.py that lies there.
 if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:
     del sys.path[0]
 
@@ -37,22 +37,25 @@ import importlib
 
 __version__ = "2.0"
 
-#: Modules that are loaded when they are used first.
-_MODULES = (
-    "batch bounds bricks checkpoints columns comparison curves described errors fields figures frames ground history "
-    "limit loading loops materials measure model options plotting ports presets probing progress results run scene "
-    "stages structure study viewer window"
-).split()
+#: Modules and packages that the package hands on under a short name; they are loaded when they are used first.
+_HANDED_ON = {
+    "bricks": "bricks",
+    "fields": "scene.fields",
+    "limit": "limit",
+    "materials": "scene.materials",
+    "study": "study",
+    "window": "assembly.window",
+}
 
 
 def __getattr__(name):
-    if name in _MODULES:
-        return importlib.import_module(f"{__name__}.{name}")
+    if name in _HANDED_ON:
+        return importlib.import_module(f"{__name__}.{_HANDED_ON[name]}")
     raise AttributeError(f"module 'masonry' has no attribute {name!r}")
 
 
 def __dir__():
-    return sorted({*globals(), *_MODULES})
+    return sorted({*globals(), *_HANDED_ON})
 
 
 if "yade" in sys.modules:
@@ -71,10 +74,11 @@ if "yade" in sys.modules:
     import yade.wrapper as _wrapper
 
     globals().update({_name: getattr(_wrapper, _name) for _name in classes})
-    from . import options, ports
-    from .checkpoints import loadCheckpoint, readCheckpoint, saveCheckpoint
-    from .scene import addBlock, advance, connect, engine, engines
-    from .ground import rayleigh
-    from .stages import AT_REST, COLLAPSED, DONE, MOVING, Scene
+    from .assembly import ports
+    from .scene import options
+    from .run.checkpoints import loadCheckpoint, readCheckpoint, saveCheckpoint
+    from .assembly.blocks import addBlock, advance, connect, engine, engines
+    from .scene.ground import rayleigh
+    from .scene.scene import AT_REST, COLLAPSED, DONE, MOVING, Scene
 
     ports.close()

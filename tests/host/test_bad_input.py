@@ -24,7 +24,9 @@ from masonry import (
     materials,
     touchingPairs,
 )
-from masonry import figures, measure, options, results
+from masonry.read import figures, files as reading, measure
+from masonry.run import results
+from masonry.scene import options
 from masonry.bricks import Wall as BrickWall, boxCorners
 from yade import Body, O, Quaternion, Vector3, utils
 from yade.wrapper import *
@@ -181,7 +183,7 @@ def read(act, *words, **content):
         files(**content)
     said = io.StringIO()
     with contextlib.redirect_stderr(said):
-        status = results.onFolder(act, words or (".",))
+        status = reading.onFolder(act, words or (".",))
     assert status == 2
     raise ValueError(said.getvalue())
 
@@ -540,7 +542,7 @@ CASES = {
         (nothing, lambda: wall(name=""), "name must be a text that can name a folder"),
         (nothing, lambda: wall(name="a/b"), "name must be a text that can name a folder"),
         (nothing, lambda: wall(name=None), "name must be a text that can name a folder"),
-        (nothing, lambda: wall(masonry=lambda: 5), "materials must be a masonry.materials.Masonry, got 5"),
+        (nothing, lambda: wall(masonry=lambda: 5), "materials must be a masonry.scene.materials.Masonry, got 5"),
         (nothing, lambda: materials.Masonry(FrictMat(), {"bed": 5}), ["unit must be a MasonryMat, got <FrictMat", "joints must be MasonryJoint, not ['bed']"]),
         (nothing, lambda: materials.Masonry(mat(), {}), "there must be a joint 'bed'"),
     ],
@@ -642,7 +644,7 @@ CASES = {
         (nothing, lambda: read(figures.draw, "nowhere"), "cannot read nowhere/run.json: No such file or directory"),
         (nothing, lambda: read(figures.draw, run=WALL, curve=CURVE), 'run.json has no entry "figure", which says what to draw'),
         (nothing, lambda: figures.readFrame(".", "joints"), "no file joints_*.vt? in ."),
-        (nothing, lambda: read(lambda d: results.readCurve(d), run=WALL, curve=None), "cannot read ./curve.csv"),
+        (nothing, lambda: read(lambda d: reading.readCurve(d), run=WALL, curve=None), "cannot read ./curve.csv"),
     ],
 }
 # fmt: on
@@ -904,9 +906,9 @@ def test_a_disk_that_fills_ends_the_run_in_order(tmp_path, name, words, most, lo
         assert "the figures are not drawn; what was written before is" in run.stderr
     else:
         assert f"{lost}: File too large; what was written before is kept" in run.stderr
-    curve = results.readCurve(str(tmp_path / "results"))  # whole lines only
+    curve = reading.readCurve(str(tmp_path / "results"))  # whole lines only
     assert all(len(column) == len(curve["time_s"]) for column in curve.values())
-    assert results.readRun(str(tmp_path / "results"))["steps"] > 0
+    assert reading.readRun(str(tmp_path / "results"))["steps"] > 0
     assert not (tmp_path / "results" / lost).exists() or lost == "curve.csv"
     if "--no-vtk" not in words:
         frames = [

@@ -5,10 +5,9 @@ import subprocess
 
 import numpy as np
 import pytest
-from masonry import addBlock, connect, criticalTimeStep, engines
-from masonry import bricks
+from masonry import addBlock, bricks, connect, criticalTimeStep, engines
 from masonry.bricks import boxCorners as corners
-from masonry.scene import ROTATION
+from masonry.assembly.blocks import ROTATION
 from yade import O, Quaternion, Vector3
 from yade.wrapper import *
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from masonry import MasonryJoint, MasonryMat, addBlock, connect, engines, limit
 from masonry.bricks import boxCorners
-from masonry.errors import Refused
+from masonry.basics import Refused
 from yade import O
 
 G = 9.81  # [m/s²]

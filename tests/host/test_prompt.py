@@ -9,8 +9,7 @@ import sys
 
 import masonry
 import pytest
-from masonry import MasonryJoint, addBlock, classes, connect, criticalTimeStep, engines
-from masonry import MasonryMat, MasonryZones
+from masonry import MasonryJoint, MasonryMat, MasonryZones, addBlock, classes, connect, criticalTimeStep, engines
 from references import box
 from yade import O, Vector3
 from yade import wrapper

@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 from masonry import MasonryJoint, addBlock, connect, criticalTimeStep, engines
-from masonry.bricks import Wall as BrickWall
-from masonry.bricks import boxCorners as corners
+from masonry.bricks import Wall as BrickWall, boxCorners as corners
 from yade import O, Vector3
 from yade.wrapper import *
 

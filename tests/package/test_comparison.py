@@ -4,8 +4,8 @@ import sys
 
 import numpy as np
 import pytest
-from masonry import comparison
-from masonry.errors import Refused
+from masonry.read import comparison
+from masonry.basics import Refused
 from test_figures import axis, writeRun
 
 FIGURE = {"x": axis("u_mm", "moved [mm]"), "y": [axis("f_kN")], "y_label": "force [kN]"}
@@ -100,7 +100,7 @@ def plot():
 
 
 def test_yade_plot_is_filled_if_the_user_asks(plot, monkeypatch):
-    from masonry.plotting import live
+    from masonry.run.plotting import live
 
     columns = ["time_s", "u_mm", "f_kN"]
     assert live(columns) is None

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from masonry import fields
-from masonry.materials import withResidual
+from masonry.scene.materials import withResidual
 
 POINTS = np.random.default_rng(7).uniform(-50, 50, (2000, 3))
 

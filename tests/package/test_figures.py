@@ -8,9 +8,9 @@ import sys
 
 import numpy as np
 import pytest
-from masonry import figures, frames
-from masonry.errors import Refused
-from masonry.figures import View, merged, viewOf
+from masonry.read import figures, frames
+from masonry.basics import Refused
+from masonry.read.figures import View, merged, viewOf
 
 L, T, H = 0.2, 0.1, 0.08  # [m] of a brick
 
@@ -305,16 +305,16 @@ def test_bodies_that_are_not_there_are_refused(scene, tmp_path):
 
 INSIDE = """
 import sys
-import masonry, masonry.figures
+import masonry, masonry.read.figures
 import matplotlib
 from yade import plot
 before = dict(matplotlib.rcParams), matplotlib.get_backend()
-masonry.figures.draw({folder!r})
+masonry.read.figures.draw({folder!r})
 assert before == (dict(matplotlib.rcParams), matplotlib.get_backend()), "settings of matplotlib were changed"
 assert not [name for name in sys.modules if name.startswith(("vtk", "paraview"))], "VTK's Python was loaded"
 try:
-    masonry.figures.draw("nowhere")
-except masonry.figures.Refused as error:
+    masonry.read.figures.draw("nowhere")
+except masonry.read.figures.Refused as error:
     print("refused:", error)
 """
 
@@ -334,6 +334,6 @@ def test_a_script_of_yade_draws_without_harm(scene, tmp_path):
         assert data.startswith(b"\x89PNG")
         os.remove(tmp_path / name)
     # the same pictures without YADE
-    run = subprocess.run([sys.executable, "-m", "masonry.figures", folder], capture_output=True, text=True)  # fmt: skip
+    run = subprocess.run([sys.executable, "-m", "masonry.read.figures", folder], capture_output=True, text=True)  # fmt: skip
     assert run.returncode == 0, run.stderr
     assert inside == {name: (tmp_path / name).read_bytes() for name in inside}

@@ -7,8 +7,9 @@ import math
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from masonry import history, options, presets
-from masonry.history import Target
+from masonry.run import presets
+from masonry.scene import history, options
+from masonry.scene.history import Target
 
 amplitude = st.floats(history.LEAST, history.MOST)
 pieces = st.lists(st.tuples(amplitude, st.integers(1, 20)), min_size=1, max_size=8)

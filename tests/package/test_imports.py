@@ -9,78 +9,30 @@ from conftest import ROOT
 PACKAGE = os.path.join(ROOT, "scripts", "masonry")
 
 #: The modules of the package. Each imports only those above it; those without YADE come first.
-WITHOUT_YADE = [
-    "errors",
-    "progress",
-    "columns",
-    "loops",
-    "curves",
-    "history",
-    "presets",
-    "fields",
-    "ground",
-    "results",
-    "batch",
-    "frames",
-    "figures",
-    "measure",
-    "comparison",
-    "viewer_scene",
-    "viewer",
-    "bricks.geometry",
-    "bricks.checks",
-    "bricks.blocks",
-    "bricks.bonds",
-    "bricks.openings",
-    "bricks.files",
-    "bricks.vaults",
-    "bricks.walls",
-    "bricks.__init__",
-    "ports",
-    "study.variables",
-    "study.designs",
-    "study.plan",
-    "study.gathering",
-    "study.statistics",
-    "study.estimate",
-    "study.sensitivity",
-    "study.pictures",
-    "study.records",
-    "study.report",
-    "study.start",
-    "study.row",
-    "study.yadebatch",
-    "study.local",
-    "study.slurm",
-    "study.__init__",
-    "study.__main__",
-]
-ORDER = WITHOUT_YADE + [
-    "_masonry",  # the plugin
-    "scene",
-    "limit.programme",
-    "limit.bound",
-    "limit.slipping",
-    "limit.assembly",
-    "limit.reading",
-    "limit.__init__",
-    "window",
-    "materials",
-    "checkpoints",
-    "options",
-    "plotting",
-    "model",
-    "run",
-    "loading",
-    "described",
-    "bounds",
-    "structure",
-    "probing",
-    "stages",
-    "__init__",
-]
+WITHOUT_YADE = """
+basics
+bricks.geometry bricks.checks bricks.blocks bricks.bonds bricks.openings bricks.files bricks.vaults bricks.walls bricks.__init__
+read.__init__ read.files read.frames read.loops read.curves read.figures read.measure read.comparison read.viewer_scene read.viewer
+assembly.__init__ assembly.columns assembly.ports
+run.__init__ run.progress run.presets run.results run.batch
+limit.programme limit.bound limit.slipping limit.assembly
+scene.__init__ scene.fields scene.ground scene.history
+study.variables study.designs study.plan study.gathering study.statistics study.estimate study.sensitivity study.pictures
+study.records study.report study.start study.row study.yadebatch study.local study.slurm study.__init__ study.__main__
+""".split()
+ORDER = (
+    WITHOUT_YADE
+    + """
+_masonry
+assembly.blocks assembly.window assembly.model
+run.checkpoints run.plotting run.run
+limit.reading limit.__init__
+scene.materials scene.options scene.loading scene.description scene.bounds scene.structure scene.probing scene.scene
+__init__
+""".split()
+)
 MODULES = [name for name in ORDER if name != "_masonry"]
-PACKAGES = ["bricks", "limit", "study"]  # inside the package
+PACKAGES = ["bricks", "assembly", "limit", "read", "run", "scene", "study"]  # inside the package
 SCENES = [n[:-3] for n in os.listdir(os.path.join(ROOT, "scripts")) if n[-3:] == ".py"]
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from masonry import loops
+from masonry.read import loops
 
 FINE = 20001  # rows of a cycle
 

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from masonry import measure
-from masonry.figures import CRACK
+from masonry.read import measure
+from masonry.read.figures import CRACK
 
 COURSES, COLUMNS = 12, 12
 WALL = {"unit_m": (0.22, 0.102, 0.08), "courses": COURSES, "half_units": COLUMNS}

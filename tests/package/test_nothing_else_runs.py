@@ -21,7 +21,7 @@ def planted(tmp_path):
     return tmp_path
 
 
-@pytest.mark.parametrize("words", ["measure nowhere", "figures nowhere", "study nowhere.py --out out"])  # fmt: skip
+@pytest.mark.parametrize("words", ["read.measure nowhere", "read.figures nowhere", "study nowhere.py --out out"])  # fmt: skip
 def test_programs_of_the_package_run_nothing_of_the_present_folder(planted, words):
     module, *more = words.split()
     command = [sys.executable, "-m", f"masonry.{module}", *more]
@@ -32,8 +32,8 @@ def test_programs_of_the_package_run_nothing_of_the_present_folder(planted, word
 
 def test_figures_are_drawn_with_nothing_of_the_present_folder(planted, monkeypatch):
     """The program that draws them runs in a process of its own."""
-    from masonry.errors import Unwritable
-    from masonry.model import Model
+    from masonry.basics import Unwritable
+    from masonry.assembly.model import Model
 
     monkeypatch.chdir(planted)
     with pytest.raises(Unwritable):
@@ -54,7 +54,7 @@ print('after', len(listens()))
 import yade.remote
 yade.remote.runServers()
 print('again', len(listens()))
-masonry.ports.close()
+masonry.assembly.ports.close()
 print('closed', len(listens()), 'planted', os.path.exists('ran'))
 """
 

@@ -12,8 +12,12 @@ import pytest
 from conftest import ROOT
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from masonry import columns, curves, described, materials, options, presets, results
-from masonry.errors import Refused, Unwritable
+from masonry import materials
+from masonry.assembly import columns
+from masonry.read import curves, files
+from masonry.run import presets, results
+from masonry.scene import description as described, options
+from masonry.basics import Refused, Unwritable
 
 
 # -- materials --------------------------------------------------------------------------------------------------------
@@ -209,15 +213,15 @@ def test_rows_and_run_are_read_back(tmp_path):
     r.append([])
     r.run["title"] = "t"
     r.close()
-    assert results.readCurve(str(tmp_path)) == {"a_mm": [1, 2], "b_kN": [2.5, -3]}
-    assert results.readRun(str(tmp_path))["title"] == "t"
+    assert files.readCurve(str(tmp_path)) == {"a_mm": [1, 2], "b_kN": [2.5, -3]}
+    assert files.readRun(str(tmp_path))["title"] == "t"
 
 
 def test_a_run_that_leaves_finite_numbers_is_stopped(tmp_path):
     r = results.Results(str(tmp_path), ["a_mm", "b_kN"])
     with pytest.raises(FloatingPointError, match="finite numbers in b_kN"):
         r.append([[1, 2], [2, math.nan], [3, 3]])
-    assert results.readCurve(str(tmp_path)) == {"a_mm": [1], "b_kN": [2]}
+    assert files.readCurve(str(tmp_path)) == {"a_mm": [1], "b_kN": [2]}
 
 
 def test_rows_that_a_full_disk_takes_stay_whole(tmp_path):
@@ -239,7 +243,7 @@ def test_rows_that_a_full_disk_takes_stay_whole(tmp_path):
         os._exit(0 if child() else 1)
     assert os.waitpid(process, 0)[1] == 0
     # As many lines of 5 bytes as fit after the first 3.
-    assert results.readCurve(folder)["a_mm"] == [1] * 3 + [3] * 17
+    assert files.readCurve(folder)["a_mm"] == [1] * 3 + [3] * 17
 
 
 def test_a_pulse_at_one_end_is_no_peak_at_both():
@@ -281,7 +285,7 @@ def test_initial_stiffness_is_the_slope_of_a_straight_start(slope):
 
 @pytest.mark.parametrize("reader", ["figures", "measure"])
 def test_readers_ask_only_for_keys_of_run_json_that_are_documented(reader):
-    source = open(os.path.join(ROOT, "scripts", "masonry", reader + ".py")).read()
+    source = open(os.path.join(ROOT, "scripts", "masonry", "read", reader + ".py")).read()
     documented = set(re.findall(r"``(\w+)``", results.__doc__))
     asked = set(re.findall(r'\b(?:run|wall)(?:\["\w+"\])?\["(\w+)"\]', source))
     assert asked and not asked - documented
@@ -289,7 +293,7 @@ def test_readers_ask_only_for_keys_of_run_json_that_are_documented(reader):
 
 @pytest.mark.parametrize("reader", ["figures", "measure"])
 def test_readers_ask_only_for_columns_that_are_described(reader):
-    source = open(os.path.join(ROOT, "scripts", "masonry", reader + ".py")).read()
+    source = open(os.path.join(ROOT, "scripts", "masonry", "read", reader + ".py")).read()
     known = {c.name for c in columns.PUSH + columns.HISTORY + columns.BALANCE}
     known |= set(described.OF_JOINTS)
     asked = set(re.findall(r'\b(?:curve|data)\["(\w+)"\]', source))

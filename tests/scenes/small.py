@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from typing import Callable
 
 from conftest import ROOT
-from masonry import Scene, bricks, columns, materials, options
+from masonry import Scene, bricks, materials
+from masonry.assembly import columns
+from masonry.scene import options
 
 
 @dataclass

@@ -9,9 +9,9 @@ import time
 import pytest
 from conftest import ROOT
 from masonry import readCheckpoint, saveCheckpoint
-from masonry.results import readCurve, readRun
-from masonry.run import Run
-from masonry.structure import Structure
+from masonry.read.files import readCurve, readRun
+from masonry.run.run import Run
+from masonry.scene.structure import Structure
 from small import SMALL, Wall, carryOut, parsed, scene as runScript
 
 
@@ -289,7 +289,7 @@ def test_rows_that_wait_are_kept(scene, tmp_path, at, end):
 
     seen = []
     monkey = pytest.MonkeyPatch()
-    monkey.setattr("masonry.run.FLUSH_EVERY", 1e9)
+    monkey.setattr("masonry.run.run.FLUSH_EVERY", 1e9)
     at(60, act)
     try:
         run(tmp_path, *PUSH, "--no-vtk")

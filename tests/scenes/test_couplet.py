@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from masonry.results import readCurve, readRun
+from masonry.read.files import readCurve, readRun
 
 
 @pytest.fixture(params=["rigid", "deformable"])

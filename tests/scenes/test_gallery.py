@@ -5,7 +5,7 @@ import os
 
 import pytest
 from conftest import ROOT
-from masonry.results import readCurve, readRun
+from masonry.read.files import readCurve, readRun
 
 GALLERY = sorted(
     os.path.basename(path)[:-3]

@@ -14,12 +14,14 @@ from types import SimpleNamespace
 
 import pytest
 from conftest import ROOT
-from masonry import readCheckpoint, results, saveCheckpoint
-from masonry import run as running
-from masonry.errors import Refused
-from masonry.results import Results, readRun
-from masonry.run import Run
-from masonry.structure import Structure
+from masonry import readCheckpoint, saveCheckpoint
+from masonry.run import results, run as running
+from masonry.run.run import Run
+from masonry.basics import Refused
+from masonry.read import files
+from masonry.read.files import readRun
+from masonry.run.results import Results
+from masonry.scene.structure import Structure
 from small import SMALL, Wall, carryOut, parsed
 
 SHORT = ["--until", "0.05", "--rate", "40", "--no-vtk"]
@@ -324,7 +326,7 @@ def test_a_wall_that_moves_against_its_push_has_collapsed(scene, tmp_path, capsy
     assert run(tmp_path / "r", *words, wall=LIGHT) == 0
     told = "collapsed: at -1.00 mm it moves against its push"
     assert told in capsys.readouterr().out
-    assert len(results.readCurve(str(tmp_path / "r"))["time_s"]) < 1000
+    assert len(files.readCurve(str(tmp_path / "r"))["time_s"]) < 1000
 
 
 def test_no_earlier_checkpoint_is_promised_where_there_is_none(

@@ -2,10 +2,10 @@
 
 import pytest
 from masonry import Scene, bricks, materials
-from masonry.errors import Refused
-from masonry.ground import readRecord
-from masonry.results import readCurve, readRun
-from masonry.stages import AT_REST, COLLAPSED, DONE
+from masonry.basics import Refused
+from masonry.scene.ground import readRecord
+from masonry.read.files import readCurve, readRun
+from masonry.scene.scene import AT_REST, COLLAPSED, DONE
 from yade import O
 
 STONE = 2600 * 9.81  # [N/m³]
@@ -295,7 +295,7 @@ def test_wrong_words_are_refused(tmp_path, act, told):
     [
         (dict(name="a/b"), "name must be a text that can name a folder"),
         (dict(bricks=[]), "bricks must be a list of blocks"),
-        (dict(materials=5), "materials must be a masonry.materials.Masonry, got 5"),
+        (dict(materials=5), "materials must be a masonry.scene.materials.Masonry, got 5"),
         (dict(gravity=-1), "gravity -1 must be at least 0"),
     ],
 )

@@ -6,7 +6,8 @@ import sys
 
 import pytest
 from conftest import ROOT
-from masonry import materials, options
+from masonry import materials
+from masonry.scene import options
 
 sys.path.insert(0, os.path.join(ROOT, "validation"))
 sys.path.insert(0, os.path.join(ROOT, "validation", "sensitivity"))

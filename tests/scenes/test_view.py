@@ -7,8 +7,8 @@ import sys
 import numpy as np
 import pytest
 from conftest import ROOT
-from masonry import viewer
-from masonry.errors import Refused
+from masonry.read import viewer
+from masonry.basics import Refused
 
 try:
     viewer.findPvpython()
@@ -164,5 +164,5 @@ def test_what_cannot_be_shown_is_refused(
 
 
 def test_it_needs_no_yade():
-    told = subprocess.run([sys.executable, "-c", "import sys, masonry.viewer; print([m for m in sys.modules if 'yade' in m or 'vtk' in m])"], capture_output=True, text=True)  # fmt: skip
+    told = subprocess.run([sys.executable, "-c", "import sys, masonry.read.viewer; print([m for m in sys.modules if 'yade' in m or 'vtk' in m])"], capture_output=True, text=True)  # fmt: skip
     assert told.stdout.strip() == "[]", told.stderr

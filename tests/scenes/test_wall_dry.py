@@ -4,7 +4,7 @@ from functools import partial
 
 import pytest
 from masonry import materials
-from masonry.results import readCurve, readRun
+from masonry.read.files import readCurve, readRun
 from small import Wall, settled
 
 GRANITE = Wall(

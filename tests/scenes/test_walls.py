@@ -11,10 +11,11 @@ import time
 import numpy as np
 import pytest
 from conftest import ROOT
-from masonry import loading, options, results
-from masonry.figures import readFrame
-from masonry.results import readCurve, readRun
-from masonry.structure import Structure
+from masonry.run import results
+from masonry.scene import loading, options
+from masonry.read.figures import readFrame
+from masonry.read.files import readCurve, readRun
+from masonry.scene.structure import Structure
 from small import SMALL, carryOut, parsed, settled
 from yade import O
 

@@ -9,8 +9,11 @@ import time
 import numpy as np
 import pytest
 from conftest import ROOT
-from masonry import figures, history, loading, loops, measure, readCheckpoint, results
-from masonry.results import readCurve, readRun
+from masonry import readCheckpoint
+from masonry.read import figures, loops, measure
+from masonry.run import results
+from masonry.scene import history, loading
+from masonry.read.files import readCurve, readRun
 from small import SMALL, carryOut, parsed
 from test_checkpoints import CANTILEVER, at, files, interrupt, refused, run
 

@@ -2,7 +2,8 @@
 
 import os
 
-from masonry import Scene, bricks, materials, options
+from masonry import Scene, bricks, materials
+from masonry.scene import options
 
 parser = options.parser(__doc__, until=1, rate=20)
 parser.add_argument("--fall", action="store_true", help="fail")

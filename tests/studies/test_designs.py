@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from masonry.errors import Refused
+from masonry.basics import Refused
 from masonry.study import Study, choice, lognormal, normal, uniform
 
 ot = pytest.importorskip("openturns", reason="python3-openturns is not installed")

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from masonry.errors import Refused
+from masonry.basics import Refused
 from masonry.study import estimate
 from scipy import stats
 

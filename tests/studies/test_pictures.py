@@ -7,7 +7,7 @@ import pathlib
 
 import numpy as np
 import pytest
-from masonry.errors import Refused
+from masonry.basics import Refused
 from masonry.study import pictures, records, report, sensitivity, statistics
 from scipy import stats
 

@@ -7,8 +7,9 @@ import sys
 import pytest
 from conftest import ROOT
 
-from masonry import batch, fields
-from masonry.errors import Refused
+from masonry import fields
+from masonry.run import batch
+from masonry.basics import Refused
 from masonry.study import Study, choice, field, lognormal, normal, uniform
 
 GRID = {

@@ -15,9 +15,9 @@ import time
 import cluster
 import pytest
 
-from masonry import batch
-from masonry.measure import failureMode, measure
-from masonry.results import readRun
+from masonry.run import batch
+from masonry.read.measure import failureMode, measure
+from masonry.read.files import readRun
 
 pytest.importorskip("openturns", reason="python3-openturns is not installed")
 
@@ -155,7 +155,7 @@ def test_a_study_that_is_done_runs_nothing(whole):
 
 
 def test_a_row_by_hand_gives_the_same(whole, tmp_path):
-    """Also its crack pattern, which masonry.measure then finds in the frames for ParaView."""
+    """Also its crack pattern, which masonry.read.measure then finds in the frames for ParaView."""
     out, *_ = whole
     words = batch.optionWords(batch.readTable(str(out / "table.txt"))[3])
     words.remove("--lean")

@@ -23,8 +23,9 @@ import resource
 import sys
 import time
 
-from masonry import Scene, bricks, columns, materials, scene
-from masonry.results import readCurve, readRun
+from masonry import Scene, bricks, materials
+from masonry.assembly import blocks as scene, columns
+from masonry.read.files import readCurve, readRun
 from yade import O, Vector3, timing, utils
 from yade.wrapper import *
 

@@ -1,6 +1,6 @@
 """Small structures in YADE that closed forms speak of, and whether they stand.
 
-Some are built body by body with :mod:`masonry.scene`, for single blocks and joints; others are a
+Some are built body by body with :mod:`masonry.assembly.blocks`, for single blocks and joints; others are a
 :class:`masonry.Scene`.
 """
 
@@ -24,7 +24,7 @@ from masonry import (
     materials,
 )
 from masonry.bricks import boxCorners as corners
-from masonry.errors import Refused
+from masonry.basics import Refused
 from yade import O, Vector3
 
 G = 9.81  # [m/s²]

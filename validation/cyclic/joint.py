@@ -14,10 +14,9 @@ import csv
 import os
 import sys
 
-from masonry import MasonryJoint, addBlock, bricks, criticalTimeStep, engines
-from masonry import connect, materials
-from masonry.errors import Refused
-from masonry.options import applySettings
+from masonry import MasonryJoint, addBlock, bricks, connect, criticalTimeStep, engines, materials
+from masonry.basics import Refused
+from masonry.scene.options import applySettings
 from yade import O, Vector3
 from yade.wrapper import MasonryLoad
 

@@ -5,8 +5,8 @@
 /usr/bin/python3 validation/dry_joint_walls/compare_loops.py --walls WS1175       # one wall
 
 Runs what has no results yet, and writes loops_JOINTS.md, the tables, and loops_JOINTS_LEVEL.png, a figure a level. The
-cyclic law gets the properties and the limits of blind.json, the paper's law those of ``masonry.materials``. Measured and
-calculated curves go through the same functions of ``masonry.loops``.
+cyclic law gets the properties and the limits of blind.json, the paper's law those of ``masonry.scene.materials``. Measured and
+calculated curves go through the same functions of ``masonry.read.loops``.
 """
 
 import argparse
@@ -20,8 +20,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from masonry import loops
-from masonry.results import readCurve
+from masonry.read import loops
+from masonry.read.files import readCurve
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))

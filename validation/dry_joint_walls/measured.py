@@ -18,7 +18,7 @@ import os
 from collections import namedtuple
 
 import numpy as np
-from masonry import loops
+from masonry.read import loops
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 REFERENCE = os.path.join(HERE, "reference")
@@ -101,7 +101,7 @@ DOUBTFUL = {
     ),
 }
 
-#: A cycle of a curve with its numbers: those of :class:`masonry.loops.Cycle`, and why it is ``doubtful`` (None if not).
+#: A cycle of a curve with its numbers: those of :class:`masonry.read.loops.Cycle`, and why it is ``doubtful`` (None if not).
 Measured = namedtuple("Measured", "cycle doubtful")
 
 

@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 import numpy as np
-from masonry import loops
+from masonry.read import loops
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)

@@ -12,8 +12,8 @@ import os
 import sys
 
 import numpy as np
-from masonry.curves import peakAtBothEnds
-from masonry.errors import Refused
+from masonry.read.curves import peakAtBothEnds
+from masonry.basics import Refused
 from masonry.study import Study, estimate, lognormal, statistics
 from masonry.study.gathering import gather
 from masonry.study.local import Local
@@ -205,8 +205,8 @@ def _told(interval):
 
 def draw(found):
     """multifidelity.png: accurate over fast for the shared rows, and both distributions, wall by wall."""
-    from masonry.comparison import COLOURS
-    from masonry.figures import _drawing, _save, _style
+    from masonry.read.comparison import COLOURS
+    from masonry.read.figures import _drawing, _save, _style
 
     with _style():
         figure = _drawing(3.4 * len(found), 3.2)

@@ -3,7 +3,8 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from masonry import Scene, bricks, columns, materials
+from masonry import Scene, bricks, materials
+from masonry.assembly import columns
 from yade import O
 
 BLOCKS = ["rigid", "deformable"]

@@ -20,11 +20,11 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from masonry.curves import dynamicImbalance
-from masonry.figures import CRACK, readFrame
-from masonry.measure import layOut
-from masonry.presets import PRESETS, USUAL, asOption
-from masonry.results import readCurve, readRun
+from masonry.read.curves import dynamicImbalance
+from masonry.read.figures import CRACK, readFrame
+from masonry.read.measure import layOut
+from masonry.run.presets import PRESETS, USUAL, asOption
+from masonry.read.files import readCurve, readRun
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))

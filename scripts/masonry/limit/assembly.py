@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..errors import Refused
+from ..basics import Refused
 from . import slipping
 from .bound import Bound
 from .programme import FACETS, Late, Programme, Unsolved, solve

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..figures import mechanism
+from ..read.figures import mechanism
 from .programme import FACETS
 
 SLIDES = 1e-4  # share of the power of a mechanism that is friction, from which its joints slide [-]
@@ -218,7 +218,7 @@ class Bound:
     # -- files ----------------------------------------------------------------------------------------------------
 
     def frames(self):
-        """The mechanism as frames of blocks and joints, as :func:`masonry.frames.readFrame` gives those of a run.
+        """The mechanism as frames of blocks and joints, as :func:`masonry.read.frames.readFrame` gives those of a run.
 
         It is scaled so that the corner that moves most moves by :data:`SHOWN` of the structure's size.
         """

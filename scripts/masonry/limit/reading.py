@@ -5,7 +5,7 @@ import math
 import numpy as np
 from yade import O
 
-from ..errors import Refused
+from ..basics import Refused
 from .assembly import Assembly
 
 #: What has moved by less, over the size of a typical block, is taken where it stood when the joints were made [-]. It changes

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..errors import Refused
+from ..basics import Refused
 
 LOOSENED = 8  # rounds in which joints without pressure lose their friction, at most
 UNPRESSED = (

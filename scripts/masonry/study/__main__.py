@@ -5,8 +5,7 @@ import os
 import runpy
 import sys
 
-from ..errors import Interrupted, Refused, Unwritable
-from ..progress import say
+from ..basics import Interrupted, Refused, Unwritable, say
 from . import slurm
 from .gathering import CSV, Folder, gather
 from .local import Local, yadeBatch

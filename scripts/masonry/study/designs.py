@@ -7,8 +7,8 @@ Correlated numbers follow a normal copula with the given rank correlation (Spear
 import contextlib
 import itertools
 
-from ..errors import Refused
-from .variables import Choice, Distribution, openturns
+from ..basics import Refused
+from .variables import Distribution, openturns
 
 EDGE = 1e-12  # probabilities closer to 0 or 1 are moved here, where all quantiles are finite
 DESIGNS = ("random", "latin", "sobol", "grid")

@@ -32,7 +32,7 @@ from collections import namedtuple
 import numpy as np
 from scipy import special, stats
 
-from ..errors import Refused
+from ..basics import Refused
 from .statistics import CONFIDENCE
 
 #: Fewest shared rows. With fewer, the slope, the residuals and their scatter are not known well enough for an interval.

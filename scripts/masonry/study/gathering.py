@@ -10,9 +10,10 @@ import json
 import os
 import re
 
-from .. import batch
-from ..errors import Refused, Unwritable
-from ..results import held, readWhole
+from ..run import batch
+from ..basics import Refused, Unwritable
+from ..read.files import readWhole
+from ..run.results import held
 
 TABLE, STUDY, CSV, TIMES = "table.txt", "study.json", "study.csv", "times.csv"
 

@@ -9,9 +9,9 @@ import subprocess
 import sys
 import time
 
-from .. import batch
-from ..errors import Interrupted, Refused, Unwritable
-from ..progress import Progress, say
+from ..run import batch
+from ..basics import Interrupted, Refused, Unwritable, say
+from ..run.progress import Progress
 from .gathering import TABLE
 
 LOOK_EVERY = 0.5  # [s]

@@ -7,9 +7,9 @@ name of a varied property -> its values, one a row, and ``label`` says what the 
 import numpy as np
 from scipy import stats
 
-from ..comparison import COLOURS, DASHES
-from ..errors import Refused
-from ..figures import _drawing, _save, _style
+from ..read.comparison import COLOURS, DASHES
+from ..basics import Refused
+from ..read.figures import _drawing, _save, _style
 from . import statistics
 
 DPI = 200

@@ -6,8 +6,8 @@ import re
 
 import numpy as np
 
-from .. import batch
-from ..errors import Refused
+from ..run import batch
+from ..basics import Refused
 from . import designs
 from .variables import Choice, Distribution, Field, choice
 
@@ -207,7 +207,7 @@ class Study:
         return int(np.random.SeedSequence([self.seed, field, row]).generate_state(1)[0])
 
     def table(self):
-        """The table of the rows, as text: see :mod:`masonry.batch`."""
+        """The table of the rows, as text: see :mod:`masonry.run.batch`."""
         rows = self.rows()
         heads = ["description", *rows[0]]
         lines = [" ".join(heads)]

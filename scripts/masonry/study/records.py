@@ -5,9 +5,9 @@ import os
 
 import numpy as np
 
-from .. import batch, presets
-from ..errors import Refused
-from ..results import readCurve, readWhole
+from ..run import batch, presets
+from ..basics import Refused
+from ..read.files import readCurve, readWhole
 from .gathering import CSV, TIMES, Folder
 
 

@@ -15,7 +15,7 @@ import sys
 
 import numpy as np
 
-from ..errors import Refused
+from ..basics import Refused
 from . import estimate, pictures, sensitivity, statistics
 from .records import Record, paired
 

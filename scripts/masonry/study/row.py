@@ -13,9 +13,9 @@ import subprocess
 import sys
 import time
 
-from .. import batch
-from ..errors import Refused
-from ..results import readRun
+from ..run import batch
+from ..basics import Refused
+from ..read.files import readRun
 from .gathering import TABLE, Folder, reason
 
 REFUSED = 2  # exit status of a scene that refuses its input

@@ -10,7 +10,7 @@ from collections import namedtuple
 import numpy as np
 from scipy import special, stats
 
-from ..errors import Refused
+from ..basics import Refused
 from .statistics import CONFIDENCE, Interval
 
 #: What a varied property does. ``change`` of the output, an :class:`Interval`, when the property goes from its 5 % to

@@ -1,16 +1,14 @@
 """Runs the rows of a study on a cluster: one job array of Slurm."""
 
-import os
 import re
 import shlex
 import shutil
 import subprocess
 import sys
 
-from .. import batch
-from ..errors import Refused
-from ..progress import say
-from ..results import readWhole
+from ..run import batch
+from ..basics import Refused, say
+from ..read.files import readWhole
 from .gathering import written
 
 SCRIPT = "slurm.sh"  # in the study's folder: what was submitted last

@@ -6,9 +6,8 @@ import shutil
 import subprocess
 import tempfile
 
-from .. import batch
-from ..errors import Refused
-from ..progress import say
+from ..run import batch
+from ..basics import Refused, say
 from .gathering import STUDY, TABLE, Folder, reason, written
 from .variables import NEVER, Distribution, Field
 
@@ -122,7 +121,7 @@ def _look(study, script, table):
 
 
 def _probed(script, table, path, line=2):
-    """What :mod:`masonry.probing` writes, as a dict, or why there is none.
+    """What :mod:`masonry.scene.probing` writes, as a dict, or why there is none.
 
     :param line: of the table: the options with which the scene is built; 1: it is built without options
     """

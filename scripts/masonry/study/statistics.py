@@ -10,7 +10,7 @@ from collections import namedtuple
 import numpy as np
 from scipy import stats
 
-from ..errors import Refused
+from ..basics import Refused
 
 CONFIDENCE = 0.95  # of all intervals, unless another is asked for
 

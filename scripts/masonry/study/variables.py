@@ -3,8 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from .. import fields
-from ..errors import Refused
+from ..scene import fields
+from ..basics import Refused
 
 #: What a distribution may give beyond a bound of a property: less than once in a thousand million draws.
 NEVER = 1e-9
@@ -187,7 +187,7 @@ def field(distribution=None, length=0.0, cov=None):
 
     :param distribution: :func:`lognormal` or :func:`normal` of the values; None: lognormal about the value that the scene
         has, with ``cov``
-    :param length: correlation length [m], see :mod:`masonry.fields`; 0: every joint has its own value
+    :param length: correlation length [m], see :mod:`masonry.scene.fields`; 0: every joint has its own value
     :param cov: coefficient of variation [-], where there is no distribution
     """
     _finite(length=length)

@@ -6,11 +6,11 @@ import os
 import re
 import sys
 
-from . import batch, fields, history
-from .checkpoints import alike, readProgress
-from .errors import Refused
-from .presets import BOUND, HARMLESS, PRESETS, USUAL, asOption
-from .scene import properties
+from ..run import batch
+from . import fields, history
+from ..run.checkpoints import alike, readProgress
+from ..basics import Refused
+from ..run.presets import BOUND, HARMLESS, PRESETS, USUAL, asOption
 
 #: Units of the options that have one.
 UNITS = {
@@ -129,7 +129,7 @@ class Parser(argparse.ArgumentParser):
         super().error("\n  ".join([*self.problems, message]))
 
     def parse_args(self, args=None, namespace=None):
-        """The options of the command line, or, in a run of ``yade-batch``, those of a row of its table: masonry.batch."""
+        """The options of the command line, or, in a run of ``yade-batch``, those of a row of its table: masonry.run.batch."""
         whole = args is None
         if whole:
             try:
@@ -430,11 +430,6 @@ def check(args, joints, more=()):
         problems.append(str(refused))
     if problems:
         raise Refused("\n".join(problems))
-
-
-def units(cls):
-    """Units of the properties of a class of the plugin: a dict of name -> unit, of those that have one."""
-    return {p["name"]: p["unit"] for p in properties(cls) if p["unit"]}
 
 
 def applySettings(joints, settings):

@@ -12,11 +12,11 @@ A scene reads from top to bottom::
     scene.cycle(top, [2, 4, 8], repeats=2)    # [mm]
     scene.finish()
 
-What comes before the first stage describes: platens, supports, loads, what is recorded (:mod:`masonry.described`). Stages
+What comes before the first stage describes: platens, supports, loads, what is recorded (:mod:`masonry.scene.description`). Stages
 run in turn: ``settle``, ``push``, ``cycle``, ``follow``, ``drive``, ``pressJoint``, ``release``, ``move``, ``tilt``,
 ``accelerate``, ``lean``, ``shake``, ``run``. Each returns how it ended: one of :data:`AT_REST`, :data:`MOVING`,
 :data:`DONE` and :data:`COLLAPSED`. After a collapse the stages that follow are left out.
-``finish`` writes what :mod:`masonry.results` lists. All options of the command line work, ``--help`` explains them:
+``finish`` writes what :mod:`masonry.run.results` lists. All options of the command line work, ``--help`` explains them:
 ``--preset``, ``--rate``, ``--set``, ``--out``, ``--resume`` and the others; ``--until`` or ``--history`` replace what the
 first push or cycle of the scene says.
 """
@@ -31,19 +31,18 @@ from types import SimpleNamespace
 
 from yade import O, Vector3
 
-from . import batch, history, loading, options
-from ._masonry import loadScene, saveScene
+from ..run import batch
+from . import history, loading, options
+from .._masonry import loadScene, saveScene
 from .bounds import EVERY, SMALL
-from .bricks import Bricks
-from .described import Described, JointRecord, Target
-from .errors import Collapsed, Interrupted, Refused
+from ..bricks import Bricks
+from .description import Described, JointRecord, Target
+from ..basics import Collapsed, GRAVITY, Interrupted, Refused, say
 from .ground import readRecord
-from .model import GRAVITY
-from .presets import BOUND
+from ..run.presets import BOUND
 from .probing import probe
-from .progress import say
-from .run import Run
-from .scene import vector
+from ..run.run import Run
+from ..assembly.blocks import vector
 from .structure import Structure
 
 AT_REST, MOVING, DONE, COLLAPSED = "at rest", "moving", "done", "collapsed"
@@ -114,13 +113,13 @@ class Scene(Described, Run):
     :param name: of the folder of results, ``results/<name>``
     :param bricks: blocks: :class:`masonry.bricks.Bricks`, or anything that gives blocks with ``corners``, ``brick``,
         ``part`` and ``kind``
-    :param materials: :class:`masonry.materials.Masonry`
+    :param materials: :class:`masonry.scene.materials.Masonry`
     :param title: of the figures; None: the name
     :param plane: whether blocks move in the x-z plane only, which is faster; None: if all bricks are one leaf in it
     :param gravity: [m/s²], downwards
     :param columns: names of the columns of curve.csv, beside the energies; None: all that there are
-    :param functors: as of :func:`masonry.scene.engines`
-    :param arguments: options as :func:`masonry.options.parser` gives them, or a list of words; None: those of the
+    :param functors: as of :func:`masonry.assembly.blocks.engines`
+    :param arguments: options as :func:`masonry.scene.options.parser` gives them, or a list of words; None: those of the
         command line
     :param usual: options whose default is another one in this scene, for example ``rate=50`` [mm/s] or ``dt_fraction=0.4``
     :raises Refused: if something is wrong, with all problems at once. A script that does not catch it ends with exit
@@ -646,7 +645,7 @@ class Scene(Described, Run):
 
         :param target: what is pushed, as of :meth:`push`, along ``direction``; its factor is the base shear [kN]
         :param towards: horizontal direction of an acceleration, whose factor is in g; give this or ``target``
-        :returns: the entry of run.json: a dict with ``factor``, ``exact`` and the others that :mod:`masonry.results` lists
+        :returns: the entry of run.json: a dict with ``factor``, ``exact`` and the others that :mod:`masonry.run.results` lists
         """
         if (target is None) == (towards is None):
             raise ValueError("bound: give either target or towards")

@@ -56,13 +56,13 @@ def initialStiffness(displacement, force):
 def cycleNumbers(column, threshold):
     """Numbers of every cycle of a wall that follows a history: a list of dicts, for run.json.
 
-    They are those of :class:`masonry.loops.Cycle`, None in place of NaN, with the base shear as the force. In place of
+    They are those of :class:`masonry.read.loops.Cycle`, None in place of NaN, with the base shear as the force. In place of
     ``start`` and ``end`` there is ``rows``, the first and the last row of curve.csv, from 0. Beside them there are, of the
     same stretch [J]: ``top_work_J``, the work of the force that drives the loading block over the same displacement;
     ``dissipated_J``, what the joints dissipated; and ``damped_J``, what damping took.
 
     :param column: function of the name of a column of curve.csv that gives its values
-    :param threshold: as of :mod:`masonry.loops` [mm]
+    :param threshold: as of :mod:`masonry.read.loops` [mm]
     """
     moved, base = column("displacement_mm"), column("base_shear_kN")
     if not moved:

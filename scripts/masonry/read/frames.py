@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from .errors import Refused
+from ..basics import Refused
 
 #: Types of numbers in the files.
 TYPES = {"Float64": "f8", "Float32": "f4", "Int64": "i8", "Int32": "i4", "UInt8": "u1"}

@@ -10,7 +10,6 @@ reached in turn, from 0 on, in straight lines. Beside these there are
 import csv
 import hashlib
 import io
-import math
 import os
 from collections import namedtuple
 
@@ -171,7 +170,7 @@ def aim(args, start=0.0):
     The drive stops at the end of a file. At the end of a list of amplitudes and of a push it does not brake, because
     both go on the same way if the run is resumed and extended.
 
-    :param args: the options of :func:`masonry.options.parser`
+    :param args: the options of :func:`masonry.scene.options.parser`
     :param start: where the way begins [mm]
     """
     if args.history:
@@ -186,7 +185,7 @@ def turns(points):
 
 
 def noise(history):
-    """Displacement [mm] up to which an excursion is none: the threshold of :mod:`masonry.loops` for the wall's curve."""
+    """Displacement [mm] up to which an excursion is none: the threshold of :mod:`masonry.read.loops` for the wall's curve."""
     if "file" not in history:
         return AT_ZERO
     return max(AT_ZERO, NOISE * max(map(abs, history["points_mm"])))

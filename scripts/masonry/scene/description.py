@@ -1,17 +1,15 @@
 """A structure as a scene describes it: its bricks, what holds and loads them, and what is recorded. Plain records.
 
-:class:`masonry.stages.Scene` has all of these words, :class:`masonry.structure.Structure` makes them in YADE.
+:class:`masonry.scene.scene.Scene` has all of these words, :class:`masonry.scene.structure.Structure` makes them in YADE.
 """
 
 import math
 from dataclasses import dataclass
 
-from .bricks import Bricks
-from .errors import Refused
+from ..bricks import Bricks
+from ..basics import Refused, say
 from .materials import Masonry
-from .model import GRAVITY
-from .progress import say
-from .scene import vector
+from ..assembly.blocks import vector
 
 PLATEN = 0.2  # [m] height of a platen
 
@@ -21,7 +19,7 @@ class Target:
     """A platen, or a brick that is held, loaded or watched. ``scene.platen`` and its like make it.
 
     :param name: in the columns of curve.csv
-    :param fixed: whether it does not move but by :meth:`masonry.stages.Scene.move`
+    :param fixed: whether it does not move but by :meth:`masonry.scene.scene.Scene.move`
     """
 
     name: str
@@ -91,7 +89,7 @@ OF_JOINTS = {
 
 
 class Described:
-    """Bricks, materials and everything that a scene says before its first stage; :class:`masonry.stages.Scene`."""
+    """Bricks, materials and everything that a scene says before its first stage; :class:`masonry.scene.scene.Scene`."""
 
     model = None  # the structure in YADE, when it is built
 
@@ -107,7 +105,7 @@ class Described:
             )
         if not isinstance(materials, Masonry):
             problems.append(
-                f"scene {name}: materials must be a masonry.materials.Masonry, got {materials!r}"
+                f"scene {name}: materials must be a masonry.scene.materials.Masonry, got {materials!r}"
             )
         if not (isinstance(gravity, (int, float)) and 0 <= gravity < math.inf):
             problems.append(

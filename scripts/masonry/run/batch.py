@@ -20,8 +20,8 @@ import collections
 import os
 import re
 
-from .errors import Refused
-from .results import readRun
+from ..basics import Refused
+from ..read.files import readRun
 
 VARIABLE = "YADE_BATCH"  # of the environment: path of the table and number of the line
 ROWS = "rows"  # folder of the results, beside the table

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from yade import O
 
-from .errors import Collapsed, Refused
+from ..basics import Collapsed, Refused
 from .history import aim, pathLength, turns
 
 RAMP = 0.02  # [s] in which loads and velocities grow: some ten periods of a wave through the height of a wall

@@ -1,35 +1,35 @@
 """What a scene is in YADE: its bodies, joints and loads, and what can be read off them.
 
-:class:`masonry.stages.Scene` says what is to be built, and runs it.
+:class:`masonry.scene.scene.Scene` says what is to be built, and runs it.
 """
 
 import math
 import sys
 import tempfile
-from collections import namedtuple
 
 from yade import O, Vector3
 from yade.wrapper import MasonryJoint, MasonryLoad, MasonryVtkRecorder
 
-from . import columns, history, loading, measure
-from ._masonry import criticalTimeStep
+from ..assembly import columns
+from ..read import measure
+from . import history, loading, options
+from .._masonry import criticalTimeStep
 from .bounds import Bounds
-from .bricks import boxCorners
-from .columns import Column
-from .curves import (
+from ..bricks import boxCorners
+from ..assembly.columns import Column
+from ..read.curves import (
     cycleNumbers,
     dampedShare,
     dynamicImbalance,
     initialStiffness,
     peakAtBothEnds,
 )
-from .described import OF_JOINTS
-from .errors import Collapsed, Refused, Unwritable
-from .frames import readFrame
+from .description import OF_JOINTS
+from ..basics import Collapsed, GRAVITY, Refused, Unwritable, say
+from ..read.frames import readFrame
 from .materials import loadingBlock
-from .model import GRAVITY, Model
-from .progress import say
-from .scene import addBlock, engine
+from ..assembly.model import Model
+from ..assembly.blocks import addBlock, engine
 
 FRAMES = 20  # for ParaView in a stage that is no push
 FALLEN = 0.05  # of the largest side of a block: one that moves so far, and fast, falls
@@ -51,7 +51,8 @@ class Structure(Model):
                 "--crack-surfaces on: the bricks are in pieces, and these materials have no joint 'crack' between them; "
                 "make whole bricks with halves=False, or choose --crack-surfaces off"
             )
-        super().__init__(args, masonry.unit, masonry.joints, problems)
+        options.check(args, masonry.joints, problems)
+        super().__init__(args, masonry.unit, masonry.joints)
         for kind in set(self.units):
             if self.units[kind] is not masonry.unit:
                 self.units[kind].density *= args.density_scaling
@@ -517,7 +518,7 @@ class Structure(Model):
         return least, least + frame * frames + 250 * rows
 
     def describe(self):
-        told = dict(super().describe(), parts=self.parts)
+        told = dict(super().describe(), parts=self.parts, option_units=options.UNITS)
         told["figure"] = self._figure()
         if self.scene.views:
             told["views"] = self.scene.views
@@ -703,7 +704,7 @@ class Structure(Model):
         return found
 
     def _measured(self, moved, shear):
-        """The numbers that masonry.measure finds of a wall, and its failure mode: what leaves no frames has them at once."""
+        """The numbers that masonry.read.measure finds of a wall, and its failure mode: what leaves no frames has them at once."""
         found, wall = {}, self._wall()
         if not self.pushed.history:
             found = measure.pushNumbers(moved, shear)

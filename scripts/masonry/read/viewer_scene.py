@@ -1,7 +1,7 @@
-"""What ParaView shows of runs, made inside pvpython: :mod:`masonry.viewer` starts this as a program with one word, a job.
+"""What ParaView shows of runs, made inside pvpython: :mod:`masonry.read.viewer` starts this as a program with one word, a job.
 
 The job is a JSON file: ``path``, a folder of Python modules to look in first, or None; ``views``, a list of what
-:func:`masonry.viewer.sceneOf` returns; ``size`` of the picture, and one of ``picture``, ``film`` and ``state``, the file
+:func:`masonry.read.viewer.sceneOf` returns; ``size`` of the picture, and one of ``picture``, ``film`` and ``state``, the file
 to write; ``rate``, frames of the film a second.
 """
 

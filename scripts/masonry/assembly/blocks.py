@@ -5,7 +5,7 @@ import math
 from yade import Body, O, Vector3, utils
 from yade.wrapper import *
 
-from ._masonry import connected, gather, neighbours
+from .._masonry import connected, gather, neighbours
 
 #: The functor that makes joints of blocks. Its subclasses do so where a block is one of YADE's own Polyhedra.
 _GEOMETRY = Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom
@@ -27,6 +27,11 @@ def properties(cls):
     ``usual_low`` and ``usual_high``. A value beyond these is probably given in ``other_unit``.
     """
     return cls.properties()
+
+
+def units(cls):
+    """Units of the properties of a class of the plugin: a dict of name -> unit, of those that have one."""
+    return {p["name"]: p["unit"] for p in properties(cls) if p["unit"]}
 
 
 def _refuse(problems, hint=None, most=10):

@@ -1,6 +1,6 @@
 """Numbers of a run, measured from the files in its folder and nothing else.
 
-``/usr/bin/python3 -m masonry.measure results/wall_comp4`` prints them, with units in the names. Walls are pushed to the
+``/usr/bin/python3 -m masonry.read.measure results/wall_comp4`` prints them, with units in the names. Walls are pushed to the
 right: the compressed corners are the toe at the bottom right and the top left, and a diagonal crack falls to the right.
 Of a wall that follows a history the numbers of cracks and crushing are those of the way to the right, and once more, with
 ``_mirrored`` at the end of the name, those of the way to the left. It has a table of its cycles, too.
@@ -16,7 +16,7 @@ import numpy as np
 
 from . import loops
 from .figures import CRACK, readFrame
-from .results import filesOf, onFolder, readCurve, readRun
+from .files import filesOf, onFolder, readCurve, readRun
 
 NEAR = 3  # courses to either side of the diagonal: joints within them are near it
 OUTER = 2  # courses at base and top: joints there do not count for the diagonal, since they crack by rocking
@@ -26,7 +26,7 @@ LOST = 0.05  # of the peak force: a larger loss is a drop, a smaller one may be 
 def layOut(frame, wall):
     """Joints of a frame on the grid of the brickwork, without those to the support and to the loading block.
 
-    :param frame: what :func:`masonry.figures.readFrame` returns for joints
+    :param frame: what :func:`masonry.read.figures.readFrame` returns for joints
     :param wall: the entry ``wall`` of run.json
     :returns: two dicts of arrays, from the base up and from left to right. The first is of bed joints, its arrays have
         the shape (courses - 1, half units). The second is of upright joints, which are head joints and cracks of

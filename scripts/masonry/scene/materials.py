@@ -10,7 +10,7 @@ from yade import Vector3
 from yade.wrapper import MasonryJoint, MasonryMat
 
 from . import fields
-from .errors import Refused
+from ..basics import Refused
 
 #: A joint whose normal is steeper than this is a bed joint: 45 degrees.
 STEEP = math.cos(math.radians(45))
@@ -94,7 +94,7 @@ class Masonry:
         :param name: joint and property, for example ``"bed.cohesion"``, or a list of these that change alike. Strengths are
             tied to each other: the tensile strength must be at most cohesion over friction
         :param value: function of the x, y and z [m] of a joint's middle that gives a factor on the property [-];
-            :mod:`masonry.fields` has random ones
+            :mod:`masonry.scene.fields` has random ones
         :param step: width of the steps, relative to the value; at most half of it is the error of rounding
         """
         for one in [name] if isinstance(name, str) else name:
@@ -140,7 +140,7 @@ class Masonry:
         return own
 
     def rule(self, model):
-        """The rule of :func:`masonry.scene.connect` for a :class:`masonry.structure.Structure`."""
+        """The rule of :func:`masonry.assembly.blocks.connect` for a :class:`masonry.scene.structure.Structure`."""
         blocks = dict(zip(model.ids, model.scene.bricks))
 
         def rule(one, two, geom):
@@ -205,7 +205,7 @@ def _copied(thing):
 
 
 def calciumSilicate(stiffness="joint"):
-    """Calcium-silicate masonry of the TUD-COMP walls, for :class:`masonry.stages.Scene`.
+    """Calcium-silicate masonry of the TUD-COMP walls, for :class:`masonry.scene.scene.Scene`.
 
     :param stiffness: as of :func:`calciumSilicateJoints`
     """
@@ -217,7 +217,7 @@ def calciumSilicate(stiffness="joint"):
 
 
 def dryGranite(level, height):
-    """Granite blocks with dry joints, for :class:`masonry.stages.Scene`. Parameters as of :func:`dryGraniteJoints`."""
+    """Granite blocks with dry joints, for :class:`masonry.scene.scene.Scene`. Parameters as of :func:`dryGraniteJoints`."""
     return Masonry(graniteUnit(), dryGraniteJoints(level, height))
 
 

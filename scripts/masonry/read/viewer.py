@@ -1,6 +1,6 @@
 """Runs in ParaView: in its window in a ready state, or as a picture and a film without a display. No YADE is needed.
 
-``scripts/view.py`` is the program. ParaView's own Python works in a process of its own (:mod:`masonry.viewer_scene`).
+``scripts/view.py`` is the program. ParaView's own Python works in a process of its own (:mod:`masonry.read.viewer_scene`).
 """
 
 import argparse
@@ -15,10 +15,10 @@ import tempfile
 
 import numpy as np
 
-from .errors import Refused
+from ..basics import Refused
 from .figures import CRACK, DAMAGED, magnificationOf, viewOf, whenOf
 from .frames import framePaths, frameTimes, readFrame
-from .results import filesOf, readCurve, readRun
+from .files import filesOf, readCurve, readRun
 
 #: Folder into which python3-paraview can be unpacked where it cannot be installed beside python3-vtk9.
 UNPACKED = os.path.expanduser("~/.local/share/masonry/paraview")
@@ -87,7 +87,7 @@ def _nice(value):
 
 
 def sceneOf(directory, at=None, magnification=None, shape=1.5, still=True):
-    """What ParaView shall show of a run: a dict for :mod:`masonry.viewer_scene`.
+    """What ParaView shall show of a run: a dict for :mod:`masonry.read.viewer_scene`.
 
     :param directory: folder of the run
     :param at: as of :func:`frameNear`

@@ -9,11 +9,12 @@ import re
 
 from yade.wrapper import MasonryJoint
 
-from . import batch, fields
-from .errors import Refused
+from ..run import batch
+from . import fields
+from ..basics import Refused
 from .materials import withResidual
 from .options import Parser, check
-from .scene import properties
+from ..assembly.blocks import properties
 
 #: How far a random field is looked at to either side, in standard deviations of its normal: beyond lies one joint in a
 #: million.

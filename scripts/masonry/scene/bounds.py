@@ -1,6 +1,6 @@
 """Bounds beside a run: limit analysis of what the stages of a scene load.
 
-:class:`masonry.stages.Scene` asks for them by itself when a stage pushes or leans the structure. :mod:`masonry.limit` says
+:class:`masonry.scene.scene.Scene` asks for them by itself when a stage pushes or leans the structure. :mod:`masonry.limit` says
 what they are.
 """
 
@@ -10,10 +10,8 @@ import time
 
 import numpy as np
 
-from . import limit
-from .errors import Refused
-from .model import GRAVITY
-from .progress import say
+from .. import limit
+from ..basics import GRAVITY, Refused, say
 
 #: Up to so many joints a collapse without dilatancy, which takes many rounds, is looked for with --preset bound.
 SMALL = 500
@@ -30,7 +28,7 @@ FIGURE = "mechanism.png"
 class Bounds:
     """The bounds of a scene that is built in YADE.
 
-    :param model: :class:`masonry.structure.Structure`
+    :param model: :class:`masonry.scene.structure.Structure`
     """
 
     def __init__(self, model):

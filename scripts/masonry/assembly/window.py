@@ -49,7 +49,7 @@ def show(blocks="displacement", joints="damage", scale=1.0, edges=True):
         O.engines = [
             *O.engines,
             PyRunner(
-                command="import masonry; masonry.window.refresh()",
+                command="import masonry; masonry.assembly.window.refresh()",
                 realPeriod=0.1,
                 label=_LABEL,
             ),

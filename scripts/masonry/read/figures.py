@@ -1,11 +1,11 @@
 """Figures of a run, made from the files in its folder and nothing else.
 
-``/usr/bin/python3 -m masonry.figures results/wall_comp4`` draws curve.png and, if there are ParaView files, cracks.png.
-From a script, also one of YADE, ``masonry.figures.draw(folder)`` does the same. This module needs no YADE, and loads
+``/usr/bin/python3 -m masonry.read.figures results/wall_comp4`` draws curve.png and, if there are ParaView files, cracks.png.
+From a script, also one of YADE, ``masonry.read.figures.draw(folder)`` does the same. This module needs no YADE, and loads
 neither VTK nor a display, so it does no harm to the process that calls it.
 
 What curve.png shows is said by the entry ``figure`` of run.json, and what the panels of cracks.png are by ``parts``; see
-:mod:`masonry.results`.
+:mod:`masonry.run.results`.
 """
 
 import glob
@@ -17,9 +17,9 @@ from collections import namedtuple
 import numpy as np
 
 from . import loops
-from .errors import Refused
-from .frames import framePaths, frameTimes, readFrame
-from .results import filesOf, onFolder, readCurve, readRun
+from ..basics import Refused
+from .frames import frameTimes, readFrame
+from .files import filesOf, onFolder, readCurve, readRun
 
 MAGNIFICATION = 30  # of displacements in cracks.png, as in figure 6 of the paper (see yade_plugin/law/README.md)
 CRACK = 0.05e-3  # [m] opening or slip from which a joint is drawn as cracked
@@ -65,8 +65,8 @@ def _save(figure, path, dpi):
 def plan(run, data, directory):
     """The entry ``figure`` of run.json, with all that may be left out. Raises Refused for one that cannot be drawn.
 
-    :param run: what :func:`masonry.results.readRun` returns
-    :param data: what :func:`masonry.results.readCurve` returns
+    :param run: what :func:`masonry.read.files.readRun` returns
+    :param data: what :func:`masonry.read.files.readCurve` returns
     :param directory: folder, for messages
     """
     told = run.get("figure")

@@ -8,9 +8,9 @@ import json
 import math
 import os
 
-from ._masonry import loadScene, savedText, saveScene
-from .errors import Refused
-from .results import readWhole
+from .._masonry import loadScene, saveScene, savedText
+from ..basics import Refused
+from ..read.files import readWhole
 
 NAME = "run.checkpoint"  # in the folder of a run
 

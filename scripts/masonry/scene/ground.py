@@ -2,11 +2,11 @@
 
 import math
 
-from .errors import Refused
+from ..basics import Refused
 
 
 def rayleigh(ratio, low, high):
-    """Viscous damping for :meth:`masonry.stages.Scene.shake`: mass damping [1/s] and stiffness damping [s].
+    """Viscous damping for :meth:`masonry.scene.scene.Scene.shake`: mass damping [1/s] and stiffness damping [s].
 
     :param ratio: share of critical damping at two frequencies [-]; between them it is less
     :param low: lower frequency [Hz]; ``high``: upper one

@@ -1,12 +1,12 @@
 """The files that a run leaves in its folder, and how to read them again. This module needs no YADE.
 
-``curve.csv`` has a row a reading; :mod:`masonry.columns` says what is in each column.
+``curve.csv`` has a row a reading; :mod:`masonry.assembly.columns` says what is in each column.
 
 ``run.json`` has these keys, in every run:
 
 - ``scene``: name of the scene; ``title``: what it is, for figures
 - ``options``: all options of the command line; ``option_units``: units of those that have one
-- ``preset``: None, or what :func:`masonry.presets.presetOf` says
+- ``preset``: None, or what :func:`masonry.run.presets.presetOf` says
 - ``columns``: what each column of curve.csv means
 - ``joints``: the properties of every kind of joint [SI units]; ``joint_units``: the units by property
 - ``unit_material``: ``young_Pa``, ``poisson`` and ``density_kg_per_m3`` of the bricks
@@ -37,14 +37,14 @@
 - ``parts``: a dict of name -> list of body ids, for cracks.png, which has a panel for every part; may be left out, and
   all blocks are one part then
 - ``views``: a dict of part -> direction of sight (x, y, z), for parts that shall not be seen as
-  :func:`masonry.figures.viewOf` chooses; may be left out
+  :func:`masonry.read.figures.viewOf` chooses; may be left out
 - ``reference_body``: id of a body whose displacement is taken off all others in cracks.png, as that of a ground that is
   shaken; may be left out
 
 - ``ended``: how the last stage ended: ``at rest``, ``moving``, ``done`` or ``collapsed``
 - ``collapse``: what has fallen, and how far; None if nothing has
 - ``held``: names of the platens and bricks that are held
-- ``factor``, ``stood``: as of :class:`masonry.stages.Scene`, of a run that tilts, leans or accelerates
+- ``factor``, ``stood``: as of :class:`masonry.scene.scene.Scene`, of a run that tilts, leans or accelerates
 
 A run that pushes, leans or tilts has these, if limit analysis (:mod:`masonry.limit`) applies:
 
@@ -62,12 +62,12 @@ A run that pushes, leans or tilts has these, if limit analysis (:mod:`masonry.li
 A run with a push has these, too:
 
 - ``peak_base_shear_kN``, ``displacement_at_peak_mm``: the largest force at the base, and where it is reached
-- ``peak_at_both_ends_kN``: the largest force that top and base carried at once (:func:`masonry.curves.peakAtBothEnds`)
+- ``peak_at_both_ends_kN``: the largest force that top and base carried at once (:func:`masonry.read.curves.peakAtBothEnds`)
 - ``base_shear_end_kN``, ``displacement_end_mm``: the last row
-- ``initial_stiffness_kN_per_mm``: as :func:`masonry.curves.initialStiffness` fits it
-- with --lean, which leaves no frames to measure: the numbers of :func:`masonry.measure.pushNumbers`, and of a wall in running
-  bond those of :func:`masonry.measure.patternNumbers` and its ``failure_mode`` (:func:`masonry.measure.failureMode`)
-- ``dynamic_imbalance``: as of :func:`masonry.curves.dynamicImbalance` [-]; ``too_fast``: whether it is more than a push
+- ``initial_stiffness_kN_per_mm``: as :func:`masonry.read.curves.initialStiffness` fits it
+- with --lean, which leaves no frames to measure: the numbers of :func:`masonry.read.measure.pushNumbers`, and of a wall in running
+  bond those of :func:`masonry.read.measure.patternNumbers` and its ``failure_mode`` (:func:`masonry.read.measure.failureMode`)
+- ``dynamic_imbalance``: as of :func:`masonry.read.curves.dynamicImbalance` [-]; ``too_fast``: whether it is more than a push
   may have
 - ``wall``, of a whole wall in running bond in the x-z plane that a platen pushes: ``length_m``, ``height_m``,
   ``thickness_m``, ``courses``, ``half_units`` (the length, in half units), ``unit_m`` (length, thickness and height of a
@@ -83,8 +83,8 @@ A run that follows a history has these, too:
   ``sha256`` of its contents
 - ``negative_peak_base_shear_kN``, ``displacement_at_negative_peak_mm``: the smallest force, which is the peak of the
   other side
-- ``cycles``: a list with the numbers of every whole cycle, as :func:`masonry.curves.cycleNumbers` finds them
-- ``damped_share``: as of :func:`masonry.curves.dampedShare` [-]
+- ``cycles``: a list with the numbers of every whole cycle, as :func:`masonry.read.curves.cycleNumbers` finds them
+- ``damped_share``: as of :func:`masonry.read.curves.dampedShare` [-]
 
 A run that records the means of a joint has these, with its name before them if it has one:
 
@@ -95,7 +95,6 @@ A run that records the means of a joint has these, with its name before them if 
 """
 
 import contextlib
-import csv
 import errno
 import fcntl
 import json
@@ -105,11 +104,10 @@ import re
 import shutil
 import socket
 import stat
-import sys
 import time
 
-from .errors import Refused, Unwritable
-from .progress import say
+from ..basics import Refused, Unwritable, say
+from ..read.files import readWhole
 
 #: Files that a run writes, and those that are drawn of it; * is a number.
 FILES = [
@@ -132,22 +130,6 @@ OURS = re.compile(
 )
 LOCK = "run.lock"  # in the folder of a run while it goes on, and after it was killed
 NO_LOCKS = {errno.ENOLCK, errno.EOPNOTSUPP, errno.ENOSYS}  # of the file system
-
-
-def readWhole(path, sizeOf=None):
-    """The bytes of a file. Raises OSError for what is no file, too: a pipe never ends, and a device has no end.
-
-    :param sizeOf: function of the first 64 bytes that gives how many the file should have; of a longer one, which may be
-        an endless hole, one byte more is read
-    """
-    number = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
-    with open(number, "rb") as f:
-        if not stat.S_ISREG(os.fstat(number).st_mode):
-            raise OSError(errno.EINVAL, "it is no regular file", path)
-        head = f.read(64)
-        if not sizeOf:
-            return head + f.read()
-        return head + f.read(max(0, sizeOf(head) + 1 - len(head)))
 
 
 class Lock:
@@ -481,75 +463,3 @@ class Results:
             with contextlib.suppress(OSError):
                 os.remove(path + ".new")
             raise Unwritable(f"cannot write {path}: {error.strerror}") from None
-
-
-def _read(path):
-    """Text of a file of a run."""
-    try:
-        return readWhole(path).decode()
-    except OSError as error:
-        raise Refused(f"cannot read {path}: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise Refused(f"cannot read {path}: it is no text") from None
-
-
-def readCurve(directory):
-    """curve.csv of a run as a dict of column name -> list of numbers. Raises Refused if there is none."""
-    path = os.path.join(directory, "curve.csv")
-    lines = list(csv.reader(_read(path).splitlines()))
-    if len(lines) < 2:
-        raise Refused(f"{path}: there is no row of numbers")
-    columns, rows, problems = lines[0], [], []
-    for number, line in enumerate(lines[1:], start=2):
-        try:
-            rows.append([float(v) for v in line])
-        except ValueError as error:
-            problems.append(f"{path}, line {number}: {error}")
-        else:
-            if len(line) != len(columns):
-                problems.append(
-                    f"{path}, line {number}: {len(line)} numbers in {len(columns)} columns"
-                )
-            elif not all(map(math.isfinite, rows[-1])):
-                problems.append(f"{path}, line {number}: a number is not finite")
-    if problems:
-        raise Refused("\n".join(problems[:10]))
-    return {c: [row[i] for row in rows] for i, c in enumerate(columns)}
-
-
-def readRun(directory):
-    """run.json of a run as a dict; this module's docstring lists its keys. Raises Refused if there is none."""
-    path = os.path.join(directory, "run.json")
-    try:
-        run = json.loads(_read(path))
-    except json.JSONDecodeError as error:
-        raise Refused(f"{path}: {error}") from None
-    if not isinstance(run, dict):
-        raise Refused(f"{path}: is no record of a run")
-    return run
-
-
-@contextlib.contextmanager
-def filesOf(directory):
-    """Use the files of a run. What they lack, since they are damaged or not of a finished run, becomes Refused."""
-    try:
-        yield
-    except (KeyError, IndexError, AttributeError, TypeError, SyntaxError) as problem:
-        raise Refused(
-            f"{directory}: these are not the files of a finished run ({type(problem).__name__}: {problem})"
-        ) from problem
-
-
-def onFolder(act, words):
-    """Main program of what reads a run: calls ``act`` with the folder that is the only word. Returns the exit status."""
-    try:
-        if len(words) != 1:
-            raise Refused("name one folder of results, for example results/wall_comp4")
-        act(words[0])
-    except Refused as problem:
-        print(problem, file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"cannot write to {words[0]}: {error.strerror}", file=sys.stderr)
-        return 2
-    return 0

@@ -4,15 +4,11 @@ import subprocess
 import sys
 
 from yade import O
-from yade.wrapper import MasonryMat, MasonryZones
+from yade.wrapper import MasonryZones
 
-from ._masonry import criticalTimeStep
-from .errors import Unwritable
-from .options import check, units
-from .scene import connect, engine, engines
-
-GRAVITY = 9.81  # [m/s²]
-
+from .._masonry import criticalTimeStep
+from ..basics import GRAVITY, Unwritable
+from .blocks import connect, engine, engines, units
 
 class Model:
     """Blocks, joints and loads of a scene. A subclass says what they are.
@@ -27,17 +23,15 @@ class Model:
     - ``energy`` and ``integrator``: these engines
     - ``limit``: the stable limit of the time step [s]; ``subcontacts``: how many points the joints have
 
-    :param args: the options of :func:`masonry.options.parser`
+    :param args: the options of :func:`masonry.scene.options.parser`
     :param unit: MasonryMat of the bricks
     :param joints: dict of MasonryJoint by name
-    :param problems: what is wrong with the options for this model, to be refused with the rest
     """
 
     title = ""
-    columns = []  # of curve.csv: see masonry.columns
+    columns = []  # of curve.csv: see masonry.assembly.columns
 
-    def __init__(self, args, unit, joints, problems=()):
-        check(args, joints, problems)
+    def __init__(self, args, unit, joints):
         self.args, self.unit, self.joints = args, unit, joints
         self.blocks, self.bricks, self.loads, self.zones = {}, {}, {}, None
         # Heavier blocks that are attracted less weigh the same; waves are slower and the time step is longer.
@@ -51,7 +45,7 @@ class Model:
         raise NotImplementedError
 
     def read(self):
-        """What the columns are made of, measured now: see :mod:`masonry.columns`."""
+        """What the columns are made of, measured now: see :mod:`masonry.assembly.columns`."""
         raise NotImplementedError
 
     def room(self):
@@ -72,7 +66,7 @@ class Model:
     def draw(self, directory):
         """Draw the figures of a run that has ended, in a program of its own. Raises Unwritable if that fails."""
         # -P: nothing of the present folder is run
-        command = [sys.executable, "-P", "-m", "masonry.figures", directory]
+        command = [sys.executable, "-P", "-m", "masonry.read.figures", directory]
         if subprocess.run(command).returncode:
             raise Unwritable("the figures are not drawn")
 
@@ -96,8 +90,8 @@ class Model:
         :param damping: kind of the damping, local or combined
         :param divisions: cells of a deformable brick along its sides
         :param gravity: downwards [m/s²]
-        :param rule: as of :func:`masonry.scene.connect`
-        :param functors: as of :func:`masonry.scene.engines`
+        :param rule: as of :func:`masonry.assembly.blocks.connect`
+        :param functors: as of :func:`masonry.assembly.blocks.engines`
         :param plane: whether blocks move in the x-z plane only
         """
         args = self.args

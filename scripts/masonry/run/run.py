@@ -29,14 +29,13 @@ from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
 from . import batch
-from ._masonry import commit
+from .._masonry import commit
 from .checkpoints import NAME, alike, loadCheckpoint, readProgress, saveCheckpoint
-from .columns import meanings, names
-from .errors import Collapsed, Interrupted, Refused, Unwritable
-from .options import UNITS
+from ..assembly.columns import meanings, names
+from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
 from .plotting import live
 from .presets import presetNote, presetOf
-from .progress import Progress, say
+from .progress import Progress
 from .results import Results
 
 PARTS = "setup", "steps", "rows", "frames"  # of a run's time
@@ -78,7 +77,7 @@ class Run:
     interrupted or fails before leaves them as they are.
 
     :param name: name of the scene; its results go to ``results/<name>`` if the options do not say otherwise
-    :param args: the options of :func:`masonry.options.parser`
+    :param args: the options of :func:`masonry.scene.options.parser`
     """
 
     def __init__(self, name, args):
@@ -107,7 +106,7 @@ class Run:
 
         No file is written yet.
 
-        :param model: a :class:`masonry.model.Model`
+        :param model: a :class:`masonry.assembly.model.Model`
         """
         args = self.args
         self.model, columns = model, names(model.columns)
@@ -294,7 +293,7 @@ class Run:
         return reading
 
     def flush(self):
-        """Write the readings that wait as rows of curve.csv. Raises as :meth:`masonry.results.Results.append` does."""
+        """Write the readings that wait as rows of curve.csv. Raises as :meth:`masonry.run.results.Results.append` does."""
         began = time.perf_counter()
         rows = [
             [value(reading) for value in self._values] for reading in self._readings
@@ -475,12 +474,11 @@ class Run:
             self.model.leave(self.results.directory)
 
     def _describe(self):
-        """Fill run.json; the docstring of :mod:`masonry.results` lists its keys."""
+        """Fill run.json; the docstring of :mod:`masonry.run.results` lists its keys."""
         at, model, run = self.at, self.model, self.results.run
         run.update(
             scene=self.name,
             options=self._options(),
-            option_units=UNITS,
             preset=self.preset,
             columns=meanings(model.columns),
             versions={

@@ -1,21 +1,8 @@
-"""What a run says on the terminal."""
+"""How far a run has come, on the terminal."""
 
 import contextlib
 import sys
 import time
-
-# A terminal or a log that has no ³ or µ shows their numbers; that is no reason to stop a run either.
-for _stream in (sys.stdout, sys.stderr):
-    with contextlib.suppress(AttributeError, ValueError, OSError):
-        if _stream.errors in ("strict", "surrogateescape"):
-            _stream.reconfigure(errors="backslashreplace")
-
-
-def say(text, stream=None):
-    """Print a text. A terminal that is gone or a log that is full is no reason to stop a run."""
-    with contextlib.suppress(OSError):
-        print(text, file=stream, flush=True)
-
 
 class Progress:
     """How far a stage has come: on a terminal one line that is kept up to date, elsewhere a line every tenth."""

@@ -8,9 +8,9 @@ import sys
 
 import numpy as np
 
-from .errors import Refused
+from ..basics import Refused
 from .figures import _drawing, _save, _style
-from .results import readCurve, readRun
+from .files import readCurve, readRun
 
 #: Colours that differ in print, also for those who do not tell red from green (Okabe and Ito, 2008), and dashes.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#555555"]

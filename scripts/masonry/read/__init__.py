@@ -1,0 +1,8 @@
+"""What reads the files of a run, and needs no YADE.
+
+- :mod:`masonry.read.files`: curve.csv and run.json; :mod:`masonry.read.frames`: the frames for ParaView
+- :mod:`masonry.read.curves`, :mod:`masonry.read.loops`: numbers of a curve, and of loops
+- :mod:`masonry.read.measure`: all numbers of a run, as a program, too
+- :mod:`masonry.read.figures`, :mod:`masonry.read.comparison`: its figures, and those of several runs
+- :mod:`masonry.read.viewer`: its pictures and films by ParaView, which :mod:`masonry.read.viewer_scene` draws
+"""

@@ -1,0 +1,9 @@
+"""A run: its progress, checkpoints, folder of results, presets, and rows of a table in YADE's batch format.
+
+- :mod:`masonry.run.run`: a run in stages
+- :mod:`masonry.run.results`: the files that a run leaves
+- :mod:`masonry.run.checkpoints`: the state of a scene on disk
+- :mod:`masonry.run.presets`: options that trade accuracy for time
+- :mod:`masonry.run.batch`: rows of a table for ``yade-batch``
+- :mod:`masonry.run.progress`, :mod:`masonry.run.plotting`: a run on the terminal, and in ``yade.plot``
+"""
