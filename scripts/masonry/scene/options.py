@@ -9,6 +9,7 @@ import sys
 from ..run import batch
 from . import fields, history
 from ..run.checkpoints import alike, readProgress
+from ..assembly.blocks import LAWS
 from ..basics import Refused
 from ..run.presets import BOUND, HARMLESS, PRESETS, USUAL, asOption
 
@@ -335,9 +336,11 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     )
     p.add_argument(
         "--joints",
-        choices=["softening", "brittle", "cyclic"],
-        default="softening",
-        help="the paper's law, brittle Coulomb slip, or the cyclic law, which is made for loads that come back",
+        choices=[*LAWS, "brittle"],
+        default=next(iter(LAWS)),
+        help="; ".join(
+            [*(law["meaning"] for law in LAWS.values()), "brittle Coulomb slip"]
+        ),
     )
     p.add_argument(
         "--joint-stiffness",
