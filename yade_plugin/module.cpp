@@ -1,12 +1,11 @@
 // The Python module masonry._masonry. When it is imported it checks whether it fits the running YADE, and registers its
 // classes there.
+#include "adapters/FunctorOfLaw.hpp"
 #include "adapters/Gl1_MasonryBlock.hpp"
 #include "adapters/Gl1_MasonryJointPhys.hpp"
 #include "adapters/GlExtra_MasonryLegend.hpp"
 #include "adapters/Ig2_MasonryBlock_Polyhedra_MasonryJointGeom.hpp"
 #include "adapters/Ig2_Polyhedra_Polyhedra_MasonryJointGeom.hpp"
-#include "adapters/Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening.hpp"
-#include "adapters/Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening.hpp"
 #include "adapters/MasonryBlock.hpp"
 #include "adapters/MasonryEnergy.hpp"
 #include "adapters/MasonryIntegrator.hpp"
@@ -24,13 +23,6 @@
 namespace {
 
 using namespace masonry;
-
-template <class T> void enroll(std::vector<std::string>& names) {
-    Singleton<yade::ClassFactory>::instance().registerFactorable(
-        T::className, [] { return static_cast<yade::Factorable*>(new T); },
-        [] { return shared_ptr<yade::Factorable>(new T); }, [] { return static_cast<void*>(new T); });
-    names.push_back(T::className);
-}
 
 // Converts lists between C++ and Python for a type for which the host has no such converter.
 template <class T, class ToPython, class FromPython> struct Sequence {
@@ -123,8 +115,8 @@ static void registerAll() {
         enroll<Ig2_Polyhedra_Polyhedra_MasonryJointGeom>(names);
     }
     enroll<Ip2_MasonryMat_MasonryMat_MasonryJointPhys>(names);
-    enroll<Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening>(names);
-    enroll<Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening>(names);
+    for (const auto enrolment : enrolmentsOfFunctors())
+        enrolment(names);
     enroll<Gl1_MasonryBlock>(names);
     enroll<Gl1_MasonryJointPhys>(names);
     enroll<GlExtra_MasonryLegend>(names);

@@ -1,6 +1,9 @@
 // Takes the properties of a joint from any bytes. They must be refused with an error, or give a joint whose tables and
 // law fulfil what PROMISE() checks here.
-#include "law/piecewise_softening/JointLaw.hpp"
+#include "law/Laws.hpp"
+#include "law/common/ColumnsSideBySide.hpp"
+#include "law/piecewise_softening/PiecewiseLaw.hpp"
+#include "law/piecewise_softening/PiecewiseSideBySide.hpp"
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -121,10 +124,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             check(table), check(table, dice.factor()), check(table, std::min(0.999999 / table.steepest(), 1e12));
         }
 
-    const auto problems = p.problems();
-    std::unique_ptr<JointLaw> law;
+    const auto problems = problemsOf(p);
+    std::shared_ptr<const PiecewiseLaw> law;
     try {
-        law = std::make_unique<JointLaw>(p);
+        law = std::make_shared<const PiecewiseLaw>(p);
     } catch (const std::invalid_argument& refusal) {
         PROMISE(!problems.empty() && *refusal.what());
         return 0;
@@ -133,15 +136,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check(law->tension()), check(law->shear());
     const double softer = 1 / (1 + std::abs(dice.factor()));
     const ElasticStiffness k{p.normalStiffness * softer, p.shearStiffness * softer};
-    const Equations equations = law->equations(k);
+    const PiecewiseEquations equations = law->equations(k);
     check(law->tension(), equations.normalShift), check(law->shear(), equations.shearShift);
     for (const auto& sentence : law->snapsBack(k, 0.1))
         PROMISE(!sentence.empty());
-    JointState state;
+    ColumnsSideBySide<PiecewiseLaw> columns(law, k, 1, 1);
     for (int step = 0; step < 24; ++step) {
         const auto jump = [&] { return (dice.byte() - 127) * 1e-6 * dice.factor(); };
-        const JointState old = state;
-        law->advance(k, state, {jump(), {jump(), jump()}});
+        const PiecewiseState old = columns.get(0, 0);
+        columns.advanceOne(0, 0, {jump(), {jump(), jump()}});
+        const PiecewiseState state = columns.get(0, 0);
         if (dice.wild()) continue; // numbers of any size may overflow
         PROMISE(std::isfinite(state.normalStress) && std::isfinite(state.shearStress.a + state.shearStress.b));
         PROMISE(state.tensionDamage >= old.tensionDamage && state.tensionDamage <= 1);

@@ -98,9 +98,9 @@ def state(interactions):
 CASES = {
     "rigid": {},
     "rigid in space": dict(turn=Quaternion(Vector3(1, 2, 0.5).normalized(), 0.7)),
-    "cyclic": dict(cyclic=True, shearStiffnessLoss=0.3),
+    "cyclic": dict(law="cyclic", shearStiffnessLoss=0.3),
     "cyclic in space": dict(
-        cyclic=True,
+        law="cyclic",
         dilatancyDecay=100,
         turn=Quaternion(Vector3(1, 2, 0.5).normalized(), 0.7),
     ),

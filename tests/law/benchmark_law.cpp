@@ -1,8 +1,11 @@
 // Measures the time that the law takes for one subcontact and one step, in columns and one by one. It is a program of
 // its own and not a test:
 //   cmake -S . -B build -DMASONRY_BENCHMARKS=ON && make -C build benchmark_law && build/benchmark_law
+#include "law/common/ColumnsSideBySide.hpp"
 #include "law/cyclic_softening/CyclicColumns.hpp"
-#include "law/piecewise_softening/JointColumns.hpp"
+#include "law/cyclic_softening/CyclicLaw.hpp"
+#include "law/piecewise_softening/PiecewiseLaw.hpp"
+#include "law/piecewise_softening/PiecewiseSideBySide.hpp"
 #include <algorithm>
 #include <benchmark/benchmark.h>
 
@@ -12,7 +15,7 @@ namespace {
 
 constexpr int joints = 816, points = 12; // as many subcontacts as COMP-4 has
 constexpr int size = joints * points;
-constexpr int most = JointColumns::most;
+constexpr int most = Columns::most;
 
 // The first jump brings subcontacts into a regime; the jumps after it keep them there.
 struct Regime {
@@ -56,7 +59,7 @@ void report(benchmark::State& state) {
 template <class LawType> void columns(benchmark::State& state, const Regime& regime) {
     const auto law = std::make_shared<const LawType>(kind(regime));
     const auto& bed = law->properties();
-    ColumnsWith<LawType> all(law, {bed.normalStiffness, bed.shearStiffness}, joints, points);
+    ColumnsSideBySide<LawType> all(law, {bed.normalStiffness, bed.shearStiffness}, joints, points);
     std::vector<double> n(joints), a(joints), sigma(joints);
     const auto jump = [&](double sign) {
         for (int j = 0; j < joints; ++j) {
@@ -86,10 +89,10 @@ template <class LawType> void columns(benchmark::State& state, const Regime& reg
 }
 
 void oneByOne(benchmark::State& state, const Regime& regime) {
-    const JointLaw law(kind(regime));
+    const PiecewiseLaw law(kind(regime));
     const auto& bed = law.properties();
-    const Equations equations = law.equations({bed.normalStiffness, bed.shearStiffness});
-    std::vector<JointState> all(size);
+    const PiecewiseEquations equations = law.equations({bed.normalStiffness, bed.shearStiffness});
+    std::vector<PiecewiseState> all(size);
     for (auto& s : all)
         law.advance(equations, s, regime.before);
     double sign = 1;
@@ -102,9 +105,9 @@ void oneByOne(benchmark::State& state, const Regime& regime) {
 }
 
 void energies(benchmark::State& state, const Regime& regime) {
-    const auto law = std::make_shared<const JointLaw>(kind(regime));
+    const auto law = std::make_shared<const PiecewiseLaw>(kind(regime));
     const auto& bed = law->properties();
-    JointColumns all(law, {bed.normalStiffness, bed.shearStiffness}, joints, points);
+    ColumnsSideBySide<PiecewiseLaw> all(law, {bed.normalStiffness, bed.shearStiffness}, joints, points);
     for (int point = 0; point < points; ++point)
         for (int j = 0; j < joints; ++j)
             all.advanceOne(point, j, regime.before);
@@ -119,7 +122,7 @@ void energies(benchmark::State& state, const Regime& regime) {
 int main(int count, char** words) {
     for (const auto& regime : regimes) {
         const auto named = [&](const char* way) { return std::string(way) + "/" + regime.name; };
-        benchmark::RegisterBenchmark(named("columns").c_str(), columns<JointLaw>, regime)->Iterations(300);
+        benchmark::RegisterBenchmark(named("columns").c_str(), columns<PiecewiseLaw>, regime)->Iterations(300);
         benchmark::RegisterBenchmark(named("cyclic columns").c_str(), columns<CyclicLaw>, regime)->Iterations(300);
         benchmark::RegisterBenchmark(named("one by one").c_str(), oneByOne, regime)->Iterations(300);
     }

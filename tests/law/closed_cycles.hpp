@@ -26,7 +26,7 @@ struct DrawnJoint {
 
     static DrawnJoint of(Chance& chance) {
         JointProperties p;
-        p.cyclic = true;
+        p.law = "cyclic";
         p.normalStiffness = 1e11;
         p.shearStiffness = p.normalStiffness * chance.between(0.2, 1);
         p.friction = chance.between(0, 1.2);
@@ -80,7 +80,7 @@ struct Balance {
 // The path from a new joint through the corners, and back to no displacement; `laps` times, every side in equal steps.
 inline Balance walk(const CyclicLaw& law, const ElasticStiffness& k, const std::vector<Corner>& corners, int steps,
                     int laps) {
-    JointState state;
+    CyclicState state;
     Balance balance;
     Corner at{};
     for (int lap = 0; lap < laps; ++lap)

@@ -1,7 +1,7 @@
 // What the cyclic law promises (yade_plugin/law/cyclic_softening/README.md), at the bed joint of the CS walls and at
 // joints drawn at random. The main function of the tests stands in test_law.cpp.
 #include "closed_cycles.hpp"
-#include "law/piecewise_softening/JointLaw.hpp"
+#include "law/piecewise_softening/PiecewiseLaw.hpp"
 #include <doctest/doctest.h>
 #include <functional>
 
@@ -11,7 +11,7 @@ namespace {
 
 JointProperties cyclic() { // the bed joint; every loss of stiffness or bond is off until a test turns it on
     JointProperties p;
-    p.cyclic = true;
+    p.law = "cyclic";
     p.shearStiffnessLoss = p.compressionStiffnessLoss = p.bondLossByCrushing = 0;
     return p;
 }
@@ -35,12 +35,12 @@ ElasticStiffness lumped(const JointProperties& p) { // with calcium-silicate uni
 
 double length(const Shear& v) { return std::sqrt(v.a * v.a + v.b * v.b); }
 double total(const Energies& e) { return e.tension + e.shear + e.compression; }
-double elasticOpening(const JointState& s) { return s.opening + s.crushing - s.dilation; }
+double elasticOpening(const CyclicState& s) { return s.opening + s.crushing - s.dilation; }
 
 template <class L> struct PathOf {
     L law;
     ElasticStiffness k;
-    JointState state{};
+    CyclicState state{};
     double work = 0, lost = 0; // [J/m²]
 
     PathOf(const JointProperties& p, const ElasticStiffness& stiffness) : law(p), k(stiffness) {}
@@ -82,7 +82,7 @@ TEST_CASE("cyclic: pulled open, or sheared under constant normal stress, a joint
         for (double sigma : {0.0, -0.1e6, -0.5e6, 0.05e6}) {
             const bool pulled = sigma > 0;
             Path path(p);
-            PathOf<JointLaw> paper(p);
+            PathOf<PiecewiseLaw> paper(p);
             if (!pulled) path.press(sigma), paper.move({sigma / p.normalStiffness, {}}, 10);
             double off = 0, size = pulled ? p.tensileStrength : p.cohesion - sigma * p.friction;
             for (double end : {2e-6, 2e-4, 8e-3})

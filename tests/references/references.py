@@ -203,7 +203,7 @@ def wall(
     ]
     crack = MasonryJoint(name="crack", tensileStrength=0.2e6, cohesion=0.4e6, cap=False)
     for joint in (*joints, crack) if cyclic else ():
-        joint.cyclic, joint.shearStiffnessLoss = True, 0.3
+        joint.law, joint.shearStiffnessLoss = "cyclic", 0.3
     load = MasonryLoad(
         body=top,
         point=turn * Vector3(0.4 * length, THICKNESS / 3, height),

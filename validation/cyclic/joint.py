@@ -164,9 +164,7 @@ def bedJoint(law, settings=()):
 
     The block's own jointSet does not matter, as there is no other joint.
     """
-    joint = MasonryJoint(name="bed")
-    if law == "cyclic":
-        joint.cyclic = True
+    joint = MasonryJoint(name="bed", law=law)
     applySettings({"bed": joint}, settings)
     return joint
 

@@ -364,6 +364,14 @@ private:
     }
 };
 
+// Makes a class known to YADE, which then creates objects by its name, and adds the name to a list.
+template <class T> void enroll(std::vector<std::string>& names) {
+    Singleton<yade::ClassFactory>::instance().registerFactorable(
+        T::className, [] { return static_cast<yade::Factorable*>(new T); },
+        [] { return shared_ptr<yade::Factorable>(new T); }, [] { return static_cast<void*>(new T); });
+    names.push_back(T::className);
+}
+
 // The number by which YADE's dispatchers know a class of materials, geometries or physics. Stands first in the class.
 #define MASONRY_DISPATCHED(Class, HostBase)                                                                            \
 public:                                                                                                                \

@@ -64,11 +64,14 @@ private:
             drawing.values.clear();
             for (int p = 0; p < joint.phys->points(); ++p) {
                 const auto s = joint.phys->state(p);
-                const double crushed = joint.phys->law().compressionDamage(joint.phys->stiffness(), s);
+                const auto shown = [&](const JointField& field) {
+                    return joint.phys->home->columns->shown(p, joint.phys->index, field);
+                };
                 drawing.values.push_back(jointSettings.colours == "opening" ? s.opening
                                          : jointSettings.colours == "regime"
                                              ? double(s.regime)
-                                             : std::max({s.tensionDamage, s.shearDamage, crushed}));
+                                             : std::max({shown(field::damageTension), shown(field::damageShear),
+                                                         shown(field::damageCompression)}));
                 if (jointSettings.colours == "opening") largestOpening = std::max(largestOpening, s.opening);
             }
             drawing.drawn = false;

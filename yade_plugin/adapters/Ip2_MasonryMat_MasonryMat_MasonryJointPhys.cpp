@@ -29,7 +29,7 @@ void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::assign(const MasonryMat& mat1, 
     const double d1 = r.rigid(0) ? r.distance(0) : 0, d2 = r.rigid(1) ? r.distance(1) : 0;
     const auto k = inSeriesWithUnits(*joint, d1 / mat1.young + d2 / mat2.young,
                                      d1 / mat1.shearModulus() + d2 / mat2.shearModulus());
-    const auto problems = joint->law()->snapsBack(k, d1 + d2);
+    const auto problems = joint->ownLaw()->snapsBack(k, d1 + d2);
     if (!problems.empty())
         throw std::invalid_argument("joint \"" + joint->name +
                                     "\": " + joined(problems, ("\njoint \"" + joint->name + "\": ").c_str()));

@@ -1,16 +1,20 @@
-#include "Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening.hpp"
-#include "scene/JointFunctor.hpp"
-
-template class masonry::Adapter<masonry::Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening, yade::LawFunctor>;
-BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening)
+#include "FunctorOfLaw.hpp"
 
 namespace masonry {
 
-bool Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening::go(shared_ptr<yade::IGeom>& geom,
-                                                                   shared_ptr<yade::IPhys>& phys,
-                                                                   yade::Interaction* interaction) {
-    advanceJoint(*scene, *geom, *phys, *interaction, false);
-    return true;
-}
+class Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening
+    : public FunctorOfLaw<Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening> {
+public:
+    static constexpr const char* className = "Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening";
+    static constexpr const char* law = "softening";
+    static constexpr const char* doc =
+        "The joint law of the paper at every subcontact, one joint at a time: tension cut-off, Coulomb slip and "
+        "elliptical cap with piecewise linear softening (paper §3). Its parameters are those of the MasonryJoint "
+        "objects, whose law must be \"softening\" or which must be elastic. MasonryJointLoop is the fast way through "
+        "the same law and the same "
+        "columns.";
+};
 
 } // namespace masonry
+
+MASONRY_FUNCTOR_OF_LAW(Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening)

@@ -1,5 +1,5 @@
 #pragma once
-#include "law/JointState.hpp"
+#include "law/common/JointState.hpp"
 #include "scene/Collapse.hpp"
 #include "scene/GravityWork.hpp"
 #include "scene/Ledger.hpp"

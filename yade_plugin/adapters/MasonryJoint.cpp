@@ -1,5 +1,7 @@
 #include "MasonryJoint.hpp"
-#include "law/piecewise_softening/JointLaw.hpp"
+#include "law/Laws.hpp"
+#include "law/piecewise_softening/PiecewiseLaw.hpp"
+#include "scene/JointFunctor.hpp"
 
 template class masonry::Adapter<masonry::MasonryJoint, yade::Serializable>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJoint)
@@ -10,7 +12,7 @@ void MasonryJoint::postLoad() {
     if (!direction.allFinite()) throw std::invalid_argument("joint \"" + name + "\": direction must be finite numbers");
     const auto wrong = fixed_.problems({"normalStiffness", "shearStiffness"}, {normalStiffness, shearStiffness});
     if (!wrong.empty()) throw std::invalid_argument("joint \"" + name + "\": " + joined(wrong, "; "));
-    law_ = Law::of(*this); // throws std::invalid_argument for wrong properties
+    ownLaw_ = lawOf(*this); // throws std::invalid_argument for wrong properties
     ++changes;
 }
 
@@ -24,7 +26,7 @@ py::list MasonryJoint::compressionCurve(const std::vector<double>& closures) con
     py::list strengths;
     for (double u : closures) {
         if (!std::isfinite(u)) throw std::invalid_argument("closure " + text(u) + " m must be a finite number");
-        strengths.append(law_->compression().strength(u));
+        strengths.append(ownLaw_->compression().strength(u));
     }
     return strengths;
 }
@@ -37,9 +39,26 @@ py::dict MasonryJoint::softening() const {
         return all;
     };
     py::dict both;
-    both["tension"] = rows(law_->tension());
-    both["shear"] = rows(law_->shear());
+    both["tension"] = rows(ownLaw_->tension());
+    both["shear"] = rows(ownLaw_->shear());
     return both;
+}
+
+py::list MasonryJoint::listOfLaws() {
+    py::list all;
+    for (const auto& law : laws()) {
+        py::list read;
+        describe([&](const char* property, auto, const Property&) {
+            if (law.reads(property)) read.append(property);
+        });
+        py::dict one;
+        one["name"] = law.name;
+        one["meaning"] = law.meaning;
+        one["functor"] = functorsOfLaws()[law.name];
+        one["properties"] = read;
+        all.append(one);
+    }
+    return all;
 }
 
 shared_ptr<MasonryJoint> MasonryJoint::brittle() const {

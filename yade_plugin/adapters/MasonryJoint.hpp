@@ -1,6 +1,6 @@
 #pragma once
 #include "Adapter.hpp"
-#include "law/Law.hpp"
+#include "law/common/Law.hpp"
 #include "scene/Fixed.hpp"
 #include <memory>
 
@@ -26,13 +26,11 @@ public:
               described("Applies to joints whose normal lies within 30° of this direction, either sense; zero: any"));
     }
 
-    using JointProperties::problems;
-
     MasonryJoint() { postLoad(); }
     void postLoad();
 
-    // The law with these properties. It is made anew whenever a property is set.
-    const std::shared_ptr<const Law>& law() const { return law_; }
+    // The law `law` with these properties. It is made anew whenever a property is set.
+    const std::shared_ptr<const Law>& ownLaw() const { return ownLaw_; }
 
     // To be called when a joint of this kind is made: its stiffness is fixed then.
     void madeIn(const yade::Scene& scene) const { fixed_.fix(scene, {normalStiffness, shearStiffness}); }
@@ -47,15 +45,21 @@ public:
                  "The rows (displacement ratio, damage) in use: {'tension': [...], 'shear': [...]}.")
             .def("brittleCoulomb", &MasonryJoint::brittle,
                  "The same joint as a brittle Coulomb slip joint: tension to zero and cohesion to its residual at the "
-                 "first yield, no cap. Returns a new object.");
+                 "first yield, no cap. Returns a new object.")
+            .def("laws", &MasonryJoint::listOfLaws,
+                 "The laws that a joint can follow, the default one first: a list of dicts with name (the value of "
+                 "`law`), meaning, functor (the name of its class of Law2 functors) and properties (the names of the "
+                 "properties that it reads beside the stiffnesses).")
+            .staticmethod("laws");
     }
 
 private:
     py::list compressionCurve(const std::vector<double>& closures) const;
     py::dict softening() const;
+    static py::list listOfLaws();
     shared_ptr<MasonryJoint> brittle() const;
 
-    std::shared_ptr<const Law> law_;
+    std::shared_ptr<const Law> ownLaw_;
     mutable Fixed fixed_;
 };
 

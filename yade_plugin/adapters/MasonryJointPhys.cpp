@@ -34,15 +34,14 @@ Vector3r MasonryJointPhys::dissipated() {
     return sum;
 }
 
-// Holds the two stiffnesses [Pa/m], then of every subcontact the seventeen numbers of its state and the energies
-// dissipated in tension, shear and compression [J/m²].
+// Holds the two stiffnesses [Pa/m], then of every subcontact the numbers of its law and the energies dissipated in
+// tension, shear and compression [J/m²].
 std::vector<double> MasonryJointPhys::record() {
     if (!home) return {};
     home->check();
     std::vector<double> flat{stiffness().normal, stiffness().shear};
     for (int p = 0; p < points(); ++p) {
-        auto s = state(p);
-        numbers(s, [&](double& value) { flat.push_back(value); });
+        home->columns->read(p, index, [&](const char*, double number) { flat.push_back(number); });
         const auto e = lost(p);
         flat.insert(flat.end(), {e.tension, e.shear, e.compression});
     }
@@ -50,23 +49,22 @@ std::vector<double> MasonryJointPhys::record() {
 }
 
 void MasonryJointPhys::setRecord(const std::vector<double>& flat) {
-    constexpr std::size_t width = 17 + 3;
     if (flat.empty()) return;
-    const bool whole = flat.size() >= 2 && (flat.size() - 2) % width == 0;
-    if (!whole || !loaded_ || !(flat[0] > 0) || !(flat[1] > 0))
-        throw std::runtime_error("saved file is damaged at the state of a joint");
+    const auto damaged = std::runtime_error("saved file is damaged at the state of a joint");
+    if (flat.size() < 2 || !loaded_ || !(flat[0] > 0) || !(flat[1] > 0)) throw damaged;
+    const ElasticStiffness k{flat[0], flat[1]};
+    const std::size_t ofEnergies = 3;
+    const std::size_t width = JointStates(loaded_, k, 1, 1).columns->numbersOfState() + ofEnergies;
+    if ((flat.size() - 2) % width != 0) throw damaged;
     const int count = int((flat.size() - 2) / width);
-    home.reset(new JointStates(loaded_, {flat[0], flat[1]}, 1, count));
+    home.reset(new JointStates(loaded_, k, 1, count));
     index = 0;
     loaded_.reset();
     auto next = flat.begin() + 2;
     for (int p = 0; p < count; ++p) {
-        JointState s;
-        numbers(s, [&](double& value) { value = *next++; });
-        const Energies e{next[0], next[1], next[2]};
-        next += 3;
-        home->columns->set(p, 0, s);
-        home->columns->setDissipated(p, 0, e);
+        home->columns->write(p, 0, [&](const char*, double& number) { number = *next++; });
+        home->columns->setDissipated(p, 0, {next[0], next[1], next[2]});
+        next += ofEnergies;
     }
 }
 
@@ -78,51 +76,49 @@ template <class F> py::list MasonryJointPhys::perSubcontact(F&& value) {
     if (!home) return all;
     home->check();
     for (int p = 0; p < points(); ++p)
-        all.append(value(state(p)));
+        all.append(value(p));
     return all;
 }
 
 py::list MasonryJointPhys::stress() {
-    return perSubcontact(
-        [](const JointState& s) { return Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b); });
+    return perSubcontact([this](int p) {
+        const auto s = state(p);
+        return Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b);
+    });
 }
 
 py::list MasonryJointPhys::opening() {
-    return perSubcontact([](const JointState& s) { return s.opening; });
+    return perSubcontact([this](int p) { return state(p).opening; });
 }
 
 py::list MasonryJointPhys::slip() {
-    return perSubcontact([](const JointState& s) { return s.slip; });
+    return perSubcontact([this](int p) { return shown(p, field::slip); });
 }
 
 py::list MasonryJointPhys::damage() {
-    return perSubcontact([this](const JointState& s) {
-        return Vector3r(s.tensionDamage, s.shearDamage, law().compressionDamage(stiffness(), s));
+    return perSubcontact([this](int p) {
+        return Vector3r(shown(p, field::damageTension), shown(p, field::damageShear),
+                        shown(p, field::damageCompression));
     });
 }
 
 py::list MasonryJointPhys::largest() {
-    return perSubcontact([](const JointState& s) { return py::make_tuple(s.largestOpening, s.largestClosure); });
+    return perSubcontact([this](int p) {
+        const auto& columns = *home->columns;
+        return py::make_tuple(columns.number(p, index, "largestOpening"), columns.number(p, index, "largestClosure"));
+    });
 }
 
 py::list MasonryJointPhys::yielding() {
-    return perSubcontact([this](const JointState& s) {
-        const auto& p = law().properties();
-        const auto f = law().yield(stiffness(), s);
-        const double sigma = std::abs(s.normalStress), tau = std::hypot(s.shearStress.a, s.shearStress.b);
-        const double elastic = stiffness().normal * (s.largestOpening + s.largestClosure) + stiffness().shear * s.slip;
-        const double quadratic =
-            p.capNormal * sigma * (sigma + elastic) + p.capShear * tau * (tau + elastic) + std::abs(f.cap);
-        const auto share = [](double value, double size) { return value == -1 ? -1 : size > 0 ? value / size : 0; };
-        return Vector3r(share(f.tension, sigma + p.tensileStrength + elastic),
-                        share(f.slip, tau + sigma * p.friction + p.cohesion + elastic),
-                        share(f.cap, quadratic + std::abs(p.capLinear) * sigma));
+    return perSubcontact([this](int p) {
+        const auto f = home->columns->yielding(p, index);
+        return Vector3r(f.tension, f.slip, f.cap);
     });
 }
 
 py::list MasonryJointPhys::regime() {
     static const char* const names[] = {"elastic", "opening", "slipping", "crushing"};
-    return perSubcontact([](const JointState& s) { return py::str(names[int(s.regime)]); });
+    return perSubcontact([this](int p) { return py::str(names[int(state(p).regime)]); });
 }
 
 } // namespace masonry

@@ -40,12 +40,12 @@ class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys> {
             .add_property("slip", &MasonryJointPhys::slip, "Per subcontact: accumulated plastic slip [m].")
             .add_property("damage", &MasonryJointPhys::damage,
                           "Per subcontact: damage in tension, shear and compression [-], 0 to 1.")
-            .add_property("largest", &MasonryJointPhys::largest,
-                          "Per subcontact: largest opening and largest closure so far [m]. The opening is measured "
-                          "from the place to which crushing and dilation have moved the surfaces. Of a cyclic joint "
-                          "the closure is "
-                          "kappa, which counts slip on the cap, too, and is 0 up to the elastic limit "
-                          "(yade_plugin/law/cyclic_softening/README.md).")
+            .add_property(
+                "largest", &MasonryJointPhys::largest,
+                "Per subcontact: largest opening and largest closure so far [m]. The opening is measured "
+                "from the place to which crushing and dilation have moved the surfaces. Of a joint of the "
+                "cyclic law the closure is kappa, which counts slip on the cap, too, and is 0 up to the elastic limit "
+                "(yade_plugin/law/cyclic_softening/README.md).")
             .add_property(
                 "yielding", &MasonryJointPhys::yielding,
                 "Per subcontact: yield functions F1, F2 and F3 of the paper's eqs. (8) and (9) [-]. Each is divided by "
@@ -63,7 +63,9 @@ class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys> {
     int points() const { return home ? home->columns->points() : 0; }
     const Law& law() const { return home->columns->law(); }
     const ElasticStiffness& stiffness() const { return home->columns->stiffness(); }
-    JointState state(int point) const { return home->columns->get(point, index); }
+    // What every law knows of a subcontact; `shown` gives what files show of it beside that, zero if its law does not.
+    JointState state(int point) const { return home->columns->state(point, index); }
+    double shown(int point, const JointField& field) const { return home->columns->shown(point, index, field); }
     // Energies dissipated so far by mode [J/m²].
     Energies lost(int point) const { return home->columns->dissipated(point, index); }
 

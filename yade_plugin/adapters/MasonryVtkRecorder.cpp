@@ -2,6 +2,7 @@
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
 #include "MasonryZones.hpp"
+#include "law/Laws.hpp"
 #include "scene/Blocks.hpp"
 #include "scene/SceneStore.hpp"
 #include <Eigen/Eigenvalues>
@@ -33,7 +34,7 @@ namespace masonry {
 
 namespace {
 
-struct Field { // a column of numbers in the files
+struct Field { // a column of numbers in the files; those that laws show come beside these
     const char* name;
     int components;
     Property about;
@@ -46,15 +47,10 @@ const Field fields[] = {
     {"stress", 6, number("Pa", "Stress of a zone of a deformable unit: xx, yy, zz, xy, yz, xz; zero in rigid units")},
     {"principal_stress", 3, number("Pa", "Principal stresses of a zone, the smallest first")},
     {"opening", 1, number("m", "Total opening of a subcontact; negative where it is closed")},
-    {"slip", 1, number("m", "Accumulated plastic slip of a subcontact")},
     {"slide", 3, number("m", "Slide of a subcontact since the reference state")},
     {"normal", 3, described("Unit normal of the joint in the reference state, from its first body to its second")},
     {"normal_stress", 1, number("Pa", "Normal stress, positive in tension")},
     {"shear_stress", 1, number("Pa", "Size of the shear stress")},
-    {"damage_tension", 1, number("-", "Damage in tension, 0 to 1")},
-    {"damage_shear", 1, number("-", "Damage in shear, 0 to 1")},
-    {"damage_compression", 1, number("-", "Damage in compression, 0 to 1")},
-    {"crushing", 1, number("m", "Plastic closure of a subcontact")},
     {"area", 1, number("m²", "Area of a subcontact")},
     {"joint_dissipated", 3, number("J", "Energy that the whole joint dissipated in tension, shear and compression")},
     {"regime", 1, described("Regime in the last step: 0 elastic, 1 opening, 2 slipping, 3 crushing")},
@@ -62,16 +58,54 @@ const Field fields[] = {
     {"bodies", 2, described("Ids of the two bodies of the joint")},
 };
 
-template <class Array> Array* column(vtkDataSetAttributes* data, const char* name) {
-    const auto field = std::find_if(std::begin(fields), std::end(fields),
-                                    [&](const Field& f) { return std::strcmp(f.name, name) == 0; });
+template <class Array> Array* column(vtkDataSetAttributes* data, const Field& field) {
     vtkNew<Array> array;
-    array->SetName(name);
-    array->SetNumberOfComponents(field->components);
-    if (field->about.isNumber()) array->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), field->about.unit);
+    array->SetName(field.name);
+    array->SetNumberOfComponents(field.components);
+    if (field.about.isNumber()) array->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), field.about.unit);
     data->AddArray(array);
     return array; // owned by `data`
 }
+template <class Array> Array* column(vtkDataSetAttributes* data, const char* name) {
+    return column<Array>(data, *std::find_if(std::begin(fields), std::end(fields),
+                                             [&](const Field& f) { return std::strcmp(f.name, name) == 0; }));
+}
+
+// The columns of what the laws of a scene show. Every law has the first of them, the others are zero where the law of a
+// joint does not show them.
+class LawFields {
+public:
+    LawFields(vtkDataSetAttributes* data, const std::vector<JointKind>& kinds) {
+        const auto add = [&](const JointField& field) {
+            if (!columnOf(field))
+                columns_.push_back({field.name, column<vtkDoubleArray>(data, {field.name, 1, field.about})});
+        };
+        for (const auto* field : field::always)
+            add(*field);
+        for (const auto& kind : kinds)
+            kind.states->columns->show(0, 0, [&](const JointField& field, double) { add(field); });
+    }
+    void insert(const MasonryJointPhys& phys, int point) {
+        for (auto& column : columns_)
+            column.array->InsertNextValue(0);
+        phys.home->columns->show(point, phys.index, [&](const JointField& field, double value) {
+            auto* array = columnOf(field)->array;
+            array->SetValue(array->GetNumberOfValues() - 1, value);
+        });
+    }
+
+private:
+    struct Column {
+        const char* name;
+        vtkDoubleArray* array;
+    };
+    Column* columnOf(const JointField& field) {
+        for (auto& column : columns_)
+            if (std::strcmp(column.name, field.name) == 0) return &column;
+        return nullptr;
+    }
+    std::vector<Column> columns_;
+};
 
 // Displacement of a point of the reference state that moves with a body. For a deformable unit this is the rigid part
 // of the motion.
@@ -121,6 +155,10 @@ py::dict MasonryVtkRecorder::fieldsOfFiles() {
     py::dict all;
     for (const auto& field : fields)
         all[field.name] = field.about.documentation();
+    for (const auto* field : field::always)
+        all[field->name] = field->about.documentation();
+    for (const auto& law : laws())
+        law.show([&](const JointField& field, double) { all[field.name] = field.about.documentation(); });
     return all;
 }
 
@@ -219,15 +257,10 @@ void MasonryVtkRecorder::writeJoints(const std::string& path) {
     auto* displacement = column<vtkDoubleArray>(data->GetPointData(), "displacement");
     auto* values = data->GetCellData();
     auto* opening = column<vtkDoubleArray>(values, "opening");
-    auto* slip = column<vtkDoubleArray>(values, "slip");
     auto* slide = column<vtkDoubleArray>(values, "slide");
     auto* normal = column<vtkDoubleArray>(values, "normal");
     auto* normalStress = column<vtkDoubleArray>(values, "normal_stress");
     auto* shearStress = column<vtkDoubleArray>(values, "shear_stress");
-    auto* tension = column<vtkDoubleArray>(values, "damage_tension");
-    auto* shear = column<vtkDoubleArray>(values, "damage_shear");
-    auto* compression = column<vtkDoubleArray>(values, "damage_compression");
-    auto* crushing = column<vtkDoubleArray>(values, "crushing");
     auto* area = column<vtkDoubleArray>(values, "area");
     auto* lost = column<vtkDoubleArray>(values, "joint_dissipated");
     auto* regime = column<vtkIntArray>(values, "regime");
@@ -236,6 +269,7 @@ void MasonryVtkRecorder::writeJoints(const std::string& path) {
 
     auto& store = SceneStore::of(*scene);
     store.update();
+    LawFields ofLaws(values, store.kinds);
     for (const auto& joint : store.joints) {
         const auto& geom = *joint.geom;
         const auto& phys = *joint.phys;
@@ -264,15 +298,11 @@ void MasonryVtkRecorder::writeJoints(const std::string& path) {
             const auto s = phys.state(p);
             const Vector3r jump = geom.jump(p);
             opening->InsertNextValue(s.opening);
-            slip->InsertNextValue(s.slip);
             slide->InsertNextTuple(Vector3r(jump[1] * r.tangent + jump[2] * side).data());
             normal->InsertNextTuple(r.normal.data());
             normalStress->InsertNextValue(s.normalStress);
             shearStress->InsertNextValue(std::hypot(s.shearStress.a, s.shearStress.b));
-            tension->InsertNextValue(s.tensionDamage);
-            shear->InsertNextValue(s.shearDamage);
-            compression->InsertNextValue(phys.law().compressionDamage(phys.stiffness(), s));
-            crushing->InsertNextValue(s.crushing);
+            ofLaws.insert(phys, p);
             area->InsertNextValue(geom.area(p));
             lost->InsertNextTuple(dissipated.data());
             regime->InsertNextValue(int(s.regime));

@@ -6,15 +6,20 @@ namespace masonry {
 
 std::atomic<StrayedJoint> strayed;
 
+std::map<std::string, std::string>& functorsOfLaws() {
+    static std::map<std::string, std::string> all;
+    return all;
+}
+
 void advanceJoint(yade::Scene& scene, yade::IGeom& ig, yade::IPhys& ip, const yade::Interaction& interaction,
-                  bool cyclic) {
+                  const char* law) {
     auto& geom = static_cast<MasonryJointGeom&>(ig);
     auto& phys = static_cast<MasonryJointPhys&>(ip);
     // A joint that connect() did not make is left out here: the loop is parallel, where an exception would end the
     // program. The next engine of this plugin reports it (SceneCheck).
     if (!geom.made() || !geom.step || geom.points() != phys.points()) return;
     const auto& properties = phys.law().properties();
-    if (!properties.elastic && properties.cyclic != cyclic) {
+    if (!properties.elastic && properties.law != law) {
         strayed.store({interaction.id1, interaction.id2});
         return;
     }

@@ -2,6 +2,8 @@
 #pragma once
 #include "adapters/Adapter.hpp"
 #include <atomic>
+#include <map>
+#include <string>
 
 namespace masonry {
 
@@ -12,8 +14,12 @@ struct StrayedJoint {
 };
 extern std::atomic<StrayedJoint> strayed;
 
-// Advances a joint by its jumps and brings its forces to both blocks. A joint whose property `cyclic` is not that of
-// the functor is left out and noted in `strayed`.
-void advanceJoint(yade::Scene&, yade::IGeom&, yade::IPhys&, const yade::Interaction&, bool cyclic);
+// Advances a joint by its jumps and brings its forces to both blocks. A joint that has strength and whose law is not
+// `law`, that of the functor, is left out and noted in `strayed`.
+void advanceJoint(yade::Scene&, yade::IGeom&, yade::IPhys&, const yade::Interaction&, const char* law);
+
+// The name of the functor class of every law, by the name of the law. The functors enter themselves when the module is
+// loaded (adapters/FunctorOfLaw.hpp).
+std::map<std::string, std::string>& functorsOfLaws();
 
 } // namespace masonry

@@ -5,7 +5,7 @@
 #pragma once
 #include "adapters/MasonryJoint.hpp"
 #include "blocks/FaceContact.hpp"
-#include "law/LawColumns.hpp"
+#include "law/common/LawColumns.hpp"
 #include "motion/JointFrames.hpp"
 #include <boost/weak_ptr.hpp>
 
@@ -146,7 +146,7 @@ inline bool sameButRoundOff(double a, double b, double scale) { return std::abs(
 // State of the law in joints whose properties have equal values, and which share stiffness.
 struct JointStates : Home {
     JointStates(const shared_ptr<MasonryJoint>& kind, const ElasticStiffness& k, int count, int points)
-        : joints(count, kind), columns(kind->law()->columns(k, count, points)) {}
+        : joints(count, kind), columns(kind->ownLaw()->columns(k, count, points)) {}
 
     std::vector<shared_ptr<MasonryJoint>> joints; // the property set of each; different objects have equal values
     std::unique_ptr<LawColumns> columns;
@@ -155,10 +155,8 @@ struct JointStates : Home {
     // Copies joint number `other` of another home into place `number` of this one.
     void take(int number, const JointStates& from, int other) {
         joints[number] = from.joints[other];
-        for (int p = 0; p < columns->points(); ++p) {
-            columns->set(p, number, from.columns->get(p, other));
-            columns->setDissipated(p, number, from.columns->dissipated(p, other));
-        }
+        for (int p = 0; p < columns->points(); ++p)
+            columns->take(p, number, *from.columns, other);
     }
 };
 

@@ -3,7 +3,7 @@
 #include "adapters/MasonryJointPhys.hpp"
 #include "adapters/MasonryZones.hpp"
 #include "common/Vectorised.hpp"
-#include "law/JointDamping.hpp"
+#include "law/common/JointDamping.hpp"
 #include "motion/JointFrames.hpp"
 #include <algorithm>
 #include <numeric>
@@ -76,12 +76,8 @@ bool JointPlan::liesInPlane(const SceneStore& store) const {
 // In a planar run the law is called without the stress out of the plane. Sets to zero what round-off has left of it.
 void JointPlan::dropStressOutOfPlane(SceneStore& store) {
     for (const auto& joint : store.joints)
-        for (int p = 0; p < joint.geom->points(); ++p) {
-            auto s = joint.phys->state(p);
-            if (s.shearStress.b == 0) continue;
-            s.shearStress.b = 0;
-            joint.phys->home->columns->set(p, joint.phys->index, s);
-        }
+        for (int p = 0; p < joint.geom->points(); ++p)
+            joint.phys->home->columns->dropShearStressB(p, joint.phys->index);
 }
 
 void JointPlan::build(SceneStore& store, bool mayBePlane) {
@@ -323,8 +319,8 @@ double JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const K
     const auto& k = states.stiffness();
     const auto& properties = states.law().properties();
     const double times = stiffnessDamping / store.scene().dt;
-    const JointDamping damping{times * k.normal, times * k.shear, properties.elastic, properties.tensileStrength > 0,
-                               properties.friction};
+    const bool bonded = properties.tensileStrength > 0 && states.tensionDamage(0, from);
+    const JointDamping damping{times * k.normal, times * k.shear, properties.elastic, bonded, properties.friction};
     constexpr double none[most] = {};
     double sumA[most], sumB[most], taken = 0; // shear stresses of law and damping; the energy that damping takes
     for (int p = 0; p < shapes.points; ++p) {

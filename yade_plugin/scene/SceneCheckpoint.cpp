@@ -24,22 +24,7 @@ template <class F> void numbers(BodyRecord& b, F&& each) {
     each(b.damped);
 }
 
-// State of a subcontact in a checkpoint.
-struct PointRecord {
-    Vector3r jump;    // [m]
-    Vector3r viscous; // stress of damping in the last step [Pa]
-    Vector3r losses;  // energies dissipated in tension, shear and compression [J/m²]
-    JointState state;
-};
-template <class F> void numbers(PointRecord& p, F&& each) {
-    numbers(p.jump, each);
-    numbers(p.viscous, each);
-    numbers(p.losses, each);
-    numbers(p.state, each);
-}
-
 template <> struct IsNumbers<BodyRecord> : std::true_type {};
-template <> struct IsNumbers<PointRecord> : std::true_type {};
 
 namespace {
 
@@ -89,27 +74,34 @@ void transferBodies(yade::Scene& scene, Transfer& to) {
     forces.sync();
 }
 
+// A record of a subcontact holds its jump [m], the stress of damping in the last step [Pa], the energies dissipated in
+// tension, shear and compression [J/m²], and the numbers of its law.
 void transferJoints(const SceneStore& store, Transfer& to) {
-    std::vector<PointRecord> records;
+    std::vector<double> records;
+    const auto add = [&](double x, double y, double z) { records.insert(records.end(), {x, y, z}); };
     for (const auto& joint : store.joints)
         for (int p = 0; p < joint.geom->points(); ++p) {
-            const auto e = joint.phys->lost(p);
-            records.push_back({joint.geom->jump(p),
-                               joint.geom->home->viscousAt(p, joint.geom->index),
-                               {e.tension, e.shear, e.compression},
-                               joint.phys->state(p)});
+            const Vector3r jump = joint.geom->jump(p);
+            const Vector3r viscous = joint.geom->home->viscousAt(p, joint.geom->index);
+            const auto lost = joint.phys->lost(p);
+            add(jump[0], jump[1], jump[2]);
+            add(viscous[0], viscous[1], viscous[2]);
+            add(lost.tension, lost.shear, lost.compression);
+            joint.phys->home->columns->read(p, joint.phys->index,
+                                            [&](const char*, double number) { records.push_back(number); });
         }
     to.several("joints", records.data(), records.size());
     if (!to.back) return;
-    auto next = records.begin();
+    const double* next = records.data();
     for (const auto& joint : store.joints)
         for (int p = 0; p < joint.geom->points(); ++p) {
-            auto& states = *joint.phys->home->columns;
-            joint.geom->home->setJump(p, joint.geom->index, next->jump);
-            joint.geom->home->setViscous(p, joint.geom->index, next->viscous);
-            states.set(p, joint.phys->index, next->state);
-            states.setDissipated(p, joint.phys->index, {next->losses[0], next->losses[1], next->losses[2]});
-            ++next;
+            auto& columns = *joint.phys->home->columns;
+            joint.geom->home->setJump(p, joint.geom->index, {next[0], next[1], next[2]});
+            joint.geom->home->setViscous(p, joint.geom->index, {next[3], next[4], next[5]});
+            const Energies lost{next[6], next[7], next[8]};
+            next += 9;
+            columns.write(p, joint.phys->index, [&](const char*, double& number) { number = *next++; });
+            columns.setDissipated(p, joint.phys->index, lost);
         }
 }
 

@@ -242,11 +242,12 @@ void SceneStore::check() {
             "set it to False");
     if (strayed.load().body1 >= 0) {
         const auto joint = strayed.exchange({});
-        throw std::invalid_argument("the joint of bodies " + std::to_string(joint.body1) + " and " +
-                                    std::to_string(joint.body2) +
-                                    " follows another law than the Law2 functor of InteractionLoop: cyclic joints need "
-                                    "Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening, others "
-                                    "Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening");
+        std::vector<std::string> needs;
+        for (const auto& [law, functor] : functorsOfLaws())
+            needs.push_back("law \"" + law + "\" needs " + functor);
+        throw std::invalid_argument(
+            "the joint of bodies " + std::to_string(joint.body1) + " and " + std::to_string(joint.body2) +
+            " follows another law than the Law2 functor of InteractionLoop: " + joined(needs, ", "));
     }
     if (!checked_) {
         checkScene(*this);

@@ -3,8 +3,7 @@
 #pragma once
 #include "files/Checkpoint.hpp"
 #include "host/Yade.hpp"
-#include "law/JointState.hpp"
-#include "law/SofteningTable.hpp"
+#include "law/common/SofteningTable.hpp"
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -37,17 +36,6 @@ template <class F> void numbers(TableRow& r, F&& each) {
     each(r.ratio);
     each(r.damage);
 }
-template <class F> void numbers(JointState& s, F&& each) {
-    double regime = double(s.regime);
-    for (double* value :
-         {&s.opening, &s.crushing, &s.dilation, &s.slip, &s.largestOpening, &s.largestClosure, &s.tensionDamage,
-          &s.shearDamage, &s.normalStress, &s.shearStress.a, &s.shearStress.b, &s.plasticSlip.a, &s.plasticSlip.b,
-          &s.shearSoftening, &s.shearStiffnessLoss, &s.capDisplacement, &regime})
-        each(*value);
-    if (!(regime >= 0 && regime <= 3)) throw std::invalid_argument("saved file is damaged at the regime of a joint");
-    s.regime = Regime(int(regime));
-}
-
 template <class T> std::vector<double> flattened(std::vector<T>& values) {
     std::vector<double> flat;
     for (auto& value : values)

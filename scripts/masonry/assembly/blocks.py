@@ -2,13 +2,16 @@
 
 import math
 
-from yade import Body, O, Vector3, utils
+from yade import Body, O, Vector3, utils, wrapper
 from yade.wrapper import *
 
 from .._masonry import connected, gather, neighbours
 
 #: The functor that makes joints of blocks. Its subclasses do so where a block is one of YADE's own Polyhedra.
 _GEOMETRY = Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom
+
+#: The laws that joints can follow, by name, the default one first: see ``MasonryJoint.laws()``.
+LAWS = {law["name"]: law for law in MasonryJoint.laws()}
 
 #: What a NewtonIntegrator needs to turn bodies as MasonryIntegrator does. YADE 2025 has several algorithms of rotation
 #: and takes another one by default; YADE 2023 has this one only.
@@ -283,8 +286,8 @@ def connect(rule=None, tolerance=1e-4, allowGaps=False):
 
     Blocks that lie in each other are refused, and those that miss a shared face by less than a quarter of their
     thickness; the message has the gap. A scene without any joint is refused, too, and one that has its joints already.
-    Nothing changes then. Values that look like those of another unit, blocks without joints, and properties of the
-    cyclic law in joints that do not follow it are printed as warnings.
+    Nothing changes then. Values that look like those of another unit, blocks without joints, and properties
+    without effect under the law of their joint are printed as warnings.
 
     :param rule: function (body1, body2, geom) that returns a MasonryJoint, or None to leave the choice to direction and
         joint set
@@ -339,14 +342,11 @@ def connect(rule=None, tolerance=1e-4, allowGaps=False):
 
 
 def _functorLoop(geometry, physics):
-    cyclic = any(joint.cyclic and not joint.elastic for joint in physics.joints)
-    law = (
-        Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening
-        if cyclic
-        else Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening
-    )
+    laws = [joint.law for joint in physics.joints if not joint.elastic]
+    law = LAWS[laws[0] if laws else next(iter(LAWS))]  # one functor takes all joints
+    functor = getattr(wrapper, law["functor"])()
     return InteractionLoop(
-        [geometry, *_forPolyhedra(geometry)], [physics], [law()], label="joints"
+        [geometry, *_forPolyhedra(geometry)], [physics], [functor], label="joints"
     )
 
 
@@ -455,13 +455,23 @@ def _warn(pairs, joints, sizes, engines):
                     f'{type(thing).__name__} "{name}": {p["name"]} {value:g} {p["unit"]}: is it in {p["unit"]}, '
                     f'not {p["other_unit"]}?'
                 )
-    usual, names = MasonryJoint(), [p["name"] for p in properties(MasonryJoint)]
-    #: properties that only the cyclic law reads stand behind the switch of that law
-    ofCycles = names[names.index("cyclic") + 1 : names.index("jointSet")]
+    usual, read = MasonryJoint(), [law["properties"] for law in LAWS.values()]
     for joint in joints:
-        idle = [n for n in ofCycles if getattr(joint, n) != getattr(usual, n)]
-        if idle and (joint.elastic or not joint.cyclic):
-            why = "is elastic" if joint.elastic else "is not cyclic"
+        own = LAWS[joint.law]["properties"]
+        #: of an elastic joint those that one law alone reads, else those that others read and this one does not
+        idle = [
+            p["name"]
+            for p in properties(MasonryJoint)
+            if getattr(joint, p["name"]) != getattr(usual, p["name"])
+            and any(p["name"] in names for names in read)
+            and (
+                sum(p["name"] in names for names in read) == 1
+                if joint.elastic
+                else p["name"] not in own
+            )
+        ]
+        if idle:
+            why = "is elastic" if joint.elastic else f'follows the law "{joint.law}"'
             hints.append(
                 f'MasonryJoint "{joint.name}" {why}: no effect of {", ".join(idle)}'
             )

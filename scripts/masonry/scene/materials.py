@@ -10,6 +10,7 @@ from yade import Vector3
 from yade.wrapper import MasonryJoint, MasonryMat
 
 from . import fields
+from ..assembly.blocks import LAWS
 from ..basics import Refused
 
 #: A joint whose normal is steeper than this is a bed joint: 45 degrees.
@@ -124,8 +125,9 @@ class Masonry:
         copies = {name: _copied(joint) for name, joint in source.joints.items()}
         if args.joints == "brittle":
             copies = _byName([*copies.values()], True)
-        if args.joints == "cyclic":
-            makeCyclic(copies)
+        elif args.joints != next(iter(LAWS)):
+            for joint in copies.values():
+                joint.law = args.joints
         units = {kind: _copied(mat) for kind, mat in source.units.items()}
         own = Masonry(
             _copied(source.unit), copies, units, None, self.choose, [*self.varied]
@@ -342,12 +344,6 @@ def calciumSilicateJoints(brittle=False, stiffness="joint"):
         shearStiffness=bed.shearStiffness,
     )
     return _byName([support, bed, head, crack], brittle)
-
-
-def makeCyclic(joints):
-    """Let all joints of a dict follow the cyclic law."""
-    for joint in joints.values():
-        joint.cyclic = True
 
 
 def _softenTo(joint, masonry, spacing):

@@ -10,6 +10,7 @@ from ..run import batch
 from . import fields, history
 from ..run.checkpoints import alike
 from ..run.place import Saved
+from ..assembly.blocks import LAWS
 from ..basics import Refused, say
 from ..run.presets import BOUND, HARMLESS, PRESETS, USUAL, asOption
 
@@ -338,9 +339,11 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     )
     p.add_argument(
         "--joints",
-        choices=["softening", "brittle", "cyclic"],
-        default="softening",
-        help="the paper's law, brittle Coulomb slip, or the cyclic law, which is made for loads that come back",
+        choices=[*LAWS, "brittle"],
+        default=next(iter(LAWS)),
+        help="; ".join(
+            [*(law["meaning"] for law in LAWS.values()), "brittle Coulomb slip"]
+        ),
     )
     p.add_argument(
         "--joint-stiffness",

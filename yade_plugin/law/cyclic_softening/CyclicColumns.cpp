@@ -5,6 +5,8 @@ namespace masonry {
 
 namespace {
 
+using Column = CyclicColumn;
+
 // The law where no strength is passed and no stiffness changes. Tells which subcontacts need more, which then are as
 // before, and how many they are.
 template <bool spatial, bool yielded, bool curved>
@@ -14,18 +16,18 @@ MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicCon
     CyclicEquations e = given;
     e.curved = curved;
     const CyclicConsequences same = ofAll;
-    double* opening = columns[Columns::Opening] + at;
-    double* shearStressA = columns[Columns::ShearStressA] + at;
-    double* shearStressB = columns[Columns::ShearStressB] + at;
-    double* largestOpening = columns[Columns::LargestOpening] + at;
-    const double* irreversible = columns[Columns::Irreversible] + at;
-    const double* intact = columns[Columns::Intact] + at;
-    const double* secant = columns[Columns::Secant] + at;
-    const double* reach = columns[Columns::Reach] + at;
-    const double* capSquared = columns[Columns::CapSquared] + at;
-    const double* shearStiffness = columns[Columns::ShearStiffness] + at;
-    const double* closingStiffness = columns[Columns::ClosingStiffness] + at;
-    const double* squaredHardening = columns[Columns::SquaredHardening] + at;
+    double* opening = columns[Column::Opening] + at;
+    double* shearStressA = columns[Column::ShearStressA] + at;
+    double* shearStressB = columns[Column::ShearStressB] + at;
+    double* largestOpening = columns[Column::LargestOpening] + at;
+    const double* irreversible = columns[Column::Irreversible] + at;
+    const double* intact = columns[Column::Intact] + at;
+    const double* secant = columns[Column::Secant] + at;
+    const double* reach = columns[Column::Reach] + at;
+    const double* capSquared = columns[Column::CapSquared] + at;
+    const double* shearStiffness = columns[Column::ShearStiffness] + at;
+    const double* closingStiffness = columns[Column::ClosingStiffness] + at;
+    const double* squaredHardening = columns[Column::SquaredHardening] + at;
     const double sameCap = same.strength * same.strength;
     const double onCap = 1 / (e.kn * e.kn);
     Mask waiting = 0;
@@ -43,7 +45,7 @@ MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicCon
         const double oldA = shearStressA[i];
         const double oldB = spatial ? shearStressB[i] : 0;
         const double farthest = largestOpening[i];
-        const auto moved = Equations::open(oldOpening, plastic, farthest, jumps.opening[i]);
+        const auto moved = PiecewiseEquations::open(oldOpening, plastic, farthest, jumps.opening[i]);
         const double sigma = e.normal(moved.elastic, weak, closing);
         const double a = oldA + shearing * jumps.slideA[i];
         const double b = spatial ? oldB + shearing * jumps.slideB[i] : 0;
@@ -134,23 +136,23 @@ namespace {
 template <bool yielded>
 MASONRY_INLINED void addEnergiesAs(const CyclicEquations& e, const Columns& columns, std::size_t at, int count,
                                    const double* area, LaneSums& sums) {
-    const double* opening = columns[Columns::Opening] + at;
-    const double* shearStressA = columns[Columns::ShearStressA] + at;
-    const double* shearStressB = columns[Columns::ShearStressB] + at;
+    const double* opening = columns[Column::Opening] + at;
+    const double* shearStressA = columns[Column::ShearStressA] + at;
+    const double* shearStressB = columns[Column::ShearStressB] + at;
     for (int i = 0; i < count; ++i) {
-        const double w = yielded ? opening[i] + columns[Columns::Irreversible][at + i] : opening[i];
-        const double secant = yielded ? columns[Columns::Secant][at + i] : e.kn;
-        const double closing = yielded ? columns[Columns::ClosingStiffness][at + i] : e.kn;
-        const double shearing = yielded ? columns[Columns::ShearStiffness][at + i] : e.ks;
+        const double w = yielded ? opening[i] + columns[Column::Irreversible][at + i] : opening[i];
+        const double secant = yielded ? columns[Column::Secant][at + i] : e.kn;
+        const double closing = yielded ? columns[Column::ClosingStiffness][at + i] : e.kn;
+        const double shearing = yielded ? columns[Column::ShearStiffness][at + i] : e.ks;
         const double tauSquared = shearStressA[i] * shearStressA[i] + shearStressB[i] * shearStressB[i];
         const double normal = area[i] * e.storedNormal(e.normal(w, secant, closing), w);
         sums.storedTension[i] += w > 0 ? normal : 0;
         sums.storedCompression[i] += w > 0 ? 0 : normal;
-        sums.storedShear[i] += area[i] * Equations::storedShear(tauSquared, shearing);
+        sums.storedShear[i] += area[i] * PiecewiseEquations::storedShear(tauSquared, shearing);
         if (!yielded) continue;
-        sums.lostTension[i] += area[i] * columns[Columns::LostTension][at + i];
-        sums.lostShear[i] += area[i] * columns[Columns::LostShear][at + i];
-        sums.lostCompression[i] += area[i] * columns[Columns::LostCompression][at + i];
+        sums.lostTension[i] += area[i] * columns[Column::LostTension][at + i];
+        sums.lostShear[i] += area[i] * columns[Column::LostShear][at + i];
+        sums.lostCompression[i] += area[i] * columns[Column::LostCompression][at + i];
     }
 }
 

@@ -1,8 +1,8 @@
-// The states of joints that follow the cyclic law, and what ColumnsWith needs of it.
+// The cyclic law on subcontacts side by side in columns: what ColumnsSideBySide needs of it.
 #pragma once
-#include "CyclicLaw.hpp"
-#include "law/ColumnsWith.hpp"
-#include "law/piecewise_softening/SideBySide.hpp"
+#include "CyclicEquations.hpp"
+#include "CyclicState.hpp"
+#include "law/common/SofteningTable.hpp"
 
 namespace masonry {
 
@@ -11,15 +11,16 @@ struct CyclicConsequences { // what the columns hold that follow from a state
 };
 
 inline double normalStress(const CyclicEquations& e, const Columns& columns, std::size_t i, bool yielded) {
-    const double opening = columns[Columns::Opening][i];
+    const double opening = columns[CyclicColumn::Opening][i];
     if (!yielded) return e.normal(opening, e.kn, e.kn);
-    return e.normal(opening + columns[Columns::Irreversible][i], columns[Columns::Secant][i],
-                    columns[Columns::ClosingStiffness][i]);
+    return e.normal(opening + columns[CyclicColumn::Irreversible][i], columns[CyclicColumn::Secant][i],
+                    columns[CyclicColumn::ClosingStiffness][i]);
 }
 
-inline CyclicConsequences consequences(const CyclicEquations& e, const JointState& s) {
+inline CyclicConsequences consequences(const CyclicEquations& e, const CyclicState& s) {
     const double fc = e.cap ? e.curve.strength(s.largestClosure, e.stretch) : HUGE_VAL;
-    const double intact = Equations::intact(s.tensionDamage, s.shearDamage) * e.leftByCrushing(s.largestClosure, fc);
+    const double intact =
+        PiecewiseEquations::intact(s.tensionDamage, s.shearDamage) * e.leftByCrushing(s.largestClosure, fc);
     const double closing = e.closingStiffness(s.largestClosure, fc);
     return {s.crushing - s.dilation,
             intact,
@@ -32,40 +33,23 @@ inline CyclicConsequences consequences(const CyclicEquations& e, const JointStat
 }
 
 inline void keep(const CyclicConsequences& c, const Columns& columns, std::size_t i) {
-    columns[Columns::Irreversible][i] = c.irreversible;
-    columns[Columns::Intact][i] = c.intact;
-    columns[Columns::Secant][i] = c.secant;
-    columns[Columns::Reach][i] = c.reach;
-    columns[Columns::CapSquared][i] = c.strength * c.strength;
-    columns[Columns::ShearStiffness][i] = c.shearing;
-    columns[Columns::ClosingStiffness][i] = c.closing;
-    columns[Columns::SquaredHardening][i] = c.squaredHardening;
+    columns[CyclicColumn::Irreversible][i] = c.irreversible;
+    columns[CyclicColumn::Intact][i] = c.intact;
+    columns[CyclicColumn::Secant][i] = c.secant;
+    columns[CyclicColumn::Reach][i] = c.reach;
+    columns[CyclicColumn::CapSquared][i] = c.strength * c.strength;
+    columns[CyclicColumn::ShearStiffness][i] = c.shearing;
+    columns[CyclicColumn::ClosingStiffness][i] = c.closing;
+    columns[CyclicColumn::SquaredHardening][i] = c.squaredHardening;
 }
 
-inline bool neverYielded(const CyclicEquations& e, const JointState& s) {
+inline bool neverYielded(const CyclicEquations& e, const CyclicState& s) {
     const bool whole = s.crushing == 0 && s.dilation == 0 && s.slip == 0 && s.tensionDamage == 0 &&
                        s.shearDamage == 0 && s.shearSoftening == 0 && s.shearStiffnessLoss == 0;
     return whole && s.largestOpening <= e.reach(1.0, 0.0) && s.largestClosure == 0;
 }
 
-inline void write(const CyclicEquations& e, const Columns& columns, std::size_t i, const JointState& s) {
-    write(static_cast<const Equations&>(e), columns, i, s);
-    columns[Columns::PlasticSlipA][i] = s.plasticSlip.a;
-    columns[Columns::PlasticSlipB][i] = s.plasticSlip.b;
-    columns[Columns::ShearSoftening][i] = s.shearSoftening;
-    columns[Columns::ShearStiffnessLoss][i] = s.shearStiffnessLoss;
-    columns[Columns::CapDisplacement][i] = s.capDisplacement;
-}
-
-inline void read(const CyclicEquations& e, const Columns& columns, std::size_t i, JointState& s) {
-    read(static_cast<const Equations&>(e), columns, i, s);
-    s.plasticSlip = {columns[Columns::PlasticSlipA][i], columns[Columns::PlasticSlipB][i]};
-    s.shearSoftening = columns[Columns::ShearSoftening][i];
-    s.shearStiffnessLoss = columns[Columns::ShearStiffnessLoss][i];
-    s.capDisplacement = columns[Columns::CapDisplacement][i];
-}
-
-// See piecewise_softening/SideBySide.hpp.
+// See piecewise_softening/PiecewiseSideBySide.hpp.
 Mask stayElastic(const CyclicEquations& equations, const CyclicConsequences* neverYielded, const Columns& columns,
                  std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* waits);
 void advanceSideBySide(const CyclicEquations& equations, const SofteningTable& tension, const SofteningTable& shear,
@@ -73,7 +57,5 @@ void advanceSideBySide(const CyclicEquations& equations, const SofteningTable& t
                        int count, double* normalStress);
 void addEnergies(const CyclicEquations& equations, const Columns& columns, std::size_t at, int count, bool yielded,
                  const double* area, LaneSums& sums);
-
-using CyclicColumns = ColumnsWith<CyclicLaw>;
 
 } // namespace masonry

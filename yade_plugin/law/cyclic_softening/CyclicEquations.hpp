@@ -3,11 +3,11 @@
 // says them in words.
 #pragma once
 #include "common/Pack.hpp"
-#include "law/piecewise_softening/Equations.hpp"
+#include "law/piecewise_softening/PiecewiseEquations.hpp"
 
 namespace masonry {
 
-struct CyclicEquations : Equations {
+struct CyclicEquations : PiecewiseEquations {
     double omegaM = 0, rho = 0, chi = 0; // [-]
     double shearStretch = 0;             // [m/Pa] 1/ks - 1/ownKs
     double shearWeight = 0;              // [-] Css/Cnn, how shear stress counts beside normal stress on the cap
@@ -105,7 +105,7 @@ struct CyclicEquations : Equations {
 
     // Energy [J/m²] that normal stress stores.
     MASONRY_INLINED double storedNormal(double sigma, double w) const {
-        return curved && !(w > 0) ? energyOnCurve(-w) : Equations::storedNormal(sigma, w);
+        return curved && !(w > 0) ? energyOnCurve(-w) : PiecewiseEquations::storedNormal(sigma, w);
     }
 };
 

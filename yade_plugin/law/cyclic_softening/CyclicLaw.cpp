@@ -1,6 +1,9 @@
 #include "CyclicLaw.hpp"
 #include "CyclicColumns.hpp"
+#include "CyclicStep.hpp"
 #include "common/Text.hpp"
+#include "law/common/ColumnsSideBySide.hpp"
+#include <set>
 
 namespace masonry {
 
@@ -24,10 +27,56 @@ struct Look { // for one subcontact
 
 } // namespace
 
+bool CyclicLaw::reads(const std::string& property) {
+    static const std::set<std::string> own{"shearStiffnessLoss", "compressionStiffnessLoss", "bondLossByCrushing",
+                                           "initialClosingStiffness", "closureLimit"};
+    return own.count(property) > 0 || PiecewiseLaw::reads(property);
+}
+
+std::vector<std::string> CyclicLaw::problems(const JointProperties& p) {
+    auto found = PiecewiseLaw::problems(p, reads);
+    if (p.elastic) return found;
+    // From here on a joint that slides back would fall by itself: it loses pressure, and with it strength, faster than
+    // its shear stress falls.
+    const double steepest = (1 - p.shearStiffnessLoss) * p.shearStiffness / (p.friction * p.normalStiffness);
+    if (p.dilatancy > 0 && p.friction > 0 && !(p.dilatancy < steepest))
+        found.push_back("dilatancy " + text(p.dilatancy) +
+                        " must be below (1 - shear stiffness loss)·ks/(friction·kn) = " + text(steepest) +
+                        " in the cyclic law");
+    if (p.cap && p.capLinear < 0)
+        found.push_back("cap linear " + text(p.capLinear) + " Pa must be at least 0 in the cyclic law");
+    if (p.cap && p.compressionStiffnessLoss > 0 && (p.capNormal != 1 || p.capLinear != 0))
+        found.push_back("cap normal " + text(p.capNormal) + " and cap linear " + text(p.capLinear) +
+                        " Pa must be 1 and 0 in the cyclic law, or compression stiffness loss " +
+                        text(p.compressionStiffnessLoss) +
+                        " must be 0: how much of a closure is irreversible is only known "
+                        "for a cap whose strength under pure closure is that of the compression curve");
+    if (p.initialClosingStiffness > 0) {
+        if (p.initialClosingStiffness >= p.normalStiffness)
+            found.push_back("initial closing stiffness " + text(p.initialClosingStiffness) +
+                            " Pa/m must be below the normal stiffness " + text(p.normalStiffness) +
+                            " Pa/m, that of the closed joint");
+        if (p.tensileStrength > 0)
+            found.push_back("tensile strength " + text(p.tensileStrength) +
+                            " Pa must be 0 for a joint that closes on a curve: it is a dry joint");
+        if (!(p.closureLimit > 0))
+            found.push_back("closure limit " + text(p.closureLimit) +
+                            " m must be above 0 where there is an initial closing stiffness");
+        if (p.cap && p.compressionStiffnessLoss > 0)
+            found.push_back("compression stiffness loss " + text(p.compressionStiffnessLoss) +
+                            " must be 0 for a joint that closes on a curve");
+    } else if (p.closureLimit > 0)
+        found.push_back("closure limit " + text(p.closureLimit) + " m needs an initial closing stiffness above 0");
+    return found;
+}
+
+CyclicLaw::CyclicLaw(const JointProperties& properties)
+    : Law(properties, problems(properties)), paper_(properties, std::vector<std::string>{}) {}
+
 CyclicEquations CyclicLaw::equations(const ElasticStiffness& k) const {
     const auto& p = properties();
     CyclicEquations e;
-    static_cast<masonry::Equations&>(e) = paper_.equations(k);
+    static_cast<PiecewiseEquations&>(e) = paper_.equations(k);
     e.omegaM = p.shearStiffnessLoss;
     e.chi = p.bondLossByCrushing;
     e.shearStretch = 1 / k.shear - 1 / p.shearStiffness;
@@ -36,7 +85,7 @@ CyclicEquations CyclicLaw::equations(const ElasticStiffness& k) const {
         e.shearWeight = e.Css / e.Cnn;
         e.peakClosure = e.curve.peakClosure + e.curve.peak * e.stretch;
     }
-    if (p.initialClosingStiffness > 0) {
+    if (p.initialClosingStiffness > 0 && !p.elastic) {
         e.curved = true;
         e.kn0 = p.initialClosingStiffness;
         e.cm = p.closureLimit;
@@ -47,7 +96,7 @@ CyclicEquations CyclicLaw::equations(const ElasticStiffness& k) const {
     return e;
 }
 
-Energies CyclicLaw::advance(const CyclicEquations& e, JointState& s, const Jump& jump) const {
+Energies CyclicLaw::advance(const CyclicEquations& e, CyclicState& s, const Jump& jump) const {
     const auto follows = consequences(e, s);
     CyclicPoint<double> p{s.opening,         s.crushing,
                           s.dilation,        s.slip,
@@ -62,34 +111,39 @@ Energies CyclicLaw::advance(const CyclicEquations& e, JointState& s, const Jump&
                           follows.secant,    follows.squaredHardening};
     const auto out =
         masonry::advance<double>(e, Look{e, tension(), shear()}, p, jump.opening, jump.slide.a, jump.slide.b);
-    s = {p.opening,
-         p.crushing,
-         p.dilation,
-         p.slip,
-         p.largestOpening,
-         p.largestClosure,
-         p.tensionDamage,
-         p.shearDamage,
-         p.normalStress,
-         {p.shearA, p.shearB},
-         Regime(int(out.regime)),
-         {p.plasticA, p.plasticB},
-         p.shearSoftening,
-         p.shearStiffnessLoss,
-         p.capDisplacement};
+    s.opening = p.opening;
+    s.crushing = p.crushing;
+    s.dilation = p.dilation;
+    s.slip = p.slip;
+    s.largestOpening = p.largestOpening;
+    s.largestClosure = p.largestClosure;
+    s.tensionDamage = p.tensionDamage;
+    s.shearDamage = p.shearDamage;
+    s.normalStress = p.normalStress;
+    s.shearStress = {p.shearA, p.shearB};
+    s.regime = Regime(int(out.regime));
+    s.plasticSlip = {p.plasticA, p.plasticB};
+    s.shearSoftening = p.shearSoftening;
+    s.shearStiffnessLoss = p.shearStiffnessLoss;
+    s.capDisplacement = p.capDisplacement;
     return {out.lostTension, out.lostShear, out.lostCompression};
 }
 
-Energies CyclicLaw::stored(const ElasticStiffness& k, const JointState& s) const {
+double CyclicLaw::normalStress(const CyclicEquations& e, const CyclicState& s) {
+    const auto follows = consequences(e, s);
+    return e.normal(s.opening + (s.crushing - s.dilation), follows.secant, follows.closing);
+}
+
+Energies CyclicLaw::stored(const ElasticStiffness& k, const CyclicState& s) const {
     const auto e = equations(k);
     const double tauSquared = s.shearStress.a * s.shearStress.a + s.shearStress.b * s.shearStress.b;
-    const double shear = masonry::Equations::storedShear(tauSquared, e.shearStiffness(s.shearStiffnessLoss));
+    const double shear = PiecewiseEquations::storedShear(tauSquared, e.shearStiffness(s.shearStiffnessLoss));
     const double w = s.opening + (s.crushing - s.dilation);
     const double normal = e.storedNormal(s.normalStress, w);
     return w > 0 ? Energies{normal, shear, 0} : Energies{0, shear, normal};
 }
 
-Yield CyclicLaw::yield(const ElasticStiffness& k, const JointState& s) const {
+Yield CyclicLaw::yield(const ElasticStiffness& k, const CyclicState& s) const {
     const auto e = equations(k);
     const auto follows = consequences(e, s);
     const double w = s.opening + (s.crushing - s.dilation);
@@ -112,8 +166,8 @@ std::vector<std::string> CyclicLaw::snapsBack(const ElasticStiffness& k, double 
 }
 
 std::unique_ptr<LawColumns> CyclicLaw::columns(const ElasticStiffness& k, int joints, int points) const {
-    return std::make_unique<CyclicColumns>(std::static_pointer_cast<const CyclicLaw>(shared_from_this()), k, joints,
-                                           points);
+    return std::make_unique<ColumnsSideBySide<CyclicLaw>>(std::static_pointer_cast<const CyclicLaw>(shared_from_this()),
+                                                          k, joints, points);
 }
 
 } // namespace masonry

@@ -1,21 +1,32 @@
 // The cyclic law on one subcontact: the strengths, tables and compression curve of the paper's law, with softening by
 // rate, stiffness that degrades, dilatancy that turns back, and joints that close on a curve. README.md states it.
 #pragma once
-#include "CyclicStep.hpp"
-#include "law/piecewise_softening/JointLaw.hpp"
+#include "CyclicEquations.hpp"
+#include "CyclicState.hpp"
+#include "law/piecewise_softening/PiecewiseLaw.hpp"
 
 namespace masonry {
 
 class CyclicLaw : public Law {
 public:
+    static constexpr const char* name = "cyclic";
+    static constexpr const char* meaning = "the cyclic law, which is made for loads that come back";
+
+    using State = CyclicState;
+    using Column = CyclicColumn;
     using Equations = CyclicEquations;
-    static constexpr int columnCount = Columns::count;
-    static constexpr int worthSideBySide = 3; // see law/ColumnsWith.hpp; they are gathered from among others
+
+    // From how many subcontacts on that may yield it is faster to gather them and advance several at a time than each
+    // of them by itself (measured, tests/law/benchmark_law.cpp).
+    static constexpr int fewestSideBySide = 3;
 
     // Throws std::invalid_argument with all problems of the properties at once.
-    explicit CyclicLaw(const JointProperties& properties) : paper_(properties) {}
+    explicit CyclicLaw(const JointProperties& properties);
 
-    const JointProperties& properties() const override { return paper_.properties(); }
+    // Whether the law ever reads a property of joints, and what is wrong with the properties of a joint.
+    static bool reads(const std::string& property);
+    static std::vector<std::string> problems(const JointProperties& properties);
+
     const SofteningTable& tension() const override { return paper_.tension(); }
     const SofteningTable& shear() const override { return paper_.shear(); }
     const CompressionCurve& compression() const override { return paper_.compression(); }
@@ -24,17 +35,22 @@ public:
     CyclicEquations equations(const ElasticStiffness& k) const;
 
     // One step: takes the state on by the jump and returns the energy dissipated in the step.
-    Energies advance(const ElasticStiffness& k, JointState& s, const Jump& jump) const {
+    Energies advance(const ElasticStiffness& k, CyclicState& s, const Jump& jump) const {
         return advance(equations(k), s, jump);
     }
-    Energies advance(const CyclicEquations& e, JointState& s, const Jump& jump) const;
+    Energies advance(const CyclicEquations& e, CyclicState& s, const Jump& jump) const;
+
+    // Normal stress of a state [Pa].
+    static double normalStress(const CyclicEquations& e, const CyclicState& s);
 
     // Elastic energy by mode [J/m²].
-    Energies stored(const ElasticStiffness& k, const JointState& s) const;
+    Energies stored(const ElasticStiffness& k, const CyclicState& s) const;
 
-    Yield yield(const ElasticStiffness& k, const JointState& s) const override;
-    double compressionDamage(const ElasticStiffness& k, const JointState& s) const override {
-        return paper_.compressionDamage(k, s);
+    // Yield functions [Pa], [Pa], [Pa²], and each over the size of its terms [-], as those of the paper's law.
+    Yield yield(const ElasticStiffness& k, const CyclicState& s) const;
+    Yield yielding(const ElasticStiffness& k, const CyclicState& s) const { return paper_.relative(yield(k, s), k, s); }
+    static void show(const CyclicEquations& e, const CyclicState& s, const ShowField& show) {
+        PiecewiseLaw::show(e, s, show);
     }
 
     std::vector<std::string> snapsBack(const ElasticStiffness& k, double distance) const override;
@@ -42,7 +58,7 @@ public:
     std::unique_ptr<LawColumns> columns(const ElasticStiffness& k, int joints, int points) const override;
 
 private:
-    JointLaw paper_; // whose strengths and tables these are
+    PiecewiseLaw paper_; // whose strengths and tables these are
 };
 
 } // namespace masonry

@@ -2,9 +2,10 @@
 // file for each kind of vector units includes this header and compiles `advanceAs` for it (common/Pack.hpp); that file
 // must not compile anything else, because the linker would take it for all processors.
 #pragma once
+#include "CyclicState.hpp"
 #include "CyclicStep.hpp"
-#include "law/Columns.hpp"
-#include "law/SofteningTable.hpp"
+#include "law/common/Columns.hpp"
+#include "law/common/SofteningTable.hpp"
 #include <vector>
 
 namespace masonry::cyclic {
@@ -119,66 +120,66 @@ MASONRY_INLINED void advanceAs(const Numbers& numbers, const Columns& columns, T
         const Columns& c = columns;
         const Pack opening = some.get(jumps.opening), slideA = some.get(jumps.slideA), slideB = some.get(jumps.slideB);
         CyclicPoint<Pack> p;
-        p.opening = some.get(c[Columns::Opening]);
-        p.crushing = some.get(c[Columns::Crushing]);
-        p.dilation = some.get(c[Columns::Dilation]);
-        p.slip = some.get(c[Columns::Slip]);
-        p.largestOpening = some.get(c[Columns::LargestOpening]);
-        p.largestClosure = some.get(c[Columns::LargestClosure]);
-        p.tensionDamage = some.get(c[Columns::TensionDamage]);
-        p.shearDamage = some.get(c[Columns::ShearDamage]);
-        p.shearA = some.get(c[Columns::ShearStressA]);
-        p.shearB = some.get(c[Columns::ShearStressB]);
-        p.plasticA = some.get(c[Columns::PlasticSlipA]);
-        p.plasticB = some.get(c[Columns::PlasticSlipB]);
-        p.shearSoftening = some.get(c[Columns::ShearSoftening]);
-        p.shearStiffnessLoss = some.get(c[Columns::ShearStiffnessLoss]);
-        p.capDisplacement = some.get(c[Columns::CapDisplacement]);
-        p.strength = root(some.get(c[Columns::CapSquared]));
-        p.closing = some.get(c[Columns::ClosingStiffness]);
-        p.shearing = some.get(c[Columns::ShearStiffness]);
-        p.left = some.get(c[Columns::Intact]);
-        p.secant = some.get(c[Columns::Secant]);
-        p.hardening = some.get(c[Columns::SquaredHardening]);
-        p.normalStress = e.normal<Pack>(p.opening + some.get(c[Columns::Irreversible]), p.secant, p.closing);
+        p.opening = some.get(c[CyclicColumn::Opening]);
+        p.crushing = some.get(c[CyclicColumn::Crushing]);
+        p.dilation = some.get(c[CyclicColumn::Dilation]);
+        p.slip = some.get(c[CyclicColumn::Slip]);
+        p.largestOpening = some.get(c[CyclicColumn::LargestOpening]);
+        p.largestClosure = some.get(c[CyclicColumn::LargestClosure]);
+        p.tensionDamage = some.get(c[CyclicColumn::TensionDamage]);
+        p.shearDamage = some.get(c[CyclicColumn::ShearDamage]);
+        p.shearA = some.get(c[CyclicColumn::ShearStressA]);
+        p.shearB = some.get(c[CyclicColumn::ShearStressB]);
+        p.plasticA = some.get(c[CyclicColumn::PlasticSlipA]);
+        p.plasticB = some.get(c[CyclicColumn::PlasticSlipB]);
+        p.shearSoftening = some.get(c[CyclicColumn::ShearSoftening]);
+        p.shearStiffnessLoss = some.get(c[CyclicColumn::ShearStiffnessLoss]);
+        p.capDisplacement = some.get(c[CyclicColumn::CapDisplacement]);
+        p.strength = root(some.get(c[CyclicColumn::CapSquared]));
+        p.closing = some.get(c[CyclicColumn::ClosingStiffness]);
+        p.shearing = some.get(c[CyclicColumn::ShearStiffness]);
+        p.left = some.get(c[CyclicColumn::Intact]);
+        p.secant = some.get(c[CyclicColumn::Secant]);
+        p.hardening = some.get(c[CyclicColumn::SquaredHardening]);
+        p.normalStress = e.normal<Pack>(p.opening + some.get(c[CyclicColumn::Irreversible]), p.secant, p.closing);
         const auto out = masonry::advance<Pack>(e, Look{numbers, rows, some.at}, p, opening, slideA, slideB);
         // what did not happen to one of them changes no column
-        some.put(c[Columns::Opening], p.opening);
-        some.put(c[Columns::ShearStressA], p.shearA);
-        some.put(c[Columns::ShearStressB], p.shearB);
+        some.put(c[CyclicColumn::Opening], p.opening);
+        some.put(c[CyclicColumn::ShearStressA], p.shearA);
+        some.put(c[CyclicColumn::ShearStressB], p.shearB);
         if (out.tore | out.dilated) {
-            some.put(c[Columns::LargestOpening], p.largestOpening);
-            some.put(c[Columns::TensionDamage], p.tensionDamage);
-            some.put(c[Columns::ShearDamage], p.shearDamage);
-            some.put(c[Columns::Intact], p.left);
-            some.put(c[Columns::Secant], p.secant);
-            some.put(c[Columns::Reach], e.reach<Pack>(p.left, p.largestOpening));
+            some.put(c[CyclicColumn::LargestOpening], p.largestOpening);
+            some.put(c[CyclicColumn::TensionDamage], p.tensionDamage);
+            some.put(c[CyclicColumn::ShearDamage], p.shearDamage);
+            some.put(c[CyclicColumn::Intact], p.left);
+            some.put(c[CyclicColumn::Secant], p.secant);
+            some.put(c[CyclicColumn::Reach], e.reach<Pack>(p.left, p.largestOpening));
         }
         if (out.slid) {
-            some.put(c[Columns::Slip], p.slip);
-            some.put(c[Columns::PlasticSlipA], p.plasticA);
-            some.put(c[Columns::PlasticSlipB], p.plasticB);
-            some.put(c[Columns::ShearSoftening], p.shearSoftening);
-            some.add(c[Columns::LostShear], out.lostShear);
+            some.put(c[CyclicColumn::Slip], p.slip);
+            some.put(c[CyclicColumn::PlasticSlipA], p.plasticA);
+            some.put(c[CyclicColumn::PlasticSlipB], p.plasticB);
+            some.put(c[CyclicColumn::ShearSoftening], p.shearSoftening);
+            some.add(c[CyclicColumn::LostShear], out.lostShear);
             if (e.omegaM > 0) {
-                some.put(c[Columns::ShearStiffnessLoss], p.shearStiffnessLoss);
-                some.put(c[Columns::ShearStiffness], p.shearing);
+                some.put(c[CyclicColumn::ShearStiffnessLoss], p.shearStiffnessLoss);
+                some.put(c[CyclicColumn::ShearStiffness], p.shearing);
             }
         }
         if (out.crushed) {
-            some.put(c[Columns::LargestClosure], p.largestClosure);
-            some.put(c[Columns::CapDisplacement], p.capDisplacement);
-            some.put(c[Columns::CapSquared], p.strength * p.strength);
-            some.put(c[Columns::ClosingStiffness], p.closing);
-            some.put(c[Columns::SquaredHardening], p.hardening);
+            some.put(c[CyclicColumn::LargestClosure], p.largestClosure);
+            some.put(c[CyclicColumn::CapDisplacement], p.capDisplacement);
+            some.put(c[CyclicColumn::CapSquared], p.strength * p.strength);
+            some.put(c[CyclicColumn::ClosingStiffness], p.closing);
+            some.put(c[CyclicColumn::SquaredHardening], p.hardening);
         }
         if (out.crushed | out.dilated) {
-            some.put(c[Columns::Crushing], p.crushing);
-            some.put(c[Columns::Dilation], p.dilation);
-            some.put(c[Columns::Irreversible], p.crushing - p.dilation);
+            some.put(c[CyclicColumn::Crushing], p.crushing);
+            some.put(c[CyclicColumn::Dilation], p.dilation);
+            some.put(c[CyclicColumn::Irreversible], p.crushing - p.dilation);
         }
-        some.add(c[Columns::LostTension], out.lostTension);
-        some.add(c[Columns::LostCompression], out.lostCompression);
+        some.add(c[CyclicColumn::LostTension], out.lostTension);
+        some.add(c[CyclicColumn::LostCompression], out.lostCompression);
         some.put(normalStress, p.normalStress);
         for (int i = 0; i < packed; ++i)
             regime[some.at[i]] = Regime(int(out.regime[i]));

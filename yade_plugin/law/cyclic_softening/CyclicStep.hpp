@@ -1,10 +1,11 @@
 // One step of the cyclic law, for one subcontact (T is double) or for several (T is Pack).
 #pragma once
 #include "CyclicEquations.hpp"
+#include "law/common/JointState.hpp"
 
 namespace masonry {
 
-template <class T> struct CyclicPoint { // JointState, and what follows from it
+template <class T> struct CyclicPoint { // CyclicState, and what follows from it
     T opening, crushing, dilation, slip, largestOpening, largestClosure, tensionDamage, shearDamage;
     T shearA, shearB, plasticA, plasticB, shearSoftening, shearStiffnessLoss, capDisplacement;
     T normalStress;
@@ -100,7 +101,7 @@ MASONRY_INLINED CyclicOutcome<T> advance(const CyclicEquations& e, Look&& look, 
     const auto tears = w > s.largestOpening;
     const T crushLeft = e.leftByCrushing(s.largestClosure, s.strength);
     const auto weakens = [&](const T& byCrushing) { // what follows from damage of the bond
-        s.left = Equations::intact(s.tensionDamage, s.shearDamage) * byCrushing;
+        s.left = PiecewiseEquations::intact(s.tensionDamage, s.shearDamage) * byCrushing;
         s.secant = e.opened<T>(s.left, s.largestOpening, s.closing);
         out.tore = true;
     };
@@ -233,7 +234,7 @@ MASONRY_INLINED CyclicOutcome<T> advance(const CyclicEquations& e, Look&& look, 
         s.slip = choose(slipped, s.slip + grown, s.slip);
         s.plasticA = choose(slipped, s.plasticA + perStress * trialA, s.plasticA);
         s.plasticB = choose(slipped, s.plasticB + perStress * trialB, s.plasticB);
-        const T meanShear = Equations::meanShear<T>(oldA, oldB, s.shearA, s.shearB, trialA, trialB, size);
+        const T meanShear = PiecewiseEquations::meanShear<T>(oldA, oldB, s.shearA, s.shearB, trialA, trialB, size);
         T inShear = meanShear * slip + meanNormal * dilation;
         if (e.omegaM > 0)
             inShear = inShear + 0.5 * (oldA * s.shearA + oldB * s.shearB) * (1 / s.shearing - 1 / oldShearing);

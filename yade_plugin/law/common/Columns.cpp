@@ -5,10 +5,10 @@ namespace masonry {
 MASONRY_VECTORISED
 void advanceElastic(double kn, double ks, const Columns& columns, std::size_t at, int count, const Jumps& jumps,
                     double* normalStress) {
-    double* opening = columns[Columns::Opening] + at;
-    double* shearStressA = columns[Columns::ShearStressA] + at;
-    double* shearStressB = columns[Columns::ShearStressB] + at;
-    const double* irreversible = columns[Columns::Irreversible] + at;
+    double* opening = columns[SharedColumn::Opening] + at;
+    double* shearStressA = columns[SharedColumn::ShearStressA] + at;
+    double* shearStressB = columns[SharedColumn::ShearStressB] + at;
+    const double* irreversible = columns[SharedColumn::Irreversible] + at;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
         opening[i] += jumps.opening[i];

@@ -1,15 +1,14 @@
-// The equations of the paper's law at one subcontact, each written once. JointLaw takes them for one subcontact,
-// JointColumns for several side by side: therefore they choose between values and have no branches. They are numbered
-// as in the paper; law/README.md says them in words.
+// The equations of the paper's law at one subcontact, each written once. PiecewiseLaw takes them for one subcontact,
+// PiecewiseSideBySide for several: therefore they choose between values and have no branches. They are numbered as in
+// the paper; law/README.md says them in words.
 #pragma once
 #include "common/Pack.hpp"
-#include "law/CompressionCurve.hpp"
-#include "law/JointState.hpp"
+#include "law/common/CompressionCurve.hpp"
 #include <cmath>
 
 namespace masonry {
 
-struct Equations {                               // with the numbers of a kind of joint, in the paper's symbols
+struct PiecewiseEquations {                      // with the numbers of a kind of joint, in the paper's symbols
     double kn = 0, ks = 0;                       // [Pa/m] stiffnesses that the joint shows
     double ownKn = 0, ownKs = 0;                 // [Pa/m] stiffnesses of the joint without lumped units
     double ft = 0;                               // [Pa] tensile strength
@@ -25,7 +24,6 @@ struct Equations {                               // with the numbers of a kind o
     double shearShift = 0;        //     at the peak
     double smallestFcSquared = 0; // [Pa²] below this the cap cannot act
     bool cap = false;             // whether the joint can crush
-    bool elastic = false;         // whether no strength is ever reached
 
     // ---- softening -----------------------------------------------------------------------------------------------
 

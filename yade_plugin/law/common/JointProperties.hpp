@@ -3,6 +3,7 @@
 #pragma once
 #include "SofteningTable.hpp"
 #include "common/Property.hpp"
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct JointProperties {
     double normalStiffness = 3.352e11;
     double shearStiffness = 1.445e11;
 
+    std::string law = "softening";
     bool elastic = false;
     double tensileStrength = 0.10e6;
     double modeIFractureEnergy = 16;
@@ -37,20 +39,19 @@ struct JointProperties {
     double capShear = 9;
     double capLinear = 0;
 
-    bool cyclic = false;
     double shearStiffnessLoss = 0;
     double compressionStiffnessLoss = 0.5;
     double bondLossByCrushing = 1;
     double initialClosingStiffness = 0;
     double closureLimit = 0;
 
-    // Calls visit(name, member, description) for every property. A switch stands before the properties that it
-    // switches: those after `elastic` do not act if it is on, those after `cap` and `cyclic` do not act if it is off.
+    // Calls visit(name, member, description) for every property.
     template <class Visit> static void describe(Visit&& visit);
 
-    // Everything that is wrong, one sentence each, in the user's words; empty if all is well. Properties that do not
-    // act are not looked at.
-    std::vector<std::string> problems() const;
+    // Every value that is out of its bounds, one sentence each, in the user's words; empty if all is well. The name and
+    // the two stiffnesses are looked at in any case, of the others those that `acts` says the law reads, and none of
+    // them if the joint is elastic. What a law demands beyond these bounds, it checks itself (law/Laws.hpp).
+    std::vector<std::string> outOfBounds(const std::function<bool(const std::string& property)>& acts) const;
 };
 
 template <class Visit> void JointProperties::describe(Visit&& visit) {
@@ -70,6 +71,10 @@ template <class Visit> void JointProperties::describe(Visit&& visit) {
               .usually(1e7, infinity, "N/mm³")
               .source("paper eq. (26)"));
 
+    visit("law", &P::law,
+          described("Name of the law that the joint follows; MasonryJoint.laws() lists them. Chosen before the first "
+                    "step")
+              .source("law/README.md"));
     visit("elastic", &P::elastic,
           described("Whether the joint is linear elastic: no strength is ever reached").source("paper section 4.1"));
     visit("tensileStrength", &P::tensileStrength,
@@ -146,37 +151,33 @@ template <class Visit> void JointProperties::describe(Visit&& visit) {
     visit("capLinear", &P::capLinear,
           number("Pa", "Constant Cn of the cap").source("paper eq. (8c); value [decided]: law/README.md, Parameters"));
 
-    visit("cyclic", &P::cyclic,
-          described("Whether the joint follows the cyclic law, which is made for loads that come back, and not the "
-                    "paper's law")
-              .source("law/cyclic_softening/README.md"));
     visit("shearStiffnessLoss", &P::shearStiffnessLoss,
           number("-",
-                 "Share omega_m of the shear stiffness that a joint without bond has lost; 0: it slips only. Acts if "
-                 "cyclic is on")
+                 "Share omega_m of the shear stiffness that a joint without bond has lost; 0: it slips only. Read by "
+                 "the cyclic law")
               .atLeast(0)
               .atMost(0.99)
               .source("[decided]: law/cyclic_softening/README.md"));
     visit("compressionStiffnessLoss", &P::compressionStiffnessLoss,
           number("-",
-                 "Share rho of what crushing makes irreversible that is lost stiffness, and not plastic closure. Acts "
-                 "if cyclic is on")
+                 "Share rho of what crushing makes irreversible that is lost stiffness, and not plastic closure. Read "
+                 "by the cyclic law")
               .atLeast(0)
               .atMost(0.99)
               .source("[decided]: law/cyclic_softening/README.md"));
     visit("bondLossByCrushing", &P::bondLossByCrushing,
-          number("-", "Share chi of the bond that a wholly crushed joint has lost. Acts if cyclic is on")
+          number("-", "Share chi of the bond that a wholly crushed joint has lost. Read by the cyclic law")
               .atLeast(0)
               .atMost(1)
               .source("[decided]: law/cyclic_softening/README.md"));
     visit("initialClosingStiffness", &P::initialClosingStiffness,
           number("Pa/m",
-                 "Normal stiffness kn0 of a dry joint without stress; 0: joints close with kn, not on a curve. Acts "
-                 "if cyclic is on")
+                 "Normal stiffness kn0 of a dry joint without stress; 0: joints close with kn, not on a curve. Read "
+                 "by the cyclic law")
               .atLeast(0)
               .source("law/cyclic_softening/README.md; no default, it is measured"));
     visit("closureLimit", &P::closureLimit,
-          number("m", "Closure cm at which the curve of a dry joint would be vertical. Acts if cyclic is on")
+          number("m", "Closure cm at which the curve of a dry joint would be vertical. Read by the cyclic law")
               .atLeast(0)
               .usually(0, 0.01, "mm")
               .source("law/cyclic_softening/README.md; no default, it is measured"));

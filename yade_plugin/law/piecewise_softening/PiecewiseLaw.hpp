@@ -1,35 +1,51 @@
 // The joint law of the paper on one subcontact: tension cut-off F1, Coulomb slip F2, elliptical cap F3 (eqs. (8), (9)),
 // coupled softening (eqs. (10)-(17)), hardening and softening in compression (eqs. (18)-(25)). law/README.md states it.
 #pragma once
-#include "Equations.hpp"
-#include "law/Columns.hpp"
-#include "law/Law.hpp"
+#include "PiecewiseEquations.hpp"
+#include "PiecewiseState.hpp"
+#include "law/common/JointField.hpp"
+#include "law/common/Law.hpp"
 #include <algorithm>
 #include <cmath>
 
 namespace masonry {
 
-class JointLaw : public Law {
+class PiecewiseLaw : public Law {
 public:
-    using Equations = masonry::Equations;
-    static constexpr int columnCount = Columns::ofPaper;
-    static constexpr int worthSideBySide = 5; // see law/ColumnsWith.hpp; all others are calculated with them, for nothing
+    static constexpr const char* name = "softening";
+    static constexpr const char* meaning = "the paper's law";
+
+    using State = PiecewiseState;
+    using Column = PiecewiseColumn;
+    using Equations = PiecewiseEquations;
+
+    // From how many subcontacts on that may yield it is faster to advance the whole batch of up to 32 side by side than
+    // each of them by itself. Side by side, a step costs the same for one as for all of a batch: about as much as five
+    // steps of one subcontact each (measured, tests/law/benchmark_law.cpp).
+    static constexpr int fewestSideBySide = 5;
 
     // Throws std::invalid_argument with all problems of the properties at once.
-    explicit JointLaw(const JointProperties& properties);
+    explicit PiecewiseLaw(const JointProperties& properties) : PiecewiseLaw(properties, problems(properties)) {}
+    // For a law that is made of this one, with the problems that it has found.
+    PiecewiseLaw(const JointProperties& properties, const std::vector<std::string>& problems);
 
-    const JointProperties& properties() const override { return p_; }
+    // Whether the law ever reads a property of joints, and what is wrong with the properties of a joint.
+    static bool reads(const std::string& property);
+    static std::vector<std::string> problems(const JointProperties& properties) { return problems(properties, reads); }
+    // The same for a law that reads others, too.
+    static std::vector<std::string> problems(const JointProperties& properties, bool (*reads)(const std::string&));
+
     const CompressionCurve& compression() const override { return own_.curve; }
     const SofteningTable& tension() const override { return tension_; }
     const SofteningTable& shear() const override { return shear_; }
 
     // The equations for a joint that shows the stiffness k, its own or lumped with rigid units. Softening and crushing
     // displacements stay those of the joint itself (law/README.md, Rigid units).
-    Equations equations(const ElasticStiffness& k) const {
-        Equations e = own_;
+    PiecewiseEquations equations(const ElasticStiffness& k) const {
+        PiecewiseEquations e = own_;
         e.kn = k.normal;
         e.ks = k.shear;
-        e.onset = e.elastic ? HUGE_VAL : e.ft / k.normal;
+        e.onset = e.ft / k.normal;
         e.stretch = stretch(k);
         e.normalShift = e.stretch * e.ownKn;
         e.shearShift = std::max(0.0, 1 / k.shear - 1 / e.ownKs) * e.ownKs;
@@ -38,24 +54,19 @@ public:
 
     // One step: takes the state on by the jump and returns the energy dissipated in the step. In place and inlined,
     // because copies of the state cost as much as the law.
-    MASONRY_INLINED Energies advance(const ElasticStiffness& k, JointState& s, const Jump& jump) const {
+    MASONRY_INLINED Energies advance(const ElasticStiffness& k, PiecewiseState& s, const Jump& jump) const {
         return advance(equations(k), s, jump);
     }
-    MASONRY_INLINED Energies advance(const Equations& e, JointState& s, const Jump& jump) const {
+    MASONRY_INLINED Energies advance(const PiecewiseEquations& e, PiecewiseState& s, const Jump& jump) const {
         // 1, opening
         const auto moved = e.open(s.opening, s.crushing - s.dilation, s.largestOpening, jump.opening);
-        double intact = Equations::intact(s.tensionDamage, s.shearDamage);
+        double intact = PiecewiseEquations::intact(s.tensionDamage, s.shearDamage);
         const double oldStiffness = moved.before > 0 ? e.secant(intact, s.largestOpening) : e.kn;
         const double oldNormal = s.normalStress;
         s.opening = moved.total;
         s.regime = Regime::Elastic;
         const Shear old = s.shearStress;
         const Shear trial{old.a + e.ks * jump.slide.a, old.b + e.ks * jump.slide.b}; // eq. (7)
-        if (e.elastic) {
-            s.normalStress = e.kn * moved.elastic; // eq. (6)
-            s.shearStress = trial;
-            return {};
-        }
         if (moved.tears) {
             s.largestOpening = moved.farthest;
             const auto at = e.tensionReading(moved.elastic, s.shearDamage);
@@ -63,7 +74,7 @@ public:
             if (damage > s.tensionDamage) {
                 s.tensionDamage = damage;
                 s.regime = Regime::Opening;
-                intact = Equations::intact(s.tensionDamage, s.shearDamage);
+                intact = PiecewiseEquations::intact(s.tensionDamage, s.shearDamage);
             }
         }
         double newStiffness = moved.open ? e.secant(intact, s.largestOpening) : e.kn;
@@ -86,7 +97,7 @@ public:
                     const auto reopened = e.tensionReading(s.largestOpening, damage);
                     s.tensionDamage = std::max(s.tensionDamage, tension_.damage(reopened.ratio, reopened.shift));
                 }
-                intact = Equations::intact(s.tensionDamage, s.shearDamage);
+                intact = PiecewiseEquations::intact(s.tensionDamage, s.shearDamage);
             }
             const bool dilates = !moved.open && e.tanPsi > 0;
             const auto slid = e.slide(size, s.normalStress, moved.elastic, intact, dilates ? e.dilatancy(s.slip) : 0);
@@ -131,26 +142,42 @@ public:
         const double meanNormal = 0.5 * (oldNormal + s.normalStress);
         if (slip + crushingSlip > 0) {
             const double meanShear =
-                Equations::meanShear(old.a, old.b, s.shearStress.a, s.shearStress.b, trial.a, trial.b, size);
+                PiecewiseEquations::meanShear(old.a, old.b, s.shearStress.a, s.shearStress.b, trial.a, trial.b, size);
             dissipated.shear = meanShear * slip + meanNormal * dilation;
             dissipated.compression = meanShear * crushingSlip;
         }
         dissipated.compression -= meanNormal * closure;
-        dissipated.tension = Equations::lostInTension(oldStiffness, newStiffness, oldNormal, s.normalStress,
-                                                      moved.before, s.opening + (s.crushing - s.dilation));
+        dissipated.tension = PiecewiseEquations::lostInTension(oldStiffness, newStiffness, oldNormal, s.normalStress,
+                                                               moved.before, s.opening + (s.crushing - s.dilation));
         return dissipated;
     }
 
+    // Normal stress of a state [Pa], eqs. (6) and (11).
+    static double normalStress(const PiecewiseEquations& e, const PiecewiseState& s) {
+        const double elasticOpening = s.opening + (s.crushing - s.dilation);
+        const double intact = PiecewiseEquations::intact(s.tensionDamage, s.shearDamage);
+        return e.stiffness(elasticOpening, e.secant(intact, s.largestOpening)) * elasticOpening;
+    }
+
     // Elastic energy by mode [J/m²].
-    static Energies stored(const ElasticStiffness& k, const JointState& s) {
+    static Energies stored(const ElasticStiffness& k, const PiecewiseState& s) {
         const double tauSquared = s.shearStress.a * s.shearStress.a + s.shearStress.b * s.shearStress.b;
-        const double shear = Equations::storedShear(tauSquared, k.shear);
-        const double normal = Equations::storedNormal(s.normalStress, s.opening + s.crushing - s.dilation);
+        const double shear = PiecewiseEquations::storedShear(tauSquared, k.shear);
+        const double normal = PiecewiseEquations::storedNormal(s.normalStress, s.opening + s.crushing - s.dilation);
         return s.normalStress > 0 ? Energies{normal, shear, 0} : Energies{0, shear, normal};
     }
 
-    double compressionDamage(const ElasticStiffness& k, const JointState& s) const override {
+    // Compression damage dc, eq. (21).
+    double compressionDamage(const ElasticStiffness& k, const PiecewiseState& s) const {
         return own_.cap ? own_.curve.damage(s.largestClosure, stretch(k)) : 0;
+    }
+
+    static void show(const PiecewiseEquations& e, const PiecewiseState& s, const ShowField& show) {
+        show(field::slip, s.slip);
+        show(field::damageTension, s.tensionDamage);
+        show(field::damageShear, s.shearDamage);
+        show(field::damageCompression, e.cap ? e.curve.damage(s.largestClosure, e.stretch) : 0);
+        show(field::crushing, s.crushing);
     }
 
     // Strength of the cap [Pa] at a largest closure [m], and the closure at which it begins to harden.
@@ -159,23 +186,27 @@ public:
     }
     double limitClosure(const ElasticStiffness& k) const { return own_.curve.limit(stretch(k)); }
 
-    Yield yield(const ElasticStiffness& k, const JointState& s) const override;
+    // The yield functions F1 [Pa], F2 [Pa] and F3 [Pa²] of eqs. (8), and each over the size of its terms [-].
+    Yield yield(const ElasticStiffness& k, const PiecewiseState& s) const;
+    Yield yielding(const ElasticStiffness& k, const PiecewiseState& s) const { return relative(yield(k, s), k, s); }
+    // Each of the functions `f` over the sum of the sizes of its terms and of the elastic stress of the largest jumps
+    // so far [-], so that it exceeds zero by round-off only.
+    Yield relative(const Yield& f, const ElasticStiffness& k, const PiecewiseState& s) const;
 
     std::unique_ptr<LawColumns> columns(const ElasticStiffness& k, int joints, int points) const override;
 
     std::vector<std::string> snapsBack(const ElasticStiffness& k, double distance) const override;
 
-    static double coupled(const JointState& s) { // d_ts, eq. (10)
-        return Equations::coupled(s.tensionDamage, s.shearDamage);
+    static double coupled(const PiecewiseState& s) { // d_ts, eq. (10)
+        return PiecewiseEquations::coupled(s.tensionDamage, s.shearDamage);
     }
 
 private:
     // [m/Pa] what lumped units add; nothing where properties were changed to ones softer than what the joint shows
-    double stretch(const ElasticStiffness& k) const { return std::max(0.0, 1 / k.normal - 1 / p_.normalStiffness); }
+    double stretch(const ElasticStiffness& k) const { return std::max(0.0, 1 / k.normal - 1 / own_.ownKn); }
 
-    JointProperties p_;
     SofteningTable tension_, shear_;
-    Equations own_; // with the joint's own stiffness
+    PiecewiseEquations own_; // with the joint's own stiffness
 };
 
 // The brittle Coulomb slip set: tension to zero and cohesion to its residual at the first yield, no cap.

@@ -1,10 +1,11 @@
-#include "SideBySide.hpp"
+#include "PiecewiseSideBySide.hpp"
 #include <cmath>
 
 namespace masonry {
 
 namespace {
 
+using Column = PiecewiseColumn;
 constexpr int most = Columns::most;
 
 } // namespace
@@ -16,22 +17,23 @@ namespace {
 // The law where no strength is passed: eqs. (6), (7), the secant of eq. (11), and the three conditions of eq. (8).
 // Tells which subcontacts need more, which then are as before, and how many they are.
 template <bool spatial, bool yielded, bool residual>
-MASONRY_INLINED Mask stayElasticAs(const Equations& given, const Consequences& ofAll, const Columns& columns,
-                                   std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* waits) {
-    const Equations e = given;
-    const Consequences same = ofAll;
+MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const PiecewiseConsequences& ofAll,
+                                   const Columns& columns, std::size_t at, int count, const Jumps& jumps,
+                                   double* normalStress, Mask* waits) {
+    const PiecewiseEquations e = given;
+    const PiecewiseConsequences same = ofAll;
     const double limit = e.curve.limit(e.stretch);
     const double closing = e.cap ? -1 : 0; // how closure counts
-    double* opening = columns[Columns::Opening] + at;
-    double* shearStressA = columns[Columns::ShearStressA] + at;
-    double* shearStressB = columns[Columns::ShearStressB] + at;
-    double* largestOpening = columns[Columns::LargestOpening] + at;
-    double* largestClosure = columns[Columns::LargestClosure] + at;
-    const double* irreversible = columns[Columns::Irreversible] + at;
-    const double* intact = columns[Columns::Intact] + at;
-    const double* secant = columns[Columns::Secant] + at;
-    const double* reach = columns[Columns::Reach] + at;
-    const double* capSquared = columns[Columns::CapSquared] + at;
+    double* opening = columns[Column::Opening] + at;
+    double* shearStressA = columns[Column::ShearStressA] + at;
+    double* shearStressB = columns[Column::ShearStressB] + at;
+    double* largestOpening = columns[Column::LargestOpening] + at;
+    double* largestClosure = columns[Column::LargestClosure] + at;
+    const double* irreversible = columns[Column::Irreversible] + at;
+    const double* intact = columns[Column::Intact] + at;
+    const double* secant = columns[Column::Secant] + at;
+    const double* reach = columns[Column::Reach] + at;
+    const double* capSquared = columns[Column::CapSquared] + at;
     Mask waiting = 0;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
@@ -72,8 +74,9 @@ MASONRY_INLINED Mask stayElasticAs(const Equations& given, const Consequences& o
 }
 
 template <bool spatial, bool yielded>
-MASONRY_INLINED Mask stayElasticAs(const Equations& e, const Consequences& ofAll, const Columns& columns,
-                                   std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* waits) {
+MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& e, const PiecewiseConsequences& ofAll,
+                                   const Columns& columns, std::size_t at, int count, const Jumps& jumps,
+                                   double* normalStress, Mask* waits) {
     return e.cr > 0 ? stayElasticAs<spatial, yielded, true>(e, ofAll, columns, at, count, jumps, normalStress, waits)
                     : stayElasticAs<spatial, yielded, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
 }
@@ -81,10 +84,10 @@ MASONRY_INLINED Mask stayElasticAs(const Equations& e, const Consequences& ofAll
 } // namespace
 
 MASONRY_VECTORISED
-Mask stayElastic(const Equations& e, const Consequences* neverYielded, const Columns& columns, std::size_t at,
-                 int count, const Jumps& jumps, double* normalStress, Mask* waits) {
+Mask stayElastic(const PiecewiseEquations& e, const PiecewiseConsequences* neverYielded, const Columns& columns,
+                 std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* waits) {
     const bool yielded = neverYielded == nullptr;
-    const Consequences ofAll = yielded ? Consequences{} : *neverYielded;
+    const PiecewiseConsequences ofAll = yielded ? PiecewiseConsequences{} : *neverYielded;
     if (jumps.plane)
         return yielded ? stayElasticAs<false, true>(e, ofAll, columns, at, count, jumps, normalStress, waits)
                        : stayElasticAs<false, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
@@ -98,24 +101,24 @@ namespace {
 
 struct Scratch { // of subcontacts side by side, for one step
     alignas(64) double total[most];
-    double before[most], elastic[most], farthest[most]; // [m] see Equations::Opened
+    double before[most], elastic[most], farthest[most]; // [m] see PiecewiseEquations::Opened
     double oldStiffness[most], newStiffness[most];      // [Pa/m] of the elastic opening
     double trialA[most], trialB[most], size[most];      // [Pa] trial shear stress
-    double ratio[most], shift[most];                    // see Equations::Reading
+    double ratio[most], shift[most];                    // see PiecewiseEquations::Reading
     double tensionDamage[most], shearDamage[most], intact[most], secant[most], dilatancy[most];
     double sigma[most];                                   // [Pa]
-    double share[most], slip[most], dilation[most];       // see Equations::Slid
+    double share[most], slip[most], dilation[most];       // see PiecewiseEquations::Slid
     double closest[most], fc[most];                       // [m], [Pa]
-    double left[most], closure[most], crushingSlip[most]; // see Equations::Crushed
+    double left[most], closure[most], crushingSlip[most]; // see PiecewiseEquations::Crushed
     double torn[most];                                    // [J/m²] lost in tension
     Mask open[most], asks[most], regime[most];
 };
 
-// The step of the subcontacts that wait, in the parts of JointLaw::advance. All work on the columns that begin at the
-// first of them. What happens to none is not calculated; tables and exponentials are looked up one by one, for those
-// that need them.
+// The step of the subcontacts that wait, in the parts of PiecewiseLaw::advance. All work on the columns that begin at
+// the first of them. What happens to none is not calculated; tables and exponentials are looked up one by one, for
+// those that need them.
 struct SideBySide {
-    const Equations& e;
+    const PiecewiseEquations& e;
     const Columns& columns;
     TableRows* rows;
     const Jumps& jumps;
@@ -125,20 +128,20 @@ struct SideBySide {
 
 // 1, opening. Tells whether a crack of one tears further.
 MASONRY_INLINED Mask openAll(const SideBySide& all, const SofteningTable& tension, Scratch& s) {
-    const Equations e = all.e;
+    const PiecewiseEquations e = all.e;
     const Columns& columns = all.columns;
     const Jumps& jumps = all.jumps;
     const Mask* waits = all.waits;
     const int count = all.count;
-    double* opening = columns[Columns::Opening];
-    double* shearStressA = columns[Columns::ShearStressA];
-    double* shearStressB = columns[Columns::ShearStressB];
-    double* largestOpening = columns[Columns::LargestOpening];
-    double* irreversible = columns[Columns::Irreversible];
-    double* tensionDamage = columns[Columns::TensionDamage];
-    double* shearDamage = columns[Columns::ShearDamage];
-    double* intact = columns[Columns::Intact];
-    double* secant = columns[Columns::Secant];
+    double* opening = columns[Column::Opening];
+    double* shearStressA = columns[Column::ShearStressA];
+    double* shearStressB = columns[Column::ShearStressB];
+    double* largestOpening = columns[Column::LargestOpening];
+    double* irreversible = columns[Column::Irreversible];
+    double* tensionDamage = columns[Column::TensionDamage];
+    double* shearDamage = columns[Column::ShearDamage];
+    double* intact = columns[Column::Intact];
+    double* secant = columns[Column::Secant];
     Mask tears = 0;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
@@ -178,7 +181,7 @@ MASONRY_INLINED Mask openAll(const SideBySide& all, const SofteningTable& tensio
         }
         MASONRY_INDEPENDENT
         for (int i = 0; i < count; ++i) {
-            s.intact[i] = Equations::intact(s.tensionDamage[i], s.shearDamage[i]);
+            s.intact[i] = PiecewiseEquations::intact(s.tensionDamage[i], s.shearDamage[i]);
             s.secant[i] = e.secant(s.intact[i], s.farthest[i]);
         }
     }
@@ -188,10 +191,10 @@ MASONRY_INLINED Mask openAll(const SideBySide& all, const SofteningTable& tensio
 // 2, Coulomb slip. Tells whether one slides.
 MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& tension, const SofteningTable& shear,
                               Scratch& s) {
-    const Equations e = all.e;
+    const PiecewiseEquations e = all.e;
     const Mask* waits = all.waits;
     const int count = all.count;
-    const double* slip = all.columns[Columns::Slip];
+    const double* slip = all.columns[Column::Slip];
     Mask slides = 0;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
@@ -225,7 +228,7 @@ MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& tensi
             if (s.asks[i] && !s.open[i]) s.dilatancy[i] = e.dilatancy(slip[i]);
         MASONRY_INDEPENDENT
         for (int i = 0; i < count; ++i) {
-            s.intact[i] = Equations::intact(s.tensionDamage[i], s.shearDamage[i]);
+            s.intact[i] = PiecewiseEquations::intact(s.tensionDamage[i], s.shearDamage[i]);
             s.secant[i] = e.secant(s.intact[i], s.farthest[i]);
             s.newStiffness[i] = e.stiffness(s.elastic[i], s.secant[i]);
             const auto slid = e.slide(s.size[i], s.sigma[i], s.elastic[i], s.intact[i], s.dilatancy[i]);
@@ -241,11 +244,11 @@ MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& tensi
 
 // 3, cap. Tells whether one crushes or hardens.
 MASONRY_INLINED Mask crushAll(const SideBySide& all, Scratch& s) {
-    const Equations e = all.e;
+    const PiecewiseEquations e = all.e;
     const Columns& columns = all.columns;
     const Mask* waits = all.waits;
     const int count = all.count;
-    const double* largestClosure = columns[Columns::LargestClosure];
+    const double* largestClosure = columns[Column::LargestClosure];
     Mask crushes = 0;
     const double limit = e.curve.limit(e.stretch);
     const double closing = e.cap ? -1 : 0; // how closure counts
@@ -263,7 +266,7 @@ MASONRY_INLINED Mask crushAll(const SideBySide& all, Scratch& s) {
         crushes |= (passes | ((closure > closest) & (closure > limit))) ? waits[i] : 0;
     }
     if (crushes && e.cap) {
-        double* capSquared = columns[Columns::CapSquared];
+        double* capSquared = columns[Column::CapSquared];
         Mask beyond = 0;
         MASONRY_INDEPENDENT
         for (int i = 0; i < count; ++i) {
@@ -296,9 +299,9 @@ MASONRY_INLINED void keepIrreversible(const SideBySide& all, Scratch& s) {
     const Columns& columns = all.columns;
     const Mask* waits = all.waits;
     const int count = all.count;
-    double* irreversible = columns[Columns::Irreversible];
-    double* crushing = columns[Columns::Crushing];
-    double* dilation = columns[Columns::Dilation];
+    double* irreversible = columns[Column::Irreversible];
+    double* crushing = columns[Column::Crushing];
+    double* dilation = columns[Column::Dilation];
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
         const double oldCrushing = crushing[i];
@@ -321,18 +324,18 @@ MASONRY_INLINED void keepSlip(const SideBySide& all, Scratch& s) {
     const Columns& columns = all.columns;
     const Mask* waits = all.waits;
     const int count = all.count;
-    double* slip = columns[Columns::Slip];
-    const double* shearStressA = columns[Columns::ShearStressA];
-    const double* shearStressB = columns[Columns::ShearStressB];
-    double* lostShear = columns[Columns::LostShear];
-    double* lostCompression = columns[Columns::LostCompression];
+    double* slip = columns[Column::Slip];
+    const double* shearStressA = columns[Column::ShearStressA];
+    const double* shearStressB = columns[Column::ShearStressB];
+    double* lostShear = columns[Column::LostShear];
+    double* lostCompression = columns[Column::LostCompression];
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
         const double a = s.left[i] * (s.share[i] * s.trialA[i]);
         const double b = s.left[i] * (s.share[i] * s.trialB[i]);
         const double meanNormal = 0.5 * (s.oldStiffness[i] * s.before[i] + s.sigma[i]);
         const double meanShear =
-            Equations::meanShear(shearStressA[i], shearStressB[i], a, b, s.trialA[i], s.trialB[i], s.size[i]);
+            PiecewiseEquations::meanShear(shearStressA[i], shearStressB[i], a, b, s.trialA[i], s.trialB[i], s.size[i]);
         const bool slips = s.slip[i] + s.crushingSlip[i] > 0;
         const double inShear = meanShear * s.slip[i] + meanNormal * s.dilation[i];
         const double inCrushing = meanShear * s.crushingSlip[i];
@@ -353,11 +356,11 @@ MASONRY_INLINED void keepStresses(const SideBySide& all, Scratch& s, double* nor
     const Columns& columns = all.columns;
     const Mask* waits = all.waits;
     const int count = all.count;
-    double* opening = columns[Columns::Opening];
-    double* shearStressA = columns[Columns::ShearStressA];
-    double* shearStressB = columns[Columns::ShearStressB];
-    double* largestOpening = columns[Columns::LargestOpening];
-    double* largestClosure = columns[Columns::LargestClosure];
+    double* opening = columns[Column::Opening];
+    double* shearStressA = columns[Column::ShearStressA];
+    double* shearStressB = columns[Column::ShearStressB];
+    double* largestOpening = columns[Column::LargestOpening];
+    double* largestClosure = columns[Column::LargestClosure];
     Mask tore = 0;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
@@ -369,8 +372,9 @@ MASONRY_INLINED void keepStresses(const SideBySide& all, Scratch& s, double* nor
         const double oldStress = normalStress[i];
         const double a = s.left[i] * (s.share[i] * s.trialA[i]);
         const double b = s.left[i] * (s.share[i] * s.trialB[i]);
-        s.torn[i] = Equations::lostInTension(s.oldStiffness[i], s.newStiffness[i], s.oldStiffness[i] * s.before[i],
-                                             s.sigma[i], s.before[i], s.elastic[i]);
+        s.torn[i] =
+            PiecewiseEquations::lostInTension(s.oldStiffness[i], s.newStiffness[i], s.oldStiffness[i] * s.before[i],
+                                              s.sigma[i], s.before[i], s.elastic[i]);
         tore |= s.oldStiffness[i] != s.newStiffness[i] ? waits[i] : 0;
         opening[i] = waits[i] ? s.total[i] : oldOpening;
         shearStressA[i] = waits[i] ? a : oldA;
@@ -380,7 +384,7 @@ MASONRY_INLINED void keepStresses(const SideBySide& all, Scratch& s, double* nor
         normalStress[i] = waits[i] ? s.sigma[i] : oldStress;
     }
     if (tore) {
-        double* lostTension = columns[Columns::LostTension];
+        double* lostTension = columns[Column::LostTension];
         MASONRY_INDEPENDENT
         for (int i = 0; i < count; ++i)
             lostTension[i] += waits[i] ? s.torn[i] : 0;
@@ -389,15 +393,15 @@ MASONRY_INLINED void keepStresses(const SideBySide& all, Scratch& s, double* nor
 
 // Damage, and what follows from it.
 MASONRY_INLINED void keepDamage(const SideBySide& all, Scratch& s) {
-    const Equations e = all.e;
+    const PiecewiseEquations e = all.e;
     const Columns& columns = all.columns;
     const Mask* waits = all.waits;
     const int count = all.count;
-    double* tensionDamage = columns[Columns::TensionDamage];
-    double* shearDamage = columns[Columns::ShearDamage];
-    double* intact = columns[Columns::Intact];
-    double* secant = columns[Columns::Secant];
-    double* reach = columns[Columns::Reach];
+    double* tensionDamage = columns[Column::TensionDamage];
+    double* shearDamage = columns[Column::ShearDamage];
+    double* intact = columns[Column::Intact];
+    double* secant = columns[Column::Secant];
+    double* reach = columns[Column::Reach];
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
         const double oldTension = tensionDamage[i];
@@ -416,10 +420,10 @@ MASONRY_INLINED void keepDamage(const SideBySide& all, Scratch& s) {
 } // namespace
 
 MASONRY_VECTORISED
-void advanceSideBySide(const Equations& given, const SofteningTable& tension, const SofteningTable& shear,
+void advanceSideBySide(const PiecewiseEquations& given, const SofteningTable& tension, const SofteningTable& shear,
                        const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* waits,
                        int count, double* normalStress) {
-    const Equations e = given;
+    const PiecewiseEquations e = given;
     const SideBySide all{e, columns, rows, jumps, waits, count};
     Scratch s;
     const Mask tears = openAll(all, tension, s);
@@ -442,29 +446,29 @@ namespace {
 template <bool yielded>
 MASONRY_INLINED void addEnergiesAs(double kn, double ks, const Columns& columns, std::size_t at, int count,
                                    const double* area, LaneSums& sums) {
-    const double* opening = columns[Columns::Opening] + at;
-    const double* shearStressA = columns[Columns::ShearStressA] + at;
-    const double* shearStressB = columns[Columns::ShearStressB] + at;
+    const double* opening = columns[Column::Opening] + at;
+    const double* shearStressA = columns[Column::ShearStressA] + at;
+    const double* shearStressB = columns[Column::ShearStressB] + at;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
-        const double elastic = yielded ? opening[i] + columns[Columns::Irreversible][at + i] : opening[i];
-        const double stiffness = yielded && elastic > 0 ? columns[Columns::Secant][at + i] : kn;
+        const double elastic = yielded ? opening[i] + columns[Column::Irreversible][at + i] : opening[i];
+        const double stiffness = yielded && elastic > 0 ? columns[Column::Secant][at + i] : kn;
         const double tauSquared = shearStressA[i] * shearStressA[i] + shearStressB[i] * shearStressB[i];
-        const double normal = area[i] * Equations::storedNormal(stiffness * elastic, elastic);
+        const double normal = area[i] * PiecewiseEquations::storedNormal(stiffness * elastic, elastic);
         sums.storedTension[i] += elastic > 0 ? normal : 0;
         sums.storedCompression[i] += elastic > 0 ? 0 : normal;
-        sums.storedShear[i] += area[i] * Equations::storedShear(tauSquared, ks);
+        sums.storedShear[i] += area[i] * PiecewiseEquations::storedShear(tauSquared, ks);
         if (!yielded) continue;
-        sums.lostTension[i] += area[i] * columns[Columns::LostTension][at + i];
-        sums.lostShear[i] += area[i] * columns[Columns::LostShear][at + i];
-        sums.lostCompression[i] += area[i] * columns[Columns::LostCompression][at + i];
+        sums.lostTension[i] += area[i] * columns[Column::LostTension][at + i];
+        sums.lostShear[i] += area[i] * columns[Column::LostShear][at + i];
+        sums.lostCompression[i] += area[i] * columns[Column::LostCompression][at + i];
     }
 }
 
 } // namespace
 
 MASONRY_VECTORISED
-void addEnergies(const Equations& e, const Columns& columns, std::size_t at, int count, bool yielded,
+void addEnergies(const PiecewiseEquations& e, const Columns& columns, std::size_t at, int count, bool yielded,
                  const double* area, LaneSums& sums) {
     if (yielded)
         count == lanes ? addEnergiesAs<true>(e.kn, e.ks, columns, at, lanes, area, sums)

@@ -1,0 +1,135 @@
+"""A law that is no part of the plugin: its folder (tests/law/coulomb_friction) and an entry in the list are all it takes.
+
+The build makes a second module that holds it, which is used here in the place of the installed one.
+"""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import masonry
+import numpy as np
+import pytest
+from conftest import BUILD, ROOT
+from masonry.read.files import readRun
+from masonry.read.frames import readFrame
+from test_checkpoints import files
+
+WALL = os.path.join(ROOT, "tests", "studies", "small.py")
+STUDY = f"""
+from masonry.study import Study
+study = Study({WALL!r}, design="grid", options={{"rate": 20, "until": 0.3}}, vary={{"joints": ["softening", "coulomb"]}})
+"""
+FUNCTORS = """
+from yade import *
+import masonry
+from masonry import *
+law = next(law for law in MasonryJoint.laws() if law["name"] == "coulomb")
+assert law["properties"] == ["friction"]
+def pair():
+    brick = lambda z: [(x, y, z + h) for x in (0, 0.22) for y in (0, 0.102) for h in (0, 0.081)]
+    mat = MasonryMat(young=4.8e9, poisson=0.16, density=1800)
+    low, high = (addBlock(brick(z), mat, inPlane=True) for z in (0, 0.081))
+    O.bodies[low].state.blockedDOFs = "xyzXYZ"
+    load = MasonryLoad(body=high, point=(0.11, 0.051, 0.162), force=(0, 0, -2e3), direction=(1, 0, 0), driven=True, velocity=0.01)
+    engines([MasonryJoint(law="coulomb", friction=0.5)], loads=[load], functors=functors, damping=0.3)
+    connect()
+    O.dt = 0.5 * criticalTimeStep()[0]
+    O.run(2000, True)
+    joint = O.interactions.all()[0].phys
+    names = [type(f).__name__ for e in O.engines if hasattr(e, "lawDispatcher") for f in e.lawDispatcher.functors]
+    return joint.stress, joint.slip, names
+for functors in (False, True):
+    O.reset()
+    found = pair()
+    print(found)
+    assert min(found[1]) > 0
+    for normal, a, b in found[0]:
+        assert normal <= 0 and abs(abs(a) + 0.5 * normal) <= 1e-9 * abs(normal), found
+    assert found[2] == ([law["functor"]] if functors else [])
+print("DONE")
+"""
+
+
+@pytest.fixture(scope="module")
+def environment(tmp_path_factory):
+    """The package with the module that holds one law more."""
+    folder = tmp_path_factory.mktemp("packages")
+    package = shutil.copytree(os.path.dirname(masonry.__file__), folder / "masonry")
+    shutil.copy(os.path.join(BUILD, "coulomb", "_masonry.so"), package)
+    return {**os.environ, "PYTHONPATH": str(folder)}
+
+
+def start(environment, *words):
+    return subprocess.Popen(
+        ["yade", "-n", "-x", WALL, *words],
+        env=environment,
+        stdout=subprocess.DEVNULL,
+    )
+
+
+def test_a_wall_of_the_law_runs_and_goes_on_from_a_checkpoint_bit_for_bit(
+    environment, tmp_path
+):
+    words = "--joints coulomb --until 0.3 --rate 4 --vtk-every 0.1".split()
+    whole, broken = str(tmp_path / "whole"), str(tmp_path / "broken")
+    assert start(environment, *words, "--out", whole).wait() == 0
+    process = start(environment, *words, "--out", broken, "--checkpoint-every", "0.001")
+    while not os.path.exists(os.path.join(broken, "run.checkpoint")):
+        assert process.poll() is None
+        time.sleep(0.01)
+    process.kill()
+    assert process.wait() == -signal.SIGKILL
+    assert start(environment, "--resume", broken).wait() == 0
+    assert len(readRun(broken)["resumed_at_s"]) == 1
+    assert files(broken) == files(whole)
+
+    joints = {
+        name: np.asarray(values) for name, values in readFrame(whole, "joints").items()
+    }
+    mobilised, normal = joints["mobilised_friction"], joints["normal_stress"]
+    assert mobilised.max() == pytest.approx(1, abs=1e-9)
+    assert joints["slip"][mobilised > 1 - 1e-9].max() > 0
+    crack = joints["kind"] == readRun(whole)["kinds"].index("crack")
+    friction = np.where(crack, 0.75, 0.43)[mobilised > 0]  # of masonry.materials
+    shear = (-normal * mobilised)[mobilised > 0] * friction
+    assert shear == pytest.approx(joints["shear_stress"][mobilised > 0], rel=1e-9)
+    assert joints["damage_tension"].max() == 0  # the law has no bond
+
+
+def test_the_law_runs_in_a_study(environment, tmp_path):
+    (tmp_path / "study.py").write_text(STUDY)
+    out = tmp_path / "study"
+    run = subprocess.run(
+        [sys.executable, "-m", "masonry.study", tmp_path / "study.py", "--out", out],
+        env=environment,
+        capture_output=True,
+        text=True,
+    )
+    assert run.returncode == 0, run.stdout + run.stderr
+    table = (out / "study.csv").read_text()
+    assert "coulomb" in table and "softening" in table
+
+
+def test_the_law_has_a_functor_that_python_finds_by_its_name(environment, tmp_path):
+    (tmp_path / "functors.py").write_text(FUNCTORS)
+    run = subprocess.run(
+        ["yade", "-n", "-x", str(tmp_path / "functors.py")],
+        env=environment,
+        capture_output=True,
+        text=True,
+    )
+    assert "DONE" in run.stdout, run.stdout + run.stderr
+
+
+def test_the_option_offers_the_laws_of_the_plugin(environment):
+    run = subprocess.run(
+        ["yade", "-n", "-x", WALL, "--help"],
+        env=environment,
+        capture_output=True,
+        text=True,
+    )
+    assert "--joints {softening,cyclic,coulomb,brittle}" in run.stdout

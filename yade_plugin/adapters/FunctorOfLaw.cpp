@@ -1,0 +1,10 @@
+#include "FunctorOfLaw.hpp"
+
+namespace masonry {
+
+std::vector<Enrolment>& enrolmentsOfFunctors() {
+    static std::vector<Enrolment> all;
+    return all;
+}
+
+} // namespace masonry

@@ -1,0 +1,161 @@
+// ColumnsOf with a law that also takes several subcontacts at a time, and that has columns which are used only where
+// subcontacts have yielded. Beside what ColumnsOf.hpp asks for, the law gives:
+//
+//   Column::Crushing             the first of these columns; all that come after it are used likewise
+//   fewestSideBySide             from how many subcontacts on the whole law costs less side by side than one by one
+//
+// and, for its equations, the functions
+//
+//   normalStress(e, columns, i, yielded)   [Pa] of the state in columns
+//   consequences(e, state)                 what the columns that follow from the others hold
+//   keep(consequences, columns, i)         writes that
+//   neverYielded(e, state)                 whether a state is one of a subcontact that has always been elastic
+//   stayElastic, advanceSideBySide, addEnergies   steps and energies of several subcontacts
+#pragma once
+#include "ColumnsOf.hpp"
+#include <algorithm>
+#include <vector>
+
+namespace masonry {
+
+template <class LawType> class ColumnsSideBySide final : public ColumnsOf<LawType> {
+    using Base = ColumnsOf<LawType>;
+    friend Base; // stepOf()
+    using Base::at, Base::columns_, Base::elastic_, Base::equations_, Base::joints_, Base::k_, Base::law_,
+        Base::regime_, Base::stride_;
+
+public:
+    using State = typename LawType::State;
+    using Column = typename LawType::Column;
+    using Base::most;
+
+    ColumnsSideBySide(std::shared_ptr<const LawType> law, const ElasticStiffness& k, int joints, int points)
+        : Base(std::move(law), k, joints, points),
+          neverYielded_(consequences(equations_, State{})),
+          groups_((stride_ + lanes - 1) / lanes),
+          yielded_(std::size_t(groups_) * points, 0),
+          rows_(std::size_t(stride_) * points, TableRows{0, 0}) {}
+
+    const double* tensionDamage(int point, int from) const override {
+        return columns_[Column::TensionDamage] + at(point, from);
+    }
+
+    State get(int point, int joint) const override {
+        const std::size_t i = at(point, joint);
+        const bool yielded = hasYielded(point, joint);
+        State s;
+        State::visitNumbers(s, [&](const char*, double& number, int column) {
+            if (yielded || column < Column::Crushing) number = columns_[column][i];
+        });
+        s.regime = regime_[i];
+        s.normalStress = normalStress(equations_, columns_, i, yielded);
+        return s;
+    }
+    void set(int point, int joint, const State& s) override {
+        const std::size_t i = at(point, joint);
+        const bool elastic = !hasYielded(point, joint) && neverYielded(equations_, s);
+        State::visitNumbers(s, [&](const char*, double number, int column) {
+            if (!elastic || column < Column::Crushing) columns_[column][i] = number;
+        });
+        regime_[i] = s.regime;
+        if (elastic) return;
+        yieldFrom(point, joint);
+        keep(consequences(equations_, s), columns_, i);
+    }
+    void setDissipated(int point, int joint, const Energies& lost) override {
+        if (lost.tension == 0 && lost.shear == 0 && lost.compression == 0 && !hasYielded(point, joint)) return;
+        yieldFrom(point, joint);
+        Base::setDissipated(point, joint, lost);
+    }
+
+    double advanceOne(int point, int joint, const Jump& jump) override {
+        return Base::stepOf(*this, point, joint, jump);
+    }
+    void advance(int point, int from, int count, const double* opening, const double* slideA, const double* slideB,
+                 double* normalStress) override;
+
+protected:
+    void sumEnergies(int point, int from, int count, const double* area, LaneSums& sums) const override {
+        addEnergies(equations_, columns_, at(point, from), count, hasYielded(point, from), area, sums);
+    }
+
+private:
+    std::size_t group(int point, int joint) const { return std::size_t(point) * groups_ + joint / lanes; }
+    bool hasYielded(int point, int joint) const { return yielded_[group(point, joint)] != 0; }
+
+    void yieldFrom(int point, int joint) { // from now on the eight joints of this one use all columns
+        auto& yielded = yielded_[group(point, joint)];
+        if (yielded) return;
+        yielded = 1;
+        const int first = joint / lanes * lanes;
+        for (int n = first; n < std::min(first + lanes, stride_); ++n) {
+            const std::size_t i = at(point, n);
+            State s;
+            State::visitNumbers(s, [&](const char*, double& number, int column) { number = columns_[column][i]; });
+            keep(consequences(equations_, s), columns_, i);
+        }
+    }
+
+    using Consequences = decltype(consequences(std::declval<typename LawType::Equations>(), State{}));
+    Consequences neverYielded_;         // of subcontacts that never yielded
+    int groups_;                        // of eight joints
+    std::vector<std::uint8_t> yielded_; // of these groups at a point, whether one of the joints has yielded
+    std::vector<TableRows> rows_;
+};
+
+template <class LawType>
+void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const double* opening, const double* slideA,
+                                         const double* slideB, double* normalStress) {
+    constexpr double none[most] = {}; // no slides
+    const std::size_t first = at(point, from);
+    const Jumps jumps{opening, slideA, slideB ? slideB : none, slideB == nullptr};
+    Regime* regime = &regime_[first];
+    if (stride_ < lanes) { // a lone joint, whose columns hold no eight numbers
+        *normalStress = advanceOne(point, from, {opening[0], {slideA[0], jumps.slideB[0]}});
+        return;
+    }
+    if (elastic_) {
+        std::fill_n(regime, count, Regime::Elastic);
+        advanceElastic(k_.normal, k_.shear, columns_, first, count, jumps, normalStress);
+        return;
+    }
+    bool yielded = false;
+    for (int n = 0; n < count; n += lanes)
+        yielded |= hasYielded(point, from + n);
+    Mask waits[most];
+    if (yielded) {
+        int busy = 0; // how many yielded in the last step
+        for (int n = 0; n < count; ++n)
+            busy += regime[n] != Regime::Elastic;
+        for (int n = 0; n < count; n += lanes)
+            yieldFrom(point, from + n);
+        if (4 * busy > 3 * count) { // nearly all need the whole law again
+            std::fill_n(waits, count, 1);
+            advanceSideBySide(equations_, law_->tension(), law_->shear(), columns_.from(first), &rows_[first], regime,
+                              jumps, waits, count, normalStress);
+            return;
+        }
+    }
+    std::fill_n(regime, count, Regime::Elastic);
+    const Mask left =
+        stayElastic(equations_, yielded ? nullptr : &neverYielded_, columns_, first, count, jumps, normalStress, waits);
+    if (left == 0) return;
+
+    int waiting[most]; // the subcontacts that need the whole law
+    int many = 0;
+    for (int n = 0; n < count; ++n)
+        if (waits[n]) waiting[many++] = n;
+    if (many < LawType::fewestSideBySide) {
+        for (int n = 0; n < many; ++n) {
+            const int i = waiting[n];
+            normalStress[i] = advanceOne(point, from + i, {opening[i], {slideA[i], jumps.slideB[i]}});
+        }
+        return;
+    }
+    for (int n = 0; n < count; n += lanes)
+        yieldFrom(point, from + n);
+    advanceSideBySide(equations_, law_->tension(), law_->shear(), columns_.from(first), &rows_[first], regime, jumps,
+                      waits, count, normalStress);
+}
+
+} // namespace masonry

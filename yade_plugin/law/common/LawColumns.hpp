@@ -1,0 +1,98 @@
+// The states of the subcontacts of joints of one kind, in columns [point][joint], as a program sees them that does not
+// know the law. What a law does with them is in ColumnsOf and ColumnsSideBySide.
+#pragma once
+#include "Columns.hpp"
+#include "JointField.hpp"
+#include "JointState.hpp"
+#include "Law.hpp"
+#include <cstdlib>
+#include <functional>
+#include <vector>
+
+namespace masonry {
+
+class LawColumns {
+public:
+    static constexpr int most = Columns::most; // joints that are advanced at a time
+
+    // `count` is the number of columns of the law.
+    LawColumns(int count, const ElasticStiffness& k, int joints, int points);
+    virtual ~LawColumns() = default;
+
+    int joints() const { return joints_; }
+    int points() const { return points_; }
+    int stride() const { return stride_; } // joints padded to whole lanes; a lone joint is not padded
+    const ElasticStiffness& stiffness() const { return k_; }
+    virtual const Law& law() const = 0;
+
+    // The numbers of joints side by side, which begin with joint `from`.
+    const double* shearStressA(int point, int from) const {
+        return columns_[SharedColumn::ShearStressA] + at(point, from);
+    }
+    const double* shearStressB(int point, int from) const {
+        return columns_[SharedColumn::ShearStressB] + at(point, from);
+    }
+    const Regime* regime(int point, int from) const { return &regime_[at(point, from)]; }
+    // Damage of the bond in tension [-], null where the law knows no bond.
+    virtual const double* tensionDamage(int point, int from) const;
+
+    // Sets the shear stress out of the plane to zero, of which round-off has left something.
+    void dropShearStressB(int point, int joint) { columns_[SharedColumn::ShearStressB][at(point, joint)] = 0; }
+
+    // What every law knows of a subcontact.
+    virtual JointState state(int point, int joint) const = 0;
+    Energies dissipated(int point, int joint) const; // [J/m²] so far
+    virtual void setDissipated(int point, int joint, const Energies&) = 0;
+
+    // All numbers of the state of a subcontact, its regime among them, with their names. `read` shows them to a
+    // function, `write` takes those that the function leaves.
+    virtual void read(int point, int joint, const std::function<void(const char* name, double number)>&) const = 0;
+    virtual void write(int point, int joint, const std::function<void(const char* name, double& number)>&) = 0;
+    int numbersOfState() const; // how many numbers these are
+    // One of these numbers; zero if the law has none of this name.
+    double number(int point, int joint, const char* name) const;
+    // Takes the state of a subcontact from other columns, that is all numbers that both laws call the same.
+    void take(int point, int joint, const LawColumns& from, int other);
+
+    // What files show of a subcontact beside its stresses.
+    virtual void show(int point, int joint, const ShowField&) const = 0;
+    double shown(int point, int joint, const JointField&) const; // one of these; zero if the law does not show it
+    virtual Yield yielding(int point, int joint) const = 0;
+
+    // One step of one subcontact with the law for one, losses included. Gives its normal stress.
+    virtual double advanceOne(int point, int joint, const Jump&) = 0;
+
+    // One step of joints from..from+count (count <= most, from a multiple of 8) at a point, under jumps in columns that
+    // begin at `from`. Without slideB all is in the plane: the shear stresses along b are zero and stay so. Gives
+    // normal stresses. Different ranges may be advanced at the same time by threads.
+    virtual void advance(int point, int from, int count, const double* opening, const double* slideA,
+                         const double* slideB, double* normalStress) = 0;
+
+    // Area-weighted sums over all joints [J], in an order that does not depend on threads. `area` holds [point][stride]
+    // numbers, or [point][most] numbers repeated for all blocks of `most` joints if `alike`.
+    struct Sums {
+        Energies stored, dissipated;
+    };
+    Sums energies(const double* area, bool alike) const;
+
+protected:
+    // Adds the energies of the subcontacts of up to eight joints at a point.
+    virtual void sumEnergies(int point, int from, int count, const double* area, LaneSums& sums) const = 0;
+
+    std::size_t at(int point, int joint) const { return std::size_t(point) * stride_ + joint; }
+
+    ElasticStiffness k_;
+    int joints_, points_, stride_;
+    Columns columns_;
+    std::vector<Regime> regime_;
+
+private:
+    struct Release {
+        void operator()(void* memory) const { std::free(memory); }
+    };
+    // Zeroed memory that takes no room in the machine before it is written to: columns that the law only uses where
+    // subcontacts have yielded cost nothing where none has.
+    std::unique_ptr<void, Release> memory_;
+};
+
+} // namespace masonry
