@@ -49,12 +49,11 @@ bed = scene.joint(0, 1, name="")
 force = lambda i: 1e-3 * O.forces.f(base.body, True)[i]  # on the fixed block [kN]
 scene.column("normal_force_kN", "force on it, upwards [kN]", lambda: force(2))
 scene.column("shear_force_kN", "force on it, along the slide [kN]", lambda: force(0))
-if args.path in ("opening", "closure"):
-    scene.drive(top, z=args.until if args.path == "opening" else -args.until)
-if args.path == "closure-shear":
-    scene.drive(top, z=-args.closure)
-    scene.drive(top, x=args.until)
+lift = {"opening": args.until, "closure": -args.until, "closure-shear": -args.closure}
+if args.path in lift:
+    scene.drive(top, z=lift[args.path])
 if args.path == "shear":
     scene.pressJoint(top, bed, args.normal_stress * 1e6)
+if args.path.endswith("shear"):
     scene.drive(top, x=args.until)
 scene.finish()

@@ -17,6 +17,7 @@ from masonry.assembly import columns
 from masonry.read import curves, files
 from masonry.run import presets, results
 from masonry.scene import options, targets
+from masonry.scene.settings import applySettings, setting
 from masonry.basics import Refused, Unwritable
 
 
@@ -55,7 +56,7 @@ def parse(*words):
 
 def test_settings_change_the_named_property_only():
     joints = materials.calciumSilicateJoints()
-    options.applySettings(
+    applySettings(
         joints,
         parse(
             "--set",
@@ -84,7 +85,7 @@ def test_all_wrong_settings_are_told_at_once():
         "crack.name=x",
     ]
     with pytest.raises(Refused) as refused:
-        options.applySettings(joints, [options._setting(w) for w in words])
+        applySettings(joints, [setting(w) for w in words])
     message = str(refused.value)
     for part in (
         "--set bad.friction: no joint 'bad', there are support, bed, head, crack",
@@ -180,7 +181,7 @@ def test_a_preset_promises_nothing_of_a_wall_it_was_not_measured_on():
 def test_any_text_for_a_table_is_refused_in_words_or_makes_a_joint(text):
     joints = {"bed": materials.MasonryJoint()}
     try:
-        options.applySettings(joints, [("bed", "shearTable", text)])
+        applySettings(joints, [("bed", "shearTable", text)])
     except Refused as refused:
         assert str(refused).startswith(
             ("--set bed.shearTable=", 'joint "bed": shear table, ')

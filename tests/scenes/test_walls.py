@@ -13,7 +13,7 @@ import pytest
 from conftest import ROOT
 from masonry.run import results
 from masonry.scene import loading, options
-from masonry.read.figures import readFrame
+from masonry.read.frames import readFrame
 from masonry.read.files import readCurve, readRun
 from masonry.assembly.structure import Structure
 from small import SMALL, carryOut, parsed, settled

@@ -11,7 +11,7 @@ from yade.wrapper import MasonryVtkRecorder
 from ..assembly import columns
 from ..assembly.blocks import units
 from ..basics import Unwritable, say
-from ..read import measure
+from ..read import cracks, measure
 from ..read.curves import (
     cycleNumbers,
     dampedShare,
@@ -23,6 +23,7 @@ from ..read.frames import readFrame
 from . import history
 from .options import UNITS
 from .stages import pushing
+from .stages.stage import answerText
 from .wall import wallOf
 
 FRAMES = 20  # for ParaView in a stage that is no push
@@ -169,8 +170,8 @@ class Outcome:
             if not math.isfinite(found["drop_at_mm"]):
                 found["drop_at_mm"] = None
         if wall:
-            found.update(measure.pattern(_jointsNow(), wall))
-            found["failure_mode"] = measure.failureMode(found, wall)
+            found.update(cracks.pattern(_jointsNow(), wall))
+            found["failure_mode"] = cracks.failureMode(found, wall)
         return found
 
     # -- curve.png ------------------------------------------------------------------------------------------------
@@ -283,6 +284,7 @@ class Outcome:
                 key = joint.prefixed(f"{end}_stress_MPa")
                 yield f"{key:32} {run[key]:.4f}"
         yield from self.scene.bounds.over(run, self.scene.stood)
+        yield from map(answerText, run["answers"])
         if not self.pushed:
             yield f"{name}: {run['ended']}"
             return

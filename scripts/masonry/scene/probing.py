@@ -13,7 +13,8 @@ from ..run import batch
 from . import fields
 from ..basics import Refused
 from .materials import withResidual
-from .options import Parser, check
+from .options import check
+from .parsing import Parser
 from ..assembly.blocks import properties
 
 #: How far a random field is looked at to either side, in standard deviations of its normal: beyond lies one joint in a

@@ -33,13 +33,16 @@ class Answer:
     how: str
     uncertainty: float = None
 
-    def text(self):
-        """The answer as a line to read."""
-        unit = "" if self.unit == "-" else " " + self.unit
-        if self.value is None:
-            return f"{self.name.replace('_', ' ')}: not found; {self.how}"
-        about = "" if self.uncertainty is None else f" ± {self.uncertainty:.2g}"
-        return f"{self.name.replace('_', ' ')}: {self.value:.4g}{about}{unit}"
+
+def answerText(answer):
+    """An entry of ``answers`` of run.json as a line to read."""
+    head = f"{answer['stage']}: {answer['name'].replace('_', ' ')}"
+    if answer["value"] is None:
+        return f"{head}: not found: {answer['how']}"
+    unit = "" if answer["unit"] == "-" else " " + answer["unit"]
+    known = answer["uncertainty"] is not None
+    about = f" ± {answer['uncertainty']:.2g}" if known else ""
+    return f"{head} {answer['value']:.4g}{about}{unit}"
 
 
 class Rows:
