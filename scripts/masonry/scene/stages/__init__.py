@@ -1,6 +1,14 @@
 """The stages of a test. Each is a function of the scene, in a file with those of its family, with its traits on it.
 
 A new stage is such a function (:func:`masonry.scene.stages.stage.stage`) and its place in :data:`STAGES`.
+
+- :mod:`masonry.scene.stages.rest`: ``settle``
+- :mod:`masonry.scene.stages.push`: ``push``, ``cycle`` and ``follow``, whose drive is in :mod:`masonry.scene.stages.pushing`
+- :mod:`masonry.scene.stages.drive`: ``drive`` and ``pressJoint``
+- :mod:`masonry.scene.stages.supports`: ``release`` and ``move``
+- :mod:`masonry.scene.stages.gravity`: ``tilt``, ``accelerate``, ``lean`` and ``bracket``
+- :mod:`masonry.scene.stages.shake`: ``shake`` and ``run``
+- :mod:`masonry.scene.stages.stage`: what all share; :mod:`masonry.scene.stages.timed`: what those share that last for a time
 """
 
 from .drive import drive, pressJoint
