@@ -71,14 +71,14 @@ def test_a_resumed_scene_equals_one_without_a_break(tmp_path):
         try:
             scene.settle()
             if stop:
-                before = scene.advance
+                before = scene.running.advance
 
                 def advance(steps, one=None):
                     before(steps, one)
                     if O.iter > stop:
-                        scene.interrupted = True
+                        scene.running.interrupted = True
 
-                scene.advance = advance
+                scene.running.advance = advance
             scene.push(top, 0.2)
             scene.move(base, z=-0.1)
         except SystemExit:

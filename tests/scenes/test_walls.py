@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from masonry.run import results
-from masonry.scene import loading, options
+from masonry.scene import options
+from masonry.scene.stages import rest
 from masonry.read.frames import readFrame
 from masonry.read.files import readCurve, readRun
 from masonry.assembly.structure import Structure
@@ -225,7 +226,7 @@ def test_ctrl_c_ends_in_order_and_keeps_what_is_there(tmp_path):
 
 
 def base(model):
-    return O.forces.f(model.blocks["base"], True)
+    return model.forceOn(model.description.targets["base"])
 
 
 def test_at_rest_the_base_carries_the_precompression_and_the_weight(scene, tmp_path):
@@ -266,7 +267,7 @@ def test_deformable_units_carry_the_weight_and_keep_the_balance(scene, tmp_path)
     run, model, top = settled(tmp_path, "--blocks", "deformable", "--until", "0.3")
     weight = 6 * 3 * 0.22 * 0.102 * 0.081 * 1800 * 9.81
     load = 0.5e6 * 0.66 * 0.102 + weight
-    assert base(model)[2] == pytest.approx(-load, rel=loading.REST)
+    assert base(model)[2] == pytest.approx(-load, rel=rest.REST)
     run.push(top)
     assert max(run.results.column("base_shear_kN")) > 5
     assert model.energy.largestError < 1e-3

@@ -12,7 +12,8 @@ from conftest import ROOT
 from masonry import readCheckpoint
 from masonry.read import drawing, figures, loops, measure
 from masonry.run import results
-from masonry.scene import history, loading
+from masonry.scene import history
+from masonry.scene.stages import pushing, rest
 from masonry.read.files import readCurve, readRun
 from small import SMALL, carryOut, parsed
 from test_checkpoints import CANTILEVER, at, files, interrupt, refused, run
@@ -90,7 +91,7 @@ def test_the_velocity_changes_evenly_where_the_drive_turns(scene, tmp_path):
     assert np.abs(speed).max() < 40.1
     middle = (data["time_s"][1:] + data["time_s"][:-1]) / 2
     change = np.diff(speed) / np.diff(middle)
-    even = 40 / loading.RAMP  # [mm/s²]
+    even = 40 / rest.RAMP  # [mm/s²]
     # A row near a turn is a step or two long, so that its speed is known less well than those of others.
     assert np.percentile(np.abs(change), 99) < 1.2 * even
     assert (np.abs(change) < 1.6 * even).all()
@@ -101,7 +102,7 @@ def test_a_push_is_the_history_of_one_point(scene, tmp_path):
     assert run(tmp_path / "loop", "--no-vtk", "--history", "1", "--rate", "20") == 0
     push, loop = curve(tmp_path / "push"), curve(tmp_path / "loop")
     # before it is at its full speed, a loop adds the velocity up, a push multiplies: equal but for round-off
-    rows = np.flatnonzero(push["displacement_mm"] < 1 - 20 * loading.RAMP / 2)
+    rows = np.flatnonzero(push["displacement_mm"] < 1 - 20 * rest.RAMP / 2)
     assert len(rows) > 80 and set(loop) - set(push) == {"point", "target_mm"}
     for name in ("time_s", "displacement_mm", "base_shear_kN"):
         assert loop[name][rows] == pytest.approx(push[name][rows], rel=1e-6, abs=1e-6)
@@ -196,8 +197,8 @@ def test_frames_stand_at_turning_points_and_zeros(looped):
 
 def test_the_number_of_frames_is_bounded():
     long = parsed("--history", "10x50", "--vtk-every", "0.1")
-    assert loading.frameSpacing(long) == 2000 / loading.FRAMES
-    assert loading.frameSpacing(parsed("--until", "1000", "--vtk-every", "0.1")) == 0.1
+    assert pushing.frameSpacing(long) == 2000 / pushing.FRAMES
+    assert pushing.frameSpacing(parsed("--until", "1000", "--vtk-every", "0.1")) == 0.1
 
 
 def test_loops_that_damping_makes_fat_are_a_warning(runScene):
@@ -212,7 +213,7 @@ def test_loops_that_damping_makes_fat_are_a_warning(runScene):
 
 
 def test_a_loop_that_unloads_is_no_collapse_and_a_lost_side_is_one():
-    at = loading.Pushing()
+    at = pushing.Pushing()
 
     def row(moved, shear, way):
         at.moved = moved

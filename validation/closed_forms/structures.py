@@ -152,7 +152,7 @@ def semicircle(stones, thickness, depth=0.3, foot=0.2):
 
 def holdFeet(scene):
     """Hold the last two bricks of an arch; returns both targets."""
-    count = len(scene.bricks)
+    count = len(scene.description.bricks)
     return scene.hold(count - 2, name="left"), scene.hold(count - 1, name="right")
 
 

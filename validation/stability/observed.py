@@ -74,17 +74,18 @@ class Observed(Scene):
             drive="x",
         )
         self.press(self.top, wall["precompression"])
-        self._entered_with = True  # errors are the caller's
-        self._begin()
+        self.__enter__()  # errors are the caller's
+        self.running.show = lambda *args, **more: None  # a study has thousands of runs
+        advance = self.running.advance
 
-    def show(self, *args, **more):
-        """Nothing is shown: a study has thousands of runs."""
+        def advanceAndLook(steps, one=None):
+            advance(steps, one)
+            self.looked += 1
+            if len(self.model.interactions) < 500 or self.looked % 20 == 0:
+                self.look()
 
-    def advance(self, steps, one=None):
-        super().advance(steps, one)
-        self.looked += 1
-        if len(self.model.interactions) < 500 or self.looked % 20 == 0:
-            self.look()
+        self.running.advance = advanceAndLook
+        self.begin()
 
     def look(self):
         every = lambda what: np.array(

@@ -43,7 +43,7 @@ def soak(blocks, steps):
             e = model.energy.balance()
             m.look()
             lost = sum(v for k, v in e.items() if k.startswith("dissipated"))
-            shear = 1e-3 * O.forces.f(model.blocks["base"], True)[0]
+            shear = 1e-3 * O.forces.f(m.targets["base"].body, True)[0]
             rows.append((done, memory(), model.energy.largestError, shear, lost))
     return rows
 
