@@ -215,7 +215,7 @@ def test_numbers_say_their_unit_and_default():
 def test_every_member_of_the_joint_properties_is_described_once():
     """Adding a property is its member and its description: none is forgotten, none is described twice."""
     header = open(
-        os.path.join(ROOT, "yade_plugin", "law", "JointProperties.hpp")
+        os.path.join(ROOT, "yade_plugin", "law", "common", "JointProperties.hpp")
     ).read()
     struct = header[header.index("struct JointProperties {") :]
     struct = struct[: struct.index("\n};")]
