@@ -5,7 +5,7 @@ yade_plugin/law/README.md (yield surfaces, softening tables, compression).
 """
 
 from masonry import Scene, bricks, materials
-from masonry.scene import description, options
+from masonry.scene import options
 from yade import O
 
 *_, HEIGHT = UNIT = (0.220, 0.102, 0.081)  # [m] of a brick
@@ -39,7 +39,8 @@ scene = Scene(
     bricks.stack(2, UNIT),
     materials.calciumSilicate(),
     gravity=0,
-    columns=["time_s", *description.OF_JOINTS, "normal_force_kN", "shear_force_kN"],
+    columns="time_s opening_mm slide_mm normal_stress_MPa shear_stress_MPa "
+    "normal_force_kN shear_force_kN".split(),
     arguments=args,
 )
 base = scene.platen("bottom", height=HEIGHT)
@@ -48,12 +49,11 @@ bed = scene.joint(0, 1, name="")
 force = lambda i: 1e-3 * O.forces.f(base.body, True)[i]  # on the fixed block [kN]
 scene.column("normal_force_kN", "force on it, upwards [kN]", lambda: force(2))
 scene.column("shear_force_kN", "force on it, along the slide [kN]", lambda: force(0))
-if args.path in ("opening", "closure"):
-    scene.drive(top, z=args.until if args.path == "opening" else -args.until)
-if args.path == "closure-shear":
-    scene.drive(top, z=-args.closure)
-    scene.drive(top, x=args.until)
+lift = {"opening": args.until, "closure": -args.until, "closure-shear": -args.closure}
+if args.path in lift:
+    scene.drive(top, z=lift[args.path])
 if args.path == "shear":
     scene.pressJoint(top, bed, args.normal_stress * 1e6)
+if args.path.endswith("shear"):
     scene.drive(top, x=args.until)
 scene.finish()

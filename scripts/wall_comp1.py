@@ -8,7 +8,7 @@ scene = Scene(
     bricks.Wall(1.1, 2.754),
     materials.calciumSilicate(),
     title="TUD-COMP-1: 1.1 × 2.76 m, cantilever, 0.70 MPa",
-    columns=columns.names(columns.PUSH),
+    columns=columns.heads(columns.PUSH),
     until=40,  # [mm], where --until says nothing else
 )
 scene.platen("bottom")

@@ -11,7 +11,7 @@ scene = Scene(
     bricks.Wall(3.96, 2.754),
     materials.calciumSilicate(),
     title="TUD-COMP-4: 4.0 × 2.76 m, double clamped, 0.50 MPa",
-    columns=columns.names(columns.PUSH),
+    columns=columns.heads(columns.PUSH),
     until=12,  # [mm], where --until says nothing else
 )
 scene.platen("bottom")

@@ -11,7 +11,7 @@ scene = Scene(
     bricks.Wall(3.96, 2.754),
     materials.calciumSilicate(),
     title="TUD-COMP-6: 4.0 × 2.76 m, cantilever, 0.50 MPa",
-    columns=columns.names(columns.PUSH),
+    columns=columns.heads(columns.PUSH),
     until=25,  # [mm], where --until says nothing else
 )
 scene.platen("bottom")

@@ -35,7 +35,7 @@ scene = Scene(
     bricks.Wall(1.0, 1.2, BLOCK),
     materials.dryGranite(args.level, BLOCK[2]),
     title=f"Dry-joint granite wall, 1.0 × 1.2 m, cantilever, {args.level} kN",
-    columns=columns.names(columns.PUSH),
+    columns=columns.heads(columns.PUSH),
     arguments=args,
 )
 scene.platen("bottom")

@@ -11,17 +11,18 @@ A scene of one's own is bricks, materials and stages::
     scene.push(top, 10)              # [mm]
     scene.finish()
 
-``help()`` of these leads on:
+``help()`` of its rooms leads on, and each of them names its modules:
 
-- :mod:`masonry.scene.scene`: ``Scene``, its platens, loads, stages and records
+- :mod:`masonry.scene`: ``Scene``, its platens, loads, records and stages; materials, random fields, histories, options
 - :mod:`masonry.bricks`: walls, openings, bonds, corners, arches, vaults, blocks from files
-- :mod:`masonry.scene.materials`: published parameter sets, and properties that vary from place to place
-- :mod:`masonry.assembly.blocks`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by body
-- :mod:`masonry.assembly.window`: the scene in YADE's own 3-D view while it runs
-- :mod:`masonry.limit`: limit analysis, the bound beside every run
 - :mod:`masonry.study`: one scene, run many times with values that vary
-- :mod:`masonry.run.results`, :mod:`masonry.read.figures`, :mod:`masonry.read.measure`, :mod:`masonry.read.loops`: what a run leaves, and
-  how to read it; these, :mod:`masonry.study`, :mod:`masonry.bricks` and :mod:`masonry.run.presets` work without YADE
+- :mod:`masonry.limit`: limit analysis, the bound beside every run
+- :mod:`masonry.read`: what reads the files of a run: numbers, figures, pictures by ParaView
+- :mod:`masonry.run`: a run: checkpoints, results, presets, rows of a table
+- :mod:`masonry.assembly`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by body; the 3-D view
+- :mod:`masonry.basics`: gravity, how a run can end before its time, what is said on the terminal
+
+``masonry.read``, ``masonry.study``, ``masonry.bricks`` and what they import work without YADE.
 
 Import it from a YADE script (or after ``import yade``). The classes that it registers in YADE (``masonry.classes``) are
 also in ``yade.wrapper``; ``help(MasonryJoint)`` and the others are their manual.
@@ -29,7 +30,8 @@ also in ``yade.wrapper``; ``help(MasonryJoint)`` and the others are their manual
 
 import sys
 
-# "python3 -m masonry.read.figures" searches the present folder first, and would run a file csv.py or token.py that lies there.
+# "python3 -m masonry.read.figures" searches the present folder first, and would run a file csv.py or token.py that lies
+# there.
 if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:
     del sys.path[0]
 
@@ -79,6 +81,7 @@ if "yade" in sys.modules:
     from .run.checkpoints import loadCheckpoint, readCheckpoint, saveCheckpoint
     from .assembly.blocks import addBlock, advance, connect, engine, engines
     from .scene.ground import rayleigh
-    from .scene.scene import AT_REST, COLLAPSED, DONE, MOVING, Scene
+    from .scene.scene import Scene
+    from .scene.stages import AT_REST, COLLAPSED, DONE, MOVING
 
     ports.close()

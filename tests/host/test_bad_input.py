@@ -24,7 +24,7 @@ from masonry import (
     materials,
     touchingPairs,
 )
-from masonry.read import figures, files as reading, measure
+from masonry.read import figures, files as reading, frames, measure
 from masonry.run import results
 from masonry.scene import options
 from masonry.bricks import Wall as BrickWall, boxCorners
@@ -643,7 +643,7 @@ CASES = {
         (nothing, lambda: read(measure.show, run=WALL, curve=CURVE, **{"joints_0000.vtp": b"\x00" * 4096}), "cannot read ./joints_0000.vtp: it holds no frame"),
         (nothing, lambda: read(figures.draw, "nowhere"), "cannot read nowhere/run.json: No such file or directory"),
         (nothing, lambda: read(figures.draw, run=WALL, curve=CURVE), 'run.json has no entry "figure", which says what to draw'),
-        (nothing, lambda: figures.readFrame(".", "joints"), "no file joints_*.vt? in ."),
+        (nothing, lambda: frames.readFrame(".", "joints"), "no file joints_*.vt? in ."),
         (nothing, lambda: read(lambda d: reading.readCurve(d), run=WALL, curve=None), "cannot read ./curve.csv"),
     ],
 }
@@ -917,5 +917,5 @@ def test_a_disk_that_fills_ends_the_run_in_order(tmp_path, name, words, most, lo
         ]
         assert frames == [1, 1]
         assert (
-            len(figures.readFrame(str(tmp_path / "results"), "joints")["cells"]) > 100
+            len(frames.readFrame(str(tmp_path / "results"), "joints")["cells"]) > 100
         )

@@ -366,7 +366,7 @@ def test_a_peak_above_its_bound_is_a_warning_with_both_numbers(scene, tmp_path, 
     s.settle()
     s.push(top, 0.3)
     peak = max(s.results.column("base_shear_kN"))
-    s.at.bounds["top along x"]["factor"] = 0.9 * peak
+    s.running.at.bounds["top along x"]["factor"] = 0.9 * peak
     s.finish()
     said = capsys.readouterr().out
     assert f"warning: the largest base shear, {peak:.4g} kN, is more than" in said

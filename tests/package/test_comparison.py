@@ -4,8 +4,8 @@ import sys
 
 import numpy as np
 import pytest
-from masonry.read import comparison
 from masonry.basics import Refused
+from masonry.read import comparison, drawing
 from test_figures import axis, writeRun
 
 FIGURE = {"x": axis("u_mm", "moved [mm]"), "y": [axis("f_kN")], "y_label": "force [kN]"}
@@ -14,7 +14,7 @@ FIGURE = {"x": axis("u_mm", "moved [mm]"), "y": [axis("f_kN")], "y_label": "forc
 @pytest.fixture
 def drawn(monkeypatch):
     found = []
-    monkeypatch.setattr(comparison, "_save", lambda figure, *_: found.append(figure))
+    monkeypatch.setattr(drawing, "save", lambda figure, *_: found.append(figure))
     return found
 
 

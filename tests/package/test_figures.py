@@ -8,9 +8,10 @@ import sys
 
 import numpy as np
 import pytest
-from masonry.read import figures, frames
 from masonry.basics import Refused
-from masonry.read.figures import View, merged, viewOf
+from masonry.read import crack_figure, curve_figure, drawing, figures, frames
+from masonry.read.crack_figure import merged
+from masonry.read.views import viewOf
 
 L, T, H = 0.2, 0.1, 0.08  # [m] of a brick
 
@@ -19,7 +20,7 @@ L, T, H = 0.2, 0.1, 0.08  # [m] of a brick
 def drawn(monkeypatch):
     """Figures that would be saved, by the name of their file."""
     found = {}
-    monkeypatch.setattr(figures, "_save", lambda figure, path, dpi: found.update({os.path.basename(path): figure}))  # fmt: skip
+    monkeypatch.setattr(drawing, "save", lambda figure, path, dpi: found.update({os.path.basename(path): figure}))  # fmt: skip
     return found
 
 
@@ -46,7 +47,7 @@ def test_a_history_over_time_shows_all_values_and_needs_no_energies(tmp_path, dr
     rows = np.column_stack([t, np.sin(9 * t), -3 * np.sin(9 * t)])
     entry = {"x": axis("time_s", "time [s]"), "y": [axis("top_mm", "top"), axis("base_kN", "base")], "y_label": "both"}  # fmt: skip
     entry["bounds"] = [{"y": 5, "text": "bound"}]
-    figures.curve(writeRun(tmp_path, ["time_s", "top_mm", "base_kN"], rows, figure=entry))  # fmt: skip
+    curve_figure.curve(writeRun(tmp_path, ["time_s", "top_mm", "base_kN"], rows, figure=entry))  # fmt: skip
     (top,) = drawn["curve.png"].axes
     low, high = top.get_ylim()
     assert low < -2.99 and high > 5
@@ -61,7 +62,7 @@ def test_what_energies_there_are_is_drawn_since_the_first_row(tmp_path, drawn):
     x = np.arange(5.0)
     rows = np.column_stack([x, -x, 10 + x, 3 * x, x, 2 * x])
     columns = ["u_mm", "f_kN", "external_J", "elastic_shear_J", "elastic_tension_J", "viscous_J"]  # fmt: skip
-    figures.curve(writeRun(tmp_path, columns, rows, figure={"x": axis("u_mm"), "y": [axis("f_kN")]}))  # fmt: skip
+    curve_figure.curve(writeRun(tmp_path, columns, rows, figure={"x": axis("u_mm"), "y": [axis("f_kN")]}))  # fmt: skip
     top, bottom = drawn["curve.png"].axes
     assert top.get_ylim()[0] < -4 and top.get_ylim()[1] >= 0
     lines = {line.get_label(): list(line.get_ydata()) for line in bottom.lines}
@@ -75,7 +76,7 @@ def test_what_energies_there_are_is_drawn_since_the_first_row(tmp_path, drawn):
 def test_marks_loops_and_the_envelope(tmp_path, drawn):
     x = np.concatenate([np.linspace(0, 2, 21), np.linspace(2, -2, 41), np.linspace(-2, 0, 21)])  # fmt: skip
     entry = {"x": axis("u_mm"), "y": [axis("f_kN")], "looped": True, "marks": [{"x": -2, "y": -8, "text": "lowest"}]}  # fmt: skip
-    figures.curve(writeRun(tmp_path, ["u_mm", "f_kN"], np.column_stack([x, x**3]), figure=entry))  # fmt: skip
+    curve_figure.curve(writeRun(tmp_path, ["u_mm", "f_kN"], np.column_stack([x, x**3]), figure=entry))  # fmt: skip
     (top,) = drawn["curve.png"].axes
     assert top.get_ylim()[0] < -8 and top.get_ylim()[1] > 8
     assert [text.get_text() for text in top.texts] == ["lowest"]
@@ -154,7 +155,7 @@ def test_cracks_behind_each_other_are_drawn_once_with_the_largest():
 
 
 def test_the_magnification_is_the_usual_one_unless_that_is_absurd():
-    of = figures.magnificationOf
+    of = crack_figure.magnificationOf
     assert of(3, np.full(100, 12e-3)) == of(3, np.full(100, 0.3e-3)) == 30
     assert of(3, np.zeros(100)) == of(3, []) == 30
     assert of(3, np.full(100, 1.0)) == 1
@@ -249,7 +250,7 @@ def test_two_wythes_show_an_open_joint_once(scene, tmp_path, drawn):
     lintel = box((0, 0, H), (2 * L, 2 * T, 3 * H))
     pull(scene, tmp_path, lintel, (0, 0, 1.0))
     writeRun(tmp_path, ["time_s", "f_kN"], [[0, 0], [1, 1]])
-    figures.cracks(str(tmp_path))
+    crack_figure.cracks(str(tmp_path))
     (axes,) = drawn["cracks.png"].axes
     lines = crackLines(axes)
     assert not len(lines["slid"])
@@ -268,7 +269,7 @@ def test_a_corner_has_a_panel_for_each_wall_and_shows_its_joint_in_both(scene, t
     pull(scene, tmp_path, side[0], (0, 1.0, 0))
     parts = {"front": front, "side": side}
     folder = writeRun(tmp_path, ["time_s", "f_kN"], [[0, 0], [1, 1]], parts=parts)
-    figures.cracks(folder)
+    crack_figure.cracks(folder)
     panels = {axes.get_title().split(" ")[0]: axes for axes in drawn["cracks.png"].axes}
     assert [panels[n].get_xlabel() for n in parts] == ["x [m]", "y [m]"]
     assert "moved up to 2 mm away from the viewer" not in panels["side"].get_title()
@@ -282,7 +283,7 @@ def test_a_corner_has_a_panel_for_each_wall_and_shows_its_joint_in_both(scene, t
     # a ground that has moved with everything is taken off
     told = json.load(open(os.path.join(folder, "run.json")))
     json.dump({**told, "reference_body": side[0]}, open(os.path.join(folder, "run.json"), "w"))  # fmt: skip
-    figures.cracks(folder)
+    crack_figure.cracks(folder)
     panels = {axes.get_title().split(" ")[0]: axes for axes in drawn["cracks.png"].axes}
     lines = crackLines(panels["side"])["open"]
     assert lines[:, :, 0] == pytest.approx(T - 30 * 1e-3, rel=0.05)
@@ -298,7 +299,7 @@ def test_bodies_that_are_not_there_are_refused(scene, tmp_path):
         ({"parts": {"all": []}}, "parts: all has no bodies"),
     ):
         with pytest.raises(Refused, match=words):
-            figures.cracks(writeRun(tmp_path, ["time_s", "f"], [[0, 0], [1, 1]], **told))  # fmt: skip
+            crack_figure.cracks(writeRun(tmp_path, ["time_s", "f"], [[0, 0], [1, 1]], **told))  # fmt: skip
 
 
 # -- inside YADE -----------------------------------------------------------------------------------------------------
@@ -314,7 +315,7 @@ assert before == (dict(matplotlib.rcParams), matplotlib.get_backend()), "setting
 assert not [name for name in sys.modules if name.startswith(("vtk", "paraview"))], "VTK's Python was loaded"
 try:
     masonry.read.figures.draw("nowhere")
-except masonry.read.figures.Refused as error:
+except masonry.basics.Refused as error:
     print("refused:", error)
 """
 

@@ -8,31 +8,18 @@ from conftest import ROOT
 
 PACKAGE = os.path.join(ROOT, "scripts", "masonry")
 
-#: The modules of the package. Each imports only those above it; those without YADE come first.
-WITHOUT_YADE = """
-basics
-bricks.geometry bricks.checks bricks.blocks bricks.bonds bricks.openings bricks.files bricks.vaults bricks.walls bricks.__init__
-read.__init__ read.files read.frames read.loops read.curves read.figures read.measure read.comparison read.viewer_scene read.viewer
-assembly.__init__ assembly.columns assembly.ports
-run.__init__ run.progress run.presets run.results run.batch
-limit.programme limit.bound limit.slipping limit.assembly
-scene.__init__ scene.fields scene.ground scene.history
-study.variables study.designs study.plan study.gathering study.statistics study.estimate study.sensitivity study.pictures
-study.records study.report study.start study.row study.yadebatch study.local study.slurm study.__init__ study.__main__
-""".split()
-ORDER = (
-    WITHOUT_YADE
-    + """
-_masonry
-assembly.blocks assembly.window assembly.model
-run.checkpoints run.plotting run.run
-limit.reading limit.__init__
-scene.materials scene.options scene.loading scene.description scene.bounds scene.structure scene.probing scene.scene
-__init__
-""".split()
+#: The rooms of the package. Each imports only those above it, and itself.
+LAYERS = ["basics", "bricks", "read", "assembly", "run", "limit", "scene", "study"]
+#: Rooms and modules that work where YADE is not installed, with all that they import.
+WITHOUT_YADE = ["basics", "bricks", "read", "study", "run.batch", "run.presets"]
+WITHOUT_YADE += ["run.progress", "run.results", "scene.fields", "scene.history"]
+PACKAGES = [name for name in LAYERS if os.path.isdir(os.path.join(PACKAGE, name))]
+MODULES = ["__init__"] + sorted(
+    os.path.relpath(os.path.join(folder, name), PACKAGE)[:-3].replace(os.sep, ".")
+    for folder, _, names in os.walk(PACKAGE)
+    for name in names
+    if name.endswith(".py") and folder + name != PACKAGE + "__init__.py"
 )
-MODULES = [name for name in ORDER if name != "_masonry"]
-PACKAGES = ["bricks", "assembly", "limit", "read", "run", "scene", "study"]  # inside the package
 SCENES = [n[:-3] for n in os.listdir(os.path.join(ROOT, "scripts")) if n[-3:] == ".py"]
 
 
@@ -65,49 +52,70 @@ def imports(path):
 
 
 def ownModule(name):
-    """The module of the package that an import names, "__init__" for what only a package itself has, or None."""
+    """The module of the package that an import names, or None. A package that is imported is its ``__init__``."""
     package, *rest = name.split(".")
-    if package != "masonry":
+    if package != "masonry" or rest[:1] == ["_masonry"]:  # the plugin
         return None
-    if rest and rest[0] in PACKAGES:
-        own = ".".join(rest[:2])
-        return own if own in ORDER else rest[0] + ".__init__"
-    return rest[0] if rest else "__init__"
+    while rest:
+        for own in (".".join(rest), ".".join([*rest, "__init__"])):
+            if own in MODULES:
+                return own
+        rest.pop()
+    return "__init__"
 
 
-def test_the_order_names_all_modules():
-    files = [
-        (f"{inner}." if inner else "") + name[:-3]
-        for inner in ("", *PACKAGES)
-        for name in os.listdir(os.path.join(PACKAGE, inner))
-        if name.endswith(".py")
-    ]
-    assert sorted(files) == sorted(MODULES)
+def layer(module):
+    """Number of the room of a module; the package itself is above all."""
+    room = module.split(".")[0]
+    return LAYERS.index(room) if room in LAYERS else len(LAYERS)
+
+
+GRAPH = {
+    module: {
+        own
+        for own in (ownModule(name) for name, _ in imports(source(module)))
+        if own and own != module
+    }
+    for module in MODULES
+}
+
+
+def test_every_module_has_its_room():
+    assert len(MODULES) > 60
+    for module in MODULES:
+        assert module == "__init__" or module.split(".")[0] in LAYERS
 
 
 @pytest.mark.parametrize("module", MODULES)
-def test_a_module_imports_only_those_above_it(module):
-    for name, _ in imports(source(module)):
-        own = ownModule(name)
-        if own:
-            assert own in ORDER, f"{module} imports {name} from the package itself"
-            assert ORDER.index(own) < ORDER.index(module), f"{module} imports {own}"
+def test_a_module_imports_only_its_own_room_and_those_above_it(module):
+    for own in GRAPH[module] - {"__init__"}:
+        assert layer(own) <= layer(module), f"{module} imports {own}"
+    allowed = {"__init__"} if module == "__init__" else set()
+    assert "__init__" not in GRAPH[module] - allowed, f"{module} imports the package"
+
+
+def circle(graph):
+    """A circle of imports as a list of modules, or None."""
+    over = set()
+
+    def visit(module, path):
+        if module in path:
+            return [*path[path.index(module) :], module]
+        if module in over:
+            return None
+        for other in sorted(graph.get(module, ())):
+            found = visit(other, [*path, module])
+            if found:
+                return found
+        over.add(module)
+        return None
+
+    return next(filter(None, (visit(module, []) for module in graph)), None)
 
 
 def test_no_circle_of_imports():
-    """This follows from the order of the modules. It is tested separately, in case the order given here is wrong."""
-    graph = {
-        module: {ownModule(name) for name, _ in imports(source(module))}
-        for module in MODULES
-    }
-
-    def visit(module, path):
-        assert module not in path, " -> ".join([*path, module])
-        for other in graph.get(module, ()):
-            visit(other, [*path, module])
-
-    for module in graph:
-        visit(module, [])
+    assert circle({"a": {"b"}, "b": {"c"}, "c": {"b"}}) == ["b", "c", "b"]
+    assert circle(GRAPH) is None
 
 
 @pytest.mark.parametrize("module", MODULES)
@@ -117,10 +125,24 @@ def test_a_module_imports_no_scene_and_breaks_no_circle_in_a_function(module):
         assert atTop or not ownModule(name), f"{module} imports {name} in a function"
 
 
-@pytest.mark.parametrize("module", WITHOUT_YADE)
-def test_what_reads_results_needs_no_yade(module):
-    for name, _ in imports(source(module)):
-        assert name.split(".")[0] != "yade"
+def needed(module, found=None):
+    """All modules that a module imports, and those that they import."""
+    found = set() if found is None else found
+    for other in GRAPH[module] - found:
+        found.add(other)
+        needed(other, found)
+    return found
+
+
+@pytest.mark.parametrize("room", WITHOUT_YADE)
+def test_what_reads_results_needs_no_yade(room):
+    modules = [m for m in MODULES if m == room or m.startswith(room + ".")]
+    assert modules
+    for module in modules:
+        for one in {module, *needed(module)}:
+            for name, _ in imports(source(one)):
+                host = name.startswith(("yade", "masonry._masonry"))
+                assert not host, f"{module} needs {one}, which imports {name}"
 
 
 @pytest.mark.parametrize("scene", SCENES)

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from masonry.read import measure
-from masonry.read.figures import CRACK
+from masonry.read import cracks, measure
+from masonry.read.cracks import CRACK
 
 COURSES, COLUMNS = 12, 12
 WALL = {"unit_m": (0.22, 0.102, 0.08), "courses": COURSES, "half_units": COLUMNS}
@@ -34,9 +34,9 @@ def stair(bed, upright, lines, shift=0):
 def test_an_uncracked_wall_has_no_pattern():
     bed, upright = blank()
     numbers = {
-        **measure.diagonal(bed, upright),
-        **measure.flexure(bed),
-        **measure.crushing(bed),
+        **cracks.diagonal(bed, upright),
+        **cracks.flexure(bed),
+        **cracks.crushing(bed),
     }
     assert math.isnan(numbers.pop("diagonal_band_courses"))
     assert 0.3 < numbers.pop("diagonal_joint_share") < 0.6
@@ -48,7 +48,7 @@ def test_an_uncracked_wall_has_no_pattern():
 def test_a_stepped_crack_reaches_as_far_as_it_steps():
     bed, upright = blank()
     stair(bed, upright, range(0, 11))
-    numbers = measure.diagonal(bed, upright)
+    numbers = cracks.diagonal(bed, upright)
     assert numbers["diagonal_reach"] == 10
     assert numbers["diagonal_energy_share"] == 1
     assert numbers["diagonal_band_courses"] == pytest.approx(0, abs=1e-12)
@@ -59,14 +59,14 @@ def test_a_gap_in_the_crack_ends_its_reach():
     bed, upright = blank()
     stair(bed, upright, range(0, 11))
     bed["slide"][COURSES - 3 - 6, 7] = 0  # between the uprights of lines 6 and 7
-    assert measure.diagonal(bed, upright)["diagonal_reach"] == 6
+    assert cracks.diagonal(bed, upright)["diagonal_reach"] == 6
 
 
 def test_parallel_cracks_are_counted():
     bed, upright = blank()
     stair(bed, upright, range(0, 8))
     stair(bed, upright, range(0, 8), shift=3)
-    numbers = measure.diagonal(bed, upright)
+    numbers = cracks.diagonal(bed, upright)
     assert numbers["diagonal_reach"] == 7
     inner = upright["opening"][2:-2] > 0
     assert numbers["parallel_cracks"] == pytest.approx(inner.sum() / len(inner))
@@ -75,22 +75,22 @@ def test_parallel_cracks_are_counted():
 
 def test_the_narrowest_band_holds_its_share():
     positions, weights = np.array([6.0, 0, 3, 4, 6]), np.array([1.0, 2, 1, 1, 1])
-    assert measure.narrowestBand(positions, weights, share=1 / 3) == 0
-    assert measure.narrowestBand(positions, weights) == 2  # from 4 to 6
-    assert measure.narrowestBand(positions, weights, share=1) == 6
+    assert cracks.narrowestBand(positions, weights, share=1 / 3) == 0
+    assert cracks.narrowestBand(positions, weights) == 2  # from 4 to 6
+    assert cracks.narrowestBand(positions, weights, share=1) == 6
 
 
 def test_other_cracks_do_not_reach():
     bed, upright = blank()
     bed["slide"][5] = WIDE  # a bed joint slid from side to side
-    assert measure.diagonal(bed, upright)["diagonal_reach"] == 0
+    assert cracks.diagonal(bed, upright)["diagonal_reach"] == 0
     upright["opening"][:, 4] = WIDE  # and a vertical split
-    assert measure.diagonal(bed, upright)["diagonal_reach"] == 0
+    assert cracks.diagonal(bed, upright)["diagonal_reach"] == 0
     bed, upright = blank()
     for line in range(11):  # a stair that rises to the right
         upright["opening"][line, line] = WIDE
         bed["slide"][line, line] = WIDE
-    assert measure.diagonal(bed, upright)["diagonal_reach"] == 0
+    assert cracks.diagonal(bed, upright)["diagonal_reach"] == 0
 
 
 def test_a_crack_may_follow_a_bed_joint_on_its_way():
@@ -98,7 +98,7 @@ def test_a_crack_may_follow_a_bed_joint_on_its_way():
     upright["opening"][7:10, 2] = WIDE
     upright["opening"][4:7, 8] = WIDE
     bed["slide"][6, 3:9] = WIDE
-    assert measure.diagonal(bed, upright)["diagonal_reach"] == 5  # of 6 half units
+    assert cracks.diagonal(bed, upright)["diagonal_reach"] == 5  # of 6 half units
 
 
 def test_flexural_cracks_are_counted_at_the_sides():
@@ -107,7 +107,7 @@ def test_flexural_cracks_are_counted_at_the_sides():
     bed["opening"][3, :2] = WIDE
     bed["opening"][4, 3:9] = WIDE  # does not come out at a side
     bed["opening"][-2, -4:] = 1e-3
-    assert measure.flexure(bed) == pytest.approx(
+    assert cracks.flexure(bed) == pytest.approx(
         {
             "flexural_cracks_base": 2,
             "flexural_opening_base_mm": 3,
@@ -124,7 +124,7 @@ def test_crushing_is_shared_by_the_corners():
     bed["crushing"][0, -1] = 3e-6
     bed["crushing"][-1, 0] = 1e-6
     bed["past"][0, -1] = 112e-4
-    numbers = measure.crushing(bed)
+    numbers = cracks.crushing(bed)
     assert numbers["crushed_volume_cm3"] == pytest.approx(4)
     assert numbers["crushed_share_toe"] == pytest.approx(0.75)
     assert numbers["crushed_share_top_left"] == pytest.approx(0.25)
@@ -158,7 +158,7 @@ def test_joints_of_a_frame_find_their_place():
         "damage_compression": np.array([0, 0.5, 0, 0]),
         "joint_dissipated": np.array([(0, 7.0, 0)] * 2 + [(0, 9.0, 0), (0, 1.0, 0)]),
     }
-    bed, upright = measure.layOut(frame, WALL)
+    bed, upright = cracks.layOut(frame, WALL)
     assert bed["opening"][2, 5] == pytest.approx(1.75e-3)
     assert bed["slide"][2, 5] == pytest.approx(1e-3)
     assert bed["shear"].sum() == bed["shear"][2, 5] == 7  # once a joint; no support
@@ -169,10 +169,10 @@ def test_joints_of_a_frame_find_their_place():
 
 
 def test_heights_above_the_diagonal_vanish_on_it():
-    bed = measure.acrossDiagonal((COURSES - 1, COLUMNS), upright=False)
+    bed = cracks.acrossDiagonal((COURSES - 1, COLUMNS), upright=False)
     for column in range(3, 9):
         assert bed[COURSES - 2 - column, column] == pytest.approx(-0.5)
-    upright = measure.acrossDiagonal((COURSES, COLUMNS - 1), upright=True)
+    upright = cracks.acrossDiagonal((COURSES, COLUMNS - 1), upright=True)
     assert upright[5, 5] == pytest.approx(-0.5)
     assert np.isnan(bed[0]).all() and np.isnan(upright[:2]).all()
 
@@ -212,4 +212,4 @@ LEANS = {"flexural_cracks_base": 2, "flexural_opening_base_mm": 6.0}
 )
 def test_a_failure_mode_is_the_first_that_applies(found, mode):
     wall = {"courses": 10, "half_units": 36, "unit_m": (0.22, 0.102, 0.081)}
-    assert measure.failureMode({**WHOLE, **found}, wall) == mode
+    assert cracks.failureMode({**WHOLE, **found}, wall) == mode

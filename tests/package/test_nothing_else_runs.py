@@ -33,11 +33,11 @@ def test_programs_of_the_package_run_nothing_of_the_present_folder(planted, word
 def test_figures_are_drawn_with_nothing_of_the_present_folder(planted, monkeypatch):
     """The program that draws them runs in a process of its own."""
     from masonry.basics import Unwritable
-    from masonry.assembly.model import Model
+    from masonry.scene.outcome import Outcome
 
     monkeypatch.chdir(planted)
     with pytest.raises(Unwritable):
-        Model.draw(None, "nowhere")
+        Outcome.draw(None, "nowhere")
     assert not (planted / "ran").exists()
 
 

@@ -16,7 +16,8 @@ from masonry import materials
 from masonry.assembly import columns
 from masonry.read import curves, files
 from masonry.run import presets, results
-from masonry.scene import description as described, options
+from masonry.scene import options, targets
+from masonry.scene.settings import applySettings, setting
 from masonry.basics import Refused, Unwritable
 
 
@@ -55,7 +56,7 @@ def parse(*words):
 
 def test_settings_change_the_named_property_only():
     joints = materials.calciumSilicateJoints()
-    options.applySettings(
+    applySettings(
         joints,
         parse(
             "--set",
@@ -84,7 +85,7 @@ def test_all_wrong_settings_are_told_at_once():
         "crack.name=x",
     ]
     with pytest.raises(Refused) as refused:
-        options.applySettings(joints, [options._setting(w) for w in words])
+        applySettings(joints, [setting(w) for w in words])
     message = str(refused.value)
     for part in (
         "--set bad.friction: no joint 'bad', there are support, bed, head, crack",
@@ -180,7 +181,7 @@ def test_a_preset_promises_nothing_of_a_wall_it_was_not_measured_on():
 def test_any_text_for_a_table_is_refused_in_words_or_makes_a_joint(text):
     joints = {"bed": materials.MasonryJoint()}
     try:
-        options.applySettings(joints, [("bed", "shearTable", text)])
+        applySettings(joints, [("bed", "shearTable", text)])
     except Refused as refused:
         assert str(refused).startswith(
             ("--set bed.shearTable=", 'joint "bed": shear table, ')
@@ -294,18 +295,30 @@ def test_readers_ask_only_for_keys_of_run_json_that_are_documented(reader):
 @pytest.mark.parametrize("reader", ["figures", "measure"])
 def test_readers_ask_only_for_columns_that_are_described(reader):
     source = open(os.path.join(ROOT, "scripts", "masonry", "read", reader + ".py")).read()
-    known = {c.name for c in columns.PUSH + columns.HISTORY + columns.BALANCE}
-    known |= set(described.OF_JOINTS)
+    known = {*columns.heads(columns.PUSH + columns.HISTORY + columns.BALANCE)}
     asked = set(re.findall(r'\b(?:curve|data)\["(\w+)"\]', source))
     assert asked and not asked - known
 
 
 def test_a_column_says_its_unit_in_its_name_and_in_its_meaning():
-    listed = columns.meanings(columns.PUSH + columns.HISTORY + columns.BALANCE)
+    """Of every target, drift and joint, too."""
+    low, high = (targets.Target(n, recorded=(0, 0, z)) for n, z in (("a", 0), ("b", 1)))
+    recorded = [
+        *high.columns(plane=False),
+        *targets.Drift("drift", low, high).columns(plane=True),
+        *targets.JointRecord("joint0", (0, 1)).columns(),
+    ]
+    assert columns.heads(recorded) == (
+        "b_x_mm b_y_mm b_z_mm b_rotation_mrad drift_x_mm drift_x_mrad joint0_opening_mm joint0_slide_mm "
+        "joint0_normal_stress_MPa joint0_shear_stress_MPa"
+    ).split()
+    listed = columns.meanings(
+        columns.PUSH + columns.HISTORY + columns.BALANCE + recorded
+    )
     assert next(iter(listed)) == "time_s"
-    for name, meaning in [*listed.items(), *described.OF_JOINTS.items()]:
+    for head, meaning in listed.items():
         unit = meaning[meaning.rindex("[") + 1 : -1]
-        assert unit == "-" or name.endswith("_" + unit)
+        assert unit == "-" or head.endswith("_" + unit)
 
 
 def test_the_energies_are_those_of_the_balance(scene):

@@ -36,7 +36,7 @@ class Wall:
             self.name,
             bricks.Wall(self.length, height, self.unit),
             self.masonry(),
-            columns=columns.names(columns.PUSH),
+            columns=columns.heads(columns.PUSH),
             arguments=args,
             **settings,
         )

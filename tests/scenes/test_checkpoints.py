@@ -11,7 +11,7 @@ from conftest import ROOT
 from masonry import readCheckpoint, saveCheckpoint
 from masonry.read.files import readCurve, readRun
 from masonry.run.run import Run
-from masonry.scene.structure import Structure
+from masonry.assembly.structure import Structure
 from small import SMALL, Wall, carryOut, parsed, scene as runScript
 
 

@@ -21,7 +21,8 @@ from masonry.basics import Refused
 from masonry.read import files
 from masonry.read.files import readRun
 from masonry.run.results import Results
-from masonry.scene.structure import Structure
+from masonry.assembly.structure import Structure
+from masonry.scene.outcome import Outcome
 from small import SMALL, Wall, carryOut, parsed
 
 SHORT = ["--until", "0.05", "--rate", "40", "--no-vtk"]
@@ -31,7 +32,7 @@ LIGHT = Wall("light", length=0.22, courses=4, precompression=0.0, loadHeight=3.0
 @pytest.fixture(autouse=True)
 def undrawn(monkeypatch):
     """Figures take longer than these runs."""
-    monkeypatch.setattr(Structure, "draw", lambda self, directory: None)
+    monkeypatch.setattr(Outcome, "draw", lambda self, directory: None)
 
 
 def contents(folder):

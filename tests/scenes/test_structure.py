@@ -5,7 +5,7 @@ from masonry import Scene, bricks, materials
 from masonry.basics import Refused
 from masonry.scene.ground import readRecord
 from masonry.read.files import readCurve, readRun
-from masonry.scene.scene import AT_REST, COLLAPSED, DONE
+from masonry import AT_REST, COLLAPSED, DONE
 from yade import O
 
 STONE = 2600 * 9.81  # [N/m³]
@@ -190,13 +190,6 @@ def test_loads_that_have_not_grown_are_refused(tmp_path):
         scene.push(top, 1)
 
 
-def test_help_leads_to_every_module():
-    import masonry
-
-    for name in dir(masonry):
-        getattr(masonry, name)
-
-
 def test_a_block_that_is_tilted_beyond_its_diagonal_falls(tmp_path):
     block = bricks.stack(1, (0.25, 0.25, 0.5))
     scene = made(tmp_path, block, materials.dry(friction=5, normalStiffness=1e10))
@@ -361,14 +354,14 @@ def test_a_second_push_in_another_direction_does_not_let_go(tmp_path):
 
 def test_a_push_goes_on_from_where_the_one_before_began(tmp_path):
     scene, top = small(tmp_path)
-    scene.push(top, 0.08, goOn=True)
+    scene.push(top, 0.08, continued=True)
     moved = scene.results.column("displacement_mm")
-    assert moved[-1] == pytest.approx(0.08, abs=0.01) and len(scene.at.stages) == 3
+    assert moved[-1] == pytest.approx(0.08, abs=0.01) and len(scene.running.at.stages) == 3
     assert scene.results.column("top_x_mm")[-1] == pytest.approx(0.08, abs=0.01)
     scene.push(top, 0.03)
     assert scene.results.column("top_x_mm")[-1] == pytest.approx(0.11, abs=0.01)
-    with pytest.raises(ValueError, match="goOn: top has not been pushed along"):
-        scene.push(top, 1, direction=(-1, 0, 0), goOn=True)
+    with pytest.raises(ValueError, match="continued: top has not been pushed along"):
+        scene.push(top, 1, direction=(-1, 0, 0), continued=True)
 
 
 def test_storey_drift_is_the_difference_of_two_floors(tmp_path):

@@ -13,9 +13,9 @@ import pytest
 from conftest import ROOT
 from masonry.run import results
 from masonry.scene import loading, options
-from masonry.read.figures import readFrame
+from masonry.read.frames import readFrame
 from masonry.read.files import readCurve, readRun
-from masonry.scene.structure import Structure
+from masonry.assembly.structure import Structure
 from small import SMALL, carryOut, parsed, settled
 from yade import O
 
@@ -364,7 +364,9 @@ def test_a_reading_that_is_not_finite_ends_the_run_with_the_rows_before(
     def broken(self):
         count[0] -= 1
         reading = read(self)
-        return reading if count[0] else reading._replace(up=float("nan"))
+        if not count[0]:
+            reading.up = float("nan")
+        return reading
 
     monkeypatch.setattr(Structure, "read", broken)
     with pytest.raises(FloatingPointError, match="finite numbers in vertical_mm"):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from masonry import readCheckpoint
-from masonry.read import figures, loops, measure
+from masonry.read import drawing, figures, loops, measure
 from masonry.run import results
 from masonry.scene import history, loading
 from masonry.read.files import readCurve, readRun
@@ -160,7 +160,7 @@ def test_what_the_drive_puts_into_a_cycle_is_lost_or_stored(looped):
 
 def test_figures_and_measures_show_both_sides(looped, monkeypatch, capsys):
     shown = []
-    monkeypatch.setattr(figures, "_save", lambda figure, *_: shown.append(figure))
+    monkeypatch.setattr(drawing, "save", lambda figure, *_: shown.append(figure))
     figures.draw(str(looped))
     data = curve(looped)
     top = shown[0].axes[0]

@@ -8,6 +8,7 @@ import pathlib
 import numpy as np
 import pytest
 from masonry.basics import Refused
+from masonry.read import drawing
 from masonry.study import pictures, records, report, sensitivity, statistics
 from scipy import stats
 
@@ -136,8 +137,8 @@ def drawn(monkeypatch):
     """Figures that would be saved, by the name of their file."""
     found = {}
     monkeypatch.setattr(
-        pictures,
-        "_save",
+        drawing,
+        "save",
         lambda figure, path, dpi: found.update({os.path.basename(path): figure}),
     )
     return found

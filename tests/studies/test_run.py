@@ -16,7 +16,8 @@ import cluster
 import pytest
 
 from masonry.run import batch
-from masonry.read.measure import failureMode, measure
+from masonry.read.cracks import failureMode
+from masonry.read.measure import measure
 from masonry.read.files import readRun
 
 pytest.importorskip("openturns", reason="python3-openturns is not installed")

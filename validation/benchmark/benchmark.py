@@ -61,7 +61,7 @@ def plugin(words="", until=0.2, functors=False):
         "benchmark",
         BLOCKS,
         materials.calciumSilicate(),
-        columns=columns.names(columns.PUSH),
+        columns=columns.heads(columns.PUSH),
         functors=functors,
         arguments=words,
     )
@@ -82,7 +82,7 @@ def plugin(words="", until=0.2, functors=False):
         if e.execCount
     }
     rows = len(run.results.rows)
-    engines["a row of curve.csv"] = 1e6 * run.at.seconds["rows"] / rows
+    engines["a row of curve.csv"] = 1e6 * run.running.at.seconds["rows"] / rows
     return seconds, model.subcontacts, engines
 
 

@@ -16,7 +16,7 @@ import sys
 
 from masonry import MasonryJoint, addBlock, bricks, connect, criticalTimeStep, engines, materials
 from masonry.basics import Refused
-from masonry.scene.options import applySettings
+from masonry.scene.settings import applySettings
 from yade import O, Vector3
 from yade.wrapper import MasonryLoad
 

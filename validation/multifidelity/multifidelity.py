@@ -206,10 +206,10 @@ def _told(interval):
 def draw(found):
     """multifidelity.png: accurate over fast for the shared rows, and both distributions, wall by wall."""
     from masonry.read.comparison import COLOURS
-    from masonry.read.figures import _drawing, _save, _style
+    from masonry.read import drawing
 
-    with _style():
-        figure = _drawing(3.4 * len(found), 3.2)
+    with drawing.style():
+        figure = drawing.empty(3.4 * len(found), 3.2)
         for axis, (wall, (y, x, values)) in zip(
             figure.subplots(1, len(found), squeeze=False)[0], found.items()
         ):
@@ -231,7 +231,7 @@ def draw(found):
             axis.grid(alpha=0.3)
             axis.legend(fontsize=7)
         figure.tight_layout()
-        _save(figure, os.path.join(HERE, "multifidelity.png"), 150)
+        drawing.save(figure, os.path.join(HERE, "multifidelity.png"), 150)
 
 
 def main():

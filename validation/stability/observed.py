@@ -60,7 +60,7 @@ class Observed(Scene):
             "w",
             bricks.Wall(wall["halfUnits"] * long / 2, wall["courses"] * high, unit),
             point.masonry(),
-            columns=columns.names(columns.PUSH),
+            columns=columns.heads(columns.PUSH),
             arguments=words.split(),
             gravity=9.81 if point.gravity else 0,
             until=1,

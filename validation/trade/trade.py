@@ -21,8 +21,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from masonry.read.curves import dynamicImbalance
-from masonry.read.figures import CRACK, readFrame
-from masonry.read.measure import layOut
+from masonry.read.cracks import CRACK, layOut
+from masonry.read.frames import readFrame
 from masonry.run.presets import PRESETS, USUAL, asOption
 from masonry.read.files import readCurve, readRun
 

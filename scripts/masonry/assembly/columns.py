@@ -1,30 +1,85 @@
-"""The columns of curve.csv: their names with units, what they mean, and how they follow from a reading of the model.
+"""The columns of curve.csv: name, unit, meaning and value of each stand in one place.
 
-A reading holds what a model measures of itself once a row, in SI units. Adding a column is adding a line here, and a
-value to the reading of the model if it has none that fits.
+Adding a column is adding a line here, to :meth:`masonry.scene.targets.Target.columns` if every target shall have it, or to
+:data:`masonry.scene.targets.OF_JOINTS` if every recorded joint shall. ``scene.column`` adds one from a script.
 """
 
-from collections import namedtuple
+from dataclasses import dataclass
+from typing import Callable
 
-#: ``name`` has the unit at its end. ``value`` is a function of a reading that gives the number in that unit.
-Column = namedtuple("Column", "name meaning value")
+from yade import O, Vector3
 
 
-#: What a structure reads, for a row.
-#:
-#: - ``time`` since it was built [s]
-#: - ``along`` and ``up``: displacement of the pushed point since the push began, along the push and upwards [m]
-#: - ``baseShear``: force of the structure on what is held, along the push [N]
-#: - ``topShear``: force that drives the pushed point [N]
-#: - ``energy``: the energy balance [J]
-#: - ``rotation`` of the pushed block [rad]
-#: - ``sunk``: displacement of the pushed point downwards since the structure was built [m]
-#: - ``point``: number of the point of a history that the drive is going to, from 1; ``target``: its displacement [mm]
-#: - ``values``: numbers of every other column by its name
-Reading = namedtuple(
-    "Reading",
-    "time along up baseShear topShear energy rotation sunk point target values",
-)
+@dataclass(frozen=True)
+class Column:
+    """A column of curve.csv.
+
+    :param name: without its unit
+    :param unit: ``"-"`` if it has none; None: name and meaning have it already
+    :param meaning: one line for run.json, without the unit
+    :param value: function of a :class:`Reading` that gives the number in that unit
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    value: Callable
+
+    @property
+    def head(self):
+        """The name with its unit, as it stands in the first line of curve.csv."""
+        return self.name if self.unit in (None, "-") else f"{self.name}_{self.unit}"
+
+    @property
+    def explanation(self):
+        """The meaning with its unit, as it stands in run.json."""
+        return self.meaning if self.unit is None else f"{self.meaning} [{self.unit}]"
+
+
+class Reading:
+    """What a structure measures of itself at one moment, in SI units. The values of all columns are taken from it at once.
+
+    - ``time`` since the scene was built [s]
+    - ``along``, ``up``: displacement of the pushed point since the push began, along the push and upwards [m]
+    - ``sunk``: displacement of the pushed point downwards since the scene was built [m]
+    - ``rotation`` of the pushed block, about y in a plane, else its angle [rad]
+    - ``baseShear``: force of the structure on all that is held, along the push [N]
+    - ``topShear``: force that drives the pushed point [N]
+    - ``energy``: the energy balance [J]
+    - ``goal``: number of the point of a history that the drive is going to, from 1, and its displacement [mm]
+    - ``forces``: force of the structure on what is held, by the name of the target [N]
+
+    :param structure: :class:`masonry.assembly.structure.Structure`
+    """
+
+    def __init__(self, structure):
+        self.structure, self.time = structure, O.time
+        self._moved = {}
+        self.forces = {}
+        held = Vector3(0, 0, 0)
+        for target in structure.held:
+            force = self.forces[target.name] = structure.forceOn(target)
+            for i in structure.axes:
+                if "xyz"[i] in target.freedom:
+                    held[i] += force[i]
+        self.along = self.up = self.topShear = self.rotation = 0.0
+        self.sunk = -0.0
+        if structure.target:
+            moved, self.rotation = self.moved(structure.target)
+            origin = structure.origin
+            self.along, self.up = moved.dot(structure.way) - origin[0], moved[2] - origin[1]
+            self.sunk = -moved[2]
+            self.topShear = structure.loads["push"].reaction
+        self.baseShear = held.dot(structure.way)
+        self.energy = structure.energy.balance()
+        self.goal = structure.goal
+
+    def moved(self, target):
+        """Displacement of a target's recorded point since the scene was built [m], and its rotation [rad]."""
+        if target.name not in self._moved:
+            self._moved[target.name] = self.structure.moved(target)
+        return self._moved[target.name]
+
 
 #: Energies by their name in the balance, and what each is.
 ENERGIES = {
@@ -46,44 +101,51 @@ def _energy(name):
     return lambda reading: reading.energy[name]
 
 
+#: The energy balance, in every run.
 BALANCE = [
-    Column(f"{name}_J", f"{meaning} since the model was built [J]", _energy(name))
+    Column(name, "J", f"{meaning} since the scene was built", _energy(name))
     for name, meaning in ENERGIES.items()
 ]
 BALANCE += [
     Column(
         "balance_error",
-        "error of the energy balance, relative to the work done [-]",
+        "-",
+        "error of the energy balance, relative to the work done",
         _energy("error"),
     )
 ]
 
 #: Of a push.
 PUSH = [
-    Column("time_s", "time since the scene was built [s]", lambda r: r.time),
+    Column("time", "s", "time since the scene was built", lambda r: r.time),
     Column(
-        "displacement_mm",
-        "displacement of the pushed point along the push, since that began [mm]",
+        "displacement",
+        "mm",
+        "displacement of the pushed point along the push, since that began",
         lambda r: 1e3 * r.along,
     ),
     Column(
-        "base_shear_kN",
-        "force of the structure on all that is held, along the push [kN]",
+        "base_shear",
+        "kN",
+        "force of the structure on all that is held, along the push",
         lambda r: 1e-3 * r.baseShear,
     ),
     Column(
-        "top_shear_kN",
-        "force that drives the pushed point [kN]",
+        "top_shear",
+        "kN",
+        "force that drives the pushed point",
         lambda r: 1e-3 * r.topShear,
     ),
     Column(
-        "vertical_mm",
-        "upward displacement of the pushed point since the push began [mm]",
+        "vertical",
+        "mm",
+        "upward displacement of the pushed point since the push began",
         lambda r: 1e3 * r.up,
     ),
     Column(
-        "rotation_mrad",
-        "rotation of the pushed block, about y in a plane, else its angle [mrad]",
+        "rotation",
+        "mrad",
+        "rotation of the pushed block, about y in a plane, else its angle",
         lambda r: 1e3 * r.rotation,
     ),
 ]
@@ -92,18 +154,19 @@ PUSH = [
 HISTORY = [
     Column(
         "point",
-        "number of the point of the history that the drive is going to, from 1 [-]",
-        lambda r: r.point,
+        "-",
+        "number of the point of the history that the drive is going to, from 1",
+        lambda r: r.goal[0],
     ),
-    Column("target_mm", "displacement of this point [mm]", lambda r: r.target),
+    Column("target", "mm", "displacement of this point", lambda r: r.goal[1]),
 ]
 
 
-def names(columns):
-    """The heads of curve.csv."""
-    return [column.name for column in columns]
+def heads(columns):
+    """The first line of curve.csv: names of columns with their units."""
+    return [column.head for column in columns]
 
 
 def meanings(columns):
-    """What each column means, by its name: the entry ``columns`` of run.json."""
-    return {column.name: column.meaning for column in columns}
+    """What each column means, by its head: the entry ``columns`` of run.json."""
+    return {column.head: column.explanation for column in columns}

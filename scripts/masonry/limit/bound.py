@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..read.figures import mechanism
+from ..read.crack_figure import mechanism
 from .programme import FACETS
 
 SLIDES = 1e-4  # share of the power of a mechanism that is friction, from which its joints slide [-]

@@ -2,7 +2,10 @@
 
 - :mod:`masonry.read.files`: curve.csv and run.json; :mod:`masonry.read.frames`: the frames for ParaView
 - :mod:`masonry.read.curves`, :mod:`masonry.read.loops`: numbers of a curve, and of loops
+- :mod:`masonry.read.cracks`: where joints are cracked and crushed, and how a wall gave way
 - :mod:`masonry.read.measure`: all numbers of a run, as a program, too
-- :mod:`masonry.read.figures`, :mod:`masonry.read.comparison`: its figures, and those of several runs
+- :mod:`masonry.read.figures`: its figures, as a program, too; :mod:`masonry.read.curve_figure`,
+  :mod:`masonry.read.crack_figure` and :mod:`masonry.read.views` draw them on :mod:`masonry.read.drawing`
+- :mod:`masonry.read.comparison`: figures of several runs
 - :mod:`masonry.read.viewer`: its pictures and films by ParaView, which :mod:`masonry.read.viewer_scene` draws
 """

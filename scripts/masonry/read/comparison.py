@@ -9,7 +9,7 @@ import sys
 import numpy as np
 
 from ..basics import Refused
-from .figures import _drawing, _save, _style
+from . import drawing
 from .files import readCurve, readRun
 
 #: Colours that differ in print, also for those who do not tell red from green (Okabe and Ito, 2008), and dashes.
@@ -132,8 +132,8 @@ def compare(directories, measured=(), x=None, y=None, labels=(), out="plot.png",
     tests = [readMeasured(text) for text in measured]
     if axesLabels is None:
         axesLabels = tests[0][2]
-    with _style():
-        figure = _drawing(7, 4.6)
+    with drawing.style():
+        figure = drawing.empty(7, 4.6)
         axes = figure.subplots()
         for n, (a, b, _) in enumerate(tests):
             axes.plot(
@@ -154,7 +154,7 @@ def compare(directories, measured=(), x=None, y=None, labels=(), out="plot.png",
         axes.legend(fontsize=9, framealpha=0.9)
         figure.tight_layout()
         try:
-            _save(figure, out, 150)
+            drawing.save(figure, out, 150)
         except OSError as error:
             raise Refused(f"cannot write {out}: {error.strerror}") from None
     return out

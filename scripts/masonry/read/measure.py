@@ -15,176 +15,18 @@ import xml.etree.ElementTree as ElementTree
 import numpy as np
 
 from . import loops
-from .figures import CRACK, readFrame
+from .cracks import (
+    crushing,
+    diagonal,
+    failureMode,
+    layOut,
+    mirrored,
+    patternNumbers,
+)
 from .files import filesOf, onFolder, readCurve, readRun
+from .frames import readFrame
 
-NEAR = 3  # courses to either side of the diagonal: joints within them are near it
-OUTER = 2  # courses at base and top: joints there do not count for the diagonal, since they crack by rocking
 LOST = 0.05  # of the peak force: a larger loss is a drop, a smaller one may be the scatter by single bricks at the toe
-
-
-def layOut(frame, wall):
-    """Joints of a frame on the grid of the brickwork, without those to the support and to the loading block.
-
-    :param frame: what :func:`masonry.read.figures.readFrame` returns for joints
-    :param wall: the entry ``wall`` of run.json
-    :returns: two dicts of arrays, from the base up and from left to right. The first is of bed joints, its arrays have
-        the shape (courses - 1, half units). The second is of upright joints, which are head joints and cracks of
-        bricks, its arrays have the shape (courses, half units - 1). Each has ``opening`` and ``slide``, means over a
-        joint [m]; ``shear``, the energy that a joint dissipated in shear [J]; ``crushing``, the volume of plastic
-        closure [m³]; and ``past``, the area that closed past the peak of its compression curve [m²]
-    """
-    half, height = wall["unit_m"][0] / 2, wall["unit_m"][2]
-    courses, columns = wall["courses"], wall["half_units"]
-    bed = {
-        name: np.zeros((courses - 1, columns))
-        for name in ("opening", "slide", "shear", "crushing", "past")
-    }
-    upright = {name: np.zeros((courses, columns - 1)) for name in bed}
-    _, first, joint = np.unique(
-        frame["bodies"], axis=0, return_index=True, return_inverse=True
-    )
-    area = frame["area"]
-    total = lambda values: np.bincount(joint, area * values)
-    centres = np.array([frame["points"][cell].mean(axis=0) for cell in frame["cells"]])
-    whole = total(1)
-    x, z = total(centres[:, 0]) / whole / half, total(centres[:, 2]) / whole / height
-    values = {
-        "opening": total(frame["opening"]) / whole,
-        "slide": total(np.linalg.norm(frame["slide"], axis=1)) / whole,
-        "shear": frame["joint_dissipated"][first, 1],
-        "crushing": total(frame["crushing"]),
-        "past": total(frame["damage_compression"] > 0),
-    }
-    flat = np.abs(frame["normal"][first, 2]) > 0.5
-    row = np.where(flat, np.rint(z) - 1, np.floor(z)).astype(int)
-    column = np.where(flat, np.floor(x), np.rint(x) - 1).astype(int)
-    inner = flat & (row >= 0) & (row < courses - 1)
-    for name in values:
-        bed[name][row[inner], column[inner]] = values[name][inner]
-        upright[name][row[~flat], column[~flat]] = values[name][~flat]
-    return bed, upright
-
-
-def diagonalReach(bed, upright):
-    """Size of the largest diagonal crack that falls to the right through the brickwork [courses, half units].
-
-    A crack goes from an upright joint of a course to those of the course below, straight down or to either side along
-    cracked bed joints. It crosses some courses and some half units; its reach is the smaller of the two numbers. A bed
-    joint that is cracked from side to side reaches 0, and so does a vertical split. A crack from corner to corner
-    reaches nearly as far as the shorter side of the wall.
-
-    :param bed: which bed joints are cracked, bool (courses - 1, columns)
-    :param upright: which upright joints are cracked, bool (courses, columns - 1)
-    """
-    lines = np.arange(upright.shape[1])
-    starts, reached, reach = np.empty((0, 2), int), np.empty((0, len(lines)), bool), 0
-    for course in reversed(range(len(upright))):
-        if len(starts):
-            run = np.append(0, np.cumsum(~bed[course, 1:-1]))
-            reached = (reached @ (run[:, None] == run)) & upright[course]
-            right = np.where(reached, lines, -1).max(axis=1)
-            size = np.minimum(starts[:, 0] - course, right - starts[:, 1])
-            reach = max(reach, int(size.max()))
-        here = lines[upright[course]]
-        starts = np.vstack([starts, np.column_stack([0 * here + course, here])])
-        reached = np.vstack([reached, here[:, None] == lines])
-    return reach
-
-
-def acrossDiagonal(shape, upright):
-    """Height of joints above the diagonal from corner to corner [courses]: an array, NaN in the outer courses."""
-    rows, columns = np.indices(shape)
-    level = rows + (0.5 if upright else 1.0)
-    place = columns + (1.0 if upright else 0.5)
-    courses, length = shape[0] + (not upright), shape[1] + upright
-    inner = (level >= OUTER) & (level <= courses - OUTER)
-    return np.where(inner, level - courses * (1 - place / length), np.nan)
-
-
-def narrowestBand(positions, weights, share=0.5):
-    """Width of the narrowest interval of ``positions`` that holds ``share`` of the sum of ``weights``.
-
-    It is NaN if the weights sum to zero.
-    """
-    order = np.argsort(positions)
-    positions, held = positions[order], np.append(0, np.cumsum(weights[order]))
-    if not held[-1] > 0:
-        return float("nan")
-    # up to the first position at which enough is held since each start
-    ends = np.searchsorted(held, held[:-1] + share * held[-1] * (1 - 1e-12)) - 1
-    starts = np.flatnonzero(ends < len(positions))
-    return float((positions[ends[starts]] - positions[starts]).min())
-
-
-def diagonal(bed, upright):
-    """Numbers of the diagonal crack; ``bed`` and ``upright`` as of :func:`layOut`.
-
-    - diagonal_energy_share [-]: of the energy lost in shear by inner joints, what joints near the corner-to-corner
-      diagonal lost: within three courses of it; inner are all but those of the two lowest and two highest courses
-    - diagonal_joint_share [-]: of the inner joints, those that are near: what the energy share would be if the whole
-      wall sheared alike
-    - diagonal_band_courses: height of the narrowest band parallel to the diagonal that holds half of that energy;
-      small for one localised crack, large for several or for a crack that follows a bed joint
-    - diagonal_reach [courses, half units]: :func:`diagonalReach` of a stepped crack, whose upright joints are open and
-      whose bed joints are open or slid, more than CRACK each
-    - parallel_cracks [-]: upright joints open more than CRACK in an inner course, on average: the diagonal cracks that a
-      horizontal line crosses
-    """
-    position = np.concatenate(
-        [acrossDiagonal(j["shear"].shape, j is upright).ravel() for j in (bed, upright)]
-    )
-    energy = np.concatenate([j["shear"].ravel() for j in (bed, upright)])
-    energy, position = (v[np.isfinite(position)] for v in (energy, position))
-    near, lost = np.abs(position) < NEAR, energy.sum()
-    gaping = upright["opening"] > CRACK
-    cracked = np.maximum(bed["opening"], bed["slide"]) > CRACK
-    return {
-        "diagonal_energy_share": energy[near].sum() / lost if lost > 0 else 0.0,
-        "diagonal_joint_share": near.mean(),
-        "diagonal_band_courses": narrowestBand(position, energy),
-        "diagonal_reach": diagonalReach(cracked, gaping),
-        "parallel_cracks": gaping[OUTER:-OUTER].sum(axis=1).mean(),
-    }
-
-
-def flexure(bed):
-    """Numbers of the flexural cracks, in the lower half of the wall (base) and in the upper one (top).
-
-    A flexural crack enters a wall at its side, so the bed joints at both ends of a course tell.
-
-    - flexural_cracks_base, _top: bed joints open more than CRACK at a side of the wall
-    - flexural_opening_base_mm, _top_mm: of the widest of them
-    - flexural_course_base, _top: courses between the widest and the base, or the top
-    """
-    side = np.maximum(bed["opening"][:, 0], bed["opening"][:, -1])
-    middle = (len(side) + 1) // 2
-    numbers = {}
-    for name, openings in (("base", side[:middle]), ("top", side[: -middle - 1 : -1])):
-        numbers["flexural_cracks_" + name] = int((openings > CRACK).sum())
-        numbers[f"flexural_opening_{name}_mm"] = 1e3 * max(0, openings.max())
-        numbers["flexural_course_" + name] = int(openings.argmax()) + 1
-    return numbers
-
-
-def crushing(bed):
-    """Numbers of crushing in the bed joints.
-
-    - crushed_volume_cm3: plastic closure integrated over the wall's bed joints
-    - crushed_share_toe, crushed_share_top_left [-]: of it, what lies in the quarter of the length and of the height at
-      the bottom right, and at the top left; 1/16 each if the wall crushed evenly; 0 if nothing crushed
-    - past_peak_area_cm2: bed joints that closed past the peak of their compression curve, whole wall
-    """
-    volume = bed["crushing"]
-    high, long = (n // 4 for n in volume.shape)
-    whole = volume.sum()
-    share = lambda part: part.sum() / whole if whole > 0 else 0.0
-    return {
-        "crushed_volume_cm3": 1e6 * whole,
-        "crushed_share_toe": share(volume[:high, -long:]),
-        "crushed_share_top_left": share(volume[-high:, :long]),
-        "past_peak_area_cm2": 1e4 * bed["past"].sum(),
-    }
 
 
 def force(displacement, shear):
@@ -205,73 +47,6 @@ def pushNumbers(displacement, shear):
     """Numbers of a push: its work, and those of :func:`force`. Parameters are displacements [mm] and forces [kN]."""
     work = float(np.trapz(shear, displacement))
     return {"push_work_J": work, **force(displacement, shear)}
-
-
-def sliding(bed):
-    """Numbers of the bed joint, from side to side of the wall, in which most energy was lost in shear.
-
-    - sliding_course: courses between it and the base
-    - sliding_energy_share [-]: of the energy lost in shear by all bed joints, what it lost
-    - slid_share [-]: of its length, what slid more than CRACK
-    - slid_mm: its slide, the median over its length
-    """
-    energy = bed["shear"].sum(axis=1)
-    course, whole = int(energy.argmax()), energy.sum()
-    return {
-        "sliding_course": course + 1,
-        "sliding_energy_share": energy[course] / whole if whole > 0 else 0.0,
-        "slid_share": (bed["slide"][course] > CRACK).mean(),
-        "slid_mm": 1e3 * np.median(bed["slide"][course]),
-    }
-
-
-def patternNumbers(bed, upright):
-    """Numbers of the crack pattern of a wall; ``bed`` and ``upright`` as of :func:`layOut`."""
-    found = {**diagonal(bed, upright), **flexure(bed), **crushing(bed), **sliding(bed)}
-    return {name: np.asarray(value).item() for name, value in found.items()}
-
-
-def pattern(frame, wall):
-    """Numbers of the crack pattern of a wall; ``frame`` and ``wall`` as of :func:`layOut`."""
-    return patternNumbers(*layOut(frame, wall))
-
-
-#: Of a wall that slides along a bed joint: share of that joint's length that slid, and of the energy in shear [-].
-SLID = 0.9, 0.5
-
-
-def failureMode(numbers, wall):
-    """A plain name of how a wall gave way, from its crack pattern at the end. The first that applies is given:
-
-    - ``bed sliding``: one bed joint slid along nine tenths of the wall's length, by more than bed joints opened at its
-      sides, and lost half of the energy that bed joints lost in shear
-    - ``diagonal cracking``: a stepped crack reaches over half of the shorter side of the wall, in courses or half units
-    - ``toe crushing``: bed joints of more than one half unit closed past the peak of their compression curve
-    - ``rocking``: a bed joint opened at a side of the wall by more than CRACK, and by more than bed joints slid
-    - ``partial cracking``: bed joints opened or slid by more than CRACK, but none of the above applies
-    - ``none``: the wall is not cracked
-
-    A wall that has several of these has the name of one: the numbers beside it tell of the others.
-
-    :param numbers: of :func:`patternNumbers`
-    :param wall: the entry ``wall`` of run.json
-    """
-    opened = max(numbers[f"flexural_opening_{side}_mm"] for side in ("base", "top"))
-    if (
-        numbers["slid_share"] >= SLID[0]
-        and numbers["sliding_energy_share"] >= SLID[1]
-        and numbers["slid_mm"] > opened
-    ):
-        return "bed sliding"
-    if numbers["diagonal_reach"] >= 0.5 * min(wall["courses"], wall["half_units"]):
-        return "diagonal cracking"
-    half = 1e4 * wall["unit_m"][0] / 2 * wall["unit_m"][1]  # [cm²]
-    if numbers["past_peak_area_cm2"] > half:
-        return "toe crushing"
-    if opened > max(1e3 * CRACK, numbers["slid_mm"]):
-        return "rocking"
-    cracked = max(opened, numbers["slid_mm"]) > 1e3 * CRACK
-    return "partial cracking" if cracked else "none"
 
 
 def frameAt(directory, time):
@@ -305,11 +80,6 @@ def wallNumbers(directory):
     return numbers
 
 
-def mirrored(joints):
-    """The joints of :func:`layOut` of a wall that is seen from behind: what fell to the right falls to the left."""
-    return {name: values[:, ::-1] for name, values in joints.items()}
-
-
 def loopNumbers(run, displacement, shear):
     """Numbers of loops, from run.json and from displacements [mm] and forces [kN].
 
@@ -339,20 +109,26 @@ def loopNumbers(run, displacement, shear):
     return numbers
 
 
-def coupletNumbers(directory):
-    """Areas under the curves of a couplet's joint, which are its fracture energies.
+def jointNumbers(directory, name):
+    """Areas under the curves of a joint whose means are recorded: its fracture energies, if it was torn, sheared or crushed.
+
+    :param name: of the joint, which stands before the names of its columns and of these numbers; it may be empty
 
     - opening_work_J_per_m2, closure_work_J_per_m2: under tension over the opening, and under compression over the closure
     - softening_work_J_per_m2: under the shear stress over the slide, above the shear stress at the end
     """
-    curve = {name: np.array(v) for name, v in readCurve(directory).items()}
-    normal, shear = curve["normal_stress_MPa"], curve["shear_stress_MPa"]
+    curve, prefix = readCurve(directory), name + "_" if name else ""
+    opening, slide, normal, shear = (
+        np.array(curve[prefix + end])
+        for end in ("opening_mm", "slide_mm", "normal_stress_MPa", "shear_stress_MPa")
+    )
     area = lambda stress, mm: 1e3 * np.trapz(np.maximum(stress, 0), mm)
-    return {
-        "opening_work_J_per_m2": area(normal, curve["opening_mm"]),
-        "closure_work_J_per_m2": area(-normal, -curve["opening_mm"]),
-        "softening_work_J_per_m2": area(shear - shear[-1], curve["slide_mm"]),
+    found = {
+        "opening_work_J_per_m2": area(normal, opening),
+        "closure_work_J_per_m2": area(-normal, -opening),
+        "softening_work_J_per_m2": area(shear - shear[-1], slide),
     }
+    return {prefix + end: value for end, value in found.items()}
 
 
 def measure(directory):
@@ -370,8 +146,8 @@ def measure(directory):
         numbers["balance_error"] = numbers.pop("energy_balance_error")
         if "wall" in run:
             numbers.update(wallNumbers(directory))
-        elif run["scene"] == "couplet":
-            numbers.update(coupletNumbers(directory))
+        for joint in run.get("recorded_joints", []):
+            numbers.update(jointNumbers(directory, joint))
     return numbers
 
 

@@ -16,9 +16,11 @@ import tempfile
 import numpy as np
 
 from ..basics import Refused
-from .figures import CRACK, DAMAGED, magnificationOf, viewOf, whenOf
-from .frames import framePaths, frameTimes, readFrame
+from .crack_figure import magnificationOf, whenOf
+from .cracks import CRACK, DAMAGED
 from .files import filesOf, readCurve, readRun
+from .frames import framePaths, frameTimes, readFrame
+from .views import viewOf
 
 #: Folder into which python3-paraview can be unpacked where it cannot be installed beside python3-vtk9.
 UNPACKED = os.path.expanduser("~/.local/share/masonry/paraview")

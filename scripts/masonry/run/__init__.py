@@ -1,7 +1,8 @@
 """A run: its progress, checkpoints, folder of results, presets, and rows of a table in YADE's batch format.
 
-- :mod:`masonry.run.run`: a run in stages
-- :mod:`masonry.run.results`: the files that a run leaves
+- :mod:`masonry.run.run`: a run in stages; :mod:`masonry.run.place`: how far it has come;
+  :mod:`masonry.run.ending`: how it ends
+- :mod:`masonry.run.results`: the files that a run leaves, and the keys of run.json
 - :mod:`masonry.run.checkpoints`: the state of a scene on disk
 - :mod:`masonry.run.presets`: options that trade accuracy for time
 - :mod:`masonry.run.batch`: rows of a table for ``yade-batch``

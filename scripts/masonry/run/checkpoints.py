@@ -1,7 +1,7 @@
 """Checkpoints: the state of a scene on disk, from which a run goes on as if it had never stopped.
 
-:func:`saveCheckpoint` and :func:`loadCheckpoint` serve any scene. A run in stages leaves its checkpoints by them, and
-:func:`readProgress` reads what such a checkpoint tells of the run.
+:func:`saveCheckpoint` and :func:`loadCheckpoint` serve any scene. A run in stages leaves its checkpoints by them;
+:mod:`masonry.run.place` is what such a checkpoint tells of the run.
 """
 
 import json
@@ -9,7 +9,6 @@ import math
 import os
 
 from .._masonry import loadScene, saveScene, savedText
-from ..basics import Refused
 from ..read.files import readWhole
 
 NAME = "run.checkpoint"  # in the folder of a run
@@ -53,17 +52,32 @@ def loadCheckpoint(path):
     :raises ValueError: if the file is damaged, or of another scene or version; the scene stays as it is
     :raises OSError: if it cannot be read
     """
-    return _read(path, loadScene)
+    return _extra(path, loadScene, _bytesOf(path))
 
 
 def readCheckpoint(path):
     """The ``extra`` of a checkpoint alone, of a file that is whole. Raises what :func:`loadCheckpoint` raises."""
-    return _read(path, savedText)
+    return _extra(path, savedText, _bytesOf(path))
 
 
-def _read(path, textOf):
+def readState(directory):
+    """The checkpoint of a run: its bytes, as ``loadScene`` takes them, and its ``extra``. Raises as
+    :func:`readCheckpoint`."""
+    path = os.path.join(directory, NAME)
+    data = _bytesOf(path)
+    return data, _extra(path, savedText, data)
+
+
+def _bytesOf(path):
     try:
-        return json.loads(textOf(readWhole(path, _size)))
+        return readWhole(path, _size)
+    except MemoryError:
+        raise ValueError(f"{path} is too large for the memory") from None
+
+
+def _extra(path, textOf, data):
+    try:
+        return json.loads(textOf(data))
     except ValueError as error:
         raise ValueError(f"{path} {error}") from None
     except MemoryError:
@@ -76,30 +90,6 @@ def _size(head):
     if len(number) < 8:
         return len(head)
     return len(title + end) + 8 + int.from_bytes(number[:8], "little")
-
-
-def readProgress(directory):
-    """What the checkpoint in the folder of a run tells of it.
-
-    It is a dict: ``scene``, the name; ``options``; ``at``, how far the run has come; ``rows`` of curve.csv;
-    ``seconds`` of wall-clock time; ``build``, ``YADE`` and ``threads`` that the checkpoint was made with.
-
-    :raises Refused: if no run can be taken up there
-    """
-    path = os.path.join(directory, NAME)
-    try:
-        told = readCheckpoint(path)
-    except (OSError, ValueError) as error:
-        raise Refused(f"--resume: {error}") from None
-    like = dict(scene="", options={}, at={}, rows=[], script=[], seconds=0.0)
-    if (
-        not isinstance(told, dict)
-        or not all(alike(told.get(key), value) for key, value in like.items())
-        or not all(alike(row, [0.0] * len(row)) for row in told["rows"])
-        or not all(isinstance(word, str) for word in told["script"])
-    ):
-        raise Refused(f"--resume: {path} was not left by a run in stages")
-    return told
 
 
 def alike(value, example):

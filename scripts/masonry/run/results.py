@@ -37,10 +37,15 @@
 - ``parts``: a dict of name -> list of body ids, for cracks.png, which has a panel for every part; may be left out, and
   all blocks are one part then
 - ``views``: a dict of part -> direction of sight (x, y, z), for parts that shall not be seen as
-  :func:`masonry.read.figures.viewOf` chooses; may be left out
+  :func:`masonry.read.views.viewOf` chooses; may be left out
 - ``reference_body``: id of a body whose displacement is taken off all others in cracks.png, as that of a ground that is
   shaken; may be left out
 
+- ``answers``: the numbers that the stages were run for, a list of dicts: ``stage``, its name; ``number`` of the stage in the
+  run, from 1; ``name`` of the answer, its ``unit`` and ``value``, which is None if it was not found; ``uncertainty``, half the
+  width of the interval that the run itself found about it, or None if it has no measure of it; and ``how``, a sentence on
+  how both were found
+- ``recorded_joints``: names of the joints whose means are recorded
 - ``ended``: how the last stage ended: ``at rest``, ``moving``, ``done`` or ``collapsed``
 - ``collapse``: what has fallen, and how far; None if nothing has
 - ``held``: names of the platens and bricks that are held
@@ -66,7 +71,7 @@ A run with a push has these, too:
 - ``base_shear_end_kN``, ``displacement_end_mm``: the last row
 - ``initial_stiffness_kN_per_mm``: as :func:`masonry.read.curves.initialStiffness` fits it
 - with --lean, which leaves no frames to measure: the numbers of :func:`masonry.read.measure.pushNumbers`, and of a wall in running
-  bond those of :func:`masonry.read.measure.patternNumbers` and its ``failure_mode`` (:func:`masonry.read.measure.failureMode`)
+  bond those of :func:`masonry.read.cracks.patternNumbers` and its ``failure_mode`` (:func:`masonry.read.cracks.failureMode`)
 - ``dynamic_imbalance``: as of :func:`masonry.read.curves.dynamicImbalance` [-]; ``too_fast``: whether it is more than a push
   may have
 - ``wall``, of a whole wall in running bond in the x-z plane that a platen pushes: ``length_m``, ``height_m``,

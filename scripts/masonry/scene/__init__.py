@@ -1,9 +1,23 @@
 """A scene: what is built, how it is held and loaded, and the stages of its test.
 
 - :mod:`masonry.scene.scene`: ``Scene``
+- :mod:`masonry.scene.description`: what a scene describes, by the words of :mod:`masonry.scene.supports`,
+  :mod:`masonry.scene.loads` and :mod:`masonry.scene.records`; :mod:`masonry.scene.targets`: what is recorded
+- :mod:`masonry.scene.stages`: the stages of a test
 - :mod:`masonry.scene.materials`: published parameter sets, and properties that vary from place to place
 - :mod:`masonry.scene.fields`: random fields; :mod:`masonry.scene.history`: displacements there and back;
   :mod:`masonry.scene.ground`: ground motion and Rayleigh damping
-- :mod:`masonry.scene.options`: the options of the command line
+- :mod:`masonry.scene.options`: the options of the command line, which :mod:`masonry.scene.parsing` reads;
+  :mod:`masonry.scene.settings`: ``--set``
 - :mod:`masonry.scene.bounds`: limit analysis beside a run
+- :mod:`masonry.scene.outcome`: what comes out; :mod:`masonry.scene.wall`: of a wall in running bond
+- :mod:`masonry.scene.words`: the words of a script, as data; :mod:`masonry.scene.probing`: what a study must know of a scene
 """
+
+import importlib
+
+
+def __getattr__(name):
+    if name == "Scene":
+        return importlib.import_module(f"{__name__}.scene").Scene
+    raise AttributeError(f"module 'masonry.scene' has no attribute {name!r}")

@@ -28,17 +28,18 @@ FIGURE = "mechanism.png"
 class Bounds:
     """The bounds of a scene that is built in YADE.
 
-    :param model: :class:`masonry.scene.structure.Structure`
+    :param model: :class:`masonry.assembly.structure.Structure`
+    :param place: :class:`masonry.run.place.Place`: what was found is kept there, and so in checkpoints
     """
 
-    def __init__(self, model):
-        self.model = model
+    def __init__(self, model, place):
+        self.model, self.place = model, place
         self.last = None  # what was found last: limit.Bound and its entry
 
     @property
     def entries(self):
         """What was found, by the load: entries of run.json. A checkpoint keeps them."""
-        return self.model.scene.at.bounds
+        return self.place.bounds
 
     def push(self, way, both, lowerUpTo=0):
         """Find the bound of a push of what the model pushes now. Returns its entry of run.json, the last one if there are two.
@@ -87,7 +88,7 @@ class Bounds:
             return known
         model = self.model
         entry = self.entries[what] = {"load": what, "unit": unit}
-        if model.scene.at.supportsMoved:
+        if self.place.supportsMoved:
             told = (
                 "supports have moved, and joints that are open would be taken as closed"
             )

@@ -141,9 +141,11 @@ class Masonry:
                 raise Refused(f"--field {text}: {error}") from None
         return own
 
-    def rule(self, model):
-        """The rule of :func:`masonry.assembly.blocks.connect` for a :class:`masonry.scene.structure.Structure`."""
-        blocks = dict(zip(model.ids, model.scene.bricks))
+    def rule(self, blocks):
+        """The rule of :func:`masonry.assembly.blocks.connect`.
+
+        :param blocks: records of the bricks by body id
+        """
 
         def rule(one, two, geom):
             first, second = blocks.get(one.id), blocks.get(two.id)

@@ -13,19 +13,23 @@ from ..run import batch
 from . import fields
 from ..basics import Refused
 from .materials import withResidual
-from .options import Parser, check
+from .options import check
+from .parsing import Parser
 from ..assembly.blocks import properties
 
 #: How far a random field is looked at to either side, in standard deviations of its normal: beyond lies one joint in a
 #: million.
 FAR = 4.75
-PUSHES = ("push", "cycle", "follow")  # stages that take --until, --history and --rate
-DRIVES = ("drive", "pressJoint")  # stages that take --rate
 MOST = 20  # problems that are told of rows
 
 
-def probe(scene, stage, settings):
-    """Write what a scene that is built knows, as JSON, and end when its first stage after ``settle`` begins. Keys:
+def asked():
+    """Whether the scene shall say what it knows, and not run."""
+    return batch.PROBE in os.environ
+
+
+def probe(scene, stage, traits, arguments):
+    """Write what a scene that is built knows, as JSON, and end when the first stage begins after the loads have grown. Keys:
 
     - ``heard``: whether the scene takes its options from the command line
     - ``options``: names of its options, without those that say where results go
@@ -34,9 +38,14 @@ def probe(scene, stage, settings):
     - ``bounds``: of the properties of a joint: ``low``, ``high``, ``unit``
     - ``room``: bytes that a run will probably write
     - ``problems``: sentences on rows of the table that cannot be run
+
+    :param stage: name of the stage that begins, or ``finish``
+    :param traits: its :class:`masonry.scene.stages.stage.Traits`, or None
+    :param arguments: what the script says to it, by name
     """
-    if stage == "settle":
+    if traits and traits.grows:
         return "at rest"
+    used = traits.options if traits else ()
     parser, found = Parser.last
     model, heard = scene.model, scene.args is found
     told = {
@@ -46,15 +55,15 @@ def probe(scene, stage, settings):
         "unused": {},
         "doubtful": {},
         "joints": {name: _plain(joint.dict()) for name, joint in model.joints.items()},
-        "counts": _counts(model),
+        "counts": _counts(scene),
         "bounds": {p["name"]: _bounds(p) for p in properties(MasonryJoint)},
         "problems": _rows(scene, parser) if heard else [],
-        "room": model.room()[1],
+        "room": scene.outcome.room()[1],
     }
-    if stage in PUSHES and settings.get("rate") is not None:
+    if "rate" in used and arguments.get("rate") is not None:
         told["unused"]["rate"] = f"{stage}() has a rate of its own"
-    if stage not in PUSHES + DRIVES:
-        for name in ("rate", "until", "history"):
+    if not {"until", "history"} & set(used):
+        for name in {"rate", "until", "history"} - set(used):
             told["doubtful"][name] = f"its first stage is {stage}()"
     path = os.environ[batch.PROBE]
     with open(path + ".new", "w") as f:
@@ -70,9 +79,10 @@ def _options(parser):
     return sorted({action.dest for action in parser._actions} - elsewhere)
 
 
-def _counts(model):
-    counts = model.describe()["joints_by_kind"]
-    return {kind: counts.get(joint.name, 0) for kind, joint in model.joints.items()}
+def _counts(scene):
+    counts = scene.outcome.describe()["joints_by_kind"]
+    joints = scene.model.joints
+    return {kind: counts.get(joint.name, 0) for kind, joint in joints.items()}
 
 
 def _plain(values):

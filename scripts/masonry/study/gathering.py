@@ -163,6 +163,7 @@ def gather(folder):
             for n, v in run.items()
             if n not in ASIDE and (v is None or isinstance(v, (bool, int, float, str)))
         }
+        measures.update((_answerName(a), a["value"]) for a in run.get("answers", []))
         found.append(
             (
                 [batch.named(number), *(_varied(n, row[n]) for n in names), status],
@@ -190,6 +191,12 @@ def gather(folder):
     head = "run status host run_seconds job_seconds commit told".split()
     written(folder.of(TIMES), _csv(head, times))
     return counts
+
+
+def _answerName(answer):
+    """The column of an answer of a stage: the stage and its number in the run, what it is, and its unit."""
+    name = f"{answer['stage']}_{answer['number']}_{answer['name']}"
+    return name if answer["unit"] == "-" else f"{name}_{answer['unit']}"
 
 
 def _varied(name, text):

@@ -9,7 +9,7 @@ from scipy import stats
 
 from ..read.comparison import COLOURS, DASHES
 from ..basics import Refused
-from ..read.figures import _drawing, _save, _style
+from ..read import drawing
 from . import statistics
 
 DPI = 200
@@ -29,21 +29,21 @@ class _Picture:
     """A figure [inch] that is written at the end of its block."""
 
     def __init__(self, path, width, height):
-        self.path, self.size, self.style = path, (width, height), _style()
+        self.path, self.size, self.style = path, (width, height), drawing.style()
 
     def __enter__(self):
         import matplotlib
 
         self.style.__enter__()
         matplotlib.rcParams.update(SMALL)
-        self.figure = _drawing(*self.size)
+        self.figure = drawing.empty(*self.size)
         return self.figure
 
     def __exit__(self, kind, problem, trace):
         try:
             if kind is None:
                 self.figure.tight_layout()
-                _save(self.figure, self.path, DPI)
+                drawing.save(self.figure, self.path, DPI)
         finally:
             self.style.__exit__(kind, problem, trace)
 

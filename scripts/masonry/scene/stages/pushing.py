@@ -1,36 +1,25 @@
-"""How a target is pushed and driven: functions of a run; what each must remember is a dataclass of its own."""
+"""How the drive of a push goes, row by row."""
 
 import math
 from dataclasses import dataclass
 
 from yade import O
 
-from ..basics import Collapsed, Refused
-from .history import aim, pathLength, turns
+from ...basics import Collapsed, Refused
+from ..history import aim, pathLength, turns
+from .rest import rampTime
 
-RAMP = 0.02  # [s] in which loads and velocities grow: some ten periods of a wave through the height of a wall
-REST = 5e-3  # of the load: what may be missing at the supports of a structure that is said to be at rest
 ROW_EVERY = 0.01  # [mm] of a push between rows of curve.csv
 ARRIVED = 2e-3  # [mm] from a turning point of a history at which the drive turns: what is left of the way takes it there
-FRAMES = (
-    200  # for ParaView along a history, beside those at its turning points and zeros
-)
+#: Frames for ParaView along a history, beside those at its turning points and zeros.
+FRAMES = 200
 IMBALANCE = 0.1  # a push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more
 DAMPED = 0.1  # of what loops lose: a larger share of damping is a warning, because the loops are too fat by it
-ROWS = 2000  # of curve.csv while a block is driven over a distance
-
-
-def ramp(args):
-    """Time in which loads and velocities grow [s]: waves in heavier blocks are slower."""
-    return RAMP * args.density_scaling**0.5
-
-
-# -- push -------------------------------------------------------------------------------------------------------------
 
 
 @dataclass
 class Pushing:
-    """What :func:`push` remembers. Pairs are of the negative and of the positive side, and positive outwards."""
+    """What a push remembers. Pairs are of the negative and of the positive side, and positive outwards."""
 
     origin: list = None  # displacement of the loading block when the push began, along it and up [m]
     now: float = 0.0  # time of the last row [s]
@@ -93,11 +82,11 @@ def _exchanged(pair, side, value):
     return [pair[0], value] if side else [value, pair[1]]
 
 
-def push(run, model, name, args, began, goOn=False):
-    """Drive the loading block sideways, to ``--until`` or along ``--history``, with rows and frames.
+def drivePush(scene, name, args, began, continued=False):
+    """Drive the pushed target to ``--until`` or along ``--history``, with rows and frames.
 
     The drive moves at ``--rate``. When it begins and where the history turns, its velocity changes evenly in time, from
-    rest to ``--rate`` within :func:`ramp`. It brakes by the displacement that curve.csv has, so the wall turns within
+    rest to ``--rate`` within :func:`rampTime`. It brakes by the displacement that curve.csv has, so the wall turns within
     0.01 mm of the history's turning points. Points at which the history does not turn are passed at full speed, and so
     is the end, unless it is that of a file.
 
@@ -112,16 +101,20 @@ def push(run, model, name, args, began, goOn=False):
     :param name: of the stage
     :param args: the options of the run, with the ``until``, ``history`` and ``rate`` of this push
     :param began: under this name the run keeps where the push began
-    :param goOn: whether displacements count from where an earlier push of that name began
+    :param continued: whether displacements count from where an earlier push of that name began
     :raises Collapsed: with what was seen
     """
+    run, model = scene.running, scene.model
     at = run.stage(name, Pushing())
-    if at is None:
+    if at is None:  # what later stages count from is as it was after this one
+        goals = aim(args)
+        model.origin = run.at.origins[began]
+        model.goal = len(goals), goals[-1].displacement
         return
     first, origin = at.origin is None, at.origin
     if first:
         origin = here = list(model.topDisplacement())
-        if goOn:
+        if continued:
             origin = run.at.origins[began]
             at.moved = at.last = at.start = 1e3 * (here[0] - origin[0])
     if not args.history and not args.until > at.moved:
@@ -129,12 +122,12 @@ def push(run, model, name, args, began, goOn=False):
             f"--until {args.until:g}: the run is at {at.moved:.2f} mm already"
         )
     goals = aim(args, at.start)
-    whole, spacing = wayLength(args, at.start), frameSpacing(args)
+    whole, spacing = pathOf(args, at.start), frameSpacing(args)
     if at.passed >= len(goals):
         raise Refused(f"--resume: its history has {at.passed} points and more")
-    load, growing = model.loads["push"], ramp(args)
+    load, growing = model.loads["push"], rampTime(args)
     every = max(1, int(ROW_EVERY / (args.rate * O.dt)))
-    model.aim = at.passed + 1, goals[at.passed].displacement
+    model.goal = at.passed + 1, goals[at.passed].displacement
     if first:
         at.origin = model.origin = origin
         run.at.origins = {**run.at.origins, began: origin}
@@ -150,10 +143,10 @@ def push(run, model, name, args, began, goOn=False):
             return f"{at.moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
         return f"{way:.1f} of {whole:g} mm, at {at.moved:6.2f} mm  {shear:7.2f} kN"
 
-    velocity, goesOn = None, True
-    while goesOn:
+    velocity, moves = None, True
+    while moves:
         goal = goals[at.passed]
-        model.aim = at.passed + 1, goal.displacement
+        model.goal = at.passed + 1, goal.displacement
         growth, steps = _pace(at, goal, args.rate, growing, every)
         if velocity != goal.way * args.rate * 1e-3 * growth:
             velocity = load.velocity = goal.way * args.rate * 1e-3 * growth
@@ -174,10 +167,10 @@ def push(run, model, name, args, began, goOn=False):
         if args.history:
             at.since, at.growth = at.now, growth
         run.show(max(0, way / whole), detail)
-        goesOn, turned = at.passOn(goals)
-        goesOn = goesOn and not how
+        moves, turned = at.passOn(goals)
+        moves = moves and not how
         early = args.history and (turned or before * at.moved < 0)
-        if goesOn and way >= at.nextFrame - (spacing / 2 if early else 0):
+        if moves and way >= at.nextFrame - (spacing / 2 if early else 0):
             run.frame()
             at.nextFrame = (way if early else at.nextFrame) + spacing
     run.show(1, detail, final=True)
@@ -206,7 +199,7 @@ def _pace(at, goal, rate, growing, every):
     return growth, max(1, min(every, int(distance / (rate * growth * O.dt))))
 
 
-def wayLength(args, start=0.0):
+def pathOf(args, start=0.0):
     """How far the drive goes in all from a displacement on, there and back [mm]."""
     points = args.history["points_mm"] if args.history else [args.until]
     return pathLength(points, start)
@@ -215,12 +208,12 @@ def wayLength(args, start=0.0):
 def rowCount(args):
     """How many rows of curve.csv a push has, about. A turn takes as long as the way at full speed in a ramp."""
     turning = turns(args.history["points_mm"]) if args.history else 0
-    return (wayLength(args) + turning * args.rate * ramp(args)) / ROW_EVERY
+    return (pathOf(args) + turning * args.rate * rampTime(args)) / ROW_EVERY
 
 
 def frameSpacing(args):
     """Length of the way between ParaView frames, which is at least ``--vtk-every`` [mm]."""
-    return max(args.vtk_every, wayLength(args) / FRAMES if args.history else 0)
+    return max(args.vtk_every, pathOf(args) / FRAMES if args.history else 0)
 
 
 def tooFast(args, imbalance):
@@ -240,42 +233,3 @@ def tooDamped(args, share):
         f"warning: damping, not the wall, took {100 * share:.0f} % of what the loops lost; more than "
         f"{100 * DAMPED:.0f} % spoil the work of the cycles; try --rate {slower:g}"
     )
-
-
-# -- drive ------------------------------------------------------------------------------------------------------------
-
-
-@dataclass
-class Driving:
-    """What :func:`drive` remembers."""
-
-    length: int = 0  # steps in all
-    done: int = 0  # steps so far
-
-
-def drive(run, load, name, distance):
-    """Drive a load over a distance at ``--rate``, with rows. Other loads keep what they do.
-
-    The rows are closer together at the beginning, where the peaks are.
-
-    :param load: a MasonryLoad that is driven
-    :param name: of the stage
-    :param distance: function that gives the displacement along the direction of the load [m]
-    """
-    at = run.stage(name, Driving())
-    if at is None:
-        return
-    if not at.length:
-        speed, way = run.args.rate * 1e-3, distance()
-        at.length = max(ROWS, int(abs(way) / (speed * O.dt)))
-        load.velocity = way / (at.length * O.dt)
-    marks = {round(at.length * (i / ROWS) ** 2) for i in range(1, ROWS + 1)}
-    for mark in sorted(marks):
-        if mark <= at.done:
-            continue
-        run.advance(mark - at.done)
-        at.done = mark
-        reading = run.record()
-        run.show(at.done / at.length, lambda: f"{reading.time:.4f} s")
-    run.flush()
-    load.velocity = 0

@@ -1,0 +1,63 @@
+"""How the blocks of a structure move, and whether one of them falls."""
+
+import math
+
+from yade import O, Vector3
+
+from ..basics import GRAVITY, Collapsed
+
+FALLEN = 0.05  # of the largest side of a block: one that moves so far, and fast, falls
+FAST = 0.1  # of √(g·side): the velocity of a block that has fallen by half a hundredth of its side
+
+
+class Motion:
+    """Displacements of all bricks since the last state at rest, and their velocities.
+
+    :param structure: :class:`masonry.assembly.structure.Structure`, when it is built
+    """
+
+    def __init__(self, structure):
+        self.ids, self.zones = structure.ids, structure.zones
+        self.description = structure.description
+        self._states = [O.bodies[body].state for body in self.ids]
+        self._sizes = [self.description.size(index) for index in range(len(self.ids))]
+        #: Velocity of a block that has fallen by half a hundredth of its side [m/s].
+        self._falling = [FAST * math.sqrt(GRAVITY * size) for size in self._sizes]
+        self.restart()
+
+    def restart(self):
+        """From now on :meth:`checkFall` counts displacements."""
+        self._places = [Vector3(state.pos) for state in self._states]
+
+    def _speeds(self):
+        """Velocity of every block [m/s]: of its centre, or, of deformable ones, the mean of their nodes."""
+        speeds = [state.vel.norm() for state in self._states]
+        if self.zones:
+            velocities = self.zones.velocities
+            deformable = set(self.zones.bodies)
+            for index, body in enumerate(self.ids):
+                if body in deformable:
+                    first, end = self.zones.nodesOf(body)
+                    mean = sum(velocities[first:end], Vector3.Zero) / (end - first)
+                    speeds[index] = mean.norm()
+        return speeds
+
+    def fastest(self):
+        """Velocity of the fastest block over that of one that has fallen [-]."""
+        return max(v / falling for v, falling in zip(self._speeds(), self._falling))
+
+    def checkFall(self):
+        """Raise Collapsed if a block has moved far since the last state at rest, and is fast."""
+        speeds = None
+        for index, state in enumerate(self._states):
+            moved = state.pos - self._places[index]
+            if moved.norm() <= FALLEN * self._sizes[index]:
+                continue
+            speeds = speeds or self._speeds()
+            if speeds[index] >= self._falling[index]:
+                at = ", ".join(f"{v:.3g}" for v in self.description.middle(index))
+                moved, speed = 1e3 * moved, 1e3 * speeds[index]
+                raise Collapsed(
+                    f"brick {index} at ({at}) m has moved by ({moved[0]:.3g}, {moved[1]:.3g}, {moved[2]:.3g}) mm and falls "
+                    f"at {speed:.3g} mm/s"
+                )

@@ -1,0 +1,367 @@
+"""What a scene is in YADE: its bodies, joints, loads and engines."""
+
+import math
+
+from yade import O, Vector3
+from yade.wrapper import MasonryJoint, MasonryLoad, MasonryZones
+
+from .._masonry import criticalTimeStep
+from ..basics import GRAVITY, Refused
+from ..bricks import boxCorners
+from .blocks import addBlock, connect, engine, engines
+from .columns import Reading
+from .motion import Motion
+
+FILLED = 1e-9  # of a platen's side: what may be free of bricks if it is said to be full
+
+
+class Structure:
+    """What a scene is in YADE, and what acts on it.
+
+    It is made in two steps, so that what the user asks for can be refused before anything changes: ``__init__`` takes the
+    description, and :meth:`build` builds it in YADE. From then on it has
+
+    - ``ids``: body ids of the bricks, in their order; ``parts``: those of every part; ``bricks``: number of the brick by
+      body id, for all bodies that are bricks or parts of bricks
+    - ``interactions``: the joints between blocks; ``subcontacts``: how many points they have
+    - ``loads``: MasonryLoad engines by label; ``push`` is the one that drives the pushed target
+    - ``zones``: the engine of deformable units, or None; ``energy``, ``integrator``: these engines
+    - ``held``: targets of which a direction is held; ``motion``: how blocks move
+    - ``limit``: the stable limit of the time step [s]
+
+    :param description: :class:`masonry.scene.description.Description`
+    :param masonry: its materials for these options: :class:`masonry.scene.materials.Masonry`
+    :param args: the options of :func:`masonry.scene.options.parser`
+    """
+
+    def __init__(self, description, masonry, args):
+        self.description, self.masonry, self.args = description, masonry, args
+        kinds = {block.kind for block in description.bricks} - set(masonry.units)
+        self.unit, self.joints = masonry.unit, masonry.joints
+        self.units = {**masonry.units, **dict.fromkeys(kinds, masonry.unit)}
+        # Heavier blocks that are attracted less weigh the same; waves are slower and the time step is longer.
+        for unit in {id(unit): unit for unit in (self.unit, *self.units.values())}.values():
+            unit.density *= args.density_scaling
+        self.gravity = description.gravity / args.density_scaling
+        self.axes = (0, 2) if description.plane else (0, 1, 2)
+        self.bricks, self.loads, self.zones = {}, {}, None
+        #: What is pushed; from the beginning the target that a drive holds.
+        self.target = next((t for t in description.targets.values() if t.drives), None)
+        self.way = Vector3.UnitX  # of the present push
+        #: Displacement of the pushed point when the push began, along it and up [m].
+        self.origin = 0, 0
+        #: Point of the history that the drive is going to: its number, from 1, and its displacement [mm].
+        self.goal = 0, 0.0
+
+    # -- building -------------------------------------------------------------------------------------------------
+
+    def build(self, loadingBlock):
+        """Build all of it in YADE.
+
+        :param loadingBlock: MasonryMat of the platens
+        """
+        O.reset()
+        loadingBlock.density *= self.args.density_scaling
+        self._addBodies(loadingBlock)
+        self._addEngines()
+        self.loads["push"] = None
+        if self.target:
+            self.loads["push"] = self.driveOf(self.target, self.target.drives[0])
+        self._joinRecords()
+        self._findPresses()
+        targets = self.description.targets.values()
+        self.held = [target for target in targets if target.freedom]
+        # Rows are read at every few steps: what does not change is kept.
+        self._placed = {target.name: self._placeOf(target) for target in targets}
+        self._forces = O.forces
+        held = {target.body for target in self.held}
+        self._freeMass = sum(b.state.mass for b in O.bodies if b.id not in held)
+        self.motion = Motion(self)
+
+    def _addBodies(self, loadingBlock):
+        description = self.description
+        mats = {id(m): m for m in (*self.units.values(), self.unit, loadingBlock)}
+        O.materials.append(list(mats.values()))
+        self.parts, self.ids = {}, []
+        targets = description.targets.values()
+        for target in targets:
+            if target.box and target.fixed:
+                self._addPlaten(target, loadingBlock)
+        for block in description.bricks:
+            material = self.units[block.kind]
+            body = addBlock(block.corners, material, inPlane=description.plane)
+            self.ids.append(body)
+            self.bricks[body] = block.brick
+            self.parts.setdefault(block.part, []).append(body)
+        for target in targets:
+            if target.box and not target.fixed:
+                self._addPlaten(target, loadingBlock)
+            elif not target.box:
+                target.body = self.ids[target.brick]
+                if target.fixed:
+                    O.bodies[target.body].state.blockedDOFs = target.freedom
+        if not any(target.fixed for target in targets):
+            raise Refused(
+                "nothing is held: a scene needs a platen at the bottom, or hold()"
+            )
+
+    def _addPlaten(self, target, material):
+        corners = boxCorners(*target.box)
+        target.body = addBlock(corners, material, inPlane=self.description.plane)
+        O.bodies[target.body].state.blockedDOFs = target.freedom
+
+    def _addEngines(self):
+        """Engines, joints and the time step, when all blocks are there."""
+        args, description = self.args, self.description
+        loads = self._loads()
+        self.loads = {load.label: load for load in loads}
+        kind = args.damping_kind
+        if args.blocks == "deformable":
+            for target in description.targets.values():
+                if target.freedom:
+                    self.bricks.pop(target.body, None)
+            # cells of a half brick along its length; a whole one has twice as many
+            n = args.divisions
+            self.zones = MasonryZones(
+                bodies=list(self.bricks),
+                divisions=[n if description.halves else 2 * n, 1, n],
+                damping=args.damping,
+                dampingKind=kind,
+                blocked="y" if description.plane else "",
+                label="zones",
+            )
+        engines(
+            # the rule chooses; YADE wants a joint that fits any pair before it asks
+            [MasonryJoint(name="any", elastic=True)],
+            damping=args.damping,
+            gravity=(0, 0, -self.gravity),
+            subcontacts=args.subcontacts,
+            inPlane=description.plane,
+            loads=loads,
+            zones=self.zones,
+            functors=description.functors,
+            dampingKind="local" if description.functors else kind,
+        )
+        self.energy, self.integrator = engine("energy"), engine("integrator")
+        self.damp(args.damping, kind)
+        blocks = dict(zip(self.ids, description.bricks))
+        self.interactions = connect(self.masonry.rule(blocks))
+        self.limit = criticalTimeStep()[0]
+        O.dt = args.dt_fraction * self.limit
+        self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)
+
+    def _loads(self):
+        """A dead load for every target that has one, and a drive for every one that can be pushed."""
+        loads = []
+        for target in self.description.targets.values():
+            if not target.loaded:
+                continue
+            on = dict(body=target.body, point=target.point)
+            if target.pressed is not None or target.force is not None:
+                loads.append(MasonryLoad(label=f"{target.name}_force", **on))
+            for axis in target.drives:
+                direction = Vector3(*(float(axis == a) for a in "xyz"))
+                label = f"{target.name}_drive_{axis}"
+                loads.append(
+                    MasonryLoad(label=label, direction=direction, driven=True, **on)
+                )
+            if not target.drives:
+                loads.append(MasonryLoad(label=f"{target.name}_drive", **on))
+        for n, (brick, _, point) in enumerate(self.description.winds):
+            on = dict(body=self.ids[brick], point=point)
+            loads.append(MasonryLoad(label=f"wind_{n}", damped=True, **on))
+        return loads
+
+    def _joinRecords(self):
+        """Find the joints whose means are recorded."""
+        pairs = {frozenset((i.id1, i.id2)): i for i in self.interactions}
+        for joint in self.description.joints:
+            joint.interaction = pairs.get(frozenset(self.ids[b] for b in joint.bricks))
+            if joint.interaction is None:
+                raise Refused(
+                    "joint: bricks {} and {} share no face".format(*joint.bricks)
+                )
+
+    def _findPresses(self):
+        """What presses, dead loads and wind are when they have grown."""
+        self._grown = {}  # forces by label [N]
+        self._lines = {}  # points of the presses, as they were built [m]
+        for target in self.description.targets.values():
+            if target.pressed is None and target.force is None:
+                continue
+            force = Vector3(*(target.force or (0, 0, 0)))
+            if target.pressed is not None:
+                own = O.bodies[target.body].state.mass * self.gravity
+                area, middle = self._contact(target)
+                force = force - (target.pressed * area - own) * Vector3.UnitZ
+                # the resultant goes through the middle of what the platen presses
+                load = self.loads[f"{target.name}_force"]
+                load.point = (middle[0], middle[1], target.point[2])
+                self._lines[target.name] = Vector3(*load.point)
+            self._grown[f"{target.name}_force"] = force
+        for n, (_, force, _) in enumerate(self.description.winds):
+            self._grown[f"wind_{n}"] = Vector3(*force)
+
+    def _contact(self, target):
+        """Area of a platen's joints [m²], and their middle [m]."""
+        area, middle = 0.0, Vector3.Zero
+        for interaction in self.interactions:
+            if target.body in (interaction.id1, interaction.id2):
+                geom = interaction.geom
+                for a, c in zip(geom.areas, geom.centres):
+                    area += a
+                    middle += a * c
+        low, high = target.box
+        side = (high[0] - low[0]) * (high[1] - low[1])
+        if abs(area - side) < FILLED * side:
+            return side, [(a + b) / 2 for a, b in zip(low, high)]
+        return area, middle / area
+
+    def _placeOf(self, target):
+        """What the motion of a target's recorded point is found from."""
+        state = O.bodies[target.body].state
+        arm = Vector3(*target.recorded) - state.refPos
+        upright = state.refOri.conjugate()
+        return state, state.refPos, arm, upright * arm, upright
+
+    # -- loads ----------------------------------------------------------------------------------------------------
+
+    def grow(self, x):
+        """Let presses and dead loads grow smoothly: 0 to 1 is from nothing to their whole."""
+        for label, force in self._grown.items():
+            self.loads[label].force = force * x * x * (3 - 2 * x)
+
+    def deadLoads(self):
+        """Loads of the scene, each with its force when presses, dead loads and wind have grown: pairs of MasonryLoad and
+        force [N]."""
+        for label, load in self.loads.items():
+            if load and label != "push":
+                yield load, self._grown.get(label, load.force)
+
+    def damp(self, damping, kind):
+        """Choose damping [-] and its kind, local or combined, for what moves: deformable units, else rigid ones."""
+        if self.zones:
+            self.zones.damping, self.zones.dampingKind = damping, kind
+        else:
+            self.integrator.damping, self.integrator.dampingKind = damping, kind
+
+    def dampJoints(self, stiffnessDamping):
+        """Viscous damping of the joints from now on [s], with the time step that it allows."""
+        engine("joints").stiffnessDamping = stiffnessDamping
+        self.limit = criticalTimeStep()[0]
+        O.dt = self.args.dt_fraction * self.limit
+
+    def setGravity(self, gravity):
+        """Gravity from now on [m/s²]; deformable units follow."""
+        self.integrator.gravity = gravity
+
+    @property
+    def now(self):
+        """Present gravity [m/s²]."""
+        return self.integrator.gravity
+
+    def factor(self):
+        """Horizontal over vertical acceleration that acts on the blocks [-]."""
+        down = abs(self.now[2]) or GRAVITY / self.args.density_scaling
+        return math.hypot(self.now[0], self.now[1]) / down
+
+    def driveOf(self, target, axis):
+        """The load that drives a target along an axis, or None."""
+        return self.loads.get(f"{target.name}_drive_{axis}")
+
+    def pushTo(self, target, way, name="push"):
+        """From now on ``push`` moves this target along this way. The other drives hold what they hold."""
+        if self.description.plane and way[1]:
+            raise ValueError(
+                f"{name}: the scene is in the x-z plane; Scene(..., plane=False) is in space"
+            )
+        load = self.loads.get(f"{target.name}_drive")
+        if target.drives:
+            along = [a for a, v in zip("xyz", way) if abs(v) > 1 - 1e-12]
+            load = self.driveOf(target, along[0]) if along else None
+            if load is None:
+                raise ValueError(
+                    f"{name}: {target.name} has drives along {', '.join(target.drives)} alone, not along {tuple(way)}"
+                )
+        elif load.driven and load.direction.cross(way).norm() > 1e-12:
+            raise ValueError(
+                f"{name}: the drive of {target.name} holds it along {tuple(load.direction)}, and would let go of it to push "
+                f"along {tuple(way)}; drive='xz' and the like give it a drive for every axis"
+            )
+        for label, other in self.loads.items():
+            if "_drive" in label:
+                other.velocity = 0
+        load.direction, load.driven = way, True
+        self.target, self.way, self.loads["push"] = target, way, load
+        self.origin = 0, 0
+
+    def keepLoadLine(self):
+        """Move the points of vertical loads that keep their line in space back to it."""
+        for target in self.description.targets.values():
+            if target.pressed is None or target.riding:
+                continue
+            load = self.loads[f"{target.name}_force"]
+            drive = self.loads["push"] if target is self.target else load
+            along = drive.displacement()
+            away = (along[0], 0 if self.description.plane else along[1], 0)
+            load.point = self._lines[target.name] - Vector3(*away)
+
+    # -- what is measured -----------------------------------------------------------------------------------------
+
+    def read(self):
+        """What the columns are made of, measured now."""
+        return Reading(self)
+
+    def forceOn(self, target):
+        """Force of the structure on a target [N]."""
+        return self._forces.f(target.body, True)
+
+    def moved(self, target):
+        """Displacement of a target's recorded point since the scene was built [m], and its rotation, about y in a plane,
+        else its angle [rad]."""
+        state, place, arm, ownArm, upright = self._placed[target.name]
+        turn = state.ori
+        axis, angle = (turn * upright).toAxisAngle()
+        if self.description.plane:
+            angle *= axis[1]
+        return state.pos + turn * ownArm - place - arm, angle
+
+    def topDisplacement(self):
+        """Displacement of the pushed point along the push and upwards since the scene was built [m]."""
+        moved = self.moved(self.target)[0]
+        return moved.dot(self.way), moved[2]
+
+    def hasSunk(self, down=None):
+        """Whether the pushed platen has come down by half the height of a brick.
+
+        :param down: its displacement downwards [m], if that is known
+        """
+        down = -self.topDisplacement()[1] if down is None else down
+        block = self.description.bricks[-1].corners
+        return down > 0.5 * (max(p[2] for p in block) - min(p[2] for p in block))
+
+    def unrest(self):
+        """What of the loads is missing at the supports, and kinetic over elastic energy [-]."""
+        energy = self.energy.balance()
+        elastic = sum(
+            energy[f"elastic_{m}"] for m in ("compression", "shear", "tension", "units")
+        )
+        # what acts in all, and what is held against it: supports by their force, drives by theirs
+        applied, carried = self._freeMass * self.now, Vector3(0, 0, 0)
+        for target in self.held:
+            state = O.bodies[target.body].state
+            weight, on = state.mass * self.now, self.forceOn(target)
+            for i, axis in enumerate("xyz"):
+                if axis in state.blockedDOFs:
+                    carried[i] -= on[i]
+                else:
+                    applied[i] += weight[i]
+        for label, load in self.loads.items():
+            if label != "push":
+                applied += load.force
+                carried += load.reaction * load.direction.normalized()
+        if self.description.plane:
+            applied[1] = carried[1] = 0
+        missing = (applied + carried).norm() / (applied.norm() or 1.0)
+        moving = abs(energy["kinetic"])
+        return missing, moving / elastic if elastic else math.inf

@@ -1,0 +1,177 @@
+"""curve.png: what the entry ``figure`` of run.json says, and the energies. This module needs no YADE."""
+
+import os
+import re
+
+import numpy as np
+
+from ..basics import Refused
+from . import drawing, loops
+from .files import readCurve, readRun
+
+LINES = ["black", "tab:orange", "tab:green", "tab:purple", "tab:brown", "tab:cyan"]
+
+
+def plan(run, data, directory):
+    """The entry ``figure`` of run.json, with all that may be left out. Raises Refused for one that cannot be drawn.
+
+    :param run: what :func:`masonry.read.files.readRun` returns
+    :param data: what :func:`masonry.read.files.readCurve` returns
+    :param directory: folder, for messages
+    """
+    told = run.get("figure")
+    if told is None:
+        raise Refused(
+            f'{directory}: run.json has no entry "figure", which says what to draw: an older version of the plugin made it'
+        )
+    told = {
+        "y_label": "",
+        "looped": False,
+        "marks": [],
+        "bounds": [],
+        **told,
+    }
+    for axis in (told["x"], *told["y"]):
+        if axis["column"] not in data:
+            raise Refused(
+                f"{directory}: figure: curve.csv has no column {axis['column']}, it has {', '.join(data)}"
+            )
+    if not told["y"]:
+        raise Refused(f'{directory}: figure: "y" must name one column at least')
+    return told
+
+
+def energies(data):
+    """Energies to draw, since the first row: a dict of name -> values [J], and the work done, or None if there is none.
+
+    :param data: dict of column name -> array; what has an energy ends in ``_J``
+    """
+    since = {k[:-2]: v - v[0] for k, v in data.items() if k.endswith("_J")}
+    work = [since.pop(name) for name in ("external", "gravity") if name in since]
+    elastic = [since.pop(name) for name in list(since) if name.startswith("elastic_")]
+    stack = {"elastic": sum(elastic)} if elastic else {}
+    for name in ("dissipated_tension", "dissipated_shear", "dissipated_compression"):
+        if name in since:
+            stack[name.split("_")[1]] = since.pop(name)
+    if "damping" in since:
+        stack["damping"] = since.pop("damping")
+    kinetic = since.pop("kinetic", None)
+    stack.update((name.replace("_", " "), values) for name, values in since.items())
+    largest = max((np.abs(v).max() for v in (*stack.values(), *work)), default=0)
+    if kinetic is not None and kinetic.max() > 0.02 * largest:
+        stack["kinetic"] = kinetic
+    return stack, sum(work) if work else None
+
+
+def curve(directory):
+    """Draw curve.png: what the entry ``figure`` of run.json says and, below it, the energies.
+
+    Loops have axes through zero and their envelope in bold, and their energies are drawn over the length of the way.
+    Without columns of energies there is no panel of them.
+    """
+    run = readRun(directory)
+    data = {name: np.array(values) for name, values in readCurve(directory).items()}
+    told = plan(run, data, directory)
+    looped, x = told["looped"], data[told["x"]["column"]]
+    used = {axis["column"] for axis in told["y"]}
+    stack, work = energies({k: v for k, v in data.items() if k not in used})
+    with drawing.style():
+        if stack:
+            figure = drawing.empty(7, 7)
+            top, bottom = figure.subplots(2, 1, sharex=not looped, height_ratios=[3, 2])
+        else:
+            figure = drawing.empty(7, 4.6)
+            top, bottom = figure.subplots(), None
+        _curves(top, told, data, x)
+        top.set_title(run["title"])
+        label = told["x"]["label"]
+        if bottom is None or looped:
+            top.set_xlabel(label)
+        if bottom:
+            over = np.append(0, np.cumsum(np.abs(np.diff(x)))) if looped else x
+            for name, values in stack.items():
+                bottom.plot(over, values, lw=1, label=name)
+            if work is not None:
+                bottom.plot(over, work, color="black", lw=1, ls="--", label="work done")
+            unit = unitOf(told["x"])
+            bottom.set_xlabel(
+                f"length of the way there and back [{unit}]" if looped else label
+            )
+            first = "the push began" if "wall" in run else "the first row"
+            bottom.set_ylabel(f"energy since {first} [J]")
+            bottom.legend(fontsize=8)
+            bottom.grid(alpha=0.3)
+        figure.tight_layout()
+        drawing.save(figure, os.path.join(directory, "curve.png"), 110)
+
+
+def _curves(axes, told, data, x):
+    """The upper panel of curve.png."""
+    looped = told["looped"]
+    first = data[told["y"][0]["column"]]
+    for n, axis in enumerate(told["y"]):
+        wide = (0.7, 0.4) if looped else (1.2, 0.6)
+        axes.plot(
+            x,
+            data[axis["column"]],
+            color=LINES[n % len(LINES)],
+            lw=wide[n > 0],
+            label=axis["label"],
+            zorder=1 if n else 2,
+        )
+    if looped:
+        for rows, label in zip(loops.envelope(x), ("envelope", None)):
+            axes.plot(x[rows], first[rows], color="tab:blue", lw=1.8, label=label)
+        axes.axvline(0, color="0.3", lw=0.8, zorder=0)
+        axes.margins(y=0.12)
+    else:
+        axes.set_ylim(*_limits(told, data))
+    low, high = axes.get_ylim()
+    if low < 0 < high:
+        axes.axhline(0, color="0.3", lw=0.8, zorder=0)
+    for mark in told["marks"]:
+        at, value = mark["x"], mark["y"]
+        left = (at > 0) if looped else at > 0.7 * x.max() + 0.3 * x.min()
+        axes.plot(at, value, "o", color="tab:red", ms=5)
+        axes.annotate(
+            mark["text"],
+            (at, value),
+            textcoords="offset points",
+            xytext=(-6 if left and not looped else 6, 8) if value >= 0 else (-6, -14),
+            ha="right" if left else "left",
+        )
+    for bound in told["bounds"]:
+        axes.axhline(bound["y"], color="0.35", lw=0.9, ls=(0, (6, 3)), zorder=0)
+        axes.annotate(
+            bound["text"],
+            (0.01, bound["y"]),
+            xycoords=("axes fraction", "data"),
+            textcoords="offset points",
+            xytext=(0, 3),
+            fontsize=8,
+            color="0.25",
+        )
+    axes.set_ylabel(told["y_label"])
+    if len(told["y"]) > 1 or looped:
+        axes.legend(loc="lower right")
+    axes.grid(alpha=0.3)
+
+
+def _limits(told, data):
+    """Range of the upper panel that has all of the first curve, and of the others what is more than single swings."""
+    columns = [data[axis["column"]] for axis in told["y"]]
+    marks = [thing["y"] for key in ("marks", "bounds") for thing in told[key]]
+    low = min([columns[0].min(), *(np.quantile(c, 0.01) for c in columns), *marks])
+    high = max([columns[0].max(), *(np.quantile(c, 0.99) for c in columns), *marks])
+    reach = max(high, 0) - min(low, 0) or 1.0
+    if low >= -0.02 * reach:
+        return 0, 1.15 * reach
+    if high <= 0.02 * reach:
+        return -1.15 * reach, 0
+    return low - 0.15 * reach, high + 0.15 * reach
+
+
+def unitOf(axis):
+    """Unit of an axis: in the brackets of its label, else at the end of the name of its column."""
+    found = re.search(r"\[([^\]]*)\]\s*$", axis["label"])
+    return found[1] if found else axis["column"].rsplit("_", 1)[-1]

@@ -1,0 +1,190 @@
+"""How a run ends: in order, whatever ended it, with what was computed kept."""
+
+import contextlib
+import os
+import socket
+import sys
+
+import yade.config
+from yade import O
+
+from .._masonry import commit
+from ..assembly.columns import meanings
+from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
+from .checkpoints import NAME
+from .presets import presetNote
+
+OFF = 0.01  # of the work done: a larger error of the energy balance is a warning
+
+
+def end(run, scene, error):
+    """Finish a run in order after an error, or after none. Returns whether the error is dealt with.
+
+    ``run.status`` is then the exit status of the scene: 0 at the end, 1 if a file cannot be written or if the structure
+    has fallen in the stage ``settle``, before its test began, 2 for refused input, 130 after Ctrl-C or SIGTERM. Another
+    error is for the caller when the results are finished.
+
+    :param run: :class:`masonry.run.run.Run`
+    :param scene: gives ``model``, ``columns`` and ``outcome``
+    :param error: an exception, or None
+    """
+    try:
+        return _end(run, scene, error)
+    finally:
+        run.release()
+
+
+def _end(run, scene, error):
+    if not run.results and not isinstance(error, Refused):
+        return False
+    try:
+        if not error and not run.advanced:
+            run.takeUp()
+    except Refused as refused:
+        error = refused
+    if not run.advanced:
+        if isinstance(error, Refused):
+            print(error, file=sys.stderr)
+            run.status = 2
+        return run.status == 2
+    if error and not isinstance(error, Collapsed) and run.results.earlier:
+        return _leaveEarlier(run, error)
+    stopped = []
+    try:
+        run.flush()
+    except Unwritable as unwritable:
+        stopped.append(unwritable)
+    except FloatingPointError as broken:
+        error = error or broken
+    if isinstance(error, Interrupted):
+        say("\ninterrupted: what was computed is kept")
+    elif isinstance(error, Unwritable):
+        stopped.append(error)
+    elif isinstance(error, Collapsed):
+        run.fall(str(error))
+    elif error:
+        run.results.run["error"] = str(error)
+        run.checkpoint()
+        _finish(run, scene)
+        raise error
+    if stopped:
+        run.results.run["error"] = str(stopped[0])
+    over = run.args.lean and not stopped and not run.interrupted
+    kept = not over and run.checkpoint()
+    try:
+        _finish(run, scene)
+        if over:
+            with contextlib.suppress(OSError):
+                os.remove(run.results.path(NAME))
+    except Unwritable as unwritable:
+        stopped.append(unwritable)
+    for text in dict.fromkeys(map(str, stopped)):
+        say(f"{text}; what was written before is kept", sys.stderr)
+    if kept and (stopped or run.interrupted):
+        say(f"--resume {run.results.directory} goes on from here")
+    fell = run.collapsed and run.at.stage == "settle"
+    run.status = 1 if stopped or fell else 130 if run.interrupted else 0
+    return True
+
+
+def _leaveEarlier(run, error):
+    """End without results, so that those of an earlier run stay. Returns whether the error is dealt with."""
+    run.status = 130 if isinstance(error, Interrupted) else 1
+    say(
+        f"note: {'interrupted' if run.status == 130 else 'ended'} before there was a row: nothing of this run is kept, "
+        f"and {run.results.directory} still has the results of an earlier one"
+    )
+    if isinstance(error, Unwritable):
+        say(str(error), sys.stderr)
+    return isinstance(error, (Interrupted, Unwritable))
+
+
+def _finish(run, scene):
+    """Write the last frame and run.json, which is written even if there is no room for the frame, and report."""
+    try:
+        try:
+            if run.results.rows:
+                run.frame()
+        finally:
+            _describe(run, scene)
+            run.results.close()
+        _report(run, scene)
+    finally:
+        scene.outcome.leave(run.results.directory)
+
+
+def _describe(run, scene):
+    """Fill run.json; the docstring of :mod:`masonry.run.results` lists its keys."""
+    at, told = run.at, run.results.run
+    told.update(
+        scene=run.name,
+        options=_options(run),
+        preset=run.preset,
+        columns=meanings(scene.columns),
+        versions={
+            "yade": yade.config.version,
+            "python": sys.version.split()[0],
+            "masonry": commit,
+        },
+        commit=commit,
+        threads=O.numThreads,
+        host=socket.gethostname(),
+        **scene.outcome.describe(),
+    )
+    if run.results.rows:
+        told.update(
+            energy_balance_error=scene.model.energy.largestError,
+            energy_made=scene.model.energy.largestMade,
+            **scene.outcome.summary(),
+        )
+    told.update(
+        collapsed=run.collapsed,
+        interrupted=run.interrupted,
+        resumed_at_s=at.resumed,
+        steps=at.steps,
+        stages=_stages(at),
+        kinds=run.vtk.kinds if run.vtk else [],
+        seconds={part: round(s, 3) for part, s in at.seconds.items()},
+    )
+    if at.steps:
+        perStep = at.seconds["steps"] / at.steps
+        told["microseconds_per_step"] = 1e6 * perStep
+        told["nanoseconds_per_subcontact_step"] = 1e9 * perStep / scene.model.subcontacts
+
+
+def _options(run):
+    """The options, with a history as the user wrote it."""
+    options = {name: v for name, v in vars(run.args).items() if name != "saved"}
+    if options.get("history"):
+        options["history"] = options["history"]["text"]
+    return options
+
+
+def _stages(at):
+    ends = [*at.stages[1:], ["", at.steps, at.seconds["steps"], 0]]
+    return [
+        {"stage": name, "steps": after[1] - steps, "seconds": after[2] - seconds}
+        for (name, steps, seconds, _), after in zip(at.stages, ends)
+    ]
+
+
+def _report(run, scene):
+    told = run.results.run
+    if run.results.rows and not run.args.lean:
+        scene.outcome.draw(run.results.directory)
+    off, made = told.get("energy_balance_error", 0), told.get("energy_made", 0)
+    if made > OFF or (off > OFF and not scene.model.energy.warned):
+        say(
+            f"warning: the energy balance is off by {100 * off:.1f} % of the work done, and joints that open or "
+            f"close within a step made {100 * made:.1f} % of it: a smaller --dt-fraction or --rate or more --damping "
+            "helps"
+        )
+    if run.results.rows:
+        for line in scene.outcome.report(told):
+            say(line)
+        say(
+            f"{told['steps']} steps of {told['microseconds_per_step']:.0f} µs, {told['wall_clock_s']:.1f} s in all; "
+            f"see {run.results.directory}"
+        )
+    if run.preset:
+        say(presetNote(run.preset, run.name))

@@ -1,0 +1,109 @@
+"""How far a run has come, and what a checkpoint on disk tells of it."""
+
+from dataclasses import dataclass, field
+
+
+from .._masonry import loadScene
+from ..basics import Refused, say
+from .checkpoints import NAME, alike, readState
+
+PARTS = "setup", "steps", "rows", "frames"  # of a run's time
+
+
+@dataclass
+class Place:
+    """How far a run has come, beside the state of the scene."""
+
+    number: int = 0  # of the present stage, from 1
+    stage: str = ""  # its name
+    memory: dict = field(default_factory=dict)  # what the stage must know to go on
+    steps: int = 0  # taken so far
+    left: int = 0  # of the present advance that are not taken yet
+    #: Of every stage so far: its name, and the steps, their seconds of wall-clock time and the rows before it.
+    stages: list = field(default_factory=list)
+    seconds: dict = field(default_factory=lambda: dict.fromkeys(PARTS, 0.0))
+    frames: list = field(default_factory=list)  # times of the ParaView frames [s]
+    origins: dict = field(default_factory=dict)  # where pushes began, by their name
+    bounds: dict = field(default_factory=dict)  # what limit analysis found, by the load
+    answers: dict = field(default_factory=dict)  # of the stages, by their number
+    supportsMoved: bool = False  # whether a stage has moved supports
+    resumed: list = field(default_factory=list)  # times at which it was taken up [s]
+
+
+def otherVersion(why):
+    """The refusal of a checkpoint that this version of the plugin does not leave."""
+    return Refused(f"--resume: of another version of the plugin: {why}")
+
+
+def restored(example, values):
+    """A dataclass object with the values of a checkpoint. Raises Refused if these are not of the kind of the example's."""
+    before = vars(example)
+    wrong = [
+        name
+        for name, value in values.items()
+        if name not in before or not alike(value, before[name])
+    ]
+    if wrong:
+        raise otherVersion(f"its {', '.join(wrong)}")
+    return type(example)(**{**before, **values})
+
+
+class Saved:
+    """A checkpoint that a run left, read from the disk once.
+
+    - ``scene``: name of the scene; ``options``: those of the run; ``script``: what its script said, as data
+    - ``at``: how far the run had come, as of :class:`Place`; ``rows`` of curve.csv
+    - ``seconds`` of wall-clock time; ``host``: ``build``, ``YADE`` and ``threads`` that it was made with
+
+    :param directory: folder of the run
+    :raises Refused: if no run can be taken up there
+    """
+
+    def __init__(self, directory):
+        self.directory = directory
+        try:
+            self._data, told = readState(directory)
+        except (OSError, ValueError) as error:
+            raise Refused(f"--resume: {error}") from None
+        like = dict(
+            scene="", options={}, at={}, rows=[], script=[], seconds=0.0, host={}
+        )
+        if (
+            not isinstance(told, dict)
+            or not all(alike(told.get(key), value) for key, value in like.items())
+            or not all(alike(row, [0.0] * len(row)) for row in told["rows"])
+            or not all(alike(word, ["", {}]) for word in told["script"])
+        ):
+            raise Refused(
+                f"--resume: {directory}/{NAME} was not left by a run in stages"
+            )
+        vars(self).update({key: told[key] for key in like})
+
+    def place(self):
+        """How far the run had come: a :class:`Place`. Raises Refused."""
+        at = restored(Place(), self.at)
+        if not (
+            set(at.seconds) == set(PARTS)
+            and all(alike(seconds, 0.0) for seconds in at.seconds.values())
+            and all(alike(stage, ["", 0, 0.0, 0]) for stage in at.stages)
+            and all(isinstance(found, list) for found in at.answers.values())
+            and alike(at.frames + at.resumed, None)
+        ):
+            raise otherVersion("the counters of the run")
+        return at
+
+    def load(self):
+        """Give the scene, built by the same script, the state of the checkpoint. Raises Refused."""
+        try:
+            loadScene(self._data)
+        except (ValueError, TypeError) as error:
+            raise Refused(f"--resume: {self.directory}/{NAME} {error}") from None
+
+    def compareHost(self, now):
+        """Say what of the host is not as it was."""
+        for what, value in now.items():
+            if self.host.get(what) != value:
+                say(
+                    f"note: the checkpoint was made with {what} {self.host.get(what)}, this run has {value}: "
+                    "it may differ in last digits from one without a break"
+                )

@@ -1,0 +1,312 @@
+"""What comes out of a scene: entries of run.json, what curve.png shows, and the lines at the end on the terminal."""
+
+import math
+import subprocess
+import sys
+import tempfile
+
+from yade import O
+from yade.wrapper import MasonryVtkRecorder
+
+from ..assembly import columns
+from ..assembly.blocks import units
+from ..basics import Unwritable, say
+from ..read import cracks, measure
+from ..read.curves import (
+    cycleNumbers,
+    dampedShare,
+    dynamicImbalance,
+    initialStiffness,
+    peakAtBothEnds,
+)
+from ..read.frames import readFrame
+from . import history
+from .options import UNITS
+from .stages import pushing
+from .stages.stage import answerText
+from .wall import wallOf
+
+FRAMES = 20  # for ParaView in a stage that is no push
+
+
+class Outcome:
+    """What comes out of a scene that stands in YADE.
+
+    :param scene: :class:`masonry.scene.scene.Scene`
+    """
+
+    def __init__(self, scene):
+        self.scene, self.model = scene, scene.model
+        self.description, self.args = scene.description, scene.args
+        self.results = scene.running.results
+
+    @property
+    def pushed(self):
+        """The options of the last push, or None if there was none."""
+        return self.scene.pushed
+
+    def room(self):
+        """Bytes that a run writes at least, and those that it will probably write."""
+        model, args, frames, rows = self.model, self.args, FRAMES, 0
+        nodes = len(model.zones.displacements) if model.zones else 0
+        frame = 50 * model.subcontacts + 150 * len(O.bodies) + 100 * nodes
+        if args.history or args.until:
+            frames = pushing.pathOf(args) / pushing.frameSpacing(args) + 2
+            rows = pushing.rowCount(args)
+        frames = 0 if args.no_vtk or args.lean else frames
+        figures = 50e3 if args.lean else 400e3
+        least = figures + frame * min(frames, 2)  # and the first and last frame
+        return least, least + frame * frames + 250 * rows
+
+    # -- run.json -------------------------------------------------------------------------------------------------
+
+    def describe(self):
+        """Entries of run.json that say what is built, and how it is held and drawn."""
+        model, scene = self.model, self.scene
+        kinds = {}
+        for interaction in model.interactions:
+            name = interaction.phys.joint.name
+            kinds[name] = kinds.get(name, 0) + 1
+        joints = {name: joint.dict() for name, joint in model.joints.items()}
+        for properties in joints.values():
+            properties["direction"] = list(properties["direction"])
+        told = dict(
+            title=self.description.title,
+            option_units=UNITS,
+            joints=joints,
+            joint_units=units(type(next(iter(model.joints.values())))),
+            unit_material={
+                "young_Pa": model.unit.young,
+                "poisson": model.unit.poisson,
+                "density_kg_per_m3": model.unit.density / self.args.density_scaling,
+            },
+            time_step_s=O.dt,
+            time_step_limit_s=model.limit,
+            units=len(model.bricks),
+            nodes=len(model.zones.displacements) if model.zones else 0,
+            joint_count=len(model.interactions),
+            joints_by_kind=kinds,
+            subcontacts=model.subcontacts,
+            parts=model.parts,
+            figure=self._figure(),
+            held=sorted(t.name for t in self.description.targets.values() if t.fixed),
+            recorded_joints=[joint.name for joint in self.description.joints],
+            **scene.bounds.describe(),
+        )
+        if self.description.views:
+            told["views"] = self.description.views
+        wall = wallOf(self.description, model.target) if self.pushed else None
+        if wall:
+            told["wall"] = wall
+        return told
+
+    def summary(self):
+        """Entries of run.json that follow from the rows."""
+        scene, column = self.scene, self.results.column
+        found = dict(collapse=self.results.run.get("collapse"), ended=scene.ended)
+        found["answers"] = scene.answers
+        found.update(self._ofJoints(column))
+        if scene.factor:
+            found["factor"] = scene.factor
+        if scene.stood:
+            found["stood"] = scene.stood
+        if self.pushed:
+            found.update(self._ofPush(column))
+        return found
+
+    def _ofPush(self, column):
+        shear, moved = column("base_shear_kN"), column("displacement_mm")
+        top = column("top_shear_kN")
+        at = max(range(len(shear)), key=shear.__getitem__)
+        imbalance = dynamicImbalance(top, shear)
+        found = dict(
+            peak_base_shear_kN=shear[at],
+            displacement_at_peak_mm=moved[at],
+            peak_at_both_ends_kN=peakAtBothEnds(top, shear),
+            base_shear_end_kN=shear[-1],
+            displacement_end_mm=moved[-1],
+            initial_stiffness_kN_per_mm=initialStiffness(moved, shear),
+            dynamic_imbalance=imbalance,
+            too_fast=imbalance > pushing.IMBALANCE,
+        )
+        if self.pushed.history:
+            low = min(range(len(shear)), key=shear.__getitem__)
+            found.update(
+                history=history.describe(self.pushed.history),
+                negative_peak_base_shear_kN=shear[low],
+                displacement_at_negative_peak_mm=moved[low],
+                damped_share=dampedShare(column),
+                cycles=cycleNumbers(column, history.noise(self.pushed.history)),
+            )
+        if self.args.lean:
+            found.update(self._measured(moved, shear))
+        return found
+
+    def _ofJoints(self, column):
+        """Entries for the joints whose means are recorded."""
+        for joint in self.description.joints:
+            normal, shear = (
+                column(joint.prefixed(f"{what}_stress_MPa"))
+                for what in ("normal", "shear")
+            )
+            modes = "tension", "shear", "compression"
+            lost = zip(modes, joint.interaction.phys.dissipated)
+            found = {
+                "peak_normal_stress_MPa": max(normal),
+                "peak_compressive_stress_MPa": -min(normal),
+                "peak_shear_stress_MPa": max(shear),
+                "end_normal_stress_MPa": normal[-1],
+                "end_shear_stress_MPa": shear[-1],
+                **{f"dissipated_{mode}_J_per_m2": j / joint.area for mode, j in lost},
+            }
+            yield from ((joint.prefixed(end), value) for end, value in found.items())
+
+    def _measured(self, moved, shear):
+        """The numbers that masonry.read.measure finds of a wall, and its failure mode: what leaves no frames has them at
+        once."""
+        found, wall = {}, wallOf(self.description, self.model.target)
+        if not self.pushed.history:
+            found = measure.pushNumbers(moved, shear)
+            if not math.isfinite(found["drop_at_mm"]):
+                found["drop_at_mm"] = None
+        if wall:
+            found.update(cracks.pattern(_jointsNow(), wall))
+            found["failure_mode"] = cracks.failureMode(found, wall)
+        return found
+
+    # -- curve.png ------------------------------------------------------------------------------------------------
+
+    def _figure(self):
+        """The entry ``figure`` of run.json."""
+        if self.pushed:
+            return self._figureOfPush()
+        if self.description.joints:
+            return self._figureOfJoint(self.description.joints[0])
+        heads = columns.heads(self.scene.columns)
+        targets = self.description.targets.values()
+        moving = [t.name for t in targets if not t.fixed]
+        y = [f"{n}_{a}_mm" for n in moving for a in "xyz" if f"{n}_{a}_mm" in heads]
+        y = y or [n for n in heads if n.endswith("_kN") and "force" in n][:3]
+        return {
+            "x": {"column": "time_s", "label": "time [s]"},
+            "y": [{"column": n, "label": n.rsplit("_", 1)[0]} for n in y],
+            "y_label": "displacement [mm]" if moving else "force [kN]",
+            "looped": False,
+            "marks": [],
+        }
+
+    def _figureOfPush(self):
+        target = self.model.target
+        height = f"{target.recorded[2]:.3g} m above the base"
+        return {
+            "x": {
+                "column": "displacement_mm",
+                "label": f"displacement of {target.name}, {height} [mm]",
+            },
+            "y": [
+                {"column": "base_shear_kN", "label": "base"},
+                {"column": "top_shear_kN", "label": "loaded point"},
+            ],
+            "y_label": "force along the push [kN]",
+            "looped": bool(self.pushed.history),
+            "marks": self._marks(),
+            "bounds": list(self.scene.bounds.lines()),
+        }
+
+    def _figureOfJoint(self, joint):
+        """What is drawn of a joint that is recorded: the stress along which it moved farther, and the other one."""
+        column = lambda head: self.results.column(joint.prefixed(head))
+        reach = lambda head: max(map(abs, column(head)), default=0)
+        slides = reach("slide_mm") > reach("opening_mm")
+        moved, what = ("slide_mm", "slide") if slides else ("opening_mm", "opening")
+        stresses = [
+            {
+                "column": joint.prefixed("normal_stress_MPa"),
+                "label": "normal, positive in tension",
+            },
+            {"column": joint.prefixed("shear_stress_MPa"), "label": "shear"},
+        ]
+        return {
+            "x": {
+                "column": joint.prefixed(moved),
+                "label": f"mean {what} of the joint [mm]",
+            },
+            "y": stresses[::-1] if slides else stresses,
+            "y_label": "mean stress [MPa]",
+            "looped": False,
+        }
+
+    def _marks(self):
+        """Peaks of the push, for the figure."""
+        force = self.results.column("base_shear_kN")
+        moved = self.results.column("displacement_mm")
+        if not force:
+            return []
+        ends = [max(range(len(force)), key=force.__getitem__)]
+        if self.pushed.history:
+            ends.append(min(range(len(force)), key=force.__getitem__))
+        return [
+            {
+                "x": moved[i],
+                "y": force[i],
+                "text": f"{force[i]:.1f} kN at {moved[i]:.2f} mm",
+            }
+            for i in ends
+        ]
+
+    # -- files and terminal ---------------------------------------------------------------------------------------
+
+    def draw(self, directory):
+        """Draw the figures of a run that has ended, in a program of its own. Raises Unwritable if that fails."""
+        # -P: nothing of the present folder is run
+        command = [sys.executable, "-P", "-m", "masonry.read.figures", directory]
+        if subprocess.run(command).returncode:
+            raise Unwritable("the figures are not drawn")
+
+    def leave(self, directory):
+        """Write what the scene has beside rows and frames: the mechanism of limit analysis."""
+        description = self.description
+        try:
+            self.scene.bounds.leave(
+                directory, description.title, self.model.parts, description.views
+            )
+        except OSError as error:
+            say(
+                f"the mechanism is not written to {directory}: {error.strerror}",
+                sys.stderr,
+            )
+
+    def report(self, run):
+        """Lines to print at the end, from the entries of run.json."""
+        name = self.scene.name
+        for joint in self.description.joints:
+            for end in ("peak_normal", "peak_compressive", "peak_shear", "end_shear"):
+                key = joint.prefixed(f"{end}_stress_MPa")
+                yield f"{key:32} {run[key]:.4f}"
+        yield from self.scene.bounds.over(run, self.scene.stood)
+        yield from map(answerText, run["answers"])
+        if not self.pushed:
+            yield f"{name}: {run['ended']}"
+            return
+        if run["too_fast"]:
+            yield pushing.tooFast(self.pushed, run["dynamic_imbalance"])
+        if run.get("damped_share", 0) > pushing.DAMPED:
+            yield pushing.tooDamped(self.pushed, run["damped_share"])
+        at = lambda force, moved: f"{run[force]:.1f} kN at {run[moved]:.2f} mm"
+        peak = at("peak_base_shear_kN", "displacement_at_peak_mm")
+        end = at("base_shear_end_kN", "displacement_end_mm")
+        if "negative_peak_base_shear_kN" not in run:
+            yield f"{name}: peak {peak}, {end}"
+            return
+        other = at("negative_peak_base_shear_kN", "displacement_at_negative_peak_mm")
+        yield f"{name}: {len(run['cycles'])} cycles, peaks {peak} and {other}, {end}"
+
+
+def _jointsNow():
+    """All joints as they are now, as a frame."""
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            MasonryVtkRecorder(directory=folder)()
+        except RuntimeError as error:
+            raise Unwritable(str(error)) from None
+        return readFrame(folder, "joints")

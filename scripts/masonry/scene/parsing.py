@@ -1,0 +1,221 @@
+"""How the command line of a scene is read: kinds of values, presets, and the options of a run that is resumed."""
+
+import argparse
+import math
+import re
+
+from ..basics import Refused
+from ..run import batch
+from ..run.checkpoints import alike
+from ..run.place import Saved
+from ..run.presets import HARMLESS, PRESETS, asOption
+from . import fields, history
+
+#: Options that can be changed when a run is resumed.
+FREE = {"until", "history", "checkpoint_every", "vtk_every", "no_vtk", "lean"}
+
+
+def number(text, low=-math.inf, high=math.inf, above=False):
+    """The number that a text stands for.
+
+    :param above: whether it must be above ``low``, not at least
+    :raises argparse.ArgumentTypeError: if it is none, or out of its bounds
+    """
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number") from None
+    if (
+        not math.isfinite(value)
+        or value < low
+        or value > high
+        or (above and value == low)
+    ):
+        bound = f"above {low:g}" if above else f"at least {low:g}"
+        raise argparse.ArgumentTypeError(
+            f"{text} must be {bound}"
+            + (f" and at most {high:g}" if high < math.inf else "")
+        )
+    return value
+
+
+def count(text, high):
+    """The whole number from 1 to ``high`` that a text stands for. Raises argparse.ArgumentTypeError."""
+    if not text.isdecimal() or not 1 <= int(text) <= high:
+        raise argparse.ArgumentTypeError(
+            f"'{text}' must be a whole number from 1 to {high}"
+        )
+    return int(text)
+
+
+def field(text):
+    """The text of ``--field``, if it can be read. Raises argparse.ArgumentTypeError."""
+    try:
+        fields.read(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+    return text
+
+
+def pathOf(text):
+    """The history that ``--history`` names. Raises argparse.ArgumentTypeError."""
+    try:
+        return history.parse(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def folder(text):
+    """The name of a folder. Raises argparse.ArgumentTypeError."""
+    if not text.strip():
+        raise argparse.ArgumentTypeError("must not be empty")
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not UTF-8") from None
+    return text
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that tells all wrong options at once, and takes no part of a name for the whole.
+
+    Options that are not given are those of ``--preset``, or those of the run that is resumed. Options that would change
+    a resumed run are refused, but for those in ``free``. ``overrides`` of the parsed options lists those that were given
+    beside a preset and differ from it, or from the default.
+    """
+
+    #: The parser that read the command line last, and what it found.
+    last = None, None
+
+    def __init__(self, **settings):
+        super().__init__(allow_abbrev=False, **settings)
+        self.problems = []
+        self.free = set(FREE)
+        # argparse knows no exponents and no lists: -5e-1 and -1,2x3 would be options
+        self._negative_number_matcher = re.compile(
+            r"-(\d+\.?\d*|\.\d+)(e[+-]?\d+)?([x,].*)?$|-(inf|nan)$", re.IGNORECASE
+        )
+
+    def parse_known_args(self, args=None, namespace=None):
+        self.problems = []
+        result = super().parse_known_args(args, namespace)
+        if self.problems and not result[1]:
+            self.error(self.problems.pop())
+        return result
+
+    def _get_values(self, action, strings):
+        try:
+            return super()._get_values(action, strings)
+        except argparse.ArgumentError as error:
+            self.problems.append(str(error))
+            return action.default
+
+    def error(self, message):
+        super().error("\n  ".join([*self.problems, message]))
+
+    def parse_args(self, args=None, namespace=None):
+        """The options of the command line, or, in a run of ``yade-batch``, those of a row of its table: masonry.run.batch."""
+        whole = args is None
+        if whole:
+            try:
+                args = batch.present()
+            except batch.Done as done:
+                self.exit(0, f"{done} has the results of this row\n")
+            except Refused as refused:
+                self.exit(2, f"{refused}\n")
+        found = self._parsed(args, namespace)
+        if whole:
+            Parser.last = self, found
+        return found
+
+    def _parsed(self, args, namespace):
+        found = super().parse_args(args, namespace)
+        if found.resume is not None:
+            return self._resumed(args, found.resume)
+        nothing = argparse.Namespace(**{action.dest: None for action in self._actions})
+        given = vars(super().parse_args(args, nothing))
+        given = {name: value for name, value in given.items() if value is not None}
+        usual = {**vars(super().parse_args([])), **PRESETS.get(found.preset, {})}
+        vars(found).update(usual, **given)
+        if found.history:
+            found.until = None
+        found.overrides = [
+            name
+            for name, value in given.items()
+            if name not in HARMLESS and value != usual[name]
+        ]
+        return found
+
+    def _checkKnown(self, known, folder):
+        """Refuse options of a checkpoint that this scene could not have had."""
+        names = {action.dest for action in self._actions} | set(self._defaults)
+        wrong = [asOption(name) for name in known if name not in names | {"overrides"}]
+        beside = known.get("overrides")
+        if not (isinstance(beside, list) and all(isinstance(n, str) for n in beside)):
+            wrong.append("what stands beside a preset")
+        for action in self._actions:
+            name, value = action.dest, known.get(action.dest)
+            if name in ("help", "out", "resume"):
+                continue
+            if name not in known:
+                wrong.append(f"no {asOption(name)}")
+            elif not self._couldBe(action, value):
+                wrong.append(f"{asOption(name)} {value!r}")
+        if wrong:
+            raise Refused(
+                f"--resume: {folder} was left by another scene or version: {', '.join(wrong)}"
+            )
+
+    def _couldBe(self, action, value):
+        if value is None:
+            return action.dest == "until" or action.default is None
+        if action.choices:
+            return value in action.choices
+        if action.nargs == 0:
+            return isinstance(value, bool)
+        if action.dest == "set":
+            return isinstance(value, list) and all(
+                alike(setting, ["", "", ""]) for setting in value
+            )
+        if action.dest == "field":
+            return isinstance(value, list) and all(isinstance(v, str) for v in value)
+        if action.dest == "history":
+            points = value.get("points_mm") if isinstance(value, dict) else None
+            return bool(points) and alike(points, None) and alike(value.get("text"), "")
+        try:
+            return not isinstance(value, (list, dict, bool)) and (
+                action.type is None or action.type(str(value)) == value
+            )
+        except argparse.ArgumentTypeError:
+            return False
+
+    def _resumed(self, args, folder):
+        try:
+            saved = Saved(folder)
+            known = saved.options
+            self._checkKnown(known, folder)
+        except Refused as refused:
+            self.exit(2, f"{refused}\n")
+        known["set"] = [tuple(setting) for setting in known["set"]]
+        known["out"] = folder
+        start = argparse.Namespace(**{**known, "set": []})
+        given = super().parse_args(args, start)
+        given.set = given.set or known["set"]
+        fixed = [
+            f"{asOption(name)} is {value}"
+            for name, value in known.items()
+            if name not in self.free and getattr(given, name) != value
+        ]
+        old = known.get("history")
+        if old and given.until is not None:
+            fixed.append(f"--history is {old['text']}, without --until")
+        elif given.history and not old:
+            fixed.append(f"--until is {known['until']}, without --history")
+        elif old and not history.extends(given.history, old):
+            fixed.append(
+                f"--history is {old['text']}, and another one must begin with all its points"
+            )
+        if fixed:
+            self.exit(2, f"--resume: a run goes on as it began: {', '.join(fixed)}\n")
+        given.saved = saved
+        return given

@@ -1,0 +1,37 @@
+"""The stages of a test. Each is a function of the scene, in a file with those of its family, with its traits on it.
+
+A new stage is such a function (:func:`masonry.scene.stages.stage.stage`) and its place in :data:`STAGES`.
+
+- :mod:`masonry.scene.stages.rest`: ``settle``
+- :mod:`masonry.scene.stages.push`: ``push``, ``cycle`` and ``follow``, whose drive is in :mod:`masonry.scene.stages.pushing`
+- :mod:`masonry.scene.stages.drive`: ``drive`` and ``pressJoint``
+- :mod:`masonry.scene.stages.supports`: ``release`` and ``move``
+- :mod:`masonry.scene.stages.gravity`: ``tilt``, ``accelerate``, ``lean`` and ``bracket``
+- :mod:`masonry.scene.stages.shake`: ``shake`` and ``run``
+- :mod:`masonry.scene.stages.stage`: what all share; :mod:`masonry.scene.stages.timed`: what those share that last for a time
+"""
+
+from .drive import drive, pressJoint
+from .gravity import accelerate, lean, tilt
+from .push import cycle, follow, push
+from .rest import settle
+from .shake import run, shake
+from .stage import AT_REST, COLLAPSED, DONE, MOVING
+from .supports import move, release
+
+#: All stages. Each is a method of :class:`masonry.scene.scene.Scene`.
+STAGES = (
+    settle,
+    push,
+    cycle,
+    follow,
+    drive,
+    pressJoint,
+    release,
+    move,
+    tilt,
+    accelerate,
+    lean,
+    shake,
+    run,
+)

@@ -1,0 +1,122 @@
+"""Drives along an axis without a run-up: ``drive`` and ``pressJoint``."""
+
+from dataclasses import dataclass
+
+from yade import O
+
+from ...basics import Refused
+from ..targets import Target
+from .stage import DONE, Answer, stage
+from .supports import letGo
+
+ROWS = 2000  # of curve.csv while a block is driven over a distance
+
+
+@dataclass
+class Driving:
+    """What such a stage remembers."""
+
+    length: int = 0  # steps in all
+    done: int = 0  # steps so far
+
+
+def stresses(scene, rows):
+    """The largest mean stresses of the joints that are recorded, in tension, compression and shear."""
+    found = []
+    for joint in scene.description.joints:
+        for name, stress, sign in (
+            ("peak_normal_stress", "normal", 1),
+            ("peak_compressive_stress", "normal", -1),
+            ("peak_shear_stress", "shear", 1),
+        ):
+            values = rows.column(joint.prefixed(f"{stress}_stress_MPa"))
+            if values:
+                how = "the largest mean over the joint in this stage"
+                value = max(sign * v for v in values)
+                found.append(Answer(joint.prefixed(name), "MPa", value, how))
+    return found
+
+
+@stage(options=("rate",), answers=stresses)
+def drive(scene, target, x=0.0, y=0.0, z=0.0):
+    """Drive a target along an axis at ``--rate`` from the first step on, for example two bricks and their joint.
+
+    The rows of curve.csv are closer together at the beginning, where the peaks are. The drives of other axes hold
+    what they hold.
+
+    :param x: displacement along x [mm], and likewise ``y`` and ``z``: one of them. It may be a function without
+        arguments that gives it when the stage begins
+    """
+    given = {
+        axis: value for axis, value in zip("xyz", (x, y, z)) if callable(value) or value
+    }
+    if (
+        not isinstance(target, Target)
+        or len(given) != 1
+        or [*given][0] not in target.drives
+    ):
+        raise ValueError(
+            f"drive: give one displacement other than 0, along an axis that has a drive; {_drivesOf(target)}"
+        )
+    ((axis, value),) = given.items()
+    distance = lambda: 1e-3 * scene.share * (value() if callable(value) else value)
+    return _driveBy(scene, target, axis, distance)
+
+
+@stage(options=("rate",), answers=stresses)
+def pressJoint(scene, target, joint, stress):
+    """Bring a bed joint to a mean normal stress by a drive along z, then hold that by its force: nothing swings.
+
+    :param target: a platen with a drive along z, above bricks on one column
+    :param joint: as :meth:`joint` gave it
+    :param stress: [Pa], negative if it presses; one that crushes the joint is refused
+    """
+    if not isinstance(target, Target) or "z" not in target.drives:
+        raise ValueError(f"pressJoint: needs a drive along z; {_drivesOf(target)}")
+    bed = scene.model.joints["bed"]
+    if bed.cap and not bed.elastic and -stress >= bed.compressiveStrength:
+        raise Refused(
+            f"pressJoint: {1e-6 * stress:g} MPa crushes the bed joint, whose compressive strength is "
+            f"{1e-6 * bed.compressiveStrength:g} MPa"
+        )
+    distance = stress / joint.normalStiffness
+    _driveBy(scene, target, "z", lambda: distance)
+    if stress:
+        # other joints and deformable bricks have taken their part of the displacement
+        missing = lambda: distance * (stress / joint.normalStress() - 1)
+        _driveBy(scene, target, "z", missing)
+    return letGo(scene, target, "z", (0, 0, stress * joint.area))
+
+
+def _driveBy(scene, target, axis, distance):
+    """Drive a target along an axis at ``--rate``, with rows, which are closer together at the beginning, where the peaks
+    are.
+
+    :param distance: function that gives the displacement [m] when the stage begins
+    """
+    run, load = scene.running, scene.model.driveOf(target, axis)
+    scene.ended = DONE
+    at = run.stage(axis, Driving())
+    if at is None:
+        return DONE
+    if not at.length:
+        speed, path = run.args.rate * 1e-3, distance()
+        at.length = max(ROWS, int(abs(path) / (speed * O.dt)))
+        load.velocity = path / (at.length * O.dt)
+    marks = {round(at.length * (i / ROWS) ** 2) for i in range(1, ROWS + 1)}
+    for mark in sorted(marks):
+        if mark <= at.done:
+            continue
+        run.advance(mark - at.done)
+        at.done = mark
+        reading = run.record()
+        run.show(at.done / at.length, lambda: f"{reading.time:.4f} s")
+    run.flush()
+    load.velocity = 0
+    return DONE
+
+
+def _drivesOf(target):
+    name = getattr(target, "name", repr(target))
+    drives = ", ".join(getattr(target, "drives", "") or "") or "none"
+    return f"drives of {name}: {drives}"

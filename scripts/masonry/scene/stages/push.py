@@ -1,0 +1,137 @@
+"""Slow pushes of a target, as the drive of a testing machine makes them: ``push``, ``cycle`` and ``follow``."""
+
+from types import SimpleNamespace
+
+from ...assembly.blocks import vector
+from ...basics import Refused
+from ...read.curves import dynamicImbalance, peakAtBothEnds
+from .. import history
+from ..targets import Target
+from .pushing import drivePush
+from .stage import DONE, Answer, stage
+from .timed import checkedRate
+
+#: What the stages of this file take from the command line.
+OPTIONS = "until", "history", "rate"
+
+
+def peaks(scene, rows):
+    """The largest force at the base, of both directions if the push goes there and back, with the displacement there."""
+    base, top = rows.column("base_shear_kN"), rows.column("top_shear_kN")
+    moved = rows.column("displacement_mm")
+    if not base or not top or not moved:
+        return []
+    found = []
+    for name, sign in (("peak", 1), ("negative_peak", -1)):
+        if sign < 0 and not scene.pushed.history:
+            continue
+        forces = [sign * force for force in base]
+        at = max(range(len(forces)), key=forces.__getitem__)
+        ends = peakAtBothEnds([sign * force for force in top], forces)
+        how = (
+            "the largest force at the base; ± is by how much it exceeds what base and loaded point carried at once, and "
+            f"{100 * dynamicImbalance(top, base):.1f} % of the force did not reach the base on the way there"
+        )
+        found.append(Answer(name, "kN", sign * forces[at], how, abs(forces[at] - ends)))
+        how = "displacement of the pushed point where the base carried most"
+        found.append(Answer(f"displacement_at_{name}", "mm", moved[at], how))
+    return found
+
+
+@stage(bounded=True, farther=("until",), options=OPTIONS, answers=peaks)
+def push(scene, target, until=None, direction=(1, 0, 0), rate=None, continued=False):
+    """Push a target at a constant velocity, as the drive of a testing machine does.
+
+    :param target: a platen that moves, or a :meth:`handle`
+    :param until: displacement from where the push begins [mm]; the drive then stops and holds. ``--until`` and
+        ``--history`` replace it; None: one of these must be given
+    :param direction: of the push
+    :param rate: [mm/s]; None: ``--rate``
+    :param continued: whether displacements count on from where the push before began, of this target in this direction,
+        and not from where the target is now
+    """
+    if isinstance(until, (int, float)):
+        until *= scene.share
+    return _drive(scene, "push", target, dict(until=until), direction, rate, continued)
+
+
+@stage(
+    bounded=True, farther=("amplitudes", "repeats"), options=OPTIONS, answers=peaks
+)
+def cycle(
+    scene,
+    target,
+    amplitudes,
+    repeats=1,
+    direction=(1, 0, 0),
+    rate=None,
+    continued=False,
+):
+    """Push a target to and fro: each amplitude A is a cycle from 0 to +A, to -A and back to 0.
+
+    :param amplitudes: [mm], a list
+    :param repeats: how often each of them
+    :param continued: as of :meth:`push`
+    """
+    text = ",".join(f"{scene.share * a:g}x{repeats}" for a in amplitudes)
+    aims = dict(history=text)
+    return _drive(scene, "cycle", target, aims, direction, rate, continued)
+
+
+@stage(bounded=True, farther=("path",), options=OPTIONS, answers=peaks)
+def follow(scene, target, path, direction=(1, 0, 0), rate=None, continued=False):
+    """Push a target through the displacements of a CSV file, which has a column ``displacement_mm``.
+
+    :param continued: as of :meth:`push`
+    """
+    aims = dict(history=str(path))
+    return _drive(scene, "follow", target, aims, direction, rate, continued)
+
+
+def _drive(scene, name, target, aims, direction, rate, continued):
+    if not isinstance(target, Target) or not target.loaded:
+        raise ValueError(
+            f"{name}: only a platen that moves or a handle() can be pushed"
+        )
+    args = _argumentsOf(scene, name, aims)
+    args.rate = args.rate if rate is None else checkedRate(rate, name)
+    model = scene.model
+    direction = vector(direction, f"{name}: direction").normalized()
+    model.pushTo(target, direction, name)
+    scene.pushed = args
+    began = f"{target.name} {[round(v, 9) for v in direction]}"
+    if continued and began not in scene.running.at.origins:
+        raise ValueError(
+            f"{name}: continued: {target.name} has not been pushed along {tuple(direction)} before"
+        )
+    scene.findBound("push", direction, bool(args.history))
+    if not scene.only:
+        drivePush(scene, name, args, began, continued)
+        model.loads["push"].velocity = 0
+    scene.ended = DONE
+    return DONE
+
+
+def _argumentsOf(scene, name, aims):
+    """The options of the run, with what this push goes to. ``--until`` or ``--history`` are for the first push alone."""
+    args = SimpleNamespace(**vars(scene.args))
+    own = bool(args.until or args.history) and not scene.replaced
+    scene.replaced = True
+    if own:
+        if args.until:
+            args.until *= scene.share
+        return args
+    args.until, args.history = aims.get("until"), None
+    if "history" in aims:
+        try:
+            args.history = history.parse(aims["history"])
+        except ValueError as error:
+            raise Refused(f"{name}: {error}") from None
+    elif not (
+        isinstance(args.until, (int, float)) and 0 < args.until <= history.MOST
+    ):
+        raise Refused(
+            f"{name}: until {args.until!r} must be above 0 and at most {history.MOST:g} mm; the direction says "
+            "where to"
+        )
+    return args

@@ -1,0 +1,110 @@
+"""Waiting for rest: the stage ``settle``, and what ``lean`` shares with it."""
+
+from dataclasses import dataclass
+
+from yade import O
+
+from ...basics import Collapsed, say
+from .stage import AT_REST, MOVING, stage
+
+RAMP = 0.02  # [s] in which loads and velocities grow: some ten periods of a wave through the height of a wall
+REST = 5e-3  # of the load: what may be missing at the supports of a structure that is said to be at rest
+CALM = 1e-5  # kinetic over elastic energy of a structure that is said to be at rest [-]
+LOOKS = 3  # so many looks one after the other find a structure at rest before it is said to be
+EVERY = 100  # steps between two looks
+SETTLING = 0.5  # most local damping of deformable units in settle(): with more they creep to rest
+
+
+def rampTime(args):
+    """Time in which loads and velocities grow [s]: waves in heavier blocks are slower."""
+    return RAMP * args.density_scaling**0.5
+
+
+@dataclass
+class Resting:
+    """What a stage remembers that waits for rest."""
+
+    done: int = 0  # steps so far
+    quiet: int = 0  # looks that found it at rest, one after the other
+    load: float = 0.0  # share of the load that has grown [-]
+    gravity: list = None  # when a lean began [m/s²]
+
+
+@stage(bounded=True, grows=True)
+def settle(scene, longest=None, damping=None, record=True):
+    """Let gravity, presses and dead loads act until the structure is at rest.
+
+    At rest the supports carry what is above them but for half a per cent, and hardly anything moves. Presses and dead
+    loads grow when it is called first; they stay when it is called again, for example after :meth:`release`.
+
+    :param longest: time in the scene after which it is given up [s]; None: 0.4 s, and longer for tall structures
+    :param damping: kind of damping in this stage, ``"local"`` or ``"combined"``; None: that of the options. Local
+        damping, of 0.5 at most in deformable units, takes the vibrations out sooner, and holds a mechanism back
+    :param record: whether its end is a row of curve.csv
+    :returns: ``AT_REST``; ``MOVING`` if it is not at rest by then; ``COLLAPSED``
+    """
+    if damping not in (None, "local", "combined"):
+        raise ValueError(
+            f"settle: damping must be 'local' or 'combined', got {damping!r}"
+        )
+    if scene.only:
+        scene.ended = AT_REST
+        return AT_REST
+    model, args = scene.model, scene.args
+    grow, scene.grown = (lambda x: None) if scene.grown else model.grow, True
+    memory = scene.running.stage("settle", Resting())
+    if memory is None:
+        return scene.keepState(AT_REST)
+    if damping:
+        most = SETTLING if model.zones and damping == "local" else 1.0
+        model.damp(min(most, args.damping), damping)
+    ended = waitForRest(scene, memory, longest, grow, record=record)
+    if damping:
+        model.damp(args.damping, args.damping_kind)
+    return ended
+
+
+def waitForRest(scene, at, longest, grow, over=0.0, record=True):
+    """Let something grow, then wait until the structure is at rest. Returns how that ended.
+
+    :param at: :class:`Resting`
+    :param longest: time after which it is given up [s]; None: 20 times that in which it grows
+    :param grow: function of how much of the time in which it grows is over, 0 to 1 [-]
+    :param over: time in which it grows at least [s]
+    :param record: whether the end is a row of curve.csv
+    """
+    model, running, box = scene.model, scene.running, scene.description
+    ramp = rampTime(scene.args)
+    ramp *= max(1.0, (box.high[2] - box.low[2]) / 3)
+    ramp = max(ramp, over)
+    growing = max(1, int(ramp / O.dt))
+    most = int((longest or 20 * ramp) / O.dt)
+    while at.done < most and at.quiet < LOOKS:
+        load = min(1.0, (at.done + EVERY) / growing)
+        grow(load)
+        running.advance(EVERY)
+        at.load, at.done = load, at.done + EVERY
+        missing, moving = model.unrest()
+        rests = abs(missing) < REST and moving < CALM
+        rests = rests and at.done > (1.2 if over else 1.1) * growing
+        at.quiet = at.quiet + 1 if rests else 0
+        if load == 1:
+            model.motion.checkFall()
+            if model.target and model.hasSunk():
+                raise Collapsed("the platen has come down by half a course")
+        running.show(
+            at.done / most,
+            lambda: f"unbalanced {100 * missing:+.2f} %, kinetic/elastic {moving:.1e}",
+            at.quiet == LOOKS or at.done >= most,
+        )
+    if at.quiet < LOOKS:
+        missing, moving = model.unrest()
+        say(
+            f"note: the structure is not at rest after {at.done * O.dt:.2f} s: {100 * missing:.2f} % of the load is "
+            f"missing at the supports, kinetic over elastic energy is {moving:.1e}"
+        )
+    scene.ended = AT_REST if at.quiet == LOOKS else MOVING
+    if record:
+        running.record()
+    running.flush()
+    return scene.keepState(scene.ended)

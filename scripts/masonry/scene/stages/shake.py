@@ -1,0 +1,110 @@
+"""Real time: ``shake`` and ``run``."""
+
+import math
+
+from yade import O, Vector3
+
+from ...basics import Refused
+from ..ground import readRecord
+from .gravity import sideways
+from .stage import DONE, Answer, stage
+from .timed import Timed, timed
+
+
+def displacements(scene, rows):
+    """The largest horizontal displacement of every target that moves, and what remains at the end, with the direction's
+    sign."""
+    found = []
+    for target in scene.description.targets.values():
+        for axis in "xy":
+            values = [] if target.fixed else rows.column(f"{target.name}_{axis}_mm")
+            if not values:
+                continue
+            largest = max(values, key=abs)
+            how = "relative to the ground, since the scene was built, of the rows of this stage"
+            name = f"largest_displacement_of_{target.name}_{axis}"
+            found.append(Answer(name, "mm", largest, how))
+            name = f"displacement_of_{target.name}_{axis}_at_the_end"
+            found.append(Answer(name, "mm", values[-1], how))
+    return found
+
+
+@stage(answers=displacements)
+def shake(
+    scene,
+    accelerations,
+    every=None,
+    direction=(1, 0, 0),
+    scale=1.0,
+    unit=None,
+    after=0.0,
+    damping=0.0,
+    massDamping=0.0,
+    stiffnessDamping=0.0,
+):
+    """Shake the ground by a record.
+
+    The scene moves with the ground: every block feels the negative ground acceleration, and all displacements are
+    those relative to the ground, whose motion is exact. Time is real, so masses must not be scaled. Between the
+    samples the acceleration changes evenly.
+
+    Joints that slide, crack and crush take energy. The default adds no other damping, since none is measured for
+    masonry that rocks. :func:`rayleigh` gives the two viscous ones from a damping ratio.
+
+    :param accelerations: a list, or the path of a text file with one or two columns: acceleration, or time
+        [s] and acceleration
+    :param every: time between two samples [s]; of a file with times it may be None
+    :param direction: of the ground's motion, horizontal
+    :param scale: factor on the accelerations
+    :param unit: of the accelerations: ``"m/s²"``, ``"g"`` or ``"cm/s²"``; None: m/s², and a record whose peak looks like
+        another unit is refused
+    :param after: time that follows the record [s]
+    :param damping: numerical damping constant of the options' kind [-]
+    :param massDamping: viscous, of the motion relative to the ground [1/s]
+    :param stiffnessDamping: viscous, of the joints [s]; it shortens the time step
+    """
+    values, every = readRecord(accelerations, every, scale, unit)
+    direction = sideways(scene, direction, "shake")
+    if scene.args.density_scaling != 1:
+        raise Refused("--density-scaling: a scene that is shaken runs in real time")
+    at = scene.running.stage("shake", Timed())
+    if at is None:
+        return DONE
+    model = scene.model
+    model.damp(damping, scene.args.damping_kind)
+    model.integrator.massDamping = massDamping
+    model.dampJoints(stiffnessDamping)
+    down = -scene.description.gravity * Vector3.UnitZ
+
+    def before(done, beyond):
+        place = (done + 0.5) * O.dt / every
+        first = int(place)
+        if first + 1 < len(values):
+            share = place - first
+            a = (1 - share) * values[first] + share * values[first + 1]
+        else:
+            a = 0.0
+        model.setGravity(down - scale * a * direction)
+
+    duration = (len(values) - 1) * every + after
+    timed(scene, at, scene.share * duration, before, each=1)
+    model.setGravity(down)
+    return DONE
+
+
+@stage(farther=("seconds",), answers=displacements)
+def run(scene, seconds, damping=None):
+    """Let time pass.
+
+    :param seconds: time in the scene [s]
+    :param damping: damping constant during it [-]; None: that of the options
+    """
+    at = scene.running.stage("run", Timed())
+    if at is None:
+        return DONE
+    if not 0 < seconds < math.inf:
+        raise ValueError(f"run: {seconds} s must be above 0")
+    if damping is not None:
+        scene.model.damp(damping, scene.args.damping_kind)
+    timed(scene, at, scene.share * seconds, lambda done, beyond: None)
+    return DONE

@@ -1,0 +1,160 @@
+"""What all stages of a scene share: how they begin and end, their traits, and what they answer."""
+
+import functools
+import os
+from dataclasses import dataclass
+from typing import Callable
+
+from yade import O
+
+from ...basics import Collapsed, say
+from ...run import batch
+from ..words import argumentsOf
+
+#: How a stage ends.
+AT_REST, MOVING, DONE, COLLAPSED = "at rest", "moving", "done", "collapsed"
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A number that a stage was run for.
+
+    :param name: what it is, in one word or several joined by underscores
+    :param unit: ``"-"`` if it has none
+    :param value: None if the stage did not find it
+    :param uncertainty: half the width of the interval that the run itself found about the value, in its unit; None if the
+        run has no measure of it
+    :param how: how the value and its uncertainty were found, a sentence
+    """
+
+    name: str
+    unit: str
+    value: float
+    how: str
+    uncertainty: float = None
+
+
+def answerText(answer):
+    """An entry of ``answers`` of run.json as a line to read."""
+    head = f"{answer['stage']}: {answer['name'].replace('_', ' ')}"
+    if answer["value"] is None:
+        return f"{head}: not found: {answer['how']}"
+    unit = "" if answer["unit"] == "-" else " " + answer["unit"]
+    known = answer["uncertainty"] is not None
+    about = f" ± {answer['uncertainty']:.2g}" if known else ""
+    return f"{head} {answer['value']:.4g}{about}{unit}"
+
+
+class Rows:
+    """The rows of curve.csv that a stage has made.
+
+    :param results: of the run
+    :param first: number of the first of them, from 0
+    """
+
+    def __init__(self, results, first):
+        self._results, self._first = results, first
+
+    def column(self, head):
+        """The values of a column, or an empty list if curve.csv does not have it."""
+        if head not in self._results.columns:
+            return []
+        return self._results.column(head)[self._first :]
+
+
+def nothing(scene, rows):
+    """The answers of a stage that is not run for a number."""
+    return []
+
+
+@dataclass(frozen=True)
+class Traits:
+    """What the rest of the package must know of a kind of stage.
+
+    :param bounded: whether ``--preset bound`` finds the bound of its load; other stages are left out then
+    :param farther: names of the arguments that say how far it goes: a run that is resumed in this stage may change them
+    :param options: options of the command line that the stage uses, by the names of their values
+    :param grows: whether presses, dead loads and wind grow in it
+    :param answers: function of the scene and the :class:`Rows` of the stage that gives a list of :class:`Answer`
+    """
+
+    bounded: bool = False
+    farther: tuple = ()
+    options: tuple = ()
+    grows: bool = False
+    answers: Callable = nothing
+
+
+def stage(**traits):
+    """Make a stage of a function of the scene and what the user says; the keywords are those of :class:`Traits`.
+
+    The stage builds the scene if it is the first, is left out after a collapse, and ends the run in order on errors.
+    """
+
+    def made(act):
+        @functools.wraps(act)
+        def staged(scene, *args, **settings):
+            return _carryOut(scene, act, staged.traits, args, settings)
+
+        staged.traits = Traits(**traits)
+        return staged
+
+    return made
+
+
+def _carryOut(scene, act, traits, args, settings):
+    name = act.__name__
+    scene.checkOpen(name)
+    loaded = scene.description.loaded()
+    if not scene.model and loaded and not traits.grows:
+        raise ValueError(
+            f"{name}: the loads on {', '.join(loaded)} grow in settle(): call that first"
+        )
+    running, before = scene.running, None
+    try:
+        scene.begin()
+        if batch.PROBE in os.environ:
+            return scene.probe(
+                name, traits, argumentsOf(act, scene, args, settings)
+            )
+        scene.script.note(act, scene, args, settings, traits.farther)
+        if not running.advanced:
+            scene.script.compare(running.scriptBefore)
+        if scene.collapsed:
+            return COLLAPSED
+        if scene.only and not traits.bounded:
+            say(f"note: --preset bound: no run, {name} is left out")
+            return DONE
+        before = running.entered
+        ended = act(scene, *args, **settings)
+        _answer(scene, name, traits, before)
+        return ended
+    except Collapsed as collapse:
+        scene.ended = COLLAPSED
+        running.fall(str(collapse))
+        try:
+            if running.recordedAt() != O.time:
+                running.record()
+            running.flush()
+        except FloatingPointError:
+            pass  # what has fallen may have left finite numbers
+        _answer(scene, name, traits, before)
+        return COLLAPSED
+    except BaseException as error:
+        return scene.failed(error)
+
+
+def _answer(scene, name, traits, before):
+    """Keep the answers of a stage that was carried out now, and not before the run was resumed.
+
+    :param before: how many stages the run had entered before it
+    """
+    running = scene.running
+    if scene.only or before is None or not running.carriedOut(before):
+        return
+    rows = Rows(running.results, running.at.stages[before][3])
+    found = [
+        {"stage": name, "number": before + 1, **vars(answer)}
+        for answer in traits.answers(scene, rows)
+    ]
+    running.at.answers = {**running.at.answers, str(before + 1): found}

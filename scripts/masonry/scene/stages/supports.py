@@ -1,0 +1,109 @@
+"""Supports that are taken away or that move: ``release`` and ``move``."""
+
+from yade import O, Vector3
+
+from ...assembly.blocks import vector
+from ..targets import Target
+from .rest import rampTime
+from .stage import DONE, Answer, stage
+from .timed import Timed, checkedRate, timed
+
+
+@stage()
+def release(scene, target, axes, force=None):
+    """Take a support away, or let the drive of a platen go. What follows is the next stage's, for example ``settle``.
+
+    :param target: a brick or platen that is held, or a platen with a drive
+    :param axes: along which it becomes free, some of xyz, and about which, XYZ
+    :param force: three numbers [N] of a load that stays in place of a drive; None: none
+    """
+    return letGo(scene, target, axes, force)
+
+
+def letGo(scene, target, axes, force):
+    """Free a target along some axes, with a force in place of its drive."""
+    problems, model, plane = [], scene.model, scene.description.plane
+    if not isinstance(target, Target):
+        raise ValueError(f"release: not a target: {target!r}")
+    state = O.bodies[target.body].state
+    if plane:  # nothing moves along the others
+        axes = "".join(a for a in axes if a in "xzY") or axes
+    for axis in axes:
+        drive = model.driveOf(target, axis)
+        if drive:
+            drive.driven, drive.velocity = False, 0
+            drive.force = vector(force or (0, 0, 0), "release: force [N]")
+        elif axis in state.blockedDOFs and (axis in "xzY" or not plane):
+            state.blockedDOFs = state.blockedDOFs.replace(axis, "")
+        else:
+            problems.append(f"release: {target.name} is not held along {axis}")
+    if force is not None and not any(model.driveOf(target, a) for a in axes):
+        problems.append("release: only in place of a drive a force can stay")
+    if problems:
+        raise ValueError("\n".join(problems))
+    return DONE
+
+
+def displacement(scene, rows):
+    """How far each held target has moved in this stage: at its end, or when the structure fell."""
+    found = []
+    for target in scene.description.targets.values():
+        if not target.fixed:
+            continue
+        squares = 0.0
+        for axis in "xyz":
+            values = rows.column(f"{target.name}_{axis}_mm")
+            squares += (values[-1] - values[0]) ** 2 if values else 0.0
+        if squares:
+            how = "from the first row of the stage to its last, which is the collapse if the structure fell"
+            name = f"displacement_of_{target.name}"
+            found.append(Answer(name, "mm", squares**0.5, how))
+    return found
+
+
+@stage(farther=("x", "y", "z"), options=("rate",), answers=displacement)
+def move(scene, target, x=0.0, y=0.0, z=0.0, rate=None):
+    """Move a fixed target by a displacement [mm], in a straight line: settlement or spreading of a support.
+
+    It starts and stops smoothly.
+
+    :param rate: [mm/s]; None: ``--rate``
+    """
+    if not isinstance(target, Target) or not target.fixed:
+        raise ValueError("move: only a platen or brick that is held can be moved")
+    at = scene.running.stage("move", Timed())
+    path = scene.share * vector((x, y, z), "move: displacement [mm]")
+    if at is None:
+        return DONE
+    if scene.description.plane and path[1]:
+        raise ValueError(
+            "move: the scene is in the x-z plane; Scene(..., plane=False) is in space"
+        )
+    loose = [a for a, w in zip("xyz", path) if w and a not in target.freedom]
+    if loose:
+        raise ValueError(f"move: {target.name} is not held along {', '.join(loose)}")
+    rate = scene.args.rate if rate is None else checkedRate(rate, "move")
+    distance, rate = 1e-3 * path.norm(), 1e-3 * rate
+    if not distance > 0:
+        raise ValueError("move: the displacement must not be zero")
+    ramp = min(rampTime(scene.args), distance / rate)
+    duration = distance / rate + ramp
+
+    def place(time):  # along the path [m], with velocity that grows evenly
+        if time < ramp:
+            return rate * time * time / (2 * ramp)
+        if time > duration - ramp:
+            return distance - rate * max(0.0, duration - time) ** 2 / (2 * ramp)
+        return rate * (time - ramp / 2)
+
+    state, along = O.bodies[target.body].state, path.normalized()
+
+    def before(done, beyond):
+        began, ends = done * O.dt, min(duration, beyond * O.dt)
+        speed = (place(ends) - place(min(began, duration))) / ((beyond - done) * O.dt)
+        state.vel = speed * along
+
+    timed(scene, at, duration, before)
+    scene.running.at.supportsMoved = True
+    state.vel = Vector3.Zero
+    return DONE

@@ -1,0 +1,146 @@
+"""What a scene records: platens and bricks that are held, loaded or watched, and joints. Plain records with their columns."""
+
+from dataclasses import dataclass
+
+from ..assembly.columns import Column
+
+
+@dataclass
+class Target:
+    """A platen, or a brick that is held, loaded or watched. ``scene.platen`` and its like make it.
+
+    :param name: in the columns of curve.csv
+    :param fixed: whether it does not move but by ``scene.move``
+    """
+
+    name: str
+    fixed: bool = False
+    point: tuple = None  # [m] on which loads act
+    recorded: tuple = None  # [m] whose motion is recorded
+    brick: int = None  # index of a brick, None for a platen
+    box: tuple = None  # opposite corners of a platen
+    freedom: str = ""  # YADE's blockedDOFs
+    loaded: bool = True
+    drives: str = ""  # axes along which a drive holds it from the beginning
+    body: int = None  # YADE's id, when the scene is built
+    force: tuple = None  # [N] dead load
+    pressed: float = None  # [Pa] on the bricks below
+    riding: bool = True  # whether the load moves with the platen
+
+    def columns(self, plane):
+        """What is recorded of it: displacements, forces where it is held, and its rotation.
+
+        :param plane: whether the scene moves in the x-z plane only
+        """
+        for i, axis in enumerate("xyz"):
+            if plane and axis == "y":
+                continue
+            yield Column(
+                f"{self.name}_{axis}",
+                "mm",
+                f"displacement of {self.name} along {axis}",
+                lambda r, i=i: 1e3 * r.moved(self)[0][i],
+            )
+            if self.fixed or axis in (self.freedom or ""):
+                yield Column(
+                    f"{self.name}_force_{axis}",
+                    "kN",
+                    f"force of the structure on {self.name} along {axis}",
+                    lambda r, i=i: 1e-3 * r.forces[self.name][i],
+                )
+        if not self.fixed:
+            about = " about y" if plane else ", its angle"
+            yield Column(
+                f"{self.name}_rotation",
+                "mrad",
+                f"rotation of {self.name}{about}",
+                lambda r: 1e3 * r.moved(self)[1],
+            )
+
+
+@dataclass
+class Drift:
+    """How far a target moves horizontally against a lower one; ``scene.drift`` makes it."""
+
+    name: str
+    lower: Target
+    upper: Target
+
+    def columns(self, plane):
+        """The difference of the displacements, and that over the height between both points."""
+        height = self.upper.recorded[2] - self.lower.recorded[2]
+        away = lambda r, i: r.moved(self.upper)[0][i] - r.moved(self.lower)[0][i]
+        for i, axis in enumerate("x" if plane else "xy"):
+            what = f"displacement of {self.upper.name} along {axis} less that of {self.lower.name}"
+            yield Column(
+                f"{self.name}_{axis}", "mm", what, lambda r, i=i: 1e3 * away(r, i)
+            )
+            yield Column(
+                f"{self.name}_{axis}",
+                "mrad",
+                f"{what}, over the height between them",
+                lambda r, i=i: 1e3 * away(r, i) / height,
+            )
+
+
+@dataclass
+class JointRecord:
+    """A joint between two bricks whose means are recorded. ``scene.joint`` makes it; it can be read between stages."""
+
+    name: str
+    bricks: tuple  # indices of the two bricks
+    interaction: object = None  # YADE's, when the scene is built
+
+    @property
+    def area(self):
+        """[m²]"""
+        return sum(self.interaction.geom.areas)
+
+    @property
+    def normalStiffness(self):
+        """[Pa/m]"""
+        return self.interaction.phys.normalStiffness
+
+    def _mean(self, values):
+        areas = self.interaction.geom.areas
+        return sum(a * v for a, v in zip(areas, values)) / sum(areas)
+
+    def opening(self):
+        """Mean over the joint [m], negative if it closes."""
+        return self._mean(self.interaction.phys.opening)
+
+    def slide(self):
+        """Mean over the joint along its first direction [m]."""
+        return self._mean(jump[1] for jump in self.interaction.geom.jumps)
+
+    def normalStress(self):
+        """Mean over the joint [Pa], positive in tension."""
+        return self._mean(stress[0] for stress in self.interaction.phys.stress)
+
+    def shearStress(self):
+        """Mean over the joint along the slide [Pa]."""
+        return self._mean(stress[1] for stress in self.interaction.phys.stress)
+
+    def prefixed(self, name):
+        """A name of a column or of an entry of run.json, with that of the joint before it if it has one."""
+        return f"{self.name}_{name}" if self.name else name
+
+    def columns(self):
+        """What is recorded of it."""
+        between = "the joint between bricks {} and {}".format(*self.bricks)
+        for name, unit, meaning, factor, mean in OF_JOINTS:
+            yield Column(
+                self.prefixed(name),
+                unit,
+                meaning.format(between),
+                lambda r, factor=factor, mean=mean: factor * mean(self),
+            )
+
+
+#: What is recorded of a joint: name, unit, meaning, the factor from SI units, and the mean.
+OF_JOINTS = (
+    ("opening", "mm", "mean opening of {}, negative if it closes", 1e3, JointRecord.opening),
+    ("slide", "mm", "mean slide of {}, along its first direction", 1e3, JointRecord.slide),
+    ("normal_stress", "MPa", "mean normal stress of {}, positive in tension", 1e-6, JointRecord.normalStress),
+    ("shear_stress", "MPa", "mean shear stress of {}, along the slide", 1e-6, JointRecord.shearStress),
+)  # fmt: skip

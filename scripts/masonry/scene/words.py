@@ -1,0 +1,96 @@
+"""The words of a script, noted as data: a run that is resumed can be compared with the script that began it."""
+
+import functools
+import inspect
+import math
+
+from ..basics import Refused
+
+
+def describes(act):
+    """A word that describes a scene: it comes before the first stage, and is noted.
+
+    :param act: function of a :class:`masonry.scene.description.Description` and what the user says. As a method of the scene
+        it takes what the user says
+    """
+
+    @functools.wraps(act)
+    def word(scene, *args, **settings):
+        if scene.model:
+            raise ValueError(
+                f"{act.__name__}() must come before the first stage: the scene is built already"
+            )
+        found = act(scene.description, *args, **settings)
+        scene.script.note(act, scene, args, settings)
+        return found
+
+    return word
+
+
+def argumentsOf(act, first, args, settings):
+    """What the user says to a word, by the names of its parameters, with the defaults of those that are left out."""
+    bound = inspect.signature(act).bind(first, *args, **settings)
+    bound.apply_defaults()
+    return dict(list(bound.arguments.items())[1:])
+
+
+def asData(value):
+    """A value as JSON can hold it: numbers, texts and lists as they are, targets and recorded joints by their names."""
+    if value is None or isinstance(value, (bool, str, int)):
+        return value
+    if isinstance(value, float):
+        return value if math.isfinite(value) else repr(value)
+    if callable(value):
+        return "a function"
+    if isinstance(value, dict):
+        return {str(key): asData(one) for key, one in value.items()}
+    if isinstance(getattr(value, "name", None), str):
+        return value.name
+    try:
+        return [asData(one) for one in value]
+    except TypeError:
+        pass
+    try:
+        return asData(float(value))
+    except (TypeError, ValueError):
+        return repr(value)
+
+
+class Script:
+    """What a script has said so far.
+
+    ``words`` is a list of pairs: the name of a word, and its arguments as a dict of data. A checkpoint keeps it.
+    """
+
+    def __init__(self):
+        self.words = []
+        self._farther = []  # arguments of each word that say how far it goes
+
+    def note(self, act, first, args, settings, farther=()):
+        """Note a word. ``farther`` names those of its arguments that say how far a stage goes."""
+        said = asData(argumentsOf(act, first, args, settings))
+        self.words.append([act.__name__, said])
+        self._farther.append(set(farther))
+
+    def compare(self, before):
+        """Refuse a script that says something else than that of the run that is resumed.
+
+        :param before: ``words`` of that run, up to its checkpoint. The last of them is the stage in which that was made,
+            which may go farther now
+        """
+        for at, (was, now) in enumerate(zip(before, self.words)):
+            if was == now:
+                continue
+            (name, known), (other, said) = was, now
+            may = self._farther[at] if at == len(before) - 1 else set()
+            changed = {n for n in {**known, **said} if known.get(n) != said.get(n)}
+            if name != other or not changed <= may:
+                raise Refused(
+                    f"--resume: a run goes on as it began: the script said {spoken(was)}, now it says {spoken(now)}"
+                )
+
+
+def spoken(word):
+    """A word as a script writes it."""
+    name, arguments = word
+    return f"{name}({', '.join(f'{n}={v!r}' for n, v in arguments.items())})"

@@ -1,0 +1,38 @@
+"""help(masonry) leads to every module: it names the rooms, and each room names its modules."""
+
+import ast
+import os
+
+import pytest
+from conftest import ROOT
+
+PACKAGE = os.path.join(ROOT, "scripts", "masonry")
+#: Rooms of many modules. Those of bricks, limit and study are named by what users call, not by their modules.
+ROOMS = ["assembly", "read", "run", "scene", "scene/stages"]
+
+
+def helpOf(folder):
+    """The docstring of a package."""
+    source = open(os.path.join(PACKAGE, folder, "__init__.py")).read()
+    return ast.get_docstring(ast.parse(source))
+
+
+def unnamed(folder, text):
+    """Modules and packages of a folder that a text does not name."""
+    names = (n.removesuffix(".py") for n in os.listdir(os.path.join(PACKAGE, folder)))
+    names = {n for n in names if n.isidentifier() and not n.startswith("_")}
+    dotted = ".".join(["masonry", *filter(None, folder.split("/"))])
+    return {n for n in names if f"`{dotted}.{n}`" not in text}
+
+
+def test_help_names_every_room():
+    assert unnamed("", helpOf("")) == set()
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_a_room_names_each_of_its_modules(room):
+    assert unnamed(room, helpOf(room)) == set()
+
+
+def test_a_module_that_is_not_named_is_seen():
+    assert unnamed("run", helpOf("run").replace("masonry.run.batch", "")) == {"batch"}

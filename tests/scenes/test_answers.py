@@ -1,0 +1,99 @@
+"""What the stages of a scene answer, in run.json, on the terminal and in the table of a study."""
+
+import pytest
+from masonry import AT_REST, COLLAPSED, Scene, bricks, materials
+from masonry.read.files import readRun
+from masonry.study.gathering import _answerName
+from small import SMALL, carryOut, parsed
+
+STONE = dict(friction=0.7, normalStiffness=2e9)
+
+
+def stack(folder, *words):
+    """Three stones, twice as high as wide, on a base."""
+    scene = Scene(
+        "stones",
+        bricks.stack(3, (0.3, 0.3, 0.2)),
+        materials.dry(**STONE),
+        arguments=["--no-vtk", "--out", str(folder), *words],
+    )
+    scene.platen("bottom")
+    scene.settle()
+    return scene
+
+
+def answers(folder):
+    return {f"{a['stage']} {a['name']}": a for a in readRun(str(folder))["answers"]}
+
+
+def test_a_push_answers_with_its_peak_and_where_it_was(scene, tmp_path, capsys):
+    assert carryOut(SMALL, parsed("--no-vtk", "--until", "0.4", "--out", str(tmp_path))) == 0  # fmt: skip
+    run, found = readRun(str(tmp_path)), answers(tmp_path)
+    peak = found["push peak"]
+    assert (peak["value"], peak["unit"]) == (run["peak_base_shear_kN"], "kN")
+    # what one end felt and the other did not
+    ends = peak["value"] - run["peak_at_both_ends_kN"]
+    assert peak["uncertainty"] == pytest.approx(ends)
+    where = found["push displacement_at_peak"]
+    assert (where["value"], where["unit"]) == (run["displacement_at_peak_mm"], "mm")
+    assert where["uncertainty"] is None and peak["number"] == 2
+    assert f"push: peak {peak['value']:.4g} ± " in capsys.readouterr().out
+    assert _answerName(peak) == "push_2_peak_kN"
+
+
+def test_a_cycle_answers_with_the_peaks_of_both_directions(scene, tmp_path):
+    args = parsed("--no-vtk", "--history", "0.2", "--out", str(tmp_path))
+    assert carryOut(SMALL, args) == 0
+    run, found = readRun(str(tmp_path)), answers(tmp_path)
+    negative = found["push negative_peak"]["value"]
+    assert negative == run["negative_peak_base_shear_kN"] < 0
+
+
+def test_a_lean_answers_with_what_was_held_and_with_nothing_if_it_was_not(tmp_path):
+    scene = stack(tmp_path)
+    # the stack is 0.3 m wide and 0.6 m high: it tips at 0.5 g
+    assert scene.lean(0.3) == AT_REST
+    assert scene.lean(0.6) == COLLAPSED
+    scene.finish()
+    held, lost = readRun(str(tmp_path))["answers"]
+    assert (held["value"], lost["value"]) == (0.3, None)
+    assert "did not come to rest under a factor of 0.6" in lost["how"]
+
+
+def test_a_support_that_moves_and_time_that_passes_answer_with_displacements(tmp_path):
+    scene = Scene(
+        "stones",
+        bricks.stack(3, (0.3, 0.3, 0.2)),
+        materials.dry(**STONE),
+        arguments=["--no-vtk", "--out", str(tmp_path)],
+    )
+    base = scene.platen("bottom")
+    scene.watch(2, "stone")
+    scene.settle()
+    scene.move(base, z=-3)
+    scene.run(0.05)
+    scene.finish()
+    found = answers(tmp_path)
+    # first row to last row: all of it but what the first of 500 rows had already made
+    assert found["move displacement_of_base"]["value"] == pytest.approx(3, rel=0.01)
+    end = found["run displacement_of_stone_x_at_the_end"]
+    assert end["unit"] == "mm" and abs(end["value"]) < 0.01
+
+
+def test_a_resumed_run_has_the_answers_of_one_without_a_break(tmp_path):
+    def play(folder, *words):
+        scene = stack(folder, *words)
+        if not words:
+            scene.lean(0.1)
+            scene.finish()
+            return
+        scene.lean(0.1)
+        scene.lean(0.2)
+        scene.finish()
+
+    play(tmp_path)
+    before = readRun(str(tmp_path))["answers"]
+    play(tmp_path, "--resume", str(tmp_path))
+    after = readRun(str(tmp_path))["answers"]
+    assert after[: len(before)] == before
+    assert [a["value"] for a in after] == [0.1, 0.2]
