@@ -1,7 +1,7 @@
 #include "Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom.hpp"
 #include "scene/Blocks.hpp"
 #include "scene/BodyStep.hpp"
-#include "scene/SceneStore.hpp"
+#include "scene/EngineTurn.hpp"
 
 template class masonry::Adapter<masonry::Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom, yade::IGeomFunctor>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom)

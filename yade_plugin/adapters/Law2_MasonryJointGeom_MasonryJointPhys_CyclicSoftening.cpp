@@ -1,4 +1,6 @@
 #include "Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening.hpp"
+#include "MasonryJointGeom.hpp"
+#include "MasonryJointPhys.hpp"
 #include "scene/JointFunctor.hpp"
 
 template class masonry::Adapter<masonry::Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening, yade::LawFunctor>;
@@ -9,7 +11,8 @@ namespace masonry {
 bool Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening::go(shared_ptr<yade::IGeom>& geom,
                                                                 shared_ptr<yade::IPhys>& phys,
                                                                 yade::Interaction* interaction) {
-    advanceJoint(*scene, *geom, *phys, *interaction, true);
+    advanceJoint(*scene, static_cast<MasonryJointGeom&>(*geom), static_cast<MasonryJointPhys&>(*phys), *interaction,
+                 true);
     return true;
 }
 

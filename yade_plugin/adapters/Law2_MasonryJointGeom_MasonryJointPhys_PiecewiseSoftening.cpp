@@ -1,4 +1,6 @@
 #include "Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening.hpp"
+#include "MasonryJointGeom.hpp"
+#include "MasonryJointPhys.hpp"
 #include "scene/JointFunctor.hpp"
 
 template class masonry::Adapter<masonry::Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening, yade::LawFunctor>;
@@ -9,7 +11,8 @@ namespace masonry {
 bool Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening::go(shared_ptr<yade::IGeom>& geom,
                                                                    shared_ptr<yade::IPhys>& phys,
                                                                    yade::Interaction* interaction) {
-    advanceJoint(*scene, *geom, *phys, *interaction, false);
+    advanceJoint(*scene, static_cast<MasonryJointGeom&>(*geom), static_cast<MasonryJointPhys&>(*phys), *interaction,
+                 false);
     return true;
 }
 

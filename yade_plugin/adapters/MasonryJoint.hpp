@@ -1,12 +1,10 @@
 #pragma once
 #include "Adapter.hpp"
-#include "law/Law.hpp"
-#include "scene/Fixed.hpp"
-#include <memory>
+#include "scene/PropertySet.hpp"
 
 namespace masonry {
 
-class MasonryJoint : public Adapter<MasonryJoint, yade::Serializable>, public JointProperties {
+class MasonryJoint : public Adapter<MasonryJoint, yade::Serializable>, public PropertySet {
 public:
     static constexpr const char* className = "MasonryJoint";
     static constexpr const char* baseName = "Serializable";
@@ -31,12 +29,6 @@ public:
     MasonryJoint() { postLoad(); }
     void postLoad();
 
-    // The law with these properties. It is made anew whenever a property is set.
-    const std::shared_ptr<const Law>& law() const { return law_; }
-
-    // To be called when a joint of this kind is made: its stiffness is fixed then.
-    void madeIn(const yade::Scene& scene) const { fixed_.fix(scene, {normalStiffness, shearStiffness}); }
-
     // Whether a joint with this unit normal, between units of these MasonryMat.jointSet, is of this kind.
     bool appliesTo(const std::string& set1, const std::string& set2, const Vector3r& normal) const;
 
@@ -54,9 +46,6 @@ private:
     py::list compressionCurve(const std::vector<double>& closures) const;
     py::dict softening() const;
     shared_ptr<MasonryJoint> brittle() const;
-
-    std::shared_ptr<const Law> law_;
-    mutable Fixed fixed_;
 };
 
 } // namespace masonry

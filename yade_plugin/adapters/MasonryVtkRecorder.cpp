@@ -1,9 +1,7 @@
 #include "MasonryVtkRecorder.hpp"
-#include "MasonryJointGeom.hpp"
-#include "MasonryJointPhys.hpp"
-#include "MasonryZones.hpp"
 #include "scene/Blocks.hpp"
 #include "scene/SceneStore.hpp"
+#include "scene/Zones.hpp"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cerrno>
@@ -157,8 +155,8 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
     const double none[6] = {};
     std::set<int> deformable;
     for (const auto& engine : scene->engines) {
-        auto* zones = dynamic_cast<MasonryZones*>(engine.get());
-        for (const auto& unit : zones ? zones->units() : std::vector<MasonryZones::Unit>{}) {
+        auto* zones = dynamic_cast<Zones*>(engine.get());
+        for (const auto& unit : zones ? zones->units() : std::vector<Zones::Unit>{}) {
             deformable.insert(unit.body);
             const auto& mesh = unit.elasticity->mesh();
             const auto first = points->GetNumberOfPoints();
@@ -242,7 +240,7 @@ void MasonryVtkRecorder::writeJoints(const std::string& path) {
         const auto& r = geom.reference();
         const auto& s1 = store.bodies.state(joint.interaction->id1);
         const auto& s2 = store.bodies.state(joint.interaction->id2);
-        const auto& name = phys.home->joints[phys.index]->name;
+        const auto& name = phys.propertySet()->name;
         const auto known = std::find(kinds.begin(), kinds.end(), name);
         const int number = int(known - kinds.begin());
         if (known == kinds.end()) kinds.push_back(name);

@@ -5,6 +5,13 @@
 
 namespace masonry {
 
+// The surface of a convex block, relative to its centroid and in its principal axes. MasonryBlock is the shape that has
+// one.
+struct BlockSurface {
+    std::vector<yade::Vector3r> v; // corners [m]
+    std::vector<int> triangles;    // three numbers of corners each, counter-clockwise seen from outside
+};
+
 // The corners of a block [m], relative to its centroid and in the axes of its body. Null if the shape is none of a
 // block, or if there is no shape.
 const std::vector<yade::Vector3r>* cornersOf(const yade::Shape*);

@@ -1,6 +1,7 @@
-// What the functors of the joint laws share: a step of one joint in the host's InteractionLoop.
+// What the functors of the joint laws share: a step of one joint in the host's InteractionLoop, and the way of its
+// forces to the nodes of deformable units.
 #pragma once
-#include "adapters/Adapter.hpp"
+#include "JointView.hpp"
 #include <atomic>
 
 namespace masonry {
@@ -14,6 +15,10 @@ extern std::atomic<StrayedJoint> strayed;
 
 // Advances a joint by its jumps and brings its forces to both blocks. A joint whose property `cyclic` is not that of
 // the functor is left out and noted in `strayed`.
-void advanceJoint(yade::Scene&, yade::IGeom&, yade::IPhys&, const yade::Interaction&, bool cyclic);
+void advanceJoint(yade::Scene&, JointGeometry&, JointPhysics&, const yade::Interaction&, bool cyclic);
+
+// Brings the forces that the functors have calculated to the nodes of deformable units. JointPlan, the fast way through
+// the same step, does that itself.
+void gatherFromFunctors(const std::vector<JointView>&, Zones&);
 
 } // namespace masonry

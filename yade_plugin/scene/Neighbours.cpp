@@ -1,6 +1,6 @@
 #include "Neighbours.hpp"
 #include "Blocks.hpp"
-#include "SceneCheck.hpp"
+#include "BodyCheck.hpp"
 #include "common/Text.hpp"
 #include <algorithm>
 

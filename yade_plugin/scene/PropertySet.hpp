@@ -1,0 +1,30 @@
+// The properties of one kind of joint, shared by all joints of that kind, with the law that follows from them.
+// MasonryJoint is the class of it that Python sees.
+#pragma once
+#include "Fixed.hpp"
+#include "law/Law.hpp"
+#include <memory>
+
+namespace masonry {
+
+class PropertySet : public JointProperties {
+public:
+    virtual ~PropertySet() = default;
+
+    // The law with these properties. It is made anew whenever a property is set.
+    const std::shared_ptr<const Law>& law() const { return law_; }
+
+    // To be called when a joint of this kind is made: its stiffness is fixed then.
+    void madeIn(const yade::Scene& scene) const { fixed_.fix(scene, {normalStiffness, shearStiffness}); }
+
+protected:
+    // Makes the law with the present properties. Throws std::invalid_argument for wrong properties, and for a stiffness
+    // that is fixed and has changed.
+    void makeLaw();
+
+private:
+    std::shared_ptr<const Law> law_;
+    mutable Fixed fixed_;
+};
+
+} // namespace masonry
