@@ -10,8 +10,13 @@ EngineTurn::EngineTurn(yade::Scene& scene, const yade::Engine& engine)
     StepGate::instance().enter();
     try {
         store_ = &SceneStore::of(scene);
-        store_->update(SceneStore::Look::InStep);
-        checkBeforeStep(*store_);
+        if (store_->isOpenFor(engine))
+            refuseParallelEngine();
+        else {
+            store_->update(SceneStore::Look::InStep);
+            checkBeforeStep(*store_);
+            store_->opened();
+        }
     } catch (...) {
         StepGate::instance().leave(true);
         throw;

@@ -6,6 +6,7 @@
 #include "Zones.hpp"
 #include "common/Text.hpp"
 #include <algorithm>
+#include <atomic>
 #include <iostream>
 #include <mutex>
 #include <omp.h>
@@ -15,20 +16,21 @@ namespace masonry {
 
 namespace {
 
-std::mutex parallel;        // guards what follows
-std::string parallelEngine; // the sentence about an engine in a ParallelEngine, until it is thrown
-long parallelStep = -1;     // the step in which that engine should have acted
+std::atomic<bool> parallelMet{false}; // whether there is a sentence in `parallelEngine`
+std::mutex parallel;                  // guards what follows
+std::string parallelEngine;           // the sentence about an engine in a ParallelEngine, until it is thrown
+long parallelStep = -1;               // the step in which that engine should have acted
 
 long presentStep() { return Singleton<yade::Omega>::instance().getScene()->iter; }
 
-// The error of an engine that does not stand alone, once and in the same step; else an empty text.
-std::string refusalInParallel() {
-    const std::lock_guard<std::mutex> held(parallel);
-    const auto told = std::exchange(parallelEngine, {});
-    return parallelStep == presentStep() ? told : "";
-}
-
 } // namespace
+
+void refuseParallelEngine() {
+    if (!parallelMet.exchange(false)) return;
+    const std::lock_guard<std::mutex> held(parallel);
+    const auto sentence = std::exchange(parallelEngine, {});
+    if (parallelStep == presentStep()) throw std::invalid_argument(sentence);
+}
 
 bool standsAlone(const yade::Engine& engine) {
     if (omp_get_level() == 0) return true;
@@ -37,6 +39,7 @@ bool standsAlone(const yade::Engine& engine) {
     parallelEngine = engine.getClassName() +
                      " stands in a ParallelEngine and does nothing: put it into O.engines itself, it uses all threads";
     parallelStep = presentStep();
+    parallelMet = true;
     if (first) std::cerr << "error: " + parallelEngine + "\n" << std::flush;
     return false;
 }
@@ -154,7 +157,7 @@ void checkBeforeStep(SceneStore& store) {
     const auto& scene = store.scene();
     if (!(scene.dt > 0 && std::isfinite(scene.dt)))
         throw std::invalid_argument("O.dt " + text(scene.dt) + " s must be a finite number above 0");
-    if (const auto wrong = refusalInParallel(); !wrong.empty()) throw std::invalid_argument(wrong);
+    refuseParallelEngine();
     if (scene.isPeriodic)
         throw std::invalid_argument(
             "O.periodic: joints do not reach across a periodic cell, nor does a cell strain blocks; "

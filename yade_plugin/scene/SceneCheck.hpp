@@ -10,13 +10,15 @@ class SceneStore;
 // back: the program would end. The engine then does nothing and says so on the error stream, and the next engine of
 // this plugin throws the error.
 bool standsAlone(const yade::Engine&);
+// Throws that error as std::invalid_argument, once and in the same step.
+void refuseParallelEngine();
 
 // Throws std::invalid_argument with all problems that prevent a run: engines in a wrong order, wrong blocks, joints
 // that connect() did not make, and blocks that were added after connect().
 void checkScene(const SceneStore&);
 
-// Throws std::invalid_argument with all problems that prevent a step. Checks the scene only when it has changed; the
-// time step is checked every time. In a scene without MasonryEnergy, which looks itself, it throws std::runtime_error
+// Throws std::invalid_argument with all problems that prevent a step. Checks the scene only when it has changed, the
+// time step always. In a scene without MasonryEnergy, which looks itself, it throws std::runtime_error
 // if a block has collapsed.
 void checkBeforeStep(SceneStore&);
 

@@ -82,13 +82,23 @@ double SceneStore::massDamping() const { return integrator ? integrator->massDam
 
 double SceneStore::stiffnessDamping() const { return loop ? loop->stiffnessDamping : 0; }
 
-// Returns whether the engines are others than before.
-bool SceneStore::readEngines() {
+bool SceneStore::sameEngines() const {
     const auto& present = scene_.engines;
     bool same = engines_.size() == present.size();
     for (std::size_t i = 0; same && i < present.size(); ++i)
         same = engines_[i].first == present[i].get() && engines_[i].second == present[i]->dead;
-    if (same) return false;
+    return same;
+}
+
+bool SceneStore::sameJoints() const {
+    return seenChanges_ == changes && seenInteractions_ == scene_.interactions->currSize;
+}
+
+bool SceneStore::isOpenFor(const yade::Engine& engine) const {
+    return openedStep_ == scene_.iter && first != &engine && sameEngines() && sameJoints();
+}
+
+void SceneStore::readEngines() {
     engines_.clear();
     loads.clear();
     allLoads.clear();
@@ -97,8 +107,8 @@ bool SceneStore::readEngines() {
     watched = false;
     integrator = nullptr;
     hostIntegrator = nullptr;
-    last = nullptr;
-    for (const auto& engine : present) {
+    first = last = nullptr;
+    for (const auto& engine : scene_.engines) {
         engines_.emplace_back(engine.get(), engine->dead);
         auto* load = dynamic_cast<Load*>(engine.get());
         if (load) allLoads.push_back(load);
@@ -114,14 +124,16 @@ bool SceneStore::readEngines() {
         watched = watched || watch;
         if (load || watch || note(loop, dynamic_cast<JointLoop*>(engine.get())) ||
             note(zones, dynamic_cast<Zones*>(engine.get())) ||
-            note(integrator, dynamic_cast<Integrator*>(engine.get())))
+            note(integrator, dynamic_cast<Integrator*>(engine.get()))) {
+            if (!first) first = engine.get();
             last = engine.get();
+        }
     }
-    return true;
 }
 
 void SceneStore::update(Look look) {
-    if (readEngines()) {
+    if (!sameEngines()) {
+        readEngines();
         checked = false;
         seenChanges_ = -1; // read anew, because other engines may move the bodies
     }
@@ -131,7 +143,7 @@ void SceneStore::update(Look look) {
         if (sameBodies && (look == Look::AtAll || scene_.iter % 10 == 0)) sameBodies = sameStates(scene_, bodies);
         seenStep_ = scene_.iter;
     }
-    if (sameBodies && seenChanges_ == changes && seenInteractions_ == scene_.interactions->currSize) return;
+    if (sameBodies && sameJoints()) return;
     checked = false;
     const WithInterpreter python; // property sets that nothing refers to any more are given back to Python
     readJoints();

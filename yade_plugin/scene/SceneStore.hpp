@@ -49,8 +49,9 @@ public:
     Zones* zones = nullptr;
     Integrator* integrator = nullptr;
     const yade::NewtonIntegrator* hostIntegrator = nullptr;
-    const yade::Engine* last = nullptr; // the last of this plugin's engines in a step; recorders do not count
-    bool watched = false;               // whether a MasonryEnergy watches over the run
+    const yade::Engine* first = nullptr; // the first of this plugin's engines in a step
+    const yade::Engine* last = nullptr;  // the last of this plugin's engines in a step; recorders do not count
+    bool watched = false;                // whether a MasonryEnergy watches over the run
     std::vector<Load*> loads;
     std::vector<Load*> allLoads; // also those that are dead, whose work so far counts
 
@@ -61,6 +62,11 @@ public:
     // Looks whether a block has collapsed.
     Collapse findCollapse(const CollapseLimits&);
     static constexpr int collapseEvery = 100; // steps between two looks
+
+    // Whether an engine finds the store as it must be in the present step: another engine has opened the step by
+    // update() and checkBeforeStep(), and neither engines nor joints have changed since.
+    bool isOpenFor(const yade::Engine&) const;
+    void opened() { openedStep_ = scene_.iter; }
 
     // For checkBeforeStep().
     bool checked = false;   // whether the scene was checked since it changed
@@ -75,7 +81,9 @@ public:
 
 private:
     explicit SceneStore(yade::Scene&);
-    bool readEngines(); // whether the engines are others than before
+    bool sameEngines() const; // whether the engines are those that were read
+    bool sameJoints() const;  // whether the joints are those that were read
+    void readEngines();
     void readJoints();
 
     yade::Scene& scene_;
@@ -86,6 +94,7 @@ private:
     long seenStep_ = -1;                                        // step in which the bodies were last looked at
     std::vector<std::pair<const yade::Engine*, bool>> engines_; // all engines, and whether each is dead
     CollapseWatch collapse_;
+    long openedStep_ = -1;                     // step that was opened last
     std::vector<const yade::Body*> connected_; // the bodies at connected()
 };
 
