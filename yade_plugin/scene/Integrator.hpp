@@ -1,5 +1,5 @@
-// The step of all rigid bodies, by the equations of NewtonIntegrator (see BodyStep), in columns. MasonryIntegrator is
-// the engine that makes it.
+// The step of all rigid bodies, by the equations of NewtonIntegrator (see BodyStep), in columns. An engine derives
+// from it.
 #pragma once
 #include "BodyColumns.hpp"
 #include "GravityWork.hpp"

@@ -4,7 +4,7 @@
 
 namespace masonry {
 
-// The geometry of a joint and its jumps. MasonryJointGeom is the IGeom that has them.
+// The geometry of a joint and its jumps. The host's IGeom of a joint derives from it.
 class JointGeometry {
 public:
     // Makes the joint in its reference state, with `columns` of subcontacts along the direction `along` by `rows`
@@ -50,7 +50,7 @@ private:
     void followDeformable(const yade::State& state1, const yade::State& state2);
 };
 
-// The state of a joint. MasonryJointPhys is the IPhys that has it.
+// The state of a joint. The host's IPhys of a joint derives from it.
 class JointPhysics {
 public:
     // Gives the joint a home of its own, in which nothing has happened.

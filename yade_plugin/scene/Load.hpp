@@ -1,4 +1,4 @@
-// A load on a rigid block, at a point fixed to it. MasonryLoad is the engine that has it.
+// A load on a rigid block, at a point fixed to it. An engine derives from it.
 #pragma once
 #include "host/Yade.hpp"
 

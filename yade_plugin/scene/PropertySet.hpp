@@ -1,5 +1,5 @@
 // The properties of one kind of joint, shared by all joints of that kind, with the law that follows from them.
-// MasonryJoint is the class of it that Python sees.
+// The class that Python sees derives from it.
 #pragma once
 #include "Fixed.hpp"
 #include "law/Law.hpp"

@@ -18,7 +18,7 @@ void refuseParallelEngine();
 void checkScene(const SceneStore&);
 
 // Throws std::invalid_argument with all problems that prevent a step. Checks the scene only when it has changed, the
-// time step always. In a scene without MasonryEnergy, which looks itself, it throws std::runtime_error
+// time step always. In a scene that no engine watches over, it throws std::runtime_error
 // if a block has collapsed.
 void checkBeforeStep(SceneStore&);
 

@@ -30,7 +30,7 @@ public:
         AtJoints, // at joints only
     };
     // Reads again what has changed since the last time. Throws std::invalid_argument, and leaves the joints in their
-    // homes, if the joints of the scene belong to more than one MasonryZones.
+    // homes, if the joints of the scene belong to more than one Zones.
     void update(Look look = Look::AtAll);
     // masonry.connect() calls this when all blocks have their joints. Blocks that are added later are then reported by
     // strangers().
@@ -51,7 +51,7 @@ public:
     const yade::NewtonIntegrator* hostIntegrator = nullptr;
     const yade::Engine* first = nullptr; // the first of this plugin's engines in a step
     const yade::Engine* last = nullptr;  // the last of this plugin's engines in a step; recorders do not count
-    bool watched = false;                // whether a MasonryEnergy watches over the run
+    bool watched = false;                // whether an engine watches over the run: it looks for a collapse itself
     std::vector<Load*> loads;
     std::vector<Load*> allLoads; // also those that are dead, whose work so far counts
 

@@ -1,4 +1,4 @@
-// The elasticity of masonry units of one material. MasonryMat is the material that has it.
+// The elasticity of masonry units of one material. A material derives from it.
 #pragma once
 #include "Fixed.hpp"
 

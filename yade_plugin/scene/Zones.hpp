@@ -1,5 +1,5 @@
 // Deformable units: their nodes, how joints hang on them, and a step of their motion. The state of the nodes lives
-// here, in rows. MasonryZones is the engine that has them.
+// here, in rows. An engine derives from it.
 #pragma once
 #include "BodyColumns.hpp"
 #include "GravityWork.hpp"
