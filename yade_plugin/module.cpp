@@ -135,11 +135,13 @@ static void registerAll() {
     py::scope().attr("classes") = classes;
     py::scope().attr("commit") = MASONRY_COMMIT;
     py::def(
-        "neighbours", &neighbours, (py::arg("tolerance") = 1e-4),
+        "neighbours", &neighbours, (py::arg("tolerance") = 1e-4, py::arg("keepFaces") = false),
         "Three lists for masonry.connect(): pairs (id1, id2) of bodies that share a face; pairs (id1, id2, gap, bound) "
         "that nearly share one or overlap, with the gap and the largest one accepted; (id, size) of the thinnest and "
-        "of "
-        "the largest block. Gaps and sizes in m.");
+        "of the largest block. Gaps and sizes in m. With keepFaces the joints that are made next take the faces that "
+        "were "
+        "found, until dropFaces() is called.");
+    py::def("dropFaces", &dropFaces, "Free the memory of the faces that neighbours() has kept. For masonry.connect().");
     py::def("touchingPairs", &touchingPairs, (py::arg("tolerance") = 1e-4),
             "Pairs (id1, id2) of blocks that share a face; tolerance as in "
             "Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom.");

@@ -63,8 +63,8 @@ TEST_CASE("a checkpoint cut short anywhere is refused and said to be cut short")
 
 TEST_CASE("other files are named for what they are") {
     CHECK(says("time_s,displacement_mm\n", "is no masonry checkpoint"));
-    CHECK(says("masonry checkpoint, format 2\n12345678", "another version of the plugin: it begins with "
-                                                         "'masonry checkpoint, format 2'"));
+    CHECK(says("masonry checkpoint, format 9\n12345678", "another version of the plugin: it begins with "
+                                                         "'masonry checkpoint, format 9'"));
 }
 
 TEST_CASE("records that lie about their sizes are refused although the sum is right") {

@@ -215,7 +215,7 @@ def test_numbers_say_their_unit_and_default():
 def test_every_member_of_the_joint_properties_is_described_once():
     """Adding a property is its member and its description: none is forgotten, none is described twice."""
     header = open(
-        os.path.join(ROOT, "yade_plugin", "law", "JointProperties.hpp")
+        os.path.join(ROOT, "yade_plugin", "law", "common", "JointProperties.hpp")
     ).read()
     struct = header[header.index("struct JointProperties {") :]
     struct = struct[: struct.index("\n};")]
@@ -312,6 +312,39 @@ def test_blocks_without_a_shared_face_get_no_joint(scene):
     engines([MasonryJoint()], functors=True)
     with pytest.raises(ValueError, match="bodies 0 and 1 share no face"):
         utils.createInteraction(0, 1)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_joint_takes_the_face_that_connect_has_found_as_the_functor_alone_finds_it(
+    scene, seed
+):
+    rng = random.Random(seed)
+    turn = Quaternion(*[rng.gauss(0, 1) for _ in range(4)])
+    turn.normalize()
+
+    def geometry(geom):
+        return geom.normal, geom.tangent, geom.polygon, geom.centres, geom.areas
+
+    offset = (0.07, 0.03, BRICK[2])
+    connected = geometry(pair(turn, offset, functors=True).geom)
+    O.interactions.erase(0, 1)
+    O.interactions.eraseNonReal()
+    assert geometry(utils.createInteraction(0, 1).geom) == connected
+
+
+def test_no_face_that_was_found_outlives_connect(scene):
+    def fail(body1, body2, geom):
+        raise KeyError("rule")
+
+    mat = MasonryMat(density=1800)
+    for course in range(3):
+        addBlock(box((0, 0, 0.081 * course)), mat)
+    engines([MasonryJoint()], functors=True)
+    with pytest.raises(KeyError):
+        connect(fail)  # at the first joint, so the face of the second one is not taken
+    O.bodies[2].state.pos += Vector3(0, 0, 1)
+    with pytest.raises(ValueError, match="bodies 1 and 2 share no face"):
+        utils.createInteraction(1, 2)
 
 
 def test_direction_joint_set_and_the_users_rule_choose_the_joint(scene):

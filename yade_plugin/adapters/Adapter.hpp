@@ -14,9 +14,9 @@
 #pragma once
 #include "common/Property.hpp"
 #include "host/Yade.hpp"
+#include "scene/Changes.hpp"
 #include "scene/StepGate.hpp"
 #include "scene/Transfer.hpp"
-#include <atomic>
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
 #include <boost/archive/xml_iarchive.hpp>
@@ -33,19 +33,6 @@ namespace masonry {
 
 namespace py = boost::python;
 using boost::shared_ptr;
-
-// Counts the changes of joints, deformable units and properties. When the number has changed, the engines read their
-// scene anew.
-inline std::atomic<long> changes{0};
-
-// How an attribute is treated. Flags can be combined.
-enum Flags {
-    Plain = 0,
-    ReadOnly = 1, // Python reads it, but cannot set it
-    Hidden = 2,   // saved and in checkpoints, but not shown to Python
-    Given = 4,    // set by the script that builds the scene; not part of the state, so checkpoints do not hold it
-    Shown = 8,    // Python reads it, but cannot set it; not saved by itself, because another attribute holds its value
-};
 
 // An attribute whose value lives elsewhere: a function that reads it, and one that sets it. Without `put` it cannot be
 // set.

@@ -11,7 +11,8 @@
 // and, after the namespace, the line MASONRY_FUNCTOR_OF_LAW(Law2_MasonryJointGeom_MasonryJointPhys_MyLaw). The module
 // registers all of them, and Python finds the functor of a law by MasonryJoint.laws().
 #pragma once
-#include "Adapter.hpp"
+#include "MasonryJointGeom.hpp"
+#include "MasonryJointPhys.hpp"
 #include "scene/JointFunctor.hpp"
 
 namespace masonry {
@@ -27,7 +28,8 @@ public:
     std::vector<std::string> getFunctorTypes() const override { return {"MasonryJointGeom", "MasonryJointPhys"}; }
     std::string checkOrder() const override { return "MasonryJointGeom MasonryJointPhys"; }
     bool go(shared_ptr<yade::IGeom>& geom, shared_ptr<yade::IPhys>& phys, yade::Interaction* interaction) override {
-        advanceJoint(*this->scene, *geom, *phys, *interaction, Derived::law);
+        advanceJoint(*this->scene, static_cast<MasonryJointGeom&>(*geom), static_cast<MasonryJointPhys&>(*phys),
+                     *interaction, Derived::law);
         return true;
     }
     using yade::LawFunctor::FunctorCalls::go;

@@ -1,7 +1,5 @@
 #include "Gl1_MasonryJointPhys.hpp"
 #include "Colours.hpp"
-#include "MasonryJointGeom.hpp"
-#include "MasonryJointPhys.hpp"
 #include "scene/SceneStore.hpp"
 #include <GL/gl.h>
 #include <algorithm>
@@ -53,7 +51,7 @@ private:
         store_ = &store;
         revision_ = store.revision();
         for (const auto& joint : store.joints) {
-            auto& drawing = drawings_[joint.phys.get()];
+            auto& drawing = drawings_[joint.interaction->phys.get()];
             const auto& r = joint.geom->reference();
             if (drawing.cells.empty()) drawing.cells = joint.geom->cells();
             for (int side = 0; side < 2; ++side) {
@@ -110,7 +108,7 @@ std::vector<std::string> Gl1_MasonryJointPhys::problems() const {
 void Gl1_MasonryJointPhys::go(const shared_ptr<yade::IPhys>& phys, const shared_ptr<yade::Interaction>& interaction,
                               const shared_ptr<yade::Body>&, const shared_ptr<yade::Body>&, bool wire) {
     auto* drawing = picture.of(phys.get());
-    const auto* geom = dynamic_cast<const MasonryJointGeom*>(interaction->geom.get());
+    const auto* geom = dynamic_cast<const JointGeometry*>(interaction->geom.get());
     if (!drawing || !geom || !geom->made()) return;
     drawing->drawn = true;
     const auto& r = geom->reference();

@@ -1,7 +1,8 @@
 #include "Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom.hpp"
 #include "scene/Blocks.hpp"
 #include "scene/BodyStep.hpp"
-#include "scene/SceneStore.hpp"
+#include "scene/EngineTurn.hpp"
+#include "scene/Neighbours.hpp"
 
 template class masonry::Adapter<masonry::Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom, yade::IGeomFunctor>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom)
@@ -56,8 +57,10 @@ bool Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom::go(const shared_ptr<yade::S
                                                         const Vector3r&, const bool& force,
                                                         const shared_ptr<yade::Interaction>& interaction) {
     if (!interaction->geom) {
-        const auto face = coincidentFaces(blockOf(*shape1, state1.pos, state1.ori),
-                                          blockOf(*shape2, state2.pos, state2.ori), tolerance);
+        auto face = takeFace(*scene, interaction->id1, interaction->id2, tolerance); // connect() has found it
+        if (!face)
+            face = coincidentFaces(blockOf(*shape1, state1.pos, state1.ori), blockOf(*shape2, state2.pos, state2.ori),
+                                   tolerance);
         if (!face) {
             if (!force) return false;
             throw std::invalid_argument(

@@ -1,6 +1,6 @@
 #include "Ip2_MasonryMat_MasonryMat_MasonryJointPhys.hpp"
 #include "MasonryJointGeom.hpp"
-#include "scene/SceneCheck.hpp"
+#include "scene/BodyCheck.hpp"
 
 template class masonry::Adapter<masonry::Ip2_MasonryMat_MasonryMat_MasonryJointPhys, yade::IPhysFunctor>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Ip2_MasonryMat_MasonryMat_MasonryJointPhys)

@@ -1,10 +1,11 @@
 #pragma once
 #include "Adapter.hpp"
 #include "blocks/BlockShape.hpp"
+#include "scene/Blocks.hpp"
 
 namespace masonry {
 
-class MasonryBlock : public Adapter<MasonryBlock, yade::Shape> {
+class MasonryBlock : public Adapter<MasonryBlock, yade::Shape>, public BlockSurface {
     MASONRY_DISPATCHED(MasonryBlock, yade::Shape)
     static constexpr const char* className = "MasonryBlock";
     static constexpr const char* baseName = "Shape";
@@ -13,8 +14,6 @@ class MasonryBlock : public Adapter<MasonryBlock, yade::Shape> {
         "MasonryBlock.around(points) gives the shape alone, with the place and orientation of its body; an object "
         "without corners is no block, and a scene that holds one is refused.";
 
-    std::vector<Vector3r> v;
-    std::vector<int> triangles;
     double volume = 0;
     Vector3r inertia = Vector3r::Zero();
 

@@ -1,12 +1,11 @@
 #include "MasonryEnergy.hpp"
-#include "MasonryIntegrator.hpp"
-#include "MasonryJointLoop.hpp"
-#include "MasonryLoad.hpp"
-#include "MasonryZones.hpp"
+#include "scene/BodyCheck.hpp"
 #include "scene/BodyStep.hpp"
 #include "scene/CriticalTimeStep.hpp"
-#include "scene/SceneCheck.hpp"
-#include "scene/SceneStore.hpp"
+#include "scene/EngineTurn.hpp"
+#include "scene/Integrator.hpp"
+#include "scene/Load.hpp"
+#include "scene/Zones.hpp"
 #include <iostream>
 
 template class masonry::Adapter<masonry::MasonryEnergy, yade::GlobalEngine>;
@@ -80,7 +79,7 @@ void MasonryEnergy::watchOver(SceneStore& store) {
 }
 
 void MasonryEnergy::stopIfCollapsed(SceneStore& store, const std::string& besides) {
-    const auto found = store.collapse.look(store, {turnLimit, slideLimit, closureLimit, openingLimit});
+    const auto found = store.findCollapse({turnLimit, slideLimit, closureLimit, openingLimit});
     collapsedBlock = found.block;
     collapse = found.what;
     if (found.block < 0) return;

@@ -1,4 +1,5 @@
 #pragma once
+#include "Adapter.hpp"
 #include "law/common/JointState.hpp"
 #include "scene/Collapse.hpp"
 #include "scene/GravityWork.hpp"

@@ -1,17 +1,12 @@
 #pragma once
-#include "motion/RigidMotion.hpp"
-#include "scene/GravityWork.hpp"
+#include "Adapter.hpp"
+#include "scene/Integrator.hpp"
 #include "scene/Ledger.hpp"
 #include "scene/SceneCheck.hpp"
 
 namespace masonry {
 
-class BodyColumns;
-class SceneStore;
-
-class MasonryIntegrator : public Adapter<MasonryIntegrator, yade::GlobalEngine>,
-                          public EnergyLedger,
-                          public GravityWork {
+class MasonryIntegrator : public Adapter<MasonryIntegrator, yade::GlobalEngine>, public Integrator {
 public:
     static constexpr const char* className = "MasonryIntegrator";
     static constexpr const char* baseName = "GlobalEngine";
@@ -20,11 +15,6 @@ public:
         "Leaves out what masonry does not need: periodic cells, clumps and bounds for a collider. NewtonIntegrator "
         "with "
         "MasonryEnergy remains as the reference.";
-
-    double damping = 0.8;
-    std::string dampingKind = "combined";
-    double massDamping = 0;
-    Vector3r gravity = Vector3r(0, 0, -9.81);
 
     template <class Visit> static void attributes(Visit&& visit) {
         using I = MasonryIntegrator;
@@ -49,26 +39,9 @@ public:
               described("Force per mass and torque per inertia of every body in the last step"), Hidden);
     }
 
-    std::vector<std::string> problems() const;
+    using Integrator::problems;
     bool isActivated() override { return standsAlone(*this); }
     void action() override;
-
-private:
-    bool combined() const { return dampingKind == "combined"; }
-    struct Sums {                           // of some bodies
-        EnergyLedger energies;              // `fallen` is the sum of m g·u
-        Vector3r moment = Vector3r::Zero(); // sum of m u [kg m]; see GravityWork
-    };
-    // Makes a step of bodies `first` up to, but without, `beyond`.
-    Sums advance(SceneStore&, const Vector3r* forces, const Vector3r* torques, int first, int beyond);
-    void findWeights(const BodyColumns&, int first, int count, Sums&) const;
-    // Makes a step of a body none of whose rotations is blocked.
-    EnergyLedger turnFreely(SceneStore&, const Vector3r& force, const Vector3r& torque, int body);
-    std::vector<Vector3r> lastForces();
-    void setLastForces(const std::vector<Vector3r>&);
-
-    std::vector<double> last_[6]; // for combined damping: force per mass [m/s²] and torque per inertia [1/s²] of all
-                                  // bodies in the last step; empty until then
 };
 
 } // namespace masonry

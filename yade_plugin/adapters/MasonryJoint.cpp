@@ -10,10 +10,7 @@ namespace masonry {
 
 void MasonryJoint::postLoad() {
     if (!direction.allFinite()) throw std::invalid_argument("joint \"" + name + "\": direction must be finite numbers");
-    const auto wrong = fixed_.problems({"normalStiffness", "shearStiffness"}, {normalStiffness, shearStiffness});
-    if (!wrong.empty()) throw std::invalid_argument("joint \"" + name + "\": " + joined(wrong, "; "));
-    ownLaw_ = lawOf(*this); // throws std::invalid_argument for wrong properties
-    ++changes;
+    makeLaw();
 }
 
 bool MasonryJoint::appliesTo(const std::string& set1, const std::string& set2, const Vector3r& normal) const {
@@ -26,7 +23,7 @@ py::list MasonryJoint::compressionCurve(const std::vector<double>& closures) con
     py::list strengths;
     for (double u : closures) {
         if (!std::isfinite(u)) throw std::invalid_argument("closure " + text(u) + " m must be a finite number");
-        strengths.append(ownLaw_->compression().strength(u));
+        strengths.append(ownLaw()->compression().strength(u));
     }
     return strengths;
 }
@@ -39,8 +36,8 @@ py::dict MasonryJoint::softening() const {
         return all;
     };
     py::dict both;
-    both["tension"] = rows(ownLaw_->tension());
-    both["shear"] = rows(ownLaw_->shear());
+    both["tension"] = rows(ownLaw()->tension());
+    both["shear"] = rows(ownLaw()->shear());
     return both;
 }
 

@@ -1,12 +1,10 @@
 #pragma once
 #include "Adapter.hpp"
-#include "law/common/Law.hpp"
-#include "scene/Fixed.hpp"
-#include <memory>
+#include "scene/PropertySet.hpp"
 
 namespace masonry {
 
-class MasonryJoint : public Adapter<MasonryJoint, yade::Serializable>, public JointProperties {
+class MasonryJoint : public Adapter<MasonryJoint, yade::Serializable>, public PropertySet {
 public:
     static constexpr const char* className = "MasonryJoint";
     static constexpr const char* baseName = "Serializable";
@@ -28,12 +26,6 @@ public:
 
     MasonryJoint() { postLoad(); }
     void postLoad();
-
-    // The law `law` with these properties. It is made anew whenever a property is set.
-    const std::shared_ptr<const Law>& ownLaw() const { return ownLaw_; }
-
-    // To be called when a joint of this kind is made: its stiffness is fixed then.
-    void madeIn(const yade::Scene& scene) const { fixed_.fix(scene, {normalStiffness, shearStiffness}); }
 
     // Whether a joint with this unit normal, between units of these MasonryMat.jointSet, is of this kind.
     bool appliesTo(const std::string& set1, const std::string& set2, const Vector3r& normal) const;
@@ -58,9 +50,6 @@ private:
     py::dict softening() const;
     static py::list listOfLaws();
     shared_ptr<MasonryJoint> brittle() const;
-
-    std::shared_ptr<const Law> ownLaw_;
-    mutable Fixed fixed_;
 };
 
 } // namespace masonry

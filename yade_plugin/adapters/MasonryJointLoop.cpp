@@ -1,5 +1,5 @@
 #include "MasonryJointLoop.hpp"
-#include "scene/SceneStore.hpp"
+#include "scene/EngineTurn.hpp"
 
 template class masonry::Adapter<masonry::MasonryJointLoop, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJointLoop)

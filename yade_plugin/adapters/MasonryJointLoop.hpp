@@ -6,7 +6,7 @@
 
 namespace masonry {
 
-class MasonryJointLoop : public Adapter<MasonryJointLoop, yade::GlobalEngine> {
+class MasonryJointLoop : public Adapter<MasonryJointLoop, yade::GlobalEngine>, public JointLoop {
 public:
     static constexpr const char* className = "MasonryJointLoop";
     static constexpr const char* baseName = "GlobalEngine";
@@ -18,9 +18,6 @@ public:
 
     shared_ptr<Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom> geometry;
     shared_ptr<Ip2_MasonryMat_MasonryMat_MasonryJointPhys> physics;
-
-    double stiffnessDamping = 0;
-    double dampingWork = 0;
 
     template <class Visit> static void attributes(Visit&& visit) {
         using L = MasonryJointLoop;

@@ -6,12 +6,9 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJointPhys)
 
 namespace masonry {
 
-void MasonryJointPhys::define(const shared_ptr<MasonryJoint>& kind, const ElasticStiffness& k, int points) {
-    home.reset(new JointStates(kind, k, 1, points));
-    index = 0;
+shared_ptr<MasonryJoint> MasonryJointPhys::joint() {
+    return home ? boost::static_pointer_cast<MasonryJoint>(propertySet()) : shared_ptr<MasonryJoint>();
 }
-
-shared_ptr<MasonryJoint> MasonryJointPhys::joint() { return home ? home->joints[index] : shared_ptr<MasonryJoint>(); }
 
 // A file holds the property set before the record.
 void MasonryJointPhys::setJoint(const shared_ptr<MasonryJoint>& kind) {

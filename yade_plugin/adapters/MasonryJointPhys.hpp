@@ -1,9 +1,10 @@
 #pragma once
-#include "scene/JointHome.hpp"
+#include "MasonryJoint.hpp"
+#include "scene/JointView.hpp"
 
 namespace masonry {
 
-class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys> {
+class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys>, public JointPhysics {
     MASONRY_DISPATCHED(MasonryJointPhys, yade::IPhys)
     static constexpr const char* className = "MasonryJointPhys";
     static constexpr const char* baseName = "IPhys";
@@ -56,22 +57,7 @@ class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys> {
                 "Per subcontact: its regime in the last step: 'elastic', 'opening', 'slipping' or 'crushing'.");
     }
 
-    // Gives the joint a home of its own, in which nothing has happened.
-    void define(const shared_ptr<MasonryJoint>&, const ElasticStiffness&, int points);
-
-    bool made() const { return home != nullptr; }
-    int points() const { return home ? home->columns->points() : 0; }
-    const Law& law() const { return home->columns->law(); }
-    const ElasticStiffness& stiffness() const { return home->columns->stiffness(); }
-    // What every law knows of a subcontact; `shown` gives what files show of it beside that, zero if its law does not.
-    JointState state(int point) const { return home->columns->state(point, index); }
-    double shown(int point, const JointField& field) const { return home->columns->shown(point, index, field); }
-    // Energies dissipated so far by mode [J/m²].
-    Energies lost(int point) const { return home->columns->dissipated(point, index); }
-
     shared_ptr<MasonryJoint> joint(); // the property set
-    shared_ptr<JointStates> home;     // null until define() or loading; SceneStore replaces it
-    int index = 0;                    // number of the joint in its home
 
 private:
     void setJoint(const shared_ptr<MasonryJoint>&);

@@ -1,10 +1,11 @@
 #pragma once
 #include "Adapter.hpp"
+#include "scene/Load.hpp"
 #include "scene/SceneCheck.hpp"
 
 namespace masonry {
 
-class MasonryLoad : public Adapter<MasonryLoad, yade::GlobalEngine> {
+class MasonryLoad : public Adapter<MasonryLoad, yade::GlobalEngine>, public Load {
 public:
     static constexpr const char* className = "MasonryLoad";
     static constexpr const char* baseName = "GlobalEngine";
@@ -14,17 +15,6 @@ public:
         "Stands after the loop of the joints and before the integrator. It switches off the damping of the block, so "
         "that the velocity is exact, unless damped keeps it; two driven loads on one block are exact only if the block "
         "cannot rotate.";
-
-    int body = 0;
-    Vector3r point = Vector3r::Zero();
-    Vector3r force = Vector3r::Zero();
-    Vector3r direction = Vector3r::UnitX();
-    bool driven = false;
-    bool damped = false;
-    double velocity = 0;
-    double reaction = 0;
-    double work = 0;
-    double pendingWork = 0;
 
     template <class Visit> static void attributes(Visit&& visit) {
         using L = MasonryLoad;
@@ -48,20 +38,12 @@ public:
                 "Displacement of the loaded point since the reference state [m].");
     }
 
-    std::vector<std::string> problems() const;
+    using Load::problems;
     bool isActivated() override { return standsAlone(*this); }
     void action() override;
 
-    // For the engine that counts energies. Half of a load's work is done with the velocity before the step, and half
-    // with the one after it, as in BodyStep.
-    void workBefore(double dt, const yade::State&);
-    void workAfter(double dt, const Vector3r& vel, const Vector3r& angVel);
-
 private:
     Vector3r displacement() const; // of the point since the reference state [m]
-
-    Vector3r total_ = Vector3r::Zero(); // force and reaction in the present step [N]
-    Vector3r arm_ = Vector3r::Zero();   // from the body's centre to the point in the present step [m]
 };
 
 } // namespace masonry

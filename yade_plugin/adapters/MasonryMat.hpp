@@ -1,10 +1,10 @@
 #pragma once
 #include "Adapter.hpp"
-#include "scene/Fixed.hpp"
+#include "scene/UnitMaterial.hpp"
 
 namespace masonry {
 
-class MasonryMat : public Adapter<MasonryMat, yade::Material> {
+class MasonryMat : public Adapter<MasonryMat, yade::Material>, public UnitMaterial {
     MASONRY_DISPATCHED(MasonryMat, yade::Material)
     static constexpr const char* className = "MasonryMat";
     static constexpr const char* baseName = "Material";
@@ -13,8 +13,6 @@ class MasonryMat : public Adapter<MasonryMat, yade::Material> {
         "Material. The properties of joints are in MasonryJoint objects; "
         "Ip2_MasonryMat_MasonryMat_MasonryJointPhys chooses one for each pair of units.";
 
-    double young = 4.8e9;
-    double poisson = 0.16;
     std::string jointSet = "brick";
 
     template <class Visit> static void attributes(Visit&& visit) {
@@ -38,7 +36,7 @@ class MasonryMat : public Adapter<MasonryMat, yade::Material> {
     MasonryMat() { createIndex(); }
 
     std::vector<std::string> problems() const {
-        auto all = fixed_.problems({"young", "poisson"}, {young, poisson});
+        auto all = changedTooLate();
         const auto wrong = densityOf().problem("density", density);
         if (!wrong.empty()) all.push_back(wrong);
         return all;
@@ -48,16 +46,9 @@ class MasonryMat : public Adapter<MasonryMat, yade::Material> {
     // Puts the States of units beside each other in memory, because every step reads and writes all of them.
     shared_ptr<yade::State> newAssocState() const override;
 
-    // To be called when a joint of such a unit is made, or such a unit divided: its elasticity is fixed then.
-    void usedIn(const yade::Scene& scene) const { fixed_.fix(scene, {young, poisson}); }
-
-    double shearModulus() const { return young / (2 * (1 + poisson)); }
-
 private:
     static constexpr double infinity = Property::infinity;
     static Property densityOf() { return number("kg/m³", "Density").above(0); }
-
-    mutable Fixed fixed_;
 };
 
 } // namespace masonry

@@ -1,10 +1,8 @@
 #include "MasonryVtkRecorder.hpp"
-#include "MasonryJointGeom.hpp"
-#include "MasonryJointPhys.hpp"
-#include "MasonryZones.hpp"
 #include "law/Laws.hpp"
 #include "scene/Blocks.hpp"
 #include "scene/SceneStore.hpp"
+#include "scene/Zones.hpp"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cerrno>
@@ -85,7 +83,7 @@ public:
         for (const auto& kind : kinds)
             kind.states->columns->show(0, 0, [&](const JointField& field, double) { add(field); });
     }
-    void insert(const MasonryJointPhys& phys, int point) {
+    void insert(const JointPhysics& phys, int point) {
         for (auto& column : columns_)
             column.array->InsertNextValue(0);
         phys.home->columns->show(point, phys.index, [&](const JointField& field, double value) {
@@ -195,8 +193,8 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
     const double none[6] = {};
     std::set<int> deformable;
     for (const auto& engine : scene->engines) {
-        auto* zones = dynamic_cast<MasonryZones*>(engine.get());
-        for (const auto& unit : zones ? zones->units() : std::vector<MasonryZones::Unit>{}) {
+        auto* zones = dynamic_cast<Zones*>(engine.get());
+        for (const auto& unit : zones ? zones->units() : std::vector<Zones::Unit>{}) {
             deformable.insert(unit.body);
             const auto& mesh = unit.elasticity->mesh();
             const auto first = points->GetNumberOfPoints();
@@ -276,7 +274,7 @@ void MasonryVtkRecorder::writeJoints(const std::string& path) {
         const auto& r = geom.reference();
         const auto& s1 = store.bodies.state(joint.interaction->id1);
         const auto& s2 = store.bodies.state(joint.interaction->id2);
-        const auto& name = phys.home->joints[phys.index]->name;
+        const auto& name = phys.propertySet()->name;
         const auto known = std::find(kinds.begin(), kinds.end(), name);
         const int number = int(known - kinds.begin());
         if (known == kinds.end()) kinds.push_back(name);

@@ -12,6 +12,15 @@
 
 namespace masonry {
 
+// How an attribute is treated. Flags can be combined.
+enum Flags {
+    Plain = 0,
+    ReadOnly = 1, // Python reads it, but cannot set it
+    Hidden = 2,   // saved and in checkpoints, but not shown to Python
+    Given = 4,    // set by the script that builds the scene; not part of the state, so checkpoints do not hold it
+    Shown = 8,    // Python reads it, but cannot set it; not saved by itself, because another attribute holds its value
+};
+
 struct Property {
     static constexpr double infinity = std::numeric_limits<double>::infinity();
 

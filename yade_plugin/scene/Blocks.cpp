@@ -1,5 +1,4 @@
 #include "Blocks.hpp"
-#include "adapters/MasonryBlock.hpp"
 
 namespace masonry {
 
@@ -18,7 +17,7 @@ const Polyhedra* polyhedraOf(const Shape* shape) {
 } // namespace
 
 const std::vector<Vector3r>* cornersOf(const Shape* shape) {
-    if (const auto* block = dynamic_cast<const MasonryBlock*>(shape)) return &block->v;
+    if (const auto* block = dynamic_cast<const BlockSurface*>(shape)) return &block->v;
     if (const auto* polyhedra = polyhedraOf(shape)) return &polyhedra->v;
     return nullptr;
 }
@@ -26,7 +25,7 @@ const std::vector<Vector3r>* cornersOf(const Shape* shape) {
 ConvexBlock blockOf(Shape& shape) { return blockOf(shape, Vector3r::Zero(), Quaternionr::Identity()); }
 
 ConvexBlock blockOf(Shape& shape, const Vector3r& position, const Quaternionr& orientation) {
-    const auto* own = dynamic_cast<const MasonryBlock*>(&shape);
+    const auto* own = dynamic_cast<const BlockSurface*>(&shape);
     // Asked first: it also brings the corners of a new Polyhedra into the order of its triangles.
     const auto corners = own ? own->triangles : static_cast<Polyhedra&>(shape).GetSurfaceTriangulation();
     ConvexBlock block;

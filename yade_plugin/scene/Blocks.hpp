@@ -1,9 +1,16 @@
-// Which bodies are blocks: those with a MasonryBlock, and those with a Polyhedra of a YADE that has this class.
+// Which bodies are blocks: those whose shape has a BlockSurface, and those with a Polyhedra of a YADE that has this
+// class.
 #pragma once
 #include "blocks/FaceContact.hpp"
 #include "host/Yade.hpp"
 
 namespace masonry {
+
+// The surface of a convex block, relative to its centroid and in its principal axes. A shape derives from it.
+struct BlockSurface {
+    std::vector<yade::Vector3r> v; // corners [m]
+    std::vector<int> triangles;    // three numbers of corners each, counter-clockwise seen from outside
+};
 
 // The corners of a block [m], relative to its centroid and in the axes of its body. Null if the shape is none of a
 // block, or if there is no shape.

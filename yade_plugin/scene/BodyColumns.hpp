@@ -1,4 +1,4 @@
-// Place, motion and mass of the bodies of a scene, in columns. MasonryIntegrator moves the rigid bodies here. The row
+// Place, motion and mass of the bodies of a scene, in columns. Integrator moves the rigid bodies here. The row
 // of a body is its id. The integrator writes the host's State once a step. Scripts and other engines may change a State
 // between two steps; the engines of this plugin notice that before they use the columns.
 #pragma once
@@ -52,7 +52,7 @@ public:
     std::vector<double> referencePosition[3]; // [m]
     std::vector<double> fromReference[4];     // inverse of the reference orientation: w, x, y, z
 
-    std::vector<unsigned char> isUnit; // whether the body is a deformable unit, which MasonryZones moves
+    std::vector<unsigned char> isUnit; // whether the body is a deformable unit, which Zones moves
 
 private:
     struct Seen {           // what the host's State held beside the columns when the body was last taken

@@ -1,6 +1,5 @@
 #include "Collapse.hpp"
 #include "Blocks.hpp"
-#include "SceneStore.hpp"
 #include "common/Text.hpp"
 #include <cmath>
 #include <cstdio>
@@ -44,15 +43,15 @@ double moved(const State& s, double size) { return (s.pos - s.refPos).norm() + s
 
 } // namespace
 
-void CollapseWatch::measure(const SceneStore& store) {
+void CollapseWatch::measure(const yade::Scene& scene, const std::vector<JointKind>& kinds) {
     joints_.clear();
-    const auto& bodies = store.scene().bodies->body;
+    const auto& bodies = scene.bodies->body;
     std::vector<double> sizes(bodies.size(), 0);
     const auto cornersOf = [&](int body) -> const std::vector<Vector3r>* {
         const auto* corners = masonry::cornersOf(bodies[body]->shape.get());
         return corners && !corners->empty() ? corners : nullptr;
     };
-    for (const auto& kind : store.kinds)
+    for (const auto& kind : kinds)
         for (const auto& r : kind.shapes->joints) {
             Joint joint{r.sides[0].body,
                         r.sides[1].body,
@@ -70,14 +69,12 @@ void CollapseWatch::measure(const SceneStore& store) {
                 }
             joints_.push_back(joint);
         }
-    revision_ = store.revision();
 }
 
-Collapse CollapseWatch::look(SceneStore& store, const CollapseLimits& limits) {
-    if (revision_ != store.revision()) measure(store);
-    auto& columns = store.bodies;
-    for (int b = 0; (!store.loop || !store.integrator) && b < columns.size(); ++b)
-        if (columns.has(b)) columns.noticePlace(b); // the host has moved it
+Collapse CollapseWatch::look(const yade::Scene& scene, const BodyColumns& columns, const std::vector<JointKind>& kinds,
+                             long revision, const CollapseLimits& limits) {
+    if (revision_ != revision) measure(scene, kinds);
+    revision_ = revision;
     double farthest = 1;
     enum { None, Turn, Slide, Closure, Opening } how = None;
     std::size_t where = 0;
@@ -95,7 +92,7 @@ Collapse CollapseWatch::look(SceneStore& store, const CollapseLimits& limits) {
     };
     const double* const q[4] = {columns.orientation[0].data(), columns.orientation[1].data(),
                                 columns.orientation[2].data(), columns.orientation[3].data()};
-    for (const auto& kind : store.kinds) {
+    for (const auto& kind : kinds) {
         const auto& shapes = *kind.shapes;
         const double each = 1.0 / shapes.points;
         for (int j = 0; j < int(shapes.joints.size()); ++j, ++n) {
@@ -146,7 +143,7 @@ Collapse CollapseWatch::look(SceneStore& store, const CollapseLimits& limits) {
     else
         what += " has left " + neighbour + " by " + metres(size) + ", more than the size of the smaller block, " +
                 metres(of);
-    return {block, what + ", at step " + std::to_string(store.scene().iter) + ", " + text(store.scene().time) +
+    return {block, what + ", at step " + std::to_string(scene.iter) + ", " + text(scene.time) +
                        " s. Joints are for small displacements: their geometry is that of the reference state, so what "
                        "would follow means nothing and the run ends here"};
 }

@@ -1,13 +1,12 @@
 // Where a scene has left the small displacements that its joints are made for: a block that has tipped over, slid off
 // its neighbour, gone through it or left it. What a run computes from then on means nothing, so it ends.
 #pragma once
-#include "host/Yade.hpp"
+#include "BodyColumns.hpp"
+#include "JointHome.hpp"
 #include <string>
 #include <vector>
 
 namespace masonry {
-
-class SceneStore;
 
 // How far the two blocks of a joint may move against each other. Joints act at points of the polygon that two faces
 // shared in the reference state; these are the ends of what that can describe.
@@ -31,11 +30,12 @@ struct Collapse {
 // Looks at all joints of a scene. What depends on the reference state is kept while the scene's revision stays.
 class CollapseWatch {
 public:
-    // The joint that is farthest beyond a limit, if any is.
-    Collapse look(SceneStore&, const CollapseLimits&);
+    // The joint that is farthest beyond a limit, if any is. `revision` is that of SceneStore.
+    Collapse look(const yade::Scene&, const BodyColumns&, const std::vector<JointKind>&, long revision,
+                  const CollapseLimits&);
 
 private:
-    void measure(const SceneStore&);
+    void measure(const yade::Scene&, const std::vector<JointKind>&);
 
     struct Joint {
         int body1, body2;

@@ -1,10 +1,8 @@
 #include "CriticalTimeStep.hpp"
+#include "BodyCheck.hpp"
 #include "BodyStep.hpp"
-#include "SceneCheck.hpp"
 #include "SceneStore.hpp"
-#include "adapters/MasonryJointGeom.hpp"
-#include "adapters/MasonryJointPhys.hpp"
-#include "adapters/MasonryZones.hpp"
+#include "Zones.hpp"
 #include "motion/LargestEigenvalue.hpp"
 #include <map>
 
@@ -190,7 +188,7 @@ std::string described(const SceneStore& store, const TimeStepLimit& limit) {
     std::string name;
     for (const auto& joint : store.joints)
         if (joint.interaction->id1 == limit.id1 && joint.interaction->id2 == limit.id2)
-            name = joint.phys->home->joints[joint.phys->index]->name;
+            name = joint.phys->propertySet()->name;
     return what + "joint \"" + name + "\" between bodies " + std::to_string(limit.id1) + " and " +
            std::to_string(limit.id2) + " sets";
 }

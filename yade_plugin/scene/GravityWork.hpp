@@ -1,8 +1,11 @@
 // Work of a gravity that may change during a run, as it does when it is raised step by step, or turned to tilt a scene.
 #pragma once
-#include "adapters/Adapter.hpp"
+#include "common/Property.hpp"
+#include "host/Yade.hpp"
 
 namespace masonry {
+
+using yade::Vector3r;
 
 // While gravity g is constant, its work is the sum of m g·u over all masses m and their displacements u, less that sum
 // at the beginning of the run. The displacements count from the reference state, but the work counts from the first

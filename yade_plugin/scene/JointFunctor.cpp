@@ -1,6 +1,5 @@
 #include "JointFunctor.hpp"
-#include "adapters/MasonryJointGeom.hpp"
-#include "adapters/MasonryJointPhys.hpp"
+#include "Zones.hpp"
 
 namespace masonry {
 
@@ -11,10 +10,8 @@ std::map<std::string, std::string>& functorsOfLaws() {
     return all;
 }
 
-void advanceJoint(yade::Scene& scene, yade::IGeom& ig, yade::IPhys& ip, const yade::Interaction& interaction,
+void advanceJoint(yade::Scene& scene, JointGeometry& geom, JointPhysics& phys, const yade::Interaction& interaction,
                   const char* law) {
-    auto& geom = static_cast<MasonryJointGeom&>(ig);
-    auto& phys = static_cast<MasonryJointPhys&>(ip);
     // A joint that connect() did not make is left out here: the loop is parallel, where an exception would end the
     // program. The next engine of this plugin reports it (SceneCheck).
     if (!geom.made() || !geom.step || geom.points() != phys.points()) return;
@@ -35,7 +32,7 @@ void advanceJoint(yade::Scene& scene, yade::IGeom& ig, yade::IPhys& ip, const ya
         const Vector3r pull = Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) * geom.area(p);
         force += pull;
         torque += step.arms[p].cross(pull);
-        if (hung) { // MasonryZones brings these forces to the nodes
+        if (hung) { // gatherFromFunctors() brings these forces to the nodes
             step.forces[p] = step.axes * pull;
             moment += geom.jump(p).cross(pull);
         }
@@ -57,6 +54,29 @@ void advanceJoint(yade::Scene& scene, yade::IGeom& ig, yade::IPhys& ip, const ya
         // lead from body 2 already.
         const Vector3r onBody2 = hung ? Vector3r(step.moment - torque) : Vector3r(step.between.cross(force) - torque);
         forces.addTorque(interaction.id2, onBody2);
+    }
+}
+
+void gatherFromFunctors(const std::vector<JointView>& joints, Zones& zones) {
+    zones.clearForces();
+    const auto hang = [&](const Attachment& a, const Vector3r& force) {
+        for (int i = 0; i < 3; ++i)
+            for (int d = 0; a.weights[i] != 0 && d < 3; ++d)
+                (zones.forceRows() + zones.placeOf(a.nodes[i]))[d * lanes] += a.weights[i] * force[d];
+    };
+    for (const auto& joint : joints) {
+        const auto& geom = *joint.geom;
+        const auto& r = geom.reference();
+        if (!r.hung || r.hung->zones.get() != &zones || !geom.step) continue;
+        for (int p = 0; p < geom.points(); ++p) {
+            const Vector3r force = geom.step->forces[p];
+            if (!r.rigid(0)) hang(r.hung->sides[0][p], force);
+            if (!r.rigid(1)) hang(r.hung->sides[1][p], -force);
+        }
+        for (const auto& side : r.sides)
+            if (const auto* unit = zones.unitOf(side.body))
+                for (int d = 0; d < 3; ++d)
+                    (zones.momentRows() + unit->momentPlace)[d * lanes] += geom.step->moment[d];
     }
 }
 

@@ -1,9 +1,10 @@
 // The columns in which the state of joints lives: jumps and geometry in JointShapes, the state of the law in
 // JointStates. Each of these is a home. A joint that was just made has homes of its own. When SceneStore reads a scene,
-// it moves all joints of one kind into common homes, on which the engines work. MasonryJointGeom and MasonryJointPhys
-// are views: each holds a home and the joint's number in it.
+// it moves all joints of one kind into common homes, on which the engines work. JointGeometry and JointPhysics are
+// views: each holds a home and the joint's number in it.
 #pragma once
-#include "adapters/MasonryJoint.hpp"
+#include "PropertySet.hpp"
+#include "Transfer.hpp"
 #include "blocks/FaceContact.hpp"
 #include "law/common/LawColumns.hpp"
 #include "motion/JointFrames.hpp"
@@ -11,7 +12,9 @@
 
 namespace masonry {
 
-class MasonryZones;
+using boost::shared_ptr;
+
+class Zones;
 
 // What both homes have in common: they know whether their joints still exist. A Python object may outlive its joint,
 // when the scene ends or the interaction is erased.
@@ -30,7 +33,7 @@ struct Home {
 // How a subcontact moves with the surface of a deformable unit: by the weighted mean of three of its nodes. A
 // subcontact at a node has the weights 1, 0, 0.
 struct Attachment {
-    std::array<int, 3> nodes{0, 0, 0};      // numbers in the lists of MasonryZones
+    std::array<int, 3> nodes{0, 0, 0};      // numbers in the lists of Zones
     std::array<double, 3> weights{1, 0, 0}; // their sum is 1
 };
 template <> struct IsNumbers<Attachment> : std::true_type {};
@@ -57,7 +60,7 @@ struct JointReference {
     Side sides[2];                        // bodies 1 and 2 of the interaction
     // How the subcontacts of a joint with a deformable side move with the nodes.
     struct Hung {
-        shared_ptr<MasonryZones> zones;
+        shared_ptr<Zones> zones;
         std::vector<Attachment> sides[2]; // one for each subcontact; empty at a rigid side
     };
     std::shared_ptr<Hung> hung; // null if both sides are rigid
@@ -145,10 +148,10 @@ inline bool sameButRoundOff(double a, double b, double scale) { return std::abs(
 
 // State of the law in joints whose properties have equal values, and which share stiffness.
 struct JointStates : Home {
-    JointStates(const shared_ptr<MasonryJoint>& kind, const ElasticStiffness& k, int count, int points)
+    JointStates(const shared_ptr<PropertySet>& kind, const ElasticStiffness& k, int count, int points)
         : joints(count, kind), columns(kind->ownLaw()->columns(k, count, points)) {}
 
-    std::vector<shared_ptr<MasonryJoint>> joints; // the property set of each; different objects have equal values
+    std::vector<shared_ptr<PropertySet>> joints; // the property set of each; different objects have equal values
     std::unique_ptr<LawColumns> columns;
     shared_ptr<JointShapes> shapes; // of the same joints in the same order; null before they belong to a scene
 
@@ -158,6 +161,13 @@ struct JointStates : Home {
         for (int p = 0; p < columns->points(); ++p)
             columns->take(p, number, *from.columns, other);
     }
+};
+
+// Joints whose properties have equal values, and which share stiffness and number of subcontacts.
+struct JointKind {
+    shared_ptr<JointShapes> shapes;
+    shared_ptr<JointStates> states;
+    bool hung; // whether a side of these joints is deformable
 };
 
 } // namespace masonry

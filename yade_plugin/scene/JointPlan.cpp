@@ -1,7 +1,5 @@
 #include "JointPlan.hpp"
-#include "adapters/MasonryJointGeom.hpp"
-#include "adapters/MasonryJointPhys.hpp"
-#include "adapters/MasonryZones.hpp"
+#include "Zones.hpp"
 #include "common/Vectorised.hpp"
 #include "law/common/JointDamping.hpp"
 #include "motion/JointFrames.hpp"
@@ -191,7 +189,7 @@ void JointPlan::buildKind(SceneStore& store, const JointKind& kind, Kind& made,
     }
 }
 
-// Finds the places of both sides of subcontacts with deformable sides in the rows of MasonryZones: that of the node, or
+// Finds the places of both sides of subcontacts with deformable sides in the rows of Zones: that of the node, or
 // that of a dependent point. Sides that move with the same nodes by the same weights share one. Those of congruent
 // units stand in the lanes of the same rows, as their nodes do, so that they are calculated side by side.
 void JointPlan::buildPlaces(const JointKind& kind, Kind& made, std::vector<std::vector<Receivers::Item>>& atPlaces,

@@ -10,7 +10,7 @@ namespace masonry {
 
 class JointPlan {
 public:
-    // Makes a step. `stiffnessDamping` is the attribute of MasonryJointLoop [s]; returns the energy it takes [J].
+    // Makes a step. `stiffnessDamping` is that of JointLoop [s]; returns the energy it takes [J].
     double advance(SceneStore&, double stiffnessDamping);
 
 private:
@@ -24,11 +24,11 @@ private:
                                          // half the angle
         std::vector<double> frame2[4];   // the same in body 2
         std::vector<double> span[3];     // from centre to centre in the reference state, in the joint's axes [m]
-        std::vector<int> place1, place2; // of both sides of subcontacts with deformable sides, in MasonryZones' rows
+        std::vector<int> place1, place2; // of both sides of subcontacts with deformable sides, in Zones' rows
     };
     // Side of subcontacts that has no node of its own. It moves with a rigid body, or with the surface between nodes.
     struct PointOnBody {
-        int place; // in the rows of MasonryZones
+        int place; // in the rows of Zones
         int body;
         Vector3r reference; // its place in the reference state, global axes [m]
         Vector3r local;     // its place in the body's axes [m]
@@ -86,8 +86,8 @@ private:
     std::vector<double> turn_[4];    // planar runs only: cosine and sine of half the angle by which a body has turned
     std::vector<double> referenceY_; // of all bodies [m]
     std::vector<unsigned char> joined_; // whether a body has joints
-    std::vector<int> momentPlace_;      // of all bodies: place in MasonryZones' rows of moments; -1 if it is rigid
-    MasonryZones* zones_ = nullptr;     // null if no joint has a deformable side
+    std::vector<int> momentPlace_;      // of all bodies: place in Zones' rows of moments; -1 if it is rigid
+    Zones* zones_ = nullptr;            // null if no joint has a deformable side
     std::vector<PointOnBody> onBodies_;
     std::vector<PointsBetweenNodes> betweenNodes_;
     NodeShares shares_;  // of the points between nodes

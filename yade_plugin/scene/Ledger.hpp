@@ -1,6 +1,6 @@
 // The attributes of an engine that keeps the energies of rigid bodies.
 #pragma once
-#include "adapters/Adapter.hpp"
+#include "common/Property.hpp"
 #include "motion/EnergyLedger.hpp"
 
 namespace masonry {

@@ -1,6 +1,6 @@
 #include "Neighbours.hpp"
 #include "Blocks.hpp"
-#include "SceneCheck.hpp"
+#include "BodyCheck.hpp"
 #include "common/Text.hpp"
 #include <algorithm>
 
@@ -17,6 +17,22 @@ struct Candidate {
     Vector3r low, high;      // corners of the box in which it may touch others [m]
     std::vector<int> joined; // numbers of the candidates that share a face with it
 };
+
+using Pair = std::pair<int, int>; // ids of two bodies, the lower one first
+
+struct SharedFace {
+    Pair ids;
+    FaceContact face; // from the body with the lower id to the other one
+    bool operator<(const SharedFace& other) const { return ids < other.ids; }
+};
+
+// What neighbours() has found for the joints that are made next.
+struct KeptFaces {
+    const yade::Scene* scene = nullptr;
+    double tolerance = 0;
+    std::vector<SharedFace> faces; // in the order of their ids
+};
+KeptFaces kept;
 
 // All blocks of the present scene. Throws std::invalid_argument that names all problems of these blocks.
 std::vector<Candidate> candidates(double tolerance) {
@@ -54,7 +70,7 @@ std::vector<Candidate> candidates(double tolerance) {
 
 } // namespace
 
-py::tuple neighbours(double tolerance) {
+py::tuple neighbours(double tolerance, bool keepFaces) {
     auto all = candidates(tolerance);
     Vector3r low = Vector3r::Constant(HUGE_VAL), high = -low;
     for (const auto& c : all) {
@@ -64,21 +80,22 @@ py::tuple neighbours(double tolerance) {
     int axis; // the axis along which the blocks spread most; sorted by it, far blocks are never compared
     (high - low).maxCoeff(&axis);
     std::sort(all.begin(), all.end(), [axis](const auto& a, const auto& b) { return a.low[axis] < b.low[axis]; });
-    using Pair = std::pair<int, int>;
-    std::vector<Pair> pairs;
+    std::vector<SharedFace> shared;
     std::vector<std::tuple<std::size_t, std::size_t, Misfit>> misfits;
     for (std::size_t i = 0; i < all.size(); ++i)
         for (std::size_t j = i + 1; j < all.size() && all[j].low[axis] <= all[i].high[axis]; ++j) {
             auto &one = all[i], &two = all[j];
             if ((two.low.array() > one.high.array()).any() || (one.low.array() > two.high.array()).any()) continue;
-            if (coincidentFaces(one.block, two.block, tolerance)) {
-                pairs.emplace_back(std::minmax(one.id, two.id));
+            const auto& [lower, higher] = one.id < two.id ? std::tie(one, two) : std::tie(two, one);
+            if (auto face = coincidentFaces(lower.block, higher.block, tolerance)) {
+                face->polygon.shrink_to_fit();
+                shared.push_back({{lower.id, higher.id}, std::move(*face)});
                 one.joined.push_back(int(j));
                 two.joined.push_back(int(i));
             } else if (const auto found = misfit(one.block, two.block, tolerance))
                 misfits.emplace_back(i, j, *found);
         }
-    std::sort(pairs.begin(), pairs.end());
+    std::sort(shared.begin(), shared.end());
     std::vector<std::tuple<Pair, double, double>> gaps;
     for (const auto& [i, j, found] : misfits) {
         // Whether block k, which is joined to both, fills the gap between them, as a layer of mortar does.
@@ -92,8 +109,8 @@ py::tuple neighbours(double tolerance) {
     }
     std::sort(gaps.begin(), gaps.end());
     py::list touching, missing, sizes;
-    for (const auto& [one, two] : pairs)
-        touching.append(py::make_tuple(one, two));
+    for (const auto& found : shared)
+        touching.append(py::make_tuple(found.ids.first, found.ids.second));
     for (const auto& [ids, gap, bound] : gaps)
         missing.append(py::make_tuple(ids.first, ids.second, gap, bound));
     if (!all.empty()) {
@@ -104,9 +121,21 @@ py::tuple neighbours(double tolerance) {
         sizes.append(py::make_tuple(thin->id, thin->block.thickness));
         sizes.append(py::make_tuple(large->id, large->block.size()));
     }
+    if (keepFaces) kept = {Singleton<yade::Omega>::instance().getScene().get(), tolerance, std::move(shared)};
     return py::make_tuple(touching, missing, sizes);
 }
 
-py::list touchingPairs(double tolerance) { return py::extract<py::list>(neighbours(tolerance)[0]); }
+py::list touchingPairs(double tolerance) { return py::extract<py::list>(neighbours(tolerance, false)[0]); }
+
+std::optional<FaceContact> takeFace(const yade::Scene& scene, int id1, int id2, double tolerance) {
+    if (kept.scene != &scene || kept.tolerance != tolerance) return std::nullopt;
+    const Pair ids(id1, id2);
+    const auto found = std::lower_bound(kept.faces.begin(), kept.faces.end(), ids,
+                                        [](const SharedFace& face, const Pair& wanted) { return face.ids < wanted; });
+    if (found == kept.faces.end() || found->ids != ids || found->face.polygon.empty()) return std::nullopt;
+    return FaceContact{found->face.normal, std::move(found->face.polygon)};
+}
+
+void dropFaces() { kept = {}; }
 
 } // namespace masonry

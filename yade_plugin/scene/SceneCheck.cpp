@@ -1,11 +1,12 @@
 #include "SceneCheck.hpp"
 #include "Blocks.hpp"
+#include "BodyCheck.hpp"
+#include "JointFunctor.hpp"
 #include "SceneStore.hpp"
-#include "adapters/MasonryJointGeom.hpp"
-#include "adapters/MasonryJointPhys.hpp"
-#include "adapters/MasonryMat.hpp"
+#include "Zones.hpp"
 #include "common/Text.hpp"
 #include <algorithm>
+#include <atomic>
 #include <iostream>
 #include <mutex>
 #include <omp.h>
@@ -13,28 +14,22 @@
 
 namespace masonry {
 
-const yade::Body& bodyAt(const yade::Scene& scene, int id, const std::string& what) {
-    const auto& all = scene.bodies->body;
-    if (id < 0 || std::size_t(id) >= all.size() || !all[id])
-        throw std::invalid_argument(what + " " + std::to_string(id) + " does not exist");
-    if (!all[id]->state) throw std::invalid_argument(what + " " + std::to_string(id) + " has no State");
-    return *all[id];
-}
-
 namespace {
 
-std::mutex parallel;        // guards what follows
-std::string parallelEngine; // the sentence about an engine in a ParallelEngine, until it is thrown
-long parallelStep = -1;     // the step in which that engine should have acted
+std::atomic<bool> parallelMet{false}; // whether there is a sentence in `parallelEngine`
+std::mutex parallel;                  // guards what follows
+std::string parallelEngine;           // the sentence about an engine in a ParallelEngine, until it is thrown
+long parallelStep = -1;               // the step in which that engine should have acted
 
 long presentStep() { return Singleton<yade::Omega>::instance().getScene()->iter; }
 
 } // namespace
 
-std::string refusalInParallel() {
+void refuseParallelEngine() {
+    if (!parallelMet.exchange(false)) return;
     const std::lock_guard<std::mutex> held(parallel);
-    const auto told = std::exchange(parallelEngine, {});
-    return parallelStep == presentStep() ? told : "";
+    const auto sentence = std::exchange(parallelEngine, {});
+    if (parallelStep == presentStep()) throw std::invalid_argument(sentence);
 }
 
 bool standsAlone(const yade::Engine& engine) {
@@ -44,36 +39,9 @@ bool standsAlone(const yade::Engine& engine) {
     parallelEngine = engine.getClassName() +
                      " stands in a ParallelEngine and does nothing: put it into O.engines itself, it uses all threads";
     parallelStep = presentStep();
+    parallelMet = true;
     if (first) std::cerr << "error: " + parallelEngine + "\n" << std::flush;
     return false;
-}
-
-std::vector<std::string> problemsOf(const yade::Body& body) {
-    std::vector<std::string> wrong;
-    const auto fail = [&](const std::string& what) { wrong.push_back("body " + std::to_string(body.id) + " " + what); };
-    const auto positive = [](double value) { return value > 0 && std::isfinite(value); };
-    if (!dynamic_cast<const MasonryMat*>(body.material.get()))
-        fail("has " + (body.material ? body.material->getClassName() : "no material") + ", must have a MasonryMat");
-    if (!body.state) {
-        fail("has no State");
-        return wrong;
-    }
-    if (body.clumpId >= 0)
-        fail("belongs to clump " + std::to_string(body.clumpId) +
-             ", which would not move as one: join blocks by stiff "
-             "joints instead");
-    const auto& s = *body.state;
-    if (const auto* corners = cornersOf(body.shape.get()); corners && corners->empty())
-        fail("has a " + body.shape->getClassName() + " without corners");
-    if (!positive(s.mass)) fail("has a mass of " + text(s.mass) + " kg, must be a finite number above 0");
-    for (double inertia : {s.inertia[0], s.inertia[1], s.inertia[2]})
-        if (!positive(inertia)) {
-            fail("has an inertia of " + text(inertia) + " kg m², must be a finite number above 0");
-            break;
-        }
-    if (!s.pos.allFinite() || !s.ori.coeffs().allFinite() || !s.vel.allFinite() || !s.angVel.allFinite())
-        fail("has a place or velocity that is no finite number");
-    return wrong;
 }
 
 namespace {
@@ -126,9 +94,9 @@ std::string problemOfEngines(const yade::Scene& scene, bool jointed) {
 void checkScene(const SceneStore& store) {
     const auto& scene = store.scene();
     std::vector<std::string> wrong;
-    std::vector<const MasonryZones*> owner(scene.bodies->body.size(), nullptr), zones;
+    std::vector<const Zones*> owner(scene.bodies->body.size(), nullptr), zones;
     for (const auto& engine : scene.engines)
-        if (const auto* one = dynamic_cast<const MasonryZones*>(engine.get())) {
+        if (const auto* one = dynamic_cast<const Zones*>(engine.get())) {
             if (!engine->dead) zones.push_back(one);
             for (int id : one->bodies)
                 try {
@@ -147,8 +115,8 @@ void checkScene(const SceneStore& store) {
     bool jointed = false;
     for (std::size_t n = 0; n < scene.interactions->currSize; ++n) {
         const auto& interaction = *scene.interactions->linIntrs[n];
-        const auto* geom = dynamic_cast<const MasonryJointGeom*>(interaction.geom.get());
-        const auto* phys = dynamic_cast<const MasonryJointPhys*>(interaction.phys.get());
+        const auto* geom = dynamic_cast<const JointGeometry*>(interaction.geom.get());
+        const auto* phys = dynamic_cast<const JointPhysics*>(interaction.phys.get());
         if (!geom && !phys) continue;
         jointed = true;
         const auto fail = [&](const std::string& what) {
@@ -168,7 +136,7 @@ void checkScene(const SceneStore& store) {
             }
         if (lost) continue;
         const auto& hung = geom->reference().hung;
-        const MasonryZones* own = hung ? hung->zones.get() : nullptr;
+        const Zones* own = hung ? hung->zones.get() : nullptr;
         if (own && std::find(zones.begin(), zones.end(), own) == zones.end())
             fail("needs its MasonryZones in O.engines, and not dead");
         for (int id : {interaction.id1, interaction.id2})
@@ -183,6 +151,37 @@ void checkScene(const SceneStore& store) {
     if (!jointed && blocks > 1) wrong.push_back("no joints: call masonry.connect() before the first step");
     if (const auto problem = problemOfEngines(scene, jointed); !problem.empty()) wrong.push_back(problem);
     if (!wrong.empty()) throw std::invalid_argument(firstOf(wrong));
+}
+
+void checkBeforeStep(SceneStore& store) {
+    const auto& scene = store.scene();
+    if (!(scene.dt > 0 && std::isfinite(scene.dt)))
+        throw std::invalid_argument("O.dt " + text(scene.dt) + " s must be a finite number above 0");
+    refuseParallelEngine();
+    if (scene.isPeriodic)
+        throw std::invalid_argument(
+            "O.periodic: joints do not reach across a periodic cell, nor does a cell strain blocks; "
+            "set it to False");
+    if (strayed.load().body1 >= 0) {
+        const auto joint = strayed.exchange({});
+        std::vector<std::string> needs;
+        for (const auto& [law, functor] : functorsOfLaws())
+            needs.push_back("law \"" + law + "\" needs " + functor);
+        throw std::invalid_argument(
+            "the joint of bodies " + std::to_string(joint.body1) + " and " + std::to_string(joint.body2) +
+            " follows another law than the Law2 functor of InteractionLoop: " + joined(needs, ", "));
+    }
+    if (!store.checked) {
+        checkScene(store);
+        if (store.zones) store.zones->units(); // divides the bodies into zones when nothing else is wrong
+        if (!store.isConnected() && !store.joints.empty()) store.connected();
+        store.checked = true;
+    }
+    if (!store.watched && scene.iter % SceneStore::collapseEvery == 0 && scene.iter != store.seenCollapse) {
+        store.seenCollapse = scene.iter;
+        if (const auto found = store.findCollapse({}); found.block >= 0)
+            throw std::runtime_error("collapsed: " + found.what);
+    }
 }
 
 } // namespace masonry

@@ -1,12 +1,16 @@
 #include "SceneCheckpoint.hpp"
 #include "Blocks.hpp"
+#include "Changes.hpp"
 #include "SceneStore.hpp"
-#include "adapters/MasonryJointGeom.hpp"
-#include "adapters/MasonryJointPhys.hpp"
+#include "StepGate.hpp"
+#include "Transfer.hpp"
+#include "Zones.hpp"
 #include "common/Text.hpp"
 #include <map>
 
 namespace masonry {
+
+namespace py = boost::python;
 
 // State of a body in a checkpoint.
 struct BodyRecord {
@@ -124,7 +128,7 @@ void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
             own->transfer(to);
         }
     for (const auto& engine : scene.engines)
-        if (auto* zones = dynamic_cast<MasonryZones*>(engine.get()))
+        if (auto* zones = dynamic_cast<Zones*>(engine.get()))
             zones->units(); // refuses the state of another number of nodes
     if (back) ++changes;    // all engines read the scene anew
 }
@@ -163,14 +167,14 @@ Checkpoint captured(yade::Scene& scene) {
                 blocks(corner);
         blocks(dynamic_cast<Stateful*>(body->material.get()));
     }
-    std::map<const MasonryJoint*, double> kinds;
+    std::map<const PropertySet*, double> kinds;
     auto& store = SceneStore::of(scene);
     store.update();
     for (const auto& joint : store.joints) {
         const auto& r = joint.geom->reference();
-        auto* properties = joint.phys->home->joints[joint.phys->index].get();
+        auto* properties = joint.phys->propertySet().get();
         const auto [kind, fresh] = kinds.emplace(properties, double(kinds.size()));
-        if (fresh) joints(static_cast<Stateful*>(properties));
+        if (fresh) joints(dynamic_cast<Stateful*>(properties));
         joints(kind->second, double(joint.interaction->id1), double(joint.interaction->id2), r.normal, r.tangent,
                joint.phys->stiffness().normal, joint.phys->stiffness().shear);
         for (int p = 0; p < joint.geom->points(); ++p)

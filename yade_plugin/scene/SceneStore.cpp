@@ -1,16 +1,10 @@
 #include "SceneStore.hpp"
 #include "Blocks.hpp"
-#include "JointFunctor.hpp"
-#include "SceneCheck.hpp"
-#include "adapters/MasonryEnergy.hpp"
-#include "adapters/MasonryIntegrator.hpp"
-#include "adapters/MasonryJointGeom.hpp"
-#include "adapters/MasonryJointLoop.hpp"
-#include "adapters/MasonryJointPhys.hpp"
-#include "adapters/MasonryLoad.hpp"
-#include "adapters/MasonryZones.hpp"
+#include "Changes.hpp"
+#include "Integrator.hpp"
+#include "Load.hpp"
+#include "Zones.hpp"
 #include <algorithm>
-#include <exception>
 #include <map>
 #include <memory>
 
@@ -88,49 +82,59 @@ double SceneStore::massDamping() const { return integrator ? integrator->massDam
 
 double SceneStore::stiffnessDamping() const { return loop ? loop->stiffnessDamping : 0; }
 
-// Returns whether the engines are others than before.
-bool SceneStore::readEngines() {
+bool SceneStore::sameEngines() const {
     const auto& present = scene_.engines;
     bool same = engines_.size() == present.size();
     for (std::size_t i = 0; same && i < present.size(); ++i)
         same = engines_[i].first == present[i].get() && engines_[i].second == present[i]->dead;
-    if (same) return false;
+    return same;
+}
+
+bool SceneStore::sameJoints() const {
+    return seenChanges_ == changes && seenInteractions_ == scene_.interactions->currSize;
+}
+
+bool SceneStore::isOpenFor(const yade::Engine& engine) const {
+    return openedStep_ == scene_.iter && first != &engine && sameEngines() && sameJoints();
+}
+
+void SceneStore::readEngines() {
     engines_.clear();
     loads.clear();
     allLoads.clear();
     loop = nullptr;
     zones = nullptr;
-    energy = nullptr;
+    watched = false;
     integrator = nullptr;
     hostIntegrator = nullptr;
-    last = nullptr;
-    for (const auto& engine : present) {
+    first = last = nullptr;
+    for (const auto& engine : scene_.engines) {
         engines_.emplace_back(engine.get(), engine->dead);
-        auto* load = dynamic_cast<MasonryLoad*>(engine.get());
+        auto* load = dynamic_cast<Load*>(engine.get());
         if (load) allLoads.push_back(load);
         if (engine->dead) continue;
-        const auto note = [&](auto*& place, auto* found) {
-            if (!found) return false;
+        const auto note = [](auto*& place, auto* found) {
             if (!place) place = found;
-            last = engine.get();
-            return true;
+            return found != nullptr;
         };
-        if (load) {
-            loads.push_back(load);
+        const auto name = engine->getClassName();
+        const bool watch = name == "MasonryEnergy";
+        if (load) loads.push_back(load);
+        if (name == "NewtonIntegrator") hostIntegrator = static_cast<const yade::NewtonIntegrator*>(engine.get());
+        watched = watched || watch;
+        if (load || watch || note(loop, dynamic_cast<JointLoop*>(engine.get())) ||
+            note(zones, dynamic_cast<Zones*>(engine.get())) ||
+            note(integrator, dynamic_cast<Integrator*>(engine.get()))) {
+            if (!first) first = engine.get();
             last = engine.get();
-        } else if (!note(loop, dynamic_cast<MasonryJointLoop*>(engine.get())) &&
-                   !note(zones, dynamic_cast<MasonryZones*>(engine.get())) &&
-                   !note(energy, dynamic_cast<MasonryEnergy*>(engine.get())) &&
-                   !note(integrator, dynamic_cast<MasonryIntegrator*>(engine.get())) &&
-                   engine->getClassName() == "NewtonIntegrator")
-            hostIntegrator = static_cast<const yade::NewtonIntegrator*>(engine.get());
+        }
     }
-    return true;
 }
 
 void SceneStore::update(Look look) {
-    if (readEngines()) {
-        checked_ = false;
+    if (!sameEngines()) {
+        readEngines();
+        checked = false;
         seenChanges_ = -1; // read anew, because other engines may move the bodies
     }
     bool sameBodies = true;
@@ -139,8 +143,8 @@ void SceneStore::update(Look look) {
         if (sameBodies && (look == Look::AtAll || scene_.iter % 10 == 0)) sameBodies = sameStates(scene_, bodies);
         seenStep_ = scene_.iter;
     }
-    if (sameBodies && seenChanges_ == changes && seenInteractions_ == scene_.interactions->currSize) return;
-    checked_ = false;
+    if (sameBodies && sameJoints()) return;
+    checked = false;
     const WithInterpreter python; // property sets that nothing refers to any more are given back to Python
     readJoints();
     bodies.read(scene_);
@@ -160,8 +164,8 @@ void SceneStore::readJoints() {
         std::vector<std::size_t> members;
     };
     std::map<std::string, int> sets; // number of every set of values
-    std::map<const MasonryJoint*, int> setOf;
-    const auto setNumber = [&](const MasonryJoint* joint) {
+    std::map<const PropertySet*, int> setOf;
+    const auto setNumber = [&](const PropertySet* joint) {
         const auto [at, fresh] = setOf.emplace(joint, 0);
         if (fresh) at->second = sets.emplace(valuesOf(*joint), int(sets.size())).first->second;
         return at->second;
@@ -170,12 +174,12 @@ void SceneStore::readJoints() {
     std::map<Key, std::multimap<double, std::size_t>> byStiffness; // numbers of groups, sorted by normal stiffness
     std::vector<Group> groups;
     std::vector<JointView> found;
-    const MasonryZones* zonesOfJoints = nullptr;
+    const Zones* zonesOfJoints = nullptr;
     bool broken = false;
     for (std::size_t n = 0; n < scene_.interactions->currSize; ++n) {
         const auto& interaction = *scene_.interactions->linIntrs[n];
-        const auto geom = boost::dynamic_pointer_cast<MasonryJointGeom>(interaction.geom);
-        const auto phys = boost::dynamic_pointer_cast<MasonryJointPhys>(interaction.phys);
+        const auto geom = boost::dynamic_pointer_cast<JointGeometry>(interaction.geom);
+        const auto phys = boost::dynamic_pointer_cast<JointPhysics>(interaction.phys);
         if (!geom || !phys || !geom->made() || !phys->made() || geom->points() != phys->points()) {
             broken = broken || geom || phys;
             continue;
@@ -185,7 +189,7 @@ void SceneStore::readJoints() {
             throw std::invalid_argument("the joints of a scene can belong to one MasonryZones only");
         if (hung) zonesOfJoints = hung->zones.get();
         const auto& k = phys->stiffness();
-        auto& alike = byStiffness[{setNumber(phys->joint().get()), geom->points(), hung != nullptr}];
+        auto& alike = byStiffness[{setNumber(phys->propertySet().get()), geom->points(), hung != nullptr}];
         auto at = alike.lower_bound(k.normal * (1 - 2e-12));
         const auto fits = [&](std::size_t group) {
             return sameButRoundOff(groups[group].k.normal, k.normal, k.normal) &&
@@ -206,7 +210,7 @@ void SceneStore::readJoints() {
         const auto& first = found[group.members[0]];
         const int count = int(group.members.size()), points = first.geom->points();
         JointKind kind{shared_ptr<JointShapes>(new JointShapes(count, points)),
-                       shared_ptr<JointStates>(new JointStates(first.phys->joint(), group.k, count, points)),
+                       shared_ptr<JointStates>(new JointStates(first.phys->propertySet(), group.k, count, points)),
                        first.geom->reference().hung != nullptr};
         kind.states->shapes = kind.shapes;
         for (Home* home : {static_cast<Home*>(kind.shapes.get()), static_cast<Home*>(kind.states.get())}) {
@@ -232,40 +236,16 @@ void SceneStore::readJoints() {
     joints = std::move(found);
 }
 
-void SceneStore::check() {
-    if (!(scene_.dt > 0 && std::isfinite(scene_.dt)))
-        throw std::invalid_argument("O.dt " + text(scene_.dt) + " s must be a finite number above 0");
-    if (const auto wrong = refusalInParallel(); !wrong.empty()) throw std::invalid_argument(wrong);
-    if (scene_.isPeriodic)
-        throw std::invalid_argument(
-            "O.periodic: joints do not reach across a periodic cell, nor does a cell strain blocks; "
-            "set it to False");
-    if (strayed.load().body1 >= 0) {
-        const auto joint = strayed.exchange({});
-        std::vector<std::string> needs;
-        for (const auto& [law, functor] : functorsOfLaws())
-            needs.push_back("law \"" + law + "\" needs " + functor);
-        throw std::invalid_argument(
-            "the joint of bodies " + std::to_string(joint.body1) + " and " + std::to_string(joint.body2) +
-            " follows another law than the Law2 functor of InteractionLoop: " + joined(needs, ", "));
-    }
-    if (!checked_) {
-        checkScene(*this);
-        if (zones) zones->units(); // divides the bodies into zones when nothing else is wrong
-        if (connected_.empty() && !joints.empty()) connected();
-        checked_ = true;
-    }
-    if (!energy && scene_.iter % collapseEvery == 0 && scene_.iter != seenCollapse_) {
-        seenCollapse_ = scene_.iter;
-        if (const auto found = collapse.look(*this, {}); found.block >= 0)
-            throw std::runtime_error("collapsed: " + found.what);
-    }
-}
-
 void SceneStore::connected() {
     connected_.clear();
     for (const auto& body : scene_.bodies->body)
         connected_.push_back(body.get());
+}
+
+Collapse SceneStore::findCollapse(const CollapseLimits& limits) {
+    for (int b = 0; (!loop || !integrator) && b < bodies.size(); ++b)
+        if (bodies.has(b)) bodies.noticePlace(b); // the host has moved it
+    return collapse_.look(scene_, bodies, kinds, revision_, limits);
 }
 
 std::vector<int> SceneStore::strangers() const {
@@ -282,35 +262,6 @@ std::vector<int> SceneStore::strangers() const {
         if (block && !known && !joined[id]) all.push_back(int(id));
     }
     return all;
-}
-
-EngineTurn::EngineTurn(yade::Scene& scene, const yade::Engine& engine)
-    : engine_(&engine), errors_(std::uncaught_exceptions()) {
-    StepGate::instance().enter();
-    try {
-        store_ = &SceneStore::of(scene);
-        store_->update(SceneStore::Look::InStep);
-        store_->check();
-    } catch (...) {
-        StepGate::instance().leave(true);
-        throw;
-    }
-}
-
-EngineTurn::EngineTurn(yade::Scene& scene) : errors_(std::uncaught_exceptions()) {
-    StepGate::instance().enter();
-    try {
-        store_ = &SceneStore::of(scene);
-        store_->update(SceneStore::Look::InStep);
-    } catch (...) {
-        StepGate::instance().leave(true);
-        throw;
-    }
-}
-
-EngineTurn::~EngineTurn() {
-    const bool failed = std::uncaught_exceptions() > errors_;
-    StepGate::instance().leave(failed || (engine_ && store_->last == engine_));
 }
 
 } // namespace masonry

@@ -5,7 +5,7 @@ import math
 from yade import Body, O, Vector3, utils, wrapper
 from yade.wrapper import *
 
-from .._masonry import connected, gather, neighbours
+from .._masonry import connected, dropFaces, gather, neighbours
 
 #: The functor that makes joints of blocks. Its subclasses do so where a block is one of YADE's own Polyhedra.
 _GEOMETRY = Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom
@@ -333,6 +333,7 @@ def connect(rule=None, tolerance=1e-4, allowGaps=False):
             _warn(pairs, physics.joints, sizes, engines)
         raise
     finally:
+        dropFaces()
         O.engines = engines
         for functor in functors:
             functor.tolerance = before
@@ -362,7 +363,7 @@ def _forPolyhedra(geometry):
 
 def _pairs(tolerance, allowGaps):
     """Pairs of blocks to join, and the thinnest and the largest block."""
-    pairs, misfits, sizes = neighbours(tolerance)
+    pairs, misfits, sizes = neighbours(tolerance, keepFaces=True)
     known = next(
         (i for i in O.interactions.all() if isinstance(i.geom, MasonryJointGeom)), None
     )

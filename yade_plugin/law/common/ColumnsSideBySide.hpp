@@ -129,7 +129,7 @@ void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const d
             busy += regime[n] != Regime::Elastic;
         for (int n = 0; n < count; n += lanes)
             yieldFrom(point, from + n);
-        if (4 * busy > 3 * count) { // nearly all need the whole law again
+        if (4 * busy > 3 * count) { // nearly all need the whole law again: looking for the others costs more
             std::fill_n(waits, count, 1);
             advanceSideBySide(equations_, law_->tension(), law_->shear(), columns_.from(first), &rows_[first], regime,
                               jumps, waits, count, normalStress);

@@ -1,5 +1,14 @@
 // The paper's law on subcontacts side by side in columns, with the equations that PiecewiseLaw takes for one. A marked
 // function uses the vector units, and tells the same numbers as the law for one to the last bit.
+//
+// So the order of a step stands twice: in PiecewiseLaw::advance for one subcontact, and here in passes over a batch of
+// up to 32. Written once for packs of four or eight, as the step of the cyclic law is, it gives the same bits in 250
+// lines less. But where most subcontacts yield, such a step took 18 % (slip), 24 % (opening), 25 % (dilatancy) and 53 %
+// (crushing) longer with AVX2. The profile shows why: a step is one chain of divisions and roots, each of which needs
+// the result of the one before, and a pack waits for each of them. A pass over a batch has eight packs at hand that do
+// not depend on each other, and calculates with the next one meanwhile. Two packs at a time took longer still: their
+// numbers do not fit into the registers. The cyclic law waits likewise, but its step has so many cases that passes over
+// all of them would cost more.
 #pragma once
 #include "PiecewiseEquations.hpp"
 #include "PiecewiseState.hpp"

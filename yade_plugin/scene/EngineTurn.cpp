@@ -1,0 +1,42 @@
+#include "EngineTurn.hpp"
+#include "SceneCheck.hpp"
+#include "StepGate.hpp"
+#include <exception>
+
+namespace masonry {
+
+EngineTurn::EngineTurn(yade::Scene& scene, const yade::Engine& engine)
+    : engine_(&engine), errors_(std::uncaught_exceptions()) {
+    StepGate::instance().enter();
+    try {
+        store_ = &SceneStore::of(scene);
+        if (store_->isOpenFor(engine))
+            refuseParallelEngine();
+        else {
+            store_->update(SceneStore::Look::InStep);
+            checkBeforeStep(*store_);
+            store_->opened();
+        }
+    } catch (...) {
+        StepGate::instance().leave(true);
+        throw;
+    }
+}
+
+EngineTurn::EngineTurn(yade::Scene& scene) : errors_(std::uncaught_exceptions()) {
+    StepGate::instance().enter();
+    try {
+        store_ = &SceneStore::of(scene);
+        store_->update(SceneStore::Look::InStep);
+    } catch (...) {
+        StepGate::instance().leave(true);
+        throw;
+    }
+}
+
+EngineTurn::~EngineTurn() {
+    const bool failed = std::uncaught_exceptions() > errors_;
+    StepGate::instance().leave(failed || (engine_ && store_->last == engine_));
+}
+
+} // namespace masonry

@@ -1,0 +1,27 @@
+// The beginning and the end of an engine's action.
+#pragma once
+#include "SceneStore.hpp"
+
+namespace masonry {
+
+// Stands at the beginning of an engine's action. While it exists, Python's readers wait. The first engine of a step
+// brings the store up to date and checks the scene. Those after it do so only if something between them has changed
+// engines or joints.
+class EngineTurn {
+public:
+    EngineTurn(yade::Scene&, const yade::Engine&);
+    explicit EngineTurn(yade::Scene&); // for the functors of the host's interaction loop; does not check the scene
+    ~EngineTurn();
+    EngineTurn(const EngineTurn&) = delete;
+    EngineTurn& operator=(const EngineTurn&) = delete;
+
+    SceneStore* operator->() const { return store_; }
+    SceneStore& store() const { return *store_; }
+
+private:
+    SceneStore* store_ = nullptr;
+    const yade::Engine* engine_ = nullptr;
+    int errors_; // exceptions under way when it was made, so that its end knows whether the action failed
+};
+
+} // namespace masonry
