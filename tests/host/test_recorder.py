@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import references
 from masonry import MasonryVtkRecorder
+from masonry.read.frames import asFrame, readFrame
 from test_joint_loop import CASES, panel
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray
@@ -53,6 +54,17 @@ def frame(request, tmp_path):
     recorder()
     yield interactions, tmp_path, recorder
     O.reset()
+
+
+def test_joints_without_a_file_are_those_of_the_file(frame):
+    """What is measured of a run that leaves no frames is measured of the same numbers."""
+    _, folder, recorder = frame
+    ofFile, now = readFrame(str(folder), "joints"), asFrame(recorder.joints())
+    assert ofFile.keys() == now.keys()
+    for name in ofFile.keys() - {"cells"}:
+        assert np.array_equal(ofFile[name], now[name]), name
+    assert all(map(np.array_equal, ofFile["cells"], now["cells"]))
+    assert len(ofFile["cells"]) == len(now["cells"]) > 10
 
 
 def test_every_column_of_the_joints_is_that_of_python(frame):

@@ -105,6 +105,22 @@ private:
     std::vector<Column> columns_;
 };
 
+// The numbers of an array for Python: a list of numbers, or of lists if it has several components.
+py::list tuples(vtkDataArray& array) {
+    py::list rows;
+    const int width = array.GetNumberOfComponents();
+    for (vtkIdType i = 0; i < array.GetNumberOfTuples(); ++i) {
+        py::list row;
+        for (int k = 0; k < width; ++k)
+            row.append(array.GetComponent(i, k));
+        if (width > 1)
+            rows.append(row);
+        else
+            rows.append(row[0]);
+    }
+    return rows;
+}
+
 // Displacement of a point of the reference state that moves with a body. For a deformable unit this is the rigid part
 // of the motion.
 Vector3r moved(const yade::State& s, const Vector3r& position, const Quaternionr& orientation, const Vector3r& point) {
@@ -247,7 +263,7 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
     write<vtkXMLUnstructuredGridWriter>(path, grid.Get());
 }
 
-void MasonryVtkRecorder::writeJoints(const std::string& path) {
+vtkSmartPointer<vtkPolyData> MasonryVtkRecorder::jointData() {
     vtkNew<vtkPolyData> data;
     vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
@@ -311,7 +327,34 @@ void MasonryVtkRecorder::writeJoints(const std::string& path) {
     }
     data->SetPoints(points);
     data->SetPolys(cells);
-    write<vtkXMLPolyDataWriter>(path, data.Get());
+    return data;
+}
+
+void MasonryVtkRecorder::writeJoints(const std::string& path) {
+    write<vtkXMLPolyDataWriter>(path, jointData().Get());
+}
+
+py::dict MasonryVtkRecorder::jointsNow() {
+    const BetweenSteps still;
+    const auto data = jointData();
+    py::dict found;
+    found["points"] = tuples(*data->GetPoints()->GetData());
+    for (vtkDataSetAttributes* values : {static_cast<vtkDataSetAttributes*>(data->GetPointData()),
+                                         static_cast<vtkDataSetAttributes*>(data->GetCellData())})
+        for (int i = 0; i < values->GetNumberOfArrays(); ++i)
+            found[values->GetArrayName(i)] = tuples(*values->GetArray(i));
+    py::list cells;
+    vtkNew<vtkIdList> corners;
+    auto* polygons = data->GetPolys();
+    polygons->InitTraversal();
+    while (polygons->GetNextCell(corners)) {
+        py::list cell;
+        for (vtkIdType i = 0; i < corners->GetNumberOfIds(); ++i)
+            cell.append(corners->GetId(i));
+        cells.append(cell);
+    }
+    found["cells"] = cells;
+    return found;
 }
 
 void MasonryVtkRecorder::writeCollection(const std::string& name, const std::string& extension) const {

@@ -1,5 +1,8 @@
 #pragma once
 #include "Adapter.hpp"
+#include <vtkSmartPointer.h>
+
+class vtkPolyData;
 
 namespace masonry {
 
@@ -37,6 +40,9 @@ public:
     template <class PyClass> static void extras(PyClass& cls) {
         cls.def("collect", &MasonryVtkRecorder::collect,
                 "Write blocks.pvd and joints.pvd alone, for the frames of `times`.")
+            .def("joints", &MasonryVtkRecorder::jointsNow,
+                 "All joints as they are now, without a file: a dict of what a file of joints holds, by the names of "
+                 "fields(), with `points` [m] and `cells`, lists of numbers of points.")
             .def("fields", &MasonryVtkRecorder::fieldsOfFiles,
                  "What the files hold: a dict of name -> meaning with unit.")
             .staticmethod("fields");
@@ -45,7 +51,9 @@ public:
 private:
     static py::dict fieldsOfFiles();
     void writeBlocks(const std::string& path) const;
+    vtkSmartPointer<vtkPolyData> jointData();
     void writeJoints(const std::string& path);
+    py::dict jointsNow();
     void writeCollection(const std::string& name, const std::string& extension) const;
 };
 

@@ -69,6 +69,13 @@ def readFrame(directory, kind, number=-1):
         ) from None
 
 
+def asFrame(found):
+    """The same dict as :func:`readFrame` gives, of what ``MasonryVtkRecorder().joints()`` gives without a file."""
+    frame = {name: np.array(rows) for name, rows in found.items() if name != "cells"}
+    frame["cells"] = [np.array(cell) for cell in found["cells"]]
+    return frame
+
+
 def _frame(root):
     """What :func:`readFrame` returns, of the parsed file."""
     if (root.get("compressor"), root.get("byte_order")) != (

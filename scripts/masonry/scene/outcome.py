@@ -3,7 +3,6 @@
 import math
 import subprocess
 import sys
-import tempfile
 
 from yade import O
 from yade.wrapper import MasonryVtkRecorder
@@ -19,7 +18,7 @@ from ..read.curves import (
     initialStiffness,
     peakAtBothEnds,
 )
-from ..read.frames import readFrame
+from ..read.frames import asFrame
 from . import history
 from .options import UNITS
 from .stages import pushing
@@ -170,7 +169,7 @@ class Outcome:
             if not math.isfinite(found["drop_at_mm"]):
                 found["drop_at_mm"] = None
         if wall:
-            found.update(cracks.pattern(_jointsNow(), wall))
+            found.update(cracks.pattern(asFrame(MasonryVtkRecorder().joints()), wall))
             found["failure_mode"] = cracks.failureMode(found, wall)
         return found
 
@@ -300,13 +299,3 @@ class Outcome:
             return
         other = at("negative_peak_base_shear_kN", "displacement_at_negative_peak_mm")
         yield f"{name}: {len(run['cycles'])} cycles, peaks {peak} and {other}, {end}"
-
-
-def _jointsNow():
-    """All joints as they are now, as a frame."""
-    with tempfile.TemporaryDirectory() as folder:
-        try:
-            MasonryVtkRecorder(directory=folder)()
-        except RuntimeError as error:
-            raise Unwritable(str(error)) from None
-        return readFrame(folder, "joints")
