@@ -79,7 +79,9 @@ if "yade" in sys.modules:
     from .assembly import ports
     from .scene import options
     from .run.checkpoints import loadCheckpoint, readCheckpoint, saveCheckpoint
-    from .assembly.blocks import addBlock, advance, connect, engine, engines
+    from .assembly.blocks import addBlock
+    from .assembly.connecting import connect
+    from .assembly.engines import advance, engine, engines
     from .scene.ground import rayleigh
     from .scene.scene import Scene
     from .scene.stages import AT_REST, COLLAPSED, DONE, MOVING

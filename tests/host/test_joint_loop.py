@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from masonry import addBlock, bricks, connect, criticalTimeStep, engines
 from masonry.bricks import boxCorners as corners
-from masonry.assembly.blocks import ROTATION
+from masonry.assembly.engines import ROTATION
 from yade import O, Quaternion, Vector3
 from yade.wrapper import *
 

@@ -23,8 +23,8 @@ import resource
 import sys
 import time
 
-from masonry import Scene, bricks, materials
-from masonry.assembly import blocks as scene, columns
+from masonry import Scene, addBlock, bricks, connect, engines, materials
+from masonry.assembly import columns
 from masonry.read.files import readCurve, readRun
 from yade import O, Vector3, timing, utils
 from yade.wrapper import *
@@ -103,11 +103,11 @@ def wide(courses, halfUnits):
     unit, joints = materials.calciumSilicateUnit(), materials.calciumSilicateJoints()
     before = resident()
     for b in bricks.Wall(0.11 * halfUnits, 0.081 * courses):
-        scene.addBlock(b.corners, unit, inPlane=True)
+        addBlock(b.corners, unit, inPlane=True)
     bodies = resident()
     O.bodies[0].state.blockedDOFs = "xyzXYZ"
-    scene.engines(list(joints.values()), inPlane=True)
-    contacts = 4 * len(scene.connect())
+    engines(list(joints.values()), inPlane=True)
+    contacts = 4 * len(connect())
     O.dt = 1e-8
     O.step()
     count = len(O.bodies)

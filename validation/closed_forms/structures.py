@@ -1,6 +1,6 @@
 """Small structures in YADE that closed forms speak of, and whether they stand.
 
-Some are built body by body with :mod:`masonry.assembly.blocks`, for single blocks and joints; others are a
+Some are built body by body with :mod:`masonry.assembly`, for single blocks and joints; others are a
 :class:`masonry.Scene`.
 """
 

@@ -1,7 +1,7 @@
 """What YADE is given and what is read off it: blocks, joints, engines, loads, and the columns of curve.csv.
 
-- :mod:`masonry.assembly.blocks`: ``addBlock``, ``engines``, ``connect`` and ``advance``, for scenes that are built body by
-  body
+- :mod:`masonry.assembly.blocks`: ``addBlock``; :mod:`masonry.assembly.engines`: ``engines`` and ``advance``;
+  :mod:`masonry.assembly.connecting`: ``connect``: for scenes that are built body by body
 - :mod:`masonry.assembly.structure`: what a scene is in YADE; :mod:`masonry.assembly.motion`: how its blocks move
 - :mod:`masonry.assembly.columns`: what a row of curve.csv holds
 - :mod:`masonry.assembly.window`: the scene in YADE's own 3-D view while it runs

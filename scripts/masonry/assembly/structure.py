@@ -8,7 +8,9 @@ from yade.wrapper import MasonryJoint, MasonryLoad, MasonryZones
 from .._masonry import criticalTimeStep
 from ..basics import GRAVITY, Refused
 from ..bricks import boxCorners
-from .blocks import addBlock, connect, engine, engines
+from .blocks import addBlock
+from .connecting import connect
+from .engines import engine, engines
 from .columns import Reading
 from .motion import Motion
 

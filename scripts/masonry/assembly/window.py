@@ -12,7 +12,12 @@ import threading
 import time
 
 from yade import O, Vector3
-from yade.wrapper import *
+from yade.wrapper import (
+    Gl1_MasonryBlock,
+    Gl1_MasonryJointPhys,
+    GlExtra_MasonryLegend,
+    PyRunner,
+)
 
 #: Label of the engine that keeps the view alive.
 _LABEL = "masonryWindow"

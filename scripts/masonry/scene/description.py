@@ -51,7 +51,7 @@ class Description:
             raise Refused("\n".join(problems))
         self.name, self.title = name, title or name
         self.materials, self.gravity = materials, gravity  # [m/s²], downwards
-        self.functors = functors  # as of masonry.assembly.blocks.engines
+        self.functors = functors  # as of masonry.assembly.engines.engines
         self.deformable = deformable  # whether bricks are
         points = [p for block in self.bricks for p in block.corners]
         #: corners of the box around all bricks [m]

@@ -10,7 +10,7 @@ from yade import Vector3
 from yade.wrapper import MasonryJoint, MasonryMat
 
 from . import fields
-from ..assembly.blocks import LAWS
+from ..assembly.engines import LAWS
 from ..basics import Refused
 
 #: A joint whose normal is steeper than this is a bed joint: 45 degrees.
@@ -142,7 +142,7 @@ class Masonry:
         return own
 
     def rule(self, blocks):
-        """The rule of :func:`masonry.assembly.blocks.connect`.
+        """The rule of :func:`masonry.assembly.connecting.connect`.
 
         :param blocks: records of the bricks by body id
         """

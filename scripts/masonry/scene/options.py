@@ -4,7 +4,7 @@ import argparse
 import os
 import sys
 
-from ..assembly.blocks import LAWS
+from ..assembly.engines import LAWS
 from ..basics import Refused, say
 from ..run.presets import BOUND, PRESETS, USUAL
 from .parsing import Parser, count, field, folder, number, pathOf

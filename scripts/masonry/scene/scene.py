@@ -53,7 +53,7 @@ class Scene:
     :param plane: whether blocks move in the x-z plane only, which is faster; None: if all bricks are one leaf in it
     :param gravity: [m/s²], downwards
     :param columns: names of the columns of curve.csv, beside the energies; None: all that there are
-    :param functors: as of :func:`masonry.assembly.blocks.engines`
+    :param functors: as of :func:`masonry.assembly.engines.engines`
     :param arguments: options as :func:`masonry.scene.options.parser` gives them, or a list of words; None: those of the
         command line
     :param usual: options whose default is another one in this scene, for example ``rate=50`` [mm/s] or ``dt_fraction=0.4``

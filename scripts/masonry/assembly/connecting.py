@@ -1,0 +1,230 @@
+"""The joints of a scene: made of all pairs of blocks that share a face. Bad input raises ValueError, with all problems at
+once."""
+
+from yade import O, utils
+from yade.wrapper import (
+    InteractionLoop,
+    MasonryIntegrator,
+    MasonryJoint,
+    MasonryJointGeom,
+    MasonryJointLoop,
+    MasonryLoad,
+    MasonryZones,
+    NewtonIntegrator,
+)
+
+from .._masonry import connected, dropFaces, gather, neighbours
+from .blocks import properties, refuse
+from .engines import LAWS, functorLoop
+
+
+def connect(rule=None, tolerance=1e-4, allowGaps=False):
+    """Make the joints between all blocks that share a face. The present state is the reference. Returns the interactions.
+
+    Blocks that lie in each other are refused, and those that miss a shared face by less than a quarter of their
+    thickness; the message has the gap. A scene without any joint is refused, too, and one that has its joints already.
+    Nothing changes then. Values that look like those of another unit, blocks without joints, and properties
+    without effect under the law of their joint are printed as warnings.
+
+    :param rule: function (body1, body2, geom) that returns a MasonryJoint, or None to leave the choice to direction and
+        joint set
+    :param tolerance: largest gap or overlap of coincident faces, relative to the smaller block's size, at most 0.01
+    :param allowGaps: whether blocks that nearly share a face stand apart on purpose
+    """
+    engines = list(O.engines)
+    loop = next(
+        (e for e in engines if isinstance(e, (MasonryJointLoop, InteractionLoop))), None
+    )
+    if loop is None:
+        raise ValueError(
+            "connect() needs the joints' engine in O.engines: call masonry.engines() first"
+        )
+    if rule is not None and not callable(rule):
+        raise ValueError(
+            f"rule must be a function (body1, body2, geom) or None, got {rule!r}"
+        )
+    if isinstance(loop, InteractionLoop):
+        geometry, physics = (
+            d.functors[0] if d.functors else None
+            for d in (loop.geomDispatcher, loop.physDispatcher)
+        )
+        functors = loop.geomDispatcher.functors
+    else:
+        geometry, physics = loop.geometry, loop.physics
+        functors = [geometry]
+    if geometry is None or physics is None:
+        raise ValueError(
+            f"{type(loop).__name__} has no geometry or no physics: call masonry.engines()"
+        )
+    before, pairs = geometry.tolerance, []
+    try:
+        for functor in functors:
+            functor.tolerance = tolerance
+        pairs, sizes = _pairs(tolerance, allowGaps)
+        if not isinstance(loop, InteractionLoop):
+            # YADE makes interactions with the functors of an InteractionLoop: one stands in for a moment
+            O.engines = [functorLoop(geometry, physics)]
+        made, joints = _connect(pairs, physics, rule)
+    except ValueError:
+        if pairs:  # a value in another unit may be the reason
+            _warn(pairs, physics.joints, sizes, engines)
+        raise
+    finally:
+        dropFaces()
+        O.engines = engines
+        for functor in functors:
+            functor.tolerance = before
+    connected()
+    _warn(pairs, joints, sizes, engines)
+    return made
+
+
+def _pairs(tolerance, allowGaps):
+    """Pairs of blocks to join, and the thinnest and the largest block."""
+    pairs, misfits, sizes = neighbours(tolerance, keepFaces=True)
+    known = next(
+        (i for i in O.interactions.all() if isinstance(i.geom, MasonryJointGeom)), None
+    )
+    if known:
+        raise ValueError(
+            f"bodies {known.id1} and {known.id2} have a joint: connect() is called once, when all blocks are there"
+        )
+    problems = []
+    for one, two, gap, bound in misfits:
+        if gap < 0:
+            problems.append(
+                f"bodies {one} and {two} lie {-1e3 * gap:g} mm deep in each other"
+            )
+        elif not allowGaps:
+            problems.append(
+                f"bodies {one} and {two} nearly share a face, with a gap of {1e3 * gap:g} mm"
+            )
+        else:
+            continue
+        problems[-1] += f"; the tolerance is {1e3 * bound:.3g} mm"
+    refuse(
+        problems,
+        "move them, or see help(masonry.connect) for its tolerance and allowGaps",
+    )
+    if not pairs:
+        raise ValueError(
+            f"no joint can be made: none of {len(O.bodies)} bodies shares a face with another (tolerance "
+            f"{tolerance:g} of the smaller block's size)"
+        )
+    return pairs, sizes
+
+
+def _connect(pairs, physics, rule):
+    """Make the joints of all pairs, or none of them. Returns the interactions and the MasonryJoint objects."""
+    made, problems, joints = [], [], {id(j): j for j in physics.joints}
+    due = 256
+    try:
+        for id1, id2 in pairs:
+            try:
+                interaction = utils.createInteraction(id1, id2)
+            except ValueError as error:
+                if str(error) not in problems:  # joints of a kind are refused alike
+                    problems.append(str(error))
+                continue
+            made.append(interaction)
+            if (
+                len(made) == due
+            ):  # what joints leave when they move into columns is free for the next ones
+                gather()
+                due += 256 + due // 4
+            if rule:
+                bodies = O.bodies[interaction.id1], O.bodies[interaction.id2]
+                joint = rule(*bodies, interaction.geom)
+                if isinstance(joint, MasonryJoint):
+                    physics.assign(interaction, joint)
+                    joints[id(joint)] = joint
+                elif joint is not None:
+                    problems.append(
+                        f"rule must return a MasonryJoint or None, got {joint!r} for bodies {id1} and {id2}"
+                    )
+        refuse(problems)
+    except BaseException:
+        for interaction in made:
+            O.interactions.erase(interaction.id1, interaction.id2)
+        O.interactions.eraseNonReal()
+        raise
+    return made, list(joints.values())
+
+
+def _isBlock(body):
+    return type(body.shape).__name__ in ("MasonryBlock", "Polyhedra")
+
+
+def _warn(pairs, joints, sizes, engines):
+    """Print warnings of what looks like a mistake: other units, blocks without joints, properties without effect."""
+    (thin, thickness), (large, size) = sizes
+    hints = []
+    if thickness < 1e-3:
+        hints.append(f"body {thin} is {thickness:g} m thick: are corners in m?")
+    if size > 50:
+        hints.append(f"body {large} is {size:g} m long: are corners in m, not mm?")
+    bodies = {b.id: b for b in O.bodies if _isBlock(b)}
+    mats = {(b.mat.label, b.mat.young, b.mat.density): b.mat for b in bodies.values()}
+    for thing in (*mats.values(), *joints):
+        name = thing.name if isinstance(thing, MasonryJoint) else thing.label
+        for p in properties(type(thing)):
+            value = getattr(thing, p["name"]) if p["other_unit"] else 0
+            if value > 0 and not p["usual_low"] <= value <= p["usual_high"]:
+                hints.append(
+                    f'{type(thing).__name__} "{name}": {p["name"]} {value:g} {p["unit"]}: is it in {p["unit"]}, '
+                    f'not {p["other_unit"]}?'
+                )
+    usual, read = MasonryJoint(), [law["properties"] for law in LAWS.values()]
+    for joint in joints:
+        own = LAWS[joint.law]["properties"]
+        #: of an elastic joint those that one law alone reads, else those that others read and this one does not
+        idle = [
+            p["name"]
+            for p in properties(MasonryJoint)
+            if getattr(joint, p["name"]) != getattr(usual, p["name"])
+            and any(p["name"] in names for names in read)
+            and (
+                sum(p["name"] in names for names in read) == 1
+                if joint.elastic
+                else p["name"] not in own
+            )
+        ]
+        if idle:
+            why = "is elastic" if joint.elastic else f'follows the law "{joint.law}"'
+            hints.append(
+                f'MasonryJoint "{joint.name}" {why}: no effect of {", ".join(idle)}'
+            )
+    integrator = next(
+        (e for e in engines if isinstance(e, (MasonryIntegrator, NewtonIntegrator))),
+        None,
+    )
+    gravity = integrator.gravity.norm() if integrator else 0
+    for label, _, density in mats:  # density scaling keeps the weight
+        if gravity and not 1e3 <= density * gravity <= 1e5:
+            hints.append(
+                f'MasonryMat "{label}": density {density:g} kg/m³ weighs {density * gravity:g} N/m³: is it in kg/m³?'
+            )
+    alone = sorted(set(bodies).difference(*zip(*pairs)))
+    if alone:
+        hints.append(
+            f"no joint holds bodies {alone[:10]}" + (" and more" * (len(alone) > 10))
+        )
+    for engine in engines:
+        if isinstance(engine, MasonryLoad) and engine.body in bodies:
+            body = bodies[engine.body]
+            away = (engine.point - body.state.refPos).norm()
+            if away > 20 * max(v.norm() for v in body.shape.v):
+                hints.append(
+                    f"MasonryLoad: its point lies {away:g} m from body {body.id}: is it in m?"
+                )
+        if isinstance(engine, MasonryZones):
+            count = {i: len(range(*engine.nodesOf(i))) for i in engine.bodies}
+            stars = [i for i in count if count[i] == len(bodies[i].shape.v) + 1]
+            if not count:
+                hints.append("MasonryZones has no bodies")
+            if stars and engine.divisions != [1, 1, 1]:
+                hints.append(
+                    f"MasonryZones: divisions do not apply to bodies {stars[:10]}, which are no hexahedra"
+                )
+    for hint in hints:
+        print("warning: " + hint)

@@ -1,0 +1,191 @@
+"""The engines of a masonry scene, and how it takes steps. Bad input raises ValueError, with all problems at once."""
+
+from yade import O, wrapper
+from yade.wrapper import (
+    ForceResetter,
+    Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom,
+    InteractionLoop,
+    Ip2_MasonryMat_MasonryMat_MasonryJointPhys,
+    MasonryEnergy,
+    MasonryIntegrator,
+    MasonryJoint,
+    MasonryJointLoop,
+    MasonryLoad,
+    MasonryZones,
+    NewtonIntegrator,
+)
+
+from .blocks import refuse
+
+#: The functor that makes joints of blocks. Its subclasses do so where a block is one of YADE's own Polyhedra.
+_GEOMETRY = Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom
+
+#: The laws that joints can follow, by name, the default one first: see ``MasonryJoint.laws()``.
+LAWS = {law["name"]: law for law in MasonryJoint.laws()}
+
+#: What a NewtonIntegrator needs to turn bodies as MasonryIntegrator does. YADE 2025 has several algorithms of rotation
+#: and takes another one by default; YADE 2023 has this one only.
+ROTATION = {"exactAsphericalRot": True}
+if hasattr(NewtonIntegrator, "rotAlgorithm"):
+    ROTATION["rotAlgorithm"] = "Fincham1992"
+
+
+def engines(
+    joints,
+    damping=0.8,
+    gravity=(0, 0, -9.81),
+    subcontacts=None,
+    rows=None,
+    inPlane=False,
+    loads=(),
+    zones=None,
+    functors=False,
+    dampingKind=None,
+):
+    """Fill O.engines for a masonry scene: joints, loads, energy balance and integration. There is no collider.
+
+    The engines have labels, by which ``masonry.engine(label)`` finds them: ``joints`` the MasonryJointLoop, ``energy``
+    the MasonryEnergy, ``integrator`` the MasonryIntegrator; loads and zones keep their own.
+
+    :param joints: MasonryJoint objects; a pair of units takes the first that fits
+    :param damping: damping constant of rigid units [-], 0 for motion in real time; the paper's eq. (3) has 0.8 (the
+        paper: see yade_plugin/law/README.md)
+    :param gravity: [m/s²]
+    :param subcontacts: how many there are along a joint; None: 3. They are the points of Gauss and Lobatto, so the ends
+        of a joint are points, and a block rocks about its edge at the true moment. From three on the elastic rotational
+        stiffness is exact; with two it is three times too large; with one, a joint does not resist rotation. More than
+        three follow the progress of a crack or of crushing along a joint more finely. A step costs in proportion to
+        all subcontacts, that is, subcontacts times rows
+    :param rows: rows of subcontacts across a joint, at the points of Gauss and Lobatto, too; None or 0: chosen for every
+        joint when it is made. It gets one row, in the middle, if its two blocks can turn about one and the same of the
+        global axes only, and if that axis lies in the joint: blocks of a wall in its plane, and fixed bodies. That is
+        exact there. Every other joint gets three rows. So block degrees of freedom before ``connect()``, and free none
+        later. One row where blocks are free in space would leave a joint without stiffness out of its plane; two rows make
+        it three times too stiff there
+    :param inPlane: the rows follow each other along y, also where the blocks' freedom does not say so
+    :param loads: MasonryLoad engines
+    :param zones: MasonryZones of the deformable units, if there are any
+    :param functors: YADE's InteractionLoop and NewtonIntegrator, the slow reference, instead of MasonryJointLoop and
+        MasonryIntegrator
+    :param dampingKind: ``"combined"`` or ``"local"``; None: combined, and local with functors, because NewtonIntegrator
+        knows no other. Combined damping takes energy from vibration and hardly brakes a steady motion. Local damping is
+        the paper's eq. (3); it holds back what moves steadily, so a mechanism that turns slowly seems stronger than it is
+    """
+    problems = []
+    kinds = ("local",) if functors else ("combined", "local")
+    if dampingKind not in (None, *kinds):
+        problems.append(
+            f"engines: dampingKind must be {' or '.join(kinds)}"
+            + (" with functors" if functors else "")
+            + f", got {dampingKind!r}"
+        )
+        dampingKind = None
+
+    def made(make):
+        try:
+            return make()
+        except ValueError as error:
+            problems.append(str(error))
+
+    def listed(values, what, kind):
+        try:
+            values = list(values)
+            wrong = [v for v in values if not isinstance(v, kind)]
+        except TypeError:
+            wrong = [values]
+        if wrong:
+            problems.append(
+                f"engines: {what} must be a list of {kind.__name__}, got {wrong[0]!r}"
+            )
+        return values
+
+    joints = listed(joints, "joints", MasonryJoint)
+    loads = listed(loads, "loads", MasonryLoad)
+    if not joints:
+        problems.append("engines: joints must not be empty")
+    if zones is not None and not isinstance(zones, MasonryZones):
+        problems.append(f"engines: zones must be a MasonryZones or None, got {zones!r}")
+    integrator = made(
+        lambda: MasonryIntegrator(
+            damping=damping,
+            dampingKind=dampingKind or kinds[0],
+            gravity=gravity,
+            label="integrator",
+        )
+    )
+    counts = {"subcontacts": subcontacts, "rows": rows}
+    geometry = made(
+        lambda: Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom(
+            **{name: n for name, n in counts.items() if n is not None},
+            rowDirection=(0, 1, 0) if inPlane else (0, 0, 0),
+        )
+    )
+    refuse(problems)
+    physics = Ip2_MasonryMat_MasonryMat_MasonryJointPhys(joints=joints)
+    if zones:
+        zones.gravity = integrator.gravity
+        geometry.zones = zones
+    if functors:
+        loop = functorLoop(geometry, physics)
+        integrator = NewtonIntegrator(
+            damping=damping,
+            gravity=integrator.gravity,
+            label="integrator",
+            **ROTATION,
+        )
+    else:
+        loop = MasonryJointLoop(geometry=geometry, physics=physics, label="joints")
+    O.engines = [
+        ForceResetter(),
+        loop,
+        *loads,
+        MasonryEnergy(label="energy"),
+        integrator,
+    ] + ([zones] if zones else [])
+
+
+def engine(label):
+    """The engine of O.engines with this label. Raises ValueError, with the labels that there are."""
+    found = {e.label: e for e in O.engines if e.label}
+    if label not in found:
+        raise ValueError(
+            f"no engine has the label {label!r}; there are {', '.join(found) or 'none'}"
+        )
+    return found[label]
+
+
+def advance(steps):
+    """Take time steps, in this thread, as fast as the engines go. Ctrl-C stops between two steps.
+
+    YADE's ``O.run(steps, True)`` waits for another thread and looks every 40 ms whether it has finished, so short runs
+    are mostly waiting, and Ctrl-C waits for its end.
+
+    :param steps: how many, a whole number from 0 on
+    """
+    if isinstance(steps, bool) or not isinstance(steps, int) or steps < 0:
+        raise ValueError(
+            f"advance: steps must be a whole number from 0 on, got {steps!r}"
+        )
+    step = O.step
+    for _ in range(steps):
+        step()
+
+
+def functorLoop(geometry, physics):
+    """An InteractionLoop with functors that make joints of all pairs of blocks and follow their law."""
+    laws = [joint.law for joint in physics.joints if not joint.elastic]
+    law = LAWS[laws[0] if laws else next(iter(LAWS))]  # one functor takes all joints
+    functor = getattr(wrapper, law["functor"])()
+    return InteractionLoop(
+        [geometry, *_forPolyhedra(geometry)], [physics], [functor], label="joints"
+    )
+
+
+def _forPolyhedra(geometry):
+    """Functors for the pairs of shapes that a geometry functor does not take, where this YADE has Polyhedra."""
+    same = {p["name"]: getattr(geometry, p["name"]) for p in _GEOMETRY.properties()}
+    return [
+        cls(**same)
+        for cls in (_GEOMETRY, *_GEOMETRY.__subclasses__())
+        if cls is not type(geometry)
+    ]
