@@ -16,7 +16,7 @@ from hypothesis import HealthCheck, settings
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 BUILD = os.path.join(ROOT, "build")
-RINGS = ["law", "blocks", "files", "host", "package", "sanitizers", "fuzz", "studies", "scenes"]  # fmt: skip
+RINGS = ["common", "law", "motion", "blocks", "files", "gates", "host", "package", "sanitizers", "fuzz", "studies", "scenes"]  # fmt: skip
 SLOW = ["sanitizers", "fuzz", "studies", "scenes"]  # rings of which every test is slow
 TOGETHER = ["programs", "targets", "squat", "whole"]  # fixtures that many tests share
 
