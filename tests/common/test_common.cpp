@@ -1,5 +1,6 @@
 // Text, descriptions of properties, packs of numbers and vectorised loops.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include "common/Pack.hpp"
 #include "common/Property.hpp"
 #include "common/Text.hpp"
 #include "common/Vectorised.hpp"
@@ -136,7 +137,8 @@ TEST_CASE("names of the code become words") {
 
 TEST_CASE("a misspelt name is answered with the nearest one, unless more than a third of its letters are wrong") {
     const std::vector<std::string> names = {"tensileStrength", "cohesion", "friction", "residualFriction"};
-    CHECK(nearestName("Friction", names) == "friction");              // capitals do not count
+    CHECK(nearestName("Friction", names) == "friction"); // capitals do not count
+    CHECK(nearestName("COHESION", names) == "cohesion");
     CHECK(nearestName("fricton", names) == "friction");               // a letter is missing
     CHECK(nearestName("cohesionn", names) == "cohesion");             // one too many
     CHECK(nearestName("tensilStrenght", names) == "tensileStrength"); // one missing, two exchanged
@@ -184,6 +186,20 @@ std::string differences_avx512(double a, double b);
 int foundByAny_avx512();
 int width_avx512();
 #endif
+
+TEST_CASE("the larger and the smaller of two numbers, of which the second is taken where one is NaN") {
+    CHECK(larger(1.0, 2.0) == 2);
+    CHECK(larger(2.0, 1.0) == 2);
+    CHECK(smaller(1.0, 2.0) == 1);
+    CHECK(smaller(2.0, 1.0) == 1);
+    CHECK(larger(notANumber, 1.0) == 1);
+    CHECK(smaller(notANumber, 1.0) == 1);
+    CHECK(std::isnan(larger(1.0, notANumber)));
+    CHECK(choose(true, 1.0, 2.0) == 1);
+    CHECK(choose(false, 1.0, 2.0) == 2);
+    CHECK(root(9.0) == 3);
+    CHECK(all<double>(0.1) == 0.1);
+}
 
 namespace {
 
