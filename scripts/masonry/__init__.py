@@ -35,7 +35,8 @@ if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:
 
 import importlib
 
-__version__ = "2.0"
+#: The version of the project, which the plugin, run.json, checkpoints and the Debian package have from this line.
+__version__ = "3.0.0"
 
 #: Modules that are loaded when they are used first.
 _MODULES = (

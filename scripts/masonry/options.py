@@ -7,6 +7,7 @@ import re
 import sys
 
 from . import batch, fields, history
+from ._masonry import commit, version
 from .checkpoints import alike, readProgress
 from .errors import Refused
 from .presets import BOUND, HARMLESS, PRESETS, USUAL, asOption
@@ -244,6 +245,7 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     p = Parser(
         prog="yade " + os.path.basename(sys.argv[0]),
         description=description,
+        epilog=f"masonry {version}, commit {commit}",
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
     )
     mm = lambda text: number(text, 0, 1000, above=True)

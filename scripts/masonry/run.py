@@ -29,7 +29,7 @@ from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
 from . import batch
-from ._masonry import commit
+from ._masonry import commit, version
 from .checkpoints import NAME, alike, loadCheckpoint, readProgress, saveCheckpoint
 from .columns import meanings, names
 from .errors import Collapsed, Interrupted, Refused, Unwritable
@@ -338,6 +338,7 @@ class Run:
     def _host():
         return {
             "build": commit,
+            "masonry": version,
             "YADE": yade.config.version,
             "threads": O.numThreads,
         }
@@ -486,7 +487,7 @@ class Run:
             versions={
                 "yade": yade.config.version,
                 "python": sys.version.split()[0],
-                "masonry": commit,
+                "masonry": version,
             },
             commit=commit,
             threads=O.numThreads,
