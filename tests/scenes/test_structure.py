@@ -190,13 +190,6 @@ def test_loads_that_have_not_grown_are_refused(tmp_path):
         scene.push(top, 1)
 
 
-def test_help_leads_to_every_module():
-    import masonry
-
-    for name in dir(masonry):
-        getattr(masonry, name)
-
-
 def test_a_block_that_is_tilted_beyond_its_diagonal_falls(tmp_path):
     block = bricks.stack(1, (0.25, 0.25, 0.5))
     scene = made(tmp_path, block, materials.dry(friction=5, normalStiffness=1e10))
