@@ -1,23 +1,34 @@
-"""Rings, fastest first: law, blocks and files (C++, doctest), host, package, sanitizers, fuzz, studies, scenes.
+"""Rings, fastest first: common, law, motion, blocks, files (C++, doctest), gates, host, package, then those below.
 
-The host is the installed YADE, in this process. Tests marked ``slow`` stand at the end, whatever their ring, and the
-quick ring (``scripts/test.sh quick``) leaves them out. With pytest-xdist every worker has a YADE of its own; what
-shares an expensive fixture stays in one worker (``--dist loadgroup``).
+Those of C++, the gates and some files of the package ring need no YADE, and run where it is not installed. All others
+have the installed YADE in this process; without it they are skipped, with that reason. Tests marked ``slow`` stand at
+the end, whatever their ring, and the quick ring (``scripts/test.sh quick``) leaves them out. With pytest-xdist every
+worker has a YADE of its own; what shares an expensive fixture stays in one worker (``--dist loadgroup``).
 """
 
 import contextlib
+import importlib
+import importlib.util
 import os
+import pathlib
 import re
 import subprocess
 import sys
+import warnings
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 BUILD = os.path.join(ROOT, "build")
-RINGS = ["law", "blocks", "files", "host", "package", "sanitizers", "fuzz", "studies", "scenes"]  # fmt: skip
+RINGS = ["common", "law", "motion", "blocks", "files", "gates", "host", "package", "sanitizers", "fuzz", "studies", "scenes"]  # fmt: skip
 SLOW = ["sanitizers", "fuzz", "studies", "scenes"]  # rings of which every test is slow
+#: Rings, and files of other rings, that need no YADE.
+WITHOUT_YADE = ["common", "law", "motion", "blocks", "files", "gates"] + [
+    f"package/test_{name}.py"
+    for name in "bricks bricks_checks bricks_files bricks_vaults compare_loops cycles imports loops measure "
+    "measured_loops plain_wall".split()
+]
 TOGETHER = ["programs", "targets", "squat", "whole"]  # fixtures that many tests share
 
 #: On a busy machine examples take longer than hypothesis expects, and some are large.
@@ -31,10 +42,31 @@ settings.load_profile("busy")
 sys.path.insert(1, "/usr/lib/x86_64-linux-gnu/yade-double/py")  # as /usr/bin/yade does
 sys.path.insert(1, os.path.join(ROOT, "tests", "references"))
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # as /usr/bin/yade does
-# YADE tells its version, which would stand after pytest's closing line.
-with contextlib.redirect_stdout(None):
-    import yade
-    import yade.config
+if importlib.util.find_spec("masonry") is None:  # nothing is installed
+    sys.path.append(os.path.join(ROOT, "scripts"))
+
+
+def needsYade(path):
+    """Whether a file, or any test in a folder, needs YADE."""
+    tests = pathlib.Path(ROOT, "tests")
+    if path.is_dir():
+        return any(map(needsYade, path.rglob("test_*.py")))
+    if not path.is_relative_to(tests):
+        return True
+    name = path.relative_to(tests)
+    return name.parts[0] not in WITHOUT_YADE and name.as_posix() not in WITHOUT_YADE
+
+
+class WithoutYade(pytest.File):
+    """A file of tests that cannot be run here."""
+
+    def collect(self):
+        pytest.skip("YADE is not installed", allow_module_level=True)
+
+
+def pytest_pycollect_makemodule(module_path, parent):
+    if needsYade(module_path) and "yade" not in sys.modules:
+        return WithoutYade.from_parent(parent, path=module_path)
 
 
 class Cpp(pytest.File):
@@ -79,6 +111,14 @@ def pytest_collect_file(parent, file_path):
 
 
 def pytest_configure(config):
+    given = [pathlib.Path(arg.split("::")[0]).absolute() for arg in config.args]
+    if any(map(needsYade, given)):
+        # The package registers YADE's classes only if YADE was imported before it, so YADE comes first of all. Its
+        # version, which it prints, would stand after pytest's closing line.
+        with contextlib.redirect_stdout(None), warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)
+            with contextlib.suppress(ModuleNotFoundError):
+                importlib.import_module("yade.config")
     config.addinivalue_line("markers", "slow: takes seconds; not in the quick ring")
     config.addinivalue_line("markers", "xdist_group: one worker for all of a name")
 
@@ -105,18 +145,18 @@ def pytest_terminal_summary(terminalreporter):
     """Tests that were not run, and why, just before the closing line, which counts them among the others."""
     reasons = {}
     for report in terminalreporter.stats.get("skipped", []):
-        told = (
+        reason = (
             report.longrepr[-1] if isinstance(report.longrepr, tuple) else "no reason"
         )
-        told = told.removeprefix("Skipped: ")
-        reasons[told] = reasons.get(told, 0) + 1
-    for told, count in reasons.items():
-        terminalreporter.write_line(f"NOT RUN: {count} test{'s' * (count > 1)}: {told}", yellow=True)  # fmt: skip
+        reason = reason.removeprefix("Skipped: ")
+        reasons[reason] = reasons.get(reason, 0) + 1
+    for reason, count in reasons.items():
+        terminalreporter.write_line(f"NOT RUN: {count} test{'s' * (count > 1)}: {reason}", yellow=True)  # fmt: skip
 
 
 @pytest.fixture
 def scene():
-    """An empty YADE scene, left empty."""
+    """An empty YADE scene, empty again afterwards."""
     from yade import O
 
     O.reset()

@@ -134,6 +134,7 @@ static void registerAll() {
         classes.append(name);
     py::scope().attr("classes") = classes;
     py::scope().attr("commit") = MASONRY_COMMIT;
+    py::scope().attr("version") = MASONRY_VERSION;
     py::def(
         "neighbours", &neighbours, (py::arg("tolerance") = 1e-4, py::arg("keepFaces") = false),
         "Three lists for masonry.connect(): pairs (id1, id2) of bodies that share a face; pairs (id1, id2, gap, bound) "

@@ -37,7 +37,8 @@ if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:
 
 import importlib
 
-__version__ = "2.0"
+#: The version of the project, which the plugin, run.json, checkpoints and the Debian package have from this line.
+__version__ = "3.0.0"
 
 #: Modules and packages that the package hands on under a short name; they are loaded when they are used first.
 _HANDED_ON = {

@@ -3,7 +3,6 @@
 #include "blocks/BlockElasticity.hpp"
 #include "blocks/BlockLanes.cpp" // the source, because its loops for each instruction set are local to it
 #include "blocks/JointPoints.hpp"
-#include "motion/LargestEigenvalue.hpp"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <doctest/doctest.h>
@@ -664,45 +663,6 @@ TEST_CASE("damping takes energy in every step of every node, whatever the force"
         for (int lane = 0; lane < lanes; ++lane)
             CHECK(sums.damping.lane[lane] + sums.pending.lane[lane] > 0);
     }
-}
-
-TEST_CASE("the bound of the largest eigenvalue lies within 2.1 % above it, for any spectrum and size") {
-    std::mt19937 dice(19);
-    std::normal_distribution<> normal;
-    for (int n : {1, 2, 5, 40, 118, 300}) {
-        // from eigenvalues that crowd below the largest to some that are far apart
-        for (double power : {0.0, 0.1, 1.0, 8.0, 100.0}) {
-            const double largest = 7 * std::pow(1e3, std::min(power, 5.0));
-            Eigen::MatrixXd random(n, n);
-            for (double& value : random.reshaped())
-                value = normal(dice);
-            const Eigen::MatrixXd q = random.householderQr().householderQ();
-            Eigen::VectorXd values(n);
-            for (int i = 0; i < n; ++i)
-                values[i] = largest * std::pow((i + 1.0) / n, power);
-            const Eigen::MatrixXd matrix = q * values.asDiagonal() * q.transpose();
-            std::vector<bool> moves(n + 3, true); // three components do not move
-            moves[0] = moves[n / 2 + 1] = moves[n + 2] = false;
-            const auto multiply = [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) {
-                Eigen::VectorXd inner(n);
-                for (int i = 0, k = 0; i < n + 3; ++i)
-                    if (moves[i]) inner[k++] = x[i];
-                const Eigen::VectorXd image = matrix * inner;
-                y.setZero();
-                for (int i = 0, k = 0; i < n + 3; ++i)
-                    if (moves[i]) y[i] = image[k++];
-            };
-            const auto found = largestEigenvalue(moves, multiply);
-            Eigen::VectorXd image(n + 3);
-            multiply(found.mode, image);
-            CHECK(found.mode.dot(image) >= 0.97 * largest * found.mode.squaredNorm());
-            CHECK(found.bound >= largest * (1 - 1e-12));
-            CHECK(found.bound <= largest * 1.021);
-        }
-    }
-    const auto nothing = [](const Eigen::VectorXd&, Eigen::VectorXd& y) { y.setZero(); };
-    CHECK(largestEigenvalue({false}, nothing).bound == 0);
-    CHECK_THROWS_AS(largestEigenvalue({true}, nothing), std::invalid_argument);
 }
 
 TEST_CASE("a surface point is found with weights that return it") {

@@ -7,7 +7,7 @@ import os
 import subprocess
 import sys
 
-import masonry
+import masonry  # noqa: F401: it registers the classes in yade.wrapper
 import pytest
 from masonry import MasonryJoint, MasonryMat, MasonryZones, addBlock, classes, connect, criticalTimeStep, engines
 from references import box
@@ -466,7 +466,7 @@ def test_every_property_of_an_object_of_no_scene_can_be_read_and_set_to_what_it_
     """In a YADE of its own: MasonryJointPhys().yielding of commit 0e9b866 ends the process."""
     inYade(
         """
-import masonry
+import masonry  # noqa: F401: it registers the classes in yade.wrapper
 for cls in masonry.classes:
     instance = globals()[cls]()
     for name, own in vars(type(instance)).items():

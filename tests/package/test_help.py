@@ -2,6 +2,7 @@
 
 import ast
 import os
+import re
 
 import pytest
 from conftest import ROOT
@@ -32,6 +33,15 @@ def test_help_names_every_room():
 @pytest.mark.parametrize("room", ROOMS)
 def test_a_room_names_each_of_its_modules(room):
     assert unnamed(room, helpOf(room)) == set()
+
+
+@pytest.mark.parametrize("room", ["", *ROOMS])
+def test_what_a_room_names_is_there(room):
+    named = re.findall(r"`masonry\.([\w.]+)`", helpOf(room))
+    assert named
+    for name in named:
+        path = os.path.join(PACKAGE, *name.split("."))
+        assert os.path.isdir(path) or os.path.isfile(path + ".py"), name
 
 
 def test_a_module_that_is_not_named_is_seen():

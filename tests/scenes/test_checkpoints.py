@@ -392,6 +392,7 @@ def test_another_build_or_number_of_threads_is_told(broken, capsys):
     out = capsys.readouterr().out
     assert "note: the checkpoint was made with threads 7, this run has 1" in out
     assert "note: the checkpoint was made with build v0, this run has " in out
+    assert "made with masonry" not in out  # the version is the same
 
 
 def test_a_stage_or_counter_that_is_not_known_is_refused(broken, capsys):

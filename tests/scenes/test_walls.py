@@ -8,6 +8,7 @@ import signal
 import subprocess
 import time
 
+import masonry
 import numpy as np
 import pytest
 from conftest import ROOT
@@ -88,6 +89,8 @@ def test_the_squat_wall_leaves_what_is_promised(squat):
         "time_step_limit_s steps options joints columns"
     ).split():
         assert key in run
+    assert run["versions"]["masonry"] == masonry.__version__
+    assert run["commit"] == masonry.commit
     stages = {stage["stage"]: stage["steps"] for stage in run["stages"]}
     assert list(stages) == ["settle", "push"] and sum(stages.values()) == run["steps"]
     curve = readCurve(squat)

@@ -8,7 +8,7 @@ import sys
 import yade.config
 from yade import O
 
-from .._masonry import commit
+from .._masonry import commit, version
 from ..assembly.columns import meanings
 from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
 from .checkpoints import NAME
@@ -124,7 +124,7 @@ def _describe(run, scene):
         versions={
             "yade": yade.config.version,
             "python": sys.version.split()[0],
-            "masonry": commit,
+            "masonry": version,
         },
         commit=commit,
         threads=O.numThreads,

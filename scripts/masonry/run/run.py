@@ -18,7 +18,7 @@ import yade.config
 from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
-from .._masonry import commit
+from .._masonry import commit, version
 from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
 from . import batch
 from .checkpoints import NAME, saveCheckpoint
@@ -38,7 +38,12 @@ ASIDE = ("resume", "out", "saved")
 
 def hostNow():
     """What the last digits of a run can depend on."""
-    return {"build": commit, "YADE": yade.config.version, "threads": O.numThreads}
+    return {
+        "build": commit,
+        "masonry": version,
+        "YADE": yade.config.version,
+        "threads": O.numThreads,
+    }
 
 
 class Run:

@@ -4,6 +4,7 @@ import argparse
 import os
 import sys
 
+from .._masonry import commit, version
 from ..assembly.engines import LAWS
 from ..basics import Refused, say
 from ..run.presets import BOUND, PRESETS, USUAL
@@ -29,6 +30,7 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     p = Parser(
         prog="yade " + os.path.basename(sys.argv[0]),
         description=description,
+        epilog=f"masonry {version}, commit {commit}",
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
     )
     mm = lambda text: number(text, 0, 1000, above=True)

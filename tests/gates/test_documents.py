@@ -1,0 +1,63 @@
+"""Links, commands and paths of all documents lead somewhere."""
+
+import documents
+import tree
+
+
+def test_links_commands_and_paths_of_the_documents_lead_somewhere():
+    assert len(tree.files((".md",))) > 15
+    assert documents.all() == []
+
+
+def planted(tmp_path, text):
+    (tmp_path / "scripts" / "masonry").mkdir(parents=True)
+    (tmp_path / "scripts" / "wall.py").write_text("")
+    (tmp_path / "scripts" / "run.sh").write_text("")
+    (tmp_path / "scripts" / "masonry" / "measure.py").write_text("def peak(): ...\n")
+    (tmp_path / "other.md").write_text(
+        "# A heading, with `code`\n\n# Twice\n\n# Twice\n"
+    )
+    (tmp_path / "document.md").write_text(text)
+    return [
+        line.split(": ", 1)[1] for line in documents.problems("document.md", tmp_path)
+    ]
+
+
+def test_what_leads_somewhere_is_left_alone(tmp_path):
+    good = """# Here
+
+[a](other.md) [b](other.md#a-heading-with-code) [c](#here) [d](https://example.org/x) [e](other.md#twice-1)
+
+    bash scripts/run.sh wall
+    yade -n -x scripts/wall.py --until 3
+    yade -n -x my_scene.py
+
+`scripts/wall`, `scripts/wall.py`, `masonry/measure`, `results/wall/` and `N/mm` are paths or none.
+`/usr/bin/python3 -m masonry.measure results/wall` has `masonry.measure.peak`.
+"""
+    assert planted(tmp_path, good) == []
+
+
+def test_each_kind_of_false_promise_is_found(tmp_path):
+    bad = """# Here
+
+[a](gone.md) [b](other.md#gone) [c](#gone)
+
+    bash scripts/gone.sh
+    yade -n -x scripts/gone.py
+    /usr/bin/python3 -m masonry.gone
+    /usr/bin/python3 scripts/gone.py
+
+`scripts/gone.hpp` and `masonry.measure.gone`
+"""
+    assert planted(tmp_path, bad) == [
+        "gone.md leads to no file",
+        "other.md#gone leads to no heading",
+        "#gone leads to no heading",
+        "no script scripts/gone.sh",
+        "no scene scripts/gone.py",
+        "no module masonry.gone",
+        "no script scripts/gone.py",
+        "no module masonry.measure.gone",
+        "no file scripts/gone.hpp",
+    ]
