@@ -37,7 +37,7 @@ def test_a_room_names_each_of_its_modules(room):
 
 @pytest.mark.parametrize("room", ["", *ROOMS])
 def test_what_a_room_names_is_there(room):
-    named = re.findall(r"`masonry\.([\w.]+)`", helpOf(room))
+    named = re.findall(r":mod:`masonry\.([\w.]+)`", helpOf(room))
     assert named
     for name in named:
         path = os.path.join(PACKAGE, *name.split("."))
