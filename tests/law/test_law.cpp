@@ -1198,6 +1198,22 @@ TEST_CASE("every property is described once, with a meaning, a unit and a source
     CHECK(names.count("compressiveFractureEnergy") == 1);
 }
 
+TEST_CASE("a law reads properties that are described, and every property is read by a law") {
+    std::set<std::string> unread; // by laws; everybody reads name, stiffnesses, law and elastic
+    JointProperties::describe([&](const char* name, auto, const Property&) { unread.insert(name); });
+    CHECK(laws().size() == 2);
+    CHECK(laws()[0].name == JointProperties{}.law);
+    for (const auto& law : laws())
+        JointProperties::describe([&](const char* name, auto, const Property&) {
+            if (law.reads(name)) unread.erase(name);
+        });
+    CHECK(unread == std::set<std::string>{"name", "normalStiffness", "shearStiffness", "law", "elastic"});
+    JointProperties p;
+    p.law = "cyclical";
+    CHECK(problemsOf(p) == std::vector<std::string>{"law \"cyclical\" must be one of: softening, cyclic"});
+    CHECK_THROWS_AS(lawOf(p), std::invalid_argument);
+}
+
 TEST_CASE("properties that do not act are not checked") {
     JointProperties p;
     p.elastic = true;
