@@ -620,7 +620,7 @@ CASES = {
         (joined, lambda: script("wall_comp6", "--out", "/proc/nowhere"), "--out: cannot write to /proc/nowhere: No such file"),
         (joined, lambda: script("wall_dry", "--out", "x" * 300), "File name too long"),
         (lambda: (joined(), os.makedirs("r/curve.csv")), lambda: script("couplet", "--out", "r"), "r holds curve.csv, which no run has left there"),
-        (nothing, lambda: results.Results("r", ["a"]).checkRoom(1e18, 1e18), "free, this run writes at least 1000000000000.0 MB"),
+        (nothing, lambda: results.Results("r", ["a"]).checkSpace(1e18, 1e18), "free, this run writes at least 1000000000000.0 MB"),
     ],
     "files": [
         (nothing, lambda: read(measure.show, "a", "b"), "name one folder of results, for example results/wall_comp4"),
@@ -763,13 +763,13 @@ HINTS = [
     (lambda: (laid(zones=MasonryZones()), connect()), "MasonryZones has no bodies"),
     (wedge, "MasonryZones: divisions do not apply to bodies [1], which are no hexahedra"),
     (lambda: pressed(0.5), "press: 0.5 Pa: is it in Pa, not MPa?"),
-    (lambda: results.Results("r", ["a"]).checkRoom(1, 1e18), "free, this run writes some 1000000000000.0 MB"),
+    (lambda: results.Results("r", ["a"]).checkSpace(1, 1e18), "free, this run writes some 1000000000000.0 MB"),
 ]
 # fmt: on
 
 
 @pytest.mark.parametrize("act, hints", HINTS)
-def test_what_may_be_a_slip_is_told(scene, act, hints, tmp_path, monkeypatch, capsys):
+def test_what_may_be_a_slip_is_reported(scene, act, hints, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     try:
         act()

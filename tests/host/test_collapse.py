@@ -55,12 +55,12 @@ def go(seconds):
 
 
 def collapses(seconds, message):
-    with pytest.raises(RuntimeError, match="^collapsed: " + message) as told:
+    with pytest.raises(RuntimeError, match="^collapsed: " + message) as text:
         go(seconds)
     assert re.search(
-        r"at step \d+00, \S+ s\. Joints are for small displacements", str(told.value)
+        r"at step \d+00, \S+ s\. Joints are for small displacements", str(text.value)
     )
-    return str(told.value)
+    return str(text.value)
 
 
 # -- what is told ----------------------------------------------------------------------------------------------------
@@ -70,13 +70,13 @@ def collapses(seconds, message):
 def test_a_block_that_tips_over_is_named_with_its_rotation(scene, functors):
     s = standing(functors=functors, gravity=(1.2 * G * B / H, 0, -G))
     assert energy().collapsedBlock == -1 and energy().collapse == ""
-    told = collapses(
+    text = collapses(
         5, r"block 1 has turned by 6\d(\.\d)?° against block 0, the limit is 60°"
     )
     since = s.angVel.norm() * 100 * O.dt  # the last look
     assert 0 <= s.ori.toAngleAxis()[0] - math.radians(60) < since
     assert energy().collapsedBlock == 1
-    assert told == "collapsed: " + energy().collapse
+    assert text == "collapsed: " + energy().collapse
     assert abs(energy().balance()["error"]) < 0.01
 
 
@@ -115,7 +115,7 @@ def test_a_block_that_slides_off_its_neighbour_is_named_with_the_slide(scene, fu
     assert 0 < s.pos[0] - s.refPos[0] - 0.25 < 3 * 100 * O.dt
 
 
-def test_a_joint_crushed_to_nothing_is_told_when_one_block_lies_in_the_other(scene):
+def test_a_joint_crushed_to_nothing_is_reported_when_one_block_lies_in_the_other(scene):
     soft = dry(
         cap=True,
         compressiveStrength=1e5,
@@ -132,17 +132,17 @@ def test_a_joint_crushed_to_nothing_is_told_when_one_block_lies_in_the_other(sce
     assert -0.12 < s.pos[2] - s.refPos[2] < -0.1
 
 
-@pytest.mark.parametrize("way", ["loop", "functors", "deformable"])
-def test_a_stack_pulled_apart_is_told_when_a_block_has_left(scene, way):
+@pytest.mark.parametrize("direction", ["loop", "functors", "deformable"])
+def test_a_stack_pulled_apart_is_reported_when_a_block_has_left(scene, direction):
     mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
     size = (0.22, 0.102, 0.081)
     for k in range(3):
         addBlock(corners((0, 0, k * size[2]), (*size[:2], (k + 1) * size[2])), mat)
     for k in (0, 2):
         O.bodies[k].state.blockedDOFs = "xyzXYZ"
-    zones = MasonryZones(bodies=[1]) if way == "deformable" else None
+    zones = MasonryZones(bodies=[1]) if direction == "deformable" else None
     engines(
-        [MasonryJoint()], gravity=(0, 0, -G), zones=zones, functors=way == "functors"
+        [MasonryJoint()], gravity=(0, 0, -G), zones=zones, functors=direction == "functors"
     )
     connect()
     O.dt = 0.5 * criticalTimeStep()[0]
@@ -215,21 +215,21 @@ def test_a_base_that_turns_with_all_its_blocks_is_no_collapse(scene):
 # -- the balance -----------------------------------------------------------------------------------------------------
 
 
-def test_a_balance_that_is_off_is_told_once(scene, capfd):
+def test_a_balance_that_is_off_is_reported_once(scene, capfd):
     s = standing(joint=MasonryJoint(elastic=True), damping=0.3)
     O.forces.setPermF(1, Vector3(0, 0, -5 * G * s.mass))  # work that nobody counts
     go(2500 * O.dt)
-    told = capfd.readouterr().err
-    assert told.count("the energy balance is off by") == 1
+    text = capfd.readouterr().err
+    assert text.count("the energy balance is off by") == 1
     off = float(
-        re.search(r"at step 1000 the energy balance is off by (\S+) %", told)[1]
+        re.search(r"at step 1000 the energy balance is off by (\S+) %", text)[1]
     )
     assert off == pytest.approx(100 * abs(energy().balance()["error"]), rel=0.3)
     assert energy().warned
 
 
 @pytest.mark.parametrize("off", [False, True], ids=["sound", "unwatched"])
-def test_nothing_is_told_of_a_sound_balance_or_without_the_watch(scene, capfd, off):
+def test_nothing_is_reported_of_a_sound_balance_or_without_the_watch(scene, capfd, off):
     s = standing(joint=MasonryJoint(elastic=True), damping=0.3)
     if off:
         energy().watch = False

@@ -111,7 +111,7 @@ def test_an_elastic_joint_may_stand_beside_cyclic_ones_under_the_functors(scene)
     assert any(abs(value) > 0 for value in flat(states()))
 
 
-def test_a_functor_of_another_law_is_told(scene):
+def test_a_functor_of_another_law_is_reported(scene):
     stack(MasonryJoint(name="bed"), functors=True)
     next(iter(O.interactions.all())).phys.joint.law = "cyclic"
     with pytest.raises(Exception, match="follows another law.*CyclicSoftening"):

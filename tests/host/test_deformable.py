@@ -203,10 +203,10 @@ def test_bricks_that_slide_on_each_other_keep_momentum_and_energy(scene):
     connect()
     O.dt = 0.3 * criticalTimeStep()[0]
     place = {}
-    for unit, way in zip(units, (1, -1)):
+    for unit, sign in zip(units, (1, -1)):
         for n in range(*zones.nodesOf(unit)):
             place[n] = zones.referencePoint(unit, n)
-            zones.setVelocity(n, way * Vector3(5, 1, 0.02))
+            zones.setVelocity(n, sign * Vector3(5, 1, 0.02))
 
     def momenta():
         p, spin = Vector3.Zero, Vector3.Zero

@@ -24,7 +24,7 @@ from motion_cases import gravityWork  # noqa: E402
 
 UNIT = (0.22, 0.102, 0.081)
 G = 9.81
-WAYS = pytest.mark.parametrize("way", ["rigid", "deformable", "functors"])
+WAYS = pytest.mark.parametrize("direction", ["rigid", "deformable", "functors"])
 
 
 def engine(kind):
@@ -35,7 +35,7 @@ def integrator():
     return next(e for e in O.engines if e.label == "integrator")
 
 
-def stack(way, joint=None, damping=0.5, gravity=(0, 0, 0), blocked="", joined=True):
+def stack(direction, joint=None, damping=0.5, gravity=(0, 0, 0), blocked="", joined=True):
     """Two bricks on a fixed one. ``way``: rigid or deformable units, or YADE's own loop and integrator."""
     O.reset()
     mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
@@ -45,14 +45,14 @@ def stack(way, joint=None, damping=0.5, gravity=(0, 0, 0), blocked="", joined=Tr
         )
         O.bodies[body].state.blockedDOFs = blocked if k else "xyzXYZ"
     zones = None
-    if way == "deformable":
+    if direction == "deformable":
         zones = MasonryZones(bodies=[1, 2], damping=damping)
     engines(
         [joint or MasonryJoint(elastic=True)],
         damping=damping,
         gravity=gravity,
         zones=zones,
-        functors=way == "functors",
+        functors=direction == "functors",
     )
     if joined:
         connect()
@@ -74,16 +74,16 @@ def ramp(steps):
 
 
 @WAYS
-def test_gravity_that_is_raised_step_by_step_does_half_the_work(scene, way):
+def test_gravity_that_is_raised_step_by_step_does_half_the_work(scene, direction):
     """A spring under a load that grows from zero stores half of load times way; the load does no more."""
-    half, counted = gravityWork(way)
+    half, counted = gravityWork(direction)
     assert counted == pytest.approx(half, rel=2e-3)
     assert abs(balance()["error"]) < 1e-9
 
 
 @WAYS
-def test_the_balance_closes_while_gravity_turns(scene, way):
-    stack(way, damping=0.2, gravity=(0, 0, -G))
+def test_the_balance_closes_while_gravity_turns(scene, direction):
+    stack(direction, damping=0.2, gravity=(0, 0, -G))
     turned, steps = 0.6, 3000
     for n in range(steps):
         a = turned * (n + 1) / steps
@@ -92,15 +92,15 @@ def test_the_balance_closes_while_gravity_turns(scene, way):
     b = balance()
     assert b["gravity"] > 0
     assert abs(b["error"]) < 1e-6
-    if way == "deformable":
+    if direction == "deformable":
         assert engine(MasonryZones).gravity == integrator().gravity
 
 
-@pytest.mark.parametrize("way", ["rigid", "functors"])
-def test_blocks_moved_before_the_first_step_fall_from_where_they_are(scene, way):
+@pytest.mark.parametrize("direction", ["rigid", "functors"])
+def test_blocks_moved_before_the_first_step_fall_from_where_they_are(scene, direction):
     """connect() refuses blocks that were moved before it, so the joints are those of the reference."""
     dry = MasonryJoint(tensileStrength=0, cohesion=0, friction=0, residualFriction=0)
-    stack(way, dry, damping=0, gravity=(0, 0, -G))
+    stack(direction, dry, damping=0, gravity=(0, 0, -G))
     for k in (1, 2):
         O.bodies[k].state.pos += Vector3(0, 0, 0.05 * k)
     start = [O.bodies[k].state.pos[2] for k in (1, 2)]
@@ -137,24 +137,24 @@ def test_deformable_units_know_one_gravity(scene):
 
 @WAYS
 @pytest.mark.parametrize("through", ["checkpoint", "file"])
-def test_the_work_goes_on_after_saving_and_loading(scene, way, through, tmp_path):
+def test_the_work_goes_on_after_saving_and_loading(scene, direction, through, tmp_path):
     ends = []
     path = str(tmp_path / ("scene.yade.gz" if through == "file" else "c"))
     for interrupted in (False, True):
-        stack(way)
+        stack(direction)
         ramp(300)
         if interrupted and through == "file":
             O.save(path)
             O.load(path)
         elif interrupted:
             saveCheckpoint(path)
-            stack(way)
+            stack(direction)
             loadCheckpoint(path)
         integrator().gravity = (0.5, 0, -12)
         for _ in range(200):
             O.step()
         ends.append(balance())
-    if through == "file" or way == "functors":  # sums in another order
+    if through == "file" or direction == "functors":  # sums in another order
         assert ends[0] == pytest.approx(ends[1], rel=1e-9, abs=1e-12)
     else:
         assert ends[0] == ends[1]

@@ -42,9 +42,9 @@ def block(width, height, plane=True, kind=None):
     )
 
 
-def sideways(a, way=(1, 0, 0)):
+def sideways(a, direction=(1, 0, 0)):
     """Factor of a horizontal acceleration on gravity."""
-    return a.largest(a.weights(G * np.array(way)), a.weights((0, 0, -G)))
+    return a.largest(a.weights(G * np.array(direction)), a.weights((0, 0, -G)))
 
 
 # -- closed forms ------------------------------------------------------------------------------------------------------
@@ -64,8 +64,8 @@ def test_a_block_tips_at_its_slenderness_or_slides_at_its_friction(
 
 @pytest.mark.parametrize("angle", [0, 10, 22.5, 37, 45])
 def test_friction_in_space_is_round(scene, angle):
-    way = (math.cos(math.radians(angle)), math.sin(math.radians(angle)), 0)
-    bound = sideways(block(0.3, 0.1, False, joint(0.4)), way)
+    direction = (math.cos(math.radians(angle)), math.sin(math.radians(angle)), 0)
+    bound = sideways(block(0.3, 0.1, False, joint(0.4)), direction)
     assert bound.factor == pytest.approx(0.4, rel=2e-3)
     assert bound.factor >= 0.4 * (1 - 1e-6)  # from above
 
@@ -310,7 +310,7 @@ def small(*words, until=0.3, **kw):
     return s, top
 
 
-def told(out):
+def message(out):
     return json.load(open(out / "run.json"))
 
 
@@ -319,7 +319,7 @@ def test_a_push_has_its_bound_beside_it(scene, tmp_path):
     s.settle()
     s.push(top, 0.3)
     s.finish()
-    run = told(tmp_path / "r")
+    run = message(tmp_path / "r")
     (entry,) = run["bounds"]
     assert entry["load"] == "top along x" and entry["unit"] == "kN"
     assert run["bound_base_shear_kN"] == entry["factor"]
@@ -336,7 +336,7 @@ def test_the_preset_bound_runs_nothing(scene, tmp_path, capsys):
     assert s.settle() == "at rest"
     assert s.push(top, 1) == "done"
     s.finish()
-    run = told(out)
+    run = message(out)
     assert run["steps"] == 0 and run["bound_base_shear_kN"] > 0
     assert run["preset"]["name"] == "bound"
     assert not (out / "curve.csv").exists() or len(open(out / "curve.csv").readlines()) == 1  # fmt: skip
@@ -346,7 +346,7 @@ def test_the_preset_bound_runs_nothing(scene, tmp_path, capsys):
     s.settle()
     s.push(top, 0.05)
     s.finish()
-    assert told(tmp_path / "q")["bound_base_shear_kN"] == pytest.approx(
+    assert message(tmp_path / "q")["bound_base_shear_kN"] == pytest.approx(
         run["bound_base_shear_kN"], rel=1e-3
     )
 
@@ -358,7 +358,7 @@ def test_a_lean_is_bracketed_by_its_bound_alone(scene, tmp_path):
     s.settle()
     low, high = s.bracket(lambda g: s.lean(g) == AT_REST, 0.0, 5.0, within=1e-3)
     s.finish()
-    assert low <= told(tmp_path / "r")["bound_acceleration"] <= high
+    assert low <= message(tmp_path / "r")["bound_acceleration"] <= high
 
 
 def test_a_peak_above_its_bound_is_a_warning_with_both_numbers(scene, tmp_path, capsys):
@@ -388,11 +388,11 @@ def test_deformable_units_have_the_bound_of_rigid_ones(scene, tmp_path, plane):
         s.settle()
         s.push(top, 1)
         s.finish()
-        factors.append(told(tmp_path / kind)["bound_base_shear_kN"])
+        factors.append(message(tmp_path / kind)["bound_base_shear_kN"])
     assert factors[1] == pytest.approx(factors[0], rel=0.02)  # other points of joints
 
 
-def test_no_bound_is_told_after_supports_have_moved(scene, tmp_path):
+def test_no_bound_is_reported_after_supports_have_moved(scene, tmp_path):
     from masonry import Scene, bricks, materials
 
     two = bricks.Wall(0.4, 0.2, unit=(0.2, 0.1, 0.1), halves=False)
@@ -402,5 +402,5 @@ def test_no_bound_is_told_after_supports_have_moved(scene, tmp_path):
     s.move(base, x=0.1, rate=50)
     s.lean(0.05)
     s.finish()
-    (entry,) = told(tmp_path / "r")["bounds"]
+    (entry,) = message(tmp_path / "r")["bounds"]
     assert "supports have moved" in entry["note"] and "factor" not in entry

@@ -153,15 +153,15 @@ def test_a_run_finds_by_itself_that_a_lighter_block_makes_its_time_step_too_long
 
 
 @pytest.mark.parametrize("blocked", ["", "XYZ", "yXZ"], ids=lambda b: b or "free")
-@pytest.mark.parametrize("way", [(0, 0, 1), (0, 0, -2), (1, 0, 0), (1, 0, 3)])
+@pytest.mark.parametrize("sign", [(0, 0, 1), (0, 0, -2), (1, 0, 0), (1, 0, 3)])
 def test_a_drive_meets_its_velocity_in_every_step_whatever_the_weight_and_way(
-    scene, way, blocked
+    scene, sign, blocked
 ):
     stack(count=2, damping=0.5)
     s = O.bodies[1].state
     s.blockedDOFs = blocked
     corner = Vector3(0.2, 0.051, 0.16)
-    direction = Vector3(*way)
+    direction = Vector3(*sign)
     load = MasonryLoad(
         body=1, point=corner, direction=direction, driven=True, velocity=0.003
     )
@@ -236,9 +236,9 @@ def couplets(other, functors, turn, joint=None):
             if level == 0:
                 s.blockedDOFs = "xyzXYZ"
                 continue
-            way = dice.normal(size=3) * 1e-3
-            s.vel = turn * Vector3(way[0], 0, way[1])
-            s.angVel = turn * Vector3(0, 5 * way[2], 0)
+            sign = dice.normal(size=3) * 1e-3
+            s.vel = turn * Vector3(sign[0], 0, sign[1])
+            s.angVel = turn * Vector3(0, 5 * sign[2], 0)
             own = s.ori.conjugate() * s.angVel
             s.angMom = s.ori * Vector3(*(i * w for i, w in zip(s.inertia, own)))
     engines(

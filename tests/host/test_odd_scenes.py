@@ -56,7 +56,7 @@ def refused(message, act=steps):
 # -- no crash ----------------------------------------------------------------------------------------------------------
 
 
-def test_bodies_that_are_gone_are_told(scene):
+def test_bodies_that_are_gone_are_reported(scene):
     stack()
     steps()
     O.bodies.clear()
@@ -68,14 +68,14 @@ def test_bodies_that_are_gone_are_told(scene):
     refused("body 1 has no State", lambda: steps(10))  # looked at in every tenth
 
 
-def test_a_lone_deformable_block_that_is_erased_is_told(scene):
+def test_a_lone_deformable_block_that_is_erased_is_reported(scene):
     stack(2, zones=[2], lone=True)
     steps()
     O.bodies.erase(2)
     refused("body 2 does not exist")
 
 
-def test_units_without_their_engine_are_told(scene):
+def test_units_without_their_engine_are_reported(scene):
     stack(zones=[1])
     steps()
     for change in (lambda: setattr(zones, "dead", True), lambda: setattr(O, "engines", others)):  # fmt: skip
@@ -88,7 +88,7 @@ def test_units_without_their_engine_are_told(scene):
         steps()
 
 
-def test_a_load_whose_body_is_changed_within_the_step_is_told(scene):
+def test_a_load_whose_body_is_changed_within_the_step_is_reported(scene):
     stack()
     again = PyRunner(command="O.engines[2].body = 99", iterPeriod=1, initRun=True)
     O.engines = [*O.engines[:3], again, *O.engines[3:]]
@@ -100,7 +100,7 @@ def test_a_joint_of_no_scene_has_no_points():
 
 
 @pytest.mark.parametrize("which", ["loop", "load", "all"])
-def test_an_engine_in_a_parallel_engine_is_told(scene, which, capfd):
+def test_an_engine_in_a_parallel_engine_is_reported(scene, which, capfd):
     """Threads of the host cannot pass an error on: an engine that follows does, and the error stream has it anyway."""
     stack()
     reset, loop, load, *others = O.engines
@@ -118,7 +118,7 @@ def test_an_engine_in_a_parallel_engine_is_told(scene, which, capfd):
     steps()
 
 
-def test_damaged_lists_of_a_checkpoint_are_told(scene, tmp_path):
+def test_damaged_lists_of_a_checkpoint_are_reported(scene, tmp_path):
     """Lists of a wrong length under a right sum: velocities of nodes, and the forces that combined damping remembers."""
     from masonry._masonry import loadScene, saveScene
 
@@ -214,7 +214,7 @@ def test_values_can_be_mended_after_a_connect_that_was_refused(scene):
     assert len(connect()) == 1
 
 
-def test_what_cannot_be_followed_is_told(scene):
+def test_what_cannot_be_followed_is_reported(scene):
     stack(4)
     O.bodies.clump([2, 3])
     refused("body 2 belongs to clump 4, which would not move as one")

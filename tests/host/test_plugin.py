@@ -230,9 +230,9 @@ def test_every_member_of_the_joint_properties_is_described_once():
 @pytest.mark.parametrize("name", classes)
 def test_the_description_of_an_attribute_is_what_its_docs_say(name):
     cls = getattr(yade.wrapper, name)
-    told = cls.properties()
-    assert len({p["name"] for p in told}) == len(told)
-    for p in told:
+    report = cls.properties()
+    assert len({p["name"] for p in report}) == len(report)
+    for p in report:
         doc = getattr(cls, p["name"]).__doc__
         assert doc.startswith(p["meaning"]) and len(p["meaning"]) > 3
         assert not p["unit"] or f"[{p['unit']}]" in doc

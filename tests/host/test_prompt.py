@@ -58,9 +58,9 @@ def inYade(code, threads=1, timeout=120):
         env=env,
         timeout=timeout,
     )
-    told = (run.stdout + run.stderr)[-3000:]
-    assert run.returncode == 0, f"ended with {run.returncode}:\n{told}"
-    assert run.stdout.rstrip().endswith("ENDED"), told
+    message = (run.stdout + run.stderr)[-3000:]
+    assert run.returncode == 0, f"ended with {run.returncode}:\n{message}"
+    assert run.stdout.rstrip().endswith("ENDED"), message
     return run.stdout
 
 

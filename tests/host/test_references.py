@@ -92,15 +92,15 @@ def test_every_run_has_its_tolerance_and_its_file():
 def test_two_threads_give_the_same_numbers(tmp_path):
     """Bit for bit those of one thread, but for YADE's own loop, which sums forces in the order of its threads."""
     program = os.path.join(FOLDER, "references.py")
-    told = []
+    message = []
     for threads in ("-j1", "-j2"):
         run = subprocess.run(
             ["yade", threads, "-n", "-x", program, "--told"],
             capture_output=True,
             text=True,
         )
-        told.append(
+        message.append(
             [line for line in run.stdout.splitlines() if line.startswith("told ")]
         )
-    assert len(told[0]) > 60
-    assert [line for line in told[0] if "functors" not in line] == told[1]
+    assert len(message[0]) > 60
+    assert [line for line in message[0] if "functors" not in line] == message[1]

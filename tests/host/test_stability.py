@@ -125,7 +125,7 @@ def test_motion_out_of_nothing_is_seen_within_a_hundred_steps(scene, blocks):
     assert O.iter - start < 100
 
 
-def test_velocities_given_by_hand_are_no_motion_out_of_nothing_once_told(scene):
+def test_velocities_given_by_hand_are_no_motion_out_of_nothing_once_reported(scene):
     bricks = panel(damping=0, gravity=(0, 0, 0))
     for throw in range(3):
         for body in bricks:

@@ -518,7 +518,7 @@ def test_walls_that_meet_have_openings_of_their_own():
     )
 
 
-def test_a_stem_in_the_wrong_place_is_told_the_nearest_right_one():
+def test_a_stem_in_the_wrong_place_is_reported_the_nearest_right_one():
     with pytest.raises(ValueError, match="at 1.1 m: .* nearest: (0.99|1.21) m"):
         Tee(2.2, 1.65, 1.1, 1.62)
 
@@ -664,9 +664,9 @@ def test_four_quarter_turns_are_exact():
     some.sampled_from("xyz"),
     some.tuples(*[some.floats(-5, 5)] * 3),
 )
-def test_a_moved_and_turned_wall_is_the_same_wall(degrees, axis, way):
+def test_a_moved_and_turned_wall_is_the_same_wall(degrees, axis, sign):
     wall = Wall(0.66, 0.243)
-    moved = wall.turned(degrees, axis).moved(*way)
+    moved = wall.turned(degrees, axis).moved(*sign)
     assert moved.volume == pytest.approx(wall.volume, rel=1e-9)
     assert [j[:2] for j in moved.joints()] == [j[:2] for j in wall.joints()]
     assert sum(j.area for j in moved.joints()) == pytest.approx(
@@ -752,11 +752,11 @@ def test_stacks_and_blocks():
 
 def test_a_summary_counts():
     wall = Wall(2 * L, 3 * H) + block((0, 0, -0.2), (1, 1, 0))
-    told = bricks.summary(wall)
-    assert told["parts"] == {"wall": 12, "block": 1} and told["kinds"] == {
+    message = bricks.summary(wall)
+    assert message["parts"] == {"wall": 12, "block": 1} and message["kinds"] == {
         "brick": 12,
         "block": 1,
     }
-    assert told["bricks"] == 8 and told["courses"] == 3
-    assert told["volume_m3"] == pytest.approx(2 * L * T * 3 * H + 0.2)
+    assert message["bricks"] == 8 and message["courses"] == 3
+    assert message["volume_m3"] == pytest.approx(2 * L * T * 3 * H + 0.2)
     assert bricks.summary(Bricks())["blocks"] == 0

@@ -73,12 +73,12 @@ def test_volume_and_centroid_of_any_convex_solid(count, seed):
         ),
     ],
 )
-def test_a_block_that_is_no_convex_solid_is_told(corners, said):
+def test_a_block_that_is_no_convex_solid_is_reported(corners, said):
     blocks = Bricks([Block(corners, 0, "rubble")]) + block((5, 5, 5), (6, 6, 6))
-    told = blocks.problems()
+    message = blocks.problems()
     assert (
-        re.search(r"block 0 of brick 0 \(rubble\): .*" + said, told[0])
-        and len(told) == 1
+        re.search(r"block 0 of brick 0 \(rubble\): .*" + said, message[0])
+        and len(message) == 1
     )
     with pytest.raises(ValueError, match=said):
         blocks.cut((0, 0, 0.2), (0, 0, 1))
@@ -98,16 +98,16 @@ def test_blocks_that_fit_have_one_joint_and_no_problem():
 
 @few
 @given(some.floats(3e-4, 0.2), some.floats(-400, 400), some.sampled_from("xyz"))
-def test_a_gap_and_an_overlap_are_told_with_bricks_depth_and_place(depth, turn, axis):
+def test_a_gap_and_an_overlap_are_reported_with_bricks_depth_and_place(depth, turn, axis):
     for sign, word in ((1, "gap of up to"), (-1, "overlap by")):
         pair = beside(sign * depth).turned(turn, axis)
-        told = [p for p in pair.problems() if word in p]
-        assert len(told) == 1 and told[0].startswith(
+        message = [p for p in pair.problems() if word in p]
+        assert len(message) == 1 and message[0].startswith(
             "block 0 of brick 0 and block 1 of brick 1"
         )
-        size = float(re.search(word + r" (\S+) m", told[0])[1])
+        size = float(re.search(word + r" (\S+) m", message[0])[1])
         assert size == pytest.approx(depth, rel=0.02)
-        place = [float(x) for x in re.search(r"\((.*)\) m$", told[0])[1].split(",")]
+        place = [float(x) for x in re.search(r"\((.*)\) m$", message[0])[1].split(",")]
         right = block((1, 0.5, 0.5), (1.1, 0.6, 0.6)).turned(turn, axis)[0].corners[0]
         assert math.dist(place, right) < (0.51 * depth + 0.002 if sign > 0 else 1.5)
         assert not pair.joints()
@@ -137,7 +137,7 @@ def test_blocks_at_any_angle_overlap_as_sampled_points_say(seed):
     for axis in "xyz":
         two = two.turned(float(random.uniform(0, 360)), axis)
     two = two.moved(*random.uniform(-1, 1, 3))
-    told = any("overlap" in p for p in (one + two).problems())
+    message = any("overlap" in p for p in (one + two).problems())
     low, high = np.array(one.low), np.array(one.high)
     corners = np.array(
         two[0].corners
@@ -146,14 +146,14 @@ def test_blocks_at_any_angle_overlap_as_sampled_points_say(seed):
     inside = random.uniform(size=(20000, 3)) @ axes + origin
     margin = 0.01
     if ((inside > low + margin) & (inside < high - margin)).all(axis=1).any():
-        assert told
+        assert message
     directions = random.normal(size=(3000, 3))
     directions /= np.linalg.norm(directions, axis=1)[:, None]
     a, b = (np.array(x[0].corners) @ directions.T for x in (one, two))
     if (
         np.maximum(a.min(axis=0) - b.max(axis=0), b.min(axis=0) - a.max(axis=0)) > 0
     ).any():
-        assert not told
+        assert not message
 
 
 def test_edges_that_cross_are_parted_although_no_face_parts_them():
@@ -183,41 +183,41 @@ def test_edges_that_cross_are_parted_although_no_face_parts_them():
 # -- sets of blocks ---------------------------------------------------------------------------------------------------
 
 
-def test_loose_parts_are_told_with_their_size():
+def test_loose_parts_are_reported_with_their_size():
     both = stack(3, (1, 1, 1)) + stack(2, (1, 1, 1)).moved(dx=5)
-    (told,) = both.problems()
+    (message,) = both.problems()
     assert (
-        told
+        message
         == "2 blocks from block 3 of brick 3 on, near (5.500, 0.500, 0.500) m: no joint with the other 3 blocks"
     )
 
 
 def test_touching_edges_and_corners_make_no_joint():
-    for way in ((0, 1, 0), (0, 1, 1)):
-        pair = beside(0, *way[1:])
+    for direction in ((0, 1, 0), (0, 1, 1)):
+        pair = beside(0, *direction[1:])
         assert pair.joints() == [] and "no joint with the other" in pair.problems()[0]
 
 
-def test_a_sliver_and_a_narrow_joint_are_told():
+def test_a_sliver_and_a_narrow_joint_are_reported():
     wall = Wall(0.66, 0.243, halves=False)
     sliver = wall.cut((0, 0, 0.172), (0, 0, 1))
-    told = [p for p in sliver.problems() if "sliver: 0.01 m thin, less than" in p]
-    assert len(told) == 3  # course 2 has three whole bricks
+    message = [p for p in sliver.problems() if "sliver: 0.01 m thin, less than" in p]
+    assert len(message) == 3  # course 2 has three whole bricks
     shifted = stack(2, (1, 1, 1))[:1] + stack(1, (1, 1, 1)).moved(0.95, 0, 1)
-    (told,) = shifted.problems()
+    (message,) = shifted.problems()
     assert re.fullmatch(
         r"block 0 of brick 0 and block 1 of brick 1 share a joint of odd size near \(0.975, 0.500, 1.000\) m: 1 m long but "
         r"0.04\d+ m wide, less than 0.1 m, a tenth of the thinner block",
-        told,
+        message,
     )
 
 
-@pytest.mark.parametrize("way", ["missing", "pushed", "swollen"])
-def test_one_wrong_brick_in_a_wall_is_found(way):
+@pytest.mark.parametrize("direction", ["missing", "pushed", "swollen"])
+def test_one_wrong_brick_in_a_wall_is_found(direction):
     """A wall has 20 courses of five bricks; brick 52 is taken out, pushed by 3 mm, or made 3 mm longer."""
     wall = Wall(1.1, 1.62, halves=False)
     assert wall.problems() == []
-    if way == "missing":
+    if direction == "missing":
         assert (
             wall.where(lambda b: b.brick != 52).problems() == []
         )  # a hole is no fault: it may be meant
@@ -226,7 +226,7 @@ def test_one_wrong_brick_in_a_wall_is_found(way):
     far = lambda p: p[0] > brick.high[0] - 1e-6
     new = (
         brick.moved(dx=0.003)
-        if way == "pushed"
+        if direction == "pushed"
         else Bricks(
             [
                 Block(
@@ -239,10 +239,10 @@ def test_one_wrong_brick_in_a_wall_is_found(way):
             ]
         )
     )
-    told = Bricks([new[0] if b.brick == 52 else b for b in wall]).problems()
-    assert all("block 52 of brick 52" in p for p in told)
-    assert any("overlap by 0.003 m" in p for p in told)
-    assert any("gap of up to 0.003 m" in p for p in told) == (way == "pushed")
+    message = Bricks([new[0] if b.brick == 52 else b for b in wall]).problems()
+    assert all("block 52 of brick 52" in p for p in message)
+    assert any("overlap by 0.003 m" in p for p in message)
+    assert any("gap of up to 0.003 m" in p for p in message) == (direction == "pushed")
 
 
 def test_ten_thousand_blocks_take_seconds():

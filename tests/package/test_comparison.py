@@ -55,7 +55,7 @@ def test_columns_of_older_runs_can_be_named(tmp_path, drawn):
 
 
 @pytest.mark.parametrize(
-    "words, told",
+    "words, message",
     [
         (["--csv", "t.csv"], "'t.csv' must be FILE:X:Y"),
         (["--csv", "nowhere.csv:1:2"], "cannot read nowhere.csv: No such file"),
@@ -71,13 +71,13 @@ def test_columns_of_older_runs_can_be_named(tmp_path, drawn):
         (["run", "--x", "v"], "curve.csv has no column v, it has u_mm, f_kN"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_drawn_is_refused(tmp_path, monkeypatch, capsys, words, told):
+def test_what_cannot_be_drawn_is_refused(tmp_path, monkeypatch, capsys, words, message):
     monkeypatch.chdir(tmp_path)
     writeRun("run", ["u_mm", "f_kN"], [[0, 0], [1, 1]], figure=FIGURE)
     for name, last in (("t", "2,3"), ("bad", "2,x"), ("nan", "2,nan")):
         (tmp_path / f"{name}.csv").write_text(f"a,b\n1,2\n{last}\n")
     assert comparison.main(words) == 2
-    assert told in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_a_picture_is_written(tmp_path, capsys):

@@ -42,15 +42,15 @@ def test_a_seed_gives_the_same_field_again_and_another_seed_another_one():
 
 
 @pytest.mark.parametrize(
-    "wrong, told",
+    "wrong, message",
     [
         (dict(cov=0), "coefficient of variation 0 must be above 0"),
         (dict(cov=0.1, length=-1), "correlation length -1 m must be at least 0"),
         (dict(cov=0.1, seed=1.5), "seed 1.5 must be a whole number"),
     ],
 )
-def test_wrong_parameters_are_refused(wrong, told):
-    with pytest.raises(ValueError, match=told):
+def test_wrong_parameters_are_refused(wrong, message):
+    with pytest.raises(ValueError, match=message):
         fields.lognormal(**wrong)
 
 

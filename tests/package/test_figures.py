@@ -24,14 +24,14 @@ def drawn(monkeypatch):
     return found
 
 
-def writeRun(folder, columns, rows, **told):
+def writeRun(folder, columns, rows, **message):
     """A folder with curve.csv and run.json."""
     os.makedirs(folder, exist_ok=True)
     with open(os.path.join(folder, "curve.csv"), "w") as f:
         f.write(",".join(columns) + "\r\n")
         f.writelines(",".join("%.9g" % v for v in row) + "\r\n" for row in rows)
     with open(os.path.join(folder, "run.json"), "w") as f:
-        json.dump({"title": "a run", **told}, f)
+        json.dump({"title": "a run", **message}, f)
     return str(folder)
 
 
@@ -134,7 +134,7 @@ def test_a_low_arch_is_seen_from_its_side_and_a_dome_from_above():
     assert view.towards == pytest.approx([0, -1, 0])
 
 
-def test_the_direction_of_sight_can_be_told():
+def test_the_direction_of_sight_can_be_reported():
     view = viewOf(boxPoints(3, 0.1, 2.5), np.eye(3), np.ones(3), sight=(0, -2, 0))
     assert view.towards == pytest.approx([0, 1, 0])
     assert view.right == pytest.approx([-1, 0, 0])
@@ -281,8 +281,8 @@ def test_a_corner_has_a_panel_for_each_wall_and_shows_its_joint_in_both(scene, t
     assert sum(len(c.get_paths()) for c in faces) == 9  # its subcontacts
 
     # a ground that has moved with everything is taken off
-    told = json.load(open(os.path.join(folder, "run.json")))
-    json.dump({**told, "reference_body": side[0]}, open(os.path.join(folder, "run.json"), "w"))  # fmt: skip
+    message = json.load(open(os.path.join(folder, "run.json")))
+    json.dump({**message, "reference_body": side[0]}, open(os.path.join(folder, "run.json"), "w"))  # fmt: skip
     crack_figure.cracks(folder)
     panels = {axes.get_title().split(" ")[0]: axes for axes in drawn["cracks.png"].axes}
     lines = crackLines(panels["side"])["open"]
@@ -293,13 +293,13 @@ def test_a_corner_has_a_panel_for_each_wall_and_shows_its_joint_in_both(scene, t
 def test_bodies_that_are_not_there_are_refused(scene, tmp_path):
     box((0, 0, 0), (L, T, H))
     pull(scene, tmp_path, box((0, 0, H), (L, T, 2 * H)), (0, 0, 1.0))
-    for told, words in (
+    for message, words in (
         ({"parts": {"all": [0, 7]}}, r"names bodies \[7\]"),
         ({"reference_body": 9}, r"names bodies \[9\]"),
         ({"parts": {"all": []}}, "parts: all has no bodies"),
     ):
         with pytest.raises(Refused, match=words):
-            crack_figure.cracks(writeRun(tmp_path, ["time_s", "f"], [[0, 0], [1, 1]], **told))  # fmt: skip
+            crack_figure.cracks(writeRun(tmp_path, ["time_s", "f"], [[0, 0], [1, 1]], **message))  # fmt: skip
 
 
 # -- inside YADE -----------------------------------------------------------------------------------------------------

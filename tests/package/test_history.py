@@ -88,7 +88,7 @@ def test_any_text_is_refused_in_words_or_is_a_history(text):
         ("nowhere.csv", ["cannot read nowhere.csv: No such file"]),
     ],
 )
-def test_wrong_pieces_are_told_at_once(capsys, text, messages):
+def test_wrong_pieces_are_reported_at_once(capsys, text, messages):
     with pytest.raises(SystemExit) as refused:
         parse("--history", text)
     assert refused.value.code == 2
@@ -128,10 +128,10 @@ def test_a_file_gives_its_displacements_and_leaves_other_columns_alone(tmp_path)
     assert found["points_mm"] == [0, 0.5, -1]
     assert found["file"] == str(path)
     assert found["sha256"] == hashlib.sha256(data.encode()).hexdigest()
-    told = history.describe(found)
-    assert (told["points"], told["turning_points"], told["path_mm"]) == (3, 1, 2)
-    assert "points_mm" not in told
-    assert told["noise_mm"] == 0.015
+    report = history.describe(found)
+    assert (report["points"], report["turning_points"], report["path_mm"]) == (3, 1, 2)
+    assert "points_mm" not in report
+    assert report["noise_mm"] == 0.015
     assert history.noise(dict(found, points_mm=[0, -40, 3])) == 0.4  # 1 % of 40 mm
 
 
@@ -165,7 +165,7 @@ def test_a_file_that_is_no_history_is_refused(tmp_path, content, message):
     assert len(str(refused.value).splitlines()) == 1
 
 
-def test_no_more_than_ten_problems_of_a_file_are_told(tmp_path):
+def test_no_more_than_ten_problems_of_a_file_are_reported(tmp_path):
     path = tmp_path / "h.csv"
     path.write_text("displacement_mm\n" + "x\n" * 5000)
     with pytest.raises(ValueError, match="line 11: 'x' is not a number; and 4990 more"):
@@ -193,11 +193,11 @@ def test_the_drive_brakes_for_the_next_extreme_on_its_way(points):
     found = history.targets(points, stops=True)
     assert [t.displacement for t in found] == points
     for n, target in enumerate(found):
-        run = [t for t in found[n:] if t.way == target.way]
-        ahead = next((i for i in range(n, len(found)) if found[i].way != target.way), None)  # fmt: skip
+        run = [t for t in found[n:] if t.direction == target.direction]
+        ahead = next((i for i in range(n, len(found)) if found[i].direction != target.direction), None)  # fmt: skip
         last = found[(ahead or len(found)) - 1]
         assert target.brake == last.displacement and run
-        assert target.way * (target.brake - target.displacement) >= 0
+        assert target.direction * (target.brake - target.displacement) >= 0
 
 
 @given(pieces, pieces)

@@ -116,8 +116,8 @@ def test_turning_points_alternate_and_nothing_between_them_turns(values, thresho
     assert (np.sign(ways[1:]) == -np.sign(ways[:-1])).all()
     assert (np.abs(ways) > threshold).all()
     for a, b in zip(rows, rows[1:]):
-        way = 1 if values[b] > values[a] else -1
-        part = way * np.array(values[a : b + 1])
+        direction = 1 if values[b] > values[a] else -1
+        part = direction * np.array(values[a : b + 1])
         assert (np.maximum.accumulate(part) - part).max() <= threshold
     rest = np.array(values[rows[-1] :])
     assert np.ptp(rest) <= threshold or len(rows) == 1
@@ -142,7 +142,7 @@ def test_half_cycles_follow_one_another_and_their_work_adds_up(values, least, ze
         assert sum(parts) == pytest.approx(whole, abs=1e-9)
 
 
-def test_an_incomplete_half_cycle_is_told_and_makes_no_cycle():
+def test_an_incomplete_half_cycle_is_reported_and_makes_no_cycle():
     moved, force = path((-2, 0), (3, 1), (-3, -1), (4, 0))
     halves = loops.halfCycles(moved, 0.1)
     assert [h.complete for h in halves] == [False, True, True, False]

@@ -73,7 +73,7 @@ def test_settings_change_the_named_property_only():
     assert not joints["head"].cap and joints["bed"].tensionTable == [(1, 0), (2, 1)]
 
 
-def test_all_wrong_settings_are_told_at_once():
+def test_all_wrong_settings_are_reported_at_once():
     joints = materials.calciumSilicateJoints()
     words = [
         "bad.friction=1",
@@ -202,7 +202,7 @@ def test_every_option_is_explained_with_its_default(capsys):
 # -- results ----------------------------------------------------------------------------------------------------------
 
 
-def test_an_unwritable_folder_is_told_at_the_start(tmp_path):
+def test_an_unwritable_folder_is_reported_at_the_start(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(Refused, match="--out: cannot write to"):
         results.Results(str(tmp_path / "file" / "below"), ["a"])

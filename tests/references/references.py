@@ -308,9 +308,9 @@ def couplets(dt, turn=STRAIGHT, damping=0.6, kind="local"):
         if not inPlane:
             O.bodies[body].state.blockedDOFs = "XYZ"
         top = turn * Vector3(number + LENGTH / 2, THICKNESS / 2, 3 * HEIGHT)
-        for way in ((0, 0, 1), (1, 0, 0)):
-            way = turn * Vector3(*way)
-            drives.append(MasonryLoad(body=body, point=top, direction=way, driven=True))
+        for sign in ((0, 0, 1), (1, 0, 0)):
+            sign = turn * Vector3(*sign)
+            drives.append(MasonryLoad(body=body, point=top, direction=sign, driven=True))
     elastic = MasonryJoint(name="between", elastic=True)
     engines(
         offered,

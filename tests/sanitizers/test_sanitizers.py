@@ -107,9 +107,9 @@ def test_no_two_threads_race(tmp_path):
         text=True,
         timeout=600,
     )
-    told = run.stdout + run.stderr
-    assert run.returncode == 0, told[-6000:]
-    assert "Archer detected OpenMP application with TSan" in told
-    assert told.count(" threads 2 damaged True") == 7, told
-    assert told.count("beside the run True to its end True") == 7, told
-    assert "module " + folder in told
+    message = run.stdout + run.stderr
+    assert run.returncode == 0, message[-6000:]
+    assert "Archer detected OpenMP application with TSan" in message
+    assert message.count(" threads 2 damaged True") == 7, message
+    assert message.count("beside the run True to its end True") == 7, message
+    assert "module " + folder in message

@@ -152,8 +152,8 @@ def test_a_couplet_interrupted_in_every_move_leaves_the_curve_of_a_whole_run(
         at(700, interrupt)
         if run(*words) == 0:
             break
-        told = readCheckpoint(str(tmp_path / "broken" / "run.checkpoint"))
-        moves.append(told["at"]["number"])
+        text = readCheckpoint(str(tmp_path / "broken" / "run.checkpoint"))
+        moves.append(text["at"]["number"])
         words = ["--resume", str(tmp_path / "broken")]
     assert set(moves) == ({1, 2, 3} if path == "shear" else {1, 2})
     assert files(tmp_path / "broken") == files(tmp_path / "whole")
@@ -170,13 +170,13 @@ def test_a_finished_run_can_be_pushed_on(scene, tmp_path):
 def test_frames_can_begin_and_end_with_a_resumed_run(scene, tmp_path):
     assert run(tmp_path / "whole", *PUSH) == 0
     assert run(tmp_path / "parts", *PUSH, "--no-vtk", "--until", "0.15") == 0
-    told = str(tmp_path / "parts")
-    args = parsed("--resume", told, "--until", "0.3")
+    text = str(tmp_path / "parts")
+    args = parsed("--resume", text, "--until", "0.3")
     args.no_vtk = False
     assert carryOut(SMALL, args) == 0
-    frames = [n for n in files(told) if n.endswith("vtu")]
+    frames = [n for n in files(text) if n.endswith("vtu")]
     assert frames == ["blocks_0000.vtu", "blocks_0001.vtu"]  # at 0.2 mm and the end
-    assert files(told)["curve.csv"] == files(tmp_path / "whole")["curve.csv"]
+    assert files(text)["curve.csv"] == files(tmp_path / "whole")["curve.csv"]
 
 
 @pytest.mark.parametrize("rows", [0, 29])
@@ -201,7 +201,7 @@ def test_a_run_that_fails_can_be_taken_up_where_it_failed(
     assert files(tmp_path / "failed") == files(tmp_path / "whole")
 
 
-def test_a_full_disk_is_told_and_the_run_goes_on(scene, tmp_path, at, capsys):
+def test_a_full_disk_is_reported_and_the_run_goes_on(scene, tmp_path, at, capsys):
     assert run(tmp_path / "whole", *PUSH) == 0
     kept = str(tmp_path / "full" / "run.checkpoint")
     seen = {}
@@ -382,11 +382,11 @@ def test_what_cannot_be_taken_up_is_refused(broken, tmp_path, capsys):
     assert not (tmp_path / "none").exists()
 
 
-def test_another_build_or_number_of_threads_is_told(broken, capsys):
+def test_another_build_or_number_of_threads_is_reported(broken, capsys):
     kept = str(broken / "run.checkpoint")
-    told = readCheckpoint(kept)
-    told.update(threads=7, build="v0")
-    saveCheckpoint(kept, told)
+    text = readCheckpoint(kept)
+    text.update(threads=7, build="v0")
+    saveCheckpoint(kept, text)
     capsys.readouterr()
     assert run(broken, resume=True) == 0
     out = capsys.readouterr().out
@@ -397,12 +397,12 @@ def test_another_build_or_number_of_threads_is_told(broken, capsys):
 
 def test_a_stage_or_counter_that_is_not_known_is_refused(broken, capsys):
     kept = str(broken / "run.checkpoint")
-    told = readCheckpoint(kept)
+    text = readCheckpoint(kept)
     for key, value, message in (
         ("stage", "dance", "of another version of the plugin: stage 'dance'"),
         ("luck", 1, "of another version of the plugin"),
     ):
-        changed = dict(told, at=dict(told["at"], **{key: value}))
+        changed = dict(text, at=dict(text["at"], **{key: value}))
         saveCheckpoint(kept, changed)
         assert refused(broken) == 2
         assert message in capsys.readouterr().err

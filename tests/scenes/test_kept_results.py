@@ -125,14 +125,14 @@ def test_a_folder_is_for_one_run_at_a_time(finished, monkeypatch, capsys, locks)
             raise OSError(errno.ENOLCK, "No locks available")
 
         monkeypatch.setattr(results.fcntl, "flock", none)
-    told, tell = os.pipe()
+    report, tell = os.pipe()
     child = os.fork()
     if child == 0:
         held = Results(str(finished), ["a_mm"], True, "other")
         os.write(tell, b"x")
         time.sleep(60)
         os._exit(int(held is None))
-    os.read(told, 1)
+    os.read(report, 1)
     before = contents(finished)
     try:
         for words in (dict(), dict(resume=True)):
@@ -252,11 +252,11 @@ def test_what_is_no_checkpoint_is_refused_at_once(finished, capsys):
 def test_a_checkpoint_whose_words_are_of_another_kind_is_refused(finished, capsys):
     """Every entry of a record is replaced by values of other kinds, one at a time, under a right sum."""
     kept = str(finished / "run.checkpoint")
-    told = readCheckpoint(kept)
+    report = readCheckpoint(kept)
     wrong = [None, -1, "x", ["x"], {"x": 1}]
     tried, welcome = 0, []
     for where in ([], ["at"], ["at", "memory"], ["at", "seconds"], ["options"]):
-        place = told
+        place = report
         for key in where:
             place = place[key]
         for key, right in list(place.items()):
@@ -275,7 +275,7 @@ def test_a_checkpoint_whose_words_are_of_another_kind_is_refused(finished, capsy
                 if isinstance(right, float) and not isinstance(value, (str, list, dict, type(None))):  # fmt: skip
                     continue
                 place[key] = value
-                saveCheckpoint(kept, told)
+                saveCheckpoint(kept, report)
                 try:
                     parsed("--resume", str(finished))
                     status = "parsed"
@@ -306,13 +306,13 @@ def test_odd_names_and_terminals_end_in_order(tmp_path):
         "s.finish()\n"
     )
     plain = dict(os.environ, PYTHONIOENCODING="ascii:strict")
-    told = subprocess.run(["yade", "-n", "-x", script], cwd=tmp_path, env=plain, capture_output=True)  # fmt: skip
-    assert told.returncode == 0, told.stderr
-    assert b"\\xb5s" in told.stdout
+    report = subprocess.run(["yade", "-n", "-x", script], cwd=tmp_path, env=plain, capture_output=True)  # fmt: skip
+    assert report.returncode == 0, report.stderr
+    assert b"\\xb5s" in report.stdout
     odd = os.fsencode(tmp_path) + b"/caf\xe9"
     couplet = os.path.join(ROOT, "scripts", "couplet.py")
-    told = subprocess.run(["yade", "-n", "-x", couplet, "--out", odd], capture_output=True)  # fmt: skip
-    assert told.returncode == 2 and b"is not UTF-8" in told.stderr
+    report = subprocess.run(["yade", "-n", "-x", couplet, "--out", odd], capture_output=True)  # fmt: skip
+    assert report.returncode == 2 and b"is not UTF-8" in report.stderr
     with pytest.raises(Refused, match="its name is not UTF-8"):
         Results(os.fsdecode(odd), ["a_mm"])
     assert not os.path.exists(odd)
@@ -332,8 +332,8 @@ def test_a_wall_that_moves_against_its_push_has_collapsed(scene, tmp_path, capsy
     for what in ("residualFriction=0.01", "friction=0.01", "cohesion=0", "tensileStrength=0"):  # fmt: skip
         words += ["--set", "bed." + what]
     assert run(tmp_path / "r", *words, wall=LIGHT) == 0
-    told = "collapsed: at -1.00 mm it moves against its push"
-    assert told in capsys.readouterr().out
+    report = "collapsed: at -1.00 mm it moves against its push"
+    assert report in capsys.readouterr().out
     assert len(files.readCurve(str(tmp_path / "r"))["time_s"]) < 1000
 
 

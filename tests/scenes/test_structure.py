@@ -160,7 +160,7 @@ def test_two_scenes_at_once_are_refused(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "act, told",
+    "act, message",
     [
         (lambda s, t: s.push(t, 0.1, rate=0), "push: rate 0 must be a number above 0"),
         (lambda s, t: s.accelerate(0.3, rate=-1), "accelerate: rate -1 must be"),
@@ -175,9 +175,9 @@ def test_two_scenes_at_once_are_refused(tmp_path):
         (lambda s, t: s.press(t, 1e5), "must come before the first stage"),
     ],
 )
-def test_wrong_stages_are_refused(tmp_path, act, told):
+def test_wrong_stages_are_refused(tmp_path, act, message):
     scene, top = small(tmp_path)
-    with pytest.raises(ValueError, match=told):
+    with pytest.raises(ValueError, match=message):
         act(scene, top)
 
 
@@ -240,7 +240,7 @@ def test_nothing_held_is_refused(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "act, told",
+    "act, message",
     [
         (lambda s: s.platen("left"), "where must be 'bottom' or 'top', got 'left'"),
         (
@@ -277,14 +277,14 @@ def test_nothing_held_is_refused(tmp_path):
         (lambda s: s.platen("top", part="roof"), "no part 'roof'; there are stack"),
     ],
 )
-def test_wrong_words_are_refused(tmp_path, act, told):
+def test_wrong_words_are_refused(tmp_path, act, message):
     scene = made(tmp_path, bricks.stack(2, (0.2, 0.2, 0.2)))
-    with pytest.raises(ValueError, match=told):
+    with pytest.raises(ValueError, match=message):
         act(scene)
 
 
 @pytest.mark.parametrize(
-    "wrong, told",
+    "wrong, message",
     [
         (dict(name="a/b"), "name must be a text that can name a folder"),
         (dict(bricks=[]), "bricks must be a list of blocks"),
@@ -292,9 +292,9 @@ def test_wrong_words_are_refused(tmp_path, act, told):
         (dict(gravity=-1), "gravity -1 must be at least 0"),
     ],
 )
-def test_wrong_scenes_are_refused(wrong, told):
+def test_wrong_scenes_are_refused(wrong, message):
     right = dict(name="a", bricks=bricks.stack(1, (1, 1, 1)), materials=materials.dry())
-    with pytest.raises(Refused, match=told):
+    with pytest.raises(Refused, match=message):
         Scene(**{**right, **wrong})
 
 
@@ -405,13 +405,13 @@ def test_wind_overturns_a_wall_at_the_pressure_of_statics(tmp_path):
 def test_wind_that_cannot_be_is_refused(tmp_path):
     blocks = bricks.Wall(0.44, 0.81, halves=False)
     scene = made(tmp_path, blocks, materials.dry(), plane=False)
-    for pressure, way, told in (
+    for pressure, sign, message in (
         (0, (0, 1, 0), "pressure 0 Pa must be other than 0"),
         (500, (0, 0, 1), "the direction must be horizontal"),
         (500, (0, 0, 0), "the direction must be horizontal"),
     ):
-        with pytest.raises(ValueError, match=told):
-            scene.wind(pressure, way)
+        with pytest.raises(ValueError, match=message):
+            scene.wind(pressure, sign)
     scene = made(tmp_path, blocks, materials.dry(), ["--blocks", "deformable"])
     with pytest.raises(Refused, match="wind: it loads rigid bricks"):
         scene.wind(500, (1, 0, 0))
@@ -431,7 +431,7 @@ def test_a_growing_acceleration_tells_where_the_structure_left_rest(tmp_path, ra
 
 
 @pytest.mark.parametrize(
-    "peak, settings, told",
+    "peak, settings, message",
     [
         (0.4, {}, "the peak of the record is 0.4, .* is it in g"),
         (400, {}, "the peak of the record is 400, .* is it in cm/s²"),
@@ -439,8 +439,8 @@ def test_a_growing_acceleration_tells_where_the_structure_left_rest(tmp_path, ra
         (2, dict(unit="mm/s²"), "unit must be one of m/s², g, cm/s², got 'mm/s²'"),
     ],
 )
-def test_a_record_in_another_unit_is_asked_about(peak, settings, told):
-    with pytest.raises(Refused, match=told):
+def test_a_record_in_another_unit_is_asked_about(peak, settings, message):
+    with pytest.raises(Refused, match=message):
         readRecord([0, peak, -peak / 2], 0.01, **settings)
 
 

@@ -112,13 +112,13 @@ def test_places_in_a_run(wall):
     for text in ("{:.9g}", "{:.9g}mm", "{:.9g} mm"):
         place = text.format(moved["displacement_mm"][row])
         assert abs(viewer.frameNear(wall, place) - middle) <= 1
-    for text, told in (
+    for text, message in (
         ("soon", "'soon' must be a number"),
         ("3 kN", "'3 kN' must be in mm or in s"),
         ("900", "never comes to 900 mm; it goes from"),
         ("-1s", "has frames from"),
     ):
-        with pytest.raises(Refused, match=told):
+        with pytest.raises(Refused, match=message):
             viewer.frameNear(wall, text)
 
 
@@ -143,7 +143,7 @@ def test_without_paraview_the_packages_are_named(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "words, told",
+    "words, message",
     [
         (["nowhere"], "cannot read nowhere/run.json: No such file"),
         (["RUN", "--size", "big"], "'big' must be WIDTHxHEIGHT"),
@@ -156,13 +156,13 @@ def test_without_paraview_the_packages_are_named(tmp_path, monkeypatch):
     ],
 )
 def test_what_cannot_be_shown_is_refused(
-    wall, monkeypatch, tmp_path, capsys, words, told):  # fmt: skip
+    wall, monkeypatch, tmp_path, capsys, words, message):  # fmt: skip
     monkeypatch.chdir(tmp_path)
     assert viewer.main([wall if w == "RUN" else w for w in words]) == 2
-    assert told in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     assert not os.listdir(tmp_path)
 
 
 def test_it_needs_no_yade():
-    told = subprocess.run([sys.executable, "-c", "import sys, masonry.read.viewer; print([m for m in sys.modules if 'yade' in m or 'vtk' in m])"], capture_output=True, text=True)  # fmt: skip
-    assert told.stdout.strip() == "[]", told.stderr
+    message = subprocess.run([sys.executable, "-c", "import sys, masonry.read.viewer; print([m for m in sys.modules if 'yade' in m or 'vtk' in m])"], capture_output=True, text=True)  # fmt: skip
+    assert message.stdout.strip() == "[]", message.stderr

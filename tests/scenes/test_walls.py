@@ -337,8 +337,8 @@ def test_a_push_that_is_too_fast_says_so_and_what_would_do(runScene, words, cure
     words = ["--no-vtk", *words.split()]
     process, out = runScene("wall_comp1", *words)
     assert readRun(out)["too_fast"] and readRun(out)["dynamic_imbalance"] > 0.1
-    told = [t for t in process.stdout.splitlines() if "the push is too fast" in t]
-    slower = told[0].split("; ")[1].removesuffix(" would do").split()
+    report = [t for t in process.stdout.splitlines() if "the push is too fast" in t]
+    slower = report[0].split("; ")[1].removesuffix(" would do").split()
     assert slower[0] == cure.split()[0]
     process, out = runScene("wall_comp1", *words, *slower)
     assert not readRun(out)["too_fast"] and "too fast" not in process.stdout

@@ -61,8 +61,8 @@ def test_a_measured_history_with_noise_is_followed_through_its_turns(scene, tmp_
     ) in (
         turns
     ):  # each is approached in five stretches, with a step back of 0.002 mm after each of them
-        for way in np.linspace(points[-1], turn, 6)[1:]:
-            points += [way, way - 0.002 * np.sign(turn - points[-1])]
+        for direction in np.linspace(points[-1], turn, 6)[1:]:
+            points += [direction, direction - 0.002 * np.sign(turn - points[-1])]
         points[-1] = turn
     points = np.round(points, 6)
     path = tmp_path / "measured.csv"
@@ -77,10 +77,10 @@ def test_a_measured_history_with_noise_is_followed_through_its_turns(scene, tmp_
     assert (data["target_mm"] == points[data["point"].astype(int) - 1]).all()
     assert data["point"][0] == 1 and data["point"][-1] >= len(points) - 1
     assert np.diff(data["point"]).min() == 0 and np.diff(data["point"]).max() < 4
-    told = readRun(str(tmp_path / "out"))
-    assert told["history"]["points"] == len(points) == 121
-    assert told["history"]["turning_points"] > 50
-    assert told["options"]["history"] == str(path)
+    text = readRun(str(tmp_path / "out"))
+    assert text["history"]["points"] == len(points) == 121
+    assert text["history"]["turning_points"] > 50
+    assert text["options"]["history"] == str(path)
 
 
 def test_the_velocity_changes_evenly_where_the_drive_turns(scene, tmp_path):
@@ -120,16 +120,16 @@ def looped(tmp_path_factory):
 
 
 def test_run_json_tells_the_history_and_the_cycles(looped):
-    told, data = readRun(str(looped)), curve(looped)
-    assert not set(told) - set(re.findall(r"``(\w+)``", results.__doc__))
-    assert told["history"]["amplitudes_mm"] == [[0.1, 1], [0.5, 2], [2.0, 1]]
-    assert told["history"]["path_mm"] == pytest.approx(4 * 3.1)
-    assert told["options"]["history"] == "0.1,0.5x2,2" and not told["collapsed"]
+    text, data = readRun(str(looped)), curve(looped)
+    assert not set(text) - set(re.findall(r"``(\w+)``", results.__doc__))
+    assert text["history"]["amplitudes_mm"] == [[0.1, 1], [0.5, 2], [2.0, 1]]
+    assert text["history"]["path_mm"] == pytest.approx(4 * 3.1)
+    assert text["options"]["history"] == "0.1,0.5x2,2" and not text["collapsed"]
     shear = data["base_shear_kN"]
-    assert told["peak_base_shear_kN"] == pytest.approx(shear.max(), rel=1e-8)
-    assert told["negative_peak_base_shear_kN"] == pytest.approx(shear.min(), rel=1e-8)
-    assert told["displacement_at_negative_peak_mm"] < 0
-    cycles = told["cycles"]
+    assert text["peak_base_shear_kN"] == pytest.approx(shear.max(), rel=1e-8)
+    assert text["negative_peak_base_shear_kN"] == pytest.approx(shear.min(), rel=1e-8)
+    assert text["displacement_at_negative_peak_mm"] < 0
+    cycles = text["cycles"]
     amplitudes = [cycle["amplitude_mm"] for cycle in cycles]
     assert amplitudes == pytest.approx([0.1, 0.5, 0.5, 2], abs=0.01)
     whole = loops.work(data["displacement_mm"], shear)
@@ -138,7 +138,7 @@ def test_run_json_tells_the_history_and_the_cycles(looped):
     lost -= sum(data[f"dissipated_{m}_J"][0] for m in ("tension", "shear", "compression"))  # fmt: skip
     assert sum(c["dissipated_J"] for c in cycles) == pytest.approx(lost, rel=0.01)
     assert lost > 10  # it is cracked, not elastic
-    assert told["energy_balance_error"] < 1e-6
+    assert text["energy_balance_error"] < 1e-6
     for cycle, one, other in zip(cycles, [0, 6, 9, 12], [3, 9, 12, 15]):
         rows = slice(*cycle["rows"])
         assert cycle["largest_kN"] == pytest.approx(shear[rows].max(), rel=1e-3)
@@ -147,9 +147,9 @@ def test_run_json_tells_the_history_and_the_cycles(looped):
 
 def test_what_the_drive_puts_into_a_cycle_is_lost_or_stored(looped):
     """The loading block of the small wall does not turn, so the drive works over the displacement of curve.csv."""
-    told, data = readRun(str(looped)), curve(looped)
+    text, data = readRun(str(looped)), curve(looped)
     vertical = 0.5e6 * SMALL.area  # [N] that the top course feels
-    for cycle in told["cycles"]:
+    for cycle in text["cycles"]:
         first, last = cycle["rows"]
         grown = lambda name: data[name][last] - data[name][first]
         stored = sum(grown(n) for n in data if n.startswith("elastic_"))
@@ -191,8 +191,8 @@ def test_frames_stand_at_turning_points_and_zeros(looped):
     # --vtk-every 1: the swings of 0.1 mm have no frame of their own, those of 2 mm have three a side
     for place, count in ((2, 1), (-2, 1), (0, 2)):
         assert (np.abs(at - place) < 0.012).sum() >= count
-    way = np.interp(times, data["time_s"], np.append(0, np.cumsum(np.abs(np.diff(data["displacement_mm"])))))  # fmt: skip
-    assert np.diff(way)[:-1].min() >= 0.49 and len(times) < 20
+    direction = np.interp(times, data["time_s"], np.append(0, np.cumsum(np.abs(np.diff(data["displacement_mm"])))))  # fmt: skip
+    assert np.diff(direction)[:-1].min() >= 0.49 and len(times) < 20
 
 
 def test_the_number_of_frames_is_bounded():
@@ -215,10 +215,10 @@ def test_loops_that_damping_makes_fat_are_a_warning(runScene):
 def test_a_loop_that_unloads_is_no_collapse_and_a_lost_side_is_one():
     at = pushing.Pushing()
 
-    def row(moved, shear, way):
+    def row(moved, shear, direction):
         at.moved = moved
         at.note(shear)
-        return at.hasLost(way, shear)
+        return at.hasLost(direction, shear)
 
     goals = history.targets([5, -5, 8, -8])
     assert not row(5, 100, 1)
@@ -240,8 +240,8 @@ def test_a_wall_that_loses_its_force_in_a_loop_ends_the_run(scene, tmp_path):
     words = [f"--set={name}.{value}" for name in ("bed", "head") for value in bare]
     words += ["--joints", "brittle", "--no-vtk", "--rate", "40"]
     assert run(tmp_path / "loop", *words, "--history", "0.02x2,3") == 0
-    told = readRun(str(tmp_path / "loop"))
-    assert told["collapsed"] and told["displacement_end_mm"] < 3
+    text = readRun(str(tmp_path / "loop"))
+    assert text["collapsed"] and text["displacement_end_mm"] < 3
     assert run(tmp_path / "back", *words, "--history", "0.02x2,0.5x3") == 0
     assert not readRun(str(tmp_path / "back"))["collapsed"]
 
@@ -310,8 +310,8 @@ def test_a_finished_history_can_be_extended(scene, tmp_path):
     assert run(tmp_path / "parts", *longer, resume=True) == 0
     # Before 0 mm the drive does not brake for 0.6 mm yet, so that both runs are the same to the last bit.
     assert files(tmp_path / "parts") == files(tmp_path / "whole")
-    told = readRun(str(tmp_path / "parts"))
-    assert len(told["cycles"]) == 3 and told["options"]["history"] == longer[1]
+    text = readRun(str(tmp_path / "parts"))
+    assert len(text["cycles"]) == 3 and text["options"]["history"] == longer[1]
 
 
 def test_a_file_can_be_extended_and_need_not_be_there_to_go_on(scene, tmp_path, at):

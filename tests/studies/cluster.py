@@ -128,12 +128,12 @@ def cluster(tasks=1001):
                 lambda: "idle" in asked("sinfo", "--noheader", "-o", "%t"), 30, "slurmd"
             )
         except TimeoutError as error:
-            told = "".join(
+            message = "".join(
                 open(os.path.join(folder, n), errors="replace").read()[-2000:]
                 for n in os.listdir(folder)
                 if n.endswith("log")
             )
-            raise TimeoutError(f"{error} did not start:\n{told}") from None
+            raise TimeoutError(f"{error} did not start:\n{message}") from None
         yield env
         asked("scancel", "--user", getpass.getuser())
         with contextlib.suppress(TimeoutError):

@@ -91,7 +91,7 @@ def test_few_shared_rows_make_no_spread_too_small():
     assert between == pytest.approx(2 * 5 * stats.norm.ppf(0.9), rel=0.08)
 
 
-def test_a_dear_row_alone_is_told_with_its_own_variance(ofLine):
+def test_a_dear_row_alone_is_reported_with_its_own_variance(ofLine):
     assert np.mean([e.alone for e in ofLine["mean"]]) == pytest.approx(25, rel=0.05)
     squares = np.mean([e.alone for e in ofLine["standard deviation"]])
     assert squares == pytest.approx(2 * 5**4, rel=0.15)  # variance of (y - mean)²
@@ -130,8 +130,8 @@ def test_indicators_find_a_quantile_where_the_bridge_is_wrong():
 def test_a_scatter_that_grows_along_the_cheap_numbers_is_doubted():
     generator = np.random.default_rng(8)
     x = generator.uniform(1, 3, 60)
-    (told,) = estimate.doubts(5 * x + 0.2 * x**2 * generator.standard_normal(60), x)
-    assert "more at one end" in told
+    (message,) = estimate.doubts(5 * x + 0.2 * x**2 * generator.standard_normal(60), x)
+    assert "more at one end" in message
 
 
 def test_what_rounding_leaves_is_not_doubted():
@@ -141,8 +141,8 @@ def test_what_rounding_leaves_is_not_doubted():
 
 def test_doubts_come_as_seldom_as_they_say_where_the_bridge_holds():
     generator = np.random.default_rng(5)
-    told = [len(estimate.doubts(*line(generator, 25, 25, 0.9))) for _ in range(1000)]
-    assert np.mean(told) < 2 * estimate.DOUBT + 3 * math.sqrt(2 * estimate.DOUBT / 1000)
+    message = [len(estimate.doubts(*line(generator, 25, 25, 0.9))) for _ in range(1000)]
+    assert np.mean(message) < 2 * estimate.DOUBT + 3 * math.sqrt(2 * estimate.DOUBT / 1000)
 
 
 def test_cheap_rows_that_tell_nothing_do_no_harm():
@@ -209,11 +209,11 @@ def test_a_budget_is_never_exceeded_and_all_of_it_is_used():
 
 def test_words_say_what_was_saved():
     found = estimate.Estimate("mean", 115.2, 114.8, 115.6, 1.0, 24.0, 25, 20, 600)
-    told = estimate.sentence(found, (60, 3), "kN", ("accurate", "fast"))
+    message = estimate.sentence(found, (60, 3), "kN", ("accurate", "fast"))
     # variance 1/20 + 24/600 = 0.09, for which 25/0.09 = 278 runs are needed alone
-    assert "20 runs of accurate and 600 of fast in 50 min" in told
-    assert "accurate alone needs 278 runs and 4.63 h" in told
-    assert "82 % of the time is saved" in told
+    assert "20 runs of accurate and 600 of fast in 50 min" in message
+    assert "accurate alone needs 278 runs and 4.63 h" in message
+    assert "82 % of the time is saved" in message
 
 
 def test_an_end_that_few_rows_do_not_tell_is_said_to_be_unknown():
@@ -227,7 +227,7 @@ y30, x30 = line(np.random.default_rng(1), 30, 100, 0.9)
 
 
 @pytest.mark.parametrize(
-    "call, told",
+    "call, message",
     [
         (lambda: estimate.mean(y30[:9], x30), "9 shared rows are too few"),
         (lambda: estimate.mean(y30, x30[:29]), "29 cheap rows for 30 expensive ones"),
@@ -250,12 +250,12 @@ y30, x30 = line(np.random.default_rng(1), 30, 100, 0.9)
         ),
     ],
 )
-def test_what_no_estimate_can_be_made_of_is_refused(call, told):
-    with pytest.raises(Refused, match=told):
+def test_what_no_estimate_can_be_made_of_is_refused(call, message):
+    with pytest.raises(Refused, match=message):
         call()
 
 
-def test_all_problems_are_told_at_once():
+def test_all_problems_are_reported_at_once():
     with pytest.raises(Refused) as refused:
         estimate.mean([1, math.inf], [1])
     assert len(str(refused.value).splitlines()) == 3

@@ -103,7 +103,7 @@ def tied(n=40):
 
 
 @pytest.mark.parametrize(
-    "call, told",
+    "call, message",
     [
         (
             lambda: sensitivity.sobol(*tied()),
@@ -124,8 +124,8 @@ def tied(n=40):
         ),
     ],
 )
-def test_what_no_sensitivity_can_be_made_of_is_refused(call, told):
-    with pytest.raises(Refused, match=told):
+def test_what_no_sensitivity_can_be_made_of_is_refused(call, message):
+    with pytest.raises(Refused, match=message):
         call()
 
 
@@ -162,8 +162,8 @@ def test_a_histogram_has_an_area_of_one_and_the_quantiles_of_the_rows(drawn):
     ) == pytest.approx(1)
     for share in (0.05, 0.5, 0.95):
         value = np.quantile(VALUES, share)
-        told = byLabel(axis)[f"{100 * share:g} % quantile: {value:.4g}"]
-        assert told.get_xdata() == [value, value]
+        message = byLabel(axis)[f"{100 * share:g} % quantile: {value:.4g}"]
+        assert message.get_xdata() == [value, value]
     (density,) = [
         line for label, line in byLabel(axis).items() if label.startswith("lognormal")
     ]
@@ -363,7 +363,7 @@ def test_rows_without_a_number_in_either_study_are_not_shared(studies):
     assert y == pytest.approx(peaks[shared])
 
 
-def test_studies_of_which_it_cannot_be_told_what_they_share_are_refused(studies):
+def test_studies_of_which_it_cannot_be_reported_what_they_share_are_refused(studies):
     few, many = map(records.Record, studies[:2])
     many.varied = many.varied[:2]
     with pytest.raises(
@@ -385,8 +385,8 @@ def test_studies_of_other_walls_or_options_are_not_joined(studies):
             study = {"scene": "wall_comp4", "runs": 15, "options": own}
             if name == "fast":
                 study = {**study, "scene": scene, "options": {**own, **more}}
-            told = {"study": study, "script": scene + ".py"}
-            (pathlib.Path(directory) / "study.json").write_text(json.dumps(told))
+            message = {"study": study, "script": scene + ".py"}
+            (pathlib.Path(directory) / "study.json").write_text(json.dumps(message))
         return [records.Record(directory) for directory in studies[:2]]
 
     assert len(records.paired(*write(), "peak_base_shear_kN")[0]) == 15
@@ -403,8 +403,8 @@ def test_studies_of_other_rates_and_meshes_are_joined(studies):
         {"accurate": {}, "fast": {"rate": 20, "subcontacts": 2}}.items(), studies
     ):
         study = {"scene": "wall_comp4", "runs": 15, "options": {"preset": name, **more}}
-        told = json.dumps({"study": study, "script": "wall_comp4.py"})
-        (pathlib.Path(directory) / "study.json").write_text(told)
+        message = json.dumps({"study": study, "script": "wall_comp4.py"})
+        (pathlib.Path(directory) / "study.json").write_text(message)
     few, many = map(records.Record, studies[:2])
     assert len(records.paired(few, many, "peak_base_shear_kN")[0]) == 15
 
@@ -437,7 +437,7 @@ def test_prices_are_the_times_of_the_jobs(studies):
     assert records.Record(studies[0]).price([0, 1]) == 10.5
 
 
-def test_rows_that_failed_are_told_and_left_out(tmp_path, capsys):
+def test_rows_that_failed_are_reported_and_left_out(tmp_path, capsys):
     rows = np.random.default_rng(11).uniform(0, 1, (40, 3)).tolist()
     peaks = {"peak_base_shear_kN": [repr(float(n)) if n % 4 else "" for n in range(40)]}
     folder = writeStudy(tmp_path / "study", rows, peaks)
@@ -450,7 +450,7 @@ def test_what_is_no_study_is_refused_with_its_name(tmp_path, studies, capsys):
     other = tmp_path / "other"
     other.mkdir()
     (other / "study.csv").write_text("a,b\n1,2\n")
-    for words, told in (
+    for words, message in (
         ([str(tmp_path / "nowhere")], "nowhere"),
         ([str(other)], "no table of a study"),
         (
@@ -461,4 +461,4 @@ def test_what_is_no_study_is_refused_with_its_name(tmp_path, studies, capsys):
         ([studies[0], "--prices", "1"], "--prices 1 must be two numbers"),
     ):
         assert report.main([*words, "--no-pictures"]) == 2
-        assert told in capsys.readouterr().err
+        assert message in capsys.readouterr().err

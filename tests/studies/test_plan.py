@@ -128,21 +128,21 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("told", WRONG)
-def test_a_wrong_study_is_refused(told):
-    with pytest.raises(Refused, match=told):
-        Study("any", **WRONG[told])
+@pytest.mark.parametrize("message", WRONG)
+def test_a_wrong_study_is_refused(message):
+    with pytest.raises(Refused, match=message):
+        Study("any", **WRONG[message])
 
 
-def test_all_problems_are_told_at_once():
+def test_all_problems_are_reported_at_once():
     with pytest.raises(Refused) as refused:
         Study("any", options={"out": "x"}, runs=0, seed=-1, vary={}, design="best")
-    for told in ("design", "seed", "'out'", "nothing varies", "runs"):
-        assert told in str(refused.value)
+    for message in ("design", "seed", "'out'", "nothing varies", "runs"):
+        assert message in str(refused.value)
 
 
 @pytest.mark.parametrize(
-    "make, told",
+    "make, message",
     [
         (lambda: lognormal(-1.0, 0.2), "mean -1 must be above 0"),
         (lambda: normal(1.0, 0.0), "variation 0.0 must be above 0"),
@@ -156,8 +156,8 @@ def test_all_problems_are_told_at_once():
         (lambda: field(uniform(1, 2)), "must be lognormal or normal"),
     ],
 )
-def test_wrong_variables_are_refused(make, told):
-    with pytest.raises(Refused, match=told):
+def test_wrong_variables_are_refused(make, message):
+    with pytest.raises(Refused, match=message):
         make()
 
 

@@ -64,12 +64,12 @@ def family(process):
     listed = subprocess.run(
         ["ps", "-e", "-o", "pid=,ppid=,args="], capture_output=True, text=True
     ).stdout
-    told = [line.split(None, 2) for line in listed.splitlines()]
+    message = [line.split(None, 2) for line in listed.splitlines()]
     found = {str(process.pid)}
     while True:
-        more = {pid for pid, parent, _ in told if parent in found} - found
+        more = {pid for pid, parent, _ in message if parent in found} - found
         if not more:
-            return {int(pid): args for pid, _, args in told if pid in found}
+            return {int(pid): args for pid, _, args in message if pid in found}
         found |= more
 
 
@@ -102,14 +102,14 @@ def whole(tmp_path_factory):
         now = family(process)
         seen.append((listening(now), [a for a in now.values() if "yadebatch" in a]))
         time.sleep(0.05)
-    told = process.stdout.read()
-    assert process.returncode == 0, told
-    return out, told, seen
+    message = process.stdout.read()
+    assert process.returncode == 0, message
+    return out, message, seen
 
 
 def test_a_study_runs_all_rows_once(whole):
-    out, told, _ = whole
-    assert "4 of 4 rows" in told and "4 ended" in told
+    out, message, _ = whole
+    assert "4 of 4 rows" in message and "4 ended" in message
     assert sorted(ended(out)) == ["0001", "0002", "0003", "0004"]
     rows = [*csv.DictReader(read(out).decode().splitlines())]
     assert [row["status"] for row in rows] == ["ended"] * 4
@@ -241,9 +241,9 @@ def test_kills_at_random_moments_change_no_number(whole, tmp_path, seed):
             time.sleep(random.uniform(0, 2))
             if process.poll() is None and kill(process, who):
                 kills.append(who)
-        told = process.communicate(timeout=120)[0]
+        message = process.communicate(timeout=120)[0]
         if process.returncode != -signal.SIGKILL:
-            assert process.returncode == 0, told
+            assert process.returncode == 0, message
     assert len(kills) >= 3, kills
     done = study(path, "--out", out)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -257,8 +257,8 @@ def test_ctrl_c_leaves_checkpoints_and_the_study_goes_on(whole, tmp_path):
     while process.poll() is None and not [*out.glob("rows/*/run.checkpoint")]:
         time.sleep(0.02)
     process.send_signal(signal.SIGINT)
-    told = process.communicate(timeout=60)[0]
-    assert process.returncode == 130 and "goes on from here" in told
+    message = process.communicate(timeout=60)[0]
+    assert process.returncode == 130 and "goes on from here" in message
     assert b"missing" in read(out)
     assert not [a for a in family(process).values() if SMALL in a]
     interrupted = [p.parent for p in out.glob("rows/*/run.checkpoint")]
@@ -303,8 +303,8 @@ def refused(tmp_path, text, *words, env=None):
     return done.stderr
 
 
-def test_what_the_scene_cannot_take_is_told_at_once_and_nothing_runs(tmp_path):
-    told = refused(
+def test_what_the_scene_cannot_take_is_reported_at_once_and_nothing_runs(tmp_path):
+    message = refused(
         tmp_path,
         f"""
 from masonry.study import *
@@ -328,19 +328,19 @@ study = Study({SMALL!r}, runs=20, seed=1, options={{"until": 1, "dance": 3}}, va
         "no joint 'wall', there are ",
         "argument --rate: -",
     ):
-        assert sentence in told, told
+        assert sentence in message, message
 
 
-def test_rows_that_contradict_themselves_are_told_by_their_number(tmp_path):
+def test_rows_that_contradict_themselves_are_reported_by_their_number(tmp_path):
     vary = '{"bed.tensileStrength": uniform(1e4, 5e5), ("head.tensileStrength",): field(cov=0.5)}'
-    told = refused(
+    message = refused(
         tmp_path,
         f"from masonry.study import *\nstudy = Study({SMALL!r}, runs=8, seed=1, vary={vary})",
     )
-    assert re.search(r'row 000\d.*: joint "bed": tensile strength', told), told
+    assert re.search(r'row 000\d.*: joint "bed": tensile strength', message), message
     assert re.search(
-        r"--field head.tensileStrength=.*where the field is [\d.]+ of the mean", told
-    ), told
+        r"--field head.tensileStrength=.*where the field is [\d.]+ of the mean", message
+    ), message
 
 
 DEAF = """
@@ -355,11 +355,11 @@ scene.finish()
 def test_a_scene_that_ignores_what_varies_is_refused(tmp_path):
     text = "from masonry.study import *\nstudy = Study('scene.py', vary={'bed.friction': [0.4, 0.5]}, design='grid')"
     (tmp_path / "scene.py").write_text(DEAF)
-    told = refused(tmp_path, text)
-    assert "takes no options from the command line" in told
+    message = refused(tmp_path, text)
+    assert "takes no options from the command line" in message
     (tmp_path / "scene.py").write_text(DEAF.replace("arguments=[]", "until=1"))
-    told = refused(tmp_path, text.replace("bed.friction", "head.friction"))
-    assert "head.friction: the scene has no head joint and would ignore it" in told
+    message = refused(tmp_path, text.replace("bed.friction", "head.friction"))
+    assert "head.friction: the scene has no head joint and would ignore it" in message
     (tmp_path / "scene.py").write_text("print('hello')")
     assert "no masonry.Scene began a stage" in refused(tmp_path, text)
     (tmp_path / "scene.py").write_text("import masonry\n1 / 0")
@@ -372,13 +372,13 @@ def test_another_study_in_the_folder_is_refused(whole, tmp_path):
     path = write(tmp_path, STUDY.replace("seed=1", "seed=2").replace("0.05", "0.06"))
     done = study(path, "--out", out)
     assert done.returncode == 2
-    for told in (
+    for message in (
         "holds another study",
         "seed is 1, not 2",
         '"cov": 0.05}',
         '"cov": 0.06}',
     ):
-        assert told in done.stderr, done.stderr
+        assert message in done.stderr, done.stderr
     assert before == {path: path.read_bytes() for path in out.glob("*.*")}
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "letter.txt").write_text("expensive")
@@ -393,20 +393,20 @@ def test_another_study_in_the_folder_is_refused(whole, tmp_path):
 def test_a_changed_scene_is_another_study(whole, tmp_path):
     out, *_ = whole
     shutil.copytree(out, tmp_path / "out")
-    told = json.loads((tmp_path / "out" / "study.json").read_text())
-    told["scene_sha256"] = "0" * 64
-    (tmp_path / "out" / "study.json").write_text(json.dumps(told))
+    message = json.loads((tmp_path / "out" / "study.json").read_text())
+    message["scene_sha256"] = "0" * 64
+    (tmp_path / "out" / "study.json").write_text(json.dumps(message))
     done = study(write(tmp_path), "--out", tmp_path / "out")
     assert done.returncode == 2 and "the file of its scene" in done.stderr
 
 
 @pytest.mark.parametrize("engine, words", [("yade-batch", []), ("sbatch", ["--slurm"])])
-def test_a_missing_engine_is_told_before_anything_runs(tmp_path, engine, words):
+def test_a_missing_engine_is_reported_before_anything_runs(tmp_path, engine, words):
     (tmp_path / "bin").mkdir()
     os.symlink(shutil.which("yade"), tmp_path / "bin" / "yade")
     env = {**os.environ, "PATH": str(tmp_path / "bin")}
-    told = refused(tmp_path, STUDY, *words, env=env)
-    assert engine in told and "apt-get install" in told and told.count("\n") == 1
+    message = refused(tmp_path, STUDY, *words, env=env)
+    assert engine in message and "apt-get install" in message and message.count("\n") == 1
 
 
 @contextlib.contextmanager
@@ -424,7 +424,7 @@ def disk(place, size):
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root mounts a small disk")
-def test_a_full_disk_is_told_before_anything_runs(tmp_path):
+def test_a_full_disk_is_reported_before_anything_runs(tmp_path):
     with disk(tmp_path / "disk", "1m") as small:
         done = study(write(tmp_path), "--out", small / "out")
         assert done.returncode == 2

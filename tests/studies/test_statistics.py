@@ -105,7 +105,7 @@ def test_a_lognormal_distribution_is_found_and_another_one_is_doubted():
 
 
 @pytest.mark.parametrize(
-    "call, told",
+    "call, message",
     [
         (lambda: statistics.mean([1]), "2 rows or more, there are 1"),
         (lambda: statistics.mean([1, math.nan, 3]), "rows 2 have no finite number"),
@@ -116,6 +116,6 @@ def test_a_lognormal_distribution_is_found_and_another_one_is_doubted():
         (lambda: statistics.share(0, 0), "no rows"),
     ],
 )
-def test_what_no_statistics_can_be_made_of_is_refused(call, told):
-    with pytest.raises(Refused, match=told):
+def test_what_no_statistics_can_be_made_of_is_refused(call, message):
+    with pytest.raises(Refused, match=message):
         call()

@@ -95,9 +95,9 @@ def main(words=None):
             with contextlib.redirect_stdout(io.StringIO()):
                 found.append(one.run())
         errors = ", ".join(map(error, found))
-        told = ", ".join(f"{v:g}" for v in values)
+        tried = ", ".join(f"{v:g}" for v in values)
         seconds = sum(r.seconds for r in found)
-        lines.append(line([what, changes, told, errors, f"{seconds:.0f}"]))
+        lines.append(line([what, changes, tried, errors, f"{seconds:.0f}"]))
         print(lines[-1], flush=True)
         if out:
             with open(out, "w") as file:

@@ -167,8 +167,8 @@ def beam(clamped, force=1000.0):
         moved += turned * arm + force / (KS * area)
     where = Vector3(length / 2, thickness / 2, level)
     arm = where - state.refPos
-    way = (state.pos + state.ori * arm - state.refPos - arm)[0]
-    return force / moved, force / way
+    direction = (state.pos + state.ori * arm - state.refPos - arm)[0]
+    return force / moved, force / direction
 
 
 DISCRETE = "sum over the joints of 1/(h³/3EI + h/GA), E = kn·s, G = ks·s"

@@ -398,7 +398,7 @@ def terminal_velocity(quick):
     return G / 5, -O.bodies[body].state.vel[2]
 
 
-def gravityWork(way):
+def gravityWork(direction):
     """Work of a gravity that is raised step by step on two bricks on a joint: half of weight times way, and counted [J].
 
     :param way: ``"rigid"`` or ``"deformable"`` bricks, or ``"functors"``: YADE's own loop and integrator
@@ -410,14 +410,14 @@ def gravityWork(way):
         addBlock(corners(low, high), unit)
     fix(0)
     zones = None
-    if way == "deformable":
+    if direction == "deformable":
         zones = MasonryZones(bodies=[1, 2], damping=0.5)
     engines(
         [elastic(3e11)],
         damping=0.5,
         gravity=(0, 0, 0),
         zones=zones,
-        functors=way == "functors",
+        functors=direction == "functors",
     )
     connect()
     O.dt = 0.5 * criticalTimeStep()[0]

@@ -158,11 +158,11 @@ def compare(wall, cheap, measure):
         known = reference[found.name]
         paid = estimate.saved(found, prices)
         reach = math.hypot(_half(found), _half(known))
-        told = math.isfinite(
+        measured = math.isfinite(
             reach
         )  # a few rows alone give no interval of a quantile far out
         agrees = abs(found.value - known.value) <= reach
-        met[0] &= agrees or not told
+        met[0] &= agrees or not measured
         met[1] &= paid.share <= SHARE
         if found.name == "mean":
             met[2] &= _half(found) <= _half(known)
@@ -172,7 +172,7 @@ def compare(wall, cheap, measure):
                 found.name,
                 _told(known),
                 _told(found),
-                ("yes" if agrees else "no") if told else "not told",
+                ("yes" if agrees else "no") if measured else "not told",
                 f"{paid.alone:.0f}",
                 f"{100 * paid.share:.0f} %",
             ]
@@ -246,13 +246,13 @@ def main():
     try:
         if not args.compare and not run(args.jobs):
             raise Refused("some rows have failed: see the times.csv of their studies")
-        lines, told, pictures, limits = [], [], {}, []
+        lines, sentences, pictures, limits = [], [], {}, []
         for measure in (MEASURE, BOTH_ENDS):
             for wall, cheap in COMPARED:
                 title = titled(wall, cheap, measure)
                 more, met, notes, pictures[title] = compare(wall, cheap, measure)
                 lines += more
-                told += notes
+                sentences += notes
                 limits.append([title, *("met" if one else "not met" for one in met)])
     except Refused as refused:
         print(refused, file=sys.stderr)
@@ -266,7 +266,7 @@ def main():
         "accurate runs for the same",
         "cost over theirs",
     ]
-    print(table(heads, lines), "", *told, "", sep="\n")
+    print(table(heads, lines), "", *sentences, "", sep="\n")
     print(
         table(
             ["wall", "agrees", f"cost at most {100 * SHARE:.0f} %", "mean as narrow"],

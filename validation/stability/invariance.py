@@ -70,7 +70,7 @@ def curve(
     O.reset()
     size, force = 1 / length, 1 / (stress * length**2)
     place = lambda p: turn * (size * Vector3(-p[0] if mirror else p[0], p[1], p[2]))
-    way = lambda x, y, z: turn * Vector3(-x if mirror else x, y, z)
+    sign = lambda x, y, z: turn * Vector3(-x if mirror else x, y, z)
     density = length**2 / stress  # of mass over volume, with seconds
     mats = [
         MasonryMat(density=1800 * density, young=young / stress, jointSet=name)
@@ -102,8 +102,8 @@ def curve(
     load = MasonryLoad(
         body=plate,
         point=place((0.3 * long, UNIT[1] / 3, high)),
-        force=force * way(0, 0, -0.6e6 * long * UNIT[1]),
-        direction=way(1, 0.1, 0),
+        force=force * sign(0, 0, -0.6e6 * long * UNIT[1]),
+        direction=sign(1, 0.1, 0),
         driven=True,
         velocity=0.5 * size,
     )
@@ -115,7 +115,7 @@ def curve(
         name="joint", peakRatio=20, residualFriction=0.3, dilatancy=0.1
     )
     joint.updateAttrs(scaled)
-    down = size * way(0, 0, -9.81)
+    down = size * sign(0, 0, -9.81)
     engines([stiff, joint], damping, down, loads=[load], zones=zones, rows=2)
     connect()
     O.dt = 0.5 * criticalTimeStep()[0]
@@ -123,7 +123,7 @@ def curve(
     for _ in range(ROWS):
         O.run(EVERY, True)
         f = O.forces.f(base, True)
-        rows.append([f.dot(way(*axis)) / force for axis in np.eye(3)])
+        rows.append([f.dot(sign(*axis)) / force for axis in np.eye(3)])
     return np.array(rows)
 
 

@@ -34,12 +34,12 @@ def soak(blocks, steps):
         m.rest()
         model = m.model
         quarter = int(AMPLITUDE / RATE / O.dt)
-        rows, done, way, leg = [], 0, 1, quarter
+        rows, done, direction, leg = [], 0, 1, quarter
         for report in range(1, REPORTS + 1):
             while done < report * steps // REPORTS:
-                model.loads["push"].velocity = way * RATE * 1e-3
+                model.loads["push"].velocity = direction * RATE * 1e-3
                 O.run(leg, True)
-                done, way, leg = done + leg, -way, 2 * quarter
+                done, direction, leg = done + leg, -direction, 2 * quarter
             e = model.energy.balance()
             m.look()
             lost = sum(v for k, v in e.items() if k.startswith("dissipated"))

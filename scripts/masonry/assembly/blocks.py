@@ -44,10 +44,10 @@ def vector(value, what, problems=None):
             return found
     except Exception:  # Boost.Python's ArgumentError has no name in Python
         pass
-    told = f"{what} must be three finite numbers, got {value}"
+    message = f"{what} must be three finite numbers, got {value}"
     if problems is None:
-        raise ValueError(told)
-    problems.append(told)
+        raise ValueError(message)
+    problems.append(message)
 
 
 def _extent(points):

@@ -49,7 +49,7 @@ class Structure:
         self.bricks, self.loads, self.zones = {}, {}, None
         #: What is pushed; from the beginning the target that a drive holds.
         self.target = next((t for t in description.targets.values() if t.drives), None)
-        self.way = Vector3.UnitX  # of the present push
+        self.direction = Vector3.UnitX  # of the present push
         #: Displacement of the pushed point when the push began, along it and up [m].
         self.origin = 0, 0
         #: Point of the history that the drive is going to: its number, from 1, and its displacement [mm].
@@ -271,30 +271,30 @@ class Structure:
         """The load that drives a target along an axis, or None."""
         return self.loads.get(f"{target.name}_drive_{axis}")
 
-    def pushTo(self, target, way, name="push"):
+    def pushTo(self, target, direction, name="push"):
         """From now on ``push`` moves this target along this way. The other drives hold what they hold."""
-        if self.description.plane and way[1]:
+        if self.description.plane and direction[1]:
             raise ValueError(
                 f"{name}: the scene is in the x-z plane; Scene(..., plane=False) is in space"
             )
         load = self.loads.get(f"{target.name}_drive")
         if target.drives:
-            along = [a for a, v in zip("xyz", way) if abs(v) > 1 - 1e-12]
+            along = [a for a, v in zip("xyz", direction) if abs(v) > 1 - 1e-12]
             load = self.driveOf(target, along[0]) if along else None
             if load is None:
                 raise ValueError(
-                    f"{name}: {target.name} has drives along {', '.join(target.drives)} alone, not along {tuple(way)}"
+                    f"{name}: {target.name} has drives along {', '.join(target.drives)} alone, not along {tuple(direction)}"
                 )
-        elif load.driven and load.direction.cross(way).norm() > 1e-12:
+        elif load.driven and load.direction.cross(direction).norm() > 1e-12:
             raise ValueError(
                 f"{name}: the drive of {target.name} holds it along {tuple(load.direction)}, and would let go of it to push "
-                f"along {tuple(way)}; drive='xz' and the like give it a drive for every axis"
+                f"along {tuple(direction)}; drive='xz' and the like give it a drive for every axis"
             )
         for label, other in self.loads.items():
             if "_drive" in label:
                 other.velocity = 0
-        load.direction, load.driven = way, True
-        self.target, self.way, self.loads["push"] = target, way, load
+        load.direction, load.driven = direction, True
+        self.target, self.direction, self.loads["push"] = target, direction, load
         self.origin = 0, 0
 
     def keepLoadLine(self):
@@ -331,7 +331,7 @@ class Structure:
     def topDisplacement(self):
         """Displacement of the pushed point along the push and upwards since the scene was built [m]."""
         moved = self.moved(self.target)[0]
-        return moved.dot(self.way), moved[2]
+        return moved.dot(self.direction), moved[2]
 
     def hasSunk(self, down=None):
         """Whether the pushed platen has come down by half the height of a brick.

@@ -132,12 +132,12 @@ def findProblems(blocks, solids, joints, misfits):
     """Sentences about what is wrong with some blocks, see :meth:`masonry.bricks.Bricks.problems`."""
     found = []
     thickness = solids.thicknesses().tolist()
-    told = lambda n: f"block {n} of brick {blocks[n].brick}"
+    nameOf = lambda n: f"block {n} of brick {blocks[n].brick}"
     middles = solids.middles()
     for n in sorted(solids.problems):
-        found.append(f"{told(n)} ({blocks[n].part}): {solids.problems[n]}")
+        found.append(f"{nameOf(n)} ({blocks[n].part}): {solids.problems[n]}")
     for i, j, gap, place in misfits:
-        both = f"{told(i)} and {told(j)}"
+        both = f"{nameOf(i)} and {nameOf(j)}"
         if gap < 0:
             found.append(f"{both} overlap by {-gap:.3g} m near {where(place)}")
         else:
@@ -151,7 +151,7 @@ def findProblems(blocks, solids, joints, misfits):
         for n in members:
             if thickness[n] < least * (1 - 1e-9):
                 found.append(
-                    f"{told(n)} near {where(middles[n])} is a sliver: {thickness[n]:.3g} m thin, less than {least:.3g} m, "
+                    f"{nameOf(n)} near {where(middles[n])} is a sliver: {thickness[n]:.3g} m thin, less than {least:.3g} m, "
                     f"a quarter of what is usual for a {kind} here"
                 )
     for joint in joints:
@@ -160,7 +160,7 @@ def findProblems(blocks, solids, joints, misfits):
         width, least = joint.area / longest, NARROW * min(thickness[i], thickness[j])
         if width < least:
             found.append(
-                f"{told(i)} and {told(j)} share a joint of odd size near {where(joint.middle)}: {longest:.3g} m long but "
+                f"{nameOf(i)} and {nameOf(j)} share a joint of odd size near {where(joint.middle)}: {longest:.3g} m long but "
                 f"{width:.3g} m wide, less than {least:.3g} m, a tenth of the thinner block"
             )
     parts = {}
@@ -171,7 +171,7 @@ def findProblems(blocks, solids, joints, misfits):
     largest = max(parts.values(), key=len, default=[])
     for members in parts.values():
         if members is not largest:
-            what = told(members[0])
+            what = nameOf(members[0])
             if len(members) > 1:
                 what = f"{len(members)} blocks from {what} on"
             found.append(

@@ -308,8 +308,8 @@ def _solids(surface, scale, problems):
             problems.append(f"{name}: {len(open_) - 3} more such edges")
         return
     for n, members in enumerate(_connected(len(faces), mates)):
-        told = f"{name}, solid {n}"
-        corners = _corners(points, faces, numbers, members, told, problems)
+        solid = f"{name}, solid {n}"
+        corners = _corners(points, faces, numbers, members, solid, problems)
         if corners:
             yield corners
 
@@ -402,7 +402,7 @@ def _connected(count, mates):
     return parts
 
 
-def _corners(points, faces, numbers, members, told, problems):
+def _corners(points, faces, numbers, members, solid, problems):
     """Corners of one solid if it is convex, else None and a sentence. Points inside a face or an edge are left out."""
     used = sorted({n for face in members for n in faces[face]})
     own = points[used]
@@ -418,13 +418,13 @@ def _corners(points, faces, numbers, members, told, problems):
         place = where(middle)
         if bent > width:
             problems.append(
-                f"{told}, face {numbers[face]} at {place}: bent by {bent:.3g} m, not plane"
+                f"{solid}, face {numbers[face]} at {place}: bent by {bent:.3g} m, not plane"
             )
             return None
         beyond = ((own - middle) @ normal).max()
         if beyond > width:
             problems.append(
-                f"{told}, face {numbers[face]} at {place}: the solid reaches {beyond:.3g} m beyond its plane, so it is not "
+                f"{solid}, face {numbers[face]} at {place}: the solid reaches {beyond:.3g} m beyond its plane, so it is not "
                 f"convex"
             )
             return None
@@ -441,7 +441,7 @@ def _corners(points, faces, numbers, members, told, problems):
         for n in faces[face]:
             meeting[n].append(k)
     if len(planes) < 4:
-        problems.append(f"{told}: only {len(planes)} planes, so no volume")
+        problems.append(f"{solid}: only {len(planes)} planes, so no volume")
         return None
     return tuple(
         tuple(map(float, points[n])) for n in used if len(set(meeting[n])) >= 3

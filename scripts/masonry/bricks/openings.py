@@ -78,8 +78,8 @@ def opened(bricks, openings, unit, levels, ends, ys, part, crossed=None):
     refuse(part, problems)
     for _, hole in holes + lintels:  # lintels take the place of bricks, too
         bricks = _without(bricks, hole)
-    told = _slivers(bricks, holes + lintels, unit, levels)
-    refuse(part, told)
+    slivers = _slivers(bricks, holes + lintels, unit, levels)
+    refuse(part, slivers)
     made = []
     for n, (name, (x0, z0, x1, z1)) in enumerate(lintels):
         course = max(c for c, z in enumerate(levels[:-1]) if z <= z0)
@@ -203,7 +203,7 @@ def _without(bricks, hole):
 
 def _slivers(bricks, holes, unit, levels):
     """Sentences about pieces of bricks, cut by openings or lintels, that are shorter or lower than a quarter."""
-    told = []
+    slivers = []
     for brick in bricks:
         if not brick.cut:
             continue
@@ -218,15 +218,15 @@ def _slivers(bricks, holes, unit, levels):
         size = f"{length:.3g} m long" if long else f"{height:.3g} m high"
         bound = f"{least[0]:.3g} m" if long else f"{least[1]:.3g} m"
         middle = [(p + q) / 2 for p, q in zip(brick.low, brick.high)]
-        told.append(
+        slivers.append(
             f"{name} leaves a sliver of brick {brick.number} in course {brick.course}, {size}, at {where(middle)}; a piece "
             f"must have a quarter of the unit, {bound}"
         )
-    if told:
-        told[
+    if slivers:
+        slivers[
             -1
         ] += f" (edges at multiples of {unit[0] / 4:g} m along the wall, and at bed joints, leave no slivers)"
-    return told
+    return slivers
 
 
 def _touch(a, b):

@@ -356,14 +356,14 @@ def _quarters(length, unit, what, step, problems, least=None):
     if abs(steps - nearest) > WHOLE * max(1, nearest) or nearest * step < least:
         below = max(math.floor(steps + WHOLE), math.ceil(least / step))
         above = max(math.ceil(steps - WHOLE), below)
-        told = " or ".join(
+        nearest = " or ".join(
             f"{n * step * unit[0] / 4:.6g} m ({n * step / 4:g})"
             for n in sorted({below, above})
         )
         need = "whole units" if step == 4 else "whole half units"
         problems.append(
             f"{what} {length:g} m is {units:.6g} units of {unit[0]:g} m; it must be {need}, at least {least / 4:g}; "
-            f"nearest: {told}"
+            f"nearest: {nearest}"
         )
         return None
     return nearest * step
@@ -403,9 +403,9 @@ def _levels(height, courses, unit, problems):
     nearest = round(count)
     if nearest < 1 or abs(count - nearest) > WHOLE * nearest:
         below, above = max(math.floor(count), 1), max(math.ceil(count), 1)
-        told = " or ".join(f"{n * unit[2]:.6g} m ({n})" for n in sorted({below, above}))
+        nearest = " or ".join(f"{n * unit[2]:.6g} m ({n})" for n in sorted({below, above}))
         problems.append(
-            f"height {height:g} m is {count:.6g} courses of {unit[2]:g} m; it must be whole courses; nearest: {told}"
+            f"height {height:g} m is {count:.6g} courses of {unit[2]:g} m; it must be whole courses; nearest: {nearest}"
         )
         return None
     return [course * unit[2] for course in range(nearest + 1)]

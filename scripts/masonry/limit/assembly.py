@@ -217,8 +217,8 @@ class Assembly:
         # The dual of equilibrium, with which the live load has the power of its unit.
         speed[free] = -dual[: len(still)] / step
         speed *= scale * sense
-        told = programme.read(values)
-        return Bound(self, values[last] / step, speed, live, dead, *told)
+        solution = programme.read(values)
+        return Bound(self, values[last] / step, speed, live, dead, *solution)
 
     def _endless(self, live, dead):
         """A factor that no strength explains: a million times all strengths and loads over the live load."""
@@ -230,7 +230,7 @@ class Assembly:
     def _why(self, live, dead, sense, turn, unsolved):
         """Why the programme could not be solved, as the error to raise."""
         nothing = np.zeros_like(dead)
-        told = "limit analysis: "
+        message = "limit analysis: "
         try:
             if np.abs(dead[~self.held]).max(initial=0) > 0:
                 carried = self._solve(dead, nothing, 1, turn, most=1.0)
@@ -238,18 +238,18 @@ class Assembly:
                     fast = carried.fastest()
                     at = ", ".join(f"{v:.3g}" for v in self.centres[fast])
                     return Refused(
-                        f"{told}the structure does not stand under its dead loads alone: body {self.ids[fast]} at ({at}) m "
+                        f"{message}the structure does not stand under its dead loads alone: body {self.ids[fast]} at ({at}) m "
                         "moves first"
                     )
             endless = 1e-3 * self._endless(live, dead)
             if self._solve(live, dead, sense, turn, most=endless).value > 0.9 * endless:
                 return Refused(
-                    f"{told}nothing gives way, however large the load is: the blocks on which it acts are locked between "
+                    f"{message}nothing gives way, however large the load is: the blocks on which it acts are locked between "
                     "others, or joined by joints that never fail"
                 )
         except Unsolved:
             pass
-        return Refused(f"{told}{unsolved}")
+        return Refused(f"{message}{unsolved}")
 
     # -- geometry -------------------------------------------------------------------------------------------------
 

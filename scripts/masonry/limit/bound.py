@@ -142,7 +142,7 @@ class Bound:
     def joints(self):
         """What joints do in the mechanism: an array of ``"rests"``, ``"opens"``, ``"slides"`` or ``"crushes"`` (m)."""
         a, c = self.assembly, self.assembly.contacts
-        told = np.full(len(a.pairs), "rests", dtype="<U7")
+        states = np.full(len(a.pairs), "rests", dtype="<U7")
         opening, slide = self.jumps(c.joint, c.at)
         speed = np.linalg.norm(slide, axis=1)
         least = GIVES * max(np.abs(opening).max(initial=0), speed.max(initial=0))
@@ -153,8 +153,8 @@ class Bound:
             over = size > least
             if kind == "opens":
                 over &= opening > 1.001 * a.friction[c.joint] * speed + 1e-9 * least
-            told[c.joint[over]] = kind
-        return told
+            states[c.joint[over]] = kind
+        return states
 
     def sentence(self, load, unit, digits=4):
         """What was found, as a sentence.
@@ -162,11 +162,11 @@ class Bound:
         :param load: name of the live load
         :param unit: of the factor
         """
-        told = self.joints()
+        states = self.joints()
         counts = ", ".join(
-            f"{(told == kind).sum()} {kind[:-1] if kind != 'crushes' else 'crush'}"
+            f"{(states == kind).sum()} {kind[:-1] if kind != 'crushes' else 'crush'}"
             for kind in ("opens", "slides", "crushes")
-            if (told == kind).any()
+            if (states == kind).any()
         )
         what = (
             "no joint slides, so this is what rigid blocks carry"
@@ -198,14 +198,14 @@ class Bound:
 
     def describe(self):
         """The entries of run.json: a dict."""
-        told = self.joints()
+        states = self.joints()
         return {
             "factor": self.factor,
             "exact": self.exact,
             "open_joints_slip": self.weaker,
             "dilates": self.dilates,
             "joints": {
-                kind: int((told == kind).sum())
+                kind: int((states == kind).sum())
                 for kind in ("opens", "slides", "crushes")
             },
             "powers": {
@@ -234,7 +234,7 @@ class Bound:
             "body": np.array(a.ids),
             "cells": np.split(np.arange(len(points)), np.cumsum(sizes)[:-1]),
         }
-        told, count = self.joints(), len(a.pairs)
+        states, count = self.joints(), len(a.pairs)
         opening, slide = self.jumps(a.contacts.joint, a.contacts.at)
         widest, closest, along = np.zeros(count), np.zeros(count), np.zeros((count, 3))
         np.maximum.at(widest, a.contacts.joint, opening)
@@ -246,7 +246,7 @@ class Bound:
         corners, which = np.concatenate(a.polygons), np.repeat(np.arange(count), sizes)
         one, two = a.pairs[which].T
         middle = 0.5 * (self.motion(one, corners) + self.motion(two, corners))
-        opens, slides = told == "opens", told == "slides"
+        opens, slides = states == "opens", states == "slides"
         joints = {
             "points": corners,
             "displacement": scale * middle,
@@ -256,7 +256,7 @@ class Bound:
             "area": np.bincount(a.joint, a.areas, count),
             "opening": np.where(opens, scale * widest, 0),
             "slide": np.where(slides[:, None], scale * along, 0),
-            "crushing": np.where(told == "crushes", scale * closest, 0),
+            "crushing": np.where(states == "crushes", scale * closest, 0),
             "damage_tension": opens.astype(float),
             "damage_shear": slides.astype(float),
         }
@@ -284,12 +284,12 @@ class Bound:
             for second, third in zip(nodes[1:], nodes[2:]):
                 fans.append((nodes[0], second, third))
                 owner.append(number)
-        told = ("opening", "slide", "crushing", "normal", "damage_tension", "damage_shear")  # fmt: skip
+        names = ("opening", "slide", "crushing", "normal", "damage_tension", "damage_shear")  # fmt: skip
         Mesh(
             joints["points"],
             [("triangle", np.array(fans))],
             point_data={"displacement": joints["displacement"]},
-            cell_data={name: [joints[name][owner]] for name in told},
+            cell_data={name: [joints[name][owner]] for name in names},
         ).write(os.path.join(directory, MECHANISM[1]))
 
     def draw(self, path, title="", parts=None, views=None):

@@ -83,11 +83,11 @@ def readRuns(directories, x=None, y=None):
             if not (x and y):
                 raise
             run = {}
-        told = run.get("figure")
-        if not told and not (x and y):
+        spec = run.get("figure")
+        if not spec and not (x and y):
             raise Refused(f'{directory}: run.json has no entry "figure": name the columns by --x and --y')  # fmt: skip
         if labels is None:
-            x, y = x or told["x"]["column"], y or told["y"][0]["column"]
+            x, y = x or spec["x"]["column"], y or spec["y"][0]["column"]
             labels = [_label(name, run) for name in (x, y)]
         for name in (x, y):
             if name not in data:
@@ -98,11 +98,11 @@ def readRuns(directories, x=None, y=None):
 
 def _label(column, run):
     """Label of an axis: that of curve.png if it has the column, else what the column is called."""
-    told = run.get("figure", {})
-    if told and told["x"]["column"] == column:
-        return told["x"]["label"]
-    if told and told["y"][0]["column"] == column and told.get("y_label"):
-        return told["y_label"]
+    spec = run.get("figure", {})
+    if spec and spec["x"]["column"] == column:
+        return spec["x"]["label"]
+    if spec and spec["y"][0]["column"] == column and spec.get("y_label"):
+        return spec["y_label"]
     words = column.split("_")
     return f"{' '.join(words[:-1])} [{words[-1]}]" if len(words) > 1 else column
 

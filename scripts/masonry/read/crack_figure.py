@@ -65,9 +65,9 @@ class _Part:
         across = (displacement - self.still) @ self.view.towards
         farthest = across[np.argmax(np.abs(across))]
         if abs(farthest) > moved.max():
-            way = "towards the viewer" if farthest > 0 else "away from the viewer"
+            sense = "towards the viewer" if farthest > 0 else "away from the viewer"
             self.view = self.view._replace(
-                name=f"{self.view.name} (moved up to {1e3 * abs(farthest):.3g} mm {way})".strip()
+                name=f"{self.view.name} (moved up to {1e3 * abs(farthest):.3g} mm {sense})".strip()
             )
         return np.ptp(flat, axis=0).max(), moved
 
@@ -389,9 +389,9 @@ def whenOf(run, directory, number):
     time = frameTimes(directory)[number]
     data = readCurve(directory) if "figure" in run else {}
     if "time_s" in data:
-        told = plan(run, data, directory)["x"]
-        if told["column"] != "time_s":
-            value, unit = np.interp(time, data["time_s"], data[told["column"]]), unitOf(told)  # fmt: skip
+        spec = plan(run, data, directory)["x"]
+        if spec["column"] != "time_s":
+            value, unit = np.interp(time, data["time_s"], data[spec["column"]]), unitOf(spec)  # fmt: skip
             return (
                 f"at {value:.1f} {unit}" if unit == "mm" else f"at {value:.3g} {unit}"
             )

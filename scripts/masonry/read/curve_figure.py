@@ -19,26 +19,26 @@ def plan(run, data, directory):
     :param data: what :func:`masonry.read.files.readCurve` returns
     :param directory: folder, for messages
     """
-    told = run.get("figure")
-    if told is None:
+    spec = run.get("figure")
+    if spec is None:
         raise Refused(
             f'{directory}: run.json has no entry "figure", which says what to draw: an older version of the plugin made it'
         )
-    told = {
+    spec = {
         "y_label": "",
         "looped": False,
         "marks": [],
         "bounds": [],
-        **told,
+        **spec,
     }
-    for axis in (told["x"], *told["y"]):
+    for axis in (spec["x"], *spec["y"]):
         if axis["column"] not in data:
             raise Refused(
                 f"{directory}: figure: curve.csv has no column {axis['column']}, it has {', '.join(data)}"
             )
-    if not told["y"]:
+    if not spec["y"]:
         raise Refused(f'{directory}: figure: "y" must name one column at least')
-    return told
+    return spec
 
 
 def energies(data):
@@ -71,9 +71,9 @@ def curve(directory):
     """
     run = readRun(directory)
     data = {name: np.array(values) for name, values in readCurve(directory).items()}
-    told = plan(run, data, directory)
-    looped, x = told["looped"], data[told["x"]["column"]]
-    used = {axis["column"] for axis in told["y"]}
+    spec = plan(run, data, directory)
+    looped, x = spec["looped"], data[spec["x"]["column"]]
+    used = {axis["column"] for axis in spec["y"]}
     stack, work = energies({k: v for k, v in data.items() if k not in used})
     with drawing.style():
         if stack:
@@ -82,9 +82,9 @@ def curve(directory):
         else:
             figure = drawing.empty(7, 4.6)
             top, bottom = figure.subplots(), None
-        _curves(top, told, data, x)
+        _curves(top, spec, data, x)
         top.set_title(run["title"])
-        label = told["x"]["label"]
+        label = spec["x"]["label"]
         if bottom is None or looped:
             top.set_xlabel(label)
         if bottom:
@@ -93,7 +93,7 @@ def curve(directory):
                 bottom.plot(over, values, lw=1, label=name)
             if work is not None:
                 bottom.plot(over, work, color="black", lw=1, ls="--", label="work done")
-            unit = unitOf(told["x"])
+            unit = unitOf(spec["x"])
             bottom.set_xlabel(
                 f"length of the way there and back [{unit}]" if looped else label
             )
@@ -105,11 +105,11 @@ def curve(directory):
         drawing.save(figure, os.path.join(directory, "curve.png"), 110)
 
 
-def _curves(axes, told, data, x):
+def _curves(axes, spec, data, x):
     """The upper panel of curve.png."""
-    looped = told["looped"]
-    first = data[told["y"][0]["column"]]
-    for n, axis in enumerate(told["y"]):
+    looped = spec["looped"]
+    first = data[spec["y"][0]["column"]]
+    for n, axis in enumerate(spec["y"]):
         wide = (0.7, 0.4) if looped else (1.2, 0.6)
         axes.plot(
             x,
@@ -125,11 +125,11 @@ def _curves(axes, told, data, x):
         axes.axvline(0, color="0.3", lw=0.8, zorder=0)
         axes.margins(y=0.12)
     else:
-        axes.set_ylim(*_limits(told, data))
+        axes.set_ylim(*_limits(spec, data))
     low, high = axes.get_ylim()
     if low < 0 < high:
         axes.axhline(0, color="0.3", lw=0.8, zorder=0)
-    for mark in told["marks"]:
+    for mark in spec["marks"]:
         at, value = mark["x"], mark["y"]
         left = (at > 0) if looped else at > 0.7 * x.max() + 0.3 * x.min()
         axes.plot(at, value, "o", color="tab:red", ms=5)
@@ -140,7 +140,7 @@ def _curves(axes, told, data, x):
             xytext=(-6 if left and not looped else 6, 8) if value >= 0 else (-6, -14),
             ha="right" if left else "left",
         )
-    for bound in told["bounds"]:
+    for bound in spec["bounds"]:
         axes.axhline(bound["y"], color="0.35", lw=0.9, ls=(0, (6, 3)), zorder=0)
         axes.annotate(
             bound["text"],
@@ -151,16 +151,16 @@ def _curves(axes, told, data, x):
             fontsize=8,
             color="0.25",
         )
-    axes.set_ylabel(told["y_label"])
-    if len(told["y"]) > 1 or looped:
+    axes.set_ylabel(spec["y_label"])
+    if len(spec["y"]) > 1 or looped:
         axes.legend(loc="lower right")
     axes.grid(alpha=0.3)
 
 
-def _limits(told, data):
+def _limits(spec, data):
     """Range of the upper panel that has all of the first curve, and of the others what is more than single swings."""
-    columns = [data[axis["column"]] for axis in told["y"]]
-    marks = [thing["y"] for key in ("marks", "bounds") for thing in told[key]]
+    columns = [data[axis["column"]] for axis in spec["y"]]
+    marks = [thing["y"] for key in ("marks", "bounds") for thing in spec[key]]
     low = min([columns[0].min(), *(np.quantile(c, 0.01) for c in columns), *marks])
     high = max([columns[0].max(), *(np.quantile(c, 0.99) for c in columns), *marks])
     reach = max(high, 0) - min(low, 0) or 1.0

@@ -178,16 +178,16 @@ def _display():
     """
     if not shutil.which("Xvfb"):
         raise Refused("to draw without a display: apt-get install xvfb")
-    told, tell = os.pipe()
+    answers, tells = os.pipe()
     server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(tell), "-screen", "0", "1600x1200x24", "-nolisten", "tcp", "-noreset"],
-        pass_fds=[tell],
+        ["Xvfb", "-displayfd", str(tells), "-screen", "0", "1600x1200x24", "-nolisten", "tcp", "-noreset"],
+        pass_fds=[tells],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )  # fmt: skip
     try:
-        os.close(tell)
-        with os.fdopen(told) as answer:  # it comes when the display is ready
+        os.close(tells)
+        with os.fdopen(answers) as answer:  # it comes when the display is ready
             number = answer.readline().strip()
         if not number:
             raise Refused("Xvfb, the display that nobody sees, does not start")

@@ -84,11 +84,11 @@ def optionWords(row):
     return words
 
 
-def place(told):
+def place(text):
     """Path of the table and number of the line of what stands in the environment. Raises Refused."""
-    path, _, line = told.rpartition(":")
+    path, _, line = text.rpartition(":")
     if not path or not line.isdecimal():
-        raise Refused(f"{VARIABLE}={told}: must read TABLE:LINE")
+        raise Refused(f"{VARIABLE}={text}: must read TABLE:LINE")
     return path, int(line)
 
 
@@ -118,10 +118,10 @@ def present():
     :raises Done: if the row was run to its end
     :raises Refused: if there is no such row
     """
-    told = os.environ.get(VARIABLE)
-    if not told:
+    text = os.environ.get(VARIABLE)
+    if not text:
         return None
-    path, line = place(told)
+    path, line = place(text)
     rows = readTable(path)
     if PROBE in os.environ:
         return optionWords(rows.get(line, {}))

@@ -48,7 +48,7 @@ def _end(run, scene, error):
             run.status = 2
         return run.status == 2
     if error and not isinstance(error, Collapsed) and run.results.earlier:
-        return _leaveEarlier(run, error)
+        return _keepEarlier(run, error)
     stopped = []
     try:
         run.flush()
@@ -87,7 +87,7 @@ def _end(run, scene, error):
     return True
 
 
-def _leaveEarlier(run, error):
+def _keepEarlier(run, error):
     """End without results, so that those of an earlier run stay. Returns whether the error is dealt with."""
     run.status = 130 if isinstance(error, Interrupted) else 1
     say(
@@ -110,13 +110,13 @@ def _finish(run, scene):
             run.results.close()
         _report(run, scene)
     finally:
-        scene.outcome.leave(run.results.directory)
+        scene.outcome.write(run.results.directory)
 
 
 def _describe(run, scene):
     """Fill run.json; the docstring of :mod:`masonry.run.results` lists its keys."""
-    at, told = run.at, run.results.run
-    told.update(
+    at, entries = run.at, run.results.run
+    entries.update(
         scene=run.name,
         options=_options(run),
         preset=run.preset,
@@ -132,12 +132,12 @@ def _describe(run, scene):
         **scene.outcome.describe(),
     )
     if run.results.rows:
-        told.update(
+        entries.update(
             energy_balance_error=scene.model.energy.largestError,
             energy_made=scene.model.energy.largestMade,
             **scene.outcome.summary(),
         )
-    told.update(
+    entries.update(
         collapsed=run.collapsed,
         interrupted=run.interrupted,
         resumed_at_s=at.resumed,
@@ -148,8 +148,8 @@ def _describe(run, scene):
     )
     if at.steps:
         perStep = at.seconds["steps"] / at.steps
-        told["microseconds_per_step"] = 1e6 * perStep
-        told["nanoseconds_per_subcontact_step"] = 1e9 * perStep / scene.model.subcontacts
+        entries["microseconds_per_step"] = 1e6 * perStep
+        entries["nanoseconds_per_subcontact_step"] = 1e9 * perStep / scene.model.subcontacts
 
 
 def _options(run):
@@ -169,10 +169,10 @@ def _stages(at):
 
 
 def _report(run, scene):
-    told = run.results.run
+    entries = run.results.run
     if run.results.rows and not run.args.lean:
         scene.outcome.draw(run.results.directory)
-    off, made = told.get("energy_balance_error", 0), told.get("energy_made", 0)
+    off, made = entries.get("energy_balance_error", 0), entries.get("energy_made", 0)
     if made > OFF or (off > OFF and not scene.model.energy.warned):
         say(
             f"warning: the energy balance is off by {100 * off:.1f} % of the work done, and joints that open or "
@@ -180,10 +180,10 @@ def _report(run, scene):
             "helps"
         )
     if run.results.rows:
-        for line in scene.outcome.report(told):
+        for line in scene.outcome.report(entries):
             say(line)
         say(
-            f"{told['steps']} steps of {told['microseconds_per_step']:.0f} µs, {told['wall_clock_s']:.1f} s in all; "
+            f"{entries['steps']} steps of {entries['microseconds_per_step']:.0f} µs, {entries['wall_clock_s']:.1f} s in all; "
             f"see {run.results.directory}"
         )
     if run.preset:

@@ -62,22 +62,22 @@ class Saved:
     def __init__(self, directory):
         self.directory = directory
         try:
-            self._data, told = readState(directory)
+            self._data, saved = readState(directory)
         except (OSError, ValueError) as error:
             raise Refused(f"--resume: {error}") from None
         like = dict(
             scene="", options={}, at={}, rows=[], script=[], seconds=0.0, host={}
         )
         if (
-            not isinstance(told, dict)
-            or not all(alike(told.get(key), value) for key, value in like.items())
-            or not all(alike(row, [0.0] * len(row)) for row in told["rows"])
-            or not all(alike(word, ["", {}]) for word in told["script"])
+            not isinstance(saved, dict)
+            or not all(alike(saved.get(key), value) for key, value in like.items())
+            or not all(alike(row, [0.0] * len(row)) for row in saved["rows"])
+            or not all(alike(word, ["", {}]) for word in saved["script"])
         ):
             raise Refused(
                 f"--resume: {directory}/{NAME} was not left by a run in stages"
             )
-        vars(self).update({key: told[key] for key in like})
+        vars(self).update({key: saved[key] for key in like})
 
     def place(self):
         """How far the run had come: a :class:`Place`. Raises Refused."""

@@ -160,14 +160,14 @@ class Lock:
         try:
             #: whether the files in the folder are those of a run: it was killed, or it is this one
             self.ours = bool(self._file.read())
-            told = {
+            record = {
                 "scene": scene,
                 "host": socket.gethostname(),
                 "process": os.getpid(),
             }
             self._file.seek(0)
             self._file.truncate()
-            self._file.write(json.dumps(told).encode())
+            self._file.write(json.dumps(record).encode())
             self._file.flush()
         except BaseException:
             self._file.close()
@@ -201,24 +201,24 @@ class Lock:
 
     def _trust(self, text):
         """Refuse a folder by the text of its lock alone, if the run that wrote it may be alive."""
-        told = _object(text)
-        if told.get("host") == socket.gethostname():
+        record = _object(text)
+        if record.get("host") == socket.gethostname():
             try:
-                os.kill(told.get("process"), 0)
+                os.kill(record.get("process"), 0)
             except PermissionError:
                 pass  # it is alive, and another user's
             except (OSError, TypeError, OverflowError):
                 return
-        if told:
+        if record:
             self._refuse(text)
 
     def _refuse(self, text):
-        told = _object(text)
+        record = _object(text)
         who = (
             "another run"
-            if not told
+            if not record
             else "a run of {scene} on host {host}, process {process},".format_map(
-                {"scene": "?", "host": "?", "process": "?", **told}
+                {"scene": "?", "host": "?", "process": "?", **record}
             )
         )
         raise Refused(
@@ -247,9 +247,9 @@ def held(directory):
     except OSError:
         return False
     with file:
-        told = _object(file.read())
-        if told.get("host") == socket.gethostname() and not os.path.exists(
-            f"/proc/{told.get('process')}"
+        record = _object(file.read())
+        if record.get("host") == socket.gethostname() and not os.path.exists(
+            f"/proc/{record.get('process')}"
         ):
             return False  # a lock that is tried for a moment would be in the way of a run that begins
         file.seek(0)
@@ -265,19 +265,19 @@ def held(directory):
 def _object(data):
     """The JSON object in some bytes, or an empty one."""
     try:
-        told = json.loads(data)
+        record = json.loads(data)
     except ValueError:
-        told = None
-    return told if isinstance(told, dict) else {}
+        record = None
+    return record if isinstance(record, dict) else {}
 
 
 def _recorded(directory):
     """run.json of a folder, if a run of ours left it; else an empty dict."""
     try:
-        told = _object(readWhole(os.path.join(directory, "run.json")))
+        record = _object(readWhole(os.path.join(directory, "run.json")))
     except OSError:
         return {}
-    return told if isinstance(told.get("columns"), dict) and "scene" in told else {}
+    return record if isinstance(record.get("columns"), dict) and "scene" in record else {}
 
 
 class Results:
@@ -324,9 +324,9 @@ class Results:
         names = sorted(n for n in os.listdir(self.directory) if OURS.fullmatch(n))
         if not names or self._lock.ours:
             return names
-        told, strange = _recorded(self.directory), names
-        if told:
-            head = ",".join(told["columns"]).encode()
+        record, strange = _recorded(self.directory), names
+        if record:
+            head = ",".join(record["columns"]).encode()
             strange = [n for n in names if n == "curve.csv" and not self._begins(head)]
         if strange:
             raise Refused(
@@ -432,17 +432,17 @@ class Results:
                 self._file.truncate(start + data.rfind(b"\n", 0, written) + 1)
             raise
 
-    def checkRoom(self, least, likely):
+    def checkSpace(self, least, likely):
         """Refuse a folder without room for ``least`` bytes, and warn of one without room for ``likely`` bytes."""
         free = shutil.disk_usage(self.directory).free
         for name in self.earlier:  # these make room
             with contextlib.suppress(OSError):
                 free += os.lstat(self.path(name)).st_size
-        told = f"{self.directory} has {1e-6 * free:.1f} MB free, this run writes"
+        text = f"{self.directory} has {1e-6 * free:.1f} MB free, this run writes"
         if free < least:
-            raise Refused(f"--out: {told} at least {1e-6 * least:.1f} MB")
+            raise Refused(f"--out: {text} at least {1e-6 * least:.1f} MB")
         if free < likely:
-            say(f"warning: {told} some {1e-6 * likely:.1f} MB")
+            say(f"warning: {text} some {1e-6 * likely:.1f} MB")
 
     def column(self, name):
         """All values of a column so far."""

@@ -107,14 +107,14 @@ class Run:
         if self.preset:
             say(presetNote(self.preset, self.name))
 
-    def start(self, model, room):
+    def start(self, model, space):
         """Take up the model that now stands in YADE, in the state of the checkpoint if the run is resumed.
 
         :param model: :class:`masonry.assembly.structure.Structure`
-        :param room: bytes that the run writes at least, and those that it will probably write
+        :param space: bytes that the run writes at least, and those that it will probably write
         """
         self.model = model
-        self.results.checkRoom(*room)
+        self.results.checkSpace(*space)
         if self._saved:
             width = len(self._values)
             if any(len(row) != width for row in self._saved.rows):
@@ -228,10 +228,10 @@ class Run:
                 if now - began > LOOK_EVERY:
                     break
         except RuntimeError as error:
-            before, collapsed, told = str(error).partition(COLLAPSE)
+            before, collapsed, what = str(error).partition(COLLAPSE)
             if not collapsed:
                 raise
-            raise Collapsed(told.strip()) from None
+            raise Collapsed(what.strip()) from None
         self._now = now
         at.seconds["steps"] += now - began
         at.steps += number - (steps - at.left)
@@ -316,7 +316,7 @@ class Run:
         if len(self.results.rows) < rows or self.results.earlier:
             return False
         self.results.begin()
-        told = dict(
+        progress = dict(
             scene=self.name,
             options={
                 name: value
@@ -332,7 +332,7 @@ class Run:
         self._kept = time.perf_counter()
         path = self.results.path(NAME)
         try:
-            saveCheckpoint(path, told)
+            saveCheckpoint(path, progress)
             return True
         except (OSError, ValueError) as error:
             stays = "; an earlier one stays" if os.path.exists(path) else ""
@@ -352,11 +352,11 @@ class Run:
         """Time of the last row that was read [s], or None."""
         return self._recordedTime
 
-    def fall(self, told):
+    def fall(self, what):
         """Note that the structure has fallen."""
         self.collapsed = True
-        self.results.run["collapse"] = told
-        say(f"collapsed: {told}")
+        self.results.run["collapse"] = what
+        say(f"collapsed: {what}")
 
     def _interrupt(self, number, frame):
         self.interrupted = True

@@ -41,7 +41,7 @@ class Bounds:
         """What was found, by the load: entries of run.json. A checkpoint keeps them."""
         return self.place.bounds
 
-    def push(self, way, both, lowerUpTo=0):
+    def push(self, direction, both, lowerUpTo=0):
         """Find the bound of a push of what the model pushes now. Returns its entry of run.json, the last one if there are two.
 
         :param way: unit vector of the push
@@ -50,20 +50,20 @@ class Bounds:
         """
         target = self.model.target
         for sign in (1, -1) if both else (1,):
-            what = f"{target.name} along {_told(sign * way)}"
-            live = lambda a, dead: self._pushed(a, dead, sign * way)
+            what = f"{target.name} along {nameOf(sign * direction)}"
+            live = lambda a, dead: self._pushed(a, dead, sign * direction)
             entry = self._find(what, "kN", live, lowerUpTo)
         return entry
 
-    def _pushed(self, assembly, dead, way):
+    def _pushed(self, assembly, dead, direction):
         """Live load, and what is added to its factor to give the base shear [kN]."""
         load = self.model.loads["push"]
         block = assembly.ids.index(load.body)
         point = _pointOf(load, assembly)
         free = ~assembly.held[:, :3]
         return (
-            assembly.force(block, 1e3 * way, point),
-            1e-3 * (np.where(free, dead[:, :3], 0) @ np.array(way)).sum(),
+            assembly.force(block, 1e3 * direction, point),
+            1e-3 * (np.where(free, dead[:, :3], 0) @ np.array(direction)).sum(),
         )
 
     def lean(self, towards, tilts=False, lowerUpTo=0):
@@ -74,7 +74,7 @@ class Bounds:
         :param lowerUpTo: as of :meth:`push`
         """
         scaled = GRAVITY / self.model.args.density_scaling
-        what = f"{'tilt' if tilts else 'acceleration'} towards {_told(towards)}"
+        what = f"{'tilt' if tilts else 'acceleration'} towards {nameOf(towards)}"
         live = lambda a, dead: (a.weights(scaled * np.array(towards)), 0.0)
         if not tilts:
             return self._find(what, "g", live, lowerUpTo)
@@ -89,10 +89,10 @@ class Bounds:
         model = self.model
         entry = self.entries[what] = {"load": what, "unit": unit}
         if self.place.supportsMoved:
-            told = (
+            reason = (
                 "supports have moved, and joints that are open would be taken as closed"
             )
-            entry["note"] = f"no limit analysis: {told}"
+            entry["note"] = f"no limit analysis: {reason}"
             return entry
         count = len(model.interactions)
         if count > JOINTS and not lowerUpTo:
@@ -138,32 +138,32 @@ class Bounds:
                 assembly.props.append(prop)
         return loads
 
-    # -- what is told ---------------------------------------------------------------------------------------------
+    # -- what is said ---------------------------------------------------------------------------------------------
 
     def describe(self):
         """Entries of run.json."""
         if not self.entries:
             return {}
-        told = {"bounds": list(self.entries.values())}
+        entries = {"bounds": list(self.entries.values())}
         known = [e for e in self.entries.values() if "factor" in e]
         pushes = [e["factor"] for e in known if e["unit"] == "kN"]
         leans = [e["factor"] for e in known if e["unit"] != "kN"]
         if pushes:
-            told["bound_base_shear_kN"] = pushes[0]
+            entries["bound_base_shear_kN"] = pushes[0]
         if pushes[1:]:
-            told["negative_bound_base_shear_kN"] = -pushes[1]
+            entries["negative_bound_base_shear_kN"] = -pushes[1]
         if leans:
-            told["bound_acceleration"] = leans[0]
-        return told
+            entries["bound_acceleration"] = leans[0]
+        return entries
 
     def lines(self):
         """Horizontal lines of curve.png, for a push."""
-        told = self.describe()
+        entries = self.describe()
         for key in ("bound_base_shear_kN", "negative_bound_base_shear_kN"):
-            if key in told:
+            if key in entries:
                 yield {
-                    "y": told[key],
-                    "text": f"limit analysis: {abs(told[key]):.1f} kN at most",
+                    "y": entries[key],
+                    "text": f"limit analysis: {abs(entries[key]):.1f} kN at most",
                 }
 
     def over(self, run, factor=0.0):
@@ -173,18 +173,18 @@ class Bounds:
         :param factor: of a structure that stood under a horizontal acceleration [-]
         """
         allowed = 1 + TOLERANCE + run.get("dynamic_imbalance", 0.0)
-        told = self.describe()
+        entries = self.describe()
         pairs = [
-            (abs(run[reached]), abs(told[bound]), "kN", "the largest base shear")
+            (abs(run[reached]), abs(entries[bound]), "kN", "the largest base shear")
             for reached, bound in (
                 ("peak_base_shear_kN", "bound_base_shear_kN"),
                 ("negative_peak_base_shear_kN", "negative_bound_base_shear_kN"),
             )
-            if reached in run and bound in told
+            if reached in run and bound in entries
         ]
-        if "bound_acceleration" in told:
+        if "bound_acceleration" in entries:
             pairs.append(
-                (factor, told["bound_acceleration"], "of gravity", "the acceleration")
+                (factor, entries["bound_acceleration"], "of gravity", "the acceleration")
             )
         for reached, bound, unit, what in pairs:
             if reached > allowed * bound:
@@ -193,13 +193,13 @@ class Bounds:
                     f"of limit analysis, {bound:.4g} {unit}: is the run too fast, or does the structure move far?"
                 )
 
-    def leave(self, directory, title, parts, views):
+    def write(self, directory, title, parts, views):
         """Write the mechanism that was found last: mechanism.png, and two files for ParaView."""
         if self.last:
             bound, entry = self.last
-            told = f"{title}\nlimit analysis, {entry['load']}: {entry['factor']:.4g} {entry['unit']}".rstrip()
+            heading = f"{title}\nlimit analysis, {entry['load']}: {entry['factor']:.4g} {entry['unit']}".rstrip()
             bound.save(directory)
-            bound.draw(os.path.join(directory, FIGURE), told, parts, views)
+            bound.draw(os.path.join(directory, FIGURE), heading, parts, views)
 
 
 def _pointOf(load, assembly):
@@ -207,9 +207,9 @@ def _pointOf(load, assembly):
     return load.point if assembly.stood else load.point + load.displacement()
 
 
-def _told(way):
+def nameOf(direction):
     """A direction as text."""
-    for axis, value in zip("xyz", way):
+    for axis, value in zip("xyz", direction):
         if abs(value) > 1 - 1e-9:
             return ("-" if value < 0 else "") + axis
-    return "(" + ", ".join(f"{v:.3g}" for v in way) + ")"
+    return "(" + ", ".join(f"{v:.3g}" for v in direction) + ")"

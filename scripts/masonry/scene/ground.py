@@ -20,7 +20,7 @@ def rayleigh(ratio, low, high):
 
 
 UNITS = {"m/s²": 1.0, "g": 9.81, "cm/s²": 0.01}  # [m/s²]
-WEAK, STRONG = 1.5, 30.0  # [m/s²] peaks beyond these may be in g, or in cm/s²
+LOWEST_PEAK, HIGHEST_PEAK = 1.5, 30.0  # [m/s²] peaks beyond these may be in g, or in cm/s²
 
 
 def readRecord(accelerations, every, scale=1.0, unit=None):
@@ -68,8 +68,8 @@ def readRecord(accelerations, every, scale=1.0, unit=None):
     if not (isinstance(every, (int, float)) and 0 < every < math.inf):
         raise Refused(f"shake: the time between samples, {every!r} s, must be above 0")
     peak = abs(scale) * max(map(abs, values))
-    if unit is None and peak > 0 and not WEAK <= peak <= STRONG:
-        other = "g" if peak < WEAK else "cm/s²"
+    if unit is None and peak > 0 and not LOWEST_PEAK <= peak <= HIGHEST_PEAK:
+        other = "g" if peak < LOWEST_PEAK else "cm/s²"
         raise Refused(
             f"shake: the peak of the record is {peak:g}, which is {peak / 9.81:.2g} g if it is in m/s²: is it in {other}? "
             f"Say unit='{other}', or unit='m/s²' if it is"

@@ -18,7 +18,7 @@ AT_ZERO = 0.015  # [mm] within which a wall is at zero: more than a history miss
 NOISE = 0.01  # of the largest displacement of a file: smaller excursions may be noise of the measurement
 CYCLES = 10000  # that a list of amplitudes may have
 COLUMN = "displacement_mm"  # of a file
-TOLD = 10  # problems that are told one by one
+MOST_PROBLEMS = 10  # problems that are named one by one
 
 #: A point of a history: its displacement [mm]; the way to it, 1 or -1; and the displacement at which the drive turns or
 #: stops next, for which it brakes, or None if it does not [mm].
@@ -49,8 +49,8 @@ def _number(text):
 
 def _refuse(problems):
     if problems:
-        more = [f"and {len(problems) - TOLD} more"] if len(problems) > TOLD else []
-        raise ValueError("; ".join([*problems[:TOLD], *more]))
+        more = [f"and {len(problems) - MOST_PROBLEMS} more"] if len(problems) > MOST_PROBLEMS else []
+        raise ValueError("; ".join([*problems[:MOST_PROBLEMS], *more]))
 
 
 def _readList(text):
@@ -146,16 +146,16 @@ def targets(points, stops=False, start=0.0):
     :param stops: whether the drive brakes for the last point
     :param start: where the way begins [mm]
     """
-    ways, last = [], start
+    directions, last = [], start
     for point in points:
-        same = ways[-1] if ways else 1
-        ways.append(1 if point > last else -1 if point < last else same)
+        same = directions[-1] if directions else 1
+        directions.append(1 if point > last else -1 if point < last else same)
         last = point
     found, brake = [], points[-1] if stops else None
     for n in reversed(range(len(points))):
-        if n + 1 < len(points) and ways[n] != ways[n + 1]:
+        if n + 1 < len(points) and directions[n] != directions[n + 1]:
             brake = points[n]
-        found.append(Target(points[n], ways[n], brake))
+        found.append(Target(points[n], directions[n], brake))
     return found[::-1]
 
 
@@ -180,8 +180,8 @@ def aim(args, start=0.0):
 
 def turns(points):
     """How often the drive turns."""
-    ways = [target.way for target in targets(points)]
-    return sum(one != other for one, other in zip(ways, ways[1:]))
+    directions = [target.direction for target in targets(points)]
+    return sum(one != other for one, other in zip(directions, directions[1:]))
 
 
 def noise(history):
@@ -199,9 +199,9 @@ def extends(new, old):
 def describe(history):
     """What run.json says of a history: the dict without its points, but with their number and the length of the way."""
     points = history["points_mm"]
-    told = {name: value for name, value in history.items() if name != "points_mm"}
+    found = {name: value for name, value in history.items() if name != "points_mm"}
     return dict(
-        told,
+        found,
         points=len(points),
         turning_points=turns(points),
         path_mm=pathLength(points),

@@ -55,7 +55,7 @@ class Masonry:
     units: dict = field(default_factory=dict)
     softer: object = None
     choose: object = None
-    #: What :meth:`vary` was told: joint, property, function and step.
+    #: What :meth:`vary` was given: joint, property, function and step.
     varied: list = field(default_factory=list)
 
     def __post_init__(self):

@@ -231,7 +231,7 @@ def check(args, joints, more=()):
 
     :param args: the parsed options
     :param joints: dict of MasonryJoint by name
-    :param more: problems that the caller has found, to be told with the others
+    :param more: problems that the caller has found, to be named with the others
     :raises Refused: with all problems at once
     """
     problems = list(more)

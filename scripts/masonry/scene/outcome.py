@@ -44,7 +44,7 @@ class Outcome:
         """The options of the last push, or None if there was none."""
         return self.scene.pushed
 
-    def room(self):
+    def space(self):
         """Bytes that a run writes at least, and those that it will probably write."""
         model, args, frames, rows = self.model, self.args, FRAMES, 0
         nodes = len(model.zones.displacements) if model.zones else 0
@@ -69,7 +69,7 @@ class Outcome:
         joints = {name: joint.dict() for name, joint in model.joints.items()}
         for properties in joints.values():
             properties["direction"] = list(properties["direction"])
-        told = dict(
+        entries = dict(
             title=self.description.title,
             option_units=UNITS,
             joints=joints,
@@ -93,11 +93,11 @@ class Outcome:
             **scene.bounds.describe(),
         )
         if self.description.views:
-            told["views"] = self.description.views
+            entries["views"] = self.description.views
         wall = wallOf(self.description, model.target) if self.pushed else None
         if wall:
-            told["wall"] = wall
-        return told
+            entries["wall"] = wall
+        return entries
 
     def summary(self):
         """Entries of run.json that follow from the rows."""
@@ -262,11 +262,11 @@ class Outcome:
         if subprocess.run(command).returncode:
             raise Unwritable("the figures are not drawn")
 
-    def leave(self, directory):
+    def write(self, directory):
         """Write what the scene has beside rows and frames: the mechanism of limit analysis."""
         description = self.description
         try:
-            self.scene.bounds.leave(
+            self.scene.bounds.write(
                 directory, description.title, self.model.parts, description.views
             )
         except OSError as error:

@@ -20,7 +20,7 @@ from ..assembly.blocks import properties
 #: How far a random field is looked at to either side, in standard deviations of its normal: beyond lies one joint in a
 #: million.
 FAR = 4.75
-MOST = 20  # problems that are told of rows
+MOST = 20  # problems that are named of rows
 
 
 def asked():
@@ -48,7 +48,7 @@ def probe(scene, stage, traits, arguments):
     used = traits.options if traits else ()
     parser, found = Parser.last
     model, heard = scene.model, scene.args is found
-    told = {
+    entries = {
         "scene": scene.name,
         "heard": heard,
         "options": _options(parser) if heard else [],
@@ -58,16 +58,16 @@ def probe(scene, stage, traits, arguments):
         "counts": _counts(scene),
         "bounds": {p["name"]: _bounds(p) for p in properties(MasonryJoint)},
         "problems": _rows(scene, parser) if heard else [],
-        "room": scene.outcome.room()[1],
+        "room": scene.outcome.space()[1],
     }
     if "rate" in used and arguments.get("rate") is not None:
-        told["unused"]["rate"] = f"{stage}() has a rate of its own"
+        entries["unused"]["rate"] = f"{stage}() has a rate of its own"
     if not {"until", "history"} & set(used):
         for name in {"rate", "until", "history"} - set(used):
-            told["doubtful"][name] = f"its first stage is {stage}()"
+            entries["doubtful"][name] = f"its first stage is {stage}()"
     path = os.environ[batch.PROBE]
     with open(path + ".new", "w") as f:
-        json.dump(told, f)
+        json.dump(entries, f)
     os.replace(path + ".new", path)
     scene.finished = True
     scene.results.release()
@@ -101,11 +101,11 @@ def _rows(scene, parser):
     problems = {}
     known = {action.dest for action in parser._actions}
     for line, row in batch.readTable(path).items():
-        # others are no options, which is told once, and not of every row
+        # others are no options, which is said once, and not of every row
         row = {n: v for n, v in row.items() if "." in n or n in known | {"description"}}
-        for told in _refused(scene, parser, batch.optionWords(row)):
-            alike = re.sub(r"\d[\d.e+-]*", "#", told)  # but for its numbers
-            problems.setdefault(alike, []).append((row.get("description", line), told))
+        for sentence in _refused(scene, parser, batch.optionWords(row)):
+            alike = re.sub(r"\d[\d.e+-]*", "#", sentence)  # but for its numbers
+            problems.setdefault(alike, []).append((row.get("description", line), sentence))
     sentences = [
         f"row {found[0][0]}{f' and {len(found) - 1} more' if found[1:] else ''}: {found[0][1]}"
         for found in problems.values()
@@ -116,12 +116,12 @@ def _rows(scene, parser):
 
 def _refused(scene, parser, words):
     """Why a row is refused, a list of sentences. Its fields are looked at where they are far out."""
-    told = io.StringIO()
+    errors = io.StringIO()
     try:
-        with contextlib.redirect_stderr(told):
+        with contextlib.redirect_stderr(errors):
             args = parser._parsed(words, None)
     except SystemExit:
-        text = told.getvalue()
+        text = errors.getvalue()
         return (text.partition("error: ")[2] or text).strip().splitlines()
     try:
         masonry = scene.materials.variant(args)

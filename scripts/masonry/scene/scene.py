@@ -174,7 +174,7 @@ class Scene:
         self.outcome = Outcome(self)
         with self.running.clock("setup"):
             model.build(loadingBlock())
-        self.running.start(model, self.outcome.room())
+        self.running.start(model, self.outcome.space())
         Scene.present = self
         atexit.register(self._remind)
 
@@ -219,7 +219,7 @@ class Scene:
             self.model.pushTo(
                 target, vector(direction, "bound: direction").normalized()
             )
-            return self.bounds.push(self.model.way, False, lowerUpTo=EVERY)
+            return self.bounds.push(self.model.direction, False, lowerUpTo=EVERY)
         towards = gravity.sideways(self, towards, "bound")
         return self.bounds.lean(towards, lowerUpTo=EVERY)
 

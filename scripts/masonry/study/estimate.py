@@ -181,9 +181,9 @@ def doubts(expensive, cheap):
     bridge holds that it does not.
     """
     y, x = _rows(expensive, cheap)
-    told, x = [], x[: len(y)]
+    notes, x = [], x[: len(y)]
     if 1 - abs(np.corrcoef(x, y)[0, 1]) < ROUNDING:
-        return told  # what is left is rounding
+        return notes  # what remains is rounding
     moved = (x - x.mean()) / x.std()
     design = np.column_stack([np.ones_like(x), moved, moved**2])
     slopes, *_ = np.linalg.lstsq(design, y, rcond=None)
@@ -193,18 +193,18 @@ def doubts(expensive, cheap):
     if scatter > 0:
         p = 2 * stats.t.sf(abs(slopes[2]) / math.sqrt(scatter), free)
         if p < DOUBT:
-            told.append(
+            notes.append(
                 f"the expensive numbers bend over the cheap ones (p = {p:.2g}): quantiles by the bridge are biased"
             )
     line = np.polyfit(moved, y, 1)
     size = np.abs(y - np.polyval(line, moved))
     p = stats.spearmanr(size, x).pvalue
     if p < DOUBT:
-        told.append(
+        notes.append(
             f"the expensive numbers scatter about the cheap ones more at one end than at the other (p = {p:.2g}): quantiles by the "
             "bridge are biased"
         )
-    return told
+    return notes
 
 
 # -- how many runs ----------------------------------------------------------------------------------------------------
@@ -284,14 +284,14 @@ def sentence(
         f"{end:.4g}{unit}" if math.isfinite(end) else "an unknown end"
         for end in (found.low, found.high)
     ]
-    told = (
+    message = (
         f"{found.name} {found.value:.4g}{unit}, with {100 * confidence:g} % confidence between {ends[0]} and {ends[1]}, "
         f"from {found.shared} runs of {names[0]} and {found.rows} of {names[1]} in {_time(paid.cost)}"
     )
     same = f"{names[0]} alone needs {paid.alone:.0f} runs and {_time(paid.cost / paid.share)} for this interval"
     if paid.share < 1:
-        return f"{told}; {same}, so {100 * (1 - paid.share):.0f} % of the time is saved"
-    return f"{told}; {same}, so nothing is saved: {names[1]} follows {names[0]} too little for its price"
+        return f"{message}; {same}, so {100 * (1 - paid.share):.0f} % of the time is saved"
+    return f"{message}; {same}, so nothing is saved: {names[1]} follows {names[0]} too little for its price"
 
 
 def _time(seconds):

@@ -74,9 +74,9 @@ class Folder:
     def description(self):
         """study.json. Raises Refused if there is none."""
         try:
-            told = json.loads(readWhole(self.of(STUDY)))
-            told["study"]["runs"], told["script"]
-            return told
+            record = json.loads(readWhole(self.of(STUDY)))
+            record["study"]["runs"], record["script"]
+            return record
         except (OSError, ValueError, KeyError, TypeError):
             raise Refused(
                 f"{self.path} is no folder of a study: it has no {STUDY}"
@@ -85,10 +85,10 @@ class Folder:
     def lastJob(self, number):
         """How the last attempt at a row ended: a dict with ``host``, ``status``, ``seconds``, ``told``; or an empty one."""
         try:
-            told = json.loads(readWhole(self.job(number)))
+            record = json.loads(readWhole(self.job(number)))
         except (OSError, ValueError):
             return {}
-        return told if isinstance(told, dict) else {}
+        return record if isinstance(record, dict) else {}
 
     def isEnded(self, number):
         return batch.ended(self.row(number)) is not None
@@ -152,9 +152,9 @@ def _text(value):
 
 def gather(folder):
     """Write study.csv and times.csv. Returns how many rows have each status."""
-    told = folder.description()["study"]
+    record = folder.description()["study"]
     table = [*batch.readTable(folder.of(TABLE)).values()]
-    names, found, times, counts = list(told["vary"]), [], [], {}
+    names, found, times, counts = list(record["vary"]), [], [], {}
     for number, row in enumerate(table, 1):
         run, status = batch.ended(folder.row(number)) or {}, folder.status(number)
         counts[status] = counts.get(status, 0) + 1

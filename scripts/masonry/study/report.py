@@ -83,16 +83,16 @@ def statuses(record):
     """A line about rows that have no results, if there are some."""
     others = [text for text in record.cells["status"] if text != "ended"]
     if others:
-        told = ", ".join(
+        names = ", ".join(
             f"{others.count(s)} {s or 'not run'}" for s in sorted(set(others))
         )
-        yield f"rows that have not ended: {told}"
+        yield f"rows that have not ended: {names}"
 
 
 def draw(record, measure):
     """Write the pictures that the rows allow, and yield a line for each, or why there is none."""
     rows, inputs, values = record.complete(measure)
-    told = label(measure)
+    title = label(measure)
     inputs = {name: column for name, column in inputs.items() if np.ptp(column) > 0}
     curves = record.curves(rows, *CURVE)
     modes = (
@@ -102,10 +102,10 @@ def draw(record, measure):
     )
 
     def tornado(path):
-        pictures.tornado(path, sensitivity.effects(inputs, values), told)
+        pictures.tornado(path, sensitivity.effects(inputs, values), title)
 
     def sobol(path):
-        pictures.sobol(path, sensitivity.sobol(inputs, values), told)
+        pictures.sobol(path, sensitivity.sobol(inputs, values), title)
 
     def fan(path):
         if not curves:
@@ -113,11 +113,11 @@ def draw(record, measure):
         pictures.fan(path, curves, *map(label, CURVE))
 
     for name, make in {
-        "scatter": lambda path: pictures.scatter(path, inputs, values, told),
+        "scatter": lambda path: pictures.scatter(path, inputs, values, title),
         "tornado": tornado,
         "sobol": sobol,
-        "histogram": lambda path: pictures.histogram(path, values, told, modes),
-        "fragility": lambda path: pictures.fragility(path, values, told),
+        "histogram": lambda path: pictures.histogram(path, values, title, modes),
+        "fragility": lambda path: pictures.fragility(path, values, title),
         "curves": fan,
     }.items():
         path = os.path.join(record.directory, name + ".png")

@@ -68,12 +68,12 @@ class Job:
         finally:
             if own:
                 log.close()
-        told = "" if status == 0 else self._reason(number)
+        message = "" if status == 0 else self._reason(number)
         record = {
             "host": socket.gethostname(),
             "status": status,
             "seconds": round(spent + time.time() - began, 3),
-            "told": told,
+            "told": message,
         }
         if status == 0 or not (folder.isHeld(number) or folder.isEnded(number)):
             with open(folder.job(number) + f".{os.getpid()}", "w") as f:

@@ -49,14 +49,14 @@ def begin(study, path, near):
 
 def _compare(folder, known, now):
     """Refuse another study than the one that a folder holds."""
-    was, told = known["study"], now["study"]
+    was, given = known["study"], now["study"]
     other = [
-        f"{n} is {json.dumps(was.get(n))}, not {json.dumps(told.get(n))}"
-        for n in {**was, **told}
-        if was.get(n) != told.get(n)
+        f"{n} is {json.dumps(was.get(n))}, not {json.dumps(given.get(n))}"
+        for n in {**was, **given}
+        if was.get(n) != given.get(n)
     ]
     if not other and known.get("scene_sha256") != now["scene_sha256"]:
-        other = [f"the file of its scene {told['scene']} was another one"]
+        other = [f"the file of its scene {given['scene']} was another one"]
     if other or known.get("version") != VERSION:
         raise Refused(
             f"--out: {folder.path} holds another study; name another folder. There\n  "

@@ -130,7 +130,7 @@ def _grow(scene, name, duration, gravity):
         timed(scene, at, scene.share * whole, before, after)
         scene.factor = scene.stood = model.factor()
     except Collapsed:
-        scene.factor = scene.stood = leftRest(at.rows, model.factor())
+        scene.factor = scene.stood = restEnded(at.rows, model.factor())
         say(f"left rest at {scene.factor:.4g} of the vertical acceleration")
         raise
     return DONE
@@ -202,7 +202,7 @@ def bracket(scene, carries, low, high, within=0.01):
     return low, high
 
 
-def leftRest(rows, now):
+def restEnded(rows, now):
     """The factor at which a structure left rest under a load that grew evenly, from the rows until it fell.
 
     What a growing load sets in motion is accelerated in proportion to time at first, so that the root of its velocity

@@ -37,9 +37,9 @@ class Pushing:
     reach: list = (0.0, 0.0)  # farthest turning point so far [mm]
     nextFrame: float = 0.0  # length of the way up to the next ParaView frame [mm]
 
-    def travelled(self, way):
+    def travelled(self, direction):
         """Length of the way so far [mm]."""
-        return self.path + way * (self.moved - self.last)
+        return self.path + direction * (self.moved - self.last)
 
     def note(self, shear):
         """Keep the peaks, with the base shear of the last row [kN]."""
@@ -48,15 +48,15 @@ class Pushing:
                 self.peaks = _exchanged(self.peaks, side, sign * shear)
                 self.peaksAt = _exchanged(self.peaksAt, side, sign * self.moved)
 
-    def retreats(self, way, whole):
+    def retreats(self, direction, whole):
         """Whether the wall is a tenth of the whole way [mm], and 1 mm at least, behind where it turned or began."""
-        return self.path - self.travelled(way) > max(1.0, 0.1 * whole)
+        return self.path - self.travelled(direction) > max(1.0, 0.1 * whole)
 
-    def hasLost(self, way, shear):
+    def hasLost(self, direction, shear):
         """Whether the wall is farther out than ever before, and has lost its force [kN] there."""
-        side, out = way > 0, way * self.moved
+        side, out = direction > 0, direction * self.moved
         beyond = out > self.reach[side] and out > self.peaksAt[side] + 1
-        return beyond and way * shear < 0.2 * self.peaks[side]
+        return beyond and direction * shear < 0.2 * self.peaks[side]
 
     def passOn(self, goals):
         """Go on to the first point that is not reached yet. Returns whether there is one, and whether the drive turns."""
@@ -65,14 +65,14 @@ class Pushing:
             goal = goals[self.passed]
             brakes = goal.brake is not None
             near = brakes and abs(goal.brake - goal.displacement) <= ARRIVED
-            if goal.way * (goal.displacement - self.moved) > (ARRIVED if near else 0):
+            if goal.direction * (goal.displacement - self.moved) > (ARRIVED if near else 0):
                 return True, turned
             if self.passed + 1 == len(goals):
                 return False, turned
             self.path = self.path + abs(goal.displacement - self.last)
             self.passed, self.last = self.passed + 1, goal.displacement
-            if goals[self.passed].way != goal.way:
-                side, out = goal.way > 0, goal.way * goal.displacement
+            if goals[self.passed].direction != goal.direction:
+                side, out = goal.direction > 0, goal.direction * goal.displacement
                 self.reach = _exchanged(self.reach, side, max(self.reach[side], out))
                 self.growth, turned = -self.growth, True
 
@@ -141,38 +141,38 @@ def drivePush(scene, name, args, began, continued=False):
     def detail():
         if not args.history:
             return f"{at.moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
-        return f"{way:.1f} of {whole:g} mm, at {at.moved:6.2f} mm  {shear:7.2f} kN"
+        return f"{direction:.1f} of {whole:g} mm, at {at.moved:6.2f} mm  {shear:7.2f} kN"
 
     velocity, moves = None, True
     while moves:
         goal = goals[at.passed]
         model.goal = at.passed + 1, goal.displacement
         growth, steps = _pace(at, goal, args.rate, growing, every)
-        if velocity != goal.way * args.rate * 1e-3 * growth:
-            velocity = load.velocity = goal.way * args.rate * 1e-3 * growth
+        if velocity != goal.direction * args.rate * 1e-3 * growth:
+            velocity = load.velocity = goal.direction * args.rate * 1e-3 * growth
         model.keepLoadLine()
         run.advance(steps)
         reading = run.record()
         before = at.moved
         at.now, at.moved = reading.time, 1e3 * reading.along
-        shear, way = 1e-3 * reading.baseShear, at.travelled(goal.way)
+        shear, direction = 1e-3 * reading.baseShear, at.travelled(goal.direction)
         at.note(shear)
         how = None
-        if at.hasLost(goal.way, shear):
+        if at.hasLost(goal.direction, shear):
             how = "less than a fifth of the peak of its force is left"
         elif model.hasSunk(reading.sunk):
             how = "the pushed point has come down by half a course"
-        elif at.retreats(goal.way, whole):
+        elif at.retreats(goal.direction, whole):
             how = "it moves against its push"
         if args.history:
             at.since, at.growth = at.now, growth
-        run.show(max(0, way / whole), detail)
+        run.show(max(0, direction / whole), detail)
         moves, turned = at.passOn(goals)
         moves = moves and not how
         early = args.history and (turned or before * at.moved < 0)
-        if moves and way >= at.nextFrame - (spacing / 2 if early else 0):
+        if moves and direction >= at.nextFrame - (spacing / 2 if early else 0):
             run.frame()
-            at.nextFrame = (way if early else at.nextFrame) + spacing
+            at.nextFrame = (direction if early else at.nextFrame) + spacing
     run.show(1, detail, final=True)
     run.flush()
     if how:
@@ -192,7 +192,7 @@ def _pace(at, goal, rate, growing, every):
     growth = min(1.0, at.growth + (at.now - at.since + every * O.dt) / growing)
     if goal.brake is None:
         return growth, every
-    distance = max(0.0, goal.way * (goal.brake - at.moved))
+    distance = max(0.0, goal.direction * (goal.brake - at.moved))
     growth = min(growth, math.sqrt(2 * distance / (rate * growing)))
     if growth <= 0:
         return growth, every
