@@ -10,6 +10,7 @@ import pytest
 from conftest import ROOT
 from masonry import readCheckpoint, saveCheckpoint
 from masonry.read.files import readCurve, readRun
+from masonry.run import checkpoints
 from masonry.run.run import Run
 from masonry.assembly.structure import Structure
 from small import SMALL, Wall, carryOut, parsed, scene as runScript
@@ -165,6 +166,20 @@ def test_a_finished_run_can_be_pushed_on(scene, tmp_path):
     assert run(tmp_path / "parts", "--until", "0.3", resume=True) == 0
     assert files(tmp_path / "parts") == files(tmp_path / "whole")
     assert readRun(tmp_path / "parts")["options"]["rate"] == 40
+
+
+def test_a_resumed_run_reads_its_checkpoint_once(scene, tmp_path, monkeypatch):
+    """A stopped run is the hardest case: its scene is loaded twice, of the bytes that were read once."""
+    assert run(tmp_path, *PUSH) == 0
+    read, paths = checkpoints.readWhole, []
+
+    def counted(path, *sizes):
+        paths.append(os.path.basename(path))
+        return read(path, *sizes)
+
+    monkeypatch.setattr(checkpoints, "readWhole", counted)
+    assert run(tmp_path, resume=True) == 0
+    assert paths == ["run.checkpoint"]
 
 
 def test_frames_can_begin_and_end_with_a_resumed_run(scene, tmp_path):

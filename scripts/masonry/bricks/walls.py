@@ -356,14 +356,14 @@ def _quarters(length, unit, what, step, problems, least=None):
     if abs(steps - nearest) > WHOLE * max(1, nearest) or nearest * step < least:
         below = max(math.floor(steps + WHOLE), math.ceil(least / step))
         above = max(math.ceil(steps - WHOLE), below)
-        nearest = " or ".join(
+        choices = " or ".join(
             f"{n * step * unit[0] / 4:.6g} m ({n * step / 4:g})"
             for n in sorted({below, above})
         )
         need = "whole units" if step == 4 else "whole half units"
         problems.append(
             f"{what} {length:g} m is {units:.6g} units of {unit[0]:g} m; it must be {need}, at least {least / 4:g}; "
-            f"nearest: {nearest}"
+            f"nearest: {choices}"
         )
         return None
     return nearest * step

@@ -21,7 +21,7 @@ def end(run, scene, error):
     """Finish a run in order after an error, or after none. Returns whether the error is dealt with.
 
     ``run.status`` is then the exit status of the scene: 0 at the end, 1 if a file cannot be written or if the structure
-    has fallen in the stage ``settle``, before its test began, 2 for refused input, 130 after Ctrl-C or SIGTERM. Another
+    has fallen while its dead loads grew, before its test began, 2 for refused input, 130 after Ctrl-C or SIGTERM. Another
     error is for the caller when the results are finished.
 
     :param run: :class:`masonry.run.run.Run`
@@ -82,7 +82,7 @@ def _end(run, scene, error):
         say(f"{text}; what was written before is kept", sys.stderr)
     if kept and (stopped or run.interrupted):
         say(f"--resume {run.results.directory} goes on from here")
-    fell = run.collapsed and run.at.stage == "settle"
+    fell = run.collapsed and run.loading
     run.status = 1 if stopped or fell else 130 if run.interrupted else 0
     return True
 

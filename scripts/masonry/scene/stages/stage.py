@@ -125,7 +125,7 @@ def _carryOut(scene, act, traits, args, settings):
         if scene.only and not traits.bounded:
             say(f"note: --preset bound: no run, {name} is left out")
             return DONE
-        before = running.entered
+        before, running.loading = running.entered, traits.grows
         ended = act(scene, *args, **settings)
         _answer(scene, name, traits, before)
         return ended
