@@ -400,7 +400,7 @@ def test_what_cannot_be_taken_up_is_refused(broken, tmp_path, capsys):
 def test_another_build_or_number_of_threads_is_reported(broken, capsys):
     kept = str(broken / "run.checkpoint")
     text = readCheckpoint(kept)
-    text.update(threads=7, build="v0")
+    text["host"].update(threads=7, build="v0")
     saveCheckpoint(kept, text)
     capsys.readouterr()
     assert run(broken, resume=True) == 0

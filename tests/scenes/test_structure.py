@@ -288,7 +288,7 @@ def test_wrong_words_are_refused(tmp_path, act, message):
     [
         (dict(name="a/b"), "name must be a text that can name a folder"),
         (dict(bricks=[]), "bricks must be a list of blocks"),
-        (dict(materials=5), "materials must be a masonry.scene.materials.Masonry, got 5"),
+        (dict(materials=5), "materials must be a masonry.materials.Masonry, got 5"),
         (dict(gravity=-1), "gravity -1 must be at least 0"),
     ],
 )

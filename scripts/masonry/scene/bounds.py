@@ -44,7 +44,7 @@ class Bounds:
     def push(self, direction, both, lowerUpTo=0):
         """Find the bound of a push of what the model pushes now. Returns its entry of run.json, the last one if there are two.
 
-        :param way: unit vector of the push
+        :param direction: unit vector of the push
         :param both: whether it goes there and back
         :param lowerUpTo: up to so many joints a collapse without dilatancy is looked for, too, if the bound is not exact
         """

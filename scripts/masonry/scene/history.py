@@ -20,9 +20,9 @@ CYCLES = 10000  # that a list of amplitudes may have
 COLUMN = "displacement_mm"  # of a file
 MOST_PROBLEMS = 10  # problems that are named one by one
 
-#: A point of a history: its displacement [mm]; the way to it, 1 or -1; and the displacement at which the drive turns or
+#: A point of a history: its displacement [mm]; the direction to it, 1 or -1; and the displacement at which the drive turns or
 #: stops next, for which it brakes, or None if it does not [mm].
-Target = namedtuple("Target", "displacement way brake")
+Target = namedtuple("Target", "displacement direction brake")
 
 
 def parse(text):
@@ -140,11 +140,11 @@ def _column(lines, path):
 def targets(points, stops=False, start=0.0):
     """The points of a history as the drive sees them: a list of :class:`Target`.
 
-    A point that repeats the one before lies on the same way.
+    A point that repeats the one before lies in the same direction.
 
     :param points: displacements [mm]
     :param stops: whether the drive brakes for the last point
-    :param start: where the way begins [mm]
+    :param start: where the path begins [mm]
     """
     directions, last = [], start
     for point in points:
@@ -160,7 +160,7 @@ def targets(points, stops=False, start=0.0):
 
 
 def pathLength(points, start=0.0):
-    """Length of the way through some points from a start on [mm]."""
+    """Length of the path through some points from a start on [mm]."""
     return sum(abs(b - a) for a, b in zip([start, *points], points))
 
 
@@ -168,10 +168,10 @@ def aim(args, start=0.0):
     """The targets of a run: those of ``--history``, or one at ``--until``.
 
     The drive stops at the end of a file. At the end of a list of amplitudes and of a push it does not brake, because
-    both go on the same way if the run is resumed and extended.
+    both go on in the same direction if the run is resumed and extended.
 
     :param args: the options of :func:`masonry.scene.options.parser`
-    :param start: where the way begins [mm]
+    :param start: where the path begins [mm]
     """
     if args.history:
         return targets(args.history["points_mm"], "file" in args.history, start)
@@ -197,7 +197,7 @@ def extends(new, old):
 
 
 def describe(history):
-    """What run.json says of a history: the dict without its points, but with their number and the length of the way."""
+    """What run.json says of a history: the dict without its points, but with their number and the length of the path."""
     points = history["points_mm"]
     found = {name: value for name, value in history.items() if name != "points_mm"}
     return dict(

@@ -10,7 +10,7 @@ from ..history import aim, pathLength, turns
 from .rest import rampTime
 
 ROW_EVERY = 0.01  # [mm] of a push between rows of curve.csv
-ARRIVED = 2e-3  # [mm] from a turning point of a history at which the drive turns: what is left of the way takes it there
+ARRIVED = 2e-3  # [mm] from a turning point of a history at which the drive turns: what remains of the path takes it there
 #: Frames for ParaView along a history, beside those at its turning points and zeros.
 FRAMES = 200
 IMBALANCE = 0.1  # a push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more
@@ -29,16 +29,16 @@ class Pushing:
     start: float = (
         0.0  # displacement when it began, if it counts from an earlier push [mm]
     )
-    path: float = 0.0  # length of the way to there [mm]
+    path: float = 0.0  # length of the path to there [mm]
     since: float = 0.0  # time from which the velocity grows [s]
-    growth: float = 0.0  # velocity then, along the present way, over the full one [-]
+    growth: float = 0.0  # velocity then, in the present direction, over the full one [-]
     peaks: list = (0.0, 0.0)  # largest base shear so far [kN]
     peaksAt: list = (0.0, 0.0)  # displacement there [mm]
     reach: list = (0.0, 0.0)  # farthest turning point so far [mm]
-    nextFrame: float = 0.0  # length of the way up to the next ParaView frame [mm]
+    nextFrame: float = 0.0  # length of the path up to the next ParaView frame [mm]
 
     def travelled(self, direction):
-        """Length of the way so far [mm]."""
+        """Length of the path so far [mm]."""
         return self.path + direction * (self.moved - self.last)
 
     def note(self, shear):
@@ -49,7 +49,7 @@ class Pushing:
                 self.peaksAt = _exchanged(self.peaksAt, side, sign * self.moved)
 
     def retreats(self, direction, whole):
-        """Whether the wall is a tenth of the whole way [mm], and 1 mm at least, behind where it turned or began."""
+        """Whether the wall is a tenth of the whole path [mm], and 1 mm at least, behind where it turned or began."""
         return self.path - self.travelled(direction) > max(1.0, 0.1 * whole)
 
     def hasLost(self, direction, shear):
@@ -91,12 +91,12 @@ def drivePush(scene, name, args, began, continued=False):
     is the end, unless it is that of a file.
 
     Rows are 0.01 mm apart at full speed; where the drive is slower, the time between them is the same or less.
-    ParaView frames are :func:`frameSpacing` of the way apart. Those of a history are also at its turning points and where
+    ParaView frames are :func:`frameSpacing` of the path apart. Those of a history are also at its turning points and where
     it passes through zero, unless the frame before is less than half of this away.
 
     A wall has collapsed if the loading block has come down by half a course, if less than a fifth of the peak of a side
     is left, a millimetre or more beyond that peak and farther out than the wall has turned before, or if it moves against
-    its push by a tenth of the way, a millimetre or more. So a loop that unloads is no collapse.
+    its push by a tenth of the path, a millimetre or more. So a loop that unloads is no collapse.
 
     :param name: of the stage
     :param args: the options of the run, with the ``until``, ``history`` and ``rate`` of this push
@@ -206,13 +206,13 @@ def pathOf(args, start=0.0):
 
 
 def rowCount(args):
-    """How many rows of curve.csv a push has, about. A turn takes as long as the way at full speed in a ramp."""
+    """How many rows of curve.csv a push has, about. A turn takes as long as the path at full speed in a ramp."""
     turning = turns(args.history["points_mm"]) if args.history else 0
     return (pathOf(args) + turning * args.rate * rampTime(args)) / ROW_EVERY
 
 
 def frameSpacing(args):
-    """Length of the way between ParaView frames, which is at least ``--vtk-every`` [mm]."""
+    """Length of the path between ParaView frames, which is at least ``--vtk-every`` [mm]."""
     return max(args.vtk_every, pathOf(args) / FRAMES if args.history else 0)
 
 
