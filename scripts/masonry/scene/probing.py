@@ -124,7 +124,7 @@ def _refused(scene, parser, words):
         text = told.getvalue()
         return (text.partition("error: ")[2] or text).strip().splitlines()
     try:
-        masonry = scene.materials.variant(args)
+        masonry = scene.description.materials.variant(args)
         check(args, masonry.joints)
         for text in args.field:
             _far(text, masonry.joints)
