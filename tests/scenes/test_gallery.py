@@ -36,7 +36,7 @@ def test_every_scene_stands_in_the_gallery_or_is_held_against_published_results(
 @pytest.mark.parametrize("name", GALLERY)
 def test_a_scene_of_the_gallery_is_short(name):
     with open(os.path.join(ROOT, "scripts", name + ".py")) as f:
-        assert len(f.readlines()) < 60
+        assert len(f.readlines()) <= 60  # with the line of the licence
 
 
 @pytest.mark.parametrize("name", GALLERY)
