@@ -335,18 +335,18 @@ TEST_CASE("cyclic: dilatancy that has died away with slip settles less than it r
     p.cap = false;
     Path path(p);
     path.press(-0.5e6);
-    double lowest = 1, highest = 0, atHome = 0;
+    double lowest = 1, highest = 0, atStart = 0;
     for (int cycle = 0; cycle < 6; ++cycle)
-        for (double way : {1.0, -1.0})
+        for (double direction : {1.0, -1.0})
             for (int i = 0; i < 2000; ++i) {
-                path.step({-0.5e6 / p.normalStiffness - elasticOpening(path.state), {way * 0.5e-3 / 2000, 0}});
+                path.step({-0.5e6 / p.normalStiffness - elasticOpening(path.state), {direction * 0.5e-3 / 2000, 0}});
                 lowest = std::min(lowest, path.state.dilation);
                 highest = std::max(highest, path.state.dilation);
-                atHome = path.state.dilation;
+                atStart = path.state.dilation;
             }
     CHECK(lowest >= 0);
-    CHECK(atHome > 0);
-    CHECK(atHome < highest);
+    CHECK(atStart > 0);
+    CHECK(atStart < highest);
     CHECK(highest <= 0.2 / 2000 * (1 - std::exp(-2000 * path.state.slip)) * (1 + 1e-3));
 }
 

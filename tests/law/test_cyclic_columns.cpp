@@ -136,9 +136,9 @@ TEST_CASE("cyclic: subcontacts in columns follow the law for one to the last bit
 
 TEST_CASE("cyclic: subcontacts that wait among others follow the law for one with all vector units of this processor") {
     constexpr int many = 29;
-    const auto ways = cyclic::ways();
-    for (const auto& way : ways)
-        MESSAGE("vector units: ", std::string(way.name));
+    const auto processors = cyclic::processors();
+    for (const auto& processor : processors)
+        MESSAGE("vector units: ", std::string(processor.name));
     Dice dice{std::mt19937_64(13)};
     int regimes[4] = {};
     for (int kind = 0; kind < 100; ++kind) {
@@ -154,7 +154,7 @@ TEST_CASE("cyclic: subcontacts that wait among others follow the law for one wit
         const Columns columns{memory.data(), many};
         std::vector<CyclicState> states(many);
         std::vector<double> opening(many), a(many), b(many);
-        std::vector<Mask> waits(many);
+        std::vector<Mask> pending(many);
         const double share = dice.between(0, 1);
         for (int j = 0; j < many; ++j) {
             for (int step = 0; step < 10; ++step)
@@ -164,21 +164,21 @@ TEST_CASE("cyclic: subcontacts that wait among others follow the law for one wit
             keep(consequences(e, s), columns, j);
             const Jump jump = some(dice.between(-2, 2));
             opening[j] = jump.opening, a[j] = jump.slide.a, b[j] = jump.slide.b;
-            waits[j] = dice.once(share);
+            pending[j] = dice.once(share);
         }
-        for (const auto& way : ways) {
+        for (const auto& processor : processors) {
             std::vector<double> copy = memory;
             const Columns own{copy.data(), many};
             std::vector<TableRows> rows(many, {0, 0});
             std::vector<Regime> regime(many, Regime::Elastic);
             std::vector<double> stress(many, -1);
-            way.advance({e, law->tension(), law->shear(), law->shear().lastRatio() - 1}, own, rows.data(),
-                        regime.data(), {opening.data(), a.data(), b.data(), false}, waits.data(), many, stress.data());
+            processor.advance({e, law->tension(), law->shear(), law->shear().lastRatio() - 1}, own, rows.data(),
+                        regime.data(), {opening.data(), a.data(), b.data(), false}, pending.data(), many, stress.data());
             for (int j = 0; j < many; ++j) {
-                CAPTURE(std::string(way.name));
+                CAPTURE(std::string(processor.name));
                 CAPTURE(kind);
                 CAPTURE(j);
-                if (!waits[j]) { // nothing happened to it
+                if (!pending[j]) { // nothing happened to it
                     for (int column = 0; column < CyclicColumn::count; ++column)
                         REQUIRE(own[column][j] == columns[column][j]);
                     REQUIRE(stress[j] == -1);

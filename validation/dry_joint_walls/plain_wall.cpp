@@ -209,12 +209,12 @@ int main(int count, char** words) {
     double last = 0, now = 0;
     std::printf("displacement_mm,force_kN\n0,0\n");
     for (double target : targets) {
-        const double way = target > now ? 1 : -1;
+        const double direction = target > now ? 1 : -1;
         for (double time = dt;; time += dt) {
-            const double left = (target - drive) * way;
+            const double left = (target - drive) * direction;
             if (left < 1e-9) break;
             const double brake = std::max(0.02 * rate, std::sqrt(2 * rate / ramp * left));
-            velocity = way * std::min({rate * std::min(1.0, time / ramp), brake, left / dt});
+            velocity = direction * std::min({rate * std::min(1.0, time / ramp), brake, left / dt});
             step();
             const double moved = drive;
             if (std::abs(moved - last) * 1e3 >= options["every"]) {

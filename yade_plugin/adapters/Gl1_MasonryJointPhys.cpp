@@ -63,7 +63,7 @@ private:
             for (int p = 0; p < joint.phys->points(); ++p) {
                 const auto s = joint.phys->state(p);
                 const auto shown = [&](const JointField& field) {
-                    return joint.phys->home->columns->shown(p, joint.phys->index, field);
+                    return joint.phys->group->columns->shown(p, joint.phys->index, field);
                 };
                 drawing.values.push_back(jointSettings.colours == "opening" ? s.opening
                                          : jointSettings.colours == "regime"

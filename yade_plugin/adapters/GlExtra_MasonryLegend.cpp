@@ -67,7 +67,7 @@ double heightOf(const ColourScale& scale) {
 } // namespace
 
 void GlExtra_MasonryLegend::render() {
-    // What the next picture draws says anew what it is, so that nothing is told of what is no longer shown.
+    // What the next picture draws says anew what it is, so that nothing is reported of what is no longer shown.
     const auto scales = std::exchange(drawnScales(), {});
     const double height = heightOf(scales.blocks) + heightOf(scales.joints);
     if (dead || height == 0) return;

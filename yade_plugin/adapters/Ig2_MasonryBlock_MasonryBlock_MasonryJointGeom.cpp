@@ -12,7 +12,7 @@ namespace masonry {
 using yade::State;
 
 // The host calls this before the interaction loop of every step. It brings the store up to date, so that all joints are
-// in their common homes and have the present properties.
+// in their common groups and have the present properties.
 void Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom::preStep() {
     if (scene) const EngineTurn turn(*scene);
 }

@@ -72,7 +72,7 @@ void MasonryEnergy::watchOver(SceneStore& store) {
         const auto what = "unstable: motion out of nothing at step " + std::to_string(scene->iter) + ", " +
                           text(motion) + " J where " + text(largestInput) + " J of work were done; " +
                           masonry::described(store, timeStepLimit(store, true)) +
-                          ". Velocities set by hand must be told at once by MasonryEnergy.given()";
+                          ". Velocities set by hand must be reported at once by MasonryEnergy.given()";
         stopIfCollapsed(store, what);
         throw std::runtime_error(what);
     }
@@ -95,7 +95,7 @@ void MasonryEnergy::warnOfBalance(const SceneStore& store) {
     std::cerr << "warning: at step " + std::to_string(scene->iter) + " the energy balance is off by " +
                      text(std::round(1000 * std::abs(balance.error)) / 10) +
                      " % of the work done: a smaller time step, slower loading or more damping helps; what a script "
-                     "does between steps to places, velocities and forces is not counted (this is told once, see "
+                     "does between steps to places, velocities and forces is not counted (this is reported once, see "
                      "MasonryEnergy.balance())\n"
               << std::flush;
 }

@@ -25,7 +25,7 @@ public:
         "that begins with 'unstable:' or 'numbers'. A collapse ends it with an error that begins with 'collapsed:': a "
         "block has turned, slid, been crushed or gone away so far that the joints, whose geometry is that of the "
         "reference state, mean nothing any more; see turnLimit, slideLimit, closureLimit and openingLimit. An energy "
-        "balance that is off by more than 1 % of the work done is told once, on the terminal's error stream.";
+        "balance that is off by more than 1 % of the work done is reported once, on the terminal's error stream.";
 
     // See attributes() for the meaning and unit of each. Users set `watch` and the limits only.
     bool watch = true;
@@ -48,7 +48,7 @@ public:
         GravityWork::describe<E>(visit);
         visit("watch", &E::watch,
               described(
-                  "Whether a run that is unstable or has collapsed is stopped, and a wrong energy balance is told. If "
+                  "Whether a run that is unstable or has collapsed is stopped, and a wrong energy balance is reported. If "
                   "an unstable run is not stopped, a time step above criticalTimeStep() gives wrong "
                   "results that look sound, because damping keeps the unstable motion within bounds"));
         visit("turnLimit", &E::turnLimit,

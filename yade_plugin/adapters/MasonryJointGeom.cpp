@@ -6,32 +6,32 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJointGeom)
 namespace masonry {
 
 const JointShapes& MasonryJointGeom::shapes() const {
-    if (!home) throw std::runtime_error("this MasonryJointGeom is of no joint: connect() makes joints");
-    home->check();
-    return *home;
+    if (!group) throw std::runtime_error("this MasonryJointGeom is of no joint: connect() makes joints");
+    group->check();
+    return *group;
 }
 
-Vector3r MasonryJointGeom::normal() { return home ? shapes().joints[index].normal : Vector3r::Zero(); }
-Vector3r MasonryJointGeom::tangent() { return home ? shapes().joints[index].tangent : Vector3r::Zero(); }
+Vector3r MasonryJointGeom::normal() { return group ? shapes().joints[index].normal : Vector3r::Zero(); }
+Vector3r MasonryJointGeom::tangent() { return group ? shapes().joints[index].tangent : Vector3r::Zero(); }
 std::vector<Vector3r> MasonryJointGeom::polygon() {
-    return home ? shapes().joints[index].polygon : std::vector<Vector3r>();
+    return group ? shapes().joints[index].polygon : std::vector<Vector3r>();
 }
-double MasonryJointGeom::distance1() { return home ? shapes().joints[index].distance(0) : 0; }
-double MasonryJointGeom::distance2() { return home ? shapes().joints[index].distance(1) : 0; }
+double MasonryJointGeom::distance1() { return group ? shapes().joints[index].distance(0) : 0; }
+double MasonryJointGeom::distance2() { return group ? shapes().joints[index].distance(1) : 0; }
 
 shared_ptr<MasonryZones> MasonryJointGeom::zones() {
-    return home && reference().hung ? boost::static_pointer_cast<MasonryZones>(reference().hung->zones)
+    return group && reference().attached ? boost::static_pointer_cast<MasonryZones>(reference().attached->zones)
                                     : shared_ptr<MasonryZones>();
 }
 
-// A file holds the zones before the record. They are kept in a home without subcontacts, which setRecord() replaces.
+// A file holds the zones before the record. They are kept in a group without subcontacts, which setRecord() replaces.
 void MasonryJointGeom::setZones(const shared_ptr<MasonryZones>& all) {
-    home.reset();
+    group.reset();
     index = 0;
     if (!all) return;
-    home.reset(new JointShapes(1, 0));
-    home->joints[0].hung = std::make_shared<JointReference::Hung>();
-    home->joints[0].hung->zones = all;
+    group.reset(new JointShapes(1, 0));
+    group->joints[0].attached = std::make_shared<JointReference::Attached>();
+    group->joints[0].attached->zones = all;
 }
 
 namespace {
@@ -86,20 +86,20 @@ void exchange(Numbers& n, JointReference& r) {
     }
     std::vector<Attachment> none;
     for (int side = 0; side < 2; ++side)
-        n.list(r.hung ? r.hung->sides[side] : none);
+        n.list(r.attached ? r.attached->sides[side] : none);
 }
 
 } // namespace
 
 std::vector<double> MasonryJointGeom::record() {
-    if (!home) return {};
+    if (!group) return {};
     shapes();
     Numbers n(false);
-    int count = home->points;
+    int count = group->points;
     n(count);
-    exchange(n, home->joints[index]);
+    exchange(n, group->joints[index]);
     for (int p = 0; p < count; ++p) {
-        Vector3r offsetOfPoint = offset(p), jumpOfPoint = jump(p), viscous = home->viscousAt(p, index);
+        Vector3r offsetOfPoint = offset(p), jumpOfPoint = jump(p), viscous = group->viscousAt(p, index);
         double areaOfPoint = area(p);
         n(offsetOfPoint);
         n(areaOfPoint);
@@ -116,7 +116,7 @@ void MasonryJointGeom::setRecord(const std::vector<double>& flat) {
     n(count);
     if (count < 0 || std::size_t(count) > flat.size()) Numbers::damaged();
     const shared_ptr<JointShapes> made(new JointShapes(1, count));
-    if (home) made->joints[0].hung = reference().hung;
+    if (group) made->joints[0].attached = reference().attached;
     exchange(n, made->joints[0]);
     for (int p = 0; p < count; ++p) {
         Vector3r offsetOfPoint = Vector3r::Zero(), jumpOfPoint = Vector3r::Zero(), viscous = Vector3r::Zero();
@@ -129,14 +129,14 @@ void MasonryJointGeom::setRecord(const std::vector<double>& flat) {
         made->setShape(p, 0, offsetOfPoint, areaOfPoint);
         made->setJump(p, 0, jumpOfPoint);
     }
-    home = made;
+    group = made;
     index = 0;
 }
 
 py::list MasonryJointGeom::centres() {
     const BetweenSteps still;
     py::list all;
-    for (int p = 0; home && p < shapes().points; ++p)
+    for (int p = 0; group && p < shapes().points; ++p)
         all.append(centre(p));
     return all;
 }
@@ -144,7 +144,7 @@ py::list MasonryJointGeom::centres() {
 py::list MasonryJointGeom::areas() {
     const BetweenSteps still;
     py::list all;
-    for (int p = 0; home && p < shapes().points; ++p)
+    for (int p = 0; group && p < shapes().points; ++p)
         all.append(area(p));
     return all;
 }
@@ -152,7 +152,7 @@ py::list MasonryJointGeom::areas() {
 py::list MasonryJointGeom::jumps() {
     const BetweenSteps still;
     py::list all;
-    for (int p = 0; home && p < shapes().points; ++p)
+    for (int p = 0; group && p < shapes().points; ++p)
         all.append(jump(p));
     return all;
 }

@@ -7,26 +7,26 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJointPhys)
 namespace masonry {
 
 shared_ptr<MasonryJoint> MasonryJointPhys::joint() {
-    return home ? boost::static_pointer_cast<MasonryJoint>(propertySet()) : shared_ptr<MasonryJoint>();
+    return group ? boost::static_pointer_cast<MasonryJoint>(propertySet()) : shared_ptr<MasonryJoint>();
 }
 
 // A file holds the property set before the record.
 void MasonryJointPhys::setJoint(const shared_ptr<MasonryJoint>& kind) {
-    home.reset();
+    group.reset();
     loaded_ = kind;
 }
 
-double MasonryJointPhys::normalStiffness() { return home ? stiffness().normal : 0; }
-double MasonryJointPhys::shearStiffness() { return home ? stiffness().shear : 0; }
+double MasonryJointPhys::normalStiffness() { return group ? stiffness().normal : 0; }
+double MasonryJointPhys::shearStiffness() { return group ? stiffness().shear : 0; }
 
 Vector3r MasonryJointPhys::dissipated() {
     Vector3r sum = Vector3r::Zero();
-    if (!home) return sum;
-    home->check();
-    if (!home->inScene) SceneStore::present().update(); // a new joint gets its areas only now
-    for (int p = 0; home->shapes && p < points(); ++p) {
+    if (!group) return sum;
+    group->check();
+    if (!group->inScene) SceneStore::present().update(); // a new joint gets its areas only now
+    for (int p = 0; group->shapes && p < points(); ++p) {
         const auto e = lost(p);
-        sum += home->shapes->areaAt(p, index) * Vector3r(e.tension, e.shear, e.compression);
+        sum += group->shapes->areaAt(p, index) * Vector3r(e.tension, e.shear, e.compression);
     }
     return sum;
 }
@@ -34,11 +34,11 @@ Vector3r MasonryJointPhys::dissipated() {
 // Holds the two stiffnesses [Pa/m], then of every subcontact the numbers of its law and the energies dissipated in
 // tension, shear and compression [J/m²].
 std::vector<double> MasonryJointPhys::record() {
-    if (!home) return {};
-    home->check();
+    if (!group) return {};
+    group->check();
     std::vector<double> flat{stiffness().normal, stiffness().shear};
     for (int p = 0; p < points(); ++p) {
-        home->columns->read(p, index, [&](const char*, double number) { flat.push_back(number); });
+        group->columns->read(p, index, [&](const char*, double number) { flat.push_back(number); });
         const auto e = lost(p);
         flat.insert(flat.end(), {e.tension, e.shear, e.compression});
     }
@@ -54,13 +54,13 @@ void MasonryJointPhys::setRecord(const std::vector<double>& flat) {
     const std::size_t width = JointStates(loaded_, k, 1, 1).columns->numbersOfState() + ofEnergies;
     if ((flat.size() - 2) % width != 0) throw damaged;
     const int count = int((flat.size() - 2) / width);
-    home.reset(new JointStates(loaded_, k, 1, count));
+    group.reset(new JointStates(loaded_, k, 1, count));
     index = 0;
     loaded_.reset();
     auto next = flat.begin() + 2;
     for (int p = 0; p < count; ++p) {
-        home->columns->write(p, 0, [&](const char*, double& number) { number = *next++; });
-        home->columns->setDissipated(p, 0, {next[0], next[1], next[2]});
+        group->columns->write(p, 0, [&](const char*, double& number) { number = *next++; });
+        group->columns->setDissipated(p, 0, {next[0], next[1], next[2]});
         next += ofEnergies;
     }
 }
@@ -70,8 +70,8 @@ void MasonryJointPhys::setRecord(const std::vector<double>& flat) {
 template <class F> py::list MasonryJointPhys::perSubcontact(F&& value) {
     const BetweenSteps still;
     py::list all;
-    if (!home) return all;
-    home->check();
+    if (!group) return all;
+    group->check();
     for (int p = 0; p < points(); ++p)
         all.append(value(p));
     return all;
@@ -101,14 +101,14 @@ py::list MasonryJointPhys::damage() {
 
 py::list MasonryJointPhys::largest() {
     return perSubcontact([this](int p) {
-        const auto& columns = *home->columns;
+        const auto& columns = *group->columns;
         return py::make_tuple(columns.number(p, index, "largestOpening"), columns.number(p, index, "largestClosure"));
     });
 }
 
 py::list MasonryJointPhys::yielding() {
     return perSubcontact([this](int p) {
-        const auto f = home->columns->yielding(p, index);
+        const auto f = group->columns->yielding(p, index);
         return Vector3r(f.tension, f.slip, f.cap);
     });
 }

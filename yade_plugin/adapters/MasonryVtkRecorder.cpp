@@ -86,7 +86,7 @@ public:
     void insert(const JointPhysics& phys, int point) {
         for (auto& column : columns_)
             column.array->InsertNextValue(0);
-        phys.home->columns->show(point, phys.index, [&](const JointField& field, double value) {
+        phys.group->columns->show(point, phys.index, [&](const JointField& field, double value) {
             auto* array = columnOf(field)->array;
             array->SetValue(array->GetNumberOfValues() - 1, value);
         });

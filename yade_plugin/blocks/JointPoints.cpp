@@ -118,11 +118,11 @@ std::vector<Subcontact> fan(const Polygon& polygon, const Point& normal, int fin
             lattice.emplace(key, Subcontact{centre + u * one + v * two, 0}).first->second.area += size / 12;
         };
         const auto triangle = [&](int u, int v,
-                                  int way) { // with its right angle at (u, v) in the lattice's coordinates
+                                  int direction) { // with its right angle at (u, v) in the lattice's coordinates
             add(u, v);
-            add(u + way, v);
-            add(u, v + way);
-            inner.push_back({centre + (u + way / 3.0) * one + (v + way / 3.0) * two, 0.75 * size});
+            add(u + direction, v);
+            add(u, v + direction);
+            inner.push_back({centre + (u + direction / 3.0) * one + (v + direction / 3.0) * two, 0.75 * size});
         };
         for (int u = 0; u < fineness; ++u)
             for (int v = 0; u + v < fineness; ++v) {

@@ -17,13 +17,13 @@ void append(std::string& bytes, std::uint64_t number) {
 
 class Reader {
 public:
-    explicit Reader(std::string_view bytes) : left_(bytes) {}
-    bool done() const { return left_.empty(); }
+    explicit Reader(std::string_view bytes) : remaining_(bytes) {}
+    bool done() const { return remaining_.empty(); }
 
     std::string_view take(std::uint64_t size) {
-        if (size > left_.size()) refuse("is damaged: a record is longer than the file");
-        const auto taken = left_.substr(0, size);
-        left_.remove_prefix(size);
+        if (size > remaining_.size()) refuse("is damaged: a record is longer than the file");
+        const auto taken = remaining_.substr(0, size);
+        remaining_.remove_prefix(size);
         return taken;
     }
     std::uint64_t number() {
@@ -33,7 +33,7 @@ public:
     }
 
 private:
-    std::string_view left_;
+    std::string_view remaining_;
 };
 
 } // namespace

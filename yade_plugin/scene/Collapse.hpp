@@ -2,7 +2,7 @@
 // its neighbour, gone through it or left it. What a run computes from then on means nothing, so it ends.
 #pragma once
 #include "BodyColumns.hpp"
-#include "JointHome.hpp"
+#include "JointGroup.hpp"
 #include <string>
 #include <vector>
 

@@ -66,7 +66,7 @@ Dynamics::Dynamics(SceneStore& store) {
 void Dynamics::addJoint(const SceneStore& store, const JointView& joint) {
     const auto& geom = *joint.geom;
     const auto& r = geom.reference();
-    if (r.hung && r.hung->zones.get() != store.zones)
+    if (r.attached && r.attached->zones.get() != store.zones)
         throw std::invalid_argument("the joint of bodies " + std::to_string(r.sides[0].body) + " and " +
                                     std::to_string(r.sides[1].body) +
                                     " needs its MasonryZones in O.engines, and not dead");
@@ -82,7 +82,7 @@ void Dynamics::addJoint(const SceneStore& store, const JointView& joint) {
         for (int side = 0; side < 2; ++side) {
             const double sign = side ? 1 : -1;
             if (!r.rigid(side)) {
-                const auto& a = r.hung->sides[side][p];
+                const auto& a = r.attached->sides[side][p];
                 for (int n = 0; n < 3; ++n)
                     for (int d = 0; a.weights[n] != 0 && d < 3; ++d)
                         add(3 * a.nodes[n] + d, sign * a.weights[n] * Vector3r::Unit(d));
@@ -106,7 +106,7 @@ void Dynamics::addJoint(const SceneStore& store, const JointView& joint) {
         for (std::size_t i = 0; i < rows.size(); ++i)
             for (std::size_t j = 0; j < rows.size(); ++j)
                 part.stiffness(i, j) = rows[i].dot(k.cwiseProduct(rows[j]));
-        if (r.hung || p == 0)
+        if (r.attached || p == 0)
             joints_.push_back(std::move(part));
         else
             joints_.back().stiffness += part.stiffness;

@@ -18,7 +18,7 @@ EngineTurn::EngineTurn(yade::Scene& scene, const yade::Engine& engine)
             store_->opened();
         }
     } catch (...) {
-        StepGate::instance().leave(true);
+        StepGate::instance().exit(true);
         throw;
     }
 }
@@ -29,14 +29,14 @@ EngineTurn::EngineTurn(yade::Scene& scene) : errors_(std::uncaught_exceptions())
         store_ = &SceneStore::of(scene);
         store_->update(SceneStore::Look::InStep);
     } catch (...) {
-        StepGate::instance().leave(true);
+        StepGate::instance().exit(true);
         throw;
     }
 }
 
 EngineTurn::~EngineTurn() {
     const bool failed = std::uncaught_exceptions() > errors_;
-    StepGate::instance().leave(failed || (engine_ && store_->last == engine_));
+    StepGate::instance().exit(failed || (engine_ && store_->last == engine_));
 }
 
 } // namespace masonry

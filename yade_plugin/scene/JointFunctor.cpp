@@ -3,7 +3,7 @@
 
 namespace masonry {
 
-std::atomic<StrayedJoint> strayed;
+std::atomic<MismatchedJoint> mismatched;
 
 std::map<std::string, std::string>& functorsOfLaws() {
     static std::map<std::string, std::string> all;
@@ -17,22 +17,22 @@ void advanceJoint(yade::Scene& scene, JointGeometry& geom, JointPhysics& phys, c
     if (!geom.made() || !geom.step || geom.points() != phys.points()) return;
     const auto& properties = phys.law().properties();
     if (!properties.elastic && properties.law != law) {
-        strayed.store({interaction.id1, interaction.id2});
+        mismatched.store({interaction.id1, interaction.id2});
         return;
     }
     auto& step = *geom.step;
     const auto& r = geom.reference();
-    const bool hung = r.hung != nullptr;
+    const bool attached = r.attached != nullptr;
     Vector3r force = Vector3r::Zero(), torque = Vector3r::Zero(), moment = Vector3r::Zero();
     for (int p = 0; p < phys.points(); ++p) {
         const auto& by = step.increments[p];
-        phys.home->columns->advanceOne(p, phys.index, {by[0], {by[1], by[2]}});
+        phys.group->columns->advanceOne(p, phys.index, {by[0], {by[1], by[2]}});
         const auto s = phys.state(p);
         // Tension is positive, so a joint in tension pulls body 1 along the normal.
         const Vector3r pull = Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) * geom.area(p);
         force += pull;
         torque += step.arms[p].cross(pull);
-        if (hung) { // gatherFromFunctors() brings these forces to the nodes
+        if (attached) { // gatherFromFunctors() brings these forces to the nodes
             step.forces[p] = step.axes * pull;
             moment += geom.jump(p).cross(pull);
         }
@@ -52,7 +52,7 @@ void advanceJoint(yade::Scene& scene, JointGeometry& geom, JointPhysics& phys, c
         forces.addForce(interaction.id2, -force);
         // The arms lead from body 1, so those of body 2 are shorter by `between`. If body 1 is deformable, the arms
         // lead from body 2 already.
-        const Vector3r onBody2 = hung ? Vector3r(step.moment - torque) : Vector3r(step.between.cross(force) - torque);
+        const Vector3r onBody2 = attached ? Vector3r(step.moment - torque) : Vector3r(step.between.cross(force) - torque);
         forces.addTorque(interaction.id2, onBody2);
     }
 }
@@ -67,11 +67,11 @@ void gatherFromFunctors(const std::vector<JointView>& joints, Zones& zones) {
     for (const auto& joint : joints) {
         const auto& geom = *joint.geom;
         const auto& r = geom.reference();
-        if (!r.hung || r.hung->zones.get() != &zones || !geom.step) continue;
+        if (!r.attached || r.attached->zones.get() != &zones || !geom.step) continue;
         for (int p = 0; p < geom.points(); ++p) {
             const Vector3r force = geom.step->forces[p];
-            if (!r.rigid(0)) hang(r.hung->sides[0][p], force);
-            if (!r.rigid(1)) hang(r.hung->sides[1][p], -force);
+            if (!r.rigid(0)) hang(r.attached->sides[0][p], force);
+            if (!r.rigid(1)) hang(r.attached->sides[1][p], -force);
         }
         for (const auto& side : r.sides)
             if (const auto* unit = zones.unitOf(side.body))

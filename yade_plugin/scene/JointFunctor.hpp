@@ -10,13 +10,13 @@ namespace masonry {
 
 // Bodies of a joint that a functor of another law was called for. The loop is parallel, where an exception would end
 // the program: SceneStore::check() reports it.
-struct StrayedJoint {
+struct MismatchedJoint {
     int body1 = -1, body2 = -1;
 };
-extern std::atomic<StrayedJoint> strayed;
+extern std::atomic<MismatchedJoint> mismatched;
 
 // Advances a joint by its jumps and brings its forces to both blocks. A joint that has strength and whose law is not
-// `law`, that of the functor, is left out and noted in `strayed`.
+// `law`, that of the functor, is left out and noted in `mismatched`.
 void advanceJoint(yade::Scene&, JointGeometry&, JointPhysics&, const yade::Interaction&, const char* law);
 
 // The name of the functor class of every law, by the name of the law. The functors enter themselves when the module is

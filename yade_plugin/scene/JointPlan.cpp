@@ -75,13 +75,13 @@ bool JointPlan::liesInPlane(const SceneStore& store) const {
 void JointPlan::dropStressOutOfPlane(SceneStore& store) {
     for (const auto& joint : store.joints)
         for (int p = 0; p < joint.geom->points(); ++p)
-            joint.phys->home->columns->dropShearStressB(p, joint.phys->index);
+            joint.phys->group->columns->dropShearStressB(p, joint.phys->index);
 }
 
 void JointPlan::build(SceneStore& store, bool mayBePlane) {
     zones_ = nullptr;
     for (const auto& kind : store.kinds)
-        if (kind.hung) zones_ = kind.shapes->joints[0].hung->zones.get();
+        if (kind.attached) zones_ = kind.shapes->joints[0].attached->zones.get();
     if (zones_) {
         zones_->units();
         zones_->dropDependentRows();
@@ -105,11 +105,11 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
         kinds_[k].first = joints;
         kinds_[k].firstPoint = points;
         joints += stride;
-        if (kind.hung) points += stride * kind.shapes->points;
+        if (kind.attached) points += stride * kind.shapes->points;
         for (int from = 0; from < int(kind.shapes->joints.size()); from += most)
             batches_.push_back({int(k), from});
         buildKind(store, kind, kinds_[k], atBodies);
-        if (kind.hung) buildPlaces(kind, kinds_[k], atPlaces, known);
+        if (kind.attached) buildPlaces(kind, kinds_[k], atPlaces, known);
     }
     referenceY_.assign(count, 0);
     momentPlace_.assign(count, -1);
@@ -199,8 +199,8 @@ void JointPlan::buildPlaces(const JointKind& kind, Kind& made, std::vector<std::
     made.place1.assign(std::size_t(stride) * points, 0);
     made.place2 = made.place1;
     const auto placeOf = [&](const JointReference& r, int side, const Vector3r& reference, int p) {
-        const auto& hung = r.hung->sides[side];
-        if (hung.empty()) {
+        const auto& attached = r.attached->sides[side];
+        if (attached.empty()) {
             const auto& from = r.sides[side];
             const Vector3r local = from.orientation.conjugate() * (reference - from.position);
             const bool newRows = onBodies_.size() % lanes == 0;
@@ -208,7 +208,7 @@ void JointPlan::buildPlaces(const JointKind& kind, Kind& made, std::vector<std::
             onBodies_.push_back({place, from.body, reference, local});
             return place;
         }
-        const auto& a = hung[p];
+        const auto& a = attached[p];
         if (a.weights[0] == 1) return zones_->placeOf(a.nodes[0]);
         const int lane = zones_->placeOf(a.nodes[0]) % lanes; // that of the unit
         std::array<double, 6> key;
@@ -309,7 +309,7 @@ double JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const K
     for (int d = 0; d < 3; ++d)
         span[d] = &plan.span[d][own];
     const int *body1 = &plan.body1[from], *body2 = &plan.body2[from];
-    if (kind.hung)
+    if (kind.attached)
         (plane_ ? alignNodalInPlane : alignNodal)(n, body1, body2, turn, frame1, frame2, frames);
     else
         (plane_ ? alignRigidInPlane : alignRigid)(n, body1, body2, position, turn, frame1, frame2, span, frames);
@@ -323,12 +323,12 @@ double JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const K
     double sumA[most], sumB[most], taken = 0; // shear stresses of law and damping; the energy that damping takes
     for (int p = 0; p < shapes.points; ++p) {
         const std::size_t i = shapes.at(p, from), shape = shapes.alike ? shapes.shape(p, 0) : i;
-        const std::size_t hung = std::size_t(p) * stride + from;
+        const std::size_t attached = std::size_t(p) * stride + from;
         const double *area = &shapes.area[shape], *a0 = &shapes.offset[0][shape], *a1 = &shapes.offset[1][shape],
                      *a2 = &shapes.offset[2][shape];
         double *j0 = &shapes.jump[0][i], *j1 = &shapes.jump[1][i], *j2 = &shapes.jump[2][i];
-        if (kind.hung) {
-            const int *place1 = &plan.place1[hung], *place2 = &plan.place2[hung];
+        if (kind.attached) {
+            const int *place1 = &plan.place1[attached], *place2 = &plan.place2[attached];
             const double* u = zones_->displacementRows();
             plane_ ? jumpNodalInPlane(n, place1, place2, u, j0, j1, frames)
                    : jumpNodal(n, place1, place2, u, j0, j1, j2, frames);
@@ -348,15 +348,15 @@ double JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const K
             taken += addJointDamping(n, damping, states.regime(p, from), states.tensionDamage(p, from), area, change,
                                      frames.normalStress, sumA, sumB, viscous);
         }
-        if (kind.hung) {
-            double* onPoints = &onPoints_[(plane_ ? 2 : 3) * (plan.firstPoint + hung)];
+        if (kind.attached) {
+            double* onPoints = &onPoints_[(plane_ ? 2 : 3) * (plan.firstPoint + attached)];
             plane_ ? pullNodalInPlane(n, area, normal, a, j0, j1, frames, onPoints)
                    : pullNodal(n, area, normal, a, b, j0, j1, j2, frames, onPoints);
         } else
             plane_ ? pullRigidInPlane(n, area, normal, a, a0, a1, frames) : pullRigid(n, area, normal, a, b, frames);
     }
     double* onJoints = &onJoints_[std::size_t(plane_ ? 4 : 9) * (plan.first + from)];
-    if (kind.hung)
+    if (kind.attached)
         (plane_ ? finishNodalInPlane : finishNodal)(n, frames, onJoints);
     else
         (plane_ ? finishRigidInPlane : finishRigid)(n, frames, onJoints);

@@ -14,19 +14,19 @@ void JointGeometry::define(const FaceContact& face, const Vector3r& along, int c
     r.sides[0] = {body1, state1.pos, state1.ori};
     r.sides[1] = {body2, state2.pos, state2.ori};
     const auto cells = subdivide(r.polygon, r.normal, r.tangent, columns, rows);
-    home.reset(new JointShapes(1, int(cells.size())));
+    group.reset(new JointShapes(1, int(cells.size())));
     index = 0;
     for (std::size_t p = 0; p < cells.size(); ++p)
-        home->setShape(int(p), 0, r.axes().transpose() * (cells[p].centre - r.sides[0].position), cells[p].area);
-    home->joints[0] = r;
+        group->setShape(int(p), 0, r.axes().transpose() * (cells[p].centre - r.sides[0].position), cells[p].area);
+    group->joints[0] = r;
 }
 
 void JointGeometry::attach(const shared_ptr<Zones>& all) {
-    auto& r = home->joints[index];
+    auto& r = group->joints[index];
     const Zones::Unit* units[2] = {all->unitOf(r.sides[0].body), all->unitOf(r.sides[1].body)};
     if (!units[0] && !units[1]) return;
-    r.hung = std::make_shared<JointReference::Hung>();
-    r.hung->zones = all;
+    r.attached = std::make_shared<JointReference::Attached>();
+    r.attached->zones = all;
     std::optional<Zones::Covered> covers[2];
     for (int side = 0; side < 2; ++side)
         if (units[side]) covers[side] = all->cover(*units[side], r.polygon, r.normal, r.tangent);
@@ -48,13 +48,13 @@ void JointGeometry::attach(const shared_ptr<Zones>& all) {
         moved->joints[0] = r;
         for (std::size_t p = 0; p < points.size(); ++p)
             moved->setShape(int(p), 0, r.axes().transpose() * (points[p].centre - r.sides[0].position), points[p].area);
-        home = moved;
+        group = moved;
         index = 0;
     }
-    auto& hung = *home->joints[index].hung;
+    auto& attached = *group->joints[index].attached;
     for (int side = 0; side < 2; ++side)
-        for (int p = 0; units[side] && p < home->points; ++p)
-            hung.sides[side].push_back(all->attach(*units[side], centre(p)));
+        for (int p = 0; units[side] && p < group->points; ++p)
+            attached.sides[side].push_back(all->attach(*units[side], centre(p)));
 }
 
 std::vector<Polygon> JointGeometry::cells() const {
@@ -78,7 +78,7 @@ void JointGeometry::follow(const yade::State& state1, const yade::State& state2)
     step->increments.resize(points());
     step->arms.resize(points());
     const auto& r = reference();
-    if (r.hung) return followDeformable(state1, state2);
+    if (r.attached) return followDeformable(state1, state2);
     const Quaternionr by1 = state1.ori * r.frame(0);
     Quaternionr by2 = state2.ori * r.frame(1);
     if (by1.dot(by2) < 0) by2.coeffs() *= -1; // a quaternion and its negative are the same rotation
@@ -96,7 +96,7 @@ void JointGeometry::follow(const yade::State& state1, const yade::State& state2)
     for (int p = 0; p < points(); ++p) {
         const Vector3r a = offset(p), now = common + twist.cross(a);
         step->increments[p] = now - jump(p);
-        home->setJump(p, index, now);
+        group->setJump(p, index, now);
         step->arms[p] = shrink * a + v.dot(a) * twice + 0.5 * common; // half^T a + jump / 2
     }
 }
@@ -113,17 +113,17 @@ void JointGeometry::followDeformable(const yade::State& state1, const yade::Stat
     step->forces.resize(points());
     const yade::State* states[2] = {&state1, &state2};
     const auto displacement = [&](int side, int p, const Vector3r& place) {
-        if (!r.rigid(side)) return r.hung->zones->displacementAt(r.hung->sides[side][p]);
+        if (!r.rigid(side)) return r.attached->zones->displacementAt(r.attached->sides[side][p]);
         const auto& from = r.sides[side];
         const auto& s = *states[side];
         return Vector3r(s.pos + s.ori * (from.orientation.conjugate() * (place - from.position)) - place);
     };
-    r.hung->zones->units();
+    r.attached->zones->units();
     for (int p = 0; p < points(); ++p) {
         const Vector3r place = centre(p), u1 = displacement(0, p, place), u2 = displacement(1, p, place);
         const Vector3r gap = u2 - u1, now = step->axes.transpose() * gap;
         step->increments[p] = now - jump(p);
-        home->setJump(p, index, now);
+        group->setJump(p, index, now);
         // From the centre of the rigid body, if there is one.
         const Vector3r arm = r.rigid(0) ? Vector3r(place + u1 - state1.pos) : Vector3r(place + u2 - state2.pos);
         step->arms[p] = step->axes.transpose() * arm;

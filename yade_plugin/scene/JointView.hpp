@@ -1,6 +1,6 @@
 // A joint as the engines see it: its geometry and its state, each a view of the columns in which they live.
 #pragma once
-#include "JointHome.hpp"
+#include "JointGroup.hpp"
 
 namespace masonry {
 
@@ -17,20 +17,20 @@ public:
     void attach(const shared_ptr<Zones>&);
 
     // Whether the joint was made by define() or loaded from a file.
-    bool made() const { return home != nullptr; }
-    const JointReference& reference() const { return home->joints[index]; }
-    int points() const { return home ? home->points : 0; }
-    double area(int point) const { return home->areaAt(point, index); }
-    Vector3r jump(int point) const { return home->jumpAt(point, index); }
-    Vector3r offset(int point) const { return home->offsetAt(point, index); }
+    bool made() const { return group != nullptr; }
+    const JointReference& reference() const { return group->joints[index]; }
+    int points() const { return group ? group->points : 0; }
+    double area(int point) const { return group->areaAt(point, index); }
+    Vector3r jump(int point) const { return group->jumpAt(point, index); }
+    Vector3r offset(int point) const { return group->offsetAt(point, index); }
     // Point of a subcontact in the reference state, global axes [m].
     Vector3r centre(int point) const { return reference().sides[0].position + reference().axes() * offset(point); }
     // A polygon around every subcontact in the reference state, for pictures: the part of the joint that is nearest to
     // its point. Its area is not that of the subcontact.
     std::vector<Polygon> cells() const;
 
-    shared_ptr<JointShapes> home; // null until define() or loading; SceneStore replaces it
-    int index = 0;                // number of the joint in its home
+    shared_ptr<JointShapes> group; // null until define() or loading; SceneStore replaces it
+    int index = 0;                // number of the joint in its group
 
     // Scratch of one step of this joint alone, for the functors. follow() fills it from the places of the blocks; the
     // law's functor reads it, and adds moment and forces for the zones.
@@ -53,27 +53,27 @@ private:
 // The state of a joint. The host's IPhys of a joint derives from it.
 class JointPhysics {
 public:
-    // Gives the joint a home of its own, in which nothing has happened.
+    // Gives the joint a group of its own, in which nothing has happened.
     void define(const shared_ptr<PropertySet>& kind, const ElasticStiffness& k, int points) {
-        home.reset(new JointStates(kind, k, 1, points));
+        group.reset(new JointStates(kind, k, 1, points));
         index = 0;
     }
 
-    bool made() const { return home != nullptr; }
-    int points() const { return home ? home->columns->points() : 0; }
-    const Law& law() const { return home->columns->law(); }
-    const ElasticStiffness& stiffness() const { return home->columns->stiffness(); }
+    bool made() const { return group != nullptr; }
+    int points() const { return group ? group->columns->points() : 0; }
+    const Law& law() const { return group->columns->law(); }
+    const ElasticStiffness& stiffness() const { return group->columns->stiffness(); }
     // What every law knows of a subcontact; `shown` gives what files show of it beside that, zero if its law does not.
-    JointState state(int point) const { return home->columns->state(point, index); }
-    double shown(int point, const JointField& field) const { return home->columns->shown(point, index, field); }
+    JointState state(int point) const { return group->columns->state(point, index); }
+    double shown(int point, const JointField& field) const { return group->columns->shown(point, index, field); }
     // Energies dissipated so far by mode [J/m²].
-    Energies lost(int point) const { return home->columns->dissipated(point, index); }
+    Energies lost(int point) const { return group->columns->dissipated(point, index); }
 
     // The property set, which the joint shares with others of its kind.
-    const shared_ptr<PropertySet>& propertySet() const { return home->joints[index]; }
+    const shared_ptr<PropertySet>& propertySet() const { return group->joints[index]; }
 
-    shared_ptr<JointStates> home; // null until define() or loading; SceneStore replaces it
-    int index = 0;                // number of the joint in its home
+    shared_ptr<JointStates> group; // null until define() or loading; SceneStore replaces it
+    int index = 0;                // number of the joint in its group
 };
 
 // A joint of a scene, with the objects by which the host holds it.

@@ -135,8 +135,8 @@ void checkScene(const SceneStore& store) {
                 lost = true;
             }
         if (lost) continue;
-        const auto& hung = geom->reference().hung;
-        const Zones* own = hung ? hung->zones.get() : nullptr;
+        const auto& attached = geom->reference().attached;
+        const Zones* own = attached ? attached->zones.get() : nullptr;
         if (own && std::find(zones.begin(), zones.end(), own) == zones.end())
             fail("needs its MasonryZones in O.engines, and not dead");
         for (int id : {interaction.id1, interaction.id2})
@@ -144,7 +144,7 @@ void checkScene(const SceneStore& store) {
                 fail("was made before MasonryZones had body " + std::to_string(id) +
                      ": give the zones to masonry.engines(), then connect()");
     }
-    for (int id : store.strangers())
+    for (int id : store.unjoinedBlocks())
         wrong.push_back("body " + std::to_string(id) +
                         " was added after connect() and has no joint, so nothing would hold it: build all blocks "
                         "first, then call connect()");
@@ -162,8 +162,8 @@ void checkBeforeStep(SceneStore& store) {
         throw std::invalid_argument(
             "O.periodic: joints do not reach across a periodic cell, nor does a cell strain blocks; "
             "set it to False");
-    if (strayed.load().body1 >= 0) {
-        const auto joint = strayed.exchange({});
+    if (mismatched.load().body1 >= 0) {
+        const auto joint = mismatched.exchange({});
         std::vector<std::string> needs;
         for (const auto& [law, functor] : functorsOfLaws())
             needs.push_back("law \"" + law + "\" needs " + functor);

@@ -86,12 +86,12 @@ void transferJoints(const SceneStore& store, Transfer& to) {
     for (const auto& joint : store.joints)
         for (int p = 0; p < joint.geom->points(); ++p) {
             const Vector3r jump = joint.geom->jump(p);
-            const Vector3r viscous = joint.geom->home->viscousAt(p, joint.geom->index);
+            const Vector3r viscous = joint.geom->group->viscousAt(p, joint.geom->index);
             const auto lost = joint.phys->lost(p);
             add(jump[0], jump[1], jump[2]);
             add(viscous[0], viscous[1], viscous[2]);
             add(lost.tension, lost.shear, lost.compression);
-            joint.phys->home->columns->read(p, joint.phys->index,
+            joint.phys->group->columns->read(p, joint.phys->index,
                                             [&](const char*, double number) { records.push_back(number); });
         }
     to.several("joints", records.data(), records.size());
@@ -99,9 +99,9 @@ void transferJoints(const SceneStore& store, Transfer& to) {
     const double* next = records.data();
     for (const auto& joint : store.joints)
         for (int p = 0; p < joint.geom->points(); ++p) {
-            auto& columns = *joint.phys->home->columns;
-            joint.geom->home->setJump(p, joint.geom->index, {next[0], next[1], next[2]});
-            joint.geom->home->setViscous(p, joint.geom->index, {next[3], next[4], next[5]});
+            auto& columns = *joint.phys->group->columns;
+            joint.geom->group->setJump(p, joint.geom->index, {next[0], next[1], next[2]});
+            joint.geom->group->setViscous(p, joint.geom->index, {next[3], next[4], next[5]});
             const Energies lost{next[6], next[7], next[8]};
             next += 9;
             columns.write(p, joint.phys->index, [&](const char*, double& number) { number = *next++; });
@@ -179,8 +179,8 @@ Checkpoint captured(yade::Scene& scene) {
                joint.phys->stiffness().normal, joint.phys->stiffness().shear);
         for (int p = 0; p < joint.geom->points(); ++p)
             joints(joint.geom->offset(p), joint.geom->area(p));
-        for (int side = 0; side < 2 && r.hung; ++side)
-            for (const auto& attachment : r.hung->sides[side])
+        for (int side = 0; side < 2 && r.attached; ++side)
+            for (const auto& attachment : r.attached->sides[side])
                 joints(attachment);
     }
     made.texts["blocks"] = blocks.text();

@@ -157,7 +157,7 @@ void SceneStore::update(Look look) {
     seenInteractions_ = scene_.interactions->currSize;
 }
 
-// Moves all joints into common homes, one for each kind. Within a kind they keep the order of the host's container.
+// Moves all joints into common groups, one for each kind. Within a kind they keep the order of the host's container.
 void SceneStore::readJoints() {
     struct Group {
         ElasticStiffness k;
@@ -184,12 +184,12 @@ void SceneStore::readJoints() {
             broken = broken || geom || phys;
             continue;
         }
-        const auto& hung = geom->reference().hung;
-        if (hung && zonesOfJoints && zonesOfJoints != hung->zones.get())
+        const auto& attached = geom->reference().attached;
+        if (attached && zonesOfJoints && zonesOfJoints != attached->zones.get())
             throw std::invalid_argument("the joints of a scene can belong to one MasonryZones only");
-        if (hung) zonesOfJoints = hung->zones.get();
+        if (attached) zonesOfJoints = attached->zones.get();
         const auto& k = phys->stiffness();
-        auto& alike = byStiffness[{setNumber(phys->propertySet().get()), geom->points(), hung != nullptr}];
+        auto& alike = byStiffness[{setNumber(phys->propertySet().get()), geom->points(), attached != nullptr}];
         auto at = alike.lower_bound(k.normal * (1 - 2e-12));
         const auto fits = [&](std::size_t group) {
             return sameButRoundOff(groups[group].k.normal, k.normal, k.normal) &&
@@ -211,25 +211,25 @@ void SceneStore::readJoints() {
         const int count = int(group.members.size()), points = first.geom->points();
         JointKind kind{shared_ptr<JointShapes>(new JointShapes(count, points)),
                        shared_ptr<JointStates>(new JointStates(first.phys->propertySet(), group.k, count, points)),
-                       first.geom->reference().hung != nullptr};
+                       first.geom->reference().attached != nullptr};
         kind.states->shapes = kind.shapes;
-        for (Home* home : {static_cast<Home*>(kind.shapes.get()), static_cast<Home*>(kind.states.get())}) {
-            home->scene = life_;
-            home->inScene = true;
+        for (JointGroup* group : {static_cast<JointGroup*>(kind.shapes.get()), static_cast<JointGroup*>(kind.states.get())}) {
+            group->scene = life_;
+            group->inScene = true;
         }
         for (int j = 0; j < count; ++j) {
             const auto& joint = found[group.members[j]];
-            kind.shapes->take(j, *joint.geom->home, joint.geom->index);
-            kind.states->take(j, *joint.phys->home, joint.phys->index);
-            joint.geom->home = kind.shapes;
-            joint.phys->home = kind.states;
+            kind.shapes->take(j, *joint.geom->group, joint.geom->index);
+            kind.states->take(j, *joint.phys->group, joint.phys->index);
+            joint.geom->group = kind.shapes;
+            joint.phys->group = kind.states;
             joint.geom->index = joint.phys->index = j;
         }
         kind.shapes->shareShapes();
         made.push_back(kind);
     }
-    // A view that still has one of the old homes belongs to a joint that was taken out of the scene, or to one of which
-    // only one half is left. If there is one of the latter, the old homes stay readable, and checkScene() reports it.
+    // A view that still has one of the old groups belongs to a joint that was taken out of the scene, or to one of which
+    // only one half is left. If there is one of the latter, the old groups stay readable, and checkScene() reports it.
     for (auto& kind : kinds)
         kind.shapes->left = kind.states->left = !broken;
     kinds = std::move(made);
@@ -248,7 +248,7 @@ Collapse SceneStore::findCollapse(const CollapseLimits& limits) {
     return collapse_.look(scene_, bodies, kinds, revision_, limits);
 }
 
-std::vector<int> SceneStore::strangers() const {
+std::vector<int> SceneStore::unjoinedBlocks() const {
     std::vector<int> all;
     if (connected_.empty()) return all;
     std::vector<bool> joined(scene_.bodies->body.size(), false);

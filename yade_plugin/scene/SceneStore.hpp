@@ -30,10 +30,10 @@ public:
         AtJoints, // at joints only
     };
     // Reads again what has changed since the last time. Throws std::invalid_argument, and leaves the joints in their
-    // homes, if the joints of the scene belong to more than one Zones.
+    // groups, if the joints of the scene belong to more than one Zones.
     void update(Look look = Look::AtAll);
     // masonry.connect() calls this when all blocks have their joints. Blocks that are added later are then reported by
-    // strangers().
+    // unjoinedBlocks().
     void connected();
     bool isConnected() const { return !connected_.empty(); }
 
@@ -73,7 +73,7 @@ public:
     long seenCollapse = -1; // step in which a collapse was last looked for
 
     // Ids of the blocks that were added after connect() and have no joint.
-    std::vector<int> strangers() const;
+    std::vector<int> unjoinedBlocks() const;
     double damping() const;          // damping constant of the integrator of rigid bodies [-]
     yade::Vector3r gravity() const;  // of the integrator of rigid bodies [m/s²]
     double massDamping() const;      // of the integrator of rigid bodies [1/s]

@@ -52,7 +52,7 @@ void StepGate::enter() {
     acting_ = inStep_ = true;
 }
 
-void StepGate::leave(bool stepDone) {
+void StepGate::exit(bool stepDone) {
     const std::lock_guard<std::mutex> held(mutex_);
     acting_ = false;
     if (stepDone) inStep_ = false;
@@ -68,7 +68,7 @@ void StepGate::lock() {
         ++waiting_;
         wait(held, [&] {
             if (depth_ > 0 || acting_) return false;
-            // A step that failed may never have called leave(), so it is not waited for once the run has ended.
+            // A step that failed may never have called exit(), so it is not waited for once the run has ended.
             return !inStep_ || stepper_ == me || !runsInBackground();
         });
         --waiting_;

@@ -15,7 +15,7 @@ public:
     // To be called at the beginning and at the end of an engine's action. `stepDone`: the last of this plugin's engines
     // in the step has ended, or the step has failed.
     void enter();
-    void leave(bool stepDone);
+    void exit(bool stepDone);
 
     // To be called before and after attributes are read or changed. May be nested in one thread. The thread that makes
     // the step may also call them within the step, as the Python code of a PyRunner does.

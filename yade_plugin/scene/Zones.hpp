@@ -3,7 +3,7 @@
 #pragma once
 #include "BodyColumns.hpp"
 #include "GravityWork.hpp"
-#include "JointHome.hpp"
+#include "JointGroup.hpp"
 #include "blocks/BlockElasticity.hpp"
 #include "blocks/JointPoints.hpp"
 #include "motion/EnergyLedger.hpp"

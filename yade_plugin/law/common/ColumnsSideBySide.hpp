@@ -122,7 +122,7 @@ void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const d
     bool yielded = false;
     for (int n = 0; n < count; n += lanes)
         yielded |= hasYielded(point, from + n);
-    Mask waits[most];
+    Mask pending[most];
     if (yielded) {
         int busy = 0; // how many yielded in the last step
         for (int n = 0; n < count; ++n)
@@ -130,21 +130,21 @@ void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const d
         for (int n = 0; n < count; n += lanes)
             yieldFrom(point, from + n);
         if (4 * busy > 3 * count) { // nearly all need the whole law again: looking for the others costs more
-            std::fill_n(waits, count, 1);
+            std::fill_n(pending, count, 1);
             advanceSideBySide(equations_, law_->tension(), law_->shear(), columns_.from(first), &rows_[first], regime,
-                              jumps, waits, count, normalStress);
+                              jumps, pending, count, normalStress);
             return;
         }
     }
     std::fill_n(regime, count, Regime::Elastic);
     const Mask left =
-        stayElastic(equations_, yielded ? nullptr : &neverYielded_, columns_, first, count, jumps, normalStress, waits);
+        stayElastic(equations_, yielded ? nullptr : &neverYielded_, columns_, first, count, jumps, normalStress, pending);
     if (left == 0) return;
 
     int waiting[most]; // the subcontacts that need the whole law
     int many = 0;
     for (int n = 0; n < count; ++n)
-        if (waits[n]) waiting[many++] = n;
+        if (pending[n]) waiting[many++] = n;
     if (many < LawType::fewestSideBySide) {
         for (int n = 0; n < many; ++n) {
             const int i = waiting[n];
@@ -155,7 +155,7 @@ void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const d
     for (int n = 0; n < count; n += lanes)
         yieldFrom(point, from + n);
     advanceSideBySide(equations_, law_->tension(), law_->shear(), columns_.from(first), &rows_[first], regime, jumps,
-                      waits, count, normalStress);
+                      pending, count, normalStress);
 }
 
 } // namespace masonry

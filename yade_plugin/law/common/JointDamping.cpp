@@ -9,9 +9,9 @@ namespace {
 // The largest share, at most 1, of (va, vb) that can be added to (a, b) without exceeding `bound`, which (a, b) does
 // not exceed.
 double shareWithin(double bound, double a, double b, double va, double vb) {
-    const double square = va * va + vb * vb, mixed = a * va + b * vb, room = bound * bound - (a * a + b * b);
-    if (!(square + 2 * mixed > room)) return 1;
-    return std::max(0.0, (std::sqrt(mixed * mixed + square * std::max(room, 0.0)) - mixed) / square);
+    const double square = va * va + vb * vb, mixed = a * va + b * vb, available = bound * bound - (a * a + b * b);
+    if (!(square + 2 * mixed > available)) return 1;
+    return std::max(0.0, (std::sqrt(mixed * mixed + square * std::max(available, 0.0)) - mixed) / square);
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// What any joint law knows of a subcontact, and what it is told and answers in a step. Opening and tension are
+// What any joint law knows of a subcontact, and what it is given and answers in a step. Opening and tension are
 // positive.
 #pragma once
 #include "Columns.hpp"

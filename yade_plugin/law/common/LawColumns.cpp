@@ -14,8 +14,8 @@ LawColumns::LawColumns(int count, const ElasticStiffness& k, int joints, int poi
     memory_.reset(std::calloc(numbers, sizeof(double)));
     if (!memory_ && size > 0) throw std::bad_alloc();
     void* aligned = memory_.get();
-    std::size_t room = numbers * sizeof(double);
-    columns_.first = static_cast<double*>(std::align(alignof(Row), sizeof(double), aligned, room));
+    std::size_t available = numbers * sizeof(double);
+    columns_.first = static_cast<double*>(std::align(alignof(Row), sizeof(double), aligned, available));
     regime_.assign(size, Regime::Elastic);
 }
 

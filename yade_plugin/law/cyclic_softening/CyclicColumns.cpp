@@ -12,7 +12,7 @@ using Column = CyclicColumn;
 template <bool spatial, bool yielded, bool curved>
 MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicConsequences& ofAll,
                                    const Columns& columns, std::size_t at, int count, const Jumps& jumps,
-                                   double* normalStress, Mask* waits) {
+                                   double* normalStress, Mask* pending) {
     CyclicEquations e = given;
     e.curved = curved;
     const CyclicConsequences same = ofAll;
@@ -34,9 +34,9 @@ MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicCon
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
         const double bond = yielded ? intact[i] : same.intact;
-        const double weak = yielded ? secant[i] : same.secant;
+        const double tensileSecant = yielded ? secant[i] : same.secant;
         const double within = yielded ? reach[i] : same.reach;
-        const double capable = yielded ? capSquared[i] : sameCap;
+        const double squaredCap = yielded ? capSquared[i] : sameCap;
         const double plastic = yielded ? irreversible[i] : same.irreversible;
         const double shearing = yielded ? shearStiffness[i] : same.shearing;
         const double closing = yielded ? closingStiffness[i] : same.closing;
@@ -46,7 +46,7 @@ MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicCon
         const double oldB = spatial ? shearStressB[i] : 0;
         const double farthest = largestOpening[i];
         const auto moved = PiecewiseEquations::open(oldOpening, plastic, farthest, jumps.opening[i]);
-        const double sigma = e.normal(moved.elastic, weak, closing);
+        const double sigma = e.normal(moved.elastic, tensileSecant, closing);
         const double a = oldA + shearing * jumps.slideA[i];
         const double b = spatial ? oldB + shearing * jumps.slideB[i] : 0;
         const double tauSquared = a * a + b * b;
@@ -56,15 +56,15 @@ MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicCon
         const double closed = curved ? pressed / e.kn : smaller(moved.elastic, 0.0);
         const double displaced = sigma < 0 ? closed * closed + e.shearWeight * onCap * tauSquared : 0;
         // a subcontact that opens with one stiffness and closes with another loses energy
-        const bool keeps = !yielded | ((closing - weak) * moved.before * moved.elastic >= 0);
-        const bool elastic = (moved.elastic <= within) & (tauSquared <= strength * strength) & (crushing <= capable) &
+        const bool keeps = !yielded | ((closing - tensileSecant) * moved.before * moved.elastic >= 0);
+        const bool elastic = (moved.elastic <= within) & (tauSquared <= strength * strength) & (crushing <= squaredCap) &
                              (displaced <= hardening) & keeps;
         normalStress[i] = sigma;
         opening[i] = elastic ? moved.total : oldOpening;
         shearStressA[i] = elastic ? a : oldA;
         if (spatial) shearStressB[i] = elastic ? b : oldB;
         largestOpening[i] = elastic ? moved.farthest : farthest;
-        waits[i] = elastic ? 0 : 1;
+        pending[i] = elastic ? 0 : 1;
         waiting += elastic ? 0 : 1;
     }
     return waiting;
@@ -72,23 +72,23 @@ MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicCon
 
 template <bool spatial, bool yielded>
 MASONRY_INLINED Mask stayElasticOn(const CyclicEquations& e, const CyclicConsequences& ofAll, const Columns& columns,
-                                   std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* waits) {
-    return e.curved ? stayElasticAs<spatial, yielded, true>(e, ofAll, columns, at, count, jumps, normalStress, waits)
-                    : stayElasticAs<spatial, yielded, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
+                                   std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
+    return e.curved ? stayElasticAs<spatial, yielded, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
+                    : stayElasticAs<spatial, yielded, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
 }
 
 } // namespace
 
 MASONRY_VECTORISED
 Mask stayElastic(const CyclicEquations& e, const CyclicConsequences* neverYielded, const Columns& columns,
-                 std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* waits) {
+                 std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
     const bool yielded = neverYielded == nullptr;
     const CyclicConsequences ofAll = yielded ? CyclicConsequences{} : *neverYielded;
     if (jumps.plane)
-        return yielded ? stayElasticOn<false, true>(e, ofAll, columns, at, count, jumps, normalStress, waits)
-                       : stayElasticOn<false, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
-    return yielded ? stayElasticOn<true, true>(e, ofAll, columns, at, count, jumps, normalStress, waits)
-                   : stayElasticOn<true, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
+        return yielded ? stayElasticOn<false, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
+                       : stayElasticOn<false, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
+    return yielded ? stayElasticOn<true, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
+                   : stayElasticOn<true, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
 }
 
 // ---- subcontacts that need the whole law ----------------------------------------------------------------------------
@@ -98,23 +98,23 @@ namespace cyclic {
 void readTable(const SofteningTable& table, std::int32_t TableRows::*row, TableRows* rows, const int* places,
                Asked& a) {
     for (int i = 0; i < a.many; ++i)
-        if (a.asks[i]) a.found[i] = larger<double>(a.found[i], table.damage(a.at[i], a.shift[i], rows[places[i]].*row));
+        if (a.wanted[i]) a.found[i] = larger<double>(a.found[i], table.damage(a.at[i], a.shift[i], rows[places[i]].*row));
 }
 void readCurve(const CyclicEquations& e, Asked& a) {
     for (int i = 0; i < a.many; ++i)
-        if (a.asks[i]) a.found[i] = e.curve.beyondMiddle(a.at[i], e.stretch);
+        if (a.wanted[i]) a.found[i] = e.curve.beyondMiddle(a.at[i], e.stretch);
 }
 void readDecay(const CyclicEquations& e, Asked& a) {
     for (int i = 0; i < a.many; ++i)
-        if (a.asks[i]) a.found[i] = e.dilatancy(a.at[i]);
+        if (a.wanted[i]) a.found[i] = e.dilatancy(a.at[i]);
 }
 void readEnergy(const CyclicEquations& e, Asked& a) {
     for (int i = 0; i < a.many; ++i)
-        if (a.asks[i]) a.found[i] = e.storedNormal(a.at[i], a.shift[i]);
+        if (a.wanted[i]) a.found[i] = e.storedNormal(a.at[i], a.shift[i]);
 }
 
-std::vector<Way> ways() {
-    std::vector<Way> found{{"any processor", advanceOnAny}};
+std::vector<Processor> processors() {
+    std::vector<Processor> found{{"any processor", advanceOnAny}};
 #if MASONRY_VECTOR_UNITS
     if (__builtin_cpu_supports("avx2")) found.push_back({"AVX2", advanceOnAvx2});
     if (__builtin_cpu_supports("x86-64-v4")) found.push_back({"AVX-512", advanceOnAvx512});
@@ -125,10 +125,10 @@ std::vector<Way> ways() {
 } // namespace cyclic
 
 void advanceSideBySide(const CyclicEquations& e, const SofteningTable& tension, const SofteningTable& shear,
-                       const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* waits,
+                       const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* pending,
                        int count, double* normalStress) {
-    static const auto fastest = cyclic::ways().back().advance;
-    fastest({e, tension, shear, shear.lastRatio() - 1}, columns, rows, regime, jumps, waits, count, normalStress);
+    static const auto fastest = cyclic::processors().back().advance;
+    fastest({e, tension, shear, shear.lastRatio() - 1}, columns, rows, regime, jumps, pending, count, normalStress);
 }
 
 namespace {

@@ -20,7 +20,7 @@ inline double normalStress(const CyclicEquations& e, const Columns& columns, std
 inline CyclicConsequences consequences(const CyclicEquations& e, const CyclicState& s) {
     const double fc = e.cap ? e.curve.strength(s.largestClosure, e.stretch) : HUGE_VAL;
     const double intact =
-        PiecewiseEquations::intact(s.tensionDamage, s.shearDamage) * e.leftByCrushing(s.largestClosure, fc);
+        PiecewiseEquations::intact(s.tensionDamage, s.shearDamage) * e.remainingByCrushing(s.largestClosure, fc);
     const double closing = e.closingStiffness(s.largestClosure, fc);
     return {s.crushing - s.dilation,
             intact,
@@ -51,9 +51,9 @@ inline bool neverYielded(const CyclicEquations& e, const CyclicState& s) {
 
 // See piecewise_softening/PiecewiseSideBySide.hpp.
 Mask stayElastic(const CyclicEquations& equations, const CyclicConsequences* neverYielded, const Columns& columns,
-                 std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* waits);
+                 std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending);
 void advanceSideBySide(const CyclicEquations& equations, const SofteningTable& tension, const SofteningTable& shear,
-                       const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* waits,
+                       const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* pending,
                        int count, double* normalStress);
 void addEnergies(const CyclicEquations& equations, const Columns& columns, std::size_t at, int count, bool yielded,
                  const double* area, LaneSums& sums);

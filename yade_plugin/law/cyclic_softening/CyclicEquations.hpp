@@ -82,7 +82,7 @@ struct CyclicEquations : PiecewiseEquations {
     }
 
     // Share of the bond that crushing has left, with the compression damage of eq. (21).
-    template <class T> MASONRY_INLINED T leftByCrushing(const T& kappa, const T& fc) const {
+    template <class T> MASONRY_INLINED T remainingByCrushing(const T& kappa, const T& fc) const {
         return choose(kappa > peakClosure, 1 - chi * (1 - fc / curve.peak), all<T>(1));
     }
 

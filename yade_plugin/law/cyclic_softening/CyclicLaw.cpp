@@ -13,15 +13,15 @@ struct Look { // for one subcontact
     const CyclicEquations& e;
     const SofteningTable &tensionTable, &shearTable;
 
-    double tension(double damage, double ratio, double shift, bool asks) const {
-        return asks ? larger(damage, tensionTable.damage(ratio, shift)) : damage;
+    double tension(double damage, double ratio, double shift, bool wanted) const {
+        return wanted ? larger(damage, tensionTable.damage(ratio, shift)) : damage;
     }
-    double shear(double damage, double ratio, double shift, bool asks) const {
-        return asks ? larger(damage, shearTable.damage(ratio, shift)) : damage;
+    double shear(double damage, double ratio, double shift, bool wanted) const {
+        return wanted ? larger(damage, shearTable.damage(ratio, shift)) : damage;
     }
     double lastRatio() const { return shearTable.lastRatio() - 1; }
-    double strength(double fc, double kappa, bool asks) const { return asks ? e.curve.strength(kappa, e.stretch) : fc; }
-    double decay(double slip, bool asks) const { return asks ? e.dilatancy(slip) : 0; }
+    double strength(double fc, double kappa, bool wanted) const { return wanted ? e.curve.strength(kappa, e.stretch) : fc; }
+    double decay(double slip, bool wanted) const { return wanted ? e.dilatancy(slip) : 0; }
     double normalEnergy(double sigma, double w) const { return e.storedNormal(sigma, w); }
 };
 

@@ -16,7 +16,7 @@
 #include "CyclicSideBySide.hpp"
 
 void masonry::cyclic::advanceOnAvx2(const Numbers& numbers, const Columns& columns, TableRows* rows, Regime* regime,
-                                    const Jumps& jumps, const Mask* waits, int count, double* normalStress) {
-    advanceAs(numbers, columns, rows, regime, jumps, waits, count, normalStress);
+                                    const Jumps& jumps, const Mask* pending, int count, double* normalStress) {
+    advanceAs(numbers, columns, rows, regime, jumps, pending, count, normalStress);
 }
 #endif

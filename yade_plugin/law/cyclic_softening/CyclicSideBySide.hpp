@@ -17,20 +17,20 @@ struct Numbers { // of a kind of joint
 };
 
 using Advance = void(const Numbers& numbers, const Columns& columns, TableRows* rows, Regime* regime,
-                     const Jumps& jumps, const Mask* waits, int count, double* normalStress);
+                     const Jumps& jumps, const Mask* pending, int count, double* normalStress);
 Advance advanceOnAny, advanceOnAvx2, advanceOnAvx512;
 
-struct Way {
+struct Processor {
     const char* name;
     Advance* advance;
 };
-std::vector<Way> ways(); // that this processor has, the fastest one last
+std::vector<Processor> processors(); // that this processor has, the fastest one last
 
 // What is looked up one by one. The numbers stand in memory, where each can be reached.
 struct Asked {
     int many;
     alignas(64) double at[lanes], shift[lanes], found[lanes];
-    alignas(64) Mask asks[lanes];
+    alignas(64) Mask wanted[lanes];
 };
 void readTable(const SofteningTable& table, std::int32_t TableRows::*row, TableRows* rows, const int* places, Asked& a);
 void readCurve(const CyclicEquations& e, Asked& a); // beyond ucm
@@ -64,37 +64,37 @@ struct Look { // see advance() in CyclicStep.hpp
     TableRows* rows;
     const int* places; // in `rows`
 
-    MASONRY_INLINED Asked asked(const Pack& found, const Pack& at, const Pack& shift, const PackMask& asks) const {
+    MASONRY_INLINED Asked asked(const Pack& found, const Pack& at, const Pack& shift, const PackMask& wanted) const {
         Asked a;
         a.many = packed;
         store(a.at, at);
         store(a.shift, shift);
         store(a.found, found);
-        std::memcpy(a.asks, &asks, sizeof asks);
+        std::memcpy(a.wanted, &wanted, sizeof wanted);
         return a;
     }
-    MASONRY_INLINED Pack tension(const Pack& damage, const Pack& ratio, const Pack& shift, const PackMask& asks) const {
-        Asked a = asked(damage, ratio, shift, asks);
+    MASONRY_INLINED Pack tension(const Pack& damage, const Pack& ratio, const Pack& shift, const PackMask& wanted) const {
+        Asked a = asked(damage, ratio, shift, wanted);
         readTable(numbers.tension, &TableRows::tension, rows, places, a);
         return load(a.found);
     }
-    MASONRY_INLINED Pack shear(const Pack& damage, const Pack& ratio, const Pack& shift, const PackMask& asks) const {
-        Asked a = asked(damage, ratio, shift, asks);
+    MASONRY_INLINED Pack shear(const Pack& damage, const Pack& ratio, const Pack& shift, const PackMask& wanted) const {
+        Asked a = asked(damage, ratio, shift, wanted);
         readTable(numbers.shear, &TableRows::shear, rows, places, a);
         return load(a.found);
     }
     MASONRY_INLINED double lastRatio() const { return numbers.lastRatio; }
-    MASONRY_INLINED Pack strength(const Pack& fc, const Pack& kappa, const PackMask& asks) const {
+    MASONRY_INLINED Pack strength(const Pack& fc, const Pack& kappa, const PackMask& wanted) const {
         const CyclicEquations& e = numbers.equations;
-        const Pack found = choose(asks, e.curve.upToMiddle(kappa, e.stretch), fc);
-        const PackMask beyond = asks & e.curve.isBeyondMiddle(kappa, e.stretch);
+        const Pack found = choose(wanted, e.curve.upToMiddle(kappa, e.stretch), fc);
+        const PackMask beyond = wanted & e.curve.isBeyondMiddle(kappa, e.stretch);
         if (!any(beyond)) return found;
         Asked a = asked(found, kappa, kappa, beyond);
         readCurve(e, a);
         return load(a.found);
     }
-    MASONRY_INLINED Pack decay(const Pack& slip, const PackMask& asks) const {
-        Asked a = asked(Pack{}, slip, slip, asks);
+    MASONRY_INLINED Pack decay(const Pack& slip, const PackMask& wanted) const {
+        Asked a = asked(Pack{}, slip, slip, wanted);
         readDecay(numbers.equations, a);
         return load(a.found);
     }
@@ -106,13 +106,13 @@ struct Look { // see advance() in CyclicStep.hpp
 };
 
 MASONRY_INLINED void advanceAs(const Numbers& numbers, const Columns& columns, TableRows* rows, Regime* regime,
-                               const Jumps& jumps, const Mask* waits, int count, double* normalStress) {
+                               const Jumps& jumps, const Mask* pending, int count, double* normalStress) {
     const CyclicEquations e = numbers.equations;
     Places some;
     for (int from = 0;;) {
         int many = 0; // those that wait may stand scattered among others
         for (; from < count && many < packed; ++from)
-            if (waits[from]) some.at[many++] = from;
+            if (pending[from]) some.at[many++] = from;
         if (many == 0) return;
         for (int i = many; i < packed; ++i) // what is missing is the last one again, which does no harm
             some.at[i] = some.at[many - 1];

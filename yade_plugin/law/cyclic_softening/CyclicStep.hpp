@@ -23,13 +23,13 @@ template <class T> struct CyclicOutcome {
 
 // Tension damage when the bond was lost otherwise: with lumped units the rows of the table move by what the bond holds.
 template <class T, class Look, class M>
-MASONRY_INLINED T tornAgain(const CyclicEquations& e, const Look& look, const CyclicPoint<T>& s, const T& crushLeft,
+MASONRY_INLINED T tornAgain(const CyclicEquations& e, const Look& look, const CyclicPoint<T>& s, const T& crushRemaining,
                             const M& weaker) {
     if (!(e.normalShift > 0)) return s.tensionDamage;
-    const auto asks = weaker & (s.largestOpening > 0) & (s.tensionDamage < 1);
-    if (!any(asks)) return s.tensionDamage;
-    const T shift = (1 - s.shearDamage) * crushLeft * e.normalShift;
-    return look.tension(s.tensionDamage, s.largestOpening * (e.ownKn / e.ft), shift, asks);
+    const auto wanted = weaker & (s.largestOpening > 0) & (s.tensionDamage < 1);
+    if (!any(wanted)) return s.tensionDamage;
+    const T shift = (1 - s.shearDamage) * crushRemaining * e.normalShift;
+    return look.tension(s.tensionDamage, s.largestOpening * (e.ownKn / e.ft), shift, wanted);
 }
 
 // Dilatancy of the subcontacts that slip, from the shear stress `stress` along the trial stress to their strength.
@@ -80,7 +80,7 @@ MASONRY_INLINED void dilate(const CyclicEquations& e, const Look& look, CyclicPo
 }
 
 // One step, in the order of README.md. `look` has these functions, which read tables and curves for those subcontacts
-// that the mask `asks` marks:
+// that the mask `wanted` marks:
 //   tension, shear(damage, ratio, shift, asks)  the damage of the table, or `damage` if that is larger or not asked
 //   strength(fc, kappa, asks)                   the cap's strength at kappa, or `fc` if not asked
 //   decay(slip, asks)                           the dilatancy that is left at a slip
@@ -99,7 +99,7 @@ MASONRY_INLINED CyclicOutcome<T> advance(const CyclicEquations& e, Look&& look, 
     T w = s.opening + (s.crushing - s.dilation);
     const auto open = w > 0;
     const auto tears = w > s.largestOpening;
-    const T crushLeft = e.leftByCrushing(s.largestClosure, s.strength);
+    const T crushRemaining = e.remainingByCrushing(s.largestClosure, s.strength);
     const auto weakens = [&](const T& byCrushing) { // what follows from damage of the bond
         s.left = PiecewiseEquations::intact(s.tensionDamage, s.shearDamage) * byCrushing;
         s.secant = e.opened<T>(s.left, s.largestOpening, s.closing);
@@ -107,11 +107,11 @@ MASONRY_INLINED CyclicOutcome<T> advance(const CyclicEquations& e, Look&& look, 
     };
     if (any(tears)) {
         s.largestOpening = choose(tears, w, s.largestOpening);
-        const T shift = (1 - s.shearDamage) * crushLeft * e.normalShift;
+        const T shift = (1 - s.shearDamage) * crushRemaining * e.normalShift;
         const T damage = look.tension(s.tensionDamage, w * (e.ownKn / e.ft), shift, tears & (s.tensionDamage < 1));
         out.regime = choose(damage > s.tensionDamage, all<T>(double(Regime::Opening)), out.regime);
         s.tensionDamage = damage;
-        weakens(crushLeft);
+        weakens(crushRemaining);
     }
     T sigma = e.normal<T>(w, s.secant, s.closing);
 
@@ -131,7 +131,7 @@ MASONRY_INLINED CyclicOutcome<T> advance(const CyclicEquations& e, Look&& look, 
         const T peak = e.peakStrength(sigma);
         T shift{};
         if (e.shearShift > 0)
-            shift = (1 - s.tensionDamage) * crushLeft * (1 - e.restOfPeak(peak, sigma, w)) * e.shearShift;
+            shift = (1 - s.tensionDamage) * crushRemaining * (1 - e.restOfPeak(peak, sigma, w)) * e.shearShift;
         const T advance = (size - tauStrength) * e.ownKs / (s.shearing * peak);
         const T reading = 1 + s.shearSoftening + advance + shift * (1 - s.shearDamage); // with rows that are moved
         const T damage = look.shear(s.shearDamage, reading, shift, slides & (s.shearDamage < 1));
@@ -141,8 +141,8 @@ MASONRY_INLINED CyclicOutcome<T> advance(const CyclicEquations& e, Look&& look, 
         const auto weaker = damage > s.shearDamage;
         if (any(weaker)) {
             s.shearDamage = damage;
-            s.tensionDamage = tornAgain(e, look, s, crushLeft, weaker);
-            weakens(crushLeft);
+            s.tensionDamage = tornAgain(e, look, s, crushRemaining, weaker);
+            weakens(crushRemaining);
             sigma = choose(open & weaker, e.normal<T>(w, s.secant, s.closing), sigma);
             tauStrength = e.slipStrength<T>(s.left, sigma, w);
         }
@@ -203,9 +203,9 @@ MASONRY_INLINED CyclicOutcome<T> advance(const CyclicEquations& e, Look&& look, 
             out.crushed = true;
         }
         if (out.crushed) { // crushing takes bond and pressure, and with them strength of slip
-            const T leftNow = e.leftByCrushing(s.largestClosure, s.strength);
-            s.tensionDamage = tornAgain(e, look, s, leftNow, leftNow < crushLeft);
-            weakens(leftNow);
+            const T crushRemainingNow = e.remainingByCrushing(s.largestClosure, s.strength);
+            s.tensionDamage = tornAgain(e, look, s, crushRemainingNow, crushRemainingNow < crushRemaining);
+            weakens(crushRemainingNow);
             s.hardening = e.squaredHardening(s.largestClosure, s.capDisplacement);
         }
     }

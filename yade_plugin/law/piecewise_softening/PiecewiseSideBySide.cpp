@@ -19,7 +19,7 @@ namespace {
 template <bool spatial, bool yielded, bool residual>
 MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const PiecewiseConsequences& ofAll,
                                    const Columns& columns, std::size_t at, int count, const Jumps& jumps,
-                                   double* normalStress, Mask* waits) {
+                                   double* normalStress, Mask* pending) {
     const PiecewiseEquations e = given;
     const PiecewiseConsequences same = ofAll;
     const double limit = e.curve.limit(e.stretch);
@@ -38,9 +38,9 @@ MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const Piecew
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
         const double bond = yielded ? intact[i] : same.intact;
-        const double weak = yielded ? secant[i] : same.secant;
+        const double tensileSecant = yielded ? secant[i] : same.secant;
         const double within = yielded ? reach[i] : same.reach;
-        const double capable = yielded ? capSquared[i] : same.capSquared;
+        const double squaredCap = yielded ? capSquared[i] : same.capSquared;
         const double plastic = yielded ? irreversible[i] : same.irreversible;
         const double oldOpening = opening[i];
         const double oldA = shearStressA[i];
@@ -48,7 +48,7 @@ MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const Piecew
         const double farthest = largestOpening[i];
         const double closest = largestClosure[i];
         const auto moved = e.open(oldOpening, plastic, farthest, jumps.opening[i]);
-        const double sigma = e.stiffness(moved.elastic, weak) * moved.elastic;
+        const double sigma = e.stiffness(moved.elastic, tensileSecant) * moved.elastic;
         const double a = oldA + e.ks * jumps.slideA[i];
         const double b = spatial ? oldB + e.ks * jumps.slideB[i] : 0;
         const double tauSquared = a * a + b * b;
@@ -58,8 +58,8 @@ MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const Piecew
         const double closure = sigma < 0 ? closing * moved.total : 0;
         const double hardens = closest > limit ? closest : limit;
         // a subcontact that opens with one stiffness and closes with another loses energy
-        const bool keeps = !yielded | ((e.kn - weak) * moved.before * moved.elastic >= 0);
-        const bool elastic = (moved.elastic <= within) & (tauSquared <= strength * strength) & (crushing <= capable) &
+        const bool keeps = !yielded | ((e.kn - tensileSecant) * moved.before * moved.elastic >= 0);
+        const bool elastic = (moved.elastic <= within) & (tauSquared <= strength * strength) & (crushing <= squaredCap) &
                              (closure <= hardens) & keeps;
         normalStress[i] = sigma;
         opening[i] = elastic ? moved.total : oldOpening;
@@ -67,7 +67,7 @@ MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const Piecew
         if (spatial) shearStressB[i] = elastic ? b : oldB;
         largestOpening[i] = elastic ? moved.farthest : farthest;
         largestClosure[i] = (elastic & (closure > closest)) ? closure : closest;
-        waits[i] = elastic ? 0 : 1;
+        pending[i] = elastic ? 0 : 1;
         waiting += elastic ? 0 : 1;
     }
     return waiting;
@@ -76,23 +76,23 @@ MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const Piecew
 template <bool spatial, bool yielded>
 MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& e, const PiecewiseConsequences& ofAll,
                                    const Columns& columns, std::size_t at, int count, const Jumps& jumps,
-                                   double* normalStress, Mask* waits) {
-    return e.cr > 0 ? stayElasticAs<spatial, yielded, true>(e, ofAll, columns, at, count, jumps, normalStress, waits)
-                    : stayElasticAs<spatial, yielded, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
+                                   double* normalStress, Mask* pending) {
+    return e.cr > 0 ? stayElasticAs<spatial, yielded, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
+                    : stayElasticAs<spatial, yielded, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
 }
 
 } // namespace
 
 MASONRY_VECTORISED
 Mask stayElastic(const PiecewiseEquations& e, const PiecewiseConsequences* neverYielded, const Columns& columns,
-                 std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* waits) {
+                 std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
     const bool yielded = neverYielded == nullptr;
     const PiecewiseConsequences ofAll = yielded ? PiecewiseConsequences{} : *neverYielded;
     if (jumps.plane)
-        return yielded ? stayElasticAs<false, true>(e, ofAll, columns, at, count, jumps, normalStress, waits)
-                       : stayElasticAs<false, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
-    return yielded ? stayElasticAs<true, true>(e, ofAll, columns, at, count, jumps, normalStress, waits)
-                   : stayElasticAs<true, false>(e, ofAll, columns, at, count, jumps, normalStress, waits);
+        return yielded ? stayElasticAs<false, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
+                       : stayElasticAs<false, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
+    return yielded ? stayElasticAs<true, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
+                   : stayElasticAs<true, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
 }
 
 // ---- subcontacts that may yield ------------------------------------------------------------------------------------
@@ -111,7 +111,7 @@ struct Scratch { // of subcontacts side by side, for one step
     double closest[most], fc[most];                       // [m], [Pa]
     double left[most], closure[most], crushingSlip[most]; // see PiecewiseEquations::Crushed
     double torn[most];                                    // [J/m²] lost in tension
-    Mask open[most], asks[most], regime[most];
+    Mask open[most], wanted[most], regime[most];
 };
 
 // The step of the subcontacts that wait, in the parts of PiecewiseLaw::advance. All work on the columns that begin at
@@ -122,7 +122,7 @@ struct SideBySide {
     const Columns& columns;
     TableRows* rows;
     const Jumps& jumps;
-    const Mask* waits;
+    const Mask* pending;
     int count;
 };
 
@@ -131,7 +131,7 @@ MASONRY_INLINED Mask openAll(const SideBySide& all, const SofteningTable& tensio
     const PiecewiseEquations e = all.e;
     const Columns& columns = all.columns;
     const Jumps& jumps = all.jumps;
-    const Mask* waits = all.waits;
+    const Mask* pending = all.pending;
     const int count = all.count;
     double* opening = columns[Column::Opening];
     double* shearStressA = columns[Column::ShearStressA];
@@ -153,7 +153,7 @@ MASONRY_INLINED Mask openAll(const SideBySide& all, const SofteningTable& tensio
         s.elastic[i] = moved.elastic;
         s.farthest[i] = moved.farthest;
         s.open[i] = moved.open;
-        s.asks[i] = moved.tears ? waits[i] : 0;
+        s.wanted[i] = moved.tears ? pending[i] : 0;
         s.regime[i] = Mask(Regime::Elastic);
         s.oldStiffness[i] = e.stiffness(moved.before, secant[i]);
         s.trialA[i] = a;
@@ -163,7 +163,7 @@ MASONRY_INLINED Mask openAll(const SideBySide& all, const SofteningTable& tensio
         s.secant[i] = secant[i];
         s.tensionDamage[i] = tensionDamage[i];
         s.shearDamage[i] = shearDamage[i];
-        tears |= s.asks[i];
+        tears |= s.wanted[i];
     }
     if (tears) {
         MASONRY_INDEPENDENT
@@ -173,7 +173,7 @@ MASONRY_INLINED Mask openAll(const SideBySide& all, const SofteningTable& tensio
             s.shift[i] = at.shift;
         }
         for (int i = 0; i < count; ++i) {
-            if (!s.asks[i]) continue;
+            if (!s.wanted[i]) continue;
             const double damage = tension.damage(s.ratio[i], s.shift[i], all.rows[i].tension);
             if (!(damage > s.tensionDamage[i])) continue;
             s.tensionDamage[i] = damage;
@@ -192,7 +192,7 @@ MASONRY_INLINED Mask openAll(const SideBySide& all, const SofteningTable& tensio
 MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& tension, const SofteningTable& shear,
                               Scratch& s) {
     const PiecewiseEquations e = all.e;
-    const Mask* waits = all.waits;
+    const Mask* pending = all.pending;
     const int count = all.count;
     const double* slip = all.columns[Column::Slip];
     Mask slides = 0;
@@ -200,11 +200,11 @@ MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& tensi
     for (int i = 0; i < count; ++i) {
         s.newStiffness[i] = e.stiffness(s.elastic[i], s.secant[i]);
         s.sigma[i] = s.newStiffness[i] * s.elastic[i];
-        s.asks[i] = s.size[i] > e.slipStrength(s.intact[i], s.sigma[i], s.elastic[i]) ? waits[i] : 0;
+        s.wanted[i] = s.size[i] > e.slipStrength(s.intact[i], s.sigma[i], s.elastic[i]) ? pending[i] : 0;
         s.share[i] = 1;
         s.slip[i] = 0;
         s.dilation[i] = 0;
-        slides |= s.asks[i];
+        slides |= s.wanted[i];
     }
     if (slides) {
         MASONRY_INDEPENDENT
@@ -215,7 +215,7 @@ MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& tensi
             s.dilatancy[i] = s.open[i] ? 0 : e.tanPsi;
         }
         for (int i = 0; i < count; ++i) {
-            if (!s.asks[i] || !(s.shearDamage[i] < 1)) continue;
+            if (!s.wanted[i] || !(s.shearDamage[i] < 1)) continue;
             const double damage = shear.damage(s.ratio[i], s.shift[i], all.rows[i].shear);
             if (!(damage > s.shearDamage[i])) continue;
             s.shearDamage[i] = damage;
@@ -225,7 +225,7 @@ MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& tensi
             s.tensionDamage[i] = std::max(s.tensionDamage[i], torn);
         }
         for (int i = 0; e.tanPsi > 0 && e.delta > 0 && i < count; ++i)
-            if (s.asks[i] && !s.open[i]) s.dilatancy[i] = e.dilatancy(slip[i]);
+            if (s.wanted[i] && !s.open[i]) s.dilatancy[i] = e.dilatancy(slip[i]);
         MASONRY_INDEPENDENT
         for (int i = 0; i < count; ++i) {
             s.intact[i] = PiecewiseEquations::intact(s.tensionDamage[i], s.shearDamage[i]);
@@ -246,7 +246,7 @@ MASONRY_INLINED Mask slideAll(const SideBySide& all, const SofteningTable& tensi
 MASONRY_INLINED Mask crushAll(const SideBySide& all, Scratch& s) {
     const PiecewiseEquations e = all.e;
     const Columns& columns = all.columns;
-    const Mask* waits = all.waits;
+    const Mask* pending = all.pending;
     const int count = all.count;
     const double* largestClosure = columns[Column::LargestClosure];
     Mask crushes = 0;
@@ -263,7 +263,7 @@ MASONRY_INLINED Mask crushAll(const SideBySide& all, Scratch& s) {
         s.left[i] = 1;
         s.closure[i] = 0;
         s.crushingSlip[i] = 0;
-        crushes |= (passes | ((closure > closest) & (closure > limit))) ? waits[i] : 0;
+        crushes |= (passes | ((closure > closest) & (closure > limit))) ? pending[i] : 0;
     }
     if (crushes && e.cap) {
         double* capSquared = columns[Column::CapSquared];
@@ -271,11 +271,11 @@ MASONRY_INLINED Mask crushAll(const SideBySide& all, Scratch& s) {
         MASONRY_INDEPENDENT
         for (int i = 0; i < count; ++i) {
             s.fc[i] = e.curve.upToMiddle(s.closest[i], e.stretch);
-            s.asks[i] = e.curve.isBeyondMiddle(s.closest[i], e.stretch) ? waits[i] : 0;
-            beyond |= s.asks[i];
+            s.wanted[i] = e.curve.isBeyondMiddle(s.closest[i], e.stretch) ? pending[i] : 0;
+            beyond |= s.wanted[i];
         }
         for (int i = 0; beyond && i < count; ++i)
-            if (s.asks[i]) s.fc[i] = e.curve.beyondMiddle(s.closest[i], e.stretch);
+            if (s.wanted[i]) s.fc[i] = e.curve.beyondMiddle(s.closest[i], e.stretch);
         MASONRY_INDEPENDENT
         for (int i = 0; i < count; ++i) {
             const double a = s.share[i] * s.trialA[i];
@@ -287,7 +287,7 @@ MASONRY_INLINED Mask crushAll(const SideBySide& all, Scratch& s) {
             s.closure[i] = crushed.closure;
             s.crushingSlip[i] = crushed.slip;
             s.regime[i] = crushed.crushes ? Mask(Regime::Crushing) : s.regime[i];
-            capSquared[i] = waits[i] ? s.fc[i] * s.fc[i] : old;
+            capSquared[i] = pending[i] ? s.fc[i] * s.fc[i] : old;
         }
     } else
         crushes = 0;
@@ -297,7 +297,7 @@ MASONRY_INLINED Mask crushAll(const SideBySide& all, Scratch& s) {
 // The irreversible parts of the opening; s.closure and s.dilation become what they have grown by.
 MASONRY_INLINED void keepIrreversible(const SideBySide& all, Scratch& s) {
     const Columns& columns = all.columns;
-    const Mask* waits = all.waits;
+    const Mask* pending = all.pending;
     const int count = all.count;
     double* irreversible = columns[Column::Irreversible];
     double* crushing = columns[Column::Crushing];
@@ -313,16 +313,16 @@ MASONRY_INLINED void keepIrreversible(const SideBySide& all, Scratch& s) {
         s.closure[i] = newCrushing - oldCrushing;
         s.dilation[i] = newDilation - oldDilation;
         s.elastic[i] = s.total[i] + now;
-        crushing[i] = waits[i] ? newCrushing : oldCrushing;
-        dilation[i] = waits[i] ? newDilation : oldDilation;
-        irreversible[i] = waits[i] ? now : old;
+        crushing[i] = pending[i] ? newCrushing : oldCrushing;
+        dilation[i] = pending[i] ? newDilation : oldDilation;
+        irreversible[i] = pending[i] ? now : old;
     }
 }
 
 // Slip, and what was lost in shear and compression.
 MASONRY_INLINED void keepSlip(const SideBySide& all, Scratch& s) {
     const Columns& columns = all.columns;
-    const Mask* waits = all.waits;
+    const Mask* pending = all.pending;
     const int count = all.count;
     double* slip = columns[Column::Slip];
     const double* shearStressA = columns[Column::ShearStressA];
@@ -345,16 +345,16 @@ MASONRY_INLINED void keepSlip(const SideBySide& all, Scratch& s) {
         const double newSlip = oldSlip + s.slip[i] + s.crushingSlip[i];
         const double newShear = oldShear + (slips ? inShear : 0);
         const double newCompression = oldCompression + ((slips ? inCrushing : 0) - meanNormal * s.closure[i]);
-        slip[i] = waits[i] ? newSlip : oldSlip;
-        lostShear[i] = waits[i] ? newShear : oldShear;
-        lostCompression[i] = waits[i] ? newCompression : oldCompression;
+        slip[i] = pending[i] ? newSlip : oldSlip;
+        lostShear[i] = pending[i] ? newShear : oldShear;
+        lostCompression[i] = pending[i] ? newCompression : oldCompression;
     }
 }
 
 // Openings and stresses, and what was lost in tension.
 MASONRY_INLINED void keepStresses(const SideBySide& all, Scratch& s, double* normalStress) {
     const Columns& columns = all.columns;
-    const Mask* waits = all.waits;
+    const Mask* pending = all.pending;
     const int count = all.count;
     double* opening = columns[Column::Opening];
     double* shearStressA = columns[Column::ShearStressA];
@@ -375,19 +375,19 @@ MASONRY_INLINED void keepStresses(const SideBySide& all, Scratch& s, double* nor
         s.torn[i] =
             PiecewiseEquations::lostInTension(s.oldStiffness[i], s.newStiffness[i], s.oldStiffness[i] * s.before[i],
                                               s.sigma[i], s.before[i], s.elastic[i]);
-        tore |= s.oldStiffness[i] != s.newStiffness[i] ? waits[i] : 0;
-        opening[i] = waits[i] ? s.total[i] : oldOpening;
-        shearStressA[i] = waits[i] ? a : oldA;
-        shearStressB[i] = waits[i] ? b : oldB;
-        largestOpening[i] = waits[i] ? s.farthest[i] : oldFarthest;
-        largestClosure[i] = waits[i] ? s.closest[i] : oldClosest;
-        normalStress[i] = waits[i] ? s.sigma[i] : oldStress;
+        tore |= s.oldStiffness[i] != s.newStiffness[i] ? pending[i] : 0;
+        opening[i] = pending[i] ? s.total[i] : oldOpening;
+        shearStressA[i] = pending[i] ? a : oldA;
+        shearStressB[i] = pending[i] ? b : oldB;
+        largestOpening[i] = pending[i] ? s.farthest[i] : oldFarthest;
+        largestClosure[i] = pending[i] ? s.closest[i] : oldClosest;
+        normalStress[i] = pending[i] ? s.sigma[i] : oldStress;
     }
     if (tore) {
         double* lostTension = columns[Column::LostTension];
         MASONRY_INDEPENDENT
         for (int i = 0; i < count; ++i)
-            lostTension[i] += waits[i] ? s.torn[i] : 0;
+            lostTension[i] += pending[i] ? s.torn[i] : 0;
     }
 }
 
@@ -395,7 +395,7 @@ MASONRY_INLINED void keepStresses(const SideBySide& all, Scratch& s, double* nor
 MASONRY_INLINED void keepDamage(const SideBySide& all, Scratch& s) {
     const PiecewiseEquations e = all.e;
     const Columns& columns = all.columns;
-    const Mask* waits = all.waits;
+    const Mask* pending = all.pending;
     const int count = all.count;
     double* tensionDamage = columns[Column::TensionDamage];
     double* shearDamage = columns[Column::ShearDamage];
@@ -409,11 +409,11 @@ MASONRY_INLINED void keepDamage(const SideBySide& all, Scratch& s) {
         const double oldIntact = intact[i];
         const double oldSecant = secant[i];
         const double oldReach = reach[i];
-        tensionDamage[i] = waits[i] ? s.tensionDamage[i] : oldTension;
-        shearDamage[i] = waits[i] ? s.shearDamage[i] : oldShear;
-        intact[i] = waits[i] ? s.intact[i] : oldIntact;
-        secant[i] = waits[i] ? s.secant[i] : oldSecant;
-        reach[i] = waits[i] ? e.reach(s.intact[i], s.farthest[i]) : oldReach;
+        tensionDamage[i] = pending[i] ? s.tensionDamage[i] : oldTension;
+        shearDamage[i] = pending[i] ? s.shearDamage[i] : oldShear;
+        intact[i] = pending[i] ? s.intact[i] : oldIntact;
+        secant[i] = pending[i] ? s.secant[i] : oldSecant;
+        reach[i] = pending[i] ? e.reach(s.intact[i], s.farthest[i]) : oldReach;
     }
 }
 
@@ -421,10 +421,10 @@ MASONRY_INLINED void keepDamage(const SideBySide& all, Scratch& s) {
 
 MASONRY_VECTORISED
 void advanceSideBySide(const PiecewiseEquations& given, const SofteningTable& tension, const SofteningTable& shear,
-                       const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* waits,
+                       const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* pending,
                        int count, double* normalStress) {
     const PiecewiseEquations e = given;
-    const SideBySide all{e, columns, rows, jumps, waits, count};
+    const SideBySide all{e, columns, rows, jumps, pending, count};
     Scratch s;
     const Mask tears = openAll(all, tension, s);
     const Mask slides = slideAll(all, tension, shear, s);
@@ -435,7 +435,7 @@ void advanceSideBySide(const PiecewiseEquations& given, const SofteningTable& te
     if (tears || slides) keepDamage(all, s);
     for (int i = 0; i < count; ++i) {
         const Regime old = regime[i];
-        regime[i] = waits[i] ? Regime(s.regime[i]) : old;
+        regime[i] = pending[i] ? Regime(s.regime[i]) : old;
     }
 }
 

@@ -47,15 +47,15 @@ inline bool neverYielded(const PiecewiseEquations& e, const PiecewiseState& s) {
     return whole && s.largestOpening <= e.reach(1.0, 0.0) && s.largestClosure <= limit;
 }
 
-// One step of the subcontacts that stay elastic in it. The others stay as they were and are marked in `waits`; gives
+// One step of the subcontacts that stay elastic in it. The others stay as they were and are marked in `pending`; gives
 // how many they are. If none of all has ever yielded, `neverYielded` is what holds for all of them, and their columns
 // from Crushing on are not read; else it is null.
 Mask stayElastic(const PiecewiseEquations& equations, const PiecewiseConsequences* neverYielded, const Columns& columns,
-                 std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* waits);
+                 std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending);
 
-// One step of those of the first `count` subcontacts that are marked in `waits`.
+// One step of those of the first `count` subcontacts that are marked in `pending`.
 void advanceSideBySide(const PiecewiseEquations& equations, const SofteningTable& tension, const SofteningTable& shear,
-                       const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* waits,
+                       const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* pending,
                        int count, double* normalStress);
 
 // Adds the energies of up to eight joints at a point; `yielded` tells whether one of them has ever yielded.

@@ -1,4 +1,4 @@
-#include "JointHome.hpp"
+#include "JointGroup.hpp"
 #include "common/Vectorised.hpp"
 
 namespace masonry {

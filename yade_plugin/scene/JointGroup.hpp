@@ -1,7 +1,7 @@
 // The columns in which the state of joints lives: jumps and geometry in JointShapes, the state of the law in
-// JointStates. Each of these is a home. A joint that was just made has homes of its own. When SceneStore reads a scene,
-// it moves all joints of one kind into common homes, on which the engines work. JointGeometry and JointPhysics are
-// views: each holds a home and the joint's number in it.
+// JointStates. Each of these is a group. A joint that was just made has groups of its own. When SceneStore reads a scene,
+// it moves all joints of one kind into common groups, on which the engines work. JointGeometry and JointPhysics are
+// views: each holds a group and the joint's number in it.
 #pragma once
 #include "PropertySet.hpp"
 #include "Transfer.hpp"
@@ -16,14 +16,14 @@ using boost::shared_ptr;
 
 class Zones;
 
-// What both homes have in common: they know whether their joints still exist. A Python object may outlive its joint,
+// What both groups have in common: they know whether their joints still exist. A Python object may outlive its joint,
 // when the scene ends or the interaction is erased.
-struct Home {
+struct JointGroup {
     boost::weak_ptr<yade::Factorable> scene; // empty before the joints belong to a scene
     bool inScene = false;                    // whether a scene has read these joints
-    bool left = false;                       // whether all joints that are still in the scene have moved to other homes
+    bool left = false;                       // whether all joints that are still in the scene have moved to other groups
 
-    // Throws std::runtime_error if the joints of this home no longer exist.
+    // Throws std::runtime_error if the joints of this group no longer exist.
     void check() const {
         if (left || (inScene && scene.expired()))
             throw std::runtime_error("this joint is gone: its scene has ended, or it was taken out of the scene");
@@ -59,11 +59,11 @@ struct JointReference {
     Polygon polygon;                      // corners of the shared face [m]
     Side sides[2];                        // bodies 1 and 2 of the interaction
     // How the subcontacts of a joint with a deformable side move with the nodes.
-    struct Hung {
+    struct Attached {
         shared_ptr<Zones> zones;
         std::vector<Attachment> sides[2]; // one for each subcontact; empty at a rigid side
     };
-    std::shared_ptr<Hung> hung; // null if both sides are rigid
+    std::shared_ptr<Attached> attached; // null if both sides are rigid
 
     // Matrix whose columns are the joint's axes: normal, tangent, normal × tangent.
     yade::Matrix3r axes() const {
@@ -80,12 +80,12 @@ struct JointReference {
         return side == 0 ? (polygon[0] - sides[0].position).dot(normal) : (sides[1].position - polygon[0]).dot(normal);
     }
     // Whether the body of a side is rigid.
-    bool rigid(int side) const { return !hung || hung->sides[side].empty(); }
+    bool rigid(int side) const { return !attached || attached->sides[side].empty(); }
 };
 
 // Geometry and jumps of joints that have the same number of subcontacts. The columns hold first the values of
 // subcontact 0 of all joints, then those of subcontact 1, and so on. Vectors are in the joints' axes.
-struct JointShapes : Home {
+struct JointShapes : JointGroup {
     JointShapes(int joints, int pointCount);
 
     int points;         // number of subcontacts of a joint
@@ -120,12 +120,12 @@ struct JointShapes : Home {
             column.resize(jump[0].size(), 0);
     }
     void setJump(int point, int joint, const Vector3r& value) { setVector(jump, at(point, joint), value); }
-    // Sets area and offset of a subcontact. Only for homes whose joints do not share them.
+    // Sets area and offset of a subcontact. Only for groups whose joints do not share them.
     void setShape(int point, int joint, const Vector3r& offsetOfPoint, double areaOfPoint) {
         setVector(offset, at(point, joint), offsetOfPoint);
         area[at(point, joint)] = areaOfPoint;
     }
-    // Copies joint number `other` of another home with the same number of points into place `joint` of this one.
+    // Copies joint number `other` of another group with the same number of points into place `joint` of this one.
     void take(int joint, const JointShapes& from, int other);
     // If areas and offsets of all joints are the same but for round-off, keeps those of the first joint alone and sets
     // `alike`. Each value then stands `JointFrames::most` times, so that a batch of joints reads them as it reads
@@ -147,7 +147,7 @@ private:
 inline bool sameButRoundOff(double a, double b, double scale) { return std::abs(a - b) <= 1e-12 * scale; }
 
 // State of the law in joints whose properties have equal values, and which share stiffness.
-struct JointStates : Home {
+struct JointStates : JointGroup {
     JointStates(const shared_ptr<PropertySet>& kind, const ElasticStiffness& k, int count, int points)
         : joints(count, kind), columns(kind->ownLaw()->columns(k, count, points)) {}
 
@@ -155,7 +155,7 @@ struct JointStates : Home {
     std::unique_ptr<LawColumns> columns;
     shared_ptr<JointShapes> shapes; // of the same joints in the same order; null before they belong to a scene
 
-    // Copies joint number `other` of another home into place `number` of this one.
+    // Copies joint number `other` of another group into place `number` of this one.
     void take(int number, const JointStates& from, int other) {
         joints[number] = from.joints[other];
         for (int p = 0; p < columns->points(); ++p)
@@ -167,7 +167,7 @@ struct JointStates : Home {
 struct JointKind {
     shared_ptr<JointShapes> shapes;
     shared_ptr<JointStates> states;
-    bool hung; // whether a side of these joints is deformable
+    bool attached; // whether a side of these joints is deformable
 };
 
 } // namespace masonry
