@@ -3,7 +3,6 @@
 Limit analysis of rigid blocks: it falls at 0.3736 g. ``--spread`` moves its supports apart instead.
 """
 
-import sys
 
 from masonry import AT_REST, Scene, bricks, materials
 from masonry.scene.options import parser

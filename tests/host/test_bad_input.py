@@ -26,7 +26,6 @@ from masonry import (
 )
 from masonry.read import figures, files as reading, frames, measure
 from masonry.run import results
-from masonry.scene import options
 from masonry.bricks import Wall as BrickWall, boxCorners
 from yade import Body, O, Quaternion, Vector3, utils
 from yade.wrapper import *
@@ -769,7 +768,9 @@ HINTS = [
 
 
 @pytest.mark.parametrize("act, hints", HINTS)
-def test_what_may_be_a_slip_is_reported(scene, act, hints, tmp_path, monkeypatch, capsys):
+def test_what_may_be_a_slip_is_reported(
+    scene, act, hints, tmp_path, monkeypatch, capsys
+):
     monkeypatch.chdir(tmp_path)
     try:
         act()
@@ -916,6 +917,4 @@ def test_a_disk_that_fills_ends_the_run_in_order(tmp_path, name, words, most, lo
             for kind in ("blocks", "joints")
         ]
         assert frames == [1, 1]
-        assert (
-            len(frames.readFrame(str(tmp_path / "results"), "joints")["cells"]) > 100
-        )
+        assert len(frames.readFrame(str(tmp_path / "results"), "joints")["cells"]) > 100

@@ -15,7 +15,7 @@ from masonry import (
     criticalTimeStep,
     engines,
 )
-from yade import Body, O, Quaternion, Vector3
+from yade import O, Quaternion, Vector3
 from yade.wrapper import *
 
 BRICK = (0.220, 0.102, 0.081)

@@ -1,6 +1,5 @@
 """A scene's state on disk and back: to the last bit, whole or not at all, and never into another scene."""
 
-import json
 import os
 import struct
 

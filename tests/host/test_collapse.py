@@ -142,7 +142,10 @@ def test_a_stack_pulled_apart_is_reported_when_a_block_has_left(scene, direction
         O.bodies[k].state.blockedDOFs = "xyzXYZ"
     zones = MasonryZones(bodies=[1]) if direction == "deformable" else None
     engines(
-        [MasonryJoint()], gravity=(0, 0, -G), zones=zones, functors=direction == "functors"
+        [MasonryJoint()],
+        gravity=(0, 0, -G),
+        zones=zones,
+        functors=direction == "functors",
     )
     connect()
     O.dt = 0.5 * criticalTimeStep()[0]

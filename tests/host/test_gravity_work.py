@@ -35,7 +35,9 @@ def integrator():
     return next(e for e in O.engines if e.label == "integrator")
 
 
-def stack(direction, joint=None, damping=0.5, gravity=(0, 0, 0), blocked="", joined=True):
+def stack(
+    direction, joint=None, damping=0.5, gravity=(0, 0, 0), blocked="", joined=True
+):
     """Two bricks on a fixed one. ``way``: rigid or deformable units, or YADE's own loop and integrator."""
     O.reset()
     mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)

@@ -12,7 +12,7 @@ import sys
 
 import pytest
 from conftest import ROOT
-from masonry import MasonryMat, MasonryZones, addBlock, connect, engines
+from masonry import MasonryMat, MasonryZones, connect, engines
 from yade import O, Vector3
 
 sys.path.insert(0, os.path.join(ROOT, "validation", "closed_forms"))

@@ -9,9 +9,18 @@ import sys
 
 import masonry  # noqa: F401: it registers the classes in yade.wrapper
 import pytest
-from masonry import MasonryJoint, MasonryMat, MasonryZones, addBlock, classes, connect, criticalTimeStep, engines
+from masonry import (
+    MasonryJoint,
+    MasonryMat,
+    MasonryZones,
+    addBlock,
+    classes,
+    connect,
+    criticalTimeStep,
+    engines,
+)
 from references import box
-from yade import O, Vector3
+from yade import O
 from yade import wrapper
 
 HERE = os.path.dirname(__file__)

@@ -208,7 +208,15 @@ def test_the_points_of_blocks_move_as_bodies_and_nodes_do(frame):
 )
 def test_stresses_of_zones_are_those_of_a_brick_that_is_pressed(scene, tmp_path, turn):
     """A deformable brick between plates under pressure p carries -p along it and nothing else, in the global axes."""
-    from masonry import MasonryJoint, MasonryLoad, MasonryMat, addBlock, connect, criticalTimeStep, engines
+    from masonry import (
+        MasonryJoint,
+        MasonryLoad,
+        MasonryMat,
+        addBlock,
+        connect,
+        criticalTimeStep,
+        engines,
+    )
 
     plate = MasonryMat(density=1800, young=1e16, jointSet="plate")
     mat = MasonryMat(density=1800, young=4.8e9, poisson=0.0)

@@ -2,7 +2,6 @@
 
 import math
 
-import numpy as np
 import pytest
 from masonry import MasonryJoint, addBlock, connect, criticalTimeStep, engines
 from masonry.bricks import Wall as BrickWall, boxCorners as corners

@@ -9,7 +9,6 @@ from conftest import ROOT
 from masonry import (
     MasonryJoint,
     addBlock,
-    connect,
     criticalTimeStep,
     engines,
     loadCheckpoint,

@@ -1,13 +1,12 @@
 """YADE's own 3-D view of a scene, under a virtual display: what is drawn, and what it costs."""
 
-import os
 import shutil
 import subprocess
 
 import numpy as np
 import pytest
 import yade.config
-from masonry import GlExtra_MasonryLegend, Gl1_MasonryBlock, Gl1_MasonryJointPhys
+from masonry import Gl1_MasonryBlock, Gl1_MasonryJointPhys
 
 pytestmark = pytest.mark.slow
 

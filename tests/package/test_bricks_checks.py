@@ -98,7 +98,9 @@ def test_blocks_that_fit_have_one_joint_and_no_problem():
 
 @few
 @given(some.floats(3e-4, 0.2), some.floats(-400, 400), some.sampled_from("xyz"))
-def test_a_gap_and_an_overlap_are_reported_with_bricks_depth_and_place(depth, turn, axis):
+def test_a_gap_and_an_overlap_are_reported_with_bricks_depth_and_place(
+    depth, turn, axis
+):
     for sign, word in ((1, "gap of up to"), (-1, "overlap by")):
         pair = beside(sign * depth).turned(turn, axis)
         message = [p for p in pair.problems() if word in p]

@@ -177,7 +177,7 @@ def box(low, high):
 
 def pull(scene, folder, body, velocity, most=2e-3):
     """Connect all blocks, hold all but one, which is moved away, and write a frame."""
-    from masonry import MasonryJoint, connect, criticalTimeStep, engines
+    from masonry import MasonryJoint, connect, engines
     from yade.wrapper import MasonryVtkRecorder
 
     for b in scene.bodies:

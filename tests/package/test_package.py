@@ -1,8 +1,5 @@
 """The Python package: materials, options, presets, results, curves."""
 
-import argparse
-import itertools
-import json
 import math
 import os
 import re
@@ -286,16 +283,22 @@ def test_initial_stiffness_is_the_slope_of_a_straight_start(slope):
 
 @pytest.mark.parametrize("reader", ["curve_figure", "crack_figure", "measure"])
 def test_readers_ask_only_for_keys_of_run_json_that_are_documented(reader):
-    source = open(os.path.join(ROOT, "scripts", "masonry", "read", reader + ".py")).read()
+    source = open(
+        os.path.join(ROOT, "scripts", "masonry", "read", reader + ".py")
+    ).read()
     documented = set(re.findall(r"``(\w+)``", results.__doc__))
-    asked = re.findall(r"""\b(?:run|wall)(?:\["\w+"\])?(?:\[|\.get\()["'](\w+)""", source)
+    asked = re.findall(
+        r"""\b(?:run|wall)(?:\["\w+"\])?(?:\[|\.get\()["'](\w+)""", source
+    )
     asked = set(asked)
     assert asked and not asked - documented
 
 
 @pytest.mark.parametrize("reader", ["crack_figure", "measure"])
 def test_readers_ask_only_for_columns_that_are_described(reader):
-    source = open(os.path.join(ROOT, "scripts", "masonry", "read", reader + ".py")).read()
+    source = open(
+        os.path.join(ROOT, "scripts", "masonry", "read", reader + ".py")
+    ).read()
     known = {*columns.heads(columns.PUSH + columns.HISTORY + columns.BALANCE)}
     asked = set(re.findall(r'\b(?:curve|data)\["(\w+)"\]', source))
     assert asked and not asked - known
@@ -309,10 +312,13 @@ def test_a_column_says_its_unit_in_its_name_and_in_its_meaning():
         *targets.Drift("drift", low, high).columns(plane=True),
         *targets.JointRecord("joint0", (0, 1)).columns(),
     ]
-    assert columns.heads(recorded) == (
-        "b_x_mm b_y_mm b_z_mm b_rotation_mrad drift_x_mm drift_x_mrad joint0_opening_mm joint0_slide_mm "
-        "joint0_normal_stress_MPa joint0_shear_stress_MPa"
-    ).split()
+    assert (
+        columns.heads(recorded)
+        == (
+            "b_x_mm b_y_mm b_z_mm b_rotation_mrad drift_x_mm drift_x_mrad joint0_opening_mm joint0_slide_mm "
+            "joint0_normal_stress_MPa joint0_shear_stress_MPa"
+        ).split()
+    )
     listed = columns.meanings(
         columns.PUSH + columns.HISTORY + columns.BALANCE + recorded
     )

@@ -310,7 +310,9 @@ def couplets(dt, turn=STRAIGHT, damping=0.6, kind="local"):
         top = turn * Vector3(number + LENGTH / 2, THICKNESS / 2, 3 * HEIGHT)
         for sign in ((0, 0, 1), (1, 0, 0)):
             sign = turn * Vector3(*sign)
-            drives.append(MasonryLoad(body=body, point=top, direction=sign, driven=True))
+            drives.append(
+                MasonryLoad(body=body, point=top, direction=sign, driven=True)
+            )
     elastic = MasonryJoint(name="between", elastic=True)
     engines(
         offered,

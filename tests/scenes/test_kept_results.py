@@ -1,12 +1,10 @@
 """Results are the user's: what a run may touch, when, and how it ends when something is odd."""
 
 import errno
-import json
 import os
 import shutil
 import signal
 import socket
-import struct
 import subprocess
 import threading
 import time

@@ -356,7 +356,9 @@ def test_a_push_goes_on_from_where_the_one_before_began(tmp_path):
     scene, top = small(tmp_path)
     scene.push(top, 0.08, continued=True)
     moved = scene.results.column("displacement_mm")
-    assert moved[-1] == pytest.approx(0.08, abs=0.01) and len(scene.running.at.stages) == 3
+    assert (
+        moved[-1] == pytest.approx(0.08, abs=0.01) and len(scene.running.at.stages) == 3
+    )
     assert scene.results.column("top_x_mm")[-1] == pytest.approx(0.08, abs=0.01)
     scene.push(top, 0.03)
     assert scene.results.column("top_x_mm")[-1] == pytest.approx(0.11, abs=0.01)

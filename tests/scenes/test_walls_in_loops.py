@@ -15,8 +15,8 @@ from masonry.run import results
 from masonry.scene import history
 from masonry.scene.stages import pushing, rest
 from masonry.read.files import readCurve, readRun
-from small import SMALL, carryOut, parsed
-from test_checkpoints import CANTILEVER, at, files, interrupt, refused, run
+from small import SMALL, parsed
+from test_checkpoints import CANTILEVER, files, interrupt, refused, run
 
 LOOPS = ["--history", "0.1,0.25x2", "--rate", "40", "--vtk-every", "0.1"]
 

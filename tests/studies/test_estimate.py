@@ -130,7 +130,9 @@ def test_indicators_find_a_quantile_where_the_bridge_is_wrong():
 def test_a_scatter_that_grows_along_the_cheap_numbers_is_doubted():
     generator = np.random.default_rng(8)
     x = generator.uniform(1, 3, 60)
-    (message,) = estimate.doubts(5 * x + 0.2 * x**2 * generator.standard_normal(60), x)
+    (message,) = estimate.doubts(
+        5 * x + 0.2 * x**2 * generator.standard_normal(60), x
+    )
     assert "more at one end" in message
 
 
@@ -142,7 +144,9 @@ def test_what_rounding_leaves_is_not_doubted():
 def test_doubts_come_as_seldom_as_they_say_where_the_bridge_holds():
     generator = np.random.default_rng(5)
     message = [len(estimate.doubts(*line(generator, 25, 25, 0.9))) for _ in range(1000)]
-    assert np.mean(message) < 2 * estimate.DOUBT + 3 * math.sqrt(2 * estimate.DOUBT / 1000)
+    assert np.mean(message) < 2 * estimate.DOUBT + 3 * math.sqrt(
+        2 * estimate.DOUBT / 1000
+    )
 
 
 def test_cheap_rows_that_tell_nothing_do_no_harm():

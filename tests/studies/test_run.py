@@ -406,7 +406,9 @@ def test_a_missing_engine_is_reported_before_anything_runs(tmp_path, engine, wor
     os.symlink(shutil.which("yade"), tmp_path / "bin" / "yade")
     env = {**os.environ, "PATH": str(tmp_path / "bin")}
     message = refused(tmp_path, STUDY, *words, env=env)
-    assert engine in message and "apt-get install" in message and message.count("\n") == 1
+    assert (
+        engine in message and "apt-get install" in message and message.count("\n") == 1
+    )
 
 
 @contextlib.contextmanager

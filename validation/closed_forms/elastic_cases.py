@@ -11,7 +11,6 @@ from masonry import (
     addBlock,
     connect,
     criticalTimeStep,
-    engine,
     engines,
 )
 from masonry.bricks import boxCorners as corners

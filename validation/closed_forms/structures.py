@@ -5,7 +5,6 @@ Some are built body by body with :mod:`masonry.assembly`, for single blocks and 
 """
 
 import contextlib
-import math
 import tempfile
 
 import numpy as np

@@ -14,7 +14,15 @@ import csv
 import os
 import sys
 
-from masonry import MasonryJoint, addBlock, bricks, connect, criticalTimeStep, engines, materials
+from masonry import (
+    MasonryJoint,
+    addBlock,
+    bricks,
+    connect,
+    criticalTimeStep,
+    engines,
+    materials,
+)
 from masonry.basics import Refused
 from masonry.scene.settings import applySettings
 from yade import O, Vector3

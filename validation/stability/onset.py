@@ -23,7 +23,7 @@ from masonry import (
 )
 from masonry.bricks import boxCorners as corners
 from yade import O, Vector3
-from yade.wrapper import MasonryEnergy, MasonryIntegrator
+from yade.wrapper import MasonryEnergy
 
 HERE = os.path.dirname(os.path.abspath(sys.argv[0]))
 sys.path[:0] = [HERE, os.path.dirname(HERE)]  # yade leaves it out

@@ -47,10 +47,10 @@ public:
         ledgerOfBodies<E>(visit);
         GravityWork::describe<E>(visit);
         visit("watch", &E::watch,
-              described(
-                  "Whether a run that is unstable or has collapsed is stopped, and a wrong energy balance is reported. If "
-                  "an unstable run is not stopped, a time step above criticalTimeStep() gives wrong "
-                  "results that look sound, because damping keeps the unstable motion within bounds"));
+              described("Whether a run that is unstable or has collapsed is stopped, and a wrong energy balance is "
+                        "reported. If "
+                        "an unstable run is not stopped, a time step above criticalTimeStep() gives wrong "
+                        "results that look sound, because damping keeps the unstable motion within bounds"));
         visit("turnLimit", &E::turnLimit,
               number("rad", "Rotation of two joined blocks against each other at which a run has collapsed, looked at "
                             "every hundredth step. At 60° the normal of a joint, the mean of both faces, lies 30° off "

@@ -21,7 +21,7 @@ double MasonryJointGeom::distance2() { return group ? shapes().joints[index].dis
 
 shared_ptr<MasonryZones> MasonryJointGeom::zones() {
     return group && reference().attached ? boost::static_pointer_cast<MasonryZones>(reference().attached->zones)
-                                    : shared_ptr<MasonryZones>();
+                                         : shared_ptr<MasonryZones>();
 }
 
 // A file holds the zones before the record. They are kept in a group without subcontacts, which setRecord() replaces.

@@ -330,9 +330,7 @@ vtkSmartPointer<vtkPolyData> MasonryVtkRecorder::jointData() {
     return data;
 }
 
-void MasonryVtkRecorder::writeJoints(const std::string& path) {
-    write<vtkXMLPolyDataWriter>(path, jointData().Get());
-}
+void MasonryVtkRecorder::writeJoints(const std::string& path) { write<vtkXMLPolyDataWriter>(path, jointData().Get()); }
 
 py::dict MasonryVtkRecorder::jointsNow() {
     const BetweenSteps still;

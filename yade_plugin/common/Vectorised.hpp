@@ -10,7 +10,7 @@
 #endif
 
 // Whether files of their own are compiled for AVX2 and AVX-512, which takes a pragma of GCC.
-#if defined(__x86_64__) && defined(__OPTIMIZE__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+#if defined(__x86_64__) && defined(__OPTIMIZE__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) &&           \
     !defined(__SANITIZE_THREAD__)
 #define MASONRY_VECTOR_UNITS 1
 #else

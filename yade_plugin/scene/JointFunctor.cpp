@@ -52,7 +52,8 @@ void advanceJoint(yade::Scene& scene, JointGeometry& geom, JointPhysics& phys, c
         forces.addForce(interaction.id2, -force);
         // The arms lead from body 1, so those of body 2 are shorter by `between`. If body 1 is deformable, the arms
         // lead from body 2 already.
-        const Vector3r onBody2 = attached ? Vector3r(step.moment - torque) : Vector3r(step.between.cross(force) - torque);
+        const Vector3r onBody2 =
+            attached ? Vector3r(step.moment - torque) : Vector3r(step.between.cross(force) - torque);
         forces.addTorque(interaction.id2, onBody2);
     }
 }

@@ -1,7 +1,7 @@
 // The columns in which the state of joints lives: jumps and geometry in JointShapes, the state of the law in
-// JointStates. Each of these is a group. A joint that was just made has groups of its own. When SceneStore reads a scene,
-// it moves all joints of one kind into common groups, on which the engines work. JointGeometry and JointPhysics are
-// views: each holds a group and the joint's number in it.
+// JointStates. Each of these is a group. A joint that was just made has groups of its own. When SceneStore reads a
+// scene, it moves all joints of one kind into common groups, on which the engines work. JointGeometry and JointPhysics
+// are views: each holds a group and the joint's number in it.
 #pragma once
 #include "PropertySet.hpp"
 #include "Transfer.hpp"
@@ -21,7 +21,7 @@ class Zones;
 struct JointGroup {
     boost::weak_ptr<yade::Factorable> scene; // empty before the joints belong to a scene
     bool inScene = false;                    // whether a scene has read these joints
-    bool left = false;                       // whether all joints that are still in the scene have moved to other groups
+    bool left = false; // whether all joints that are still in the scene have moved to other groups
 
     // Throws std::runtime_error if the joints of this group no longer exist.
     void check() const {

@@ -30,7 +30,7 @@ public:
     std::vector<Polygon> cells() const;
 
     shared_ptr<JointShapes> group; // null until define() or loading; SceneStore replaces it
-    int index = 0;                // number of the joint in its group
+    int index = 0;                 // number of the joint in its group
 
     // Scratch of one step of this joint alone, for the functors. follow() fills it from the places of the blocks; the
     // law's functor reads it, and adds moment and forces for the zones.
@@ -73,7 +73,7 @@ public:
     const shared_ptr<PropertySet>& propertySet() const { return group->joints[index]; }
 
     shared_ptr<JointStates> group; // null until define() or loading; SceneStore replaces it
-    int index = 0;                // number of the joint in its group
+    int index = 0;                 // number of the joint in its group
 };
 
 // A joint of a scene, with the objects by which the host holds it.

@@ -92,7 +92,7 @@ void transferJoints(const SceneStore& store, Transfer& to) {
             add(viscous[0], viscous[1], viscous[2]);
             add(lost.tension, lost.shear, lost.compression);
             joint.phys->group->columns->read(p, joint.phys->index,
-                                            [&](const char*, double number) { records.push_back(number); });
+                                             [&](const char*, double number) { records.push_back(number); });
         }
     to.several("joints", records.data(), records.size());
     if (!to.back) return;

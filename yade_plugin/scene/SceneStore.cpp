@@ -213,7 +213,8 @@ void SceneStore::readJoints() {
                        shared_ptr<JointStates>(new JointStates(first.phys->propertySet(), group.k, count, points)),
                        first.geom->reference().attached != nullptr};
         kind.states->shapes = kind.shapes;
-        for (JointGroup* group : {static_cast<JointGroup*>(kind.shapes.get()), static_cast<JointGroup*>(kind.states.get())}) {
+        for (JointGroup* group :
+             {static_cast<JointGroup*>(kind.shapes.get()), static_cast<JointGroup*>(kind.states.get())}) {
             group->scene = life_;
             group->inScene = true;
         }
@@ -228,8 +229,9 @@ void SceneStore::readJoints() {
         kind.shapes->shareShapes();
         made.push_back(kind);
     }
-    // A view that still has one of the old groups belongs to a joint that was taken out of the scene, or to one of which
-    // only one half is left. If there is one of the latter, the old groups stay readable, and checkScene() reports it.
+    // A view that still has one of the old groups belongs to a joint that was taken out of the scene, or to one of
+    // which only one half is left. If there is one of the latter, the old groups stay readable, and checkScene()
+    // reports it.
     for (auto& kind : kinds)
         kind.shapes->left = kind.states->left = !broken;
     kinds = std::move(made);

@@ -315,10 +315,12 @@ double total(const Row& row) {
 } // namespace
 
 void Zones::followGravity(const Vector3r& ofIntegrator) {
-    const auto asText = [](const Vector3r& g) { return "(" + text(g[0]) + ", " + text(g[1]) + ", " + text(g[2]) + ")"; };
+    const auto asText = [](const Vector3r& g) {
+        return "(" + text(g[0]) + ", " + text(g[1]) + ", " + text(g[2]) + ")";
+    };
     if (falling && gravity != lastGravity && gravity != ofIntegrator)
-        throw std::invalid_argument("MasonryZones.gravity " + asText(gravity) + " m/s² is not that of the integrator, " +
-                                    asText(ofIntegrator) +
+        throw std::invalid_argument("MasonryZones.gravity " + asText(gravity) +
+                                    " m/s² is not that of the integrator, " + asText(ofIntegrator) +
                                     " m/s²: set the gravity of the integrator alone, MasonryZones follows it");
     gravity = ofIntegrator;
 }

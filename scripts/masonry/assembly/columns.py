@@ -67,7 +67,10 @@ class Reading:
         if structure.target:
             moved, self.rotation = self.moved(structure.target)
             origin = structure.origin
-            self.along, self.up = moved.dot(structure.direction) - origin[0], moved[2] - origin[1]
+            self.along, self.up = (
+                moved.dot(structure.direction) - origin[0],
+                moved[2] - origin[1],
+            )
             self.sunk = -moved[2]
             self.topShear = structure.loads["push"].reaction
         self.baseShear = held.dot(structure.direction)

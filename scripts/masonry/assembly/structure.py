@@ -42,7 +42,9 @@ class Structure:
         self.unit, self.joints = masonry.unit, masonry.joints
         self.units = {**masonry.units, **dict.fromkeys(kinds, masonry.unit)}
         # Heavier blocks that are attracted less weigh the same; waves are slower and the time step is longer.
-        for unit in {id(unit): unit for unit in (self.unit, *self.units.values())}.values():
+        for unit in {
+            id(unit): unit for unit in (self.unit, *self.units.values())
+        }.values():
             unit.density *= args.density_scaling
         self.gravity = description.gravity / args.density_scaling
         self.axes = (0, 2) if description.plane else (0, 1, 2)

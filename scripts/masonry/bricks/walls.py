@@ -403,7 +403,9 @@ def _levels(height, courses, unit, problems):
     nearest = round(count)
     if nearest < 1 or abs(count - nearest) > WHOLE * nearest:
         below, above = max(math.floor(count), 1), max(math.ceil(count), 1)
-        nearest = " or ".join(f"{n * unit[2]:.6g} m ({n})" for n in sorted({below, above}))
+        nearest = " or ".join(
+            f"{n * unit[2]:.6g} m ({n})" for n in sorted({below, above})
+        )
         problems.append(
             f"height {height:g} m is {count:.6g} courses of {unit[2]:g} m; it must be whole courses; nearest: {nearest}"
         )

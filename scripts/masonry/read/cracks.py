@@ -23,7 +23,11 @@ def widths(frame):
     slide = np.linalg.norm(frame["slide"], axis=1)
     opened = frame["opening"] > np.maximum(CRACK, 0.5 * slide)
     damaged = np.maximum(frame["damage_tension"], frame["damage_shear"]) > DAMAGED
-    return np.maximum(frame["opening"], slide), opened, damaged & (opened | (slide > CRACK))
+    return (
+        np.maximum(frame["opening"], slide),
+        opened,
+        damaged & (opened | (slide > CRACK)),
+    )
 
 
 def crushed(frame):

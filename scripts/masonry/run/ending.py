@@ -149,7 +149,9 @@ def _describe(run, scene):
     if at.steps:
         perStep = at.seconds["steps"] / at.steps
         entries["microseconds_per_step"] = 1e6 * perStep
-        entries["nanoseconds_per_subcontact_step"] = 1e9 * perStep / scene.model.subcontacts
+        entries["nanoseconds_per_subcontact_step"] = (
+            1e9 * perStep / scene.model.subcontacts
+        )
 
 
 def _options(run):

@@ -4,6 +4,7 @@ import contextlib
 import sys
 import time
 
+
 class Progress:
     """How far a stage has come: on a terminal one line that is kept up to date, elsewhere a line every tenth."""
 

@@ -277,7 +277,9 @@ def _recorded(directory):
         record = _object(readWhole(os.path.join(directory, "run.json")))
     except OSError:
         return {}
-    return record if isinstance(record.get("columns"), dict) and "scene" in record else {}
+    return (
+        record if isinstance(record.get("columns"), dict) and "scene" in record else {}
+    )
 
 
 class Results:

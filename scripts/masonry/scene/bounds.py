@@ -184,7 +184,12 @@ class Bounds:
         ]
         if "bound_acceleration" in entries:
             pairs.append(
-                (factor, entries["bound_acceleration"], "of gravity", "the acceleration")
+                (
+                    factor,
+                    entries["bound_acceleration"],
+                    "of gravity",
+                    "the acceleration",
+                )
             )
         for reached, bound, unit, what in pairs:
             if reached > allowed * bound:

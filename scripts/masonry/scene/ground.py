@@ -20,7 +20,10 @@ def rayleigh(ratio, low, high):
 
 
 UNITS = {"m/s²": 1.0, "g": 9.81, "cm/s²": 0.01}  # [m/s²]
-LOWEST_PEAK, HIGHEST_PEAK = 1.5, 30.0  # [m/s²] peaks beyond these may be in g, or in cm/s²
+LOWEST_PEAK, HIGHEST_PEAK = (
+    1.5,
+    30.0,
+)  # [m/s²] peaks beyond these may be in g, or in cm/s²
 
 
 def readRecord(accelerations, every, scale=1.0, unit=None):

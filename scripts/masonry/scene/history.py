@@ -49,7 +49,11 @@ def _number(text):
 
 def _refuse(problems):
     if problems:
-        more = [f"and {len(problems) - MOST_PROBLEMS} more"] if len(problems) > MOST_PROBLEMS else []
+        more = (
+            [f"and {len(problems) - MOST_PROBLEMS} more"]
+            if len(problems) > MOST_PROBLEMS
+            else []
+        )
         raise ValueError("; ".join([*problems[:MOST_PROBLEMS], *more]))
 
 

@@ -32,9 +32,7 @@ def load(description, target, force):
     :param force: three numbers [N]
     """
     if not isinstance(target, Target) or not target.loaded:
-        raise ValueError(
-            "load: only a platen that moves or a handle() can be loaded"
-        )
+        raise ValueError("load: only a platen that moves or a handle() can be loaded")
     force = vector(force, "load: force [N]")
     if description.plane and force[1]:
         raise ValueError(
@@ -59,9 +57,7 @@ def wind(description, pressure, towards, part=None):
     if not isinstance(pressure, (int, float)) or not 0 < abs(pressure) < math.inf:
         raise ValueError(f"wind: pressure {pressure!r} Pa must be other than 0")
     if abs(pressure) > 1e5:
-        say(
-            f"warning: wind: {pressure:g} Pa: is it in Pa? A storm has about 1000 Pa"
-        )
+        say(f"warning: wind: {pressure:g} Pa: is it in Pa? A storm has about 1000 Pa")
     if towards[2] or not towards.norm():
         raise ValueError(f"wind: the direction must be horizontal, got {towards}")
     if description.plane and towards[1]:
@@ -79,5 +75,7 @@ def wind(description, pressure, towards, part=None):
     if not faces:
         raise ValueError(f"wind: no free face looks against {tuple(towards)}")
     for brick, normal, area, middle in faces:
-        description.winds.append((brick, [-pressure * area * n for n in normal], middle))
+        description.winds.append(
+            (brick, [-pressure * area * n for n in normal], middle)
+        )
     return sum(area for _, _, area, _ in faces)

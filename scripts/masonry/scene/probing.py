@@ -105,7 +105,9 @@ def _rows(scene, parser):
         row = {n: v for n, v in row.items() if "." in n or n in known | {"description"}}
         for sentence in _refused(scene, parser, batch.optionWords(row)):
             alike = re.sub(r"\d[\d.e+-]*", "#", sentence)  # but for its numbers
-            problems.setdefault(alike, []).append((row.get("description", line), sentence))
+            problems.setdefault(alike, []).append(
+                (row.get("description", line), sentence)
+            )
     sentences = [
         f"row {found[0][0]}{f' and {len(found) - 1} more' if found[1:] else ''}: {found[0][1]}"
         for found in problems.values()

@@ -44,7 +44,9 @@ def column(description, name, meaning, value):
         raise ValueError(
             f"column: a name must be letters, digits and underscores, got {name!r}"
         )
-    description.extra.append(Column(name, None, meaning, lambda reading: float(value())))
+    description.extra.append(
+        Column(name, None, meaning, lambda reading: float(value()))
+    )
 
 
 @describes

@@ -145,7 +145,8 @@ class Scene:
     @property
     def answers(self):
         """What the stages were run for, in their order: a list of dicts, as of
-        :class:`masonry.scene.stages.stage.Answer`, with the ``stage`` and its ``number``."""
+        :class:`masonry.scene.stages.stage.Answer`, with the ``stage`` and its ``number``.
+        """
         kept = self.running.at.answers
         return [one for number in sorted(kept, key=int) for one in kept[number]]
 

@@ -47,9 +47,7 @@ def platen(
     if where == "bottom" and rotation not in (None, "held"):
         raise ValueError("platen: the one at the bottom is fixed and cannot turn")
     if rotation not in (None, "held", "free"):
-        raise ValueError(
-            f"platen: rotation must be 'held' or 'free', got {rotation!r}"
-        )
+        raise ValueError(f"platen: rotation must be 'held' or 'free', got {rotation!r}")
     if guided not in ("", "x", "y", "xy") or guided and where == "bottom":
         raise ValueError(
             f"platen: guided must be 'x', 'y' or 'xy', of the one at the top, got {guided!r}"
@@ -72,8 +70,7 @@ def platen(
         p
         for block in description.bricks
         for p in block.corners
-        if part in (None, block.part)
-        and abs(p[2] - level) < 1e-6 * (1 + abs(level))
+        if part in (None, block.part) and abs(p[2] - level) < 1e-6 * (1 + abs(level))
     ]
     if not touching:
         raise ValueError(
@@ -134,7 +131,9 @@ def hold(description, where, name=None, axes="xyzXYZ"):
             f"hold: in the x-z plane no block moves along {axes} anyway; Scene(..., plane=False) is in space"
         )
     target = _brick(description, where, name, fixed=True)
-    target.freedom = "".join(axes) if not description.plane else "".join({*axes, *"yXZ"})
+    target.freedom = (
+        "".join(axes) if not description.plane else "".join({*axes, *"yXZ"})
+    )
     return target
 
 

@@ -290,7 +290,9 @@ def sentence(
     )
     same = f"{names[0]} alone needs {paid.alone:.0f} runs and {_time(paid.cost / paid.share)} for this interval"
     if paid.share < 1:
-        return f"{message}; {same}, so {100 * (1 - paid.share):.0f} % of the time is saved"
+        return (
+            f"{message}; {same}, so {100 * (1 - paid.share):.0f} % of the time is saved"
+        )
     return f"{message}; {same}, so nothing is saved: {names[1]} follows {names[0]} too little for its price"
 
 

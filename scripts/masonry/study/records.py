@@ -146,7 +146,9 @@ FIDELITY = {"preset", "density_scaling", *presets.USUAL}
 def _unlike(one, two):
     """What two studies differ in beside FIDELITY: name and both values, as far as their study.json tells."""
     try:
-        studies = [Folder(study.directory).description()["study"] for study in (one, two)]
+        studies = [
+            Folder(study.directory).description()["study"] for study in (one, two)
+        ]
     except Refused:
         return
     first, second = ({"scene": study["scene"], **study["options"]} for study in studies)

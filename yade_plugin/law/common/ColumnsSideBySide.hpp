@@ -137,8 +137,8 @@ void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const d
         }
     }
     std::fill_n(regime, count, Regime::Elastic);
-    const Mask left =
-        stayElastic(equations_, yielded ? nullptr : &neverYielded_, columns_, first, count, jumps, normalStress, pending);
+    const Mask left = stayElastic(equations_, yielded ? nullptr : &neverYielded_, columns_, first, count, jumps,
+                                  normalStress, pending);
     if (left == 0) return;
 
     int waiting[most]; // the subcontacts that need the whole law

@@ -57,8 +57,8 @@ MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicCon
         const double displaced = sigma < 0 ? closed * closed + e.shearWeight * onCap * tauSquared : 0;
         // a subcontact that opens with one stiffness and closes with another loses energy
         const bool keeps = !yielded | ((closing - tensileSecant) * moved.before * moved.elastic >= 0);
-        const bool elastic = (moved.elastic <= within) & (tauSquared <= strength * strength) & (crushing <= squaredCap) &
-                             (displaced <= hardening) & keeps;
+        const bool elastic = (moved.elastic <= within) & (tauSquared <= strength * strength) &
+                             (crushing <= squaredCap) & (displaced <= hardening) & keeps;
         normalStress[i] = sigma;
         opening[i] = elastic ? moved.total : oldOpening;
         shearStressA[i] = elastic ? a : oldA;
@@ -73,8 +73,9 @@ MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicCon
 template <bool spatial, bool yielded>
 MASONRY_INLINED Mask stayElasticOn(const CyclicEquations& e, const CyclicConsequences& ofAll, const Columns& columns,
                                    std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
-    return e.curved ? stayElasticAs<spatial, yielded, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
-                    : stayElasticAs<spatial, yielded, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
+    return e.curved
+               ? stayElasticAs<spatial, yielded, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
+               : stayElasticAs<spatial, yielded, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
 }
 
 } // namespace
@@ -98,7 +99,8 @@ namespace cyclic {
 void readTable(const SofteningTable& table, std::int32_t TableRows::*row, TableRows* rows, const int* places,
                Asked& a) {
     for (int i = 0; i < a.many; ++i)
-        if (a.wanted[i]) a.found[i] = larger<double>(a.found[i], table.damage(a.at[i], a.shift[i], rows[places[i]].*row));
+        if (a.wanted[i])
+            a.found[i] = larger<double>(a.found[i], table.damage(a.at[i], a.shift[i], rows[places[i]].*row));
 }
 void readCurve(const CyclicEquations& e, Asked& a) {
     for (int i = 0; i < a.many; ++i)

@@ -20,7 +20,9 @@ struct Look { // for one subcontact
         return wanted ? larger(damage, shearTable.damage(ratio, shift)) : damage;
     }
     double lastRatio() const { return shearTable.lastRatio() - 1; }
-    double strength(double fc, double kappa, bool wanted) const { return wanted ? e.curve.strength(kappa, e.stretch) : fc; }
+    double strength(double fc, double kappa, bool wanted) const {
+        return wanted ? e.curve.strength(kappa, e.stretch) : fc;
+    }
     double decay(double slip, bool wanted) const { return wanted ? e.dilatancy(slip) : 0; }
     double normalEnergy(double sigma, double w) const { return e.storedNormal(sigma, w); }
 };

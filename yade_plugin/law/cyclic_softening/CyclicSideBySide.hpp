@@ -73,7 +73,8 @@ struct Look { // see advance() in CyclicStep.hpp
         std::memcpy(a.wanted, &wanted, sizeof wanted);
         return a;
     }
-    MASONRY_INLINED Pack tension(const Pack& damage, const Pack& ratio, const Pack& shift, const PackMask& wanted) const {
+    MASONRY_INLINED Pack tension(const Pack& damage, const Pack& ratio, const Pack& shift,
+                                 const PackMask& wanted) const {
         Asked a = asked(damage, ratio, shift, wanted);
         readTable(numbers.tension, &TableRows::tension, rows, places, a);
         return load(a.found);

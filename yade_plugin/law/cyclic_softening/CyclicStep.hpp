@@ -23,8 +23,8 @@ template <class T> struct CyclicOutcome {
 
 // Tension damage when the bond was lost otherwise: with lumped units the rows of the table move by what the bond holds.
 template <class T, class Look, class M>
-MASONRY_INLINED T tornAgain(const CyclicEquations& e, const Look& look, const CyclicPoint<T>& s, const T& crushRemaining,
-                            const M& weaker) {
+MASONRY_INLINED T tornAgain(const CyclicEquations& e, const Look& look, const CyclicPoint<T>& s,
+                            const T& crushRemaining, const M& weaker) {
     if (!(e.normalShift > 0)) return s.tensionDamage;
     const auto wanted = weaker & (s.largestOpening > 0) & (s.tensionDamage < 1);
     if (!any(wanted)) return s.tensionDamage;

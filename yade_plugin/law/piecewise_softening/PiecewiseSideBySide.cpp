@@ -59,8 +59,8 @@ MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const Piecew
         const double hardens = closest > limit ? closest : limit;
         // a subcontact that opens with one stiffness and closes with another loses energy
         const bool keeps = !yielded | ((e.kn - tensileSecant) * moved.before * moved.elastic >= 0);
-        const bool elastic = (moved.elastic <= within) & (tauSquared <= strength * strength) & (crushing <= squaredCap) &
-                             (closure <= hardens) & keeps;
+        const bool elastic = (moved.elastic <= within) & (tauSquared <= strength * strength) &
+                             (crushing <= squaredCap) & (closure <= hardens) & keeps;
         normalStress[i] = sigma;
         opening[i] = elastic ? moved.total : oldOpening;
         shearStressA[i] = elastic ? a : oldA;
@@ -77,8 +77,9 @@ template <bool spatial, bool yielded>
 MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& e, const PiecewiseConsequences& ofAll,
                                    const Columns& columns, std::size_t at, int count, const Jumps& jumps,
                                    double* normalStress, Mask* pending) {
-    return e.cr > 0 ? stayElasticAs<spatial, yielded, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
-                    : stayElasticAs<spatial, yielded, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
+    return e.cr > 0
+               ? stayElasticAs<spatial, yielded, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
+               : stayElasticAs<spatial, yielded, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
 }
 
 } // namespace

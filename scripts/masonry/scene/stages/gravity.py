@@ -29,7 +29,9 @@ class Growing(Timed):
 def factorReached(scene, rows):
     """The horizontal over the vertical acceleration at which the structure left rest, or that of the end."""
     if scene.collapsed:
-        how = "where the structure left rest: its motion, followed back to its beginning"
+        how = (
+            "where the structure left rest: its motion, followed back to its beginning"
+        )
         return [Answer("factor_at_leaving_rest", "-", scene.factor, how)]
     how = "the largest that was reached; the structure did not fall"
     return [Answer("factor_reached", "-", scene.factor, how)]
@@ -181,9 +183,7 @@ def bracket(scene, carries, low, high, within=0.01):
     :raises ValueError: if the structure does not carry ``low``, or carries ``high``
     """
     if not 0 <= low < high < math.inf:
-        raise ValueError(
-            f"bracket: low {low} must be at least 0 and below high {high}"
-        )
+        raise ValueError(f"bracket: low {low} must be at least 0 and below high {high}")
     if not carries(low):
         raise ValueError(
             f"bracket: the structure does not carry {low:g}, the lower end"

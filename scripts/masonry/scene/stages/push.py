@@ -55,9 +55,7 @@ def push(scene, target, until=None, direction=(1, 0, 0), rate=None, continued=Fa
     return _drive(scene, "push", target, dict(until=until), direction, rate, continued)
 
 
-@stage(
-    bounded=True, farther=("amplitudes", "repeats"), options=OPTIONS, answers=peaks
-)
+@stage(bounded=True, farther=("amplitudes", "repeats"), options=OPTIONS, answers=peaks)
 def cycle(
     scene,
     target,
@@ -127,9 +125,7 @@ def _argumentsOf(scene, name, aims):
             args.history = history.parse(aims["history"])
         except ValueError as error:
             raise Refused(f"{name}: {error}") from None
-    elif not (
-        isinstance(args.until, (int, float)) and 0 < args.until <= history.MOST
-    ):
+    elif not (isinstance(args.until, (int, float)) and 0 < args.until <= history.MOST):
         raise Refused(
             f"{name}: until {args.until!r} must be above 0 and at most {history.MOST:g} mm; the direction says "
             "where to"

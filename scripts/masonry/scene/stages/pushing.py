@@ -31,7 +31,9 @@ class Pushing:
     )
     path: float = 0.0  # length of the path to there [mm]
     since: float = 0.0  # time from which the velocity grows [s]
-    growth: float = 0.0  # velocity then, in the present direction, over the full one [-]
+    growth: float = (
+        0.0  # velocity then, in the present direction, over the full one [-]
+    )
     peaks: list = (0.0, 0.0)  # largest base shear so far [kN]
     peaksAt: list = (0.0, 0.0)  # displacement there [mm]
     reach: list = (0.0, 0.0)  # farthest turning point so far [mm]
@@ -65,7 +67,9 @@ class Pushing:
             goal = goals[self.passed]
             brakes = goal.brake is not None
             near = brakes and abs(goal.brake - goal.displacement) <= ARRIVED
-            if goal.direction * (goal.displacement - self.moved) > (ARRIVED if near else 0):
+            if goal.direction * (goal.displacement - self.moved) > (
+                ARRIVED if near else 0
+            ):
                 return True, turned
             if self.passed + 1 == len(goals):
                 return False, turned
@@ -141,7 +145,9 @@ def drivePush(scene, name, args, began, continued=False):
     def detail():
         if not args.history:
             return f"{at.moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
-        return f"{direction:.1f} of {whole:g} mm, at {at.moved:6.2f} mm  {shear:7.2f} kN"
+        return (
+            f"{direction:.1f} of {whole:g} mm, at {at.moved:6.2f} mm  {shear:7.2f} kN"
+        )
 
     velocity, moves = None, True
     while moves:

@@ -114,9 +114,7 @@ def _carryOut(scene, act, traits, args, settings):
     try:
         scene.begin()
         if batch.PROBE in os.environ:
-            return scene.probe(
-                name, traits, argumentsOf(act, scene, args, settings)
-            )
+            return scene.probe(name, traits, argumentsOf(act, scene, args, settings))
         scene.script.note(act, scene, args, settings, traits.farther)
         if not running.advanced:
             scene.script.compare(running.scriptBefore)
