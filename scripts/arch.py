@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A voussoir arch, 7 flat stones, springing angle 157.5°: pushed sideways by a growing acceleration, until it falls.
 
 Limit analysis of rigid blocks: it falls at 0.3736 g. ``--spread`` moves its supports apart instead.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Two walls that interlock at a corner: a horizontal acceleration out of the plane of one of them, until it falls."""
 
 from masonry import Scene, bricks, materials

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A dome of voussoirs with an oculus, under its own weight and then under a growing horizontal acceleration."""
 
 from masonry import Scene, bricks, materials

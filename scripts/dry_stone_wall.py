@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A dry-stone wall of 10 courses of 5 stones: its ground is tilted until it falls.
 
 It leaves rest at a horizontal acceleration of 0.507 of the vertical one, and bracket() finds 0.507 to 0.510. Limit analysis

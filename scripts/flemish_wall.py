@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A wall in Flemish bond, two wythes thick, between stiff beams: pushed along its plane. In space."""
 
 from masonry import Scene, bricks, materials

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-2.0-or-later
 # Makes a Debian package of the plugin for the release that it runs on: build/package/yade-masonry_VERSION_ARCH.deb.
 # It depends on exactly the YADE that is installed here, because the plugin fits no other.
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A panel under a load as large as its weight, held at foot and top: how much acceleration out of its plane it stands.
 
 A strip of thickness t and height h under a load O in the middle of its top, which weighs W and cracks at the share ξ of

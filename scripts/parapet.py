@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A free-standing parapet, 0.9 m high and 0.22 m thick, shaken out of its plane by a record. Without damping."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A pier with a window, under cycles: calcium-silicate wall of 3.08 × 2.43 m between stiff beams, 0.3 MPa."""
 
 from masonry import Scene, bricks, materials

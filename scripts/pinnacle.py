@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A pinnacle of six drums, read from a file: a horizontal acceleration grows until it falls."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Curves of runs and of measured CSV files over each other, in one picture.
 
 /usr/bin/python3 scripts/plot.py results/wall_comp4 results/wall_comp6 --out walls.png

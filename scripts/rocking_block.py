@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A free block of 0.25 × 1.0 m that a short pulse sets rocking, without damping."""
 
 from masonry import Scene, bricks, materials

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A wall with a door and a window on a support whose right half settles by 15 mm."""
 
 from masonry import Scene, bricks, materials

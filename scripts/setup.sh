@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-2.0-or-later
 # Installs what is missing (arguments: further packages), builds the plugin and installs it where plain `yade` finds it.
 # Idempotent, quick when done. No package is ever removed.
 set -euo pipefail

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-2.0-or-later
 # Sets up what is missing and runs tests, fastest ring first.
 #
 #   bash scripts/test.sh                   all tests but those with sanitizers, on all cores side by side

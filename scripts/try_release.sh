@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-2.0-or-later
 # Tries both commands of README.md in a fresh Debian, and prints peak and times of each release in a line.
 #
 #   bash scripts/try_release.sh bookworm|trixie...      in a temporary folder, which is removed at the end

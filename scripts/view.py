@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Runs in ParaView: a window in a ready state, or a picture and a film without a display.
 
 /usr/bin/python3 scripts/view.py results/wall_comp4

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """TUD-COMP-4: squat calcium-silicate wall, double clamped, 0.50 MPa. Tables 1 and 2 of the paper.
 
 The wall is 4.0 m long, 18.18 units; it is built of 18 units, 3.96 m.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Granite walls with dry joints, Vasconcelos and Lourenço (2009): 1.0 × 1.2 m, cantilever pushed at 1.325 m.
 
 The vertical load is what the top course feels. The granite blocks do not crack.

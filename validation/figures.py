@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Figures of the walls' cases and of the couplets, drawn from the results of validate.py into the folder of the case.
 
 /usr/bin/python3 validation/figures.py CASE

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What the studies of this folder share: where their runs go, running what is missing, and tables.
 
 A study is a program that runs scenes with options as a user would, or builds scenes itself, and prints a table. This

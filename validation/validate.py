@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Runs validation cases as a user would, measures the results and holds them against the limits of case.json.
 
 /usr/bin/python3 validation/validate.py CASE [RUN ...] [--measure]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The Python module masonry._masonry. When it is imported it checks whether it fits the running YADE, and registers its
 // classes there.
 #include "adapters/FunctorOfLaw.hpp"

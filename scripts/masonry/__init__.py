@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Masonry for YADE: joint laws on convex blocks.
 
 A scene of one's own is bricks, materials and stages::

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What every part of the package shares: gravity, how a run can end before its time, and what is said on the terminal."""
 
 import contextlib

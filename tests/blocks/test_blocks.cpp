@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Joint polygons and subcontacts of convex blocks, in any orientation.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "blocks/BlockElasticity.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What holds for packs of numbers, whatever their width. Each of the files test_pack_*.cpp compiles these functions for
 // its own vector units: it defines MASONRY_PACK_BYTES and PACK_CLAIMS, the namespace in which they stand.
 #include "common/Pack.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Text, descriptions of properties, packs of numbers and vectorised loops.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "common/Pack.hpp"

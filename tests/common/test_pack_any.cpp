@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Packs of two numbers, for any processor of this kind.
 #include "common/Vectorised.hpp"
 #include <cmath>

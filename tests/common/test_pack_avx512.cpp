@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Packs for the vector units of AVX-512. The standard headers stand before the pragma, so that their functions are not
 // compiled for these units.
 #include "common/Vectorised.hpp"

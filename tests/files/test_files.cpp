@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A checkpoint that is written and read is the same to the last bit, and bytes that are not a whole one are refused.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "files/Checkpoint.hpp"

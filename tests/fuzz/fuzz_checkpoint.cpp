@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Any bytes must be refused with an error or read as a checkpoint, which must then be the same after writing and
 // reading.
 #include "files/Checkpoint.hpp"

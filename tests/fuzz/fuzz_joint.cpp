@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Takes the properties of a joint from any bytes. They must be refused with an error, or give a joint whose tables and
 // law fulfil what PROMISE() checks here.
 #include "law/Laws.hpp"

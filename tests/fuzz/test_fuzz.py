@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The readers of checkpoints and of joints' numbers under libFuzzer, AddressSanitizer and UBSan: a few seconds each.
 
 For longer: build/fuzz/fuzz_checkpoint -max_total_time=600

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What documents promise: links lead somewhere, commands name files and modules that exist, and so do paths.
 
     /usr/bin/python3 tests/gates/documents.py    prints what leads nowhere

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """How the sources are formatted, and imports that nobody uses.
 
     /usr/bin/python3 tests/gates/formatting.py          prints what is wrong

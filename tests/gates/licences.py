@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The line that names the licence, in each source file among its first three lines."""
 
 import re

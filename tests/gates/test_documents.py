@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Links, commands and paths of all documents lead somewhere."""
 
 import documents

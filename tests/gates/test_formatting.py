@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The tree is formatted and imports nothing in vain; and a file that is not, is seen."""
 
 import importlib.util

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The version stands in one place, and every file that names it names the same."""
 
 import os

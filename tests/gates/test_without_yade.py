@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What needs no YADE runs where there is none, and what needs it is skipped with that reason."""
 
 import os

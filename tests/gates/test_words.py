@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """No file gets more of the words that this code uses with private meanings."""
 
 import subprocess

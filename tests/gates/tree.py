@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The files of the repository, and how a gate shows what it found."""
 
 import os

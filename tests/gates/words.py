@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Words that this code uses with private meanings, and what to write in their place.
 
     /usr/bin/python3 tests/gates/words.py            how many there are, by file and by word

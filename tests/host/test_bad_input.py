@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Bad input of every sort: one clear error each, nothing runs, and what was there stays as it was.
 
 A case is what the scene is, what is done to it, and what the message must say.

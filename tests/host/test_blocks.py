@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Blocks of our own beside YADE's Polyhedra: the same numbers, the same runs, saved and loaded."""
 
 import math

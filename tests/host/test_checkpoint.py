@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A scene's state on disk and back: to the last bit, whole or not at all, and never into another scene."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A block that has left the small displacements its joints are made for ends the run as collapsed; a wrong balance is told.
 
 Rocking and sliding within a face do not end it.

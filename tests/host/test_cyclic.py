@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The cyclic law in YADE: files, properties, and scenes of two laws."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Deformable units in the engine loop: closed forms, energy, saving, and agreement with rigid ones."""
 
 import os

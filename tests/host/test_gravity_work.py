@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Work of a gravity that changes during a run: raised step by step, turned, and under blocks that were moved before."""
 
 import math

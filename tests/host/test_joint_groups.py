@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Joints are grouped by the values of their properties, whether these stand in one MasonryJoint or in many."""
 
 import pytest

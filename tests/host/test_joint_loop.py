@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """MasonryJointLoop and MasonryIntegrator against the functors and NewtonIntegrator, which are the reference."""
 
 import os

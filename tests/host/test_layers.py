@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Who may know whom, by what the sources include. These tests need no YADE: they only read the sources."""
 
 import glob

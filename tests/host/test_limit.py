@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Limit analysis against closed forms, against values of another programme, and against itself."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Damping, drives, prescribed places and neighbours of another kind, against numbers that follow by hand."""
 
 import math

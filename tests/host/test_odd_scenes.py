@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What a script can do to a scene that runs: it takes effect, or an error says why not. Nothing ends the process."""
 
 import gc

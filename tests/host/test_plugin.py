@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The plugin in the running YADE: self-check, registration, dispatch, joints between polyhedra, saving."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Points of a joint: rocking blocks, stacks and arches against closed forms and limit analysis, with default points.
 
 Every limit is bracketed: the structure must stand at one per cent below the limit and fall at one per cent above it.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What a user does at the prompt while a scene runs, or after it has ended, gives an answer or an error, never a crash.
 
 Most of it runs in a YADE of its own, so that a crash is a failed test and not the end of pytest.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The files of MasonryVtkRecorder hold, column by column, what Python reads of the same instant."""
 
 import math

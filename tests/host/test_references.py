@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Short runs against the stored numbers of the build that made them; tests/references/references.py says what they are.
 
 A build that calculates in another order may differ from the stored numbers by round-off. Round-off grows once joints slide and crack, because its sign then decides what happens. The tolerances are relative to

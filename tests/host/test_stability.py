@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Runs that cannot be trusted stop with an error; the energy balance against closed forms."""
 
 import math

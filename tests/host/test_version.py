@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The plugin carries the version and the commit that it was built from."""
 
 import pydoc

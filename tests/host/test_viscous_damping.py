@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Viscous damping, proportional to mass and to the stiffness of joints, against closed forms."""
 
 import math

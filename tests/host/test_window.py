@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """YADE's own 3-D view of a scene, under a virtual display: what is drawn, and what it costs."""
 
 import shutil

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Measures the time that the law takes for one subcontact and one step, in columns and one by one. It is a program of
 // its own and not a test:
 //   cmake -S . -B build -DMASONRY_BENCHMARKS=ON && make -C build benchmark_law && build/benchmark_law

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Search for paths on which a joint gives back more work than it was given: hill climbing over closed paths of the
 // displacement jump in three dimensions, for joints drawn at random with all that the cyclic law can do.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The law of tests/law/coulomb_friction: what a law gets from the columns when it only knows one subcontact.
 #include "coulomb_friction/CoulombFriction.hpp"
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What the cyclic law promises (yade_plugin/law/cyclic_softening/README.md), at the bed joint of the CS walls and at
 // joints drawn at random. The main function of the tests stands in test_law.cpp.
 #include "closed_cycles.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The cyclic law in columns against the law for one subcontact: the same bits, whatever kind of joint and path.
 #include "law/Laws.hpp"
 #include "law/common/ColumnsSideBySide.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The law against closed form and its consequences (yade_plugin/law/README.md), at the bed joint of the CS walls.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "common/Text.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Pure kinematics: damping, the energy ledger, a step of rigid bodies, frames and jumps of joints, and the largest
 // eigenvalue. Expected numbers come from closed forms and from a reference that is written with Eigen's rotations.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN

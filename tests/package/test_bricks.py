@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Walls as plain records: bonds, openings, junctions, and collections of blocks.
 
 What a wall must be is computed here from the corners of its boxes alone: they fill what they should fill, no two

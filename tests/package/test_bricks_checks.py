@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What the checks of a set of blocks find: gaps, overlaps, slivers, loose parts and joints of odd size."""
 
 import math

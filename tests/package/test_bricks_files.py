@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Blocks from files of every format, and what is refused in them."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The plugin finds the same joints between blocks as the plain records do."""
 
 import pytest

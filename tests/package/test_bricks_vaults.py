@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Arches, barrel vaults and domes against closed forms of their polygons, and as sets of blocks that fit."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What the build makes: objects for one kind of vector units alone, and an installed package without old modules."""
 
 import glob

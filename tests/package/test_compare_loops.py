@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The comparison of the dry-joint walls' loops says yes to the measured curves themselves, and no to others."""
 
 import os

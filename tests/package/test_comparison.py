@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Curves over each other, and rows for yade.plot."""
 
 import sys

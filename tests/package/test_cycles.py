@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Numbers and figures of the walls in cycles, from curves whose answers are known."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Random fields: mean, spread and correlation are those that were asked for."""
 
 import math

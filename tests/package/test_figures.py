@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Figures of any run: what is drawn where, from frames of real joints and from curves made up for it."""
 
 import json

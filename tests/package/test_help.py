@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """help(masonry) leads to every module: it names the rooms, and each room names its modules."""
 
 import ast

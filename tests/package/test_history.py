@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Displacement histories: what the option may say, what is refused, and where the drive brakes."""
 
 import hashlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Who may import whom in the Python package and in the scenes, by what their sources say."""
 
 import ast

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Numbers of loops, on loops of which they are known in closed form, whole and with the noise of a measurement."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Numbers of a crack pattern, on patterns made up so that the numbers are known."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The measured loops of the dry-joint walls are read, put in order and thinned as their README says."""
 
 import os

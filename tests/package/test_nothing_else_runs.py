@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Nothing runs that was not asked: files in the present folder, ports of YADE, and what apt-get would remove."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The plain model of the dry-joint wall against statics, and against the closed form of its shear stiffness."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Short runs whose numbers are stored, so that a rewrite of the internals can be compared with them.
 
     yade -n -x tests/references/references.py             # compares all runs with what is stored

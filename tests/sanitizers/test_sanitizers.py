@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Law, geometry and files under AddressSanitizer and UBSan; the threaded engines in YADE under ThreadSanitizer."""
 
 import os

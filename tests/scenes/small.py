@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A small wall for the tests, and how it is tested in this process."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What the stages of a scene answer, in run.json, on the terminal and in the table of a study."""
 
 import pytest

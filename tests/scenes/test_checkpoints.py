@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Runs that are killed, interrupted or stopped by a full disk, and resumed. Their curve must be that of a whole run."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The quick variants of the closed forms hold their aims, and what is known to miss one does so still."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Two bricks through the whole of the host against the closed forms of the law, with both block models."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """One joint in cycles, as validation/cyclic/joint.py drives it, against the closed forms of the paper's law."""
 
 import os

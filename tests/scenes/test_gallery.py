@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Every scene of the gallery runs in its quick variant, ends in order and leaves its files."""
 
 import glob

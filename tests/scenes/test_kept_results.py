@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Results are the user's: what a run may touch, when, and how it ends when something is odd."""
 
 import errno

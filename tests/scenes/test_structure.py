@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes of one's own: stages, how they end, closed forms of what they measure, and what they refuse."""
 
 import pytest

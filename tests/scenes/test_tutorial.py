@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Every command and every snippet of the tutorial, in their order."""
 
 import os

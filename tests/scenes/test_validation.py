@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The quick variants of the validation cases hold their limits, and the program says so when one does not."""
 
 import glob

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Runs in ParaView, with the real pvpython where it is installed."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The dry-joint granite walls: their stiffness under load, their load line, and what they refuse."""
 
 from functools import partial

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Walls as a user runs them: quick variants of the scenes, what they leave behind, and how they end."""
 
 import glob

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Walls that follow a history: where they turn, what they leave, how they collapse, and how they are taken up again."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Designs of studies: moments, bounds, dependence, strata, and that the same seed gives the same rows."""
 
 import math

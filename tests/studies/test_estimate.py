@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Multi-fidelity estimates against models whose truth is known: their bias, their intervals, and what they save."""
 
 import math

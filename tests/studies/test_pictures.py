@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Sensitivities against closed forms, and pictures of what they must show, drawn from numbers and from a study's folder."""
 
 import json

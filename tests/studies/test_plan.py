@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What a study says: its table as YADE reads it, and what is refused before anything runs."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Studies that run: here, killed at random moments, on Slurm, and by plain yade-batch; always with the same study.csv."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Statistics of a study hold what they promise: how often their intervals have the truth, and what they say of few rows."""
 
 import math

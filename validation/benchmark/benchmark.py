@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What a step costs.
 
 yade -n -x [-j THREADS] validation/benchmark/benchmark.py [STEPS]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Arches: least thickness, friction, horizontal acceleration, tilt, thrust and spreading supports."""
 
 from cases import between, case

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What a case of this folder is: a closed form, and a function that measures the same with the engine."""
 
 import math

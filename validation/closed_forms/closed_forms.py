@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Closed forms beside the engine: runs the cases of this folder, and prints and writes their table.
 
 yade -n -x validation/closed_forms/closed_forms.py [--only NAME ...] [--quick] [--out FILE]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """How answers of the engine come to those of rigid blocks with stiffer joints, more points and slower loads.
 
 yade -n -x validation/closed_forms/convergence.py [--out FILE]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Elastic behaviour: stiffness of joints, cantilevers and clamped panels, patch tests, waves."""
 
 import math

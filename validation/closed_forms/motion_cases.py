@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Motion: free fall, sliding and rocking blocks, restitution, momentum, rotation, viscous damping, work of gravity."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Small structures in YADE that closed forms speak of, and whether they stand.
 
 Some are built body by body with :mod:`masonry.assembly`, for single blocks and joints; others are a

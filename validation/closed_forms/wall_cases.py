@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Dry walls in and out of their plane, single blocks and stacks, panels with overburden, piers that are pushed."""
 
 from cases import between, case

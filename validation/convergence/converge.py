@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """How far the answer of two walls with deformable units moves with mesh, rate, damping and time step.
 
 /usr/bin/python3 validation/convergence/converge.py [--draw]

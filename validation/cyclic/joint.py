@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """One joint in cycles: tension, shear under three normal stresses, closure. The rows of every path go to a CSV file.
 
 yade -n -x validation/cyclic/joint.py                        # the paper's law and the cyclic law, into results/

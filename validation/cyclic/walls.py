@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The four calcium-silicate walls in cycles of growing amplitude, under both laws: walls.md and the figures.
 
 /usr/bin/python3 validation/cyclic/walls.py                                  # runs what is missing, then all of these

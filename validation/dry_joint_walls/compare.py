@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The dry-joint walls against their tests, from the runs of this case: envelopes.png and a table on the terminal.
 
 /usr/bin/python3 validation/validate.py dry_joint_walls

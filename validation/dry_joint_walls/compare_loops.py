@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The ten dry-joint walls, each driven through its own measured history, against its measured loops.
 
 /usr/bin/python3 validation/dry_joint_walls/compare_loops.py                      # all walls, cyclic law

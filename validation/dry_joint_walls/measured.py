@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The measured loops of the ten dry-joint walls: reading, repairing, and the numbers of their cycles.
 
 /usr/bin/python3 validation/dry_joint_walls/measured.py            # a table of all cycles, in markdown

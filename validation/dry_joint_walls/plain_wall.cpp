@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A plain model of a dry-joint granite wall, in two dimensions and written without the plugin, so that both can be held
 // against each other and properties can be tried that no joint law of the plugin has. plain_wall.py compiles and runs
 // it.

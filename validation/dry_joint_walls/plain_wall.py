@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What decides the work of the dry-joint walls' cycles: variants of a plain model of the wall, against the test WS2.175.
 
 /usr/bin/python3 validation/dry_joint_walls/plain_wall.py          # all variants, a table in markdown

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Few accurate runs and many fast ones, against accurate runs alone: what both say of the peak of two walls.
 
 /usr/bin/python3 validation/multifidelity/multifidelity.py [--jobs 2] [--compare]

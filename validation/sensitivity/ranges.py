@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The values of the joint law that the paper leaves open, each with its range and the reason for it.
 
 Every name is that of a property of joints, or several that have the same value. All ranges hold together: any value of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """How far the answer of two walls moves when an assumed value of the joint law moves over its plausible range.
 
 /usr/bin/python3 validation/sensitivity/tornado.py [--draw]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Looks for closed paths on which the cyclic law gives work back: closed_cycles [seconds] [seed].
 #include "../../tests/law/closed_cycles.hpp"
 #include <chrono>

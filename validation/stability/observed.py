@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Walls whose state is looked at all the time: what the studies of this folder share. It needs YADE."""
 
 from dataclasses import dataclass, field

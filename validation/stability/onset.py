@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Where runs become unstable, over the limit of the time step that criticalTimeStep() gives.
 
 yade -n -x validation/stability/onset.py

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A small wall pushed to and fro for two million steps: memory must stay flat, and the energy balance closed.
 
 yade -n -x validation/stability/soak.py [STEPS]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Walls at the extremes: one axis of the input at a time, from a small wall of calcium silicate.
 
 yade -n -x validation/stability/stability.py [AXIS ...]

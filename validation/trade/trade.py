@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The price of speed: errors of the four walls against time, one knob at a time, and the presets.
 
 /usr/bin/python3 validation/trade/trade.py [--draw | --time-only] [--jobs N] [--walls WALL ...]

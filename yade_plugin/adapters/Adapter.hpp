@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What the classes of this plugin that YADE sees have in common. Each class lists its attributes once, and this list
 // serves Python, dict(), saving, checkpoints, the check of values and the documentation.
 //

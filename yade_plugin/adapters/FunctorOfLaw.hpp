@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What the functors of the joint laws have in common: in YADE's InteractionLoop each takes one joint after the other.
 //
 // The functor of a law is one source file with a class

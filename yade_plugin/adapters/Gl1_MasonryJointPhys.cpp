@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "Gl1_MasonryJointPhys.hpp"
 #include "Colours.hpp"
 #include "scene/SceneStore.hpp"

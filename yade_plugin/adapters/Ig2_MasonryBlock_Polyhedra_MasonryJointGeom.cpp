@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "Ig2_MasonryBlock_Polyhedra_MasonryJointGeom.hpp"
 
 template class masonry::Adapter<masonry::Ig2_MasonryBlock_Polyhedra_MasonryJointGeom,

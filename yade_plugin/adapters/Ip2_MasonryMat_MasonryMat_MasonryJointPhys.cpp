@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "Ip2_MasonryMat_MasonryMat_MasonryJointPhys.hpp"
 #include "MasonryJointGeom.hpp"
 #include "scene/BodyCheck.hpp"

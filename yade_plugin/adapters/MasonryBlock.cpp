@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryBlock.hpp"
 
 template class masonry::Adapter<masonry::MasonryBlock, yade::Shape>;

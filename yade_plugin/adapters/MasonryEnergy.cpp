@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryEnergy.hpp"
 #include "scene/BodyCheck.hpp"
 #include "scene/BodyStep.hpp"

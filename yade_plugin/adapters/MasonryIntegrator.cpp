@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryIntegrator.hpp"
 #include "scene/EngineTurn.hpp"
 

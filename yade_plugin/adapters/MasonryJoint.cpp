@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryJoint.hpp"
 #include "law/Laws.hpp"
 #include "law/piecewise_softening/PiecewiseLaw.hpp"

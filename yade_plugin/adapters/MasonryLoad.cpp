@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryLoad.hpp"
 #include "scene/EngineTurn.hpp"
 #include "scene/Zones.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Linear elasticity of a meshed block (paper §2): zones of constant strain and masses lumped at the nodes. Strains are
 // small, but the block may turn: strains and stresses are computed in axes that turn with it. Congruent blocks share
 // one object, and the forces of several of them are computed at a time (BlockLanes.hpp).

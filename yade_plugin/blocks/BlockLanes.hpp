@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Forces and motion of the nodes of several congruent blocks at a time (paper §2). A Row holds one number for each of
 // `lanes` blocks, so that the vector units of the processor compute them together. Displacements, velocities and forces
 // have three rows a node, row 3 n + d for node n and direction d.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The functions of BlockLanes.hpp for vectors of WIDTH numbers. A row is handled in several parts of that width.
 
 typedef double Lanes __attribute__((vector_size(8 * WIDTH), may_alias));

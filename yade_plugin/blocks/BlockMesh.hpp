@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A convex block divided into tetrahedral zones (paper §2: deformable blocks). Pure geometry.
 #pragma once
 #include "FaceContact.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The shape and the mass properties of a convex block.
 #pragma once
 #include "FaceContact.hpp"

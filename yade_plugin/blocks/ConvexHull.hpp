@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The convex hull of points, by CGAL.
 #pragma once
 #include <Eigen/Core>

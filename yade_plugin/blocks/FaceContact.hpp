@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Joints between convex blocks. Where two faces coincide, the blocks share a joint; its shape is a polygon. This is
 // pure geometry: all points are in one common coordinate system [m].
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Subcontacts: the points of a joint at which its law is followed, each with its share of the joint's area. Sums over
 // subcontacts stand for integrals over the joint, so points and shares are those of a quadrature.
 //

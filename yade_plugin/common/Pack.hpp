@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Numbers side by side, which are calculated with like one. A function template for a number type T holds for double
 // and for Pack, and gives the same bits for both.
 #pragma once

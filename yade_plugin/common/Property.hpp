@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The description of a property: unit, bounds, meaning, source. The check of a value, Python's documentation, the hints
 // about units, files and run.json all read this one description.
 #pragma once

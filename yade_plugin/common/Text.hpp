@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Numbers and lists as text, for messages.
 #pragma once
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // How inner loops use the vector units of a processor. A function marked MASONRY_VECTORISED is compiled for several
 // instruction sets, and the program takes the best one that the processor has when it starts. All give the same
 // numbers, because the project is built without contraction of products and sums.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The contents of a checkpoint and their form as bytes. No file is opened here. Bytes that come from a file are not
 // trusted: if they are cut short, altered or no checkpoint at all, they are refused with the reason.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Compares the declarations in Yade.hpp with the running YADE, before any class is registered. README.md says what is
 // compared and how.
 #pragma once

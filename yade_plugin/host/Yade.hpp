@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The classes of YADE that this plugin touches, declared in our own words, because Debian's YADE comes without headers.
 // Layouts are those of the YADE versions in SelfCheck.cpp, with double precision. SelfCheck.cpp compares them with the
 // running YADE when the plugin is imported; README.md says why they are declared as they are.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // YADE's classes that draw in its 3-D view, declared as those in Yade.hpp are.
 #pragma once
 #include "Yade.hpp"

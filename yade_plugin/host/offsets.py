@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Byte offsets of the data members of YADE's classes, as the running YADE reports them through Python.
 
     yade -n -x yade_plugin/host/offsets.py [CLASS...]

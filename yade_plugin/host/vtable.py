@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Virtual function tables of YADE's classes, read from a shared library; nothing of the library is run.
 
     /usr/bin/python3 yade_plugin/host/vtable.py LIBRARY [CLASS...]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "Laws.hpp"
 #include "common/Text.hpp"
 #include "law/cyclic_softening/CyclicLaw.hpp"

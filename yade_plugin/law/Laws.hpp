@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The list of the joint laws. A program finds here every law by its name, and needs to know none of them.
 #pragma once
 #include "law/common/JointField.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Local damping, paper eq. (3), and combined damping. Rigid blocks and the nodes of deformable ones use the same
 // function, with one number or with several side by side.
 #pragma once

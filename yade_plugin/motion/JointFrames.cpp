@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "JointFrames.hpp"
 #include "common/Vectorised.hpp"
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The arithmetic of many joints between their blocks and the law, in columns for the vector units: displacement jumps
 // from the places of the blocks, and forces on the blocks from the stresses. The functions are called in the order
 // align, then for each subcontact jump, the law and pull, then finish. Columns begin at the first of `n` joints and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The largest eigenvalue of a symmetric positive semidefinite operator, by the method of Lanczos.
 #pragma once
 #include <Eigen/Core>

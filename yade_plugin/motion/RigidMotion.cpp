@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "RigidMotion.hpp"
 #include "Damping.hpp"
 #include "common/Vectorised.hpp"

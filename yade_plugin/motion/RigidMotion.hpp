@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A step of many rigid blocks that have a blocked rotation, in columns for the vector units: paper eqs. (1) to (3), and
 // the energies that belong to them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Which bodies are blocks: those whose shape has a BlockSurface, and those with a Polyhedra of a YADE that has this
 // class.
 #pragma once

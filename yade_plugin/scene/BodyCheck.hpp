@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Checks of single bodies.
 #pragma once
 #include "host/Yade.hpp"

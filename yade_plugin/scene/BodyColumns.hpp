@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Place, motion and mass of the bodies of a scene, in columns. Integrator moves the rigid bodies here. The row
 // of a body is its id. The integrator writes the host's State once a step. Scripts and other engines may change a State
 // between two steps; the engines of this plugin notice that before they use the columns.

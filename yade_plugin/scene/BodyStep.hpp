@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A step of one rigid body, by the equations of NewtonIntegrator. It is the reference for RigidMotion, and it moves the
 // bodies that are free to turn in space.
 #pragma once

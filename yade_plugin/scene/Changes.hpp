@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Counts the changes of joints, deformable units and properties. When the number has changed, SceneStore reads its
 // scene anew.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Where a scene has left the small displacements that its joints are made for: a block that has tipped over, slid off
 // its neighbour, gone through it or left it. What a run computes from then on means nothing, so it ends.
 #pragma once

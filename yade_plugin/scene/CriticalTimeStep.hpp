@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The largest time step for which a scene is stable.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "EngineTurn.hpp"
 #include "SceneCheck.hpp"
 #include "StepGate.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The beginning and the end of an engine's action.
 #pragma once
 #include "SceneStore.hpp"

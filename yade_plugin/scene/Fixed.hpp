@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Values that cannot change any more because joints were made with them, and an error that says so.
 #pragma once
 #include "common/Text.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Work of a gravity that may change during a run, as it does when it is raised step by step, or turned to tilt a scene.
 #pragma once
 #include "common/Property.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "Integrator.hpp"
 #include "BodyCheck.hpp"
 #include "BodyStep.hpp"

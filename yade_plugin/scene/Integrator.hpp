@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The step of all rigid bodies, by the equations of NewtonIntegrator (see BodyStep), in columns. An engine derives
 // from it.
 #pragma once

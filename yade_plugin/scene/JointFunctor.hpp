@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What the functors of the joint laws share: a step of one joint in the host's InteractionLoop, and the way of its
 // forces to the nodes of deformable units.
 #pragma once

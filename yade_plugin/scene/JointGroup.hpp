@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The columns in which the state of joints lives: jumps and geometry in JointShapes, the state of the law in
 // JointStates. Each of these is a group. A joint that was just made has groups of its own. When SceneStore reads a
 // scene, it moves all joints of one kind into common groups, on which the engines work. JointGeometry and JointPhysics

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A step of all joints of a scene: it finds the jumps from the places of blocks and nodes, calls the law, and brings
 // the forces to blocks and nodes. The state is in the columns of SceneStore. What a plan keeps itself follows from the
 // scene, and is made anew when the scene has changed. See JointFrames for the arithmetic.

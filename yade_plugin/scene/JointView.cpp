@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "JointView.hpp"
 #include "Zones.hpp"
 #include "blocks/JointPoints.hpp"

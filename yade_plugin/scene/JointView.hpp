@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A joint as the engines see it: its geometry and its state, each a view of the columns in which they live.
 #pragma once
 #include "JointGroup.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The attributes of an engine that keeps the energies of rigid bodies.
 #pragma once
 #include "common/Property.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A load on a rigid block, at a point fixed to it. An engine derives from it.
 #pragma once
 #include "host/Yade.hpp"

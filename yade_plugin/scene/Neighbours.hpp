@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Which blocks of a scene share a face, and which nearly do.
 #pragma once
 #include "blocks/FaceContact.hpp"

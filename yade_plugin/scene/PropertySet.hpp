@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The properties of one kind of joint, shared by all joints of that kind, with the law that follows from them.
 // The class that Python sees derives from it.
 #pragma once

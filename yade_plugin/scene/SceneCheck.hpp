@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Checks whether a scene can be run.
 #pragma once
 #include "host/Yade.hpp"

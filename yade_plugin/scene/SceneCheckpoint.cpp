@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "SceneCheckpoint.hpp"
 #include "Blocks.hpp"
 #include "Changes.hpp"

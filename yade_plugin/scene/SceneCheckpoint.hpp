@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Writes the state of a scene into the bytes of a checkpoint, and brings it back into the same scene that was built
 // again.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The view of a scene that all engines of this plugin share: its engines, bodies and joints. It is read again when they
 // have changed. It owns the columns in which the state of joints and rigid bodies lives.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Keeps Python and the engines of a running scene apart, so that attributes can be read and set at YADE's prompt while
 // O.run() works in the background. A reader waits until a step has ended, and a step waits until no reader is at work.
 // In these comments a reader is any thread that reads or changes attributes.

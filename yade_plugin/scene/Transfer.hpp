@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Moves the state of a scene into a checkpoint or back. The same code does both: it names every value, and the
 // direction decides which side is written. Values of a fixed size become plain numbers.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The elasticity of masonry units of one material. A material derives from it.
 #pragma once
 #include "Fixed.hpp"

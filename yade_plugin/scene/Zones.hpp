@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Deformable units: their nodes, how joints hang on them, and a step of their motion. The state of the nodes lives
 // here, in rows. An engine derives from it.
 #pragma once

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What YADE is given and what is read off it: blocks, joints, engines, loads, and the columns of curve.csv.
 
 - :mod:`masonry.assembly.blocks`: ``addBlock``; :mod:`masonry.assembly.engines`: ``engines`` and ``advance``;

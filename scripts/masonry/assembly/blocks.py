@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Blocks of a scene: bodies of YADE. Bad input raises ValueError, with all problems at once."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The columns of curve.csv: name, unit, meaning and value of each stand in one place.
 
 Adding a column is adding a line here, to :meth:`masonry.scene.targets.Target.columns` if every target shall have it, or to

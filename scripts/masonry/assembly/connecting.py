@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The joints of a scene: made of all pairs of blocks that share a face. Bad input raises ValueError, with all problems at
 once."""
 

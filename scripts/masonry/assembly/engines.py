@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The engines of a masonry scene, and how it takes steps. Bad input raises ValueError, with all problems at once."""
 
 from yade import O, wrapper

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """How the blocks of a structure move, and whether one of them falls."""
 
 import math

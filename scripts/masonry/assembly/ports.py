@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The ports that the program ``yade`` opens when it starts.
 
 One is a Python prompt, whose password is short and stands in the log; the other answers to XML-RPC without a password, and

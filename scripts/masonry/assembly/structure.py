@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What a scene is in YADE: its bodies, joints, loads and engines."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The scene in YADE's own 3-D view, while it runs.
 
     from masonry import window

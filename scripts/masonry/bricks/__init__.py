@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Bricks of any structure as plain records, before anything is made in YADE. Nothing here needs YADE.
 
 A :class:`Bricks` is an immutable collection of :class:`Block` records: convex blocks that meet face to face. These make

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Blocks as plain records, and collections of them. Nothing here needs YADE."""
 
 import math

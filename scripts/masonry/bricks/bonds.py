@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The bonds of straight walls: where the head joints of a course stand, in quarter units."""
 
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What is wrong with a set of blocks before anything runs: gaps, overlaps, slivers, loose parts, joints of odd size."""
 
 from collections import namedtuple

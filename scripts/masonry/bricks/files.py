@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Blocks from files of surface meshes: OBJ, OFF, STL, PLY, and JSON of COMPAS.
 
 PLY and binary STL are read by meshio. It loses the names of groups (OBJ) and of solids (STL as text), takes nothing but

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Convex solids that are given by their corners: faces, volumes, joints, gaps and overlaps. Many at a time, with numpy.
 
 Solids whose corners stand in the same order have the same faces, so the faces are looked for once for all of them.

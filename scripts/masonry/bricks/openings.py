@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Bricks while a wall is laid, the openings that are cut out of it, and the blocks that come of it."""
 
 from dataclasses import dataclass, replace

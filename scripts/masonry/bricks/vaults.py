@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Arches, barrel vaults and domes from voussoirs with plane faces. Neighbours share whole faces, corner by corner."""
 
 import math

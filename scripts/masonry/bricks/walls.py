@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Straight walls in five bonds, with openings and lintels; walls that meet at corners and junctions; stacks of blocks.
 
 A wall stands along x from the origin, its thickness along y, its height along z. Units contain their joints: blocks

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Limit analysis: the largest load that a structure of rigid blocks can carry, without a run.
 
 The blocks and joints are those of the scene that is built, so this is a second opinion on what a run says::

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Rigid blocks, their joints and loads, and the bounds of what they carry."""
 
 import math

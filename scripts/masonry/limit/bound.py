@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What limit analysis found: the factor, forces, and the mechanism with its files."""
 
 import os

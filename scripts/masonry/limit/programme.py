@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The linear programme of limit analysis, and its solution with Clp or HiGHS."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The blocks and joints of the scene in YADE, as limit analysis takes them."""
 
 import math

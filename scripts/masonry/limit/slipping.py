@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Mechanisms in which joints slip without opening, below the bound of associated flow.
 
 When a part of a wall tips over a stepped crack, nearly all of its head joints are open, and slip along their faces without

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What reads the files of a run, and needs no YADE.
 
 - :mod:`masonry.read.files`: curve.csv and run.json; :mod:`masonry.read.frames`: the frames for ParaView

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Curves of several runs and of measured CSV files over each other, in one picture. This module needs no YADE."""
 
 import argparse

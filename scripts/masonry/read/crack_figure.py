@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """cracks.png: the deformed structure with its cracks, and the mechanism of limit analysis. This module needs no YADE."""
 
 import os

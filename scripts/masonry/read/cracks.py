@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Where joints are cracked, open, slid or crushed, and how a wall gave way: numbers of its joints at one moment.
 
 Joints are given as a frame, a dict of arrays: of a file for ParaView (:func:`masonry.read.frames.readFrame`), or of a scene

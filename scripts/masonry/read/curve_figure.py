@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """curve.png: what the entry ``figure`` of run.json says, and the energies. This module needs no YADE."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Numbers of a curve of force over displacement. This module needs no YADE."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Figures of a run, made from the files in its folder and nothing else.
 
 ``/usr/bin/python3 -m masonry.read.figures results/wall_comp4`` draws curve.png and, if there are ParaView files, cracks.png.

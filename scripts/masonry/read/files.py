@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """curve.csv and run.json of a run, read again; :mod:`masonry.run.results` lists what is in them. This module needs no YADE."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Frames for ParaView that MasonryVtkRecorder wrote, read again. This module needs no YADE and no VTK.
 
 VTK's own reader is not used: its Python modules come with python3-vtk9 or, in its place, with python3-paraview, and

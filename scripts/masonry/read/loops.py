@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Numbers of loops of force over displacement, simulated or measured. This module needs no YADE.
 
 Displacements are in mm and forces in kN, so that their products are in J. Both are given as one-dimensional sequences of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Numbers of a run, measured from the files in its folder and nothing else.
 
 ``/usr/bin/python3 -m masonry.read.measure results/wall_comp4`` prints them, with units in the names. Walls are pushed to the

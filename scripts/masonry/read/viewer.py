@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Runs in ParaView: in its window in a ready state, or as a picture and a film without a display. No YADE is needed.
 
 ``scripts/view.py`` is the program. ParaView's own Python works in a process of its own (:mod:`masonry.read.viewer_scene`).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What ParaView shows of runs, made inside pvpython: :mod:`masonry.read.viewer` starts this as a program with one word, a job.
 
 The job is a JSON file: ``path``, a folder of Python modules to look in first, or None; ``views``, a list of what

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """From where a part of a structure is seen in a picture. This module needs no YADE."""
 
 from collections import namedtuple

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A run: its progress, checkpoints, folder of results, presets, and rows of a table in YADE's batch format.
 
 - :mod:`masonry.run.run`: a run in stages; :mod:`masonry.run.place`: how far it has come;

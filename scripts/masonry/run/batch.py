@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Rows of a table in YADE's batch format: options of a scene for ``yade-batch``. This module needs no YADE.
 
 ``yade-batch table.txt scene.py`` runs a scene once for every row. A row has the options of the scene by their names, with

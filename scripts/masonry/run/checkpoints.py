@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Checkpoints: the state of a scene on disk, from which a run goes on as if it had never stopped.
 
 :func:`saveCheckpoint` and :func:`loadCheckpoint` serve any scene. A run in stages leaves its checkpoints by them;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """How a run ends: in order, whatever ended it, with what was computed kept."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """How far a run has come, and what a checkpoint on disk tells of it."""
 
 from dataclasses import dataclass, field

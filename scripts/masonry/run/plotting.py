@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Rows of curve.csv for ``yade.plot``, for those who watch a curve grow.
 
 The user asks for it as usual in YADE, before the run::

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Presets of options that trade accuracy for time, and what each promises. This module needs no YADE."""
 
 #: The options that a preset chooses, as they are without one. A scene may have another rate.

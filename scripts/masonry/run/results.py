@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The files that a run leaves in its folder, and how to read them again. This module needs no YADE.
 
 ``curve.csv`` has a row a reading; :mod:`masonry.assembly.columns` says what is in each column.

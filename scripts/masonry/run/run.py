@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A run in stages, in a folder of results, with checkpoints from which it can be taken up again.
 
 A stage steps by :meth:`Run.advance` alone. What it must know to go on after a checkpoint is a dataclass that it gives to

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A scene: what is built, how it is held and loaded, and the stages of its test.
 
 - :mod:`masonry.scene.scene`: ``Scene``

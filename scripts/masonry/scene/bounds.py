@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Bounds beside a run: limit analysis of what the stages of a scene load.
 
 :class:`masonry.scene.scene.Scene` asks for them by itself when a stage pushes or leans the structure. :mod:`masonry.limit` says

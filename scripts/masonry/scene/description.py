@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What a scene describes before its first stage: its bricks, and what holds, loads and records them. Plain records.
 
 The words that describe are functions of a :class:`Description`: :mod:`masonry.scene.supports`, :mod:`masonry.scene.loads`

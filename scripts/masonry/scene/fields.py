@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Properties that vary from place to place, for :meth:`masonry.scene.materials.Masonry.vary`. This module needs no YADE.
 
 Each function gives a function of x, y and z [m] that gives a factor on a property [-], 1 on the mean::

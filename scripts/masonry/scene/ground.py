@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Ground motion: records of acceleration, and viscous damping for it. This module needs no YADE."""
 
 import math

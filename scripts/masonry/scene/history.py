@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Displacement histories: what ``--history`` may say, and the points that the drive goes to. This module needs no YADE.
 
 A history is a dict that JSON can hold. ``text`` is what the user wrote, and ``points_mm`` are displacements [mm] that are

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What loads a structure from its first stage on: words that describe a scene."""
 
 import math

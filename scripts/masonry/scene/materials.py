@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Published parameter sets. Each function names its source, and what is assumed.
 
 The paper: see yade_plugin/law/README.md.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What comes out of a scene: entries of run.json, what curve.png shows, and the lines at the end on the terminal."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """How the command line of a scene is read: kinds of values, presets, and the options of a run that is resumed."""
 
 import argparse

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What a scene knows, for those who are about to run it many times: see :mod:`masonry.study`. There is no run."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What a scene records beside its targets, and how its figures look: words that describe a scene."""
 
 from ..assembly.blocks import vector

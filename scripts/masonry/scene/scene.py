@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Anybody's structures: bricks between platens, loaded in stages.
 
 A scene reads from top to bottom::

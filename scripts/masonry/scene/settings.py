@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """``--set JOINT.PROPERTY=VALUE``: from its text to the property of a joint."""
 
 import argparse

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What holds a structure, and what of it is watched: words that describe a scene."""
 
 import math

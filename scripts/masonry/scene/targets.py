@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What a scene records: platens and bricks that are held, loaded or watched, and joints. Plain records with their columns."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Whether a structure is a whole wall in running bond in the x-z plane, of which crack patterns are measured."""
 
 

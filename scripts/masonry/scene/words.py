@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The words of a script, noted as data: a run that is resumed can be compared with the script that began it."""
 
 import functools

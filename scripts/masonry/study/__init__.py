@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Studies: one scene, run many times with values that vary. This package needs no YADE.
 
 A study is a small Python file::

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Runs, resumes and gathers a study: ``/usr/bin/python3 -m masonry.study FILE --out DIR``. scripts/STUDIES.md is the manual."""
 
 import argparse

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Which values the rows of a study have: points of the unit cube, then values of what varies.
 
 Points are those of OpenTURNS: independent random numbers, a Latin hypercube, or Sobol's sequence, moved by a random vector.

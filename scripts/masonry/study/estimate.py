@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Mean, spread and quantiles from few expensive runs and many cheap ones. This module needs no YADE.
 
 A preset is a fidelity: ``fast`` and ``bound`` miss the peak of ``accurate`` by a little, but they move with it when a

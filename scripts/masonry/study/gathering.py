@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What came out of a study: which of its rows are done, and the table of their numbers.
 
 ``study.csv`` has a row a run: ``run``, what varies (of a field its seed), ``status``, and the numbers of run.json. It is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Runs the rows of a study on this machine, with YADE's own yade-batch."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Pictures of a study, for print. This module needs no YADE.
 
 Each function takes numbers and writes one PNG file of 6 to 7 inches at 200 dots an inch. ``inputs`` is a dict of the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The description of a study, and the table of its rows."""
 
 import hashlib

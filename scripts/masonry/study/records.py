@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The rows of a study, read from its folder as :mod:`masonry.study.gathering` leaves it. This module needs no YADE."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What a study says: a table of statistics, and pictures.
 
 /usr/bin/python3 -m masonry.study.report DIR

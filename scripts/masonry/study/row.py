@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Runs rows of a study: ``/usr/bin/python3 -P -m masonry.study.row DIR NUMBER...``
 
 A row that was run is left out, one that was stopped goes on from its checkpoint, and one that somebody else is running is

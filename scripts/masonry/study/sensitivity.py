@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """How much every varied property decides: changes, rank correlations and Sobol indices. This module needs no YADE.
 
 Everything here is found from the rows that a study has, whatever their design, with varied properties that are drawn

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Runs the rows of a study on a cluster: one job array of Slurm."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Begins a study: checks all of it before anything runs, and makes its folder."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What varies in a study: distributions, choices, and random fields over the joints."""
 
 import math

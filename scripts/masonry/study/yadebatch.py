@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Runs YADE's own yade-batch without its HTTP server: ``python3 -P -m masonry.study.yadebatch /usr/bin/yade-batch ...``
 
 yade-batch serves a page, with an unauthenticated stop of every job, on all interfaces, and has no option against that. Here

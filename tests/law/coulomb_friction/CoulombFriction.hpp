@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A joint law for tests, which shows what a law needs to be one: this folder and an entry in the list (law/Laws.cpp).
 // Closed faces are linear elastic and slip by Coulomb friction, tau <= -sigma tan(phi). Open faces carry nothing. There
 // is no bond, so nothing softens.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Where the states of subcontacts stand side by side in memory: a column for each quantity, so that the vector units
 // take several subcontacts at a time.
 #pragma once

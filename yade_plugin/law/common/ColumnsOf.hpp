@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // LawColumns with a law that takes one subcontact after the other. This is all that a law needs. Beside what Law.hpp
 // asks for, it gives:
 //

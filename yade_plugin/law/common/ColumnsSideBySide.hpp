@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // ColumnsOf with a law that also takes several subcontacts at a time, and that has columns which are used only where
 // subcontacts have yielded. Beside what ColumnsOf.hpp asks for, the law gives:
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Strength in compression as a function of the largest closure: hardening to the peak, softening to the residual,
 // paper eqs. (18)-(25); law/README.md, Compression. Closure and stress are positive here.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Stiffness-proportional viscous damping of subcontacts, which acts beside the law and leaves its state alone.
 #pragma once
 #include "Columns.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What files and Python show of the state of a subcontact: a number with its name, unit and meaning. A law tells its
 // own numbers in its folder. Those that several laws have are described here, so that a name means the same everywhere.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The parameters of one kind of joint: constant, shared by all joints of that kind.
 // Defaults: bed joint of the calcium-silicate walls (paper table 2, and law/README.md where the paper gives no value).
 #pragma once

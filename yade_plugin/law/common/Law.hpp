@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What a program needs of any joint law. A law is made of the properties of one kind of joint and keeps no state.
 #pragma once
 #include "CompressionCurve.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The states of the subcontacts of joints of one kind, in columns [point][joint], as a program sees them that does not
 // know the law. What a law does with them is in ColumnsOf and ColumnsSideBySide.
 #pragma once

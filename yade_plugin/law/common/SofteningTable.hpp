@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Damage as a piecewise linear function of the displacement ratio, paper eqs. (12)-(17); law/README.md,
 // Softening.
 #pragma once

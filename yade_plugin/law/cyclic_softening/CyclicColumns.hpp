@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The cyclic law on subcontacts side by side in columns: what ColumnsSideBySide needs of it.
 #pragma once
 #include "CyclicEquations.hpp"

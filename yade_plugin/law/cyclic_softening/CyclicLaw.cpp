@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "CyclicLaw.hpp"
 #include "CyclicColumns.hpp"
 #include "CyclicStep.hpp"

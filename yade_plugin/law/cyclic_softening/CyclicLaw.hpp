@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The cyclic law on one subcontact: the strengths, tables and compression curve of the paper's law, with softening by
 // rate, stiffness that degrades, dilatancy that turns back, and joints that close on a curve. README.md states it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The cyclic law side by side with the vector units that every processor has.
 #include "CyclicSideBySide.hpp"
 

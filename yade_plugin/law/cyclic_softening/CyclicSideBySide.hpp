@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // One step of the cyclic law for several subcontacts side by side, as many as the vector units of a processor take. A
 // file for each kind of vector units includes this header and compiles `advanceAs` for it (common/Pack.hpp); that file
 // must not compile anything else, because the linker would take it for all processors.

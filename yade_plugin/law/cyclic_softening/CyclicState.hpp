@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What the cyclic law remembers of a subcontact beside what the paper's law does, and the columns in which that stands.
 #pragma once
 #include "law/piecewise_softening/PiecewiseState.hpp"

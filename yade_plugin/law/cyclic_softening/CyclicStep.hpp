@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // One step of the cyclic law, for one subcontact (T is double) or for several (T is Pack).
 #pragma once
 #include "CyclicEquations.hpp"

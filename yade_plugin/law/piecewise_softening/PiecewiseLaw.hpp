@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The joint law of the paper on one subcontact: tension cut-off F1, Coulomb slip F2, elliptical cap F3 (eqs. (8), (9)),
 // coupled softening (eqs. (10)-(17)), hardening and softening in compression (eqs. (18)-(25)). law/README.md states it.
 #pragma once

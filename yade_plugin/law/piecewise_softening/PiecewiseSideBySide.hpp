@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The paper's law on subcontacts side by side in columns, with the equations that PiecewiseLaw takes for one. A marked
 // function uses the vector units, and tells the same numbers as the law for one to the last bit.
 //

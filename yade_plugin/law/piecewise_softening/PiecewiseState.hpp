@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What the paper's law remembers of a subcontact, and the columns in which that stands.
 #pragma once
 #include "law/common/JointState.hpp"

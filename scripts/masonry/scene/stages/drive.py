@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Drives along an axis without a run-up: ``drive`` and ``pressJoint``."""
 
 from dataclasses import dataclass

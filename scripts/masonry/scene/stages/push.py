@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Slow pushes of a target, as the drive of a testing machine makes them: ``push``, ``cycle`` and ``follow``."""
 
 from types import SimpleNamespace

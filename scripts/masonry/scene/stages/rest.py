@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Waiting for rest: the stage ``settle``, and what ``lean`` shares with it."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What all stages of a scene share: how they begin and end, their traits, and what they answer."""
 
 import functools

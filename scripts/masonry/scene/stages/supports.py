@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Supports that are taken away or that move: ``release`` and ``move``."""
 
 from yade import O, Vector3

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Stages that last for a given time: steps, rows and frames evenly in time."""
 
 import math
