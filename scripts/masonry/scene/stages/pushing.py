@@ -147,7 +147,7 @@ def drivePush(scene, name, args, began, continued=False):
         if not args.history:
             return f"{at.moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
         return (
-            f"{direction:.1f} of {whole:g} mm, at {at.moved:6.2f} mm  {shear:7.2f} kN"
+            f"{travelled:.1f} of {whole:g} mm, at {at.moved:6.2f} mm  {shear:7.2f} kN"
         )
 
     velocity, moves = None, True
@@ -162,7 +162,7 @@ def drivePush(scene, name, args, began, continued=False):
         reading = run.record()
         before = at.moved
         at.now, at.moved = reading.time, 1e3 * reading.along
-        shear, direction = 1e-3 * reading.baseShear, at.travelled(goal.direction)
+        shear, travelled = 1e-3 * reading.baseShear, at.travelled(goal.direction)
         at.note(shear)
         how = None
         if at.hasLost(goal.direction, shear):
@@ -173,13 +173,13 @@ def drivePush(scene, name, args, began, continued=False):
             how = "it moves against its push"
         if args.history:
             at.since, at.growth = at.now, growth
-        run.show(max(0, direction / whole), detail)
+        run.show(max(0, travelled / whole), detail)
         moves, turned = at.passOn(goals)
         moves = moves and not how
         early = args.history and (turned or before * at.moved < 0)
-        if moves and direction >= at.nextFrame - (spacing / 2 if early else 0):
+        if moves and travelled >= at.nextFrame - (spacing / 2 if early else 0):
             run.frame()
-            at.nextFrame = (direction if early else at.nextFrame) + spacing
+            at.nextFrame = (travelled if early else at.nextFrame) + spacing
     run.show(1, detail, final=True)
     run.flush()
     if how:
