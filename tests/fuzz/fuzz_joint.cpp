@@ -25,8 +25,8 @@ namespace {
 // Draws numbers from the bytes of the fuzzer.
 class Dice {
 public:
-    Dice(const std::uint8_t* data, std::size_t size) : at_(data), left_(size) {}
-    std::uint8_t byte() { return left_ ? (--left_, *at_++) : 0; }
+    Dice(const std::uint8_t* data, std::size_t size) : at_(data), remaining_(size) {}
+    std::uint8_t byte() { return remaining_ ? (--remaining_, *at_++) : 0; }
     double raw() { // any bit pattern of a double
         double value = 0;
         unsigned char bytes[sizeof value];
@@ -58,7 +58,7 @@ public:
 
 private:
     const std::uint8_t* at_;
-    std::size_t left_;
+    std::size_t remaining_;
     bool wild_ = false;
 };
 

@@ -25,7 +25,8 @@ from masonry import (
     materials,
     touchingPairs,
 )
-from masonry.read import figures, files as reading, frames, measure
+from masonry.read import figures, files as reading, measure
+from masonry.read.frames import readFrame
 from masonry.run import results
 from masonry.bricks import Wall as BrickWall, boxCorners
 from yade import Body, O, Quaternion, Vector3, utils
@@ -542,7 +543,7 @@ CASES = {
         (nothing, lambda: wall(name=""), "name must be a text that can name a folder"),
         (nothing, lambda: wall(name="a/b"), "name must be a text that can name a folder"),
         (nothing, lambda: wall(name=None), "name must be a text that can name a folder"),
-        (nothing, lambda: wall(masonry=lambda: 5), "materials must be a masonry.scene.materials.Masonry, got 5"),
+        (nothing, lambda: wall(masonry=lambda: 5), "materials must be a masonry.materials.Masonry, got 5"),
         (nothing, lambda: materials.Masonry(FrictMat(), {"bed": 5}), ["unit must be a MasonryMat, got <FrictMat", "joints must be MasonryJoint, not ['bed']"]),
         (nothing, lambda: materials.Masonry(mat(), {}), "there must be a joint 'bed'"),
     ],
@@ -643,7 +644,7 @@ CASES = {
         (nothing, lambda: read(measure.show, run=WALL, curve=CURVE, **{"joints_0000.vtp": b"\x00" * 4096}), "cannot read ./joints_0000.vtp: it holds no frame"),
         (nothing, lambda: read(figures.draw, "nowhere"), "cannot read nowhere/run.json: No such file or directory"),
         (nothing, lambda: read(figures.draw, run=WALL, curve=CURVE), 'run.json has no entry "figure", which says what to draw'),
-        (nothing, lambda: frames.readFrame(".", "joints"), "no file joints_*.vt? in ."),
+        (nothing, lambda: readFrame(".", "joints"), "no file joints_*.vt? in ."),
         (nothing, lambda: read(lambda d: reading.readCurve(d), run=WALL, curve=None), "cannot read ./curve.csv"),
     ],
 }
@@ -918,4 +919,4 @@ def test_a_disk_that_fills_ends_the_run_in_order(tmp_path, name, words, most, lo
             for kind in ("blocks", "joints")
         ]
         assert frames == [1, 1]
-        assert len(frames.readFrame(str(tmp_path / "results"), "joints")["cells"]) > 100
+        assert len(readFrame(str(tmp_path / "results"), "joints")["cells"]) > 100

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A block that has left the small displacements its joints are made for ends the run as collapsed; a wrong balance is told.
+"""A block that has left the small displacements its joints are made for ends the run as collapsed; a wrong balance is reported.
 
 Rocking and sliding within a face do not end it.
 """
@@ -64,7 +64,7 @@ def collapses(seconds, message):
     return str(text.value)
 
 
-# -- what is told ----------------------------------------------------------------------------------------------------
+# -- what is reported ----------------------------------------------------------------------------------------------------
 
 
 @FUNCTORS

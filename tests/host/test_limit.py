@@ -85,9 +85,9 @@ def test_tension_cohesion_and_crushing_are_those_of_the_joint(scene):
     with pytest.raises(Refused, match="nothing gives way, however large the load is"):
         a.largest(a.force(1, (0, 0, -1), top), dead)
     O.reset()
-    weak = joint(0.5, tensileStrength=0.1e6, cohesion=0.3e6, cap=True, compressiveStrength=2e6,
+    soft = joint(0.5, tensileStrength=0.1e6, cohesion=0.3e6, cap=True, compressiveStrength=2e6,
                  peakRatio=2, compressiveFractureEnergy=1e6)  # fmt: skip
-    a = block(0.25, 0.5, True, weak)
+    a = block(0.25, 0.5, True, soft)
     crushed = a.largest(a.force(1, (0, 0, -1), top), a.weights((0, 0, -G)))
     assert crushed.factor == pytest.approx(2e6 * area - weight, rel=1e-6)
     assert list(crushed.joints()) == ["crushes"]

@@ -112,7 +112,7 @@ def test_the_limit_follows_joints_and_damping(scene, blocks):
 
 @pytest.mark.parametrize("blocks", ["rigid", "deformable"])
 def test_motion_out_of_nothing_is_seen_within_a_hundred_steps(scene, blocks):
-    """A brick whose mass a script divides by 1000 in the middle of a run. No engine is told of that."""
+    """A brick whose mass a script divides by 1000 in the middle of a run. No engine is informed of that."""
     rigid = max(panel(blocks, damping=0, rigidLast=True))
     O.run(20, True)
     O.bodies[rigid].state.mass /= 1000
@@ -134,7 +134,7 @@ def test_velocities_given_by_hand_are_no_motion_out_of_nothing_once_reported(sce
                 O.bodies[body].state.angVel = Vector3(0, 1, 0)
         if throw == 2:
             with pytest.raises(
-                RuntimeError, match=r"told at once by MasonryEnergy.given"
+                RuntimeError, match=r"reported at once by MasonryEnergy.given"
             ):
                 steps(20)
             break

@@ -13,7 +13,8 @@ pytestmark = pytest.mark.slow
 
 SCENE = """
 import os, sys, time
-from masonry import *, window
+from masonry import *
+from masonry import window
 
 mode, folder = sys.argv[1:]
 unit, plate = MasonryMat(density=1800, label="brick"), MasonryMat(density=1800, label="plate")

@@ -486,10 +486,10 @@ def test_a_tee_interlocks(unit, n, m, courses, data):
 )
 def test_a_room_interlocks(unit, n, m, courses, halves):
     l, t, h = unit
-    room = Room(n * l, m * l, courses * h, unit, halves=halves)
+    house = Room(n * l, m * l, courses * h, unit, halves=halves)
     area = n * l * m * l - (n * l - 2 * t) * (m * l - 2 * t)
-    assertFits(room, area * courses * h)
-    assert {b.part for b in room} == {"front", "right", "back", "left"}
+    assertFits(house, area * courses * h)
+    assert {b.part for b in house} == {"front", "right", "back", "left"}
 
 
 def assertFits(wall, filled):
@@ -513,8 +513,8 @@ def test_walls_that_meet_have_openings_of_their_own():
         Corner(2.2, 2.2, 1.62, openings2=[Opening(0.055, 0.405, 0.44, 0.405)])
     with pytest.raises(ValueError, match="opening 0 reaches into the junction"):
         Tee(2.2, 1.65, 1.21, 1.62, openings=[Opening(0.99, 0.405, 0.44, 0.405)])
-    room = Room(2.2, 2.2, 1.62, back=[hole])
-    assert volume(room) == pytest.approx(
+    house = Room(2.2, 2.2, 1.62, back=[hole])
+    assert volume(house) == pytest.approx(
         volume(Room(2.2, 2.2, 1.62)) - 0.44 * 0.405 * T
     )
 

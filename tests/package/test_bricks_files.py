@@ -137,7 +137,7 @@ FORMATS = {
 
 @pytest.mark.parametrize("name", FORMATS)
 def test_every_format_gives_the_blocks_that_were_written(tmp_path, name):
-    """Blocks that touch are told apart also where all surfaces stand in one mesh. STL as bytes has single precision."""
+    """Blocks that touch are distinguished also where all surfaces stand in one mesh. STL as bytes has single precision."""
     FORMATS[name](tmp_path / name, MODEL)
     read = fromFile(tmp_path / name)
     assert len(read) == len(MODEL) == len({b.brick for b in read})

@@ -31,14 +31,14 @@ def test_help_names_every_room():
     assert unnamed("", helpOf("")) == set()
 
 
-@pytest.mark.parametrize("room", ROOMS)
-def test_a_room_names_each_of_its_modules(room):
-    assert unnamed(room, helpOf(room)) == set()
+@pytest.mark.parametrize("package", ROOMS)
+def test_a_room_names_each_of_its_modules(package):
+    assert unnamed(package, helpOf(package)) == set()
 
 
-@pytest.mark.parametrize("room", ["", *ROOMS])
-def test_what_a_room_names_is_there(room):
-    named = re.findall(r":mod:`masonry\.([\w.]+)`", helpOf(room))
+@pytest.mark.parametrize("package", ["", *ROOMS])
+def test_what_a_room_names_is_there(package):
+    named = re.findall(r":mod:`masonry\.([\w.]+)`", helpOf(package))
     assert named
     for name in named:
         path = os.path.join(PACKAGE, *name.split("."))

@@ -67,8 +67,8 @@ def ownModule(name):
 
 def layer(module):
     """Number of the room of a module; the package itself is above all."""
-    room = module.split(".")[0]
-    return LAYERS.index(room) if room in LAYERS else len(LAYERS)
+    folder = module.split(".")[0]
+    return LAYERS.index(folder) if folder in LAYERS else len(LAYERS)
 
 
 GRAPH = {
@@ -135,9 +135,9 @@ def needed(module, found=None):
     return found
 
 
-@pytest.mark.parametrize("room", WITHOUT_YADE)
-def test_what_reads_results_needs_no_yade(room):
-    modules = [m for m in MODULES if m == room or m.startswith(room + ".")]
+@pytest.mark.parametrize("folder", WITHOUT_YADE)
+def test_what_reads_results_needs_no_yade(folder):
+    modules = [m for m in MODULES if m == folder or m.startswith(folder + ".")]
     assert modules
     for module in modules:
         for one in {module, *needed(module)}:

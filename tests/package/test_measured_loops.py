@@ -23,10 +23,10 @@ def test_repaired_pieces_follow_each_other(wall):
         if number in holes:
             continue
         (x1, f1), (x2, f2) = piece[-1], after[0]
-        goesOn = abs(x2 - x1) < 1 and abs(f2 - f1) < 6.5
+        follows = abs(x2 - x1) < 1 and abs(f2 - f1) < 6.5
         outwards = x2 < x1 < 0
         assert (
-            goesOn or outwards
+            follows or outwards
         ), f"{wall}: piece {number} ends at {x1} mm, the next begins at {x2} mm"
 
 

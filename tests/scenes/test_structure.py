@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes of one's own: stages, how they end, closed forms of what they measure, and what they refuse."""
 
+import math
+
 import pytest
 from masonry import Scene, bricks, materials
 from masonry.basics import Refused
@@ -62,7 +64,10 @@ def test_cycles_reach_both_sides(pier, tmp_path):
     assert (min(moved), max(moved)) == pytest.approx((-0.4, 0.4), abs=0.01)
 
 
-def test_a_resumed_scene_equals_one_without_a_break(tmp_path):
+@pytest.mark.parametrize("stage", ["push", "move", "run"])
+def test_a_resumed_scene_equals_one_without_a_break(tmp_path, stage):
+    """Stopped in a stage, also after a push or a history, from whose beginning displacements count on."""
+
     def play(folder, words=(), stop=None):
         scene = made(
             folder, bricks.Wall(0.44, 0.324), materials.calciumSilicate(), words
@@ -72,23 +77,25 @@ def test_a_resumed_scene_equals_one_without_a_break(tmp_path):
         try:
             scene.settle()
             if stop:
-                before = scene.running.advance
+                before, seen = scene.running.advance, []
 
                 def advance(steps, one=None):
                     before(steps, one)
-                    if O.iter > stop:
+                    seen.append(scene.running.at.stage)
+                    if seen.count(stop) > 5:
                         scene.running.interrupted = True
 
                 scene.running.advance = advance
             scene.push(top, 0.2)
             scene.move(base, z=-0.1)
+            scene.cycle(top, [0.1])
+            scene.run(0.02)
         except SystemExit:
             pass
         scene.finish()
 
     play(tmp_path / "whole")
-    steps = readRun(str(tmp_path / "whole"))["steps"]
-    play(tmp_path / "broken", stop=int(0.8 * steps))
+    play(tmp_path / "broken", stop=stage)
     assert readRun(str(tmp_path / "broken"))["interrupted"]
     play(tmp_path / "broken", ["--resume", str(tmp_path / "broken")])
     whole, broken = (
@@ -429,7 +436,7 @@ def test_a_growing_acceleration_tells_where_the_structure_left_rest(tmp_path, ra
     scene.settle()
     assert scene.accelerate(0.9, rate=rate) == COLLAPSED
     assert scene.factor == pytest.approx(0.5, rel=0.01)
-    assert scene.model.factor() > 0.51  # when it was told
+    assert scene.model.factor() > 0.51  # when it was noticed
     scene.finish()
 
 
@@ -452,3 +459,22 @@ def test_a_record_is_read_in_its_unit(tmp_path):
     assert readRecord([0, 0.4], 0.01, unit="g")[0] == pytest.approx([0, 3.924])
     assert readRecord([0, 400], 0.01, unit="cm/s²")[0] == pytest.approx([0, 4])
     assert readRecord([0, 0.4], 0.01, unit="m/s²")[0] == [0, 0.4]
+
+
+@pytest.mark.parametrize("stage", ["tilt", "accelerate"])
+def test_scaled_masses_leave_the_weight_of_a_structure_that_leans(tmp_path, stage):
+    """Four times the masses under a fourth of gravity weigh the same, and feel a fourth of the acceleration."""
+    scene = made(tmp_path, bricks.stack(3, (0.4, 0.3, 0.2)), words=["--density-scaling", "4"])  # fmt: skip
+    scene.platen("bottom")
+    scene.settle()
+    if stage == "tilt":
+        scene.tilt(math.degrees(math.atan(0.1)), rate=5)
+    else:
+        scene.accelerate(0.1, rate=0.2)
+    weight = 1e-3 * STONE * 0.4 * 0.3 * 0.6  # [kN]
+    column = scene.results.column
+    cos = math.cos(math.atan(0.1)) if stage == "tilt" else 1
+    assert column("base_force_z_kN")[-1] == pytest.approx(-weight * cos, rel=0.02)
+    assert column("base_force_x_kN")[-1] == pytest.approx(0.1 * weight * cos, rel=0.05)
+    assert scene.factor == pytest.approx(0.1, rel=0.01)
+    scene.finish()

@@ -230,7 +230,7 @@ def test_ctrl_c_ends_in_order_and_keeps_what_is_there(tmp_path):
 
 
 def base(model):
-    return model.forceOn(model.description.targets["base"])
+    return O.forces.f(model.description.targets["base"].body, True)
 
 
 def test_at_rest_the_base_carries_the_precompression_and_the_weight(scene, tmp_path):

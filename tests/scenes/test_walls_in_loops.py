@@ -18,6 +18,7 @@ from masonry.scene.stages import pushing, rest
 from masonry.read.files import readCurve, readRun
 from small import SMALL, parsed
 from test_checkpoints import CANTILEVER, files, interrupt, refused, run
+from test_checkpoints import at  # noqa: F401: a fixture
 
 LOOPS = ["--history", "0.1,0.25x2", "--rate", "40", "--vtk-every", "0.1"]
 

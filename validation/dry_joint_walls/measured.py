@@ -158,10 +158,10 @@ def strays(points):
         before, after = steps[:-1], steps[1:]
         turns = before * after < 0
         far = np.minimum(abs(before), abs(after)) / STRAY
-        goesOn = before * after > 0
+        follows = before * after > 0
         off = np.maximum(
             far[:, 1] * (turns[:, 1] & ~turns[:, 0]),
-            far[:, 0] * (turns[:, 0] & goesOn[:, 1] & steep[rows[1:-1]]),
+            far[:, 0] * (turns[:, 0] & follows[:, 1] & steep[rows[1:-1]]),
         )
         worst = int(np.argmax(off))
         if off[worst] <= 1:

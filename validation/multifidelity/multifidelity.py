@@ -171,8 +171,8 @@ def compare(wall, cheap, measure):
             [
                 title,
                 found.name,
-                _told(known),
-                _told(found),
+                _intervalText(known),
+                _intervalText(found),
                 ("yes" if agrees else "no") if measured else "not told",
                 f"{paid.alone:.0f}",
                 f"{100 * paid.share:.0f} %",
@@ -200,7 +200,7 @@ def _half(interval):
     return (interval.high - interval.low) / 2
 
 
-def _told(interval):
+def _intervalText(interval):
     return f"{interval.value:.4g} ({interval.low:.4g} … {interval.high:.4g})"
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The same panel told in other words: in millimetres and tonnes, mirrored, turned in space, numbered in another order.
+"""The same panel described in other words: in millimetres and tonnes, mirrored, turned in space, numbered in another order.
 
 yade -n -x validation/stability/invariance.py
 

@@ -17,7 +17,7 @@ void refuseAttribute(const std::string& className, const py::object& ofClass, co
     throw py::error_already_set();
 }
 
-py::dict told(const std::string& name, const Property& p) {
+py::dict documented(const std::string& name, const Property& p) {
     py::dict all;
     all["name"] = name;
     all["unit"] = p.isNumber() ? p.unit : "";

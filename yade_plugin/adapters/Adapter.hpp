@@ -104,7 +104,7 @@ template <class T> T given(const std::string& name, const py::object& value) {
 [[noreturn]] void refuseAttribute(const std::string& className, const py::object& ofClass, const std::string& name);
 
 // The description of a property as a dict for Python.
-py::dict told(const std::string& name, const Property&);
+py::dict documented(const std::string& name, const Property&);
 
 struct Nothing {};
 
@@ -275,7 +275,7 @@ private:
     static py::list properties() {
         py::list all;
         Derived::attributes([&](const char* name, const auto&, const Property& property, int flags = Plain) {
-            if (!(flags & Hidden)) all.append(told(name, property));
+            if (!(flags & Hidden)) all.append(documented(name, property));
         });
         return all;
     }

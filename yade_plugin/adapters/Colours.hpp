@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Colours of YADE's 3-D view and what they mean: chosen by the functors that draw, told by the legend.
+// Colours of YADE's 3-D view and what they mean: chosen by the functors that draw, explained by the legend.
 #pragma once
 #include "host/Yade.hpp"
 #include <array>

@@ -36,7 +36,7 @@ def fromFile(path, scale=1.0, kind="block"):
 
     Formats: ``.obj`` (each ``g`` or ``o`` is a group), ``.off``, ``.stl`` (as text, each ``solid`` is a group, or as
     bytes), ``.ply``, and ``.json`` of COMPAS: a mesh, or anything that holds meshes, such as an assembly. Solids in one
-    group are told apart, also where they touch. Each group gives a part its name; files without groups give their own.
+    group are distinguished, also where they touch. Each group gives a part its name; files without groups give their own.
     Faces run counter-clockwise seen from outside, or all of them clockwise.
 
     :param scale: metres in one unit of the file; 0.001 if it is in millimetres

@@ -10,7 +10,7 @@ from ..read.crack_figure import mechanism
 from .programme import FACETS
 
 SLIDES = 1e-4  # share of the power of a mechanism that is friction, from which its joints slide [-]
-GIVES = 0.02  # less than this share of the largest motion between two blocks of the mechanism is not told [-]
+GIVES = 0.02  # less than this share of the largest motion between two blocks of the mechanism is not listed [-]
 
 MECHANISM = "mechanism_blocks.vtu", "mechanism_joints.vtu"  # files for ParaView
 SHOWN = 0.06  # how far the fastest corner is drawn to move, over the size of the structure [-]

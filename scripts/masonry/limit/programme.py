@@ -142,12 +142,14 @@ class Programme:
         limits = len(self.limits) + np.arange(len(first))
         self.limits = np.append(self.limits, strength)
         self._unequal.append((limits[group], columns, -slope[group]))
-        ways = [one[first], -one[first]] if a.plane else _polygon(turn[which], one, two)
-        for way in ways:
+        directions = (
+            [one[first], -one[first]] if a.plane else _polygon(turn[which], one, two)
+        )
+        for direction in directions:
             along = self._new(len(first), 0, np.inf)
-            self._forces(joint[first], at[first], way, along)
+            self._forces(joint[first], at[first], direction, along)
             self._unequal.append((limits, along, np.ones(len(first))))
-            self._shear.append((which[first], along, way))
+            self._shear.append((which[first], along, direction))
 
     def matrices(self):
         """Matrices of equilibrium and of strength."""

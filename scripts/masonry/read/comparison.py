@@ -73,7 +73,7 @@ def readRuns(directories, x=None, y=None):
     :param directories: folders of runs
     :param x: column of curve.csv; None: that of the entry ``figure`` in run.json of the first run
     :param y: as ``x``; None: the first one of this entry
-    :raises Refused: if a column is not there, or if none is told
+    :raises Refused: if a column is not there, or if none is named
     """
     curves, labels = [], None
     for directory in directories:

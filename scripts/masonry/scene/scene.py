@@ -21,6 +21,7 @@ command line work, ``--help`` explains them: ``--preset``, ``--rate``, ``--set``
 """
 
 import atexit
+import functools
 
 from .._masonry import loadScene, saveScene
 from ..assembly.blocks import vector
@@ -161,14 +162,20 @@ class Scene:
                 "the next begins"
             )
 
+    @functools.cached_property
+    def masonry(self):
+        """The materials for the options of this run: :class:`masonry.scene.materials.Masonry`. Raises Refused."""
+        masonry = self.description.materials.variant(self.args)
+        problems = self.description.problems(masonry)
+        options.check(self.args, masonry.joints, problems)
+        return masonry
+
     def begin(self):
         """Build the scene in YADE, if it does not stand there yet."""
         if self.model:
             return
         description, args = self.description, self.args
-        masonry = description.materials.variant(args)
-        options.check(args, masonry.joints, description.problems(masonry))
-        model = Structure(description, masonry, args)
+        model = Structure(description, self.masonry, args)
         self.columns = description.columns(model, bool(args.history))
         self.model = model
         self.running.open(self.columns)

@@ -45,7 +45,7 @@ SIDE = 5
 #: The quantiles that :func:`estimate` gives [-].
 QUANTILES = (0.05, 0.5, 0.95)
 
-#: A doubt about the bridge is told if its p-value is below this.
+#: A doubt about the bridge is reported if its p-value is below this.
 DOUBT = 0.01
 
 #: A correlation that is as near to 1 leaves nothing to doubt [-].

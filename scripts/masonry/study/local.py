@@ -17,7 +17,7 @@ from .gathering import TABLE
 
 LOOK_EVERY = 0.5  # [s]
 LOG = "study.log"  # of yade-batch, in the study's folder
-ROOM = 5e6  # bytes that must be free on the disk for every run at a time: its results and a checkpoint
+FREE_SPACE = 5e6  # bytes that must be free on the disk for every run at a time: its results and a checkpoint
 TRIES = 3  # starts of yade-batch in which no row comes to an end
 
 
@@ -57,7 +57,7 @@ class Local:
         self.progress = Progress()
         self._process, self._begun = None, time.time()
         self._groups = []  # of processes: every yade-batch with its jobs
-        self._told = False  # whether the end has been shown
+        self._shown = False  # whether the end has been shown
 
     def run(self):
         """Run them. Returns the numbers of rows that failed. Raises Interrupted after Ctrl-C and SIGTERM."""
@@ -68,7 +68,7 @@ class Local:
         try:
             idle = 0
             while self.open and idle < TRIES and not self.interrupted:
-                self._checkRoom()
+                self._checkSpace()
                 before = len(self.open)
                 mine = {n for n in self.open if not self.folder.isHeld(n)}
                 if mine:
@@ -116,12 +116,12 @@ class Local:
         while self._process.poll() is None and not self.interrupted:
             time.sleep(LOOK_EVERY)
             self._look(quick=True)
-            self._checkRoom()
+            self._checkSpace()
 
-    def _checkRoom(self):
+    def _checkSpace(self):
         """Stop a study whose disk is nearly full. Raises Unwritable."""
         free = shutil.disk_usage(self.folder.path).free
-        if free < ROOM * self.jobs:
+        if free < FREE_SPACE * self.jobs:
             self._stop()
             raise Unwritable(
                 f"{self.folder.path} has {1e-6 * free:.1f} MB free, too little for {self.jobs} runs at a time: stopped; what "
@@ -160,9 +160,9 @@ class Local:
         self._show(not self.open)
 
     def _show(self, final):
-        if self._told:
+        if self._shown:
             return
-        self._told = final
+        self._shown = final
         done = self.runs - len(self.open)
         failed = f", {len(self.failed)} failed" if self.failed else ""
         self.progress.show(

@@ -27,7 +27,7 @@ TAIL = 4000  # bytes at the end of a log in which the reason of a failure stands
 
 
 class Job:
-    """Runs rows, and stops in order when it is told to.
+    """Runs rows, and stops in order when it is asked to.
 
     :param path: folder of the study
     :param more: words for YADE
@@ -87,7 +87,7 @@ class Job:
         folder = self.folder
         checkpoint = os.path.join(folder.row(number), "run.checkpoint")
         for _ in range(ATTEMPTS):
-            goesOn = os.path.exists(checkpoint)
+            resumes = os.path.exists(checkpoint)
             before = self._said(number)
             status = self._yade(number, log)
             if self.stopped:
@@ -99,7 +99,7 @@ class Job:
             said = self._tail(number, before)
             if "is writing to" in said:  # it has just ended, or was killed
                 time.sleep(0.2)
-            elif goesOn and "--resume" in said:
+            elif resumes and "--resume" in said:
                 os.replace(checkpoint, checkpoint + ".refused")
             else:
                 return status

@@ -26,7 +26,7 @@ Indices = namedtuple("Indices", "first total")
 #: The variance that :func:`sobol` could explain [-], by leaving out each row in turn, and the indices by name.
 Sobol = namedtuple("Sobol", "explained indices")
 
-SPAN = 0.05, 0.95  # quantiles of a property between which its change is told
+SPAN = 0.05, 0.95  # quantiles of a property between which its change is given
 DEGREE = 9  # highest degree of a polynomial in one property
 HYPERBOLIC = 0.6  # norm that keeps products of high powers out
 RESAMPLES = 300  # of the rows, for the intervals of Sobol indices

@@ -14,7 +14,7 @@ from .gathering import written
 
 SCRIPT = "slurm.sh"  # in the study's folder: what was submitted last
 JOB = "slurm.job"  # there: the number of the job array
-LEAST = 60  # [s] before the end of its time in which a task is told to stop
+LEAST = 60  # [s] before the end of its time in which a task is asked to stop
 ARRAY = 1001  # tasks that an array has at most where Slurm does not say
 
 

@@ -35,8 +35,8 @@ def begin(study, path, near):
     else:
         _checkEmpty(folder)
         table = study.table()
-        problems, room = _look(study, script, table)
-        problems += _checkRoom(folder, study.runs * room)
+        problems, needed = _look(study, script, table)
+        problems += _checkSpace(folder, study.runs * needed)
         if problems:
             raise Refused("study: " + "\n  ".join(problems))
         try:
@@ -82,7 +82,7 @@ def _checkEmpty(folder):
         )
 
 
-def _checkRoom(folder, needed):
+def _checkSpace(folder, needed):
     at = folder.path
     while not os.path.isdir(at):
         at = os.path.dirname(at)

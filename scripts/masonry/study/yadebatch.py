@@ -3,7 +3,7 @@
 
 yade-batch serves a page, with an unauthenticated stop of every job, on all interfaces, and has no option against that. Here
 it finds no port for it and goes on without. It also looks every half second only whether a core is free, which for runs of
-some seconds is much; here it looks twenty times a second. When its caller is gone, all its jobs are told to stop.
+some seconds is much; here it looks twenty times a second. When its caller is gone, all its jobs are asked to stop.
 """
 
 import http.server

@@ -64,7 +64,17 @@ def drive(scene, target, x=0.0, y=0.0, z=0.0):
     return _driveBy(scene, target, axis, distance)
 
 
-@stage(options=("rate",), answers=stresses)
+def checkStress(scene, target, joint, stress):
+    """Refuse a stress that crushes the bed joint."""
+    bed = scene.masonry.joints["bed"]
+    if bed.cap and not bed.elastic and -stress >= bed.compressiveStrength:
+        raise Refused(
+            f"pressJoint: {1e-6 * stress:g} MPa crushes the bed joint, whose compressive strength is "
+            f"{1e-6 * bed.compressiveStrength:g} MPa"
+        )
+
+
+@stage(options=("rate",), check=checkStress, answers=stresses)
 def pressJoint(scene, target, joint, stress):
     """Bring a bed joint to a mean normal stress by a drive along z, then hold that by its force: nothing swings.
 
@@ -74,12 +84,6 @@ def pressJoint(scene, target, joint, stress):
     """
     if not isinstance(target, Target) or "z" not in target.drives:
         raise ValueError(f"pressJoint: needs a drive along z; {_drivesOf(target)}")
-    bed = scene.model.joints["bed"]
-    if bed.cap and not bed.elastic and -stress >= bed.compressiveStrength:
-        raise Refused(
-            f"pressJoint: {1e-6 * stress:g} MPa crushes the bed joint, whose compressive strength is "
-            f"{1e-6 * bed.compressiveStrength:g} MPa"
-        )
     distance = stress / joint.normalStiffness
     _driveBy(scene, target, "z", lambda: distance)
     if stress:

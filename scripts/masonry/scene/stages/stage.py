@@ -76,6 +76,7 @@ class Traits:
     :param farther: names of the arguments that say how far it goes: a run that is resumed in this stage may change them
     :param options: options of the command line that the stage uses, by the names of their values
     :param grows: whether presses, dead loads and wind grow in it
+    :param check: function of the scene and what the user says, which raises Refused before the scene is built
     :param answers: function of the scene and the :class:`Rows` of the stage that gives a list of :class:`Answer`
     """
 
@@ -83,6 +84,7 @@ class Traits:
     farther: tuple = ()
     options: tuple = ()
     grows: bool = False
+    check: Callable = None
     answers: Callable = nothing
 
 
@@ -113,6 +115,8 @@ def _carryOut(scene, act, traits, args, settings):
         )
     running, before = scene.running, None
     try:
+        if traits.check:
+            traits.check(scene, *args, **settings)
         scene.begin()
         if batch.PROBE in os.environ:
             return scene.probe(name, traits, argumentsOf(act, scene, args, settings))
