@@ -67,9 +67,8 @@ class Run:
         self.progress = Progress()
         self.advanced = False  # whether this process has taken steps of it
         self.entered = 0  # number of the stage that was entered last
-        self.loading = (
-            False  # whether that lets the dead loads grow, and is no test yet
-        )
+        #: whether that lets the dead loads grow, and is no test yet
+        self.loading = False
         self._memory = SimpleNamespace()  # of that stage
         self._live = None  # adds a row to yade.plot
         self._readings = []  # rows that are not in curve.csv yet

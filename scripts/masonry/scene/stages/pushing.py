@@ -27,14 +27,12 @@ class Pushing:
     moved: float = 0.0  # displacement there [mm]
     passed: int = 0  # points of the history that lie behind
     last: float = 0.0  # displacement of the last of them [mm]
-    start: float = (
-        0.0  # displacement when it began, if it counts from an earlier push [mm]
-    )
+    #: displacement when it began, if it counts from an earlier push [mm]
+    start: float = 0.0
     path: float = 0.0  # length of the path to there [mm]
     since: float = 0.0  # time from which the velocity grows [s]
-    growth: float = (
-        0.0  # velocity then, in the present direction, over the full one [-]
-    )
+    #: velocity then, in the present direction, over the full one [-]
+    growth: float = 0.0
     peaks: list = (0.0, 0.0)  # largest base shear so far [kN]
     peaksAt: list = (0.0, 0.0)  # displacement there [mm]
     reach: list = (0.0, 0.0)  # farthest turning point so far [mm]
