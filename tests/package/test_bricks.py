@@ -761,3 +761,9 @@ def test_a_summary_counts():
     assert message["bricks"] == 8 and message["courses"] == 3
     assert message["volume_m3"] == pytest.approx(2 * L * T * 3 * H + 0.2)
     assert bricks.summary(Bricks())["blocks"] == 0
+
+
+def test_a_course_that_is_flatter_than_a_face_may_be_is_refused():
+    """Its blocks would have no volume."""
+    with pytest.raises(ValueError, match="course 2: 9.5e-07 m is too flat"):
+        Wall(0.66, courses=(1.0, 1.0, 9.5e-7))

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from .blocks import Block, Bricks, boxCorners, positive, refuse, wholeNumber
 from .bonds import layout
+from .geometry import FLAT
 from .openings import WHOLE, LaidBrick, finished, numbered, opened
 
 #: A calcium-silicate unit of the walls in the paper (yade_plugin/law/README.md): length, thickness and height [m].
@@ -382,6 +383,13 @@ def _levels(height, courses, unit, problems):
             return None
         checks = [positive(h, f"course {n}", problems) for n, h in enumerate(courses)]
         if not all(checks):
+            return None
+        # a block as flat as corners may lie off their face's plane has no volume
+        low = [n for n, h in enumerate(courses) if h <= FLAT * max(unit)]
+        if low:
+            problems.append(
+                f"course {low[0]}: {courses[low[0]]:g} m is too flat, it must be above {FLAT * max(unit):g} m"
+            )
             return None
         levels = [0.0]
         for h in courses:
