@@ -122,7 +122,7 @@ void energies(benchmark::State& state, const Regime& regime) {
 
 int main(int count, char** words) {
     for (const auto& regime : regimes) {
-        const auto named = [&](const char* direction) { return std::string(direction) + "/" + regime.name; };
+        const auto named = [&](const char* variant) { return std::string(variant) + "/" + regime.name; };
         benchmark::RegisterBenchmark(named("columns").c_str(), columns<PiecewiseLaw>, regime)->Iterations(300);
         benchmark::RegisterBenchmark(named("cyclic columns").c_str(), columns<CyclicLaw>, regime)->Iterations(300);
         benchmark::RegisterBenchmark(named("one by one").c_str(), oneByOne, regime)->Iterations(300);

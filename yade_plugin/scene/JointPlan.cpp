@@ -324,12 +324,12 @@ double JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const K
     double sumA[most], sumB[most], taken = 0; // shear stresses of law and damping; the energy that damping takes
     for (int p = 0; p < shapes.points; ++p) {
         const std::size_t i = shapes.at(p, from), shape = shapes.alike ? shapes.shape(p, 0) : i;
-        const std::size_t attached = std::size_t(p) * stride + from;
+        const std::size_t first = std::size_t(p) * stride + from;
         const double *area = &shapes.area[shape], *a0 = &shapes.offset[0][shape], *a1 = &shapes.offset[1][shape],
                      *a2 = &shapes.offset[2][shape];
         double *j0 = &shapes.jump[0][i], *j1 = &shapes.jump[1][i], *j2 = &shapes.jump[2][i];
         if (kind.attached) {
-            const int *place1 = &plan.place1[attached], *place2 = &plan.place2[attached];
+            const int *place1 = &plan.place1[first], *place2 = &plan.place2[first];
             const double* u = zones_->displacementRows();
             plane_ ? jumpNodalInPlane(n, place1, place2, u, j0, j1, frames)
                    : jumpNodal(n, place1, place2, u, j0, j1, j2, frames);
@@ -350,7 +350,7 @@ double JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const K
                                      frames.normalStress, sumA, sumB, viscous);
         }
         if (kind.attached) {
-            double* onPoints = &onPoints_[(plane_ ? 2 : 3) * (plan.firstPoint + attached)];
+            double* onPoints = &onPoints_[(plane_ ? 2 : 3) * (plan.firstPoint + first)];
             plane_ ? pullNodalInPlane(n, area, normal, a, j0, j1, frames, onPoints)
                    : pullNodal(n, area, normal, a, b, j0, j1, j2, frames, onPoints);
         } else

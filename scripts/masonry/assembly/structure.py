@@ -275,7 +275,7 @@ class Structure:
         return self.loads.get(f"{target.name}_drive_{axis}")
 
     def pushTo(self, target, direction, name="push"):
-        """From now on ``push`` moves this target along this way. The other drives hold what they hold."""
+        """From now on ``push`` moves this target in this direction. The other drives hold what they hold."""
         if self.description.plane and direction[1]:
             raise ValueError(
                 f"{name}: the scene is in the x-z plane; Scene(..., plane=False) is in space"

@@ -31,10 +31,11 @@ def factorReached(scene, rows):
     """The horizontal over the vertical acceleration at which the structure left rest, or that of the end."""
     if scene.collapsed:
         how = (
-            "where the structure left rest: its motion, followed back to its beginning"
+            "where the structure left rest: its motion, followed back to its beginning. A structure that yields "
+            "gradually can carry more; bracket() finds what it carries at rest"
         )
         return [Answer("factor_at_leaving_rest", "-", scene.factor, how)]
-    how = "the largest that was reached; the structure did not fall"
+    how = "the largest that was reached; the structure did not fall, but it may be moving"
     return [Answer("factor_reached", "-", scene.factor, how)]
 
 
