@@ -3,7 +3,6 @@
 
 from dataclasses import dataclass, field
 
-
 from .._masonry import loadScene
 from ..basics import Refused, say
 from .checkpoints import NAME, alike, readState
@@ -49,12 +48,26 @@ def restored(example, values):
     return type(example)(**{**before, **values})
 
 
+#: What an answer of a stage has, as of masonry.scene.stages.stage.
+ANSWER = {"stage", "number", "name", "unit", "value", "how", "uncertainty"}
+
+
+def _isAnswers(entry):
+    """Whether an entry of the answers is the number of a stage and a list of what it answered."""
+    number, found = entry
+    return number.isdecimal() and all(
+        isinstance(one, dict) and one.keys() == ANSWER
+        for one in (found if isinstance(found, list) else [None])
+    )
+
+
 class Saved:
     """A checkpoint that a run left, read from the disk once.
 
     - ``scene``: name of the scene; ``options``: those of the run; ``script``: what its script said, as data
     - ``at``: how far the run had come, as of :class:`Place`; ``rows`` of curve.csv
-    - ``seconds`` of wall-clock time; ``host``: ``build``, ``YADE`` and ``threads`` that it was made with
+    - ``seconds`` of wall-clock time; ``host``: what it was made with, as of
+      :func:`masonry.run.run.hostNow`
 
     :param directory: folder of the run
     :raises Refused: if no run can be taken up there
@@ -87,7 +100,7 @@ class Saved:
             set(at.seconds) == set(PARTS)
             and all(alike(seconds, 0.0) for seconds in at.seconds.values())
             and all(alike(stage, ["", 0, 0.0, 0]) for stage in at.stages)
-            and all(isinstance(found, list) for found in at.answers.values())
+            and all(map(_isAnswers, at.answers.items()))
             and alike(at.frames + at.resumed, None)
         ):
             raise otherVersion("the counters of the run")
