@@ -35,7 +35,9 @@ def factorReached(scene, rows):
             "gradually can carry more; bracket() finds what it carries at rest"
         )
         return [Answer("factor_at_leaving_rest", "-", scene.factor, how)]
-    how = "the largest that was reached; the structure did not fall, but it may be moving"
+    how = (
+        "the largest that was reached; the structure did not fall, but it may be moving"
+    )
     return [Answer("factor_reached", "-", scene.factor, how)]
 
 
