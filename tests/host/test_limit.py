@@ -370,7 +370,9 @@ def test_a_peak_above_its_bound_is_a_warning_with_both_numbers(scene, tmp_path, 
     s.running.at.bounds["top along x"]["factor"] = 0.9 * peak
     s.finish()
     said = capsys.readouterr().out
-    assert f"warning: the largest base shear, {peak:.4g} kN, is more than" in said
+    assert (
+        f"warning: the largest force of the push, {peak:.4g} kN, is more than" in said
+    )
     assert f"{0.9 * peak:.4g} kN" in said
 
 

@@ -41,10 +41,10 @@ class Reading:
     """What a structure measures of itself at one moment, in SI units. The values of all columns are taken from it at once.
 
     - ``time`` since the scene was built [s]
-    - ``along``, ``up``: displacement of the pushed point since the push began, along the push and upwards [m]
+    - ``along``, ``up``: displacement of the followed point since the push or load began, along it and upwards [m]
     - ``sunk``: displacement of the pushed point downwards since the scene was built [m]
     - ``rotation`` of the pushed block, about y in a plane, else its angle [rad]
-    - ``baseShear``: force of the structure on all that is held, along the push [N]
+    - ``baseShear``: force of the structure on all that is held, along the push or load [N]
     - ``topShear``: force that drives the pushed point [N]
     - ``energy``: the energy balance [J]
     - ``goal``: number of the point of a history that the drive is going to, from 1, and its displacement [mm]
@@ -65,16 +65,18 @@ class Reading:
                     held[i] += force[i]
         self.along = self.up = self.topShear = self.rotation = 0.0
         self.sunk = -0.0
-        if structure.target:
-            moved, self.rotation = self.moved(structure.target)
+        if structure.followed:
+            moved, self.rotation = self.moved(structure.followed)
             origin = structure.origin
             self.along, self.up = (
                 moved.dot(structure.direction) - origin[0],
                 moved[2] - origin[1],
             )
-            self.sunk = -moved[2]
+        if structure.target:
+            self.sunk = -self.moved(structure.target)[0][2]
             self.topShear = structure.loads["push"].reaction
-        self.baseShear = held.dot(structure.direction)
+        beside = structure.besideThePush()
+        self.baseShear = held.dot(structure.direction) - beside.dot(structure.direction)
         self.energy = structure.energy.balance()
         self.goal = structure.goal
 
@@ -125,13 +127,13 @@ PUSH = [
     Column(
         "displacement",
         "mm",
-        "displacement of the pushed point along the push, since that began",
+        "displacement of the pushed point along the push, or of the watched one along a load that grows, since that began",
         lambda r: 1e3 * r.along,
     ),
     Column(
         "base_shear",
         "kN",
-        "force of the structure on all that is held, along the push",
+        "force of the structure on all that is held, along the push or load; of a push without dead weight and dead loads",
         lambda r: 1e-3 * r.baseShear,
     ),
     Column(
@@ -143,13 +145,13 @@ PUSH = [
     Column(
         "vertical",
         "mm",
-        "upward displacement of the pushed point since the push began",
+        "upward displacement of the pushed or watched point since then",
         lambda r: 1e3 * r.up,
     ),
     Column(
         "rotation",
         "mrad",
-        "rotation of the pushed block, about y in a plane, else its angle",
+        "rotation of the pushed or watched block, about y in a plane, else its angle",
         lambda r: 1e3 * r.rotation,
     ),
 ]

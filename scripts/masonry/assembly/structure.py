@@ -52,8 +52,12 @@ class Structure:
         self.bricks, self.loads, self.zones = {}, {}, None
         #: What is pushed; from the beginning the target that a drive holds.
         self.target = next((t for t in description.targets.values() if t.drives), None)
-        self.direction = Vector3.UnitX  # of the present push
-        #: Displacement of the pushed point when the push began, along it and up [m].
+        self.followed = self.target  # whose displacement is recorded along the load
+        self.loadFactor = 0.0  # of the load that a stage puts on or lets grow [-]
+        self.direction = Vector3.UnitX  # of the present push or load
+        self.pushing = False  # whether the present load is a push
+        self.grown = False  # whether presses, dead loads and wind have their whole
+        #: Displacement of the followed point when the push or load began, along it and up [m].
         self.origin = 0, 0
         #: Point of the history that the drive is going to: its number, from 1, and its displacement [mm].
         self.goal = 0, 0.0
@@ -233,15 +237,16 @@ class Structure:
 
     def grow(self, x):
         """Let presses and dead loads grow smoothly: 0 to 1 is from nothing to their whole."""
+        self.grown = x == 1
         for label, force in self._grown.items():
             self.loads[label].force = force * x * x * (3 - 2 * x)
 
     def deadLoads(self):
-        """Loads of the scene, each with its force when presses, dead loads and wind have grown: pairs of MasonryLoad and
-        force [N]."""
+        """Loads of the scene, each with its force, or that which it will have when presses, dead loads and wind have grown:
+        pairs of MasonryLoad and force [N]."""
         for label, load in self.loads.items():
             if load and label != "push":
-                yield load, self._grown.get(label, load.force)
+                yield load, load.force if self.grown else self._grown.get(label, load.force)  # fmt: skip
 
     def damp(self, damping, kind):
         """Choose damping [-] and its kind, local or combined, for what moves: deformable units, else rigid ones."""
@@ -298,7 +303,19 @@ class Structure:
                 other.velocity = 0
         load.direction, load.driven = direction, True
         self.target, self.direction, self.loads["push"] = target, direction, load
-        self.origin = 0, 0
+        self.followed, self.origin, self.pushing = target, (0, 0), True
+
+    def follow(self, target, direction):
+        """From now on record the displacement of a target, or None, along a direction. Returns its origin [m]."""
+        self.followFrom(target, direction, (0, 0))
+        if target:
+            self.origin = self.topDisplacement()
+        return list(self.origin)
+
+    def followFrom(self, target, direction, origin):
+        """As :meth:`follow`, from an origin that is known [m]."""
+        self.followed, self.direction, self.origin = target, direction, origin
+        self.pushing = False
 
     def keepLoadLine(self):
         """Move the points of vertical loads that keep their line in space back to it."""
@@ -332,18 +349,58 @@ class Structure:
         return state.pos + turn * ownArm - place - arm, angle
 
     def topDisplacement(self):
-        """Displacement of the pushed point along the push and upwards since the scene was built [m]."""
-        moved = self.moved(self.target)[0]
+        """Displacement of the followed point along the push or load and upwards since the scene was built [m]."""
+        moved = self.moved(self.followed)[0]
         return moved.dot(self.direction), moved[2]
+
+    def alongNow(self):
+        """Displacement of the followed point along the push or load since that began [m]; 0 if none is followed."""
+        return self.topDisplacement()[0] - self.origin[0] if self.followed else 0.0
 
     def hasSunk(self, down=None):
         """Whether the pushed platen has come down by half the height of a brick.
 
         :param down: its displacement downwards [m], if that is known
         """
-        down = -self.topDisplacement()[1] if down is None else down
+        down = -self.moved(self.target)[0][2] if down is None else down
         block = self.description.bricks[-1].corners
         return down > 0.5 * (max(p[2] for p in block) - min(p[2] for p in block))
+
+    def applied(self):
+        """Sum of the weights of what is free to follow them, and of the loads without drives [N]."""
+        applied = self._freeMass * self.now
+        for target in self.held:
+            state = O.bodies[target.body].state
+            for i, axis in enumerate("xyz"):
+                if axis not in state.blockedDOFs:
+                    applied[i] += state.mass * self.now[i]
+        for label, load in self.loads.items():
+            if label != "push":
+                applied += load.force
+        return applied
+
+    def carried(self):
+        """Sum of the forces of supports and drives on the structure [N]."""
+        carried = Vector3(0, 0, 0)
+        for target in self.held:
+            blocked, on = O.bodies[target.body].state.blockedDOFs, self.forceOn(target)
+            for i, axis in enumerate("xyz"):
+                if axis in blocked:
+                    carried[i] -= on[i]
+        for label, load in self.loads.items():
+            if label != "push":
+                carried += load.reaction * load.direction.normalized()
+        return carried
+
+    def besideThePush(self):
+        """What acts on the structure beside a push: weights, dead loads, and other drives [N]. Nothing if none is pushed."""
+        if not self.pushing:
+            return Vector3.Zero
+        beside, push = self.applied(), self.loads["push"]
+        for label, load in self.loads.items():
+            if label != "push" and load is not push and load.driven:
+                beside += load.reaction * load.direction.normalized()
+        return beside
 
     def unrest(self):
         """What of the loads is missing at the supports, and kinetic over elastic energy [-]."""
@@ -351,20 +408,7 @@ class Structure:
         elastic = sum(
             energy[f"elastic_{m}"] for m in ("compression", "shear", "tension", "units")
         )
-        # what acts in all, and what is held against it: supports by their force, drives by theirs
-        applied, carried = self._freeMass * self.now, Vector3(0, 0, 0)
-        for target in self.held:
-            state = O.bodies[target.body].state
-            weight, on = state.mass * self.now, self.forceOn(target)
-            for i, axis in enumerate("xyz"):
-                if axis in state.blockedDOFs:
-                    carried[i] -= on[i]
-                else:
-                    applied[i] += weight[i]
-        for label, load in self.loads.items():
-            if label != "push":
-                applied += load.force
-                carried += load.reaction * load.direction.normalized()
+        applied, carried = self.applied(), self.carried()
         if self.description.plane:
             applied[1] = carried[1] = 0
         missing = (applied + carried).norm() / (applied.norm() or 1.0)

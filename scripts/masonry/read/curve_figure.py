@@ -73,6 +73,8 @@ def curve(directory):
     run = readRun(directory)
     data = {name: np.array(values) for name, values in readCurve(directory).items()}
     spec = plan(run, data, directory)
+    if "rows" in spec:
+        data = {name: values[spec["rows"]] for name, values in data.items()}
     looped, x = spec["looped"], data[spec["x"]["column"]]
     used = {axis["column"] for axis in spec["y"]}
     stack, work = energies({k: v for k, v in data.items() if k not in used})
@@ -138,7 +140,11 @@ def _curves(axes, spec, data, x):
             mark["text"],
             (at, value),
             textcoords="offset points",
-            xytext=(-6 if left and not looped else 6, 8) if value >= 0 else (-6, -14),
+            xytext=(6, -14)
+            if mark.get("below")
+            else (-6 if left and not looped else 6, 8)
+            if value >= 0
+            else (-6, -14),
             ha="right" if left else "left",
         )
     for bound in spec["bounds"]:

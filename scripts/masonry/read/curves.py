@@ -35,9 +35,15 @@ def peakAtBothEnds(top, base):
 
 
 def initialStiffness(displacement, force):
-    """Slope [force/displacement] of the line fitted between 5 % and 25 % of the peak, on the way to it."""
+    """Slope [force/displacement] of the line fitted between 5 % and 25 % of the peak, on the way to it.
+
+    A push that begins under a force of more than a hundredth of the peak, as of a drive that held a weight before, counts
+    from that force.
+    """
     if not force:
         return 0.0
+    if abs(force[0]) > 0.01 * max(force):
+        force = [f - force[0] for f in force]
     peak = max(force)
     points = []
     for d, f in zip(displacement, force):
@@ -45,8 +51,9 @@ def initialStiffness(displacement, force):
             break
         if f > 0.05 * peak:
             points.append((d, f))
-    if len(points) < 2:
-        points = list(zip(displacement, force))[:2]
+    if len(points) < 2:  # to the first row with another displacement
+        rows = list(zip(displacement, force))
+        points = rows[:1] + [row for row in rows if row[0] != displacement[0]][:1]
     n = len(points)
     meanD, meanF = sum(p[0] for p in points) / n, sum(p[1] for p in points) / n
     spread = sum((d - meanD) ** 2 for d, _ in points)

@@ -25,6 +25,11 @@ class Place:
     frames: list = field(default_factory=list)  # times of the ParaView frames [s]
     origins: dict = field(default_factory=dict)  # where pushes began, by their name
     bounds: dict = field(default_factory=dict)  # what limit analysis found, by the load
+    #: Load factors under which the structure came to rest, by the names of their bounds.
+    held: dict = field(default_factory=dict)
+    #: What stages pushed or put on, by their numbers: the kind (``push``, ``lean`` or ``growth``), the name of the load and
+    #: that of the opposite one.
+    loads: dict = field(default_factory=dict)
     answers: dict = field(default_factory=dict)  # of the stages, by their number
     supportsMoved: bool = False  # whether a stage has moved supports
     resumed: list = field(default_factory=list)  # times at which it was taken up [s]
@@ -101,6 +106,8 @@ class Saved:
             and all(alike(seconds, 0.0) for seconds in at.seconds.values())
             and all(alike(stage, ["", 0, 0.0, 0]) for stage in at.stages)
             and all(map(_isAnswers, at.answers.items()))
+            and alike(list(at.held.values()), None)
+            and all(alike(load, ["", "", ""]) for load in at.loads.values())
             and alike(at.frames + at.resumed, None)
         ):
             raise otherVersion("the counters of the run")

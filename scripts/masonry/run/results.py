@@ -32,7 +32,9 @@
     the first of which is drawn in bold; columns are those of curve.csv, and x can be ``time_s``
   - ``y_label``: of the axis, with the unit in brackets
   - ``looped``: whether x goes there and back, which is drawn with axes through zero and with the envelope; else false
-  - ``marks``: a list of ``{"x": 2.6, "y": 115.2, "text": "115.2 kN at 2.60 mm"}``, points to show; may be left out
+  - ``marks``: a list of ``{"x": 2.6, "y": 115.2, "text": "115.2 kN at 2.60 mm"}``, points to show, whose text
+    stands below them with ``"below": true``; may be left out
+  - ``rows``: numbers of the rows that are shown, from 0; may be left out, and all are shown then
   - ``bounds``: a list of ``{"y": 117.0, "text": "limit analysis, upper bound"}``, horizontal lines; may be left out
 
 - ``parts``: a dict of name -> list of body ids, for cracks.png, which has a panel for every part; may be left out, and
@@ -50,7 +52,7 @@
 - ``ended``: how the last stage ended: ``at rest``, ``moving``, ``done`` or ``collapsed``
 - ``collapse``: what has fallen, and how far; None if nothing has
 - ``held``: names of the platens and bricks that are held
-- ``factor``, ``stood``: as of :class:`masonry.scene.scene.Scene`, of a run that tilts, leans or accelerates
+- ``factor``: as of :class:`masonry.scene.scene.Scene`, of a run that found one
 
 A run that pushes, leans or tilts has these, if limit analysis (:mod:`masonry.limit`) applies:
 

@@ -150,12 +150,20 @@ class Run:
         """What the script said up to the checkpoint of a run that is resumed, as data."""
         return self._saved.script if self._saved else []
 
+    def note(self, kind, name, opposite=""):
+        """Note what the next stage loads, as of :class:`masonry.run.place.Place`."""
+        self.at.loads = {**self.at.loads, str(self.entered + 1): [kind, name, opposite]}
+
+    @property
+    def memory(self):
+        """What the stage remembers that was entered last."""
+        return self._memory
+
     def takeUp(self):
         """From here on files are written; those of a run that is resumed are cut back to its checkpoint."""
         if self._saved:
             # what the stage did before it advanced was done before these steps
-            if self.at.left:
-                self._saved.load()
+            self._saved.load()
             try:
                 self.results.takeUp(
                     self._saved.rows, len(self.at.frames), self._saved.seconds
@@ -253,6 +261,11 @@ class Run:
             "stages": at.stages,
             "frames": at.frames,
         }
+
+    def mark(self):
+        """Note what a checkpoint of this moment keeps, after a stage has put the scene into another state."""
+        self.at.left = 0
+        self._keepSafe()
 
     def record(self):
         """Read the model for a row of curve.csv. Returns the reading.

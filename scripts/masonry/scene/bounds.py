@@ -42,30 +42,27 @@ class Bounds:
         """What was found, by the load: entries of run.json. A checkpoint keeps them."""
         return self.place.bounds
 
-    def push(self, direction, both, lowerUpTo=0):
-        """Find the bound of a push of what the model pushes now. Returns its entry of run.json, the last one if there are two.
+    def push(self, target, direction, both=False, lowerUpTo=0):
+        """Find the bound of a push [kN], without what acts beside it. Returns its entry of run.json, the last one if there are two.
 
+        :param target: what is pushed
         :param direction: unit vector of the push
         :param both: whether it goes there and back
         :param lowerUpTo: up to so many joints a collapse without dilatancy is looked for, too, if the bound is not exact
         """
-        target = self.model.target
         for sign in (1, -1) if both else (1,):
-            what = f"{target.name} along {nameOf(sign * direction)}"
-            live = lambda a, dead: self._pushed(a, dead, sign * direction)
-            entry = self._find(what, "kN", live, lowerUpTo)
+            what = nameOfPush(target, sign * direction)
+            live = lambda a: self._pushed(a, target, sign * direction)
+            entry = self._find(what, "kN", live, lowerUpTo, pushed=(target, direction))
         return entry
 
-    def _pushed(self, assembly, dead, direction):
-        """Live load, and what is added to its factor to give the base shear [kN]."""
-        load = self.model.loads["push"]
-        block = assembly.ids.index(load.body)
-        point = _pointOf(load, assembly)
-        free = ~assembly.held[:, :3]
-        return (
-            assembly.force(block, 1e3 * direction, point),
-            1e-3 * (np.where(free, dead[:, :3], 0) @ np.array(direction)).sum(),
-        )
+    def _pushed(self, assembly, target, direction):
+        """The live load of a push: 1 kN along a direction."""
+        load = next(x for x in self.model.loads.values() if x and x.body == target.body)
+        away = load.displacement() if not assembly.stood else np.zeros(3)
+        point = np.array(target.point) + np.array(away)
+        block = assembly.ids.index(target.body)
+        return assembly.force(block, 1e3 * np.array(direction), point)
 
     def lean(self, towards, tilts=False, lowerUpTo=0):
         """Find the bound of a horizontal acceleration [g]. Returns its entry of run.json.
@@ -75,15 +72,32 @@ class Bounds:
         :param lowerUpTo: as of :meth:`push`
         """
         scaled = GRAVITY / self.model.args.density_scaling
-        what = f"{'tilt' if tilts else 'acceleration'} towards {nameOf(towards)}"
-        live = lambda a, dead: (a.weights(scaled * np.array(towards)), 0.0)
+        what = nameOfLean(towards, tilts)
+        live = lambda a: a.weights(scaled * np.array(towards))
         if not tilts:
             return self._find(what, "g", live, lowerUpTo)
         share = self.model.gravity / scaled
-        turned = lambda a, dead: (share * live(a, dead)[0], 0.0)
+        turned = lambda a: share * live(a)
         return self._find(what, "", turned, lowerUpTo, tilts=True)
 
-    def _find(self, what, unit, load, lowerUpTo, tilts=False):
+    def forces(self, what, unit, loads):
+        """Find the bound of forces that grow together. Returns its entry of run.json.
+
+        :param what: name of the load
+        :param unit: of its factor
+        :param loads: pairs of a MasonryLoad and its force at a factor of 1 [N]
+        """
+
+        def live(assembly):
+            found = np.zeros_like(assembly.held, float)
+            for load, force in loads:
+                block = assembly.ids.index(load.body)
+                found += assembly.force(block, np.array(force), _pointOf(load, assembly))  # fmt: skip
+            return found
+
+        return self._find(what, unit, live, 0)
+
+    def _find(self, what, unit, load, lowerUpTo, tilts=False, pushed=None):
         known = self.entries.get(what)
         if known and not lowerUpTo:
             return known
@@ -107,18 +121,17 @@ class Bounds:
             seconds = ASKED if lowerUpTo else UNASKED
             assembly.deadline = time.monotonic() + seconds
             down = assembly.weights(model.now)
-            forces = self._forces(assembly)
-            live, beside = load(assembly, down + forces)
+            forces = self._forces(assembly, pushed)
+            live = load(assembly)
             bound = assembly.largest(live, down + forces)
             for _ in range(5 if tilts else 0):  # both parts of gravity shrink
                 cos = 1 / np.hypot(1, bound.factor)
                 bound = assembly.largest(cos * live, cos * down + forces)
             entry.update(bound.describe())
-            entry["factor"] += beside
             say(bound.sentence(what, unit))
             if not bound.exact and count <= lowerUpTo:
                 least = assembly.withoutDilatancy(live, down + forces)
-                entry["without_dilatancy"] = least.factor + beside
+                entry["without_dilatancy"] = least.factor
                 entry["without_dilatancy_settled"] = least.settled
                 say(least.sentence(what, unit))
             self.last = bound, entry
@@ -127,39 +140,45 @@ class Bounds:
             say(f"note: {refused}")
         return entry
 
-    def _forces(self, assembly):
-        """Presses, dead loads and wind with their whole, and props at the points that other drives hold."""
+    def _forces(self, assembly, pushed):
+        """Presses, dead loads and wind with their whole, and props at the points that drives hold.
+
+        :param pushed: target and direction of a push, whose own drive is no prop, or None
+        """
         loads = np.zeros_like(assembly.held, float)
         for load, force in self.model.deadLoads():
             block, point = assembly.ids.index(load.body), _pointOf(load, assembly)
             if force.norm():
                 loads += assembly.force(block, np.array(force), point)
-            if load.driven and load is not self.model.loads["push"]:
-                prop = block, np.array(load.direction.normalized()), point
-                assembly.props.append(prop)
+            along = np.array(load.direction.normalized())
+            own = pushed and pushed[0].body == load.body
+            if load.driven and not (own and abs(along @ pushed[1]) > 1 - 1e-9):
+                assembly.props.append((block, along, point))
         return loads
 
     # -- what is said ---------------------------------------------------------------------------------------------
 
-    def describe(self):
-        """Entries of run.json."""
+    def describe(self, pushes=()):
+        """Entries of run.json.
+
+        :param pushes: names of the pushes that its numbers are of: there, and back
+        """
         if not self.entries:
             return {}
         entries = {"bounds": list(self.entries.values())}
-        known = [e for e in self.entries.values() if "factor" in e]
-        pushes = [e["factor"] for e in known if e["unit"] == "kN"]
-        leans = [e["factor"] for e in known if e["unit"] != "kN"]
-        if pushes:
-            entries["bound_base_shear_kN"] = pushes[0]
-        if pushes[1:]:
-            entries["negative_bound_base_shear_kN"] = -pushes[1]
+        known = {what: e for what, e in self.entries.items() if "factor" in e}
+        signs = (1, "bound_base_shear_kN"), (-1, "negative_bound_base_shear_kN")
+        for what, (sign, key) in zip(pushes, signs):
+            if what in known:
+                entries[key] = sign * known[what]["factor"]
+        leans = [e["factor"] for e in known.values() if e["unit"] in ("g", "")]
         if leans:
             entries["bound_acceleration"] = leans[0]
         return entries
 
-    def lines(self):
-        """Horizontal lines of curve.png, for a push."""
-        entries = self.describe()
+    def lines(self, pushes):
+        """Horizontal lines of curve.png, for a push. Parameters as of :meth:`describe`."""
+        entries = self.describe(pushes)
         for key in ("bound_base_shear_kN", "negative_bound_base_shear_kN"):
             if key in entries:
                 yield {
@@ -167,37 +186,50 @@ class Bounds:
                     "text": f"limit analysis: {abs(entries[key]):.1f} kN at most",
                 }
 
-    def over(self, run, factor=0.0):
+    def linesOf(self, name):
+        """Horizontal lines of curve.png, for a load that grows, by the name of its bound."""
+        entry = self.entries.get(name, {})
+        for key, text in (
+            ("factor", "at most"),
+            ("without_dilatancy", "without dilatancy"),
+        ):
+            if key in entry:
+                what = f"limit analysis: {entry[key]:.4g} {entry['unit']} {text}"
+                yield {"y": entry[key], "text": " ".join(what.split())}
+
+    def over(self, run):
         """Sentences about what is above its bound.
 
         :param run: the entries of run.json
-        :param factor: of a structure that stood under a horizontal acceleration [-]
         """
-        allowed = 1 + TOLERANCE + run.get("dynamic_imbalance", 0.0)
-        entries = self.describe()
+        allowed = 1 + TOLERANCE
         pairs = [
-            (abs(run[reached]), abs(entries[bound]), "kN", "the largest base shear")
+            (abs(run[reached]), abs(run[bound]), "kN", "the largest force of the push")
             for reached, bound in (
                 ("peak_base_shear_kN", "bound_base_shear_kN"),
                 ("negative_peak_base_shear_kN", "negative_bound_base_shear_kN"),
             )
-            if reached in run and bound in entries
+            if reached in run and bound in run
         ]
-        if "bound_acceleration" in entries:
-            pairs.append(
-                (
-                    factor,
-                    entries["bound_acceleration"],
-                    "of gravity",
-                    "the acceleration",
-                )
-            )
+        held = self.place.held
+        pairs += [
+            (factor, self.entries[what]["factor"], self.entries[what]["unit"], f"{what}: the load that was held")
+            for what, factor in held.items()
+            if "factor" in self.entries.get(what, {})
+        ]  # fmt: skip
         for reached, bound, unit, what in pairs:
-            if reached > allowed * bound:
+            most = allowed + (run.get("dynamic_imbalance", 0.0) if unit == "kN" else 0)
+            if reached > most * bound:
                 yield (
-                    f"warning: {what}, {reached:.4g} {unit}, is more than {100 * (allowed - 1):.1f} % above the upper bound "
+                    f"warning: {what}, {reached:.4g} {unit}, is more than {100 * (most - 1):.1f} % above the upper bound "
                     f"of limit analysis, {bound:.4g} {unit}: is the run too fast, or does the structure move far?"
                 )
+
+    def hold(self, what, factor):
+        """Note a load factor under which the structure came to rest, by the name of its bound."""
+        held = self.place.held
+        if what in self.entries and factor > held.get(what, 0.0):
+            self.place.held = {**held, what: factor}
 
     def write(self, directory, title, parts, views):
         """Write the mechanism that was found last: mechanism.png, and two files for ParaView."""
@@ -211,6 +243,16 @@ class Bounds:
 def _pointOf(load, assembly):
     """Where a MasonryLoad acts, on blocks as the assembly has them [m]."""
     return load.point if assembly.stood else load.point + load.displacement()
+
+
+def nameOfPush(target, direction):
+    """Under which the bound of a push is found."""
+    return f"{target.name} along {nameOf(direction)}"
+
+
+def nameOfLean(towards, tilts=False):
+    """Under which the bound of an acceleration or a tilt is found."""
+    return f"{'tilt' if tilts else 'acceleration'} towards {nameOf(towards)}"
 
 
 def nameOf(direction):

@@ -89,6 +89,12 @@ class Description:
             ]
         return []
 
+    def followed(self):
+        """The target whose displacement is drawn under a load that grows: the first that is watched, else the first that
+        moves, or None."""
+        moving = [t for t in self.targets.values() if not t.fixed]
+        return next((t for t in moving if not t.loaded), moving[0] if moving else None)
+
     def loaded(self):
         """Names of what has loads that grow in a stage."""
         names = [t.name for t in self.targets.values() if t.pressed or t.force]
@@ -202,3 +208,9 @@ def accelerations(structure, plane):
             f"horizontal acceleration along {axis} that acts on the blocks",
             lambda r, i=i: structure.now[i] * scaling / GRAVITY,
         )
+    yield columns.Column(
+        "load_factor",
+        "-",
+        "factor of the load that a stage put on or let grow last",
+        lambda r: structure.loadFactor,
+    )

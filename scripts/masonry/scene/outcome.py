@@ -45,6 +45,28 @@ class Outcome:
         """The options of the last push, or None if there was none."""
         return self.scene.pushed
 
+    def _loads(self):
+        """What stages loaded, in their order: pairs of the number of the stage and what :class:`Place` keeps of it."""
+        loads = self.scene.running.at.loads
+        return [(number, loads[str(number)]) for number in sorted(map(int, loads))]
+
+    def _pushes(self):
+        """Names of the last push, there and back."""
+        pushes = [load[1:] for _, load in self._loads() if load[0] == "push"]
+        return pushes[-1] if pushes else []
+
+    def _pushRows(self):
+        """The rows of curve.csv that numbers of the push are of: all, if all pushes go along one line."""
+        loads, stages = self._loads(), self.scene.running.at.stages
+        pushes = [(number, load[1:]) for number, load in loads if load[0] == "push"]
+        alike = [number for number, names in pushes if names == pushes[-1][1]]
+        if len(alike) == len(pushes):
+            return slice(None)
+        first = max(n for n, names in pushes if names != pushes[-1][1])
+        first, last = min(n for n in alike if n > first), alike[-1]
+        end = stages[last][3] if last < len(stages) else None
+        return slice(stages[first - 1][3], end)
+
     def space(self):
         """Bytes that a run writes at least, and those that it will probably write."""
         model, args, frames, rows = self.model, self.args, FRAMES, 0
@@ -91,7 +113,7 @@ class Outcome:
             figure=self._figure(),
             held=sorted(t.name for t in self.description.targets.values() if t.fixed),
             recorded_joints=[joint.name for joint in self.description.joints],
-            **scene.bounds.describe(),
+            **scene.bounds.describe(self._pushes()),
         )
         if self.description.views:
             entries["views"] = self.description.views
@@ -103,15 +125,14 @@ class Outcome:
     def summary(self):
         """Entries of run.json that follow from the rows."""
         scene, column = self.scene, self.results.column
+        rows = self._pushRows() if self.pushed else slice(None)
         found = dict(collapse=self.results.run.get("collapse"), ended=scene.ended)
         found["answers"] = scene.answers
         found.update(self._ofJoints(column))
-        if scene.factor:
+        if math.isfinite(scene.factor):
             found["factor"] = scene.factor
-        if scene.stood:
-            found["stood"] = scene.stood
         if self.pushed:
-            found.update(self._ofPush(column))
+            found.update(self._ofPush(lambda head: column(head)[rows]))
         return found
 
     def _ofPush(self, column):
@@ -178,6 +199,9 @@ class Outcome:
 
     def _figure(self):
         """The entry ``figure`` of run.json."""
+        loads = self._loads()
+        if loads and loads[-1][1][0] != "push" and self.model.followed:
+            return self._figureOfLoad(*loads[-1])
         if self.pushed:
             return self._figureOfPush()
         if self.description.joints:
@@ -210,8 +234,64 @@ class Outcome:
             "y_label": "force along the push [kN]",
             "looped": bool(self.pushed.history),
             "marks": self._marks(),
-            "bounds": list(self.scene.bounds.lines()),
+            "bounds": list(self.scene.bounds.lines(self._pushes())),
+            **self._rowsOf(range(len(self.results.rows))[self._pushRows()]),
         }
+
+    def _rowsOf(self, rows):
+        """The entry of the figure that says which rows it shows, if these are not all."""
+        return {} if len(rows) == len(self.results.rows) else {"rows": list(rows)}
+
+    def _figureOfLoad(self, number, load):
+        """What is drawn of a load that grew, or that was put on step by step: its factor over the displacement of what is
+        watched."""
+        kind, name, _ = load
+        at, followed = self.scene.running.at, self.model.followed
+        first, factors = at.stages[number - 1][3], self.results.column("load_factor")
+        rows = range(first, len(factors))
+        if kind == "lean":
+            rows = self._restsUnder(name)
+        found = {a["name"]: a["value"] for a in at.answers.get(str(number), [])}
+        marks = [
+            {
+                "x": found[f"displacement_{end}"],
+                "y": found[f"factor_{end}"],
+                "text": f"{what} at {found[f'factor_{end}']:.4g}",
+                "below": True,
+            }
+            for end, what in (("held", "held"), ("not_held", "not held"))
+            if found.get(f"displacement_{end}") is not None
+        ]
+        return {
+            "x": {
+                "column": "displacement_mm",
+                "label": f"displacement of {followed.name} along the load [mm]",
+            },
+            "y": [{"column": "load_factor", "label": "load"}],
+            "y_label": f"load factor [{self._unitOf(name)}]",
+            "looped": False,
+            "marks": marks,
+            "bounds": list(self.scene.bounds.linesOf(name)),
+            **self._rowsOf(rows),
+        }
+
+    def _unitOf(self, name):
+        return self.scene.bounds.entries.get(name, {}).get("unit") or "-"
+
+    def _restsUnder(self, name):
+        """Rows at the ends of the stages that put on a load and came to rest, by its factor, after the row before them."""
+        at = self.scene.running.at
+        ends = [stage[3] - 1 for stage in at.stages[1:]] + [len(self.results.rows) - 1]
+        numbers = [n for n, load in self._loads() if load[:2] == ["lean", name]]
+        factors = self.results.column("load_factor")
+        held = [
+            ends[n - 1]
+            for n in numbers
+            if any(a["value"] is not None for a in at.answers.get(str(n), []))
+        ]
+        before = at.stages[numbers[0] - 1][3] - 1
+        rows = sorted(set(held), key=lambda row: factors[row])
+        return [before] * (before >= 0) + rows
 
     def _figureOfJoint(self, joint):
         """What is drawn of a joint that is recorded: the stress along which it moved farther, and the other one."""
@@ -283,7 +363,7 @@ class Outcome:
             for end in ("peak_normal", "peak_compressive", "peak_shear", "end_shear"):
                 key = joint.prefixed(f"{end}_stress_MPa")
                 yield f"{key:32} {run[key]:.4f}"
-        yield from self.scene.bounds.over(run, self.scene.stood)
+        yield from self.scene.bounds.over(run)
         yield from map(answerText, run["answers"])
         if not self.pushed:
             yield f"{name}: {run['ended']}"

@@ -22,6 +22,7 @@ command line work, ``--help`` explains them: ``--preset``, ``--rate``, ``--set``
 
 import atexit
 import functools
+import math
 
 from .._masonry import loadScene, saveScene
 from ..assembly.blocks import vector
@@ -37,6 +38,7 @@ from .description import Description
 from .materials import loadingBlock
 from .outcome import Outcome
 from .stages import AT_REST, STAGES, gravity
+from .targets import Target
 from .words import Script
 
 
@@ -98,11 +100,6 @@ class Scene:
         self.finished = False
         #: of displacements and times [-]
         self.share = 0.1 if arguments.quick else 1.0
-        #: horizontal over vertical acceleration [-]: at the end of the last tilt(), accelerate() or lean(), or, if the
-        #: structure fell in tilt() or accelerate(), that at which it left rest
-        self.factor = 0.0
-        #: largest horizontal over vertical acceleration under which it was at rest [-]
-        self.stood = 0.0
         self.ended = None  # how the last stage ended
         self.pushed = None  # options of the last push
         self.replaced = False  # whether --until or --history have been used
@@ -152,6 +149,14 @@ class Scene:
         kept = self.running.at.answers
         return [one for number in sorted(kept, key=int) for one in kept[number]]
 
+    @property
+    def factor(self):
+        """The largest load factor under which the structure came to rest in the last stage that found one, for example the
+        horizontal over the vertical acceleration of :meth:`accelerate` [-]; not a number if no stage has found one.
+        """
+        found = [a["value"] for a in self.answers if a["name"] == "factor_held"]
+        return next((value for value in reversed(found) if value is not None), math.nan)
+
     def checkOpen(self, name):
         """Refuse a stage of a scene that is finished, or gone because another one was built. Raises ValueError."""
         if self.finished:
@@ -197,6 +202,10 @@ class Scene:
             self._atRest = saveScene("null")
         return ended
 
+    def keptAtRest(self, state):
+        """Keep a state at rest for :meth:`stepBack`, as ``saveScene`` gave it."""
+        self._atRest = state
+
     def stepBack(self):
         """Take the scene back to its last state at rest, also after a collapse. Rows of curve.csv stay."""
         if self.only:
@@ -216,7 +225,7 @@ class Scene:
         Stages that push or lean find their bound by themselves, if there are at most 3000 joints; this is for other
         loads, and for larger structures.
 
-        :param target: what is pushed, as of :meth:`push`, along ``direction``; its factor is the base shear [kN]
+        :param target: what is pushed, as of :meth:`push`, along ``direction``; its factor is the force of the push [kN]
         :param towards: horizontal direction of an acceleration, whose factor is in g; give this or ``target``
         :returns: the entry of run.json: a dict with ``factor``, ``exact`` and the others that :mod:`masonry.run.results`
             lists
@@ -225,10 +234,12 @@ class Scene:
             raise ValueError("bound: give either target or towards")
         self.begin()
         if target is not None:
-            self.model.pushTo(
-                target, vector(direction, "bound: direction").normalized()
-            )
-            return self.bounds.push(self.model.direction, False, lowerUpTo=EVERY)
+            if not isinstance(target, Target) or not target.loaded:
+                raise ValueError(
+                    f"bound: only a platen that moves or a handle() can be pushed, got {target!r}"
+                )
+            direction = vector(direction, "bound: direction").normalized()
+            return self.bounds.push(target, direction, lowerUpTo=EVERY)
         towards = gravity.sideways(self, towards, "bound")
         return self.bounds.lean(towards, lowerUpTo=EVERY)
 

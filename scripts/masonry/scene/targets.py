@@ -49,6 +49,13 @@ class Target:
                     f"force of the structure on {self.name} along {axis}",
                     lambda r, i=i: 1e-3 * r.forces[self.name][i],
                 )
+        for axis in self.drives:
+            yield Column(
+                f"{self.name}_force_{axis}",
+                "kN",
+                f"force of the structure on the drive of {self.name} along {axis}",
+                lambda r, axis=axis: -1e-3 * r.structure.driveOf(self, axis).reaction,
+            )
         if not self.fixed:
             about = " about y" if plane else ", its angle"
             yield Column(

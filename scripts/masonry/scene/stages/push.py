@@ -7,6 +7,7 @@ from ...assembly.blocks import vector
 from ...basics import Refused
 from ...read.curves import dynamicImbalance, peakAtBothEnds
 from .. import history
+from ..bounds import nameOfPush
 from ..targets import Target
 from .pushing import drivePush
 from .stage import DONE, Answer, stage
@@ -104,7 +105,9 @@ def _drive(scene, name, target, aims, direction, rate, continued):
         raise ValueError(
             f"{name}: continued: {target.name} has not been pushed along {tuple(direction)} before"
         )
-    scene.findBound("push", direction, bool(args.history))
+    scene.findBound("push", target, direction, bool(args.history))
+    names = [nameOfPush(target, sign * direction) for sign in (1, -1)]
+    scene.running.note("push", *names)
     if not scene.only:
         drivePush(scene, name, args, began, continued)
         model.loads["push"].velocity = 0

@@ -165,7 +165,7 @@ def drivePush(scene, name, args, began, continued=False):
         how = None
         if at.hasLost(goal.direction, shear):
             how = "less than a fifth of the peak of its force is left"
-        elif model.hasSunk(reading.sunk):
+        elif model.hasSunk(reading.sunk + min(0.0, reading.along * model.direction[2])):  # fmt: skip
             how = "the pushed point has come down by half a course"
         elif at.retreats(goal.direction, whole):
             how = "it moves against its push"

@@ -28,7 +28,8 @@ class Resting:
     done: int = 0  # steps so far
     quiet: int = 0  # looks that found it at rest, one after the other
     load: float = 0.0  # share of the load that has grown [-]
-    gravity: list = None  # when a lean began [m/s²]
+    begun: list = None  # the load when it began to be put on
+    goal: float = 0.0  # factor of the load that is put on [-]
 
 
 @stage(bounded=True, grows=True)

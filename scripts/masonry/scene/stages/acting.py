@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What acts on a structure and can be changed by a stage: gravity with an acceleration, and forces.
+
+An :class:`Acting` gives its present values as a list of numbers, takes others, and says which they are at a share of a growth.
+"""
+
+import math
+
+from yade import Vector3
+
+from ...basics import GRAVITY
+
+
+class Acting:
+    """What acts. A share of 1 is the whole growth, and its factor is ``most`` [-].
+
+    :param name: under which its bound is found
+    """
+
+    def __init__(self, name, most=1.0):
+        self.name, self.most = name, most
+
+    def now(self):
+        """Its present values: a list of numbers."""
+        raise NotImplementedError
+
+    def put(self, values):
+        """Give it other values."""
+        raise NotImplementedError
+
+    def at(self, began, share):
+        """Its values when a share of the growth is over, 0 to 1 [-].
+
+        :param began: its values when the growth began
+        """
+        raise NotImplementedError
+
+    def factor(self, share):
+        """The load factor at a share [-]."""
+        return share * self.most
+
+    def shareOf(self, factor):
+        """The share at which it has a load factor [-]."""
+        return factor / self.most
+
+
+class Acceleration(Acting):
+    """Gravity, with a horizontal acceleration that grows beside it.
+
+    :param model: :class:`masonry.assembly.structure.Structure`
+    :param most: at its end [g]
+    :param towards: unit vector
+    """
+
+    def __init__(self, model, most, towards, name):
+        super().__init__(name, most)
+        self.model, self.towards = model, towards
+
+    def now(self):
+        return list(self.model.now)
+
+    def put(self, values):
+        self.model.setGravity(Vector3(*values))
+
+    def at(self, began, share):
+        down = self.model.description.gravity * Vector3.UnitZ
+        whole = self.factor(share) * GRAVITY * self.towards - down
+        return list(whole / self.model.args.density_scaling)
+
+
+class Tilting(Acceleration):
+    """Gravity that turns, as on a ground that is tilted. The factor is the horizontal over the vertical part.
+
+    :param angle: at its end [rad]
+    """
+
+    def __init__(self, model, angle, towards, name):
+        super().__init__(model, math.tan(angle), towards, name)
+        self.angle = angle
+
+    def at(self, began, share):
+        down, angle = self.model.description.gravity, share * self.angle
+        turned = math.sin(angle) * self.towards - math.cos(angle) * Vector3.UnitZ
+        return list(down * turned / self.model.args.density_scaling)
+
+    def factor(self, share):
+        angle = share * self.angle
+        return math.tan(angle) if angle < math.pi / 2 else math.inf
+
+    def shareOf(self, factor):
+        return math.atan(factor) / self.angle
+
+
+class Forces(Acting):
+    """Forces of MasonryLoad engines, to which others are added.
+
+    :param loads: the engines
+    :param forces: what is added at the end, a vector for each [N]
+    """
+
+    def __init__(self, loads, forces, name):
+        super().__init__(name)
+        self.loads, self.forces = loads, forces
+
+    def now(self):
+        return [value for load in self.loads for value in load.force]
+
+    def put(self, values):
+        for n, load in enumerate(self.loads):
+            load.force = Vector3(*values[3 * n : 3 * n + 3])
+
+    def at(self, began, share):
+        whole = [value for force in self.forces for value in force]
+        return [was + self.factor(share) * value for was, value in zip(began, whole)]

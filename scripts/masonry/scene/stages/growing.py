@@ -1,0 +1,337 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Loads that grow until the structure falls, and the search for the load that it holds.
+
+A structure under a growing load falls late: it must first move. It also begins to move early, where joints give way little
+by little. So neither moment says what it carries. The run finds that out by trials. During the growth it keeps states to go
+back to. Then it takes such a state, leaves the load as it is, and waits: the load is held if the structure comes to rest
+under it. Between the largest load that was held and the smallest that was not it goes on in halves, from the state at rest
+under the first.
+"""
+
+import base64
+import statistics
+from dataclasses import dataclass
+
+from yade import O
+
+from ..._masonry import loadScene, saveScene
+from ...basics import Collapsed, say
+from .rest import CALM, EVERY, LOOKS, REST, rampTime
+from .stage import AT_REST, DONE, Answer
+from .timed import Timed, timed
+
+WITHIN = 0.01  # width of the bracket, over its upper end [-]
+LEAST = 0.05  # of the whole growth: the width of a bracket below this load is that of a bracket at it [-]
+TRIAL = 4.0  # [s] in the scene after which a trial is given up
+MOST_KEPT, LEAST_KEPT = 128, 8  # states that are kept during a growth
+KEPT_BYTES = 200e6  # that they may have in all
+#: A block of a trial that is so fast, over one that has fallen, and twice as fast as in the first half of the trial, does not
+#: come to rest [-]: see :meth:`masonry.assembly.motion.Motion.fastest`.
+SURE = 0.25
+LEFT_REST = 3.0  # the structure has left rest where its speed is so many times the usual one [-]
+
+
+@dataclass
+class Growing(Timed):
+    """What a stage remembers in which a load grows. A trial is a pair: the factor, and 1 if it was held, else 0."""
+
+    begun: list = None  # the load when the stage began
+    #: Of every row so far: time [s], load factor [-], and how fast the fastest block was over one that has fallen [-].
+    rows: list = ()
+    kept: list = ()  # pairs of load factor and state, as text
+    spacing: int = 1  # rows from one kept state to the next
+    fell: str = ""  # how the structure fell
+    last: float = -1.0  # factor at the end of the growth, or below 0 before that [-]
+    lastState: str = ""  # the state then, as text
+    steps: int = 0  # that the growth took
+    # -- of the search
+    trials: list = ()
+    held: list = None  # factor and displacement [mm] of the largest load that was held
+    lost: list = None  # of the smallest that was not
+    heldState: str = ""  # at rest under the load that was held
+    # -- of the present trial
+    goal: float = -1.0  # its factor [-], or below 0 if none is going on
+    source: float = 0.0  # factor of the state from which it begins [-]
+    taken: int = 0  # steps so far
+    quiet: int = 0  # looks that found the structure at rest, one after the other
+    marks: list = ()  # velocities after 1, 2, 4, ... looks [-]
+
+
+def grow(scene, name, load, duration, towards, within=WITHIN):
+    """Let a load grow evenly until the structure falls or the load has its whole, then search for the one that is held.
+
+    :param name: of the stage
+    :param load: :class:`masonry.scene.stages.acting.Acting`, with ``at(began, share)`` for its values and ``factor(share)``
+    :param duration: [s], with true masses
+    :param towards: direction along which displacements are counted
+    :param within: width of the bracket, over its upper end [-]
+    """
+    if scene.only:
+        scene.ended = DONE
+        return DONE
+    running = scene.running
+    running.note("growth", load.name)
+    follow(scene, f"stage {running.entered + 1}", towards)
+    at = running.stage(name, Growing())
+    if at is None:
+        return DONE
+    if at.begun is None:
+        at.begun = load.now()
+    growth = _Growth(scene, at, load, duration)
+    if at.last < 0:
+        growth.run()
+    within = within if scene.share == 1 else max(within, 0.5)
+    search = _Search(scene, at, load, growth.share, within)
+    search.run(name)
+    if at.held:
+        scene.bounds.hold(load.name, at.held[0])
+    if at.lost and at.held:
+        low, high = at.held[0], at.lost[0]
+        say(f"{name}: held at {low:.4g}, not held at {high:.4g}")
+    return search.end()
+
+
+def follow(scene, name, towards):
+    """From now on record the displacement of what is watched along a load, from where it was when that began.
+
+    :param name: under which the run keeps where that was
+    """
+    target, origins = scene.description.followed(), scene.running.at.origins
+    if target and name not in origins:
+        origin = scene.model.follow(target, towards)
+        scene.running.at.origins = {**origins, name: origin}
+    origin = scene.running.at.origins.get(name, (0, 0))
+    scene.model.followFrom(target, towards, origin)
+
+
+def found(scene, rows):
+    """What a stage answers in which a load grew: the largest load that was held, and the smallest that was not."""
+    at = scene.running.memory
+    if not isinstance(at, Growing):
+        return []
+    what = "trials of the run itself, each under a constant load from a state at rest or of the growth"
+    if at.held is None:
+        how = "the structure came to rest under no load that was tried"
+        if at.trials:
+            how += f", of {len(at.trials)} from {min(t[0] for t in at.trials):.4g} on"
+        return [Answer("factor_held", "-", None, how), *_lost(scene, at, what)]
+    how = f"the largest load factor under which the structure came to rest; {what}"
+    answers = [Answer("factor_held", "-", at.held[0], how)]
+    return answers + _displacement(scene, at.held, "held") + _lost(scene, at, what)
+
+
+def _lost(scene, at, what):
+    if at.lost is None:
+        how = f"the load ended at {at.last:.4g} while the structure stood"
+        return [Answer("factor_not_held", "-", None, how)]
+    how = f"the smallest load factor under which it did not come to rest; {what}"
+    answers = [Answer("factor_not_held", "-", at.lost[0], how)]
+    return answers + _displacement(scene, at.lost, "not_held")
+
+
+def _displacement(scene, end, name):
+    target = scene.model.followed
+    if target is None:
+        return []
+    when = "at rest" if name == "held" else "when it was seen not to be"
+    how = f"displacement of {target.name} along the load since the stage began, {when}"
+    return [Answer(f"displacement_{name}", "mm", end[1], how)]
+
+
+def _text(state):
+    return base64.b64encode(state).decode()
+
+
+def _state(text):
+    return base64.b64decode(text)
+
+
+class _Growth:
+    """The growth of a load, with the states that are kept during it."""
+
+    def __init__(self, scene, at, load, duration):
+        self.scene, self.at, self.load = scene, at, load
+        self.model = scene.model
+        self.whole = duration * scene.args.density_scaling**0.5
+
+    def run(self):
+        """Let the load grow."""
+        at, scene, model = self.at, self.scene, self.model
+        if not at.kept:
+            at.kept = [[0.0, _text(saveScene("null"))]]
+        try:
+            timed(scene, at, scene.share * self.whole, self._before, self._after)
+        except Collapsed as collapse:
+            at.fell = str(collapse)
+        at.steps, at.last = at.done, model.loadFactor
+        try:
+            at.lastState = _text(saveScene("null"))
+        except ValueError:  # what has fallen may have left finite numbers
+            at.lastState = at.kept[-1][1]
+
+    def share(self, factor):
+        """Share of the growth at which the load has a factor, for loads that grow evenly or turn."""
+        return self.load.shareOf(factor)
+
+    def _before(self, done, beyond):
+        share = min(1.0, 0.5 * (done + beyond) * O.dt / self.whole)
+        self.load.put(self.load.at(self.at.begun, share))
+        self.model.loadFactor = self.load.factor(share)
+
+    def _after(self):
+        at, factor = self.at, self.model.loadFactor
+        # a checkpoint may hold the old lists
+        at.rows = [*at.rows, [O.time, factor, self.model.motion.fastest()]]
+        if len(at.rows) % at.spacing == 0:
+            at.kept = [*at.kept, [factor, _text(saveScene("null"))]]
+            most = KEPT_BYTES / len(at.kept[-1][1])
+            if len(at.kept) > min(MOST_KEPT, max(LEAST_KEPT, most)):
+                at.kept, at.spacing = at.kept[::2], 2 * at.spacing
+        self.model.motion.checkFall()
+
+
+class _Search:
+    """The search for the largest load that is held, trial by trial."""
+
+    def __init__(self, scene, at, load, share, within):
+        self.scene, self.at, self.load = scene, at, load
+        self.share, self.within = share, within
+        self.model, self.running = scene.model, scene.running
+
+    def run(self, name):
+        """Make trials until the bracket is narrow, or nothing is left to try."""
+        at = self.at
+        while True:
+            if at.goal < 0:
+                chosen = self._next()
+                if chosen is None:
+                    return
+                at.source, at.goal, state = chosen
+                at.taken, at.quiet, at.marks = 0, 0, []
+                if state is not None:
+                    loadScene(_state(state))
+            held = self._trial()
+            end = [at.goal, 1e3 * self.model.alongNow()]
+            if held:
+                at.held, at.heldState = end, _text(saveScene("null"))
+            elif at.lost is None or at.goal < at.lost[0]:
+                at.lost = end
+            at.trials = [*at.trials, [at.goal, int(held)]]
+            at.goal = -1.0
+            self._show(name)
+
+    def end(self):
+        """Take the scene to where the stage ends, and return how it ended."""
+        at, scene = self.at, self.scene
+        if at.held:
+            scene.keptAtRest(_state(at.heldState))
+        if not at.fell and at.lost is None and at.held:
+            if self.running.recordedAt() != O.time:
+                self.running.record()
+            self.running.flush()
+            scene.ended = AT_REST
+            return scene.ended
+        loadScene(_state(at.lastState))
+        self.model.loadFactor = at.last
+        self.running.mark()
+        if at.fell:
+            raise Collapsed(at.fell)
+        scene.ended = DONE
+        return DONE
+
+    # -- which trial comes next -----------------------------------------------------------------------------------
+
+    def _next(self):
+        """The next trial: factor of the state from which it begins, its own factor, and that state as text, or None if it
+        is the present one. None if there is nothing left to try.
+        """
+        at = self.at
+        if not at.trials and not at.fell:
+            return at.last, at.last, None  # the structure still stands
+        factors = [factor for factor, _ in at.kept]
+        low = self._index(factors, at.held)
+        high = self._index(factors, at.lost)
+        if at.held is None and at.lost is None:
+            return self._from(self._guess(factors))
+        if at.held is None:
+            if high == 0:
+                return None
+            return self._from(max(0, high - 2 ** (len(at.trials) - 1)))
+        top = len(factors) if at.lost is None else high
+        if at.lost is None and low + 1 < top:
+            return self._from(min(top - 1, low + 2 ** (len(at.trials) - 1)))
+        if at.lost is None:
+            at.lost = [at.last, 1e3 * self._alongThen()]
+        if at.lost[0] - at.held[0] <= self.within * max(at.lost[0], LEAST * at.last):
+            return None
+        if low + 1 < top:
+            return self._from((low + top) // 2)
+        return at.held[0], 0.5 * (at.held[0] + at.lost[0]), at.heldState
+
+    def _from(self, index):
+        factor, state = self.at.kept[index]
+        return factor, factor, state
+
+    def _index(self, factors, end):
+        """Number of the last kept state up to an end of the bracket, or of the first one from it on."""
+        if end is None:
+            return None
+        if end is self.at.held:
+            return max(i for i, f in enumerate(factors) if f <= end[0])
+        return next((i for i, f in enumerate(factors) if f >= end[0]), len(factors))
+
+    def _guess(self, factors):
+        """Number of the kept state with which the search begins: the last before the structure leaves rest."""
+        speeds = [speed for _, _, speed in self.at.rows]
+        n = len(speeds) - 1
+        while n > 0 and speeds[n] > LEFT_REST * statistics.median(speeds[:n]):
+            n -= 1
+        reached = self.at.rows[n][1] if speeds else 0.0
+        return max(i for i, f in enumerate(factors) if f <= reached or i == 0)
+
+    def _alongThen(self):
+        loadScene(_state(self.at.lastState))
+        return self.model.alongNow()
+
+    # -- a trial --------------------------------------------------------------------------------------------------
+
+    def _trial(self):
+        """Hold a load, and wait. Returns whether the structure came to rest under it."""
+        at, scene, model = self.at, self.scene, self.model
+        height = scene.description.high[2] - scene.description.low[2]
+        ramp = rampTime(scene.args) * max(1.0, height / 3)
+        growing = max(1, int(ramp / O.dt))
+        most = int(TRIAL * scene.args.density_scaling**0.5 / O.dt)
+        while True:
+            x = min(1.0, (at.taken + EVERY) / growing)
+            factor = at.source + x * x * (3 - 2 * x) * (at.goal - at.source)
+            self.load.put(self.load.at(at.begun, self.share(factor)))
+            model.loadFactor = factor
+            try:
+                self.running.advance(EVERY)
+                at.taken += EVERY
+                model.motion.checkFall()
+            except Collapsed:
+                return False
+            missing, moving = model.unrest()
+            rests = abs(missing) < REST and moving < CALM and x == 1
+            at.quiet = at.quiet + 1 if rests else 0
+            if at.quiet == LOOKS:
+                return True
+            if at.taken >= most or self._accelerates(model.motion.fastest()):
+                return False
+
+    def _accelerates(self, speed):
+        """Whether the fastest block is fast, and at least twice as fast as in the first half of the trial."""
+        at = self.at
+        looks = at.taken // EVERY
+        if looks & (looks - 1) == 0:
+            at.marks = [*at.marks, speed]
+        before = at.marks[max(0, looks.bit_length() - 2)]
+        return looks > 8 and speed > SURE and speed > 2 * before
+
+    def _show(self, name):
+        at = self.at
+        ends = [f"held {at.held[0]:.4g}"] if at.held else []
+        ends += [f"not held {at.lost[0]:.4g}"] if at.lost else []
+        self.running.show(1, lambda: f"trial {len(at.trials)}: {', '.join(ends)}", True)
