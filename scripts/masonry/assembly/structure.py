@@ -235,6 +235,55 @@ class Structure:
 
     # -- loads ----------------------------------------------------------------------------------------------------
 
+    def _addLoad(self, label, body, point, damped=False):
+        """A load that a stage adds: an engine before that of the energy balance."""
+        if label not in self.loads:
+            load = MasonryLoad(label=label, body=body, point=point, damped=damped)
+            engines = list(O.engines)
+            at = next(n for n, one in enumerate(engines) if one.label == "energy")
+            O.engines = [*engines[:at], load, *engines[at:]]
+            self.loads[label] = load
+        return self.loads[label]
+
+    def forceOf(self, target):
+        """The engine of the dead load on a target; it is made if it is missing."""
+        return self._addLoad(f"{target.name}_force", target.body, target.point)
+
+    def pressOf(self, target):
+        """The engine of a press, whose resultant goes through the middle of what the platen presses, and the area of that
+        [m²]."""
+        known = f"{target.name}_force" in self.loads
+        area, middle = self._contact(target)
+        load = self.forceOf(target)
+        if not known:
+            load.point = (middle[0], middle[1], target.point[2])
+        return load, area
+
+    def windOf(self, label, faces):
+        """The engines of a wind on faces, as of :meth:`masonry.bricks.Bricks.freeFaces`; they are made if they are missing."""
+        return [
+            self._addLoad(f"{label}_{n}", self.ids[brick], middle, damped=True)
+            for n, (brick, _, _, middle) in enumerate(faces)
+        ]
+
+    def weightOf(self, target):
+        """Weight of the body of a target [N]."""
+        return O.bodies[target.body].state.mass * self.gravity
+
+    def isDriven(self, target, axis):
+        """Whether a drive holds or moves a target along an axis."""
+        return any(
+            load and load.body == target.body and load.driven and abs(load.direction["xyz".index(axis)]) > 1e-12
+            for load in self.loads.values()
+        )  # fmt: skip
+
+    def holdAlso(self, target, axes):
+        """Count a target as one that is held along more axes."""
+        if target not in self.held:
+            self.held.append(target)
+            self._freeMass -= O.bodies[target.body].state.mass
+        target.freedom = "".join({*(target.freedom or ""), *axes})
+
     def grow(self, x):
         """Let presses and dead loads grow smoothly: 0 to 1 is from nothing to their whole."""
         self.grown = x == 1
@@ -337,6 +386,18 @@ class Structure:
     def forceOn(self, target):
         """Force of the structure on a target [N]."""
         return self._forces.f(target.body, True)
+
+    def forceFrom(self, target):
+        """Force of what loads, drives and holds a target on it [N]."""
+        total, blocked = Vector3(0, 0, 0), O.bodies[target.body].state.blockedDOFs
+        for label, load in self.loads.items():
+            if label != "push" and load.body == target.body:
+                total += load.force + load.reaction * load.direction.normalized()
+        on = self.forceOn(target)
+        for i, axis in enumerate("xyz"):
+            if axis in blocked:
+                total[i] = -on[i]
+        return total
 
     def moved(self, target):
         """Displacement of a target's recorded point since the scene was built [m], and its rotation, about y in a plane,

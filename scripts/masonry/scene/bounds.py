@@ -80,12 +80,13 @@ class Bounds:
         turned = lambda a: share * live(a)
         return self._find(what, "", turned, lowerUpTo, tilts=True)
 
-    def forces(self, what, unit, loads):
+    def forces(self, what, unit, loads, lowerUpTo=0):
         """Find the bound of forces that grow together. Returns its entry of run.json.
 
         :param what: name of the load
         :param unit: of its factor
         :param loads: pairs of a MasonryLoad and its force at a factor of 1 [N]
+        :param lowerUpTo: as of :meth:`push`
         """
 
         def live(assembly):
@@ -95,7 +96,7 @@ class Bounds:
                 found += assembly.force(block, np.array(force), _pointOf(load, assembly))  # fmt: skip
             return found
 
-        return self._find(what, unit, live, 0)
+        return self._find(what, unit, live, lowerUpTo)
 
     def _find(self, what, unit, load, lowerUpTo, tilts=False, pushed=None):
         known = self.entries.get(what)

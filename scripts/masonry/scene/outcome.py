@@ -23,7 +23,7 @@ from ..read.frames import asFrame
 from . import history
 from .options import UNITS
 from .stages import pushing
-from .stages.stage import answerText
+from .stages.stage import answersText
 from .wall import wallOf
 
 FRAMES = 20  # for ParaView in a stage that is no push
@@ -364,7 +364,7 @@ class Outcome:
                 key = joint.prefixed(f"{end}_stress_MPa")
                 yield f"{key:32} {run[key]:.4f}"
         yield from self.scene.bounds.over(run)
-        yield from map(answerText, run["answers"])
+        yield from answersText(run["answers"])
         if not self.pushed:
             yield f"{name}: {run['ended']}"
             return

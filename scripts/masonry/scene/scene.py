@@ -37,7 +37,7 @@ from .bounds import EVERY, SMALL, Bounds
 from .description import Description
 from .materials import loadingBlock
 from .outcome import Outcome
-from .stages import AT_REST, STAGES, gravity
+from .stages import AT_REST, LATER, STAGES, gravity, prepare
 from .targets import Target
 from .words import Script
 
@@ -102,6 +102,7 @@ class Scene:
         self.share = 0.1 if arguments.quick else 1.0
         self.ended = None  # how the last stage ended
         self.pushed = None  # options of the last push
+        self.loadUnit = "-"  # of the load that a stage put on or let grow last
         self.replaced = False  # whether --until or --history have been used
         self.grown = False  # whether presses and dead loads have their whole
         #: whether there is no run, but limit analysis alone
@@ -188,9 +189,18 @@ class Scene:
         self.outcome = Outcome(self)
         with self.running.clock("setup"):
             model.build(loadingBlock())
+            self._prepare()
         self.running.start(model, self.outcome.space())
         Scene.present = self
         atexit.register(self._remind)
+
+    def _prepare(self):
+        """Make the engines that stages had made before the checkpoint of a run that is resumed."""
+        names, begun = {stage.__name__ for stage in STAGES}, False
+        for word, said in self.running.scriptBefore:
+            begun = begun or word in names
+            if begun:
+                prepare(self, word, said)
 
     def probe(self, stage, traits, arguments):
         """Say what a study must know of the scene, and end; see :func:`masonry.scene.probing.probe`."""
@@ -289,5 +299,19 @@ class Scene:
             )
 
 
+def _either(describes, stage):
+    """A word that describes before the first stage, and is a stage after it."""
+
+    @functools.wraps(describes)
+    def word(scene, *args, **settings):
+        return (stage if scene.model else describes)(scene, *args, **settings)
+
+    word.__doc__ = f"{describes.__doc__}\n\n    After the first stage: {stage.__doc__}"
+    return word
+
+
 for _stage in STAGES:
     setattr(Scene, _stage.__name__, _stage)
+for _stage in LATER:
+    _name = _stage.__name__
+    setattr(Scene, _name, _either(getattr(Scene, _name), _stage))

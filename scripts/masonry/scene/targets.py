@@ -49,6 +49,15 @@ class Target:
                     f"force of the structure on {self.name} along {axis}",
                     lambda r, i=i: 1e-3 * r.forces[self.name][i],
                 )
+        if self.brick is not None and self.loaded and not self.fixed:
+            for i, axis in enumerate("xyz"):
+                if not (plane and axis == "y"):
+                    yield Column(
+                        f"{self.name}_force_{axis}",
+                        "kN",
+                        f"force of the structure on what loads, drives or holds {self.name} along {axis}",
+                        lambda r, i=i: -1e-3 * r.structure.forceFrom(self)[i],
+                    )
         for axis in self.drives:
             yield Column(
                 f"{self.name}_force_{axis}",

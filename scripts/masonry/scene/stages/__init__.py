@@ -8,12 +8,15 @@ A new stage is such a function (:func:`masonry.scene.stages.stage.stage`) and it
 - :mod:`masonry.scene.stages.drive`: ``drive`` and ``pressJoint``
 - :mod:`masonry.scene.stages.supports`: ``release`` and ``move``
 - :mod:`masonry.scene.stages.gravity`: ``tilt``, ``accelerate``, ``lean`` and ``bracket``
+- :mod:`masonry.scene.stages.loading`: ``load``, ``wind``, ``press`` and ``hold`` after the first stage, and ``growLoad``,
+  ``growWind`` and ``growPress``
 - :mod:`masonry.scene.stages.shake`: ``shake`` and ``run``
 - :mod:`masonry.scene.stages.stage`: what all share; :mod:`masonry.scene.stages.timed`: what those share that last for a time
 """
 
 from .drive import drive, pressJoint
 from .gravity import accelerate, lean, tilt
+from .loading import growLoad, growPress, growWind, hold, load, prepare, press, wind
 from .push import cycle, follow, push
 from .rest import settle
 from .shake import run, shake
@@ -35,4 +38,9 @@ STAGES = (
     lean,
     shake,
     run,
+    growLoad,
+    growWind,
+    growPress,
 )
+#: Stages whose names are those of words that describe: they are meant after the first stage.
+LATER = (load, wind, press, hold)

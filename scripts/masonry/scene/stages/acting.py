@@ -15,10 +15,11 @@ class Acting:
     """What acts. A share of 1 is the whole growth, and its factor is ``most`` [-].
 
     :param name: under which its bound is found
+    :param unit: of the factor
     """
 
-    def __init__(self, name, most=1.0):
-        self.name, self.most = name, most
+    def __init__(self, name, most, unit):
+        self.name, self.most, self.unit = name, most, unit
 
     def now(self):
         """Its present values: a list of numbers."""
@@ -52,8 +53,8 @@ class Acceleration(Acting):
     :param towards: unit vector
     """
 
-    def __init__(self, model, most, towards, name):
-        super().__init__(name, most)
+    def __init__(self, model, most, towards, name, unit="g"):
+        super().__init__(name, most, unit)
         self.model, self.towards = model, towards
 
     def now(self):
@@ -75,7 +76,7 @@ class Tilting(Acceleration):
     """
 
     def __init__(self, model, angle, towards, name):
-        super().__init__(model, math.tan(angle), towards, name)
+        super().__init__(model, math.tan(angle), towards, name, "-")
         self.angle = angle
 
     def at(self, began, share):
@@ -92,15 +93,24 @@ class Tilting(Acceleration):
 
 
 class Forces(Acting):
-    """Forces of MasonryLoad engines, to which others are added.
+    """Forces of MasonryLoad engines.
 
     :param loads: the engines
-    :param forces: what is added at the end, a vector for each [N]
+    :param forces: that they have at a factor of 1, a vector for each [N]
+    :param unit: of the factor
+    :param most: the factor at the end
     """
 
-    def __init__(self, loads, forces, name):
-        super().__init__(name)
+    def __init__(self, loads, forces, name, unit, most):
+        super().__init__(name, most, unit)
         self.loads, self.forces = loads, forces
+        #: Whether the forces replace those that are there, and are not added to them.
+        self.replaces = False
+        self.beside = [0, 0, 0]  # a force that stays beside those that replace [N]
+
+    def pairs(self):
+        """The engines and their forces at a factor of 1."""
+        return list(zip(self.loads, self.forces))
 
     def now(self):
         return [value for load in self.loads for value in load.force]
@@ -110,5 +120,8 @@ class Forces(Acting):
             load.force = Vector3(*values[3 * n : 3 * n + 3])
 
     def at(self, began, share):
-        whole = [value for force in self.forces for value in force]
-        return [was + self.factor(share) * value for was, value in zip(began, whole)]
+        factor = self.factor(share)
+        whole = [factor * value for force in self.forces for value in force]
+        if self.replaces:
+            return [v + self.beside[n % 3] for n, v in enumerate(whole)]
+        return [was + value for was, value in zip(began, whole)]

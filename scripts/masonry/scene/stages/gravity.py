@@ -6,23 +6,23 @@ import math
 from ...assembly.blocks import vector
 from ..bounds import nameOfLean
 from .acting import Acceleration, Tilting
-from .growing import WITHIN, follow, found, grow
+from .growing import WITHIN, ends, follow, found, grow
 from .rest import Resting, waitForRest
-from .stage import AT_REST, MOVING, Answer, stage
+from .stage import AT_REST, MOVING, stage
 from .timed import checkedRate
 
 LEAN_GROWS = 0.2  # [s] in which a lean grows
 LEANING = 4.0  # [s] after which a lean is given up
 
 
-def factorHeld(scene, rows):
-    """The acceleration under which the structure came to rest."""
-    asked = scene.running.memory.goal
+def putOnAnswers(scene, rows):
+    """The load that was put on, as held or as not held."""
+    asked, unit = scene.running.memory.goal, scene.loadUnit
+    end, load = [asked, 1e3 * scene.model.alongNow()], f"{asked:.4g} {unit}"
     if scene.ended == AT_REST:
-        how = "the structure came to rest under it"
-        return [Answer("factor_held", "-", asked, how)]
-    how = f"the structure did not come to rest under a factor of {asked:.4g}"
-    return [Answer("factor_held", "-", None, how)]
+        return ends(scene, end, "the structure came to rest under it", None, f"it held {load}")  # fmt: skip
+    why = f"the structure did not come to rest under {load}"
+    return ends(scene, None, why, end, why)
 
 
 def sideways(scene, towards, name):
@@ -87,7 +87,7 @@ def accelerate(scene, most, towards=(1, 0, 0), rate=0.5, within=WITHIN):
     return grow(scene, "accelerate", load, duration, towards, within)
 
 
-@stage(bounded=True, answers=factorHeld)
+@stage(bounded=True, answers=putOnAnswers)
 def lean(scene, factor, towards=(1, 0, 0), longest=None):
     """Put a horizontal acceleration on the structure, and wait until it is at rest or falls.
 
@@ -113,7 +113,7 @@ def putOn(scene, name, load, towards, longest, over=0.0):
     :param longest: time in the scene after which it is given up [s]; None: :data:`LEANING`
     :param over: time in which it grows at least [s]
     """
-    running, model = scene.running, scene.model
+    running, model, scene.loadUnit = scene.running, scene.model, load.unit
     running.note("lean", load.name)
     follow(scene, f"{name} {[round(v, 9) for v in towards]}", towards)
     at = running.stage(name, Resting())

@@ -28,7 +28,7 @@ KEPT_BYTES = 200e6  # that they may have in all
 #: A block of a trial that is so fast, over one that has fallen, and twice as fast as in the first half of the trial, does not
 #: come to rest [-]: see :meth:`masonry.assembly.motion.Motion.fastest`.
 SURE = 0.25
-LEFT_REST = 3.0  # the structure has left rest where its speed is so many times the usual one [-]
+SETTING_OFF = 3.0  # the structure has left rest where its speed is so many times the usual one [-]
 
 
 @dataclass
@@ -69,7 +69,7 @@ def grow(scene, name, load, duration, towards, within=WITHIN):
     if scene.only:
         scene.ended = DONE
         return DONE
-    running = scene.running
+    running, scene.loadUnit = scene.running, load.unit
     running.note("growth", load.name)
     follow(scene, f"stage {running.entered + 1}", towards)
     at = running.stage(name, Growing())
@@ -87,7 +87,8 @@ def grow(scene, name, load, duration, towards, within=WITHIN):
         scene.bounds.hold(load.name, at.held[0])
     if at.lost and at.held:
         low, high = at.held[0], at.lost[0]
-        say(f"{name}: held at {low:.4g}, not held at {high:.4g}")
+        unit = "" if load.unit == "-" else f" {load.unit}"
+        say(f"{name}: held at {low:.4g}{unit}, not held at {high:.4g}{unit}")
     return search.end()
 
 
@@ -110,32 +111,35 @@ def found(scene, rows):
     if not isinstance(at, Growing):
         return []
     what = "trials of the run itself, each under a constant load from a state at rest or of the growth"
+    held = f"the largest load factor under which the structure came to rest; {what}"
     if at.held is None:
-        how = "the structure came to rest under no load that was tried"
+        held = "the structure came to rest under no load that was tried"
         if at.trials:
-            how += f", of {len(at.trials)} from {min(t[0] for t in at.trials):.4g} on"
-        return [Answer("factor_held", "-", None, how), *_lost(scene, at, what)]
-    how = f"the largest load factor under which the structure came to rest; {what}"
-    answers = [Answer("factor_held", "-", at.held[0], how)]
-    return answers + _displacement(scene, at.held, "held") + _lost(scene, at, what)
-
-
-def _lost(scene, at, what):
+            least = min(factor for factor, _ in at.trials)
+            held += f", of {len(at.trials)} from {least:.4g} on"
+    lost = f"the smallest load factor under which it did not come to rest; {what}"
     if at.lost is None:
-        how = f"the load ended at {at.last:.4g} while the structure stood"
-        return [Answer("factor_not_held", "-", None, how)]
-    how = f"the smallest load factor under which it did not come to rest; {what}"
-    answers = [Answer("factor_not_held", "-", at.lost[0], how)]
-    return answers + _displacement(scene, at.lost, "not_held")
+        lost = f"the load ended at {at.last:.4g} while the structure stood"
+    return ends(scene, at.held, held, at.lost, lost)
 
 
-def _displacement(scene, end, name):
-    target = scene.model.followed
-    if target is None:
-        return []
-    when = "at rest" if name == "held" else "when it was seen not to be"
-    how = f"displacement of {target.name} along the load since the stage began, {when}"
-    return [Answer(f"displacement_{name}", "mm", end[1], how)]
+def ends(scene, held, whyHeld, lost, whyLost):
+    """The answers of a stage that looks for the load that is held.
+
+    :param held: factor and displacement [mm] of a load that was held, or None; ``lost``: of one that was not
+    :param whyHeld: how it was found, or why it was not; ``whyLost``: likewise
+    """
+    answers, target = [], scene.model.followed
+    for name, end, how, when in (
+        ("held", held, whyHeld, "at rest"),
+        ("not_held", lost, whyLost, "when it was seen not to come to rest"),
+    ):
+        value = end[0] if end else None
+        answers.append(Answer(f"factor_{name}", scene.loadUnit, value, how))
+        if end and target:
+            how = f"of {target.name} along the load since that began, {when}"
+            answers.append(Answer(f"displacement_{name}", "mm", end[1], how))
+    return answers
 
 
 def _text(state):
@@ -284,7 +288,7 @@ class _Search:
         """Number of the kept state with which the search begins: the last before the structure leaves rest."""
         speeds = [speed for _, _, speed in self.at.rows]
         n = len(speeds) - 1
-        while n > 0 and speeds[n] > LEFT_REST * statistics.median(speeds[:n]):
+        while n > 0 and speeds[n] > SETTING_OFF * statistics.median(speeds[:n]):
             n -= 1
         reached = self.at.rows[n][1] if speeds else 0.0
         return max(i for i, f in enumerate(factors) if f <= reached or i == 0)

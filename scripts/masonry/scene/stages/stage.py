@@ -2,6 +2,7 @@
 """What all stages of a scene share: how they begin and end, their traits, and what they answer."""
 
 import functools
+import itertools
 import os
 from dataclasses import dataclass
 from typing import Callable
@@ -44,6 +45,34 @@ def answerText(answer):
     known = answer["uncertainty"] is not None
     about = f" ± {answer['uncertainty']:.2g}" if known else ""
     return f"{head} {answer['value']:.4g}{about}{unit}"
+
+
+def answersText(answers):
+    """Entries of ``answers`` of run.json as lines to read. Stages of one kind that look for the load that is held and follow
+    each other, as the trials of a bracket, have one line.
+    """
+    searches = lambda one: one["name"] in ("factor_held", "factor_not_held")
+    alike = lambda one: (one["stage"], one["unit"]) if searches(one) else None
+    shown = [a for a in answers if not a["name"].startswith("displacement_held")]
+    shown = [a for a in shown if not a["name"].startswith("displacement_not_held")]
+    for kind, group in itertools.groupby(shown, alike):
+        group = list(group)
+        if kind is None:
+            yield from map(answerText, group)
+            continue
+        held = _furthest(group, "factor_held", max)
+        lost = _furthest(group, "factor_not_held", min)
+        found = [answerText(one) for one in (held, lost) if one]
+        count = len({one["number"] for one in group})
+        stages = f" ({count} stages)" if count > 1 else ""
+        yield "; ".join([found[0] + stages] + [t.partition(": ")[2] for t in found[1:]])
+
+
+def _furthest(answers, name, choose):
+    """The answer of a name with the largest or smallest value, or one without a value if there is no other."""
+    found = [one for one in answers if one["name"] == name]
+    known = [one for one in found if one["value"] is not None]
+    return choose(known, key=lambda one: one["value"]) if known else found[-1]
 
 
 class Rows:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Supports that are taken away or that move: ``release`` and ``move``."""
 
+from dataclasses import dataclass
+
 from yade import O, Vector3
 
 from ...assembly.blocks import vector
@@ -18,7 +20,32 @@ def release(scene, target, axes, force=None):
     :param axes: along which it becomes free, some of xyz, and about which, XYZ
     :param force: three numbers [N] of a load that stays in place of a drive; None: none
     """
-    return letGo(scene, target, axes, force)
+    return atOnce(scene, "release", lambda: letGo(scene, target, axes, force))
+
+
+@dataclass
+class Instant:
+    """What a stage remembers that takes no time."""
+
+    done: int = 0  # 1 when it is over
+
+
+def atOnce(scene, name, act, also=None):
+    """A stage that takes no time.
+
+    :param act: function that changes the state of the scene
+    :param also: function that changes what no checkpoint keeps, and is called in a run that is resumed, too
+    """
+    at = scene.running.stage(name, Instant())
+    if also:
+        also()
+    if at is not None and not at.done:
+        act()
+        at.done = 1
+        if not scene.running.resumes or scene.running.advanced:
+            scene.running.mark()
+    scene.ended = DONE
+    return DONE
 
 
 def letGo(scene, target, axes, force):

@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Loads after the first stage: ``load``, ``wind`` and ``press`` put them on, ``growLoad``, ``growWind`` and ``growPress`` let them
+grow, and ``hold`` holds what was free.
+
+The first three give a load its new value, whatever it was before, and wait for rest, so that ``bracket`` can search for the
+largest that is held. The others add to what is there until the structure falls, and search by themselves.
+"""
+
+import math
+
+from yade import O, Vector3
+
+from ...assembly.blocks import vector
+from ...basics import Refused
+from ..bounds import nameOf
+from ..loads import checkedForce, checkPress, windFaces
+from ..targets import Target
+from .acting import Forces
+from .gravity import checkWithin, putOn, putOnAnswers
+from .growing import WITHIN, found, grow
+from .stage import AT_REST, MOVING, stage
+from .supports import atOnce
+from .timed import checkedRate
+
+GROWS = 2.0  # [s] in which a load grows to its whole
+
+
+# -- forces on a target -------------------------------------------------------------------------------------------
+
+
+def _forceOn(scene, target, force, name):
+    """The load of a force on a target, in kN along its direction. Raises ValueError."""
+    force = checkedForce(scene.description, target, force, name)
+    if not force.norm() > 0:
+        raise ValueError(f"{name}: force must not be zero")
+    engine, towards = scene.model.forceOf(target), force.normalized()
+    what = f"load on {target.name} along {nameOf(towards)}"
+    return Forces([engine], [1e3 * towards], what, "kN", 1e-3 * force.norm()), towards
+
+
+@stage(bounded=True, answers=putOnAnswers)
+def load(scene, target, force, longest=None):
+    """Give a target another dead load, and wait until the structure is at rest or falls.
+
+    Before the first stage :meth:`load` describes a load that grows in :meth:`settle`. After it the force replaces the dead load
+    that the target has, described or put on; it changes within 0.02 s, and longer for tall structures. So
+    ``bracket(lambda f: scene.load(target, (0, 0, -f)) == AT_REST, 1e3, 9e3)`` finds the largest that is held.
+
+    :param force: three numbers [N]
+    :param longest: time in the scene after which it is given up [s]; None: 4 s
+    :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
+    """
+    made, towards = _forceOn(scene, target, force, "load")
+    return _putOn(scene, "load", made, towards, longest)
+
+
+@stage(bounded=True, answers=found)
+def growLoad(scene, target, force, over=GROWS, within=WITHIN):
+    """Let a dead load grow evenly beside what is there, until the structure falls or the force is reached; then search for the
+    load that is held.
+
+    :param force: at the end, three numbers [N]
+    :param over: time in which it grows to that [s]
+    :param within: as of :meth:`tilt`
+    :returns: as of :meth:`tilt`; the unit of ``scene.factor`` is kN
+    """
+    made, towards = _forceOn(scene, target, force, "growLoad")
+    return _grow(scene, "growLoad", made, towards, over, within)
+
+
+# -- wind ---------------------------------------------------------------------------------------------------------
+
+
+def _windOn(scene, pressure, towards, part, name):
+    towards = vector(towards, f"{name}: direction")
+    faces = windFaces(scene.description, pressure, towards, part, name)
+    towards = math.copysign(1, pressure) * towards.normalized()
+    engines = scene.model.windOf(windLabel(towards, part), faces)
+    sign = math.copysign(1e3, pressure)
+    forces = [-sign * area * Vector3(*normal) for _, normal, area, _ in faces]
+    what = f"wind towards {nameOf(towards)}" + (f" on {part}" if part else "")
+    return Forces(engines, forces, what, "kPa", 1e-3 * abs(pressure)), towards
+
+
+def windLabel(towards, part):
+    """How the labels of the engines of a wind begin."""
+    axes = "_".join(f"{v:.6g}" for v in towards)
+    return f"wind_{axes}_{part or 'all'}"
+
+
+@stage(bounded=True, answers=putOnAnswers)
+def wind(scene, pressure, towards, part=None, longest=None):
+    """Give the faces that look against a horizontal direction another pressure, and wait until the structure is at rest or
+    falls.
+
+    Before the first stage :meth:`wind` describes a wind that grows in :meth:`settle`, and to which this one is added. Another
+    :meth:`wind` of the same direction and part after the first stage replaces it.
+
+    :param pressure: [Pa]; ``towards`` and ``part``: as before the first stage; ``longest``: as of :meth:`load`
+    :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
+    """
+    made, towards = _windOn(scene, pressure, towards, part, "wind")
+    return _putOn(scene, "wind", made, towards, longest)
+
+
+@stage(bounded=True, answers=found)
+def growWind(scene, pressure, towards, part=None, over=GROWS, within=WITHIN):
+    """Let a wind grow evenly until the structure falls or the pressure is reached; then search for the one that is held.
+
+    :param pressure: at the end [Pa]; ``towards`` and ``part``: as of :meth:`wind`
+    :param over: time in which it grows to that [s]
+    :param within: as of :meth:`tilt`
+    :returns: as of :meth:`tilt`; the unit of ``scene.factor`` is kPa
+    """
+    made, towards = _windOn(scene, pressure, towards, part, "growWind")
+    return _grow(scene, "growWind", made, towards, over, within)
+
+
+# -- presses ------------------------------------------------------------------------------------------------------
+
+
+def _pressOn(scene, platen, stress, name):
+    checkPress(platen, stress, name)
+    if not stress > 0:
+        raise ValueError(f"{name}: stress {stress!r} must be above 0 Pa")
+    engine, area = scene.model.pressOf(platen)
+    down = -1e6 * area * Vector3.UnitZ
+    what = f"press of {platen.name}"
+    return engine, area, Forces([engine], [down], what, "MPa", 1e-6 * stress)
+
+
+@stage(bounded=True, answers=putOnAnswers)
+def press(scene, platen, stress, longest=None):
+    """Press a platen with another mean stress on the bricks below it, and wait until the structure is at rest or falls.
+
+    Before the first stage :meth:`press` describes a press that grows in :meth:`settle`. After it the stress replaces that.
+
+    :param stress: mean vertical stress that the bricks feel [Pa]; the weight of the platen is part of it
+    :param longest: as of :meth:`load`
+    :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
+    """
+    engine, area, made = _pressOn(scene, platen, stress, "press")
+    made.beside = [0, 0, scene.model.weightOf(platen)]
+    return _putOn(scene, "press", made, -Vector3.UnitZ, longest)
+
+
+@stage(bounded=True, answers=found)
+def growPress(scene, platen, stress, over=GROWS, within=WITHIN):
+    """Let a press grow evenly beside what presses already, until the structure falls or the stress is reached; then search for
+    the one that is held.
+
+    :param stress: what is added at the end [Pa]
+    :param over: time in which it grows to that [s]
+    :param within: as of :meth:`tilt`
+    :returns: as of :meth:`tilt`; the unit of ``scene.factor`` is MPa
+    """
+    engine, area, made = _pressOn(scene, platen, stress, "growPress")
+    return _grow(scene, "growPress", made, -Vector3.UnitZ, over, within)
+
+
+# -- what they share ----------------------------------------------------------------------------------------------
+
+
+def _putOn(scene, name, made, towards, longest):
+    made.replaces, scene.loadUnit = True, made.unit
+    if not any(made.now()):
+        scene.findBound("forces", made.name, made.unit, made.pairs())
+    if scene.only:
+        return _boundAlone(scene, made)
+    return putOn(scene, name, made, towards, longest)
+
+
+def _grow(scene, name, made, towards, over, within):
+    checkedRate(over, f"{name}: over")
+    checkWithin(within, name)
+    scene.findBound("forces", made.name, made.unit, made.pairs())
+    return grow(scene, name, made, over, towards, within)
+
+
+def _boundAlone(scene, made):
+    """How a stage of ``--preset bound`` ends."""
+    carried = scene.bounds.entries.get(made.name, {}).get("factor", 0.0)
+    scene.ended = AT_REST if made.most <= carried else MOVING
+    return scene.ended
+
+
+@stage()
+def hold(scene, target, axes="xyzXYZ"):
+    """Hold a target where it is now. What follows is the next stage's.
+
+    Before the first stage :meth:`hold` describes a brick that is held from the beginning.
+
+    :param target: a platen that moves, a :meth:`handle` or a :meth:`watch`
+    :param axes: along which it is held, xyz, and about which it cannot turn, XYZ
+    """
+    if not isinstance(target, Target):
+        raise ValueError(
+            f"hold: after the first stage only a platen, a handle() or a watch() can be held, got {target!r}"
+        )
+    if not axes or set(axes) - set("xyzXYZ"):
+        raise ValueError(f"hold: axes must be some of 'xyzXYZ', got {axes!r}")
+    zones = scene.model.zones
+    if zones and target.body in zones.bodies:
+        raise Refused(
+            f"hold: {target.name} is a deformable brick, which can be held before the first stage alone"
+        )
+    driven = [a for a in "xyz" if scene.model.isDriven(target, a) and a in axes]
+    if driven:
+        raise ValueError(
+            f"hold: a drive holds {target.name} along {', '.join(driven)} already"
+        )
+
+    def act():
+        state = O.bodies[target.body].state
+        blocked = {*state.blockedDOFs, *axes}
+        state.blockedDOFs = "".join(a for a in "xyzXYZ" if a in blocked)
+        free = [float(a not in blocked) for a in "xyzXYZ"]
+        state.vel = Vector3(*(v * f for v, f in zip(state.vel, free[:3])))
+        state.angVel = Vector3(*(v * f for v, f in zip(state.angVel, free[3:])))
+
+    return atOnce(scene, "hold", act, lambda: scene.model.holdAlso(target, axes))
+
+
+def prepare(scene, word, said):
+    """Make the engines of a load that the script puts on after the first stage, before a checkpoint is loaded that has them.
+
+    :param word: what the script said; ``said``: its arguments as data
+    """
+    target = scene.targets.get(said.get("target") or said.get("platen"))
+    if word in ("load", "growLoad") and target:
+        scene.model.forceOf(target)
+    elif word in ("press", "growPress") and target:
+        scene.model.pressOf(target)
+    elif word in ("wind", "growWind"):
+        _windOn(scene, said["pressure"], said["towards"], said["part"], word)
