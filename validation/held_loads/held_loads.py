@@ -98,7 +98,10 @@ def grown(name, slower=1.0):
         scene.hold(7, name="one"), scene.hold(8, name="other")
     else:
         scene.platen("bottom")
-    scene.watch(blocks.high, name="top")
+    highest = max(
+        range(len(blocks)), key=lambda n: max(p[2] for p in blocks[n].corners)
+    )
+    scene.watch(highest, name="top")
     scene.settle()
     began = time.process_time()
     if tilts:
@@ -119,7 +122,8 @@ def limits(name):
     else:
         scene.platen("bottom")
     scene.settle()
-    entry = scene.bounds.lean(towardsOf(towards), tilts, lowerUpTo=SMALL)
+    lower = SMALL if scene.description.plane else 0
+    entry = scene.bounds.lean(towardsOf(towards), tilts, lowerUpTo=lower)
     scene.finished = True
     scene.running.release()
     return entry["factor"], entry.get("without_dilatancy", entry["factor"])

@@ -48,7 +48,7 @@ class Reading:
     - ``topShear``: force that drives the pushed point [N]
     - ``energy``: the energy balance [J]
     - ``goal``: number of the point of a history that the drive is going to, from 1, and its displacement [mm]
-    - ``forces``: force of the structure on what is held, by the name of the target [N]
+    - ``forces``: force of the structure on what is held, along the axes that are held now, by the name of the target [N]
 
     :param structure: :class:`masonry.assembly.structure.Structure`
     """
@@ -59,10 +59,9 @@ class Reading:
         self.forces = {}
         held = Vector3(0, 0, 0)
         for target in structure.held:
-            force = self.forces[target.name] = structure.forceOn(target)
+            force = self.forces[target.name] = structure.supportedBy(target)
             for i in structure.axes:
-                if "xyz"[i] in target.freedom:
-                    held[i] += force[i]
+                held[i] += force[i]
         self.along = self.up = self.topShear = self.rotation = 0.0
         self.sunk = -0.0
         if structure.followed:

@@ -160,11 +160,16 @@ class Structure:
         self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)
 
     def _loads(self):
-        """A dead load for every target that has one, and a drive for every one that can be pushed."""
-        loads = []
+        """A dead load for every target that has one, and a drive for every one that can be pushed. Raises Refused."""
+        loads, deformable = [], self.args.blocks == "deformable"
         for target in self.description.targets.values():
             if not target.loaded:
                 continue
+            if deformable and target.brick is not None and not target.freedom:
+                raise Refused(
+                    f"handle: {target.name} is a deformable brick, and loads and drives act on rigid ones: load a platen, "
+                    "or choose --blocks rigid"
+                )
             on = dict(body=target.body, point=target.point)
             if target.pressed is not None or target.force is not None:
                 loads.append(MasonryLoad(label=f"{target.name}_force", **on))
@@ -328,11 +333,21 @@ class Structure:
         """The load that drives a target along an axis, or None."""
         return self.loads.get(f"{target.name}_drive_{axis}")
 
+    def driveForce(self, target, axis):
+        """Force of the drive of a target along an axis [N], as a vector."""
+        load = self.driveOf(target, axis)
+        return load.reaction * load.direction.normalized()
+
     def pushTo(self, target, direction, name="push"):
         """From now on ``push`` moves this target in this direction. The other drives hold what they hold."""
         if self.description.plane and direction[1]:
             raise ValueError(
                 f"{name}: the scene is in the x-z plane; Scene(..., plane=False) is in space"
+            )
+        blocked = O.bodies[target.body].state.blockedDOFs
+        if not any(v and a not in blocked for a, v in zip("xyz", direction)):
+            raise ValueError(
+                f"{name}: {target.name} is held along {tuple(direction)}, and cannot be pushed there"
             )
         load = self.loads.get(f"{target.name}_drive")
         if target.drives:
@@ -386,6 +401,11 @@ class Structure:
     def forceOn(self, target):
         """Force of the structure on a target [N]."""
         return self._forces.f(target.body, True)
+
+    def supportedBy(self, target):
+        """Force of the structure on a target along the axes that are held now, 0 along the others [N]."""
+        force, blocked = self.forceOn(target), O.bodies[target.body].state.blockedDOFs
+        return Vector3(*(f if a in blocked else 0.0 for a, f in zip("xyz", force)))
 
     def forceFrom(self, target):
         """Force of what loads, drives and holds a target on it [N]."""

@@ -38,8 +38,12 @@ from .description import Description
 from .materials import loadingBlock
 from .outcome import Outcome
 from .stages import AT_REST, LATER, STAGES, gravity, prepare
+from .stages.stage import Answer
 from .targets import Target
 from .words import Script
+
+
+OWN = "0"  # the stage of the results of the script, which all stages follow
 
 
 class Scene:
@@ -149,6 +153,43 @@ class Scene:
         """
         kept = self.running.at.answers
         return [one for number in sorted(kept, key=int) for one in kept[number]]
+
+    def result(self, name, value, unit="-", how="the script found it"):
+        """Keep a number of one's own with the answers of the stages: in run.json, on the terminal and as a column of study.csv.
+
+        :param name: letters, digits and underscores; another result of this name is replaced
+        :param value: a number, or None if it was not found
+        :param unit: ``"-"`` if it has none
+        :param how: how it was found, a sentence
+        :raises ValueError: with all problems
+        """
+        problems = []
+        if not (isinstance(name, str) and name.isidentifier()):
+            problems.append(
+                f"result: a name must be letters, digits and underscores, got {name!r}"
+            )
+        if not self.model:
+            problems.append(f"result {name}: it comes after the first stage")
+        try:
+            value = None if value is None else float(value)
+        except (TypeError, ValueError):
+            problems.append(f"result {name}: value must be a number, got {value!r}")
+        else:
+            if value is not None and not math.isfinite(value):
+                problems.append(f"result {name}: value {value} must be finite")
+        for what, text in (("unit", unit), ("how", how)):
+            if not (isinstance(text, str) and text.strip()):
+                problems.append(f"result {name}: {what} must be a text, got {text!r}")
+        if problems:
+            raise ValueError("\n".join(problems))
+        at = self.running.at
+        kept = [one for one in at.answers.get(OWN, []) if one["name"] != name]
+        answer = {
+            "stage": "script",
+            "number": 0,
+            **vars(Answer(name, unit, value, how)),
+        }
+        at.answers = {**at.answers, OWN: [*kept, answer]}
 
     @property
     def factor(self):

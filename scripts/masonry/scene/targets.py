@@ -58,12 +58,12 @@ class Target:
                         f"force of the structure on what loads, drives or holds {self.name} along {axis}",
                         lambda r, i=i: -1e-3 * r.structure.forceFrom(self)[i],
                     )
-        for axis in self.drives:
+        for i, axis in [("xyz".index(axis), axis) for axis in self.drives]:
             yield Column(
                 f"{self.name}_force_{axis}",
                 "kN",
                 f"force of the structure on the drive of {self.name} along {axis}",
-                lambda r, axis=axis: -1e-3 * r.structure.driveOf(self, axis).reaction,
+                lambda r, i=i, axis=axis: -1e-3 * r.structure.driveForce(self, axis)[i],
             )
         if not self.fixed:
             about = " about y" if plane else ", its angle"

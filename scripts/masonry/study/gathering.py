@@ -195,8 +195,9 @@ def gather(folder):
 
 
 def _answerName(answer):
-    """The column of an answer of a stage: the stage and its number in the run, what it is, and its unit."""
-    name = f"{answer['stage']}_{answer['number']}_{answer['name']}"
+    """The column of an answer: the stage and its number in the run, if a stage found it, what it is, and its unit."""
+    own = not answer["number"]
+    name = answer["name"] if own else f"{answer['stage']}_{answer['number']}_{answer['name']}"  # fmt: skip
     return name if answer["unit"] == "-" else f"{name}_{answer['unit']}"
 
 

@@ -35,6 +35,10 @@ def _table(path):
     return {name: [line[i] for line in lines[1:]] for i, name in enumerate(head)}
 
 
+#: Measures of every run, which nobody studies.
+IN_EVERY_RUN = {"collapsed", "ended", "energy_balance_error", "energy_made"}
+
+
 class Record:
     """The rows of a study.
 
@@ -53,6 +57,14 @@ class Record:
 
     def __len__(self):
         return len(self.cells["run"])
+
+    def measure(self, usual):
+        """The measure that is reported if none is named: the usual one, or else the first answer of a stage or script."""
+        if usual in self.cells:
+            return usual
+        own = [m for m in self.measures if m not in IN_EVERY_RUN]
+        found = [m for m in own if np.isfinite(self.numbers(m)).any()]
+        return found[0] if found else usual
 
     def numbers(self, name):
         """A column as numbers, NaN where a cell has none. Raises Refused if there is no such column."""

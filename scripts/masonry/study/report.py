@@ -171,7 +171,8 @@ def main(words=None):
     )
     parser.add_argument("study", help="folder of a study, with its study.csv")
     parser.add_argument(
-        "--measure", default=MEASURE, help=f"column of study.csv; {MEASURE} by default"
+        "--measure",
+        help=f"column of study.csv; by default {MEASURE}, or the first answer of a stage if there is no push",
     )
     parser.add_argument(
         "--demand",
@@ -206,6 +207,7 @@ def main(words=None):
                 f"--prices {args.prices} must be two numbers, for example 60,4"
             )
         record = Record(args.study)
+        args.measure = args.measure or record.measure(MEASURE)
         for text in (*table(record, args.measure), *modes(record), *statuses(record)):
             print(text)
         if demands:

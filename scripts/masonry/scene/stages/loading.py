@@ -7,6 +7,7 @@ largest that is held. The others add to what is there until the structure falls,
 """
 
 import math
+import re
 
 from yade import O, Vector3
 
@@ -83,9 +84,9 @@ def _windOn(scene, pressure, towards, part, name):
 
 
 def windLabel(towards, part):
-    """How the labels of the engines of a wind begin."""
-    axes = "_".join(f"{v:.6g}" for v in towards)
-    return f"wind_{axes}_{part or 'all'}"
+    """How the labels of the engines of a wind begin. YADE makes names of them."""
+    axes = "_".join(f"{v:.6g}".replace("-", "minus") for v in towards)
+    return re.sub(r"\W", "_", f"wind_towards_{axes}_{part or 'all'}")
 
 
 @stage(bounded=True, answers=putOnAnswers)
@@ -190,12 +191,17 @@ def hold(scene, target, axes="xyzXYZ"):
 
     Before the first stage :meth:`hold` describes a brick that is held from the beginning.
 
-    :param target: a platen that moves, a :meth:`handle` or a :meth:`watch`
+    :param target: a :meth:`handle`, or a brick or platen that was held and released: what has columns for its reaction
     :param axes: along which it is held, xyz, and about which it cannot turn, XYZ
     """
-    if not isinstance(target, Target):
+    recorded = isinstance(target, Target) and (
+        target.fixed or target.loaded and target.brick is not None
+    )
+    if not recorded:
+        name = getattr(target, "name", repr(target))
         raise ValueError(
-            f"hold: after the first stage only a platen, a handle() or a watch() can be held, got {target!r}"
+            f"hold: after the first stage only a handle(), or what was held and released, can be held: curve.csv has no "
+            f"columns for the reaction of {name}"
         )
     if not axes or set(axes) - set("xyzXYZ"):
         raise ValueError(f"hold: axes must be some of 'xyzXYZ', got {axes!r}")

@@ -4,12 +4,12 @@
 from types import SimpleNamespace
 
 from ...assembly.blocks import vector
-from ...basics import Refused
+from ...basics import Refused, say
 from ...read.curves import dynamicImbalance, peakAtBothEnds
 from .. import history
 from ..bounds import nameOfPush
 from ..targets import Target
-from .pushing import drivePush
+from .pushing import SHORT, drivePush
 from .stage import DONE, Answer, stage
 from .timed import checkedRate
 
@@ -135,4 +135,6 @@ def _argumentsOf(scene, name, aims):
             f"{name}: until {args.until!r} must be above 0 and at most {history.MOST:g} mm; the direction says "
             "where to"
         )
+    elif args.until < SHORT * scene.share:
+        say(f"warning: {name}: until {args.until:g} mm: is it in mm, not m?")
     return args

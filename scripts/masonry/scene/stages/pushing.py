@@ -11,6 +11,7 @@ from ..history import aim, pathLength, turns
 from .rest import rampTime
 
 ROW_EVERY = 0.01  # [mm] of a push between rows of curve.csv
+SHORT = 0.05  # [mm]: a shorter push has rows that are closer together
 ARRIVED = 2e-3  # [mm] from a turning point of a history at which the drive turns: what remains of the path takes it there
 #: Frames for ParaView along a history, beside those at its turning points and zeros.
 FRAMES = 200
@@ -129,7 +130,7 @@ def drivePush(scene, name, args, began, continued=False):
     if at.passed >= len(goals):
         raise Refused(f"--resume: its history has {at.passed} points and more")
     load, growing = model.loads["push"], rampTime(args)
-    every = max(1, int(ROW_EVERY / (args.rate * O.dt)))
+    every = max(1, int(rowSpacing(args) / (args.rate * O.dt)))
     model.goal = at.passed + 1, goals[at.passed].displacement
     if first:
         at.origin = model.origin = origin
@@ -210,10 +211,17 @@ def pathOf(args, start=0.0):
     return pathLength(points, start)
 
 
+def rowSpacing(args):
+    """Displacement between rows at full speed [mm]: :data:`ROW_EVERY`, or a twentieth of a shorter push."""
+    if args.history or args.until >= SHORT:
+        return ROW_EVERY
+    return args.until / 20
+
+
 def rowCount(args):
     """How many rows of curve.csv a push has, about. A turn takes as long as the path at full speed in a ramp."""
     turning = turns(args.history["points_mm"]) if args.history else 0
-    return (pathOf(args) + turning * args.rate * rampTime(args)) / ROW_EVERY
+    return (pathOf(args) + turning * args.rate * rampTime(args)) / rowSpacing(args)
 
 
 def frameSpacing(args):

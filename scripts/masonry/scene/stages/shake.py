@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Real time: ``shake`` and ``run``."""
 
+import itertools
 import math
 
 from yade import O, Vector3
@@ -27,6 +28,19 @@ def displacements(scene, rows):
             found.append(Answer(name, "mm", largest, how))
             name = f"displacement_of_{target.name}_{axis}_at_the_end"
             found.append(Answer(name, "mm", values[-1], how))
+    for drift in scene.description.drifts:
+        for axis, unit in itertools.product("xy", ("mm", "mrad")):
+            values = rows.column(f"{drift.name}_{axis}_{unit}")
+            if values:
+                how = f"of {drift.upper.name} against {drift.lower.name}, of the rows of this stage"
+                largest = max(values, key=abs)
+                found.append(Answer(f"largest_{drift.name}_{axis}", unit, largest, how))
+                name = f"{drift.name}_{axis}_at_the_end"
+                found.append(Answer(name, unit, values[-1], how))
+    times = rows.column("time_s")
+    if scene.collapsed and times:
+        how = "when the fall was noticed, from the beginning of the stage"
+        found.append(Answer("time_of_collapse", "s", times[-1] - times[0], how))
     return found
 
 
