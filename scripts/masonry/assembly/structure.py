@@ -145,6 +145,7 @@ class Structure:
             damping=args.damping,
             gravity=(0, 0, -self.gravity),
             subcontacts=args.subcontacts,
+            rows=args.rows,
             inPlane=description.plane,
             loads=loads,
             zones=self.zones,

@@ -173,7 +173,7 @@ class Scene:
         """The materials for the options of this run: :class:`masonry.scene.materials.Masonry`. Raises Refused."""
         masonry = self.description.materials.variant(self.args)
         problems = self.description.problems(masonry)
-        options.check(self.args, masonry.joints, problems)
+        options.check(self.args, masonry.joints, problems, self.description.plane)
         return masonry
 
     def begin(self):
