@@ -116,7 +116,7 @@ class Scene:
     watch, handle = supports.watch, supports.handle
     press, load, wind = loads.press, loads.load, loads.wind
     drift, column = records.drift, records.column
-    joint, view = records.joint, records.view
+    joint, section, view = records.joint, records.section, records.view
 
     @property
     def targets(self):
