@@ -3,11 +3,13 @@
 
 import math
 
+import numpy as np
 import pytest
-from masonry import AT_REST, Scene, bricks, materials
+from masonry import AT_REST, MasonryVtkRecorder, Scene, bricks, materials
 from masonry._masonry import loadScene, saveScene
 from masonry.basics import GRAVITY, Refused
 from masonry.read.files import readCurve, readRun
+from masonry.read.frames import asFrame
 from yade import O, Vector3
 
 DENSITY = 1800.0  # [kg/m³] of calcium silicate
@@ -131,6 +133,29 @@ def test_the_section_at_the_foot_has_the_force_and_moment_that_the_base_feels(
     assert foot.forces() != before
     loadScene(saved)
     assert foot.forces() == before
+    wall.finish()
+
+
+def test_tractions_of_a_frame_add_up_to_the_section_and_say_on_which_block_they_act(
+    tmp_path, scene
+):
+    wall = made(tmp_path, bricks.Wall(0.44, 0.324), plane=False)
+    wall.platen("bottom")
+    top = wall.platen("top", rotation="free")
+    wall.press(top, 0.3e6)
+    cut = wall.section(0.162)
+    wall.settle()
+    wall.push(top, 0.1, direction=(1, 0.5, 0))
+    joints = asFrame(MasonryVtkRecorder().joints())
+    lower = {(i.id1, i.id2): s for i, s in zip(cut.interactions, cut.signs)}
+    signs = np.array([lower.get(tuple(map(int, pair)), 0) for pair in joints["bodies"]])
+    traction = joints["shear_traction"] + joints["normal_stress"][:, None] * joints["normal"]  # fmt: skip
+    force = (signs * joints["area"]) @ traction
+    there = cut.forces()[0]  # along axes that have turned by some 0.3 mrad
+    assert np.linalg.norm(force - there) < 1e-3 * there.norm()
+    assert force[0] > 100 and force[1] > 50
+    size = np.linalg.norm(joints["shear_traction"], axis=1)
+    assert size == pytest.approx(joints["shear_stress"], rel=1e-9, abs=1e-6)
     wall.finish()
 
 
