@@ -48,10 +48,9 @@ py::tuple resultant(const py::list& interactions, const py::list& signs, const V
     const auto& scene = *Singleton<yade::Omega>::instance().getScene();
     Resultant sum;
     for (py::ssize_t i = 0; i < py::len(interactions); ++i) {
-        const shared_ptr<yade::Interaction> interaction = py::extract<shared_ptr<yade::Interaction>>(interactions[i]);
-        if (!interaction) throw std::invalid_argument("resultant: an interaction is None");
+        const yade::Interaction& interaction = py::extract<const yade::Interaction&>(interactions[i]);
         const double sign = py::extract<double>(signs[i]);
-        const auto one = resultantOf(scene, *interaction, about);
+        const auto one = resultantOf(scene, interaction, about);
         sum.force += sign * one.force;
         sum.moment += sign * one.moment;
     }
