@@ -18,6 +18,7 @@
 #include "host/SelfCheck.hpp"
 #include "scene/CriticalTimeStep.hpp"
 #include "scene/Neighbours.hpp"
+#include "scene/Resultant.hpp"
 #include "scene/SceneCheckpoint.hpp"
 #include "scene/SceneStore.hpp"
 
@@ -157,6 +158,11 @@ static void registerAll() {
         "connected", &connected,
         "Tell the plugin that all blocks have their joints. A block that is added later and has no joint is then an "
         "error. For masonry.connect().");
+    py::def(
+        "resultant", &resultant, py::args("interactions", "signs", "about"),
+        "(force, moment) of joints together, global axes: the forces on their first bodies [N] and their moment about "
+        "a point in space [N m], each joint times its sign; -1 gives those on its second body. Forces act at the "
+        "present places.");
     py::def("saveScene", &saveScene, py::args("extra"),
             "The state of the scene as bytes, together with a text of the caller.");
     py::def("loadScene", &loadScene, py::args("bytes"), "Set the scene to a saved state; returns the caller's text.");

@@ -91,6 +91,8 @@ def test_every_column_of_the_joints_is_that_of_python(frame):
         "normal": lambda i, n: i.geom.normal,
         "normal_stress": lambda i, n: of(i, "phys", "stress")[n][0],
         "shear_stress": lambda i, n: math.hypot(*list(of(i, "phys", "stress")[n])[1:]),
+        "shear_traction": lambda i, n: of(i, "phys", "stress")[n][1] * i.geom.tangent
+        + of(i, "phys", "stress")[n][2] * i.geom.normal.cross(i.geom.tangent),
         "damage_tension": lambda i, n: of(i, "phys", "damage")[n][0],
         "damage_shear": lambda i, n: of(i, "phys", "damage")[n][1],
         "damage_compression": lambda i, n: of(i, "phys", "damage")[n][2],

@@ -24,7 +24,8 @@ public:
     template <class Visit> static void attributes(Visit&& visit) {
         using F = Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom;
         visit("subcontacts", &F::subcontacts,
-              number("-", "Subcontacts along a joint, at the points of Gauss and Lobatto. With three or more, rocking "
+              number("-", "Subcontacts along a joint, at right angles to its rows (see rowDirection), at the points of "
+                          "Gauss and Lobatto. With three or more, rocking "
                           "about an edge and the elastic rotational stiffness are exact; with two, that stiffness is "
                           "three times too large; with one, there is none. The cost of a step grows with their number")
                   .atLeast(1)
@@ -34,7 +35,10 @@ public:
                      "Rows of subcontacts across a joint, at the points of Gauss and Lobatto; 0: one if both blocks "
                      "are held so that they can only turn about one axis that lies in the joint, as in a wall "
                      "loaded in its plane, else three. A joint with one row does not resist a rotation of its "
-                     "blocks out of the plane, and it takes the cost of a third of three rows")
+                     "blocks out of the plane, and it takes the cost of a third of three rows. More than three follow "
+                     "a crack across the joint more finely. A joint with two rows or more that has not four corners "
+                     "has the points of triangles about its middle, which half of the larger of subcontacts and rows "
+                     "divides; one that the nodes of deformable units cover has the points of their cells")
                   .atLeast(0)
                   .atMost(1000));
         visit("rowDirection", &F::rowDirection,

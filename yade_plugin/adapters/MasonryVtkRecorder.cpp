@@ -50,6 +50,11 @@ const Field fields[] = {
     {"normal", 3, described("Unit normal of the joint in the reference state, from its first body to its second")},
     {"normal_stress", 1, number("Pa", "Normal stress, positive in tension")},
     {"shear_stress", 1, number("Pa", "Size of the shear stress")},
+    {"shear_traction", 3,
+     number("Pa",
+            "Shear stress as a vector along the global axes: what the second of `bodies` does to the first, which "
+            "has the same direction as `slide` where the joint is elastic; on the second it is the opposite. It "
+            "lies in the joint's plane in the reference state, as `slide` and `normal` do")},
     {"area", 1, number("m²", "Area of a subcontact")},
     {"joint_dissipated", 3, number("J", "Energy that the whole joint dissipated in tension, shear and compression")},
     {"regime", 1, described("Regime in the last step: 0 elastic, 1 opening, 2 slipping, 3 crushing")},
@@ -276,6 +281,7 @@ vtkSmartPointer<vtkPolyData> MasonryVtkRecorder::jointData() {
     auto* normal = column<vtkDoubleArray>(values, "normal");
     auto* normalStress = column<vtkDoubleArray>(values, "normal_stress");
     auto* shearStress = column<vtkDoubleArray>(values, "shear_stress");
+    auto* shearTraction = column<vtkDoubleArray>(values, "shear_traction");
     auto* area = column<vtkDoubleArray>(values, "area");
     auto* lost = column<vtkDoubleArray>(values, "joint_dissipated");
     auto* regime = column<vtkIntArray>(values, "regime");
@@ -317,6 +323,8 @@ vtkSmartPointer<vtkPolyData> MasonryVtkRecorder::jointData() {
             normal->InsertNextTuple(r.normal.data());
             normalStress->InsertNextValue(s.normalStress);
             shearStress->InsertNextValue(std::hypot(s.shearStress.a, s.shearStress.b));
+            const Vector3r traction = s.shearStress.a * r.tangent + s.shearStress.b * side;
+            shearTraction->InsertNextTuple(traction.data());
             ofLaws.insert(phys, p);
             area->InsertNextValue(geom.area(p));
             lost->InsertNextTuple(dissipated.data());

@@ -52,8 +52,10 @@ def engines(
     :param damping: damping constant of rigid units [-], 0 for motion in real time; the paper's eq. (3) has 0.8 (the
         paper: see yade_plugin/law/README.md)
     :param gravity: [m/s²]
-    :param subcontacts: how many there are along a joint; None: 3. They are the points of Gauss and Lobatto, so the ends
-        of a joint are points, and a block rocks about its edge at the true moment. From three on the elastic rotational
+    :param subcontacts: how many there are along a joint, that is, at right angles to its rows; None: 3. They are the points
+        of Gauss and Lobatto, so the ends of a joint are points, and a block rocks about its edge at the true moment. Where
+        neither ``inPlane`` nor the blocks' freedom says where rows lead, "along" is the direction of the longest edge of
+        the joint, of a bed joint that of the wall. From three on the elastic rotational
         stiffness is exact; with two it is three times too large; with one, a joint does not resist rotation. More than
         three follow the progress of a crack or of crushing along a joint more finely. A step costs in proportion to
         all subcontacts, that is, subcontacts times rows
@@ -62,7 +64,9 @@ def engines(
         global axes only, and if that axis lies in the joint: blocks of a wall in its plane, and fixed bodies. That is
         exact there. Every other joint gets three rows. So block degrees of freedom before ``connect()``, and free none
         later. One row where blocks are free in space would leave a joint without stiffness out of its plane; two rows make
-        it three times too stiff there
+        it three times too stiff there. More than three follow a crack of bending across a joint, as ``subcontacts`` do
+        along it. A joint in space that has not four corners has the points of triangles about its middle, which are the
+        finer the larger of both numbers is; a joint of deformable ``zones`` whose nodes cover it has those of their cells
     :param inPlane: the rows follow each other along y, also where the blocks' freedom does not say so
     :param loads: MasonryLoad engines
     :param zones: MasonryZones of the deformable units, if there are any

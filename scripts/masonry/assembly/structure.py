@@ -145,6 +145,7 @@ class Structure:
             damping=args.damping,
             gravity=(0, 0, -self.gravity),
             subcontacts=args.subcontacts,
+            rows=args.rows,
             inPlane=description.plane,
             loads=loads,
             zones=self.zones,
@@ -187,7 +188,7 @@ class Structure:
         return loads
 
     def _joinRecords(self):
-        """Find the joints whose means are recorded."""
+        """Find the joints whose means are recorded, and those of the sections."""
         pairs = {frozenset((i.id1, i.id2)): i for i in self.interactions}
         for joint in self.description.joints:
             joint.interaction = pairs.get(frozenset(self.ids[b] for b in joint.bricks))
@@ -195,6 +196,8 @@ class Structure:
                 raise Refused(
                     "joint: bricks {} and {} share no face".format(*joint.bricks)
                 )
+        for section in self.description.sections:
+            section.join(self)
 
     def _findPresses(self):
         """What presses, dead loads and wind are when they have grown."""

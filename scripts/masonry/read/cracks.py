@@ -31,6 +31,20 @@ def widths(frame):
     )
 
 
+def widest(joints):
+    """The widest crack: the largest opening of a point of any joint, without its slide.
+
+    :param joints: of each an identifier, the openings of its points [m], negative where it is closed, and the points [m]
+    :returns: opening [m], point and identifier; 0.0, None and None if no joint is open
+    """
+    found = 0.0, None, None
+    for name, openings, points in joints:
+        at = int(np.argmax(openings))
+        if openings[at] > found[0]:
+            found = float(openings[at]), points[at], name
+    return found
+
+
 def crushed(frame):
     """Which subcontacts are crushed."""
     return frame["crushing"] > CRUSHED

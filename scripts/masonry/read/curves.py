@@ -5,6 +5,10 @@ import math
 
 from . import loops
 
+#: Of the elastic energy: what joints dissipate up to it is no crack [-]. Where mortar bonds, nothing is dissipated before
+#: the first crack, and this share finds it a row or two late; dry joints slip a little from the first row on.
+CRACKED = 1e-5
+
 
 def dynamicImbalance(top, base):
     """How much of the force of a push does not arrive at its base [-]: 0 if all does, 1 and more if none does.
@@ -59,6 +63,25 @@ def initialStiffness(displacement, force):
     spread = sum((d - meanD) ** 2 for d, _ in points)
     products = sum((d - meanD) * (f - meanF) for d, f in points)
     return products / spread if spread > 0 else 0.0
+
+
+def firstCrack(column, rows=slice(None)):
+    """Number of the row at which the first crack of a push is seen, or None.
+
+    It is the first row at which the joints have dissipated, in tension and shear since the first of these rows, more than
+    CRACKED of the elastic energy that joints and units have there. So of dry joints it is the first slip that counts.
+
+    :param column: function of the name of a column of curve.csv that gives its values
+    :param rows: those of the push, a slice
+    """
+    of = lambda *names: [sum(row) for row in zip(*(column(n)[rows] for n in names))]
+    lost = of("dissipated_tension_J", "dissipated_shear_J")
+    parts = "tension", "shear", "compression", "units"
+    elastic = of(*(f"elastic_{part}_J" for part in parts))
+    for row, (taken, held) in enumerate(zip(lost, elastic)):
+        if taken - lost[0] > CRACKED * held:
+            return row + (rows.start or 0)
+    return None
 
 
 def cycleNumbers(column, threshold):

@@ -73,6 +73,16 @@ A run with a push has these, too:
 - ``peak_at_both_ends_kN``: the largest force that top and base carried at once (:func:`masonry.read.curves.peakAtBothEnds`)
 - ``base_shear_end_kN``, ``displacement_end_mm``: the last row
 - ``initial_stiffness_kN_per_mm``: as :func:`masonry.read.curves.initialStiffness` fits it
+- ``displacement_at_first_crack_mm``: where the first crack of the push is seen: the first row at which the joints have
+  dissipated, in tension and shear since the push began, more than 1e-5 of the elastic energy
+  (:func:`masonry.read.curves.firstCrack`); None if there is none. Of dry joints it is where slip begins to count
+- ``drift_at_first_crack_mrad``: that displacement over the height of the recorded point above the lowest brick; None without
+  a crack, or if the push is not horizontal
+- ``collapse_displacement_mm``: the last row of a push that ended in a collapse; None if it did not
+- ``largest_crack_mm``: largest opening of a point of any joint at the end of the run, also of those to platens; slide does not
+  count; 0 if none is open
+- ``largest_crack_at_m``, ``largest_crack_bodies``: that point as it was built (x, y, z), and the ids of both bodies of its
+  joint; None if none is open
 - with --lean, which leaves no frames to measure: the numbers of :func:`masonry.read.measure.pushNumbers`, and of a wall in running
   bond those of :func:`masonry.read.cracks.patternNumbers` and its ``failure_mode`` (:func:`masonry.read.cracks.failureMode`)
 - ``dynamic_imbalance``: as of :func:`masonry.read.curves.dynamicImbalance` [-]; ``too_fast``: whether it is more than a push

@@ -3,7 +3,8 @@
 
 - :mod:`masonry.scene.scene`: ``Scene``
 - :mod:`masonry.scene.description`: what a scene describes, by the words of :mod:`masonry.scene.supports`,
-  :mod:`masonry.scene.loads` and :mod:`masonry.scene.records`; :mod:`masonry.scene.targets`: what is recorded
+  :mod:`masonry.scene.loads` and :mod:`masonry.scene.records`; :mod:`masonry.scene.targets`,
+  :mod:`masonry.scene.sections`: what is recorded
 - :mod:`masonry.scene.stages`: the stages of a test
 - :mod:`masonry.scene.materials`: published parameter sets, and properties that vary from place to place
 - :mod:`masonry.scene.fields`: random fields; :mod:`masonry.scene.history`: displacements there and back;

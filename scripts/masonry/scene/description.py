@@ -64,6 +64,7 @@ class Description:
         self.targets = {}  # by name
         self.joints = []  # whose means are recorded
         self.drifts = []
+        self.sections = []
         self.winds = []  # brick, force [N] and point [m]
         self.views = {}  # direction of sight by part
         self.extra = []  # columns of the user's own
@@ -126,6 +127,8 @@ class Description:
             found += drift.columns(self.plane)
         for joint in self.joints:
             found += joint.columns()
+        for section in self.sections:
+            found += section.columns(self.plane)
         found += [*self.extra, *columns.BALANCE, *columns.HISTORY * looped]
         heads = columns.heads(found)
         twice = sorted({n for n in heads if heads.count(n) > 1})

@@ -12,6 +12,9 @@ from ..run.presets import BOUND, PRESETS, USUAL
 from .parsing import Parser, count, field, folder, number, pathOf
 from .settings import applySettings, setting
 
+#: Fewest rows of points that give a joint its stiffness against bending: two give three times that, one none.
+FEWEST = 3
+
 #: Units of the options that have one.
 UNITS = {
     "until": "mm",
@@ -76,8 +79,9 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         metavar="N",
         type=lambda t: count(t, 10),
         default=USUAL["divisions"],
-        help="cells of a deformable half brick along its length, and as many along its height; a joint has points at both "
-        "ends and in the middle of every cell's face",
+        help="cells of a deformable half brick along its length, and as many along its height, one through its thickness; "
+        "in the x-z plane a joint has points at both ends and in the middle of every cell's face, in space at the corners "
+        "and in the middle of both triangles of that face, so through the thickness at its faces and thirds, whatever N",
     )
     p.add_argument(
         "--damping-kind",
@@ -90,8 +94,19 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         metavar="N",
         type=lambda t: count(t, 100),
         default=USUAL["subcontacts"],
-        help="points along each joint of rigid units, at its ends and between them (Gauss-Lobatto); from three on rocking "
-        "and rotational stiffness are exact, and a step costs in proportion",
+        help="points along each joint of rigid units, at its ends and between them (Gauss-Lobatto): in the x-z plane along "
+        "its length there, in space along its longest edge, which of a bed joint is that along the wall; from three on "
+        "rocking and rotational stiffness are exact, and a step costs in proportion",
+    )
+    p.add_argument(
+        "--rows",
+        metavar="N",
+        type=lambda t: count(t, 100, FEWEST),
+        default=None,
+        help="in space: rows of points across each joint of rigid units, at right angles to --subcontacts, also at its edges "
+        "and between them: of a bed joint through the thickness of the wall, where a crack of bending goes; None: "
+        f"{FEWEST}. Fewer than {FEWEST} would bend with a wrong stiffness or none. A scene in the x-z plane has one row, in the "
+        "middle of the thickness, and deformable units have the points of their cells: both refuse the option",
     )
     p.add_argument(
         "--damping",
@@ -227,17 +242,28 @@ def ofScene(name, words, usual):
     return found
 
 
-def check(args, joints, more=()):
+def check(args, joints, more=(), plane=False):
     """Apply ``--set`` to the joints of a scene, and refuse options that do not go together.
 
     :param args: the parsed options
     :param joints: dict of MasonryJoint by name
+    :param plane: whether blocks move in the x-z plane only
     :param more: problems that the caller has found, to be named with the others
     :raises Refused: with all problems at once
     """
     problems = list(more)
     if args.blocks == "rigid" and args.divisions > 1:
         problems.append("--divisions: rigid units are not divided")
+    if args.rows and plane:
+        problems.append(
+            f"--rows {args.rows}: this scene is in the x-z plane, where joints do not bend across their thickness and have "
+            "one row of points, in its middle; Scene(..., plane=False) is in space, --subcontacts are the points along a joint"
+        )
+    if args.rows and args.blocks == "deformable":
+        problems.append(
+            f"--rows {args.rows}: joints of deformable units have the points of their cells, of which one is through the "
+            "thickness; --divisions are those along the other two sides"
+        )
     try:
         applySettings(joints, args.set)
     except Refused as refused:

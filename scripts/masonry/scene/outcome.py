@@ -16,6 +16,7 @@ from ..read.curves import (
     cycleNumbers,
     dampedShare,
     dynamicImbalance,
+    firstCrack,
     initialStiffness,
     peakAtBothEnds,
 )
@@ -133,7 +134,38 @@ class Outcome:
             found["factor"] = scene.factor
         if self.pushed:
             found.update(self._ofPush(lambda head: column(head)[rows]))
+            found.update(self._ofCracks(column))
         return found
+
+    def _ofCracks(self, column):
+        """Entries for the cracks of the last push, and of those before along its line, and for its collapse."""
+        model, stages = self.model, self.scene.running.at.stages
+        own = ["push", *self._pushes()]
+        pushes = [number for number, load in self._loads() if list(load) == own]
+        ends = [*(stage[3] for stage in stages[1:]), None]
+        rows = (slice(stages[n - 1][3], ends[n - 1]) for n in pushes)
+        row = next(
+            (r for r in (firstCrack(column, s) for s in rows) if r is not None), None
+        )
+        moved = column("displacement_mm")
+        first = None if row is None else moved[row]
+        height = model.target.recorded[2] - self.description.low[2]
+        sways = first is not None and height > 0 and abs(model.direction[2]) < 1e-9
+        joints = (
+            ((i.id1, i.id2), i.phys.opening, i.geom.centres) for i in model.interactions
+        )
+        width, point, bodies = cracks.widest(joints)
+        fell = self.scene.collapsed and len(stages) in pushes
+        return dict(
+            displacement_at_first_crack_mm=first,
+            drift_at_first_crack_mrad=first / height if sways else None,
+            collapse_displacement_mm=moved[-1] if fell else None,
+            largest_crack_mm=1e3 * width,
+            largest_crack_at_m=None
+            if point is None
+            else [round(v, 9) + 0.0 for v in point],
+            largest_crack_bodies=None if bodies is None else list(bodies),
+        )
 
     def _ofPush(self, column):
         shear, moved = column("base_shear_kN"), column("displacement_mm")

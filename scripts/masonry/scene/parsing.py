@@ -40,11 +40,11 @@ def number(text, low=-math.inf, high=math.inf, above=False):
     return value
 
 
-def count(text, high):
-    """The whole number from 1 to ``high`` that a text stands for. Raises argparse.ArgumentTypeError."""
-    if not text.isdecimal() or not 1 <= int(text) <= high:
+def count(text, high, low=1):
+    """The whole number from ``low`` to ``high`` that a text stands for. Raises argparse.ArgumentTypeError."""
+    if not text.isdecimal() or not low <= int(text) <= high:
         raise argparse.ArgumentTypeError(
-            f"'{text}' must be a whole number from 1 to {high}"
+            f"'{text}' must be a whole number from {low} to {high}"
         )
     return int(text)
 

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a scene records beside its targets, and how its figures look: words that describe a scene."""
 
+import math
+
 from ..assembly.blocks import vector
 from ..assembly.columns import Column
+from .sections import Section
 from .targets import Drift, JointRecord, Target
 from .words import describes
 
@@ -68,6 +71,58 @@ def joint(description, one, two, name=None):
         )
     description.joints.append(JointRecord(name, pair))
     return description.joints[-1]
+
+
+@describes
+def section(description, z, part=None, name=None):
+    """Record what a horizontal section transmits: normal force, shear force and moment, as columns of curve.csv.
+
+    They are the resultant of the joints between the blocks, platens too, whose centroid is above ``z`` when the scene is
+    built, and those whose centroid is not: exact statics in any bond. At rest they are the weight of the blocks above
+    and the loads on them. All are of the structure above on the part below:
+
+    - ``N`` [kN]: normal force, positive in tension
+    - ``V_x``, in space also ``V_y`` [kN]: shear force along x and y
+    - ``M_y``, in space also ``M_x`` [kN m]: moment about y and x through the middle of the section, by the right-hand
+      rule. A push along +x above the section gives a positive ``M_y``, one along +y a negative ``M_x``
+
+    The middle is that of the box around the bricks that reach ``z``, at the height ``z``, as they are built; it stays in
+    space, while the forces act where the blocks are, so eccentric weight of a wall that leans counts.
+
+    :param z: height [m]
+    :param part: name of a part of the bricks: the joints whose upper brick is of it (under a platen, the lower one), so
+        that what several parts transmit adds up to the whole; None: all joints
+    :param name: before the names of the columns; None: ``section`` and a number
+    :returns: a :class:`masonry.scene.sections.Section`, whose ``forces()`` can be read between stages, too
+    """
+    if isinstance(z, bool) or not (isinstance(z, (int, float)) and math.isfinite(z)):
+        raise ValueError(f"section: z must be a finite number in m, got {z!r}")
+    description.checkPart(part, "section")
+    name = f"section{len(description.sections)}" if name is None else name
+    if not (isinstance(name, str) and name.isidentifier()):
+        raise ValueError(
+            f"section: a name must be letters, digits and underscores, got {name!r}"
+        )
+    points = [
+        block.corners for block in description.bricks if part in (None, block.part)
+    ]
+    near = 1e-6 * (1 + abs(z))
+    cut = [
+        corner
+        for corners in points
+        if min(c[2] for c in corners) - near <= z <= max(c[2] for c in corners) + near
+        for corner in corners
+    ]
+    if not cut:
+        heights = [corner[2] for corners in points for corner in corners]
+        raise ValueError(
+            f"section {name}: no brick{f' of part {part!r}' if part else ''} reaches z = {z:g} m; they are from "
+            f"{min(heights):g} to {max(heights):g} m"
+        )
+    middle = [(min(c[i] for c in cut) + max(c[i] for c in cut)) / 2 for i in range(2)]
+    found = Section(name, float(z), part, (*middle, float(z)))
+    description.sections.append(found)
+    return found
 
 
 @describes

@@ -120,7 +120,7 @@ class Scene:
     watch, handle = supports.watch, supports.handle
     press, load, wind = loads.press, loads.load, loads.wind
     drift, column = records.drift, records.column
-    joint, view = records.joint, records.view
+    joint, section, view = records.joint, records.section, records.view
 
     @property
     def targets(self):
@@ -214,7 +214,7 @@ class Scene:
         """The materials for the options of this run: :class:`masonry.scene.materials.Masonry`. Raises Refused."""
         masonry = self.description.materials.variant(self.args)
         problems = self.description.problems(masonry)
-        options.check(self.args, masonry.joints, problems)
+        options.check(self.args, masonry.joints, problems, self.description.plane)
         return masonry
 
     def begin(self):

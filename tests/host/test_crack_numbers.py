@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What run.json says of the cracks of a push: the first one, the widest at the end, and the collapse."""
+
+
+import pytest
+from masonry import Scene, bricks, materials
+from masonry.read import cracks, curves
+from masonry.read.files import readCurve, readRun
+
+WIDTH, HEIGHT, COURSE = 0.4, 0.6, 0.2  # [m] of a pile of three blocks
+
+
+def pile(folder, masonry, push, direction=(1, 0, 0), press=1e5, rate=20):
+    """A pile whose uppermost block is pushed at its centre; run.json and curve.csv."""
+    words = ["--no-vtk", "--lean", "--out", str(folder)]
+    blocks = bricks.stack(3, (WIDTH, 0.3, COURSE))
+    scene = Scene("pile", blocks, masonry, arguments=words)
+    scene.platen("bottom")
+    top = scene.platen("top", rotation="free", height=0.1)
+    scene.press(top, press)
+    scene.settle()
+    scene.push(top, push, direction=direction, rate=rate)
+    joints = [(i.phys.opening, i.geom.centres, i.id1, i.id2) for i in scene.model.interactions]  # fmt: skip
+    scene.finish()
+    return readRun(str(folder)), readCurve(str(folder)), joints
+
+
+def test_the_first_crack_is_the_first_row_with_a_loss_and_its_drift_is_over_the_height(
+    tmp_path, scene
+):
+    run, curve, joints = pile(tmp_path, materials.calciumSilicate(), 1.0)
+    tension, shear = (curve[f"dissipated_{m}_J"] for m in ("tension", "shear"))
+    assert tension[0] == shear[0] == 0
+    began = next(i for i, lost in enumerate(map(sum, zip(tension, shear))) if lost > 0)
+    moved = run["displacement_at_first_crack_mm"]
+    assert 0.01 < curve["displacement_mm"][began] <= moved * (1 + 1e-6)
+    assert moved <= curve["displacement_mm"][began + 3]
+    assert run["drift_at_first_crack_mrad"] == pytest.approx(moved / (HEIGHT + 0.1))
+    assert run["collapse_displacement_mm"] is None and not run["collapsed"]
+    widest = max(joints, key=lambda joint: max(joint[0]))
+    at = max(range(len(widest[0])), key=lambda n: widest[0][n])
+    assert 0.05 < run["largest_crack_mm"] == pytest.approx(1e3 * widest[0][at])
+    assert run["largest_crack_at_m"] == pytest.approx(list(widest[1][at]))
+    assert run["largest_crack_bodies"] == list(widest[2:])
+    # pushed to the right, it opens on the left
+    assert run["largest_crack_at_m"][0] == pytest.approx(0)
+
+
+def test_a_push_that_cracks_nothing_has_no_first_crack(tmp_path, scene):
+    masonry = materials.calciumSilicate()
+    run, _, _ = pile(tmp_path, masonry, 0.01, press=1e6)
+    for entry in ("displacement_at_first_crack_mm", "drift_at_first_crack_mrad"):
+        assert run[entry] is None
+    assert run["largest_crack_mm"] == 0
+    assert run["largest_crack_at_m"] is run["largest_crack_bodies"] is None
+
+
+def test_a_push_upwards_has_no_drift(tmp_path, scene):
+    up = dict(direction=(0, 0, 1), press=1e3)
+    run, _, _ = pile(tmp_path, materials.calciumSilicate(), 0.5, **up)
+    assert run["displacement_at_first_crack_mm"] > 0
+    assert run["drift_at_first_crack_mrad"] is None
+    assert run["largest_crack_mm"] == pytest.approx(0.5, abs=0.05)
+
+
+def test_a_push_that_ends_in_a_collapse_says_where(tmp_path, scene):
+    masonry = materials.dry(normalStiffness=1e11)
+    run, curve, _ = pile(tmp_path, masonry, 500, press=1e3, rate=500)
+    assert run["collapsed"]
+    last = pytest.approx(curve["displacement_mm"][-1], rel=1e-6)
+    assert run["collapse_displacement_mm"] == last
+    # it tips about its edge with the push at its top, or slides off
+    assert 1 < run["collapse_displacement_mm"] < 1e3 * WIDTH + 20
+
+
+def test_the_first_crack_is_counted_from_the_first_row_of_the_push():
+    """What was lost before does not count, nor does what is small beside the elastic energy."""
+    rows = {f"elastic_{part}_J": [0.0] * 6 for part in ("shear", "compression", "units")}  # fmt: skip
+    rows["elastic_tension_J"] = [0.0, 10.0, 10.0, 10.0, 10.0, 10.0]
+    rows["dissipated_tension_J"] = [0.0, 5.0, 5.0, 5.0 + 1e-5, 5.0 + 2e-4, 6.0]
+    rows["dissipated_shear_J"] = [0.0] * 6
+    assert curves.firstCrack(rows.get, slice(1, None)) == 4
+    assert curves.firstCrack(rows.get, slice(1, 4)) is None
+    assert curves.firstCrack(rows.get) == 1
+    assert curves.firstCrack(rows.get, slice(6, None)) is None
+
+
+def test_the_widest_crack_is_the_largest_opening():
+    joints = [("a", [-1.0, 2.0], ["p", "q"]), ("b", [3.0, 2.0], ["r", "s"])]
+    assert cracks.widest(joints) == (3.0, "r", "b")
+    assert cracks.widest([("a", [-1.0, -2.0], ["p", "q"])]) == (0.0, None, None)

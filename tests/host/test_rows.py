@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Points of the joints of a scene: along them by ``--subcontacts``, and across them, in space, by ``--rows``."""
+
+import pytest
+from masonry import Scene, bricks, materials
+from masonry.read.files import readRun
+
+UNIT = (0.22, 0.102, 0.081)
+#: The points of Gauss and Lobatto between 0 and 1.
+RULES = {3: [0, 0.5, 1], 5: [0, 0.5 - (3 / 28) ** 0.5, 0.5, 0.5 + (3 / 28) ** 0.5, 1]}
+
+
+def strip(folder, *words, plane=False, courses=6):
+    """A pile of bricks between platens that cannot turn, pressed by 0.2 MPa."""
+    blocks = bricks.stack(courses, UNIT)
+    words = ["--no-vtk", "--lean", "--out", str(folder), *words]
+    scene = Scene(
+        "strip", blocks, materials.calciumSilicate(), plane=plane, arguments=words
+    )
+    scene.platen("bottom")
+    guided = "x" if plane else "xy"
+    scene.press(scene.platen("top", rotation="held", guided=guided), 0.2e6)
+    return scene
+
+
+def bedPoints(scene):
+    """The points of a bed joint between two bricks [m]."""
+    scene.begin()
+    ids = scene.model.ids
+    pair = {ids[2], ids[3]}
+    (joint,) = (i for i in scene.model.interactions if {i.id1, i.id2} == pair)
+    scene.finish()
+    return joint.geom.centres
+
+
+def apart(values):
+    """Different values, but for round-off."""
+    return sorted({round(v, 9) for v in values})
+
+
+@pytest.mark.parametrize(
+    "words, along, across",
+    [
+        ((), 3, 3),
+        (("--rows", "5"), 3, 5),
+        (("--subcontacts", "5"), 5, 3),
+        (("--rows", "5", "--subcontacts", "5"), 5, 5),
+    ],
+)
+def test_rows_lie_through_the_thickness_and_subcontacts_along_the_wall(
+    tmp_path, scene, words, along, across
+):
+    points = bedPoints(strip(tmp_path, *words))
+    assert len(points) == along * across
+    for axis, count in ((0, along), (1, across)):
+        places = apart((p[axis] - points[0][axis]) / UNIT[axis] for p in points)
+        expected = [v + min(places) for v in RULES[count]]
+        assert places == pytest.approx(expected, abs=1e-8)
+
+
+def test_a_scene_in_the_plane_has_one_row(tmp_path, scene):
+    points = bedPoints(strip(tmp_path, "--subcontacts", "5", plane=True))
+    assert len(points) == 5 and len(apart(p[1] for p in points)) == 1
+
+
+def test_a_strip_that_bends_cracks_at_a_force_that_settles_with_more_rows(
+    tmp_path, scene
+):
+    """With three rows the middle of a joint, with two thirds of its area, cracks at once, and a quarter too late."""
+    peaks = {}
+    for rows in (None, 3, 5, 9):
+        words = ["--rows", str(rows)] if rows else []
+        bent = strip(tmp_path / str(rows), *words, courses=8)
+        middle = bent.handle(4, name="middle")
+        bent.settle()
+        bent.push(middle, 0.4, direction=(0, 1, 0))
+        bent.finish()
+        peaks[rows] = readRun(str(tmp_path / str(rows)))["peak_base_shear_kN"]
+    assert peaks[None] == peaks[3]
+    assert 1.15 < peaks[3] / peaks[9] < 1.4
+    assert peaks[5] == pytest.approx(peaks[9], rel=0.03)
+
+
+@pytest.mark.parametrize(
+    "words, plane, message",
+    [
+        (("--rows", "5"), True, "--rows 5: this scene is in the x-z plane"),
+        (("--rows", "5", "--blocks", "deformable"), False, "--rows 5: joints of deformable units have the points of"),
+        (("--rows", "2"), False, "'2' must be a whole number from 3 to 100"),
+    ],
+)  # fmt: skip
+def test_rows_that_would_do_nothing_or_harm_are_refused(
+    tmp_path, scene, capsys, words, plane, message
+):
+    with pytest.raises(SystemExit) as refused:
+        refusing = strip(tmp_path, *words, plane=plane)
+        refusing.settle()
+    assert refused.value.code == 2
+    assert message in str(refused.value) + capsys.readouterr().err
+
+
+@pytest.mark.parametrize("divisions", ["1", "2"])
+def test_deformable_units_have_points_at_faces_and_thirds_of_the_thickness(
+    tmp_path, scene, divisions
+):
+    words = "--blocks", "deformable", "--divisions", divisions
+    points = bedPoints(strip(tmp_path, *words))
+    places = apart(p[1] / UNIT[1] for p in points)
+    assert [v - min(places) for v in places] == pytest.approx([0, 1 / 3, 2 / 3, 1])

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What horizontal sections transmit, against statics: weight and loads above, and the reaction of the base."""
+
+import math
+
+import numpy as np
+import pytest
+from masonry import AT_REST, MasonryVtkRecorder, Scene, bricks, materials
+from masonry._masonry import loadScene, saveScene
+from masonry.basics import GRAVITY, Refused
+from masonry.read.files import readCurve, readRun
+from masonry.read.frames import asFrame
+from yade import O, Vector3
+
+DENSITY = 1800.0  # [kg/m³] of calcium silicate
+LEVELS = (
+    0.0,
+    0.162,
+    0.2025,
+    0.486,
+)  # [m]: foot, a bed joint, the middle of a course, and top
+
+
+def made(folder, blocks, *words, masonry=None, **settings):
+    words = ["--no-vtk", "--lean", "--out", str(folder), *words]
+    masonry = masonry or materials.calciumSilicate()
+    return Scene("cut", blocks, masonry, arguments=words, **settings)
+
+
+def weightAbove(scene, z):
+    """Weight of the bricks whose centroid is above z [N]."""
+    above = [O.bodies[i] for i in scene.model.ids if O.bodies[i].state.refPos[2] > z + 1e-9]  # fmt: skip
+    return GRAVITY * sum(body.state.mass for body in above)
+
+
+def column(scene, head):
+    return scene.results.column(head)
+
+
+@pytest.mark.parametrize("blocks", ["rigid", "deformable"])
+@pytest.mark.parametrize("plane", [True, False], ids=["plane", "space"])
+def test_at_rest_a_section_carries_what_is_above_it(tmp_path, scene, plane, blocks):
+    wall = made(tmp_path, bricks.Wall(0.66, 0.486), "--blocks", blocks, plane=plane)
+    wall.platen("bottom")
+    wall.press(wall.platen("top", rotation="held"), 0.3e6)
+    sections = [wall.section(z) for z in LEVELS]
+    assert wall.settle() == AT_REST
+    pressed = 0.3e6 * 0.66 * 0.102
+    for n, (z, section) in enumerate(zip(LEVELS, sections)):
+        weight = weightAbove(wall, z)
+        assert len(section.interactions) >= 5
+        assert section.middle == pytest.approx((0.33, 0.051, z))
+        force, moment = section.forces()
+        assert force[2] == pytest.approx(-(pressed + weight), rel=1e-3)
+        assert column(wall, f"section{n}_N_kN")[-1] == 1e-3 * force[2]
+        assert math.hypot(force[0], force[1]) < 1e-3 * pressed
+        assert moment.norm() < 1e-3 * pressed * 0.66
+    whole = 0.66 * 0.102 * 0.486 * DENSITY * GRAVITY
+    assert weightAbove(wall, 0) == pytest.approx(whole)
+    # of the six courses the third is at its middle, and does not lie above that
+    assert weightAbove(wall, 0.2025) == pytest.approx(whole / 2)
+    wall.finish()
+
+
+@pytest.mark.parametrize("blocks", ["rigid", "deformable"])
+@pytest.mark.parametrize(
+    "plane, axis", [(True, 0), (False, 0), (False, 1)], ids=["plane", "x", "y"]
+)
+def test_a_push_is_the_shear_force_below_and_its_lever_arm_the_moment(
+    tmp_path, scene, plane, axis, blocks
+):
+    """The platen can turn, so what acts on it are the push and the pressure, at places that are known."""
+    words = "--blocks", blocks, "--rate", "5"
+    wall = made(tmp_path, bricks.Wall(0.66, 0.486), *words, plane=plane)
+    wall.platen("bottom")
+    top = wall.platen("top", rotation="free", height=0.1)
+    wall.press(top, 0.3e6)
+    for z in LEVELS:
+        wall.section(z)
+    wall.settle()
+    direction = [0, 0, 0]
+    direction[axis] = 1
+    wall.push(top, (0.1, 0.3)[axis], direction=direction)
+    pushed, along = 1e3 * column(wall, "top_shear_kN")[-1], "xy"[axis]
+    moved = 1e-3 * column(wall, f"top_{along}_mm")[-1]
+    assert pushed > 100
+    for n, z in enumerate(LEVELS):
+        head = f"section{n}_"
+        shear = 1e3 * column(wall, head + f"V_{along}_kN")[-1]
+        assert shear == pytest.approx(pushed, rel=0.008)
+        moment = 1e3 * column(wall, head + ("M_y_kNm", "M_x_kNm")[axis])[-1]
+        pressed = 0.3e6 * 0.66 * 0.102
+        expected = pushed * (0.586 - z) + pressed * moved
+        assert (1, -1)[axis] * moment == pytest.approx(expected, rel=0.003)
+        heads = column(wall, head + "N_kN")
+        assert 1e3 * heads[-1] == pytest.approx(
+            -(pressed + weightAbove(wall, z)), rel=3e-3
+        )
+    wall.finish()
+    curve = readCurve(str(tmp_path))
+    assert ("section0_M_x_kNm" in curve) == (not plane)
+    meaning = readRun(str(tmp_path))["columns"]["section1_M_y_kNm"]
+    assert "about y through (0.33, 0.051, 0.162) m by the right-hand rule" in meaning
+    assert meaning.endswith("[kNm]")
+
+
+@pytest.mark.parametrize("blocks", ["rigid", "deformable"])
+@pytest.mark.parametrize("plane", [True, False], ids=["plane", "space"])
+def test_the_section_at_the_foot_has_the_force_and_moment_that_the_base_feels(
+    tmp_path, scene, plane, blocks
+):
+    """Also of a wall that has cracked and moved far, in the middle of a push, but for the motion of a step."""
+    wall = made(tmp_path, bricks.Wall(0.44, 0.648), "--blocks", blocks, plane=plane)
+    base = wall.platen("bottom")
+    top = wall.platen("top", rotation="free", height=0.1)
+    wall.press(top, 0.1e6)
+    foot = wall.section(0, name="foot")
+    wall.settle()
+    wall.push(top, 20 if blocks == "rigid" else 3, rate=200)
+    force, moment = foot.forces()
+    there, arm = base.body, O.bodies[base.body].state.pos - Vector3(*foot.middle)
+    felt = O.forces.f(there, True)
+    assert felt.norm() > 1000
+    assert (force - felt).norm() < 1e-6 * felt.norm()
+    turned = O.forces.t(there, True) + arm.cross(felt)
+    assert abs(moment[1] - turned[1]) < 1e-4 * abs(turned[1])
+    for head, other in (("foot_V_x_kN", "x"), ("foot_N_kN", "z")):
+        reaction = column(wall, f"base_force_{other}_kN")[-1]
+        assert column(wall, head)[-1] == pytest.approx(reaction, rel=1e-5)
+    before = foot.forces()
+    saved = saveScene("")
+    wall.running.advance(50)
+    assert foot.forces() != before
+    loadScene(saved)
+    assert foot.forces() == before
+    wall.finish()
+
+
+def test_tractions_of_a_frame_add_up_to_the_section_and_say_on_which_block_they_act(
+    tmp_path, scene
+):
+    wall = made(tmp_path, bricks.Wall(0.44, 0.324), plane=False)
+    wall.platen("bottom")
+    top = wall.platen("top", rotation="free")
+    wall.press(top, 0.3e6)
+    cut = wall.section(0.162)
+    wall.settle()
+    wall.push(top, 0.1, direction=(1, 0.5, 0))
+    joints = asFrame(MasonryVtkRecorder().joints())
+    lower = {(i.id1, i.id2): s for i, s in zip(cut.interactions, cut.signs)}
+    signs = np.array([lower.get(tuple(map(int, pair)), 0) for pair in joints["bodies"]])
+    traction = joints["shear_traction"] + joints["normal_stress"][:, None] * joints["normal"]  # fmt: skip
+    force = (signs * joints["area"]) @ traction
+    there = cut.forces()[0]  # along axes that have turned by some 0.3 mrad
+    assert np.linalg.norm(force - there) < 1e-3 * there.norm()
+    assert force[0] > 100 and force[1] > 50
+    size = np.linalg.norm(joints["shear_traction"], axis=1)
+    assert size == pytest.approx(joints["shear_stress"], rel=1e-9, abs=1e-6)
+    wall.finish()
+
+
+def test_damping_of_joints_is_a_part_of_what_they_transmit(tmp_path, scene):
+    wall = made(tmp_path, bricks.Wall(0.44, 0.648))
+    base = wall.platen("bottom")
+    top = wall.platen("top", rotation="free")
+    wall.press(top, 0.1e6)
+    foot = wall.section(0)
+    wall.settle()
+    wall.model.dampJoints(1e-4)
+    wall.push(top, 0.02, rate=50)
+    felt = O.forces.f(base.body, True)
+    assert (foot.forces()[0] - felt).norm() < 1e-6 * felt.norm()
+    wall.finish()
+
+
+def test_the_parts_of_a_corner_add_up_to_the_whole(tmp_path, scene):
+    blocks = bricks.Corner(1.1, 0.88, 0.486, halves=False)
+    corner = made(tmp_path, blocks, masonry=materials.dry(normalStiffness=5e10))
+    corner.platen("bottom")
+    corner.press(corner.platen("top"), 1e5)
+    parts = sorted({block.part for block in blocks})
+    assert len(parts) == 2
+    every = [corner.section(0.243, part, name=part or "all") for part in (None, *parts)]
+    corner.settle()
+    sums = [section.forces()[0] for section in every]
+    assert (sums[1] + sums[2] - sums[0]).norm() < 1e-9 * sums[0].norm()
+    assert all(force[2] < -1000 for force in sums)
+    corner.finish()
+
+
+@pytest.mark.parametrize(
+    "act, message",
+    [
+        (lambda s: s.section("a"), "section: z must be a finite number in m, got 'a'"),
+        (lambda s: s.section(math.nan), "section: z must be a finite number in m"),
+        (lambda s: s.section(0.1, part="roof"), "section: no part 'roof'; there are wall"),
+        (lambda s: s.section(0.1, name="a b"), "section: a name must be letters"),
+        (lambda s: s.section(3), "no brick reaches z = 3 m; they are from 0 to 0.324 m"),
+        (lambda s: s.section(0.324) and s.begin(), "section section0: no joint crosses z = 0.324 m"),
+        (lambda s: s.section(0.1).forces(), "section section0: the scene is not built yet"),
+        (lambda s: (s.section(0.1, name="a"), s.section(0.2, name="a"), s.begin()), "two columns have the name a_M_y_kNm"),
+    ],
+)  # fmt: skip
+def test_sections_that_cannot_be_are_refused(tmp_path, scene, act, message):
+    wall = made(tmp_path, bricks.Wall(0.44, 0.324))
+    wall.platen("bottom")
+    wall.handle(-1)
+    with pytest.raises((ValueError, Refused)) as refused:
+        act(wall)
+    assert message in str(refused.value)
+    wall.running.release()
+    wall.finished = True
