@@ -118,7 +118,7 @@ def test_the_drive_stops_when_its_stage_ends(tmp_path):
     scene, top = small(tmp_path)
     scene.run(0.05)
     scene.lean(0.02)
-    assert scene.results.column("displacement_mm")[-1] == pytest.approx(0.05, abs=0.01)
+    assert scene.results.column("top_x_mm")[-1] == pytest.approx(0.05, abs=0.01)
     scene.finish()
 
 
@@ -180,7 +180,7 @@ def test_two_scenes_at_once_are_refused(tmp_path):
         ),
         (lambda s, t: s.bracket(lambda f: True, 0.3, 0.2), "below high 0.2"),
         (lambda s, t: s.push(t, 0.1, direction=(0, 1, 0)), "in the x-z plane"),
-        (lambda s, t: s.press(t, 1e5), "must come before the first stage"),
+        (lambda s, t: s.watch(0), "must come before the first stage"),
     ],
 )
 def test_wrong_stages_are_refused(tmp_path, act, message):
