@@ -11,5 +11,5 @@ scene.watch((0.05, 0.05, 1.62), name="corner")
 scene.watch((0.05, 1.65, 1.62), name="end")
 scene.settle()
 scene.accelerate(0.3, towards=(1, 0, 0), rate=0.2)  # [g], [g/s]
-print(f"leaves rest at {scene.factor:.3f} g")
+print(f"holds {scene.factor:.3f} g")
 scene.finish()

@@ -10,5 +10,5 @@ scene.platen("bottom")
 scene.watch((0.4, 0, dome.high[2]), name="crown")
 scene.settle()
 scene.accelerate(1.2, rate=0.2)  # [g], [g/s]
-print(f"leaves rest at {scene.factor:.3f} g")
+print(f"holds {scene.factor:.3f} g")
 scene.finish()

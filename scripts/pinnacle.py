@@ -14,5 +14,5 @@ scene.platen("bottom")
 scene.watch(drums.high, name="tip")
 scene.settle()
 scene.accelerate(0.8, rate=0.4)  # [g], [g/s]
-print(f"leaves rest at {scene.factor:.3f} g")
+print(f"holds {scene.factor:.3f} g")
 scene.finish()

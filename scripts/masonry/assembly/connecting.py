@@ -105,7 +105,7 @@ def _pairs(tolerance, allowGaps):
         problems[-1] += f"; the tolerance is {1e3 * bound:.3g} mm"
     refuse(
         problems,
-        "move them, or see help(masonry.connect) for its tolerance and allowGaps",
+        "move them; gaps on purpose are allowed by allowGaps=True of Scene or of connect(), whose help has the tolerance",
     )
     if not pairs:
         raise ValueError(

@@ -155,7 +155,9 @@ class Structure:
         self.energy, self.integrator = engine("energy"), engine("integrator")
         self.damp(args.damping, kind)
         blocks = dict(zip(self.ids, description.bricks))
-        self.interactions = connect(self.masonry.rule(blocks))
+        self.interactions = connect(
+            self.masonry.rule(blocks), allowGaps=description.allowGaps
+        )
         self.limit = criticalTimeStep()[0]
         O.dt = args.dt_fraction * self.limit
         self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)

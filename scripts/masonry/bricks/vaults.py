@@ -37,17 +37,14 @@ def Arch(
     :param angle: at the centre, between the springings [°], up to 180: a half circle, the default
     :param skewback: width of two blocks, kind "block", part "skewback", on which the arch springs, behind the outer
         springings [m]. Their bottom is level with the inner springings, so that an arch of less than 180° can stand on
-        level supports. None: none
+        level supports. An arch of 180° stands on two such blocks, as wide as the ring and so high. None: none
     :raises ValueError: with all problems
     """
     problems = []
     radius = _circle(thickness, stones, span, radius, angle, problems)
     positive(depth, "depth", problems)
-    if skewback is not None and positive(skewback, "skewback", problems):
-        if angle == 180:
-            problems.append(
-                "an arch of 180° springs from level joints and needs no skewback"
-            )
+    if skewback is not None:
+        positive(skewback, "skewback", problems)
     refuse("arch", problems)
     points = _ring(radius, thickness, stones, angle)
     voussoirs = [
@@ -57,12 +54,11 @@ def Arch(
     if skewback is not None:
         for end, sign in ((points[0], -1), (points[-1], 1)):
             (x, z), (u, v) = end
-            section = [
-                (x, z),
-                (u, v),
-                (u + sign * skewback, v),
-                (u + sign * skewback, z),
-            ]
+            if angle == 180:
+                section = [(x, z), (u, z), (u, z - skewback), (x, z - skewback)]
+            else:
+                outer = u + sign * skewback
+                section = [(x, z), (u, v), (outer, v), (outer, z)]
             corners = _prism(section, 0.0, float(depth))
             voussoirs.append(Block(corners, len(voussoirs), "skewback", -1, "block"))
     return Bricks(voussoirs)

@@ -247,9 +247,10 @@ def pattern(frame, wall):
 SLID = 0.9, 0.5
 
 
-def failureMode(numbers, wall):
+def failureMode(numbers, wall, grows=False):
     """A plain name of how a wall gave way, from its crack pattern at the end. The first that applies is given:
 
+    - ``none yet``: the force of the push still grows at its end
     - ``bed sliding``: one bed joint slid along nine tenths of the wall's length, by more than bed joints opened at its
       sides, and lost half of the energy that bed joints lost in shear
     - ``diagonal cracking``: a stepped crack reaches over half of the shorter side of the wall, in courses or half units
@@ -262,7 +263,10 @@ def failureMode(numbers, wall):
 
     :param numbers: of :func:`patternNumbers`
     :param wall: the entry ``wall`` of run.json
+    :param grows: as of :func:`masonry.read.curves.stillGrows`; of a wall that follows a history False
     """
+    if grows:
+        return "none yet"
     opened = max(numbers[f"flexural_opening_{side}_mm"] for side in ("base", "top"))
     if (
         numbers["slid_share"] >= SLID[0]

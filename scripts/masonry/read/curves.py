@@ -38,6 +38,18 @@ def peakAtBothEnds(top, base):
     return max(map(min, zip(top, base)), default=0.0)
 
 
+def stillGrows(displacement, force):
+    """Whether the force of a push is largest at its end, and grows there with more than a twentieth of its initial stiffness:
+    then nothing has given way yet. The end is the last tenth of the displacement."""
+    if len(force) < 10 or max(force) > 1.001 * max(force[-3:]):
+        return False
+    start = displacement[-1] - 0.1 * (displacement[-1] - displacement[0])
+    at = next(n for n, d in enumerate(displacement) if d >= start)
+    path = displacement[-1] - displacement[at]
+    slope = (force[-1] - force[at]) / path if path > 0 else 0.0
+    return slope > 0.05 * initialStiffness(displacement, force)
+
+
 def initialStiffness(displacement, force):
     """Slope [force/displacement] of the line fitted between 5 % and 25 % of the peak, on the way to it.
 

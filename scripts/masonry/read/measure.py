@@ -24,6 +24,7 @@ from .cracks import (
     mirrored,
     patternNumbers,
 )
+from .curves import stillGrows
 from .files import filesOf, onFolder, readCurve, readRun
 from .frames import readFrame
 
@@ -187,7 +188,9 @@ def show(directory):
     for name, value in numbers.items():
         print(f"{name:34} {value:.6g}")
     if wall and "slid_share" in numbers:
-        print(f"{'failure_mode':34} {failureMode(numbers, wall)}")
+        looped, curve = readRun(directory).get("history"), readCurve(directory)
+        grows = not looped and stillGrows(curve["displacement_mm"], curve["base_shear_kN"])  # fmt: skip
+        print(f"{'failure_mode':34} {failureMode(numbers, wall, grows)}")
     cycles = readRun(directory).get("cycles")
     if cycles:
         with filesOf(directory):

@@ -176,11 +176,16 @@ def _report(run, scene):
     if run.results.rows and not run.args.lean:
         scene.outcome.draw(run.results.directory)
     off, made = entries.get("energy_balance_error", 0), entries.get("energy_made", 0)
-    if made > OFF or (off > OFF and not scene.model.energy.warned):
+    wrong = []
+    if off > OFF and not scene.model.energy.warned:
+        wrong.append(f"the energy balance is off by {100 * off:.1f} % of the work done")
+    if made > OFF:
+        wrong.append(
+            f"joints that open or close within a step made {100 * made:.1f} % of the work done"
+        )
+    if wrong:
         say(
-            f"warning: the energy balance is off by {100 * off:.1f} % of the work done, and joints that open or "
-            f"close within a step made {100 * made:.1f} % of it: a smaller --dt-fraction or --rate or more --damping "
-            "helps"
+            f"warning: {', and '.join(wrong)}: a smaller --dt-fraction or --rate or more --damping helps"
         )
     if run.results.rows:
         for line in scene.outcome.report(entries):

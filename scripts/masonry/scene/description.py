@@ -54,6 +54,7 @@ class Description:
         self.materials, self.gravity = materials, gravity  # [m/s²], downwards
         self.functors = functors  # as of masonry.assembly.engines.engines
         self.deformable = deformable  # whether bricks are
+        self.allowGaps = False  # as of masonry.assembly.connecting.connect
         points = [p for block in self.bricks for p in block.corners]
         #: corners of the box around all bricks [m]
         self.low, self.high = (

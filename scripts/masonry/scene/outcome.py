@@ -19,6 +19,7 @@ from ..read.curves import (
     firstCrack,
     initialStiffness,
     peakAtBothEnds,
+    stillGrows,
 )
 from ..read.frames import asFrame
 from . import history
@@ -224,7 +225,9 @@ class Outcome:
                 found["drop_at_mm"] = None
         if wall:
             found.update(cracks.pattern(asFrame(MasonryVtkRecorder().joints()), wall))
-            found["failure_mode"] = cracks.failureMode(found, wall)
+            found["failure_mode"] = cracks.failureMode(
+                found, wall, not self.pushed.history and stillGrows(moved, shear)
+            )
         return found
 
     # -- curve.png ------------------------------------------------------------------------------------------------

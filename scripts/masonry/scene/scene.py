@@ -64,6 +64,7 @@ class Scene:
     :param functors: as of :func:`masonry.assembly.engines.engines`
     :param arguments: options as :func:`masonry.scene.options.parser` gives them, or a list of words; None: those of the
         command line
+    :param allowGaps: whether bricks that nearly share a face stand apart on purpose, and have no joint
     :param usual: options whose default is another one in this scene, for example ``rate=50`` [mm/s] or ``dt_fraction=0.4``
     :raises Refused: if something is wrong, with all problems at once. A script that does not catch it ends with exit
         status 2
@@ -82,6 +83,7 @@ class Scene:
         columns=None,
         functors=False,
         arguments=None,
+        allowGaps=False,
         **usual,
     ):
         if not isinstance(name, str) or not name.strip(".") or "/" in name:
@@ -91,6 +93,7 @@ class Scene:
         self.description = Description(
             name, bricks, materials, title, plane, gravity, columns, functors
         )
+        self.description.allowGaps = allowGaps
         if arguments is None or isinstance(arguments, (list, tuple)):
             arguments = options.ofScene(name, arguments, usual)
         self.name, self.args = name, arguments

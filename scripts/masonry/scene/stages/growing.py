@@ -5,7 +5,8 @@ A structure under a growing load falls late: it must first move. It also begins 
 by little. So neither moment says what it carries. The run finds that out by trials. During the growth it keeps states to go
 back to. Then it takes such a state, leaves the load as it is, and waits: the load is held if the structure comes to rest
 under it. Between the largest load that was held and the smallest that was not it goes on in halves, from the state at rest
-under the first.
+under the first. At the end the load that was not held is tried once more from that state, in which nothing moves: so it does
+not matter how fast the load grew.
 """
 
 import base64
@@ -47,11 +48,17 @@ class Growing(Timed):
     # -- of the search
     trials: list = ()
     held: list = None  # factor and displacement [mm] of the largest load that was held
-    lost: list = None  # of the smallest that was not
+    lost: list = (
+        None  # of the smallest that was not, and 1 if that trial began at rest, else 0
+    )
+    climbs: int = (
+        0  # trials above a load that was not held when it grew, but is held from rest
+    )
     heldState: str = ""  # at rest under the load that was held
     # -- of the present trial
     goal: float = -1.0  # its factor [-], or below 0 if none is going on
     source: float = 0.0  # factor of the state from which it begins [-]
+    calm: int = 0  # 1 if that state is at rest, else 0
     taken: int = 0  # steps so far
     quiet: int = 0  # looks that found the structure at rest, one after the other
     marks: list = ()  # velocities after 1, 2, 4, ... looks [-]
@@ -210,7 +217,7 @@ class _Search:
                 chosen = self._next()
                 if chosen is None:
                     return
-                at.source, at.goal, state = chosen
+                at.source, at.goal, state, at.calm = chosen
                 at.taken, at.quiet, at.marks = 0, 0, []
                 if state is not None:
                     loadScene(_state(state))
@@ -218,8 +225,11 @@ class _Search:
             end = [at.goal, 1e3 * self.model.alongNow()]
             if held:
                 at.held, at.heldState = end, _text(saveScene("null"))
-            elif at.lost is None or at.goal < at.lost[0]:
-                at.lost = end
+                at.climbs += bool(at.climbs)
+                if at.lost and at.goal >= at.lost[0]:
+                    at.lost, at.climbs = None, 1
+            elif at.lost is None or at.goal < at.lost[0] or at.calm:
+                at.lost = [*end, at.calm]
             at.trials = [*at.trials, [at.goal, int(held)]]
             at.goal = -1.0
             self._show(name)
@@ -246,35 +256,48 @@ class _Search:
     # -- which trial comes next -----------------------------------------------------------------------------------
 
     def _next(self):
-        """The next trial: factor of the state from which it begins, its own factor, and that state as text, or None if it
-        is the present one. None if there is nothing left to try.
+        """The next trial: factor of the state from which it begins, its own factor, that state as text, or None if it is the
+        present one, and 1 if it is at rest, else 0. None if there is nothing left to try.
         """
         at = self.at
         if not at.trials and not at.fell:
-            return at.last, at.last, None  # the structure still stands
-        factors = [factor for factor, _ in at.kept]
-        low = self._index(factors, at.held)
-        high = self._index(factors, at.lost)
+            return at.last, at.last, None, 0  # the structure still stands
+        if not at.fell and at.held and at.held[0] >= at.last:
+            return None
+        if at.climbs and at.lost is None:
+            goal = at.held[0] * (1 + self.within * 2**at.climbs)
+            most = self.load.factor(1.0)
+            return self._fromRest(min(goal, most)) if at.held[0] < most else None
+        chosen = None if at.climbs else self._ofGrowth()
+        if chosen or at.held is None:
+            return chosen
+        if at.lost is None:
+            at.lost = [at.last, 1e3 * self._alongThen(), 0]
+        width = self.within * max(at.lost[0], LEAST * at.last)
+        if at.lost[0] - at.held[0] > width:
+            return self._fromRest(0.5 * (at.held[0] + at.lost[0]))
+        return None if at.lost[2] else self._fromRest(at.lost[0])
+
+    def _ofGrowth(self):
+        """The next trial from a state of the growth, or None if there is none between the ends of the bracket."""
+        at = self.at
+        factors, step = [factor for factor, _ in at.kept], 2 ** max(0, len(at.trials) - 1)  # fmt: skip
+        low, high = self._index(factors, at.held), self._index(factors, at.lost)
         if at.held is None and at.lost is None:
             return self._from(self._guess(factors))
         if at.held is None:
-            if high == 0:
-                return None
-            return self._from(max(0, high - 2 ** (len(at.trials) - 1)))
-        top = len(factors) if at.lost is None else high
-        if at.lost is None and low + 1 < top:
-            return self._from(min(top - 1, low + 2 ** (len(at.trials) - 1)))
+            return self._from(max(0, high - step)) if high else None
         if at.lost is None:
-            at.lost = [at.last, 1e3 * self._alongThen()]
-        if at.lost[0] - at.held[0] <= self.within * max(at.lost[0], LEAST * at.last):
-            return None
-        if low + 1 < top:
-            return self._from((low + top) // 2)
-        return at.held[0], 0.5 * (at.held[0] + at.lost[0]), at.heldState
+            return self._from(min(len(factors) - 1, low + step)) if low + 1 < len(factors) else None  # fmt: skip
+        wide = at.lost[0] - at.held[0] > self.within * at.lost[0]
+        return self._from((low + high) // 2) if wide and low + 1 < high else None
+
+    def _fromRest(self, goal):
+        return self.at.held[0], goal, self.at.heldState, 1
 
     def _from(self, index):
         factor, state = self.at.kept[index]
-        return factor, factor, state
+        return factor, factor, state, 0
 
     def _index(self, factors, end):
         """Number of the last kept state up to an end of the bracket, or of the first one from it on."""
