@@ -385,10 +385,11 @@ def _levels(height, courses, unit, problems):
         if not all(checks):
             return None
         # a block as flat as corners may lie off their face's plane has no volume
-        low = [n for n, h in enumerate(courses) if h <= FLAT * max(unit)]
+        least = FLAT * max(unit) if unit else 0.0
+        low = [n for n, h in enumerate(courses) if h <= least]
         if low:
             problems.append(
-                f"course {low[0]}: {courses[low[0]]:g} m is too flat, it must be above {FLAT * max(unit):g} m"
+                f"course {low[0]}: {courses[low[0]]:g} m is too flat, it must be above {least:g} m"
             )
             return None
         levels = [0.0]

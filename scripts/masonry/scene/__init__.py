@@ -6,7 +6,8 @@
   :mod:`masonry.scene.loads` and :mod:`masonry.scene.records`; :mod:`masonry.scene.targets`,
   :mod:`masonry.scene.sections`: what is recorded
 - :mod:`masonry.scene.stages`: the stages of a test
-- :mod:`masonry.scene.materials`: published parameter sets, and properties that vary from place to place
+- :mod:`masonry.scene.materials`: masonry of one's own, published parameter sets, properties that vary from place to place,
+  and what of all this was assumed
 - :mod:`masonry.scene.fields`: random fields; :mod:`masonry.scene.history`: displacements there and back;
   :mod:`masonry.scene.ground`: ground motion and Rayleigh damping
 - :mod:`masonry.scene.options`: the options of the command line, which :mod:`masonry.scene.parsing` reads;

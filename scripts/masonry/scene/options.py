@@ -10,7 +10,7 @@ from ..assembly.engines import LAWS
 from ..basics import Refused, say
 from ..run.presets import BOUND, PRESETS, USUAL
 from .parsing import Parser, count, field, folder, number, pathOf
-from .settings import applySettings, setting
+from .settings import setting
 
 #: Fewest rows of points that give a joint its stiffness against bending: two give three times that, one none.
 FEWEST = 3
@@ -158,7 +158,7 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         action="append",
         default=[],
         help="change a property of the bed, head, crack or support joints, in SI units; repeatable "
-        "(help(MasonryJoint) lists them); where friction and residual friction are one value, they stay one",
+        "(help(masonry.MasonryJoint) lists them); where friction and residual friction are one value, they stay one",
     )
     p.add_argument(
         "--field",
@@ -242,11 +242,11 @@ def ofScene(name, words, usual):
     return found
 
 
-def check(args, joints, more=(), plane=False):
-    """Apply ``--set`` to the joints of a scene, and refuse options that do not go together.
+def check(args, masonry, more=(), plane=False):
+    """Apply ``--set`` to the joints of a scene, and refuse options that do not go together and materials that lack something.
 
     :param args: the parsed options
-    :param joints: dict of MasonryJoint by name
+    :param masonry: :class:`masonry.scene.materials.Masonry` for these options
     :param plane: whether blocks move in the x-z plane only
     :param more: problems that the caller has found, to be named with the others
     :raises Refused: with all problems at once
@@ -265,8 +265,9 @@ def check(args, joints, more=(), plane=False):
             "thickness; --divisions are those along the other two sides"
         )
     try:
-        applySettings(joints, args.set)
+        masonry.apply(args.set)
     except Refused as refused:
         problems.append(str(refused))
+    problems += masonry.missing()
     if problems:
         raise Refused("\n".join(problems))

@@ -103,6 +103,7 @@ class Outcome:
                 "poisson": model.unit.poisson,
                 "density_kg_per_m3": model.unit.density / self.args.density_scaling,
             },
+            assumed=scene.assumed,
             time_step_s=O.dt,
             time_step_limit_s=model.limit,
             units=len(model.bricks),

@@ -35,7 +35,7 @@ from ..run.run import Run
 from . import loads, options, probing, records, supports
 from .bounds import EVERY, SMALL, Bounds
 from .description import Description
-from .materials import loadingBlock
+from .materials import linesOf, loadingBlock
 from .outcome import Outcome
 from .stages import AT_REST, LATER, STAGES, gravity, prepare
 from .stages.stage import Answer
@@ -105,6 +105,9 @@ class Scene:
         #: of displacements and times [-]
         self.share = 0.1 if arguments.quick else 1.0
         self.ended = None  # how the last stage ended
+        self.assumed = (
+            []
+        )  # of the materials, when the scene is built: an entry of run.json
         self.pushed = None  # options of the last push
         self.loadUnit = "-"  # of the load that a stage put on or let grow last
         self.replaced = False  # whether --until or --history have been used
@@ -214,7 +217,8 @@ class Scene:
         """The materials for the options of this run: :class:`masonry.scene.materials.Masonry`. Raises Refused."""
         masonry = self.description.materials.variant(self.args)
         problems = self.description.problems(masonry)
-        options.check(self.args, masonry.joints, problems, self.description.plane)
+        options.check(self.args, masonry, problems, self.description.plane)
+        self.assumed = masonry.assumed()
         return masonry
 
     def begin(self):
@@ -223,6 +227,8 @@ class Scene:
             return
         description, args = self.description, self.args
         model = Structure(description, self.masonry, args)
+        for line in linesOf(self.assumed, self.masonry.brief):
+            say(line)
         self.columns = description.columns(model, bool(args.history))
         self.model = model
         self.running.open(self.columns)
