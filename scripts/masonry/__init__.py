@@ -38,6 +38,11 @@ if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:
     del sys.path[0]
 
 import importlib
+import os
+
+# YADE does not search the folder of its script for modules. It comes last, so that nothing in it hides another module.
+if hasattr(sys, "yade_argv") and sys.argv and os.path.isfile(sys.argv[0]):
+    sys.path.append(os.path.dirname(os.path.abspath(sys.argv[0])))
 
 #: The version of the project, which the plugin, run.json, checkpoints and the Debian package have from this line.
 __version__ = "3.0.0"

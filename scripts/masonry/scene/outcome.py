@@ -22,7 +22,7 @@ from ..read.curves import (
 )
 from ..read.frames import asFrame
 from . import history
-from .options import UNITS
+from .parsing import UNITS
 from .stages import pushing
 from .stages.stage import answersText
 from .wall import wallOf

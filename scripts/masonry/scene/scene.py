@@ -64,7 +64,8 @@ class Scene:
     :param functors: as of :func:`masonry.assembly.engines.engines`
     :param arguments: options as :func:`masonry.scene.options.parser` gives them, or a list of words; None: those of the
         command line
-    :param usual: options whose default is another one in this scene, for example ``rate=50`` [mm/s] or ``dt_fraction=0.4``
+    :param usual: options of this scene, for example ``rate=50`` [mm/s] or ``dt_fraction=0.4``. They hold unless the command
+        line, or the list of words, gives the same option; a note says so then
     :raises Refused: if something is wrong, with all problems at once. A script that does not catch it ends with exit
         status 2
     """
@@ -91,8 +92,7 @@ class Scene:
         self.description = Description(
             name, bricks, materials, title, plane, gravity, columns, functors
         )
-        if arguments is None or isinstance(arguments, (list, tuple)):
-            arguments = options.ofScene(name, arguments, usual)
+        arguments = options.ofScene(name, arguments, usual)
         self.name, self.args = name, arguments
         if arguments.crack_surfaces == "off":
             self.description.bricks = list(Bricks(self.description.bricks).whole())
