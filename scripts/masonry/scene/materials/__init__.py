@@ -14,6 +14,7 @@ The paper: see yade_plugin/law/README.md.
 from yade.wrapper import MasonryJoint, MasonryMat
 
 from .assumptions import linesOf
+from .formulas import compressiveFractureEnergy, leastEnergy, masonry
 from .kinds import Masonry, withResidual
 from .published import (
     CALCIUM_SILICATE_MASONRY,
@@ -37,11 +38,14 @@ __all__ = [
     "calciumSilicate",
     "calciumSilicateJoints",
     "calciumSilicateUnit",
+    "compressiveFractureEnergy",
     "dry",
     "dryGranite",
     "dryGraniteJoints",
     "graniteUnit",
-    "loadingBlock",
+    "leastEnergy",
     "linesOf",
+    "loadingBlock",
+    "masonry",
     "withResidual",
 ]

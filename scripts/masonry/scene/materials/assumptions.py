@@ -70,13 +70,14 @@ def entriesOf(masonry):
             entry = {"name": name, "value": "bed", "unit": "", "source": SUPPORT}
             found.append(entry)
         for one, p in DESCRIBED[type(thing)].items():
-            source = sources.get(one, AS_BED)
-            if source == AS_BED or isinstance(thing, MasonryJoint) and not acts(thing, one):  # fmt: skip
+            source, value = sources.get(one, AS_BED), getattr(thing, one)
+            if source == AS_BED or isinstance(value, str):
                 continue
-            value = getattr(thing, one)
-            if isinstance(value, float):
-                entry = {"name": f"{name}.{one}", "value": value}
-                found.append({**entry, "unit": p["unit"], "source": source})
+            switched = isinstance(value, bool) and not isDefault(thing, one)
+            if isinstance(thing, MasonryJoint) and not (switched or acts(thing, one)):
+                continue
+            entry = {"name": f"{name}.{one}", "value": value}
+            found.append({**entry, "unit": p["unit"], "source": source})
     return found
 
 
@@ -115,7 +116,7 @@ def linesOf(entries, brief):
     for entry in entries:
         kind, _, name = entry["name"].rpartition(".")
         value = entry["value"]
-        text = f"{value:.4g}" if isinstance(value, float) else value
+        text = f"{value:.4g}" if isinstance(value, float) else str(value)
         unit = "" if entry["unit"] in ("", "-") else f" {entry['unit']}"
         key = (f"{name} {text}{unit}", entry["source"]) if kind else (name, entry["source"])  # fmt: skip
         kinds.setdefault(key, []).append(kind)
