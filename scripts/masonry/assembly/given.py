@@ -148,7 +148,9 @@ def _noteBrittle():
     def brittleCoulomb(self):
         made = make(self)
         chosen = ("tensionTable", "shearTable", "cap")
-        return state(made, **{n: s for n, s in assumed(self).items() if n not in chosen})  # fmt: skip
+        return state(
+            made, **{n: s for n, s in assumed(self).items() if n not in chosen}
+        )
 
     brittleCoulomb.__doc__ = make.__doc__
     MasonryJoint.brittleCoulomb = brittleCoulomb

@@ -26,7 +26,11 @@ def checked(parser, name, usual):
     for option, value in usual.items():
         if option not in actions:
             close = difflib.get_close_matches(option, actions, 1)
-            hint = f"did you mean {close[0]}?" if close else "there are " + ", ".join(sorted(actions))  # fmt: skip
+            hint = (
+                f"did you mean {close[0]}?"
+                if close
+                else "there are " + ", ".join(sorted(actions))
+            )
             if option in OF_THE_RUN:
                 hint = f"{asOption(option)} is for the command line alone"
             problems.append(f"no option {option}; {hint}")

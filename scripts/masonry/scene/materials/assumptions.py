@@ -118,7 +118,11 @@ def linesOf(entries, brief):
         value = entry["value"]
         text = f"{value:.4g}" if isinstance(value, float) else str(value)
         unit = "" if entry["unit"] in ("", "-") else f" {entry['unit']}"
-        key = (f"{name} {text}{unit}", entry["source"]) if kind else (name, entry["source"])  # fmt: skip
+        key = (
+            (f"{name} {text}{unit}", entry["source"])
+            if kind
+            else (name, entry["source"])
+        )
         kinds.setdefault(key, []).append(kind)
     lines = ["assumed, because it was not given (run.json: assumed):"]
     for (what, source), joints in kinds.items():

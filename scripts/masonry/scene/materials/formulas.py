@@ -110,7 +110,9 @@ class _Kind:
 
     def energy(self, name, strength, stiffness, lumped, given, index):
         """Take a fracture energy. One that is assumed is large enough; of one that is given and too small a warning."""
-        what = "unit_" * (self.name == "crack") + ("GfI" if "II" not in name else "GfII")  # fmt: skip
+        what = "unit_" * (self.name == "crack") + (
+            "GfI" if "II" not in name else "GfII"
+        )
         least = leastEnergy(strength, stiffness, lumped)
         if given is not None:
             if given <= least:
@@ -122,7 +124,10 @@ class _Kind:
                 )
             self.values[name] = given
             return
-        usual, source = index * strength, f"{1e3 * index:g} mm times the strength, {INDEX_SOURCE}"  # fmt: skip
+        usual, source = (
+            index * strength,
+            f"{1e3 * index:g} mm times the strength, {INDEX_SOURCE}",
+        )
         if usual < MARGIN * least:
             source = (
                 f"{MARGIN:g} times the least that does not snap back between rigid units; {source} would be "
@@ -249,7 +254,9 @@ def masonry(
     headKn = kn if head_E is None else 1 / (length * (1 / head_E - 1 / unit_E))
     head.take("normalStiffness", headKn, head_E is not None, same)
     ratio = "the bed joint's ratio to kn"
-    head.take("shearStiffness", headKn * ks / kn, False, same if head_E is None else ratio)  # fmt: skip
+    head.take(
+        "shearStiffness", headKn * ks / kn, False, same if head_E is None else ratio
+    )
 
     if ft is None:
         factor = WRENCH if bond_ratio is None else bond_ratio
@@ -268,7 +275,9 @@ def masonry(
         if strength > 0:
             lumped = soft * height / unit_E
             bed.energy(name, strength, stiffness, lumped, energy, index)
-        head.take(strengthName, share * strength, head_share is not None, "like the bed joint")  # fmt: skip
+        head.take(
+            strengthName, share * strength, head_share is not None, "like the bed joint"
+        )
         if share * strength > 0:
             own = stiffness * headKn / kn
             energy = None if energy is None else share * energy
@@ -277,7 +286,9 @@ def masonry(
     lasting = friction if residual_friction is None else residual_friction
     for kind in (bed, head):
         kind.values["friction"] = friction
-        kind.take("residualFriction", lasting, residual_friction is not None, "the friction")  # fmt: skip
+        kind.take(
+            "residualFriction", lasting, residual_friction is not None, "the friction"
+        )
         kind.take("residualCohesion", 0.0, False, "no cohesion is left of a bond")
         kind.take("dilatancy", dilatancy or 0.0, dilatancy is not None, "none")
     head.sources["friction"] = "like the bed joint"
@@ -314,18 +325,34 @@ def masonry(
             crack.take(name, slides, unit_friction is not None, like)
         crack.take("residualCohesion", 0.0, False, "no cohesion is left of a bond")
         crack.take("dilatancy", 0.0, False, "none")
-        crack.energy("modeIFractureEnergy", unit_ft, crackKn, halves, unit_GfI, TENSION_INDEX)  # fmt: skip
-        crack.energy("modeIIFractureEnergy", cohesion, crackKn / shearing, shearing * halves, unit_GfII, SHEAR_INDEX)  # fmt: skip
+        crack.energy(
+            "modeIFractureEnergy", unit_ft, crackKn, halves, unit_GfI, TENSION_INDEX
+        )
+        crack.energy(
+            "modeIIFractureEnergy",
+            cohesion,
+            crackKn / shearing,
+            shearing * halves,
+            unit_GfII,
+            SHEAR_INDEX,
+        )
     joints = {}
     for kind in (bed, head, crack):
         try:
             joints[kind.name] = kind.made()
         except ValueError as error:
-            problems += [f"{one}; Gc and peak_strain, and fm and E, decide" * ("too small for peak ratio" in one) or one for one in str(error).splitlines()]  # fmt: skip
+            problems += [
+                f"{one}; Gc and peak_strain, and fm and E, decide"
+                * ("too small for peak ratio" in one)
+                or one
+                for one in str(error).splitlines()
+            ]
     if problems:
         raise Refused("\n".join(f"materials.masonry: {one}" for one in problems))
     if unit_ft is None:
-        joints["crack"].__dict__["_assumed"]["elastic"] = "unit_ft was not given: bricks do not crack"  # fmt: skip
+        joints["crack"].__dict__["_assumed"][
+            "elastic"
+        ] = "unit_ft was not given: bricks do not crack"
     brick = MasonryMat(label="brick", young=unit_E, poisson=poisson, density=density)
     usual = {} if "poisson" in given else {"poisson": "usual for masonry units"}
     return Masonry(state(brick, **usual), joints)
@@ -347,7 +374,9 @@ def _problems(given):
             continue
         value, what = given[name], "" if unit == "-" else f" {unit}"
         if isinstance(value, bool) or not isinstance(value, (int, float)):
-            found.append(f"{name} must be a number{what and f' in{what}'}, got {value!r}")  # fmt: skip
+            found.append(
+                f"{name} must be a number{what and f' in{what}'}, got {value!r}"
+            )
         elif not low <= value <= high:
             hint = f": is it in{what}?" if unit != "-" else ""
             found.append(
@@ -367,8 +396,13 @@ def _problems(given):
     if n("G") and n("unit_E"):
         most = n("unit_E") / (2 * (1 + n("poisson", 0.2)))
         if not n("G") < most:
-            found.append(f"G {n('G'):g} Pa must be below that of the bricks, unit_E/(2 (1 + nu)) = {most:g} Pa")  # fmt: skip
-    for one, other in (("residual_friction", "friction"), ("dilatancy", "residual_friction")):  # fmt: skip
+            found.append(
+                f"G {n('G'):g} Pa must be below that of the bricks, unit_E/(2 (1 + nu)) = {most:g} Pa"
+            )
+    for one, other in (
+        ("residual_friction", "friction"),
+        ("dilatancy", "residual_friction"),
+    ):
         most = n(other, n("friction"))
         if n(one) is not None and most is not None and n(one) > most:
             found.append(f"{one} {n(one):g} must be at most {other} {most:g}")
@@ -378,20 +412,32 @@ def _problems(given):
         tensile, source = n("bond_wrench") / ratio, f"bond_wrench/{ratio:g} ="
     for strength, what, cohesion, slides, names in (
         (tensile, source, n("fv0"), n("friction"), "fv0/friction"),
-        (n("unit_ft"), "unit_ft", n("unit_fv0"), n("unit_friction", 0.75), "unit_fv0/unit_friction"),
-    ):  # fmt: skip
+        (
+            n("unit_ft"),
+            "unit_ft",
+            n("unit_fv0"),
+            n("unit_friction", 0.75),
+            "unit_fv0/unit_friction",
+        ),
+    ):
         if None in (strength, cohesion, slides) or strength * slides <= cohesion:
             continue
         found.append(
             f"{what} {strength:g} Pa must be at most {names} = {cohesion / slides:g} Pa, the apex of the Coulomb cone"
         )
-    if None not in (n("peak_strain"), n("fm"), n("E")) and n("peak_strain") < n("fm") / n("E"):  # fmt: skip
+    if None not in (n("peak_strain"), n("fm"), n("E")) and n("peak_strain") < n(
+        "fm"
+    ) / n("E"):
         found.append(
             f"peak_strain {n('peak_strain'):g} must be at least fm/E = {n('fm') / n('E'):g}, that of elastic masonry"
         )
     if "bond_ratio" in given and "bond_wrench" not in given:
         found.append("bond_ratio goes with bond_wrench")
-    alone = [name for name in ("unit_GfI", "unit_fv0", "unit_friction", "unit_GfII") if name in given]  # fmt: skip
+    alone = [
+        name
+        for name in ("unit_GfI", "unit_fv0", "unit_friction", "unit_GfII")
+        if name in given
+    ]
     if alone and "unit_ft" not in given:
         found.append(f"{', '.join(alone)} without unit_ft: bricks do not crack then")
     return found
@@ -410,5 +456,7 @@ def _ofUnit(unit, joint):
     if max(sides) > 5:
         return [f"unit {unit} m must be at most 5 m: is it in m?"]
     if joint >= min(sides[0], sides[2]):
-        return [f"joint {joint:g} m must be below length and height of the unit {unit} m"]  # fmt: skip
+        return [
+            f"joint {joint:g} m must be below length and height of the unit {unit} m"
+        ]
     return []
