@@ -420,7 +420,9 @@ def _problems(given):
             "unit_fv0/unit_friction",
         ),
     ):
-        if None in (strength, cohesion, slides) or strength * slides <= cohesion:
+        if None in (strength, cohesion, slides) or strength * slides <= cohesion * (
+            1 + 1e-12
+        ):
             continue
         found.append(
             f"{what} {strength:g} Pa must be at most {names} = {cohesion / slides:g} Pa, the apex of the Coulomb cone"
