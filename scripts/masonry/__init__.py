@@ -26,7 +26,8 @@ A scene of one's own is bricks, materials and stages::
 ``masonry.read``, ``masonry.study``, ``masonry.bricks`` and what they import work without YADE.
 
 Import it from a YADE script (or after ``import yade``). The classes that it registers in YADE (``masonry.classes``) are
-also in ``yade.wrapper``; ``help(MasonryJoint)`` and the others are their manual.
+also in ``yade.wrapper``; their manual is ``help(masonry.MasonryJoint)``, ``help(masonry.MasonryMat)`` and so on, after
+``import masonry``.
 """
 
 import sys
@@ -37,6 +38,11 @@ if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:
     del sys.path[0]
 
 import importlib
+import os
+
+# YADE does not search the folder of its script for modules. It comes last, so that nothing in it hides another module.
+if hasattr(sys, "yade_argv") and sys.argv and os.path.isfile(sys.argv[0]):
+    sys.path.append(os.path.dirname(os.path.abspath(sys.argv[0])))
 
 #: The version of the project, which the plugin, run.json, checkpoints and the Debian package have from this line.
 __version__ = "3.0.0"
@@ -78,7 +84,7 @@ if "yade" in sys.modules:
     import yade.wrapper as _wrapper
 
     globals().update({_name: getattr(_wrapper, _name) for _name in classes})
-    from .assembly import ports
+    from .assembly import given, ports
     from .scene import options
     from .run.checkpoints import loadCheckpoint, readCheckpoint, saveCheckpoint
     from .assembly.blocks import addBlock

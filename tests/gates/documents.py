@@ -12,7 +12,7 @@ import sys
 import tree
 
 #: Files that a reader writes himself, or that a run makes.
-OF_THE_READER = {"my_scene.py", "window.py", "field.py", "script.py"}
+OF_THE_READER = {"my_scene.py", "window.py", "field.py", "own_brick.py", "script.py"}
 MADE = ("results/", "build/", "out/")
 MODULES = "scripts/masonry"
 FOLDERS = ("", "yade_plugin", "scripts", "scripts/masonry", "tests", "validation")

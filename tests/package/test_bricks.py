@@ -592,11 +592,52 @@ anything = some.one_of(
 )
 
 
+@given(unit=units, share=some.floats(0.001, 0.5), n=some.integers(2, 5))
+@few
+def test_a_unit_is_the_brick_and_its_mortar(unit, share, n):
+    joint = share * min(unit[0], unit[2])
+    whole = (unit[0] + joint, unit[1], unit[2] + joint)
+    assume(whole[1] <= 0.75 * whole[0])
+    sizes = {
+        Wall: (n * whole[0], 3 * whole[2]),
+        Corner: (n * whole[0], n * whole[0], 3 * whole[2]),
+        Tee: (n * 2 * whole[0], n * whole[0], 2.5 * whole[0], 3 * whole[2]),
+        Room: (2 * n * whole[0], 2 * n * whole[0], 3 * whole[2]),
+    }
+    for maker, size in sizes.items():
+        made = maker(*size, unit=unit, joint=joint)
+        assert list(made) == list(maker(*size, unit=whole))
+
+
+@pytest.mark.parametrize("bond", ["header", "english", "flemish"])
+def test_headers_are_as_long_as_the_brick_is(bond):
+    brick, mortar = (0.25, 0.12, 0.065), 0.010
+    wall = Wall(2.6, 0.75, unit=brick, joint=mortar, bond=bond, wythes=2)
+    low, high = boxes(wall)
+    assert (high - low)[:, 1].sum() > 0 and wall.high[1] == pytest.approx(0.25)
+    assert volume(wall) == pytest.approx(2.6 * 0.75 * 0.25)
+    assertNoOverlap(wall)
+
+
+@pytest.mark.parametrize(
+    "joint, said",
+    [
+        (-0.01, "joint [m] must be a number 0 or more"),
+        ("thin", "joint [m] must be a number 0 or more"),
+        (0.065, "joint 0.065 m must be below length and height of the unit"),
+    ],
+)
+def test_a_joint_that_cannot_be_is_refused(joint, said):
+    with pytest.raises(ValueError) as refused:
+        Wall(2.6, 0.75, unit=(0.25, 0.12, 0.065), joint=joint)
+    assert said in str(refused.value)
+
+
 @settings(max_examples=200)
 @given(
     some.dictionaries(
         some.sampled_from(
-            "length height unit bond wythes openings courses collar part".split()
+            "length height unit bond wythes openings courses collar part joint".split()
         ),
         anything,
         max_size=3,

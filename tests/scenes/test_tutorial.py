@@ -8,7 +8,7 @@ import subprocess
 from conftest import ROOT
 
 TUTORIAL = os.path.join(ROOT, "scripts", "TUTORIAL.md")
-NAMES = ["window.py", "stack.py", "field.py"]
+NAMES = ["window.py", "stack.py", "field.py", "own_brick.py"]
 
 
 def parts():

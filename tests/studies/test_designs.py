@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from masonry.basics import Refused
@@ -60,6 +60,52 @@ def test_values_lie_in_their_bounds_and_are_the_same_again(
         assert low <= row["a.b"] <= low + width
         assert 0.5 <= row["a.c"] <= 2.0
         assert row["d"] in ("x", "y")
+
+
+@given(
+    kind=st.sampled_from([lognormal, normal]),
+    size=st.integers(-9, 12),
+    mean=st.floats(1, 10),
+    cov=st.floats(0.01, 1),
+    ends=st.tuples(st.floats(0.02, 0.98), st.floats(0.02, 0.98)).map(sorted),
+    given=st.sampled_from(["low", "high", "both"]),
+    u=st.floats(0.001, 0.999),
+)
+@settings(max_examples=200)
+def test_a_distribution_that_is_cut_off_has_the_rest_of_the_whole_one(
+    kind, size, mean, cov, ends, given, u
+):
+    assume(ends[0] + 0.01 < ends[1])
+    mean *= 10.0**size
+    whole = kind(mean, cov).law()
+    low, high = (whole.computeQuantile(p)[0] for p in ends)
+    below, above = ends[0] * (given != "high"), ends[1] if given != "low" else 1.0
+    bounds = {"low": low} if given != "high" else {}
+    bounds.update({"high": high} if given != "low" else {})
+    value = kind(mean, cov, **bounds).law().computeQuantile(u)[0]
+    # the part of the whole between its ends, in proportion
+    expected = below + u * (above - below)
+    assert whole.computeCDF(value) == pytest.approx(expected, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: lognormal(0.25e6, 0.3, low=0.121e6),
+        lambda: lognormal(0.25, 0.3, low=0.121),
+        lambda: lognormal(0.43, 0.05, low=0.3),
+        lambda: normal(0.25e6, 0.3, low=0.121e6),
+        lambda: normal(0.25e6, 0.3, high=0.4e6),
+        lambda: normal(-0.25e6, 0.3, high=-0.121e6),
+        lambda: normal(0.25e6, 0.3, low=0.121e6, high=0.4e6),
+    ],
+)
+def test_ends_of_any_size_cut_off(make):
+    what = make()
+    p = dict(what.parameters)
+    values = column("bed.cohesion", what, runs=200)
+    assert values.min() >= p.get("low", -math.inf)
+    assert values.max() <= p.get("high", math.inf)
 
 
 def test_another_seed_gives_other_rows_and_fields():

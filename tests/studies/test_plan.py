@@ -149,6 +149,16 @@ def test_all_problems_are_reported_at_once():
         (lambda: normal(1.0, 0.0), "variation 0.0 must be above 0"),
         (lambda: uniform(2, 1), "low 2 must be below high 1"),
         (lambda: normal(1.0, 0.1, low=3, high=2), "low 3 must be below high 2"),
+        (
+            lambda: normal(1.0, 0.1, low=2),
+            r"normal\(mean=1, cov=0.1, low=2\): its ends leave 7.62e-24 of the distribution, they must leave more than 1e-09",
+        ),
+        (lambda: lognormal(1.0, 0.1, high=-1), "its ends leave 0 of the distribution"),
+        (
+            lambda: lognormal(1.0, 0.1, low=2, high=3),
+            "its ends leave 1.29e-12 of the distribution",
+        ),
+        (lambda: normal(-1.0, 0.1, high=-1.7), "its ends leave 1.28e-12 of the"),
         (lambda: uniform(float("nan"), 1), "low nan must be finite"),
         (lambda: choice(), "at least one value"),
         (lambda: choice(1, 1), "has a value twice"),

@@ -19,7 +19,8 @@ Collections are added with ``+``, moved, turned, named, cut by planes, and chose
     scene = wall + block((0, 0, -0.2), (3.08, 0.102, 0)).named("base")
     assert not scene.problems()
 
-Lengths are in m and angles in degrees. Every length of a unit contains its joint, as blocks have no mortar between them.
+Lengths are in m and angles in degrees. Every length of a unit contains its joint, as blocks have no mortar between them;
+with ``joint``, the thickness of the mortar, ``unit`` is the brick without it.
 """
 
 from .blocks import Block, Bricks, boxCorners, summary

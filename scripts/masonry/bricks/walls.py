@@ -33,6 +33,7 @@ def Wall(
     halves=True,
     collar=None,
     part="wall",
+    joint=0.0,
 ):
     """A straight wall, its lower left front corner at the origin: a :class:`Bricks`.
 
@@ -41,6 +42,7 @@ def Wall(
         Wall(2.2, 1.62)                                          # 10 units long, 20 courses, one brick thick
         Wall(3.08, 2.43, openings=[Opening(0.99, 0.81, 0.99, 0.81, Lintel(0.22, 0.162))])
         Wall(2.2, 1.62, bond="flemish", wythes=2)
+        Wall(2.6, 1.5, unit=(0.25, 0.12, 0.065), joint=0.010)    # bricks without their mortar, and its thickness
 
     Even courses, from 0, of a running bond start with a whole unit, odd ones with a half. English bond has courses of
     stretchers and courses of headers in turn, Flemish bond a header after every stretcher, header bond nothing but
@@ -49,7 +51,10 @@ def Wall(
 
     :param length: [m]; whole half units, in stack bond whole units
     :param height: [m]; whole courses. None: that of ``courses``
-    :param unit: length, thickness and height of a unit, joints included [m]; default: the paper's calcium-silicate unit
+    :param unit: length, thickness and height of a unit, joints included [m]; default: the paper's calcium-silicate unit.
+        With ``joint`` it is the brick without mortar
+    :param joint: thickness of the mortar [m], which is added to length and height of every unit; it is none across the
+        wall, where headers are as long as the brick is
     :param bond: "running", "stack", "header", "english" or "flemish"
     :param wythes: bricks across the wall. Header, English and Flemish bond need 2, with headers that go through both.
         Leaves of a running or stack bond are parts of their own, "wall leaf 1" and so on; those of running bond are
@@ -63,7 +68,7 @@ def Wall(
     :raises ValueError: with all problems
     """
     problems = []
-    unit = _unit(unit, problems)
+    unit = _unit(unit, problems, joint=joint)
     if bond not in BONDS:
         problems.append(f"bond must be one of {', '.join(BONDS)}, got {bond!r}")
     through = bond in ("header", "english", "flemish")
@@ -80,19 +85,19 @@ def Wall(
     quarters = _quarters(length, unit, "length", step, problems)
     levels = _levels(height, courses, unit, problems)
     refuse("wall", problems)
-    thickness = unit[1]
+    thickness, deep = unit[1], unit[0] - joint  # of the wall, where headers go through
     if through:
         if collar is None:
-            collar = max(unit[0] - 2 * thickness, 0.0)
-        if abs(2 * thickness + collar - unit[0]) > WHOLE * unit[0]:
-            fits = unit[0] - 2 * thickness
+            collar = max(deep - 2 * thickness, 0.0)
+        if abs(2 * thickness + collar - deep) > WHOLE * unit[0]:
+            fits = deep - 2 * thickness
             hint = (
                 f"; collar {fits:g} m fits"
                 if fits >= 0
-                else f"; a thickness of {unit[0] / 2:g} m fits"
+                else f"; a thickness of {deep / 2:g} m fits"
             )
             problems.append(
-                f"headers of {unit[0]:g} m do not fit through two wythes of {thickness:g} m with a collar of {collar:g} m{hint}"
+                f"headers of {deep:g} m do not fit through two wythes of {thickness:g} m with a collar of {collar:g} m{hint}"
             )
     if bond == "header" and quarters < 6:
         problems.append(
@@ -104,7 +109,7 @@ def Wall(
     ys = [0.0] + [w * thickness + (w - 0.5) * collar for w in range(1, wythes)]
     ys.append(wythes * thickness + (wythes - 1) * collar)
     if through:
-        ys[2] = unit[0] if wythes == 2 and collar else ys[2]
+        ys[2] = deep if wythes == 2 and collar else ys[2]
     bricks = []
     for course in range(len(levels) - 1):
         for k0, k1, w0, w1 in layout(bond, wythes, quarters, course):
@@ -133,6 +138,7 @@ def Corner(
     openings2=(),
     courses=None,
     halves=True,
+    joint=0.0,
 ):
     """Two walls of one wythe in running bond that meet at a right angle at the origin, with interlocking courses.
 
@@ -144,11 +150,11 @@ def Corner(
     :param length2: of the return, likewise
     :param openings: of the wall; x is measured from the corner's outer edge
     :param openings2: of the return; x is measured along it from the corner's outer edge
-    :param height: as for :func:`Wall`, like ``unit``, ``courses`` and ``halves``
+    :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
     :raises ValueError: with all problems
     """
     problems = []
-    unit = _unit(unit, problems)
+    unit = _unit(unit, problems, joint=joint)
     one = _quarters(length, unit, "length", 2, problems, least=6)
     two = _quarters(length2, unit, "length2", 2, problems, least=6)
     levels = _levels(height, courses, unit, problems)
@@ -173,6 +179,7 @@ def Tee(
     openings2=(),
     courses=None,
     halves=True,
+    joint=0.0,
 ):
     """A wall of one wythe in running bond along x, part "wall", and another, part "stem", that meets it from behind.
 
@@ -184,11 +191,11 @@ def Tee(
         stands over the middle of a brick
     :param openings: of the wall
     :param openings2: of the stem; x is measured along it from the outer face of the wall
-    :param height: as for :func:`Wall`, like ``unit``, ``courses`` and ``halves``
+    :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
     :raises ValueError: with all problems
     """
     problems = []
-    unit = _unit(unit, problems)
+    unit = _unit(unit, problems, joint=joint)
     one = _quarters(length, unit, "length", 2, problems, least=8)
     two = _quarters(length2, unit, "length2", 2, problems, least=6)
     levels = _levels(height, courses, unit, problems)
@@ -232,6 +239,7 @@ def Room(
     left=(),
     courses=None,
     halves=True,
+    joint=0.0,
 ):
     """Four walls of one wythe in running bond around a rectangle, with interlocking courses at its four corners.
 
@@ -242,11 +250,11 @@ def Room(
     :param width: along y, likewise
     :param front: openings of this wall, and likewise ``right``, ``back`` and ``left``; x is measured along x or y from
         the outer edge of the corner nearer to the origin
-    :param height: as for :func:`Wall`, like ``unit``, ``courses`` and ``halves``
+    :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
     :raises ValueError: with all problems
     """
     problems = []
-    unit = _unit(unit, problems)
+    unit = _unit(unit, problems, joint=joint)
     one = _quarters(length, unit, "length", 4, problems, least=12)
     two = _quarters(width, unit, "width", 4, problems, least=12)
     levels = _levels(height, courses, unit, problems)
@@ -326,13 +334,21 @@ def _triple(value, what):
     return found
 
 
-def _unit(unit, problems, what="unit"):
-    """Three lengths, or None with a sentence."""
+def _unit(unit, problems, what="unit", joint=0.0):
+    """Three lengths, to which the thickness of a joint is added, or None with a sentence."""
     found = []
+    thick = positive(joint, "joint", problems, zero=True)
     try:
         sides = tuple(unit)
         if len(sides) == 3 and all(positive(side, what, found) for side in sides):
-            return sides
+            if not thick or joint == 0:
+                return sides
+            if joint < min(sides[0], sides[2]):
+                return (sides[0] + joint, sides[1], sides[2] + joint)
+            problems.append(
+                f"joint {joint:g} m must be below length and height of the {what} {sides} m"
+            )
+            return None
     except TypeError:
         pass
     problems.append(
@@ -385,10 +401,11 @@ def _levels(height, courses, unit, problems):
         if not all(checks):
             return None
         # a block as flat as corners may lie off their face's plane has no volume
-        low = [n for n, h in enumerate(courses) if h <= FLAT * max(unit)]
+        least = FLAT * max(unit) if unit else 0.0
+        low = [n for n, h in enumerate(courses) if h <= least]
         if low:
             problems.append(
-                f"course {low[0]}: {courses[low[0]]:g} m is too flat, it must be above {FLAT * max(unit):g} m"
+                f"course {low[0]}: {courses[low[0]]:g} m is too flat, it must be above {least:g} m"
             )
             return None
         levels = [0.0]

@@ -11,6 +11,8 @@
 - ``columns``: what each column of curve.csv means
 - ``joints``: the properties of every kind of joint [SI units]; ``joint_units``: the units by property
 - ``unit_material``: ``young_Pa``, ``poisson`` and ``density_kg_per_m3`` of the bricks
+- ``assumed``: properties of the materials that were not given: a list of dicts with ``name``, as ``bed.residualFriction``,
+  ``value``, ``unit`` and ``source``. An entry with the name ``support`` says that these joints take the bed joint
 - ``units``: how many bricks or half bricks there are; ``nodes``: how many nodes of deformable units; ``joint_count``: how
   many joints between blocks; ``joints_by_kind``: how many of each kind; ``subcontacts``: how many points of joints
 - ``versions``: of ``yade``, ``python`` and ``masonry``; ``commit``: of the plugin; ``threads``: how many; ``host``: its name

@@ -204,7 +204,7 @@ class Run:
         Ctrl-C and SIGTERM are obeyed after the present step. A checkpoint is made after the last step, and between steps
         only if they are slow, see LOOK_EVERY.
 
-        Raises Interrupted after Ctrl-C and SIGTERM, and Collapsed if a block has fallen (help(MasonryEnergy)).
+        Raises Interrupted after Ctrl-C and SIGTERM, and Collapsed if a block has fallen (help(masonry.MasonryEnergy)).
 
         :param steps: how many
         :param one: function that makes one step, of its number in this call, from 0; None: YADE makes it

@@ -6,11 +6,12 @@
   :mod:`masonry.scene.loads` and :mod:`masonry.scene.records`; :mod:`masonry.scene.targets`,
   :mod:`masonry.scene.sections`: what is recorded
 - :mod:`masonry.scene.stages`: the stages of a test
-- :mod:`masonry.scene.materials`: published parameter sets, and properties that vary from place to place
+- :mod:`masonry.scene.materials`: masonry of one's own, published parameter sets, properties that vary from place to place,
+  and what of all this was assumed
 - :mod:`masonry.scene.fields`: random fields; :mod:`masonry.scene.history`: displacements there and back;
   :mod:`masonry.scene.ground`: ground motion and Rayleigh damping
 - :mod:`masonry.scene.options`: the options of the command line, which :mod:`masonry.scene.parsing` reads;
-  :mod:`masonry.scene.settings`: ``--set``
+  :mod:`masonry.scene.settings`: ``--set``; :mod:`masonry.scene.keywords`: options that the script gives to ``Scene``
 - :mod:`masonry.scene.bounds`: limit analysis beside a run
 - :mod:`masonry.scene.outcome`: what comes out; :mod:`masonry.scene.wall`: of a wall in running bond
 - :mod:`masonry.scene.words`: the words of a script, as data; :mod:`masonry.scene.probing`: what a study must know of a scene

@@ -7,21 +7,14 @@ import sys
 
 from .._masonry import commit, version
 from ..assembly.engines import LAWS
-from ..basics import Refused, say
+from ..basics import Refused
 from ..run.presets import BOUND, PRESETS, USUAL
+from . import keywords
 from .parsing import Parser, count, field, folder, number, pathOf
-from .settings import applySettings, setting
+from .settings import setting
 
 #: Fewest rows of points that give a joint its stiffness against bending: two give three times that, one none.
 FEWEST = 3
-
-#: Units of the options that have one.
-UNITS = {
-    "until": "mm",
-    "rate": "mm/s",
-    "vtk_every": "mm",
-    "checkpoint_every": "min",
-}
 
 
 def parser(description, until, rate=USUAL["rate"], loops=True):
@@ -158,7 +151,7 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         action="append",
         default=[],
         help="change a property of the bed, head, crack or support joints, in SI units; repeatable "
-        "(help(MasonryJoint) lists them); where friction and residual friction are one value, they stay one",
+        "(help(masonry.MasonryJoint) lists them); where friction and residual friction are one value, they stay one",
     )
     p.add_argument(
         "--field",
@@ -218,35 +211,27 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     return p
 
 
-def ofScene(name, words, usual):
-    """The options of a scene that has no parser of its own.
+def ofScene(name, arguments, usual):
+    """The options of a scene: those of its own parser, or of the common one.
 
-    :param words: a list of words; None: those of the command line
-    :param usual: options whose default is another one in this scene
-    :raises Refused: if there is no such option
+    :param arguments: what a parser found; a list of words; or None: those of the command line
+    :param usual: what the script says, which holds unless the command line gives the same option: :mod:`.keywords`
+    :raises Refused: with all problems
     """
-    main = sys.modules.get("__main__")
-    own = parser(getattr(main, "__doc__", None), until=None)
-    known = {action.dest for action in own._actions}
-    if set(usual) - known:
-        raise Refused(
-            f"scene {name}: no option {', '.join(sorted(set(usual) - known))}; there are {', '.join(sorted(known))}"
-        )
-    own.set_defaults(**usual)
-    found = own.parse_args(words)
-    for option, value in usual.items():
-        if found.preset and getattr(found, option) != value:
-            say(
-                f"note: --preset {found.preset}: {option} is {getattr(found, option)}, the scene has {value}"
-            )
-    return found
+    if arguments is None or isinstance(arguments, (list, tuple)):
+        main = sys.modules.get("__main__")
+        own = parser(getattr(main, "__doc__", None), until=None)
+        own.set_defaults(**keywords.checked(own, name, usual))
+        arguments = own.parse_args(arguments)
+    keywords.keep(arguments, name, usual)
+    return arguments
 
 
-def check(args, joints, more=(), plane=False):
-    """Apply ``--set`` to the joints of a scene, and refuse options that do not go together.
+def check(args, masonry, more=(), plane=False):
+    """Apply ``--set`` to the joints of a scene, and refuse options that do not go together and materials that lack something.
 
     :param args: the parsed options
-    :param joints: dict of MasonryJoint by name
+    :param masonry: :class:`masonry.scene.materials.Masonry` for these options
     :param plane: whether blocks move in the x-z plane only
     :param more: problems that the caller has found, to be named with the others
     :raises Refused: with all problems at once
@@ -265,8 +250,9 @@ def check(args, joints, more=(), plane=False):
             "thickness; --divisions are those along the other two sides"
         )
     try:
-        applySettings(joints, args.set)
+        masonry.apply(args.set)
     except Refused as refused:
         problems.append(str(refused))
+    problems += masonry.missing()
     if problems:
         raise Refused("\n".join(problems))

@@ -23,7 +23,7 @@ from ..read.curves import (
 )
 from ..read.frames import asFrame
 from . import history
-from .options import UNITS
+from .parsing import UNITS
 from .stages import pushing
 from .stages.stage import answersText
 from .wall import wallOf
@@ -104,6 +104,7 @@ class Outcome:
                 "poisson": model.unit.poisson,
                 "density_kg_per_m3": model.unit.density / self.args.density_scaling,
             },
+            assumed=scene.assumed,
             time_step_s=O.dt,
             time_step_limit_s=model.limit,
             units=len(model.bricks),

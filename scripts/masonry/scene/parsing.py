@@ -12,6 +12,14 @@ from ..run.place import Saved
 from ..run.presets import HARMLESS, PRESETS, asOption
 from . import fields, history
 
+#: Units of the options that have one.
+UNITS = {
+    "until": "mm",
+    "rate": "mm/s",
+    "vtk_every": "mm",
+    "checkpoint_every": "min",
+}
+
 #: Options that can be changed when a run is resumed.
 FREE = {"until", "history", "checkpoint_every", "vtk_every", "no_vtk", "lean"}
 
@@ -77,6 +85,21 @@ def folder(text):
     return text
 
 
+class Options(argparse.Namespace):
+    """The options that a :class:`Parser` has read.
+
+    Beside the options there are, and no part of what ``vars`` gives: ``parser``, which has read them; ``given``, those of the
+    command line, as a dict, or None in a run that is resumed; ``defaults``, those of the parser; ``replaced``, what
+    :func:`masonry.scene.keywords.keep` has changed.
+    """
+
+    __slots__ = ("parser", "given", "defaults", "replaced")
+
+    def __init__(self, parser, **options):
+        super().__init__(**options)
+        self.parser, self.given, self.defaults, self.replaced = parser, None, {}, {}
+
+
 class Parser(argparse.ArgumentParser):
     """A parser that tells all wrong options at once, and takes no part of a name for the whole.
 
@@ -130,14 +153,19 @@ class Parser(argparse.ArgumentParser):
         return found
 
     def _parsed(self, args, namespace):
+        if namespace is None:
+            namespace = Options(self)
         found = super().parse_args(args, namespace)
         if found.resume is not None:
             return self._resumed(args, found.resume)
         nothing = argparse.Namespace(**{action.dest: None for action in self._actions})
         given = vars(super().parse_args(args, nothing))
         given = {name: value for name, value in given.items() if value is not None}
-        usual = {**vars(super().parse_args([])), **PRESETS.get(found.preset, {})}
+        defaults = vars(super().parse_args([]))
+        usual = {**defaults, **PRESETS.get(found.preset, {})}
         vars(found).update(usual, **given)
+        if isinstance(found, Options):
+            found.given, found.defaults = given, defaults
         if found.history:
             found.until = None
         found.overrides = [
@@ -199,7 +227,7 @@ class Parser(argparse.ArgumentParser):
             self.exit(2, f"{refused}\n")
         known["set"] = [tuple(setting) for setting in known["set"]]
         known["out"] = folder
-        start = argparse.Namespace(**{**known, "set": []})
+        start = Options(self, **{**known, "set": []})
         given = super().parse_args(args, start)
         given.set = given.set or known["set"]
         fixed = [

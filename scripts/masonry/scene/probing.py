@@ -128,7 +128,7 @@ def _refused(scene, parser, words):
         return (text.partition("error: ")[2] or text).strip().splitlines()
     try:
         masonry = scene.description.materials.variant(args)
-        check(args, masonry.joints)
+        check(args, masonry)
         for text in args.field:
             _far(text, masonry.joints)
     except ValueError as refused:

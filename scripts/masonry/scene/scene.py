@@ -35,7 +35,7 @@ from ..run.run import Run
 from . import loads, options, probing, records, supports
 from .bounds import EVERY, SMALL, Bounds
 from .description import Description
-from .materials import loadingBlock
+from .materials import linesOf, loadingBlock
 from .outcome import Outcome
 from .stages import AT_REST, LATER, STAGES, gravity, prepare
 from .stages.stage import Answer
@@ -65,7 +65,8 @@ class Scene:
     :param arguments: options as :func:`masonry.scene.options.parser` gives them, or a list of words; None: those of the
         command line
     :param allowGaps: whether bricks that nearly share a face stand apart on purpose, and have no joint
-    :param usual: options whose default is another one in this scene, for example ``rate=50`` [mm/s] or ``dt_fraction=0.4``
+    :param usual: options of this scene, for example ``rate=50`` [mm/s] or ``dt_fraction=0.4``. They hold unless the command
+        line, or the list of words, gives the same option; a note says so then
     :raises Refused: if something is wrong, with all problems at once. A script that does not catch it ends with exit
         status 2
     """
@@ -94,8 +95,7 @@ class Scene:
             name, bricks, materials, title, plane, gravity, columns, functors
         )
         self.description.allowGaps = allowGaps
-        if arguments is None or isinstance(arguments, (list, tuple)):
-            arguments = options.ofScene(name, arguments, usual)
+        arguments = options.ofScene(name, arguments, usual)
         self.name, self.args = name, arguments
         if arguments.crack_surfaces == "off":
             self.description.bricks = list(Bricks(self.description.bricks).whole())
@@ -108,6 +108,9 @@ class Scene:
         #: of displacements and times [-]
         self.share = 0.1 if arguments.quick else 1.0
         self.ended = None  # how the last stage ended
+        self.assumed = (
+            []
+        )  # of the materials, when the scene is built: an entry of run.json
         self.pushed = None  # options of the last push
         self.loadUnit = "-"  # of the load that a stage put on or let grow last
         self.replaced = False  # whether --until or --history have been used
@@ -217,7 +220,8 @@ class Scene:
         """The materials for the options of this run: :class:`masonry.scene.materials.Masonry`. Raises Refused."""
         masonry = self.description.materials.variant(self.args)
         problems = self.description.problems(masonry)
-        options.check(self.args, masonry.joints, problems, self.description.plane)
+        options.check(self.args, masonry, problems, self.description.plane)
+        self.assumed = masonry.assumed()
         return masonry
 
     def begin(self):
@@ -226,6 +230,8 @@ class Scene:
             return
         description, args = self.description, self.args
         model = Structure(description, self.masonry, args)
+        for line in linesOf(self.assumed, self.masonry.brief):
+            say(line)
         self.columns = description.columns(model, bool(args.history))
         self.model = model
         self.running.open(self.columns)

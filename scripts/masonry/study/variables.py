@@ -54,9 +54,11 @@ class Distribution:
         low, high = p.get("low"), p.get("high")
         if low is None and high is None:
             return made
+        # OpenTURNS compares both numbers of an interval, those of open ends, too
+        most = ot.SpecFunc.MaxScalar
         ends = ot.Interval(
-            [0.0 if low is None else low],
-            [0.0 if high is None else high],
+            [-most if low is None else low],
+            [most if high is None else high],
             [low is not None],
             [high is not None],
         )
@@ -90,7 +92,36 @@ def _aboutMean(kind, mean, cov, low, high):
         raise Refused(f"{kind}: mean {mean:g} must be above 0")
     if low is not None and high is not None and not low < high:
         raise Refused(f"{kind}: low {low:g} must be below high {high:g}")
-    return Distribution(kind, tuple(parameters.items()))
+    made = Distribution(kind, tuple(parameters.items()))
+    kept = _between(kind, mean, cov, low, high)
+    if not kept > NEVER:
+        raise Refused(
+            f"{made}: its ends leave {kept:.3g} of the distribution, they must leave more than {NEVER:g}"
+        )
+    return made
+
+
+def _between(kind, mean, cov, low, high):
+    """Probability that a lognormal or normal variable lies between two ends; None is no end [-]."""
+
+    def below(end, sign):
+        """Probability that it lies below an end, or above it with ``sign`` -1."""
+        if kind == "normal":
+            away = (end - mean) / abs(mean * cov)
+        elif end > 0:
+            # of the logarithm: variance ln(1 + cov²), mean ln(mean) - variance/2
+            variance = math.log1p(cov * cov)
+            away = (math.log(end / mean) + variance / 2) / math.sqrt(variance)
+        else:
+            away = -math.inf
+        return 0.5 * math.erfc(-sign * away / math.sqrt(2))
+
+    if low is None or high is None:
+        end, sign = (low, -1) if high is None else (high, 1)
+        return 1.0 if end is None else below(end, sign)
+    # the difference of two small numbers, not of two that are nearly 1
+    sign = -1 if below(low, 1) > 0.5 else 1
+    return sign * (below(high, sign) - below(low, sign))
 
 
 def lognormal(mean, cov, low=None, high=None):
@@ -99,6 +130,7 @@ def lognormal(mean, cov, low=None, high=None):
     :param mean: in the unit of what varies
     :param cov: coefficient of variation, standard deviation over mean [-]
     :param low: cuts it off below, ``high`` above; mean and cov are those before
+    :raises Refused: if something is out of its bounds, or if nearly nothing is between the two ends
     """
     return _aboutMean("lognormal", mean, cov, low, high)
 

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Which properties of a MasonryJoint or MasonryMat somebody has given, and which are defaults.
+
+When this module is imported, both classes begin to note it: what is given when an object is made, set as an attribute or
+with ``set`` or ``updateAttrs`` later, counts as given. ``brittleCoulomb`` and :func:`copied` keep the note. An object that
+YADE has loaded from a file has none: everything counts as given.
+
+Both classes also get ``set``, which takes properties that depend on each other together.
+"""
+
+import difflib
+import math
+import re
+
+from yade.wrapper import MasonryJoint, MasonryMat
+
+from .blocks import properties
+
+NOTE = "_assumed"  # in an object: sources of what was not given, by property
+
+#: Descriptions of the properties by class and name, with the density of a unit, which is YADE's.
+DESCRIBED = {
+    cls: {p["name"]: p for p in properties(cls)} for cls in (MasonryJoint, MasonryMat)
+}
+DESCRIBED[MasonryMat]["density"] = {
+    "name": "density",
+    "unit": "kg/m³",
+    "source": "",
+    "low": 0.0,
+    "high": math.inf,
+}
+
+#: Where the default of a property is from, by class and name; the paper is that of yade_plugin/law/README.md.
+DEFAULTS = {
+    cls: {
+        name: f"default of {cls.__name__}, for calcium silicate: {p['source'] or 'none'}"
+        for name, p in described.items()
+    }
+    for cls, described in DESCRIBED.items()
+}
+
+#: Properties without a default that fits any masonry.
+NEEDED = {
+    MasonryMat: ["density"],
+    MasonryJoint: ["tensileStrength", "cohesion", "friction", "compressiveStrength"],
+}
+
+
+def assumed(thing):
+    """What nobody has given of an object: a dict of property -> source of its value."""
+    return thing.__dict__.get(NOTE, {})
+
+
+def state(thing, **sources):
+    """Note of an object that these properties are assumed, with the source of each, and that all others are given.
+
+    Returns the object.
+    """
+    thing.__dict__[NOTE] = dict(sources)
+    return thing
+
+
+def copied(thing):
+    """Another material or joint with the same attributes and the same note."""
+    made = type(thing)(**{k: v for k, v in thing.dict().items() if k != "id"})
+    return state(made, **assumed(thing))
+
+
+def isDefault(thing, name):
+    """Whether a property has the default of its class because nobody has given it."""
+    return assumed(thing).get(name) == DEFAULTS[type(thing)][name]
+
+
+#: How the plugin refuses a value because of another property.
+_TOGETHER = re.compile(
+    "must be at most|apex of the Coulomb cone|without cohesion|too small for peak ratio"
+)
+
+
+def _depends(cls, name, value, message):
+    """Whether an error is about how a property goes with others, and not about its own bounds."""
+    p = DESCRIBED[cls].get(name)
+    if p is None or not isinstance(value, (int, float)):
+        return False
+    within = isinstance(value, bool) or p["low"] <= value <= p["high"]
+    return within and bool(_TOGETHER.search(message))
+
+
+def _note(cls):
+    """Let a class note what is given."""
+    make, setOne, setMany = cls.__init__, cls.__setattr__, cls.updateAttrs
+
+    def __init__(self, *args, **values):
+        make(self, *args, **values)
+        state(self, **{n: s for n, s in DEFAULTS[cls].items() if n not in values})
+
+    def __setattr__(self, name, value):
+        try:
+            setOne(self, name, value)
+        except ValueError as error:
+            if not _depends(cls, name, value, str(error)):
+                raise
+            raise ValueError(
+                f"{error}; properties that depend on each other are set together, as in joint.set({name}=..., ...)"
+            ) from None
+        assumed(self).pop(name, None)
+
+    def updateAttrs(self, values):
+        setMany(self, values)
+        for name in values:
+            assumed(self).pop(name, None)
+
+    def setTogether(self, **values):
+        known = self.dict()
+        problems = []
+        for name in values:
+            if name not in known:
+                close = difflib.get_close_matches(name, known, 1)
+                hint = f", did you mean {close[0]!r}?" if close else ""
+                problems.append(f"{cls.__name__} has no property {name!r}{hint}")
+        if not problems:
+            self.updateAttrs(values)
+            return self
+        try:  # the other problems, of a copy
+            copied(self).updateAttrs({n: v for n, v in values.items() if n in known})
+        except ValueError as error:
+            problems.append(str(error))
+        raise ValueError("\n".join(problems))
+
+    __init__.__doc__ = (
+        "Properties are keyword arguments; what is not given has its default."
+    )
+    updateAttrs.__doc__ = setMany.__doc__
+    setTogether.__name__, setTogether.__qualname__ = "set", f"{cls.__name__}.set"
+    setTogether.__doc__ = """Set properties together: set(friction=0.6, residualFriction=0.6).
+
+    They are checked together, as values that depend on each other must be. If something is wrong, the error has all
+    problems, and the object stays as it was. Returns the object.
+    """
+    cls.__init__, cls.__setattr__ = __init__, __setattr__
+    cls.updateAttrs, cls.set = updateAttrs, setTogether
+
+
+def _noteBrittle():
+    """Let the brittle joint have the note of the joint that it is made from; its tables and its cap are given."""
+    make = MasonryJoint.brittleCoulomb
+
+    def brittleCoulomb(self):
+        made = make(self)
+        chosen = ("tensionTable", "shearTable", "cap")
+        return state(
+            made, **{n: s for n, s in assumed(self).items() if n not in chosen}
+        )
+
+    brittleCoulomb.__doc__ = make.__doc__
+    MasonryJoint.brittleCoulomb = brittleCoulomb
+
+
+for _cls in (MasonryJoint, MasonryMat):
+    _note(_cls)
+_noteBrittle()

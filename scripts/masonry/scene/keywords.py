@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Options that a script gives to a scene as keywords: they hold unless the command line gives the same option."""
+
+import argparse
+import difflib
+import os
+from numbers import Real
+
+from ..basics import Refused, say
+from ..run.presets import HARMLESS, PRESETS, asOption
+from .parsing import UNITS, Options
+
+#: What a script cannot say: it is about the run at hand.
+OF_THE_RUN = {"help", "resume"}
+
+
+def checked(parser, name, usual):
+    """The values of keywords, of the kind that the command line would give. Raises Refused with all problems.
+
+    :param parser: :class:`masonry.scene.parsing.Parser` whose options they are
+    :param name: of the scene
+    :param usual: dict of option -> value
+    """
+    actions = {a.dest: a for a in parser._actions if a.dest not in OF_THE_RUN}
+    found, problems = {}, []
+    for option, value in usual.items():
+        if option not in actions:
+            close = difflib.get_close_matches(option, actions, 1)
+            hint = (
+                f"did you mean {close[0]}?"
+                if close
+                else "there are " + ", ".join(sorted(actions))
+            )
+            if option in OF_THE_RUN:
+                hint = f"{asOption(option)} is for the command line alone"
+            problems.append(f"no option {option}; {hint}")
+            continue
+        try:
+            found[option] = _value(actions[option], value)
+        except (argparse.ArgumentTypeError, ValueError) as error:
+            unit = f" [{UNITS[option]}]" if option in UNITS else ""
+            problems.append(f"{option}{unit}: {error}")
+    if usual.get("until") is not None and usual.get("history") is not None:
+        problems.append("until and history: give one of them")
+    if problems:
+        raise Refused("\n".join(f"scene {name}: {one}" for one in problems))
+    return found
+
+
+def _value(action, value):
+    """The value of an option from that of a keyword. Raises ValueError or argparse.ArgumentTypeError."""
+    if value is None and (action.default is None or action.dest == "until"):
+        return None
+    if action.choices:
+        if value in action.choices:
+            return value
+        choices = ", ".join(map(str, action.choices))
+        close = difflib.get_close_matches(str(value), map(str, action.choices), 1)
+        hint = f", did you mean {close[0]!r}?" if close else ""
+        raise ValueError(f"{value!r} must be one of {choices}{hint}")
+    if action.nargs == 0:
+        if isinstance(value, bool):
+            return value
+        raise ValueError(f"{value!r} must be True or False")
+    if isinstance(action.default, list):
+        if isinstance(value, str):
+            value = [value]
+        if not isinstance(value, (list, tuple)):
+            raise ValueError(f"{value!r} must be a list of texts")
+        return [_typed(action, one) for one in value]
+    return _typed(action, value)
+
+
+def _typed(action, value):
+    """A value as the type of an option makes it of a text."""
+    if isinstance(value, Real) and not isinstance(value, bool):
+        value = str(value)
+    elif isinstance(value, os.PathLike):
+        value = os.fspath(value)
+    if not isinstance(value, str):
+        raise ValueError(f"{value!r} must be a number or a text")
+    return action.type(value) if action.type else value
+
+
+def keep(args, name, usual):
+    """Let options have the values that a script gives as keywords, but for those that the command line gives.
+
+    A line on the terminal names the others. A preset wins over what the script says of the options that it chooses, and says so. Options of a
+    run that is resumed are those with which it began, and stay.
+
+    :param args: :class:`masonry.scene.parsing.Options`, which are changed
+    :param name: of the scene
+    :param usual: dict of option -> value
+    :raises Refused: with all problems
+    """
+    if not isinstance(args, Options):
+        if usual:
+            raise Refused(
+                f"scene {name}: arguments that go with {', '.join(usual)} must be those of "
+                "masonry.scene.options.parser(...).parse_args(), or a list of words"
+            )
+        return
+    vars(args).update(args.replaced)  # by another scene with the same options
+    args.replaced, given = {}, args.given
+    usual = checked(args.parser, name, usual)
+    if given is None or not usual:
+        return
+    chosen = given.get("preset", usual.get("preset", args.preset))
+    preset = PRESETS.get(chosen, {})
+    first = {**usual, **preset}
+    now = {option: given.get(option, value) for option, value in first.items()}
+    for option, value in usual.items():
+        if isinstance(value, list):  # what the command line adds comes last
+            now[option] = [*value, *given.get(option, [])]
+    beaten = {o: o for o in usual if given.get(o, usual[o]) != usual[o]}  # by which
+    ends = {"until": "history", "history": "until"}  # of which there is one
+    for option, other in ends.items():
+        if given.get(option) is not None:
+            now.update({option: given[option], other: None})
+            if usual.get(other) is not None:
+                beaten[other] = option
+        elif usual.get(option) is not None and other not in given:
+            now[other] = None
+    expected = {**args.defaults, **first}
+    now["overrides"] = [
+        option
+        for option, value in given.items()
+        if option not in HARMLESS and value != expected[option]
+    ]
+    args.replaced = {option: getattr(args, option) for option in now}
+    vars(args).update(now)
+    beaten = {o: by for o, by in beaten.items() if not isinstance(usual[o], list)}
+    if beaten:
+        words = dict.fromkeys(beaten.values())
+        ofLine = ", ".join(f"{asOption(o)} {_said(given[o])}" for o in words)
+        ofScene = ", ".join(f"{o} {_said(usual[o])}" for o in beaten)
+        say(f"note: the command line wins: {ofLine}; the scene has {ofScene}")
+    for option in preset:
+        if option not in given and usual.get(option, preset[option]) != preset[option]:
+            say(
+                f"note: --preset {chosen}: {option} is {preset[option]}, the scene has {usual[option]}"
+            )
+
+
+def _said(value):
+    return value["text"] if isinstance(value, dict) else str(value)

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What of a masonry was assumed because it was not given, and what cannot be assumed."""
+
+from yade.wrapper import MasonryJoint
+
+from ...assembly.engines import LAWS
+from ...assembly.given import DESCRIBED, NEEDED, assumed, isDefault
+
+#: Source of every property of a joint ``support`` that takes the bed joint.
+AS_BED = "as of the bed joint"
+
+#: What an entry of ``assumed`` says of such a joint.
+SUPPORT = "no joint 'support' was given: joints to platens take the bed joint, with its strength and friction"
+
+#: Properties that have no effect without the cap.
+OF_CAP = {
+    "compressiveStrength",
+    "elasticLimitRatio",
+    "residualStrengthRatio",
+    "peakRatio",
+    "compressiveFractureEnergy",
+    "capNormal",
+    "capShear",
+    "capLinear",
+    "compressionStiffnessLoss",
+    "bondLossByCrushing",
+}
+
+#: Properties that have no effect while another one is zero.
+OF_STRENGTH = {
+    "modeIFractureEnergy": "tensileStrength",
+    "modeIIFractureEnergy": "cohesion",
+    "residualCohesion": "cohesion",
+    "residualFriction": "friction",
+    "dilatancyDecay": "dilatancy",
+}
+
+#: Properties in whose place a table may stand.
+TABLES = {"modeIFractureEnergy": "tensionTable", "modeIIFractureEnergy": "shearTable"}
+
+
+def acts(joint, name):
+    """Whether a number among the properties of a joint has an effect on it."""
+    if name in ("normalStiffness", "shearStiffness"):
+        return True
+    number = isinstance(getattr(joint, name), float)
+    if joint.elastic or not number or name not in LAWS[joint.law]["properties"]:
+        return False
+    if name in OF_CAP:
+        return joint.cap
+    if name in TABLES and getattr(joint, TABLES[name]):
+        return False
+    return name not in OF_STRENGTH or getattr(joint, OF_STRENGTH[name]) > 0
+
+
+def _things(masonry):
+    """Joints and units of a masonry by name."""
+    yield from masonry.joints.items()
+    yield "unit", masonry.unit
+    yield from masonry.units.items()
+
+
+def entriesOf(masonry):
+    """The entry ``assumed`` of run.json: a list of dicts with ``name``, as ``bed.residualFriction``, ``value``, ``unit`` and
+    ``source``. Properties without an effect are left out."""
+    found = []
+    for name, thing in _things(masonry):
+        sources = assumed(thing)
+        if AS_BED in sources.values():
+            entry = {"name": name, "value": "bed", "unit": "", "source": SUPPORT}
+            found.append(entry)
+        for one, p in DESCRIBED[type(thing)].items():
+            source, value = sources.get(one, AS_BED), getattr(thing, one)
+            if source == AS_BED or isinstance(value, str):
+                continue
+            switched = isinstance(value, bool) and not isDefault(thing, one)
+            if isinstance(thing, MasonryJoint) and not (switched or acts(thing, one)):
+                continue
+            entry = {"name": f"{name}.{one}", "value": value}
+            found.append({**entry, "unit": p["unit"], "source": source})
+    return found
+
+
+def missing(masonry):
+    """Sentences on properties that must be given, and are not."""
+    problems = []
+    for name, thing in _things(masonry):
+        joint = isinstance(thing, MasonryJoint)
+        names = [
+            f"{one} [{DESCRIBED[type(thing)][one]['unit']}]"
+            for one in NEEDED[type(thing)]
+            if isDefault(thing, one) and not (joint and not acts(thing, one))
+        ]
+        if names:
+            what = f"joint {name!r}" if joint else f"unit {name!r}"
+            hint = "; elastic=True makes a joint that never gives way, cap=False one that does not crush"
+            problems.append(
+                f"masonry: {what}: {', '.join(names)} must be given, since no value fits any masonry"
+                + hint * joint
+            )
+    return problems
+
+
+def linesOf(entries, brief):
+    """What a scene prints of its entries ``assumed``: lines of text.
+
+    :param brief: whether their number is enough
+    """
+    if not entries:
+        return []
+    if brief:
+        return [
+            f"note: {len(entries)} properties of the materials are assumed; run.json lists them (assumed)"
+        ]
+    kinds = {}
+    for entry in entries:
+        kind, _, name = entry["name"].rpartition(".")
+        value = entry["value"]
+        text = f"{value:.4g}" if isinstance(value, float) else str(value)
+        unit = "" if entry["unit"] in ("", "-") else f" {entry['unit']}"
+        key = (
+            (f"{name} {text}{unit}", entry["source"])
+            if kind
+            else (name, entry["source"])
+        )
+        kinds.setdefault(key, []).append(kind)
+    lines = ["assumed, because it was not given (run.json: assumed):"]
+    for (what, source), joints in kinds.items():
+        of = f"{', '.join(joints)}: " if joints != [""] else ""
+        lines.append(f"  {of}{what}  ({source})")
+    return lines

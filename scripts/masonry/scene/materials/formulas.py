@@ -1,0 +1,464 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Masonry of one's own from what a data sheet and tests say of it: joints by stated formulas."""
+
+import math
+from dataclasses import dataclass, field
+
+from yade.wrapper import MasonryJoint, MasonryMat
+
+from ...assembly.given import DEFAULTS, state
+from ...basics import Refused, say
+from .kinds import Masonry
+
+#: Flexural strength of a bond over its direct tensile strength [-]: van der Pluijm, Out-of-plane bending of masonry
+#: (Eindhoven, 1999) found about 1.5 in bond wrench tests.
+WRENCH = 1.5
+
+#: Fracture energy over strength [m] in tension and in shear without normal stress: the ductility indices that Lourenço,
+#: Structural masonry analysis: recent developments and prospects (14th Int. Brick and Block Masonry Conference, 2008),
+#: recommends.
+TENSION_INDEX, SHEAR_INDEX = 0.029e-3, 0.093e-3
+INDEX_SOURCE = "ductility index of Lourenço (2008)"
+
+#: Range of the compressive fracture energy of Model Code 90 [Pa], and energy over strength below and above it [m].
+MODEL_CODE = 12e6, 80e6
+BELOW_RANGE, ABOVE_RANGE = 1.6e-3, 0.33e-3
+
+#: By how much an assumed fracture energy is above the least that the law can follow [-].
+MARGIN = 1.1
+
+#: Lowest and highest value of each number, and its unit. Beyond them it is probably given in another unit.
+RANGES = {
+    "E": (1e6, 1e12, "Pa"),
+    "unit_E": (1e6, 1e12, "Pa"),
+    "G": (1e6, 1e12, "Pa"),
+    "head_E": (1e6, 1e12, "Pa"),
+    "fm": (1e4, 1e9, "Pa"),
+    "fv0": (0, 1e8, "Pa"),
+    "friction": (0, 5, "-"),
+    "ft": (0, 1e8, "Pa"),
+    "bond_wrench": (0, 1e8, "Pa"),
+    "bond_ratio": (1, 5, "-"),
+    "joint": (0, 0.1, "m"),
+    "density": (100, 1e4, "kg/m³"),
+    "poisson": (0, 0.49, "-"),
+    "GfI": (0.1, 1e5, "J/m²"),
+    "GfII": (0.1, 1e5, "J/m²"),
+    "Gc": (10, 1e7, "J/m²"),
+    "peak_strain": (1e-5, 0.1, "-"),
+    "residual_friction": (0, 5, "-"),
+    "dilatancy": (0, 5, "-"),
+    "head_share": (0, 1, "-"),
+    "unit_ft": (1e3, 1e9, "Pa"),
+    "unit_GfI": (0.1, 1e6, "J/m²"),
+    "unit_fv0": (1e3, 1e9, "Pa"),
+    "unit_GfII": (0.1, 1e6, "J/m²"),
+    "unit_friction": (0, 5, "-"),
+}
+
+REQUIRED = ["E", "unit_E", "fm", "fv0", "friction", "unit", "joint", "density"]
+
+
+def compressiveFractureEnergy(fm):
+    """Compressive fracture energy of masonry [J/m²], and where it is from.
+
+    Gc = 15 + 0.43 fm - 0.0036 fm² with fm in MPa and Gc in N/mm, for fm from 12 to 80 MPa, after Model Code 90; below and
+    above that 1.6 mm and 0.33 mm times fm, as Lourenço (2008) recommends.
+
+    :param fm: compressive strength [Pa]
+    """
+    low, high = MODEL_CODE
+    if fm < low:
+        return BELOW_RANGE * fm, "1.6 mm·fm, Lourenço (2008) for fm below 12 MPa"
+    if fm > high:
+        return ABOVE_RANGE * fm, "0.33 mm·fm, Lourenço (2008) for fm above 80 MPa"
+    found = fm / 1e6
+    return (
+        1e3 * (15 + 0.43 * found - 0.0036 * found**2),
+        "15 + 0.43 fm - 0.0036 fm² N/mm, Model Code 90 after Lourenço (2008)",
+    )
+
+
+def leastEnergy(strength, stiffness, lumped=0.0):
+    """The least fracture energy [J/m²] with which the law softens as it is asked to.
+
+    Below strength²/stiffness, twice the elastic energy at the peak, the law takes another energy; below half of that no
+    law could take it, since softening would snap back. Between rigid units, which have their elasticity lumped into the
+    joint, softening snaps back below strength² (lumped + 1/(2 stiffness)): yade_plugin/law/README.md, Softening and Rigid
+    units.
+
+    :param strength: [Pa]
+    :param stiffness: of the joint [Pa/m]
+    :param lumped: distance of the units' centroids over their modulus [m/Pa]
+    """
+    return strength**2 * max(1 / stiffness, lumped + 0.5 / stiffness)
+
+
+@dataclass
+class _Kind:
+    """A joint while it is made: its properties, and the sources of those that are assumed."""
+
+    name: str
+    values: dict
+    sources: dict = field(default_factory=dict)
+
+    def take(self, name, value, given, source):
+        """Take a property; ``given`` says whether the user gave it, else it is assumed by ``source``."""
+        self.values[name] = value
+        if not given:
+            self.sources[name] = source
+
+    def energy(self, name, strength, stiffness, lumped, given, index):
+        """Take a fracture energy. One that is assumed is large enough; of one that is given and too small a warning."""
+        what = "unit_" * (self.name == "crack") + (
+            "GfI" if "II" not in name else "GfII"
+        )
+        least = leastEnergy(strength, stiffness, lumped)
+        if given is not None:
+            if given <= least:
+                elastic = strength**2 / (2 * stiffness)
+                say(
+                    f"warning: materials.masonry: {what} {given:.4g} J/m² of the {self.name} joint softens more steeply than "
+                    f"joint and rigid units are stiff and would snap back: it must be above {least:.4g} J/m² (the "
+                    f"elastic energy of the joint at its peak is {elastic:.4g} J/m²)"
+                )
+            self.values[name] = given
+            return
+        usual, source = (
+            index * strength,
+            f"{1e3 * index:g} mm times the strength, {INDEX_SOURCE}",
+        )
+        if usual < MARGIN * least:
+            source = (
+                f"{MARGIN:g} times the least that does not snap back between rigid units; {source} would be "
+                f"{usual:.3g} J/m²"
+            )
+        self.take(name, max(usual, MARGIN * least, 1e-3), False, source)
+
+    def made(self):
+        """The MasonryJoint. Raises ValueError."""
+        joint = MasonryJoint(name=self.name, **self.values)
+        defaults = DEFAULTS[MasonryJoint].items()
+        rest = {n: s for n, s in defaults if n not in {"name", *self.values}}
+        return state(joint, **{**rest, **self.sources})
+
+
+def masonry(
+    *,
+    E=None,
+    unit_E=None,
+    fm=None,
+    fv0=None,
+    friction=None,
+    unit=None,
+    joint=None,
+    density=None,
+    ft=None,
+    bond_wrench=None,
+    bond_ratio=None,
+    G=None,
+    head_E=None,
+    poisson=None,
+    GfI=None,
+    GfII=None,
+    Gc=None,
+    peak_strain=None,
+    residual_friction=None,
+    dilatancy=None,
+    head_share=None,
+    unit_ft=None,
+    unit_GfI=None,
+    unit_fv0=None,
+    unit_friction=None,
+    unit_GfII=None,
+):
+    """Masonry of one's own, from what a data sheet and tests of the masonry say. Returns a :class:`Masonry`.
+
+    ::
+
+        clay = materials.masonry(
+            E=4e9, unit_E=9e9, fm=10e6, fv0=0.2e6, friction=0.6, bond_wrench=0.3e6,
+            unit=(0.25, 0.12, 0.065), joint=0.010, density=1800)
+
+    What is not given is assumed by the formulas below; a scene prints it once, and run.json has it under ``assumed``.
+    These must be given:
+
+    :param E: Young's modulus of the masonry under compression across its bed joints [Pa]
+    :param unit_E: Young's modulus of the bricks [Pa], above E
+    :param fm: compressive strength of the masonry [Pa]
+    :param fv0: initial shear strength of the bed joints (EN 1052-3) [Pa], the cohesion
+    :param friction: coefficient of friction of the bed joints [-]
+    :param ft: **direct** tensile strength of the bed joints [Pa]; give this or ``bond_wrench``
+    :param bond_wrench: strength of the bond in a bond wrench test (EN 1052-5) [Pa]. It is no direct tensile strength: the
+        test divides the moment by the elastic section modulus, as if stresses were linear when the bond fails, but by
+        then the bond has softened at its edge and the stresses behind it have grown, so that it overestimates. ft is
+        bond_wrench/bond_ratio
+    :param unit: length, thickness and height of a brick without mortar [m]
+    :param joint: thickness of the mortar [m]
+    :param density: of the masonry, bricks and mortar together [kg/m³], since blocks contain their mortar
+
+    These can be given:
+
+    :param bond_ratio: flexural over direct tensile strength of the bond [-]; default 1.5, after van der Pluijm (1999)
+    :param G: shear modulus of the masonry [Pa]: 1/ks = s (1/G - 1/Gu), where s = height + joint, Gu = unit_E/(2 (1 + nu)).
+        Default: ks = kn/(2 (1 + nu))
+    :param head_E: Young's modulus along the courses [Pa]. Default: head joints are of the same mortar and as thick as bed
+        joints, and have their stiffness
+    :param poisson: nu of the bricks [-]; default 0.2, usual for masonry units
+    :param GfI: mode I fracture energy of bed joints [J/m²]; default 0.029 mm times ft, Lourenço (2008)
+    :param GfII: mode II fracture energy of bed joints without normal stress [J/m²]; default 0.093 mm times fv0, Lourenço
+        (2008)
+    :param Gc: compressive fracture energy [J/m²]; default as of :func:`compressiveFractureEnergy`
+    :param peak_strain: strain of the masonry at fm [-]; default 2 fm/E, that of a parabola which begins with the modulus
+        E, the branch up to the peak of Kaushik, Rai and Jain (2007), J. Mater. Civ. Eng. 19(9)
+    :param residual_friction: [-]; default: the friction
+    :param dilatancy: tan(psi) [-]; default 0
+    :param head_share: strengths and energies of tension and shear of head joints over those of bed joints [-]; default 1
+    :param unit_ft: direct tensile strength of the bricks [Pa]. Default: bricks do not crack
+    :param unit_GfI: mode I fracture energy of the bricks [J/m²]; default 0.029 mm times unit_ft, Lourenço (2008)
+    :param unit_fv0: cohesion of the bricks [Pa]; default 2 unit_ft, as of the crack joints of :func:`calciumSilicate`
+    :param unit_friction: coefficient of friction of cracks in bricks [-]; default 0.75, as of these
+    :param unit_GfII: mode II fracture energy of the bricks [J/m²]; default 0.093 mm times unit_fv0, Lourenço (2008)
+    :raises Refused: with all problems at once
+
+    Stiffness: bricks and joints in series have the modulus of the masonry, E of bed joints, head_E of head joints:
+    1/kn = s (1/E - 1/unit_E). For bed joints s = height + joint; for head joints s = length + joint, the distance from one
+    to the next, also of bricks that are two rigid halves, because the halves together are as long. Their crack surface
+    is so stiff that it leaves 0.99 of the stiffness of a half. Blocks contain their mortar and have the modulus unit_E,
+    rigid ones lumped into their joints.
+
+    Crushing: the closure of a joint at its strength is ucp = s (peak_strain - fm/unit_E), what the bricks leave of the
+    strain, and the law's peak ratio n = kn ucp/fm. Head joints have the same strength and Gc.
+
+    An assumed energy in tension or shear with which softening would snap back between rigid units is raised to 1.1 times
+    the least that does not, and its source says so; a given one that is too small is a warning with that least.
+    :func:`leastEnergy` has the formula. Joints to platens take the bed joint.
+    """
+    given = {n: v for n, v in locals().items() if v is not None}
+    problems = _problems(given)
+    if problems:
+        raise Refused("\n".join(f"materials.masonry: {one}" for one in problems))
+    poisson = 0.2 if poisson is None else poisson
+    length, _, height = (side + joint for side in unit)
+    halves = 0.5 * length / unit_E  # what is lumped into crack joints [m/Pa]
+    shearing = 2 * (1 + poisson)  # E/G of the bricks [-]
+
+    bed, head = _Kind("bed", {}), _Kind("head", {})
+    kn = 1 / (height * (1 / E - 1 / unit_E))
+    ks = kn / shearing
+    if G is not None:
+        ks = 1 / (height * (1 / G - shearing / unit_E))
+    bed.values["normalStiffness"] = kn
+    bed.take("shearStiffness", ks, G is not None, f"kn/(2 (1 + nu)), nu = {poisson:g}")
+    same = "like the bed joint: the same mortar, as thick"
+    headKn = kn if head_E is None else 1 / (length * (1 / head_E - 1 / unit_E))
+    head.take("normalStiffness", headKn, head_E is not None, same)
+    ratio = "the bed joint's ratio to kn"
+    head.take(
+        "shearStiffness", headKn * ks / kn, False, same if head_E is None else ratio
+    )
+
+    if ft is None:
+        factor = WRENCH if bond_ratio is None else bond_ratio
+        ft = bond_wrench / factor
+        reason = f"bond_wrench {bond_wrench:g} Pa over {factor:g}: linear stresses of the test overestimate"
+        if bond_ratio is None:
+            reason += "; van der Pluijm (1999)"
+        bed.sources["tensileStrength"] = reason
+    energies = (
+        ("modeIFractureEnergy", "tensileStrength", ft, kn, GfI, TENSION_INDEX, 1.0),
+        ("modeIIFractureEnergy", "cohesion", fv0, ks, GfII, SHEAR_INDEX, shearing),
+    )
+    share = 1.0 if head_share is None else head_share
+    for name, strengthName, strength, stiffness, energy, index, soft in energies:
+        bed.values[strengthName] = strength
+        if strength > 0:
+            lumped = soft * height / unit_E
+            bed.energy(name, strength, stiffness, lumped, energy, index)
+        head.take(
+            strengthName, share * strength, head_share is not None, "like the bed joint"
+        )
+        if share * strength > 0:
+            own = stiffness * headKn / kn
+            energy = None if energy is None else share * energy
+            lumped = soft * length / unit_E  # of whole bricks
+            head.energy(name, share * strength, own, lumped, energy, index)
+    lasting = friction if residual_friction is None else residual_friction
+    for kind in (bed, head):
+        kind.values["friction"] = friction
+        kind.take(
+            "residualFriction", lasting, residual_friction is not None, "the friction"
+        )
+        kind.take("residualCohesion", 0.0, False, "no cohesion is left of a bond")
+        kind.take("dilatancy", dilatancy or 0.0, dilatancy is not None, "none")
+    head.sources["friction"] = "like the bed joint"
+
+    energy, source = (Gc, "") if Gc is not None else compressiveFractureEnergy(fm)
+    if Gc is None and not MODEL_CODE[0] <= fm <= MODEL_CODE[1]:
+        say(
+            f"warning: materials.masonry: fm {fm / 1e6:g} MPa is outside of 12 to 80 MPa, the range of Model Code 90 for the "
+            f"compressive fracture energy: Gc is {energy:.4g} J/m², {source}"
+        )
+    for kind, modulus, spacing in ((bed, E, height), (head, head_E or E, length)):
+        kind.take("compressiveStrength", fm, kind is bed, "like the bed joint")
+        kind.take("compressiveFractureEnergy", energy, Gc is not None, source)
+        if kind is head and head_E is None:
+            spacing = height  # the joint is that of the bed
+        strain = 2 * fm / modulus if peak_strain is None else peak_strain
+        closure = spacing * (strain - fm / unit_E)
+        why = "peak strain 2 fm/E, parabola of Kaushik, Rai and Jain (2007)"
+        n = kind.values["normalStiffness"] * closure / fm
+        kind.take("peakRatio", n, peak_strain is not None, why)
+
+    crack = _Kind("crack", {"elastic": True})
+    crackKn = 100 / halves
+    stiff = "100 times that of half a brick"
+    crack.take("normalStiffness", crackKn, False, stiff)
+    crack.take("shearStiffness", crackKn / shearing, False, stiff)
+    if unit_ft is not None:
+        like = "as of the crack joints of calciumSilicate()"
+        crack.values.update(elastic=False, cap=False, tensileStrength=unit_ft)
+        cohesion = 2 * unit_ft if unit_fv0 is None else unit_fv0
+        slides = 0.75 if unit_friction is None else unit_friction
+        crack.take("cohesion", cohesion, unit_fv0 is not None, f"2 unit_ft, {like}")
+        for name in ("friction", "residualFriction"):
+            crack.take(name, slides, unit_friction is not None, like)
+        crack.take("residualCohesion", 0.0, False, "no cohesion is left of a bond")
+        crack.take("dilatancy", 0.0, False, "none")
+        crack.energy(
+            "modeIFractureEnergy", unit_ft, crackKn, halves, unit_GfI, TENSION_INDEX
+        )
+        crack.energy(
+            "modeIIFractureEnergy",
+            cohesion,
+            crackKn / shearing,
+            shearing * halves,
+            unit_GfII,
+            SHEAR_INDEX,
+        )
+    joints = {}
+    for kind in (bed, head, crack):
+        try:
+            joints[kind.name] = kind.made()
+        except ValueError as error:
+            problems += [
+                f"{one}; Gc and peak_strain, and fm and E, decide"
+                * ("too small for peak ratio" in one)
+                or one
+                for one in str(error).splitlines()
+            ]
+    if problems:
+        raise Refused("\n".join(f"materials.masonry: {one}" for one in problems))
+    if unit_ft is None:
+        joints["crack"].__dict__["_assumed"][
+            "elastic"
+        ] = "unit_ft was not given: bricks do not crack"
+    brick = MasonryMat(label="brick", young=unit_E, poisson=poisson, density=density)
+    usual = {} if "poisson" in given else {"poisson": "usual for masonry units"}
+    return Masonry(state(brick, **usual), joints)
+
+
+def _problems(given):
+    """Sentences on what is missing or out of its bounds."""
+    found = []
+    missing = [name for name in REQUIRED if name not in given]
+    if missing:
+        found.append(f"{', '.join(missing)} must be given")
+    if ("ft" in given) == ("bond_wrench" in given):
+        found.append(
+            "give either ft, the direct tensile strength of bed joints, or bond_wrench, that of a bond wrench test"
+        )
+    numbers = {}
+    for name, (low, high, unit) in RANGES.items():
+        if name not in given:
+            continue
+        value, what = given[name], "" if unit == "-" else f" {unit}"
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            found.append(
+                f"{name} must be a number{what and f' in{what}'}, got {value!r}"
+            )
+        elif not low <= value <= high:
+            hint = f": is it in{what}?" if unit != "-" else ""
+            found.append(
+                f"{name} {value:g}{what} must be {low:g} to {high:g}{what}{hint}"
+            )
+        else:
+            numbers[name] = value
+    if "unit" in given:
+        found += _ofUnit(given["unit"], numbers.get("joint", 0.0))
+    n = numbers.get
+    pairs = [("E", "unit_E"), ("head_E", "unit_E")]
+    for one, other in pairs:
+        if n(one) is not None and n(other) is not None and not n(one) < n(other):
+            found.append(
+                f"{one} {n(one):g} Pa must be below {other} {n(other):g} Pa: bricks and joints are in series"
+            )
+    if n("G") and n("unit_E"):
+        most = n("unit_E") / (2 * (1 + n("poisson", 0.2)))
+        if not n("G") < most:
+            found.append(
+                f"G {n('G'):g} Pa must be below that of the bricks, unit_E/(2 (1 + nu)) = {most:g} Pa"
+            )
+    for one, other in (
+        ("residual_friction", "friction"),
+        ("dilatancy", "residual_friction"),
+    ):
+        most = n(other, n("friction"))
+        if n(one) is not None and most is not None and n(one) > most:
+            found.append(f"{one} {n(one):g} must be at most {other} {most:g}")
+    tensile, source = n("ft"), "ft"
+    if n("bond_wrench") is not None:
+        ratio = n("bond_ratio", WRENCH)
+        tensile, source = n("bond_wrench") / ratio, f"bond_wrench/{ratio:g} ="
+    for strength, what, cohesion, slides, names in (
+        (tensile, source, n("fv0"), n("friction"), "fv0/friction"),
+        (
+            n("unit_ft"),
+            "unit_ft",
+            n("unit_fv0"),
+            n("unit_friction", 0.75),
+            "unit_fv0/unit_friction",
+        ),
+    ):
+        if None in (strength, cohesion, slides) or strength * slides <= cohesion * (
+            1 + 1e-12
+        ):
+            continue
+        found.append(
+            f"{what} {strength:g} Pa must be at most {names} = {cohesion / slides:g} Pa, the apex of the Coulomb cone"
+        )
+    if None not in (n("peak_strain"), n("fm"), n("E")) and n("peak_strain") < n(
+        "fm"
+    ) / n("E"):
+        found.append(
+            f"peak_strain {n('peak_strain'):g} must be at least fm/E = {n('fm') / n('E'):g}, that of elastic masonry"
+        )
+    if "bond_ratio" in given and "bond_wrench" not in given:
+        found.append("bond_ratio goes with bond_wrench")
+    alone = [
+        name
+        for name in ("unit_GfI", "unit_fv0", "unit_friction", "unit_GfII")
+        if name in given
+    ]
+    if alone and "unit_ft" not in given:
+        found.append(f"{', '.join(alone)} without unit_ft: bricks do not crack then")
+    return found
+
+
+def _ofUnit(unit, joint):
+    """Sentences on the size of a brick [m], and on the thickness of its mortar [m]."""
+    try:
+        sides = [float(side) for side in unit]
+    except (TypeError, ValueError):
+        sides = []
+    if len(sides) != 3 or not all(0 < side < math.inf for side in sides):
+        return [
+            f"unit must be length, thickness and height of a brick without mortar above 0 m, got {unit!r}"
+        ]
+    if max(sides) > 5:
+        return [f"unit {unit} m must be at most 5 m: is it in m?"]
+    if joint >= min(sides[0], sides[2]):
+        return [
+            f"joint {joint:g} m must be below length and height of the unit {unit} m"
+        ]
+    return []

@@ -1,0 +1,258 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Bricks and joints of a structure, and which joint a pair of blocks gets."""
+
+import math
+from dataclasses import dataclass, field
+
+from yade.wrapper import MasonryJoint, MasonryMat
+
+from .. import fields
+from ...assembly.engines import LAWS
+from ...assembly.given import assumed, copied, isDefault, state
+from ...basics import Refused
+from ..settings import applySettings
+from .assumptions import AS_BED, entriesOf, missing
+
+#: A joint whose normal is steeper than this is a bed joint: 45 degrees.
+STEEP = math.cos(math.radians(45))
+
+
+def withResidual(names, joints):
+    """Names of properties that change alike, and with them the residual friction of joints that have one value of friction.
+
+    :param names: as ``"bed.friction"``
+    :param joints: dict of MasonryJoint by name
+    """
+    one = [n.partition(".")[0] for n in names if n.endswith(".friction")]
+    one = [
+        n
+        for n in one
+        if n in joints and joints[n].friction == joints[n].residualFriction
+    ]
+    return [*dict.fromkeys([*names, *(n + ".residualFriction" for n in one)])]
+
+
+@dataclass
+class Masonry:
+    """Bricks and joints of a structure, and which joint a pair of blocks gets.
+
+    A pair of blocks gets the joint ``support`` if one of them is a platen, ``crack`` if they are pieces of one brick, else
+    ``bed`` or ``head``. It is a bed joint if its normal is less than 45 degrees off the vertical. Joints between two parts
+    of a structure, such as the wythes of a wall, get ``collar`` if there is one. Without ``head`` all are bed joints.
+
+    Properties that were not given have the default of their class. A scene prints them once, and run.json has them under
+    ``assumed``; :mod:`masonry.assembly.given` says what counts as given. What has no default that fits any masonry must be
+    given: the density of units, and strengths (tensileStrength, cohesion, friction, and compressiveStrength unless
+    cap=False) of joints that are not elastic.
+
+    :param unit: MasonryMat of the bricks
+    :param joints: dict of MasonryJoint by these names; ``bed`` must be there. ``support`` takes the bed joint if it is
+        missing, with its strength and friction, and follows what ``--set`` says of it; a random field of the bed joint
+        leaves it as it is
+    :param units: dict of MasonryMat by the ``kind`` of a block, for example ``{"lintel": concrete}``; other kinds are of
+        the unit
+    :param softer: function without arguments that gives the same with ``--joint-stiffness masonry``
+    :param choose: function (block1, block2, geom) of your own, of the records of two bricks or None for a platen; it
+        returns the name of a joint, or None for the rule above
+    :param brief: whether a scene prints only how many properties are assumed, as of a published set
+    """
+
+    unit: MasonryMat
+    joints: dict
+    units: dict = field(default_factory=dict)
+    softer: object = None
+    choose: object = None
+    #: What :meth:`vary` was given: joint, property, function and step.
+    varied: list = field(default_factory=list)
+    brief: bool = False
+
+    def __post_init__(self):
+        problems = []
+        if not isinstance(self.unit, MasonryMat):
+            problems.append(f"masonry: unit must be a MasonryMat, got {self.unit!r}")
+        for kind, mat in self.units.items():
+            if not isinstance(mat, MasonryMat):
+                problems.append(
+                    f"masonry: unit {kind!r} must be a MasonryMat, got {mat!r}"
+                )
+        wrong = [
+            name
+            for name, joint in self.joints.items()
+            if not isinstance(joint, MasonryJoint)
+        ]
+        if wrong:
+            problems.append(f"masonry: joints must be MasonryJoint, not {wrong}")
+        elif "bed" not in self.joints:
+            problems.append("masonry: there must be a joint 'bed'")
+        if problems:
+            raise ValueError("\n".join(problems))
+        for name, joint in self.joints.items():
+            if isDefault(joint, "name"):
+                joint.name = name
+        if "support" not in self.joints:
+            support = copied(self.joints["bed"])
+            support.name = "support"
+            names = support.dict().keys() - {"name", "jointSet", "direction"}
+            self.joints["support"] = state(support, **dict.fromkeys(names, AS_BED))
+
+    def _follow(self):
+        """Give a support joint that takes the bed joint what the bed joint has now."""
+        support, bed = self.joints["support"], self.joints["bed"]
+        sources = dict(assumed(support))
+        values = {n: getattr(bed, n) for n, s in sources.items() if s == AS_BED}
+        if values:
+            support.updateAttrs(values)
+            state(support, **sources)
+
+    def apply(self, settings):
+        """Give joints the values of ``--set``. Raises Refused with all problems at once.
+
+        :param settings: list of (joint, property, text of the value)
+        """
+        applySettings(self.joints, settings)
+        try:
+            self._follow()
+        except ValueError as error:
+            raise Refused(str(error)) from None
+
+    def assumed(self):
+        """What was not given: a list of dicts, as of ``assumed`` of :mod:`masonry.run.results`."""
+        return entriesOf(self)
+
+    def missing(self):
+        """Sentences on what must be given, and is not."""
+        return missing(self)
+
+    def vary(self, name, value, step=0.01):
+        """Let a property change from place to place. Returns the same masonry.
+
+        Values are rounded to steps of a share, so that many joints are of one kind and cost no more than uniform ones.
+
+        :param name: joint and property, for example ``"bed.cohesion"``, or a list of these that change alike. Strengths are
+            tied to each other: the tensile strength must be at most cohesion over friction
+        :param value: function of the x, y and z [m] of a joint's middle that gives a factor on the property [-];
+            :mod:`masonry.scene.fields` has random ones
+        :param step: width of the steps, relative to the value; at most half of it is the error of rounding
+        """
+        for one in [name] if isinstance(name, str) else name:
+            joint, dot, attribute = one.partition(".")
+            if joint not in self.joints or not hasattr(self.joints[joint], attribute):
+                raise ValueError(
+                    f"vary: no property {one!r}; joints are {', '.join(self.joints)}, help(masonry.MasonryJoint) lists properties"
+                )
+            if not callable(value):
+                raise ValueError(
+                    f"vary {one}: value must be a function of x, y, z, got {value!r}"
+                )
+            if not 0 < step < 1:
+                raise ValueError(f"vary {one}: step {step} must be above 0, below 1")
+            self.varied.append((joint, attribute, value, step))
+        return self
+
+    def variant(self, args):
+        """A copy for the options ``--joints`` and ``--joint-stiffness``; this one stays as it is."""
+        source = self
+        if args.joint_stiffness != "joint":
+            if not self.softer:
+                raise Refused(
+                    f"--joint-stiffness {args.joint_stiffness}: the joints of this masonry have no such variant"
+                )
+            source = self.softer()
+        copies = {name: copied(joint) for name, joint in source.joints.items()}
+        if args.joints == "brittle":
+            copies = {
+                name: joint if joint.elastic else joint.brittleCoulomb()
+                for name, joint in copies.items()
+            }
+        elif args.joints != next(iter(LAWS)):
+            for joint in copies.values():
+                joint.law = args.joints
+        units = {kind: copied(mat) for kind, mat in source.units.items()}
+        own = Masonry(
+            copied(source.unit),
+            copies,
+            units,
+            None,
+            self.choose,
+            [*self.varied],
+            self.brief,
+        )
+        own._follow()
+        for text in args.field:
+            names, function = fields.read(text)
+            names = withResidual(names, copies)
+            try:
+                own.vary(names, function)
+            except ValueError as error:
+                raise Refused(f"--field {text}: {error}") from None
+        return own
+
+    def rule(self, blocks):
+        """The rule of :func:`masonry.assembly.connecting.connect`.
+
+        :param blocks: records of the bricks by body id
+        """
+
+        def rule(one, two, geom):
+            first, second = blocks.get(one.id), blocks.get(two.id)
+            name = self.choose and self.choose(first, second, geom)
+            if name and name not in self.joints:
+                raise ValueError(
+                    f"choose gave {name!r} for bodies {one.id} and {two.id}; there are {', '.join(self.joints)}"
+                )
+            name = name or self._kind(first, second, geom.normal)
+            joint = self.joints[name]
+            return self._at(name, joint, geom) if self.varied else joint
+
+        return rule
+
+    def _kind(self, first, second, normal):
+        if first is None or second is None:
+            return "support"
+        if first.brick == second.brick and "crack" in self.joints:
+            return "crack"
+        if first.part != second.part and "collar" in self.joints:
+            return "collar"
+        steep = abs(normal[2]) > STEEP or "head" not in self.joints
+        return "bed" if steep else "head"
+
+    def _at(self, name, joint, geom):
+        """The joint of a kind with the properties that it has at a place."""
+        changes, centres = {}, geom.centres
+        centre = [sum(c[i] for c in centres) / len(centres) for i in range(3)]
+        for kind, attribute, value, step in self.varied:
+            if kind == name:
+                factor = float(value(*centre))
+                if not 0 < factor < math.inf:
+                    raise ValueError(
+                        f"vary {kind}.{attribute}: the factor at {centre} m must be above 0, got {factor}"
+                    )
+                wide = math.log1p(step)
+                changes[attribute] = round(math.log(factor) / wide)
+        if not any(changes.values()):
+            return joint
+        key = name, tuple(sorted(changes.items()))
+        if key not in self._made:
+            steps = {a: s for k, a, _, s in self.varied if k == name}
+            own = copied(joint)
+            values = {
+                a: getattr(joint, a) * (1 + steps[a]) ** n for a, n in changes.items()
+            }
+            try:
+                own.updateAttrs(values)
+            except ValueError as error:
+                place = ", ".join(f"{v:.3g}" for v in centre)
+                raise ValueError(f"vary: at ({place}) m: {error}") from None
+            self._made[key] = own
+        return self._made[key]
+
+    _made = property(lambda self: self.__dict__.setdefault("_kept", {}))
+
+
+def byName(joints, brittle):
+    """Joints as a dict by name. If ``brittle``, those that are not elastic become brittle Coulomb slip joints."""
+    if brittle:
+        joints = [
+            joint if joint.elastic else joint.brittleCoulomb() for joint in joints
+        ]
+    return {joint.name: joint for joint in joints}

@@ -1,0 +1,298 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Published parameter sets. Each function names its source, and what is assumed.
+
+The paper: see yade_plugin/law/README.md.
+"""
+
+import math
+
+from yade import Vector3
+from yade.wrapper import MasonryJoint, MasonryMat
+
+from ...assembly.given import state
+from .kinds import Masonry, byName
+
+
+def calciumSilicate(stiffness="joint"):
+    """Calcium-silicate masonry of the TUD-COMP walls, for :class:`masonry.scene.scene.Scene`.
+
+    :param stiffness: as of :func:`calciumSilicateJoints`
+    """
+    return Masonry(
+        calciumSilicateUnit(),
+        calciumSilicateJoints(stiffness=stiffness),
+        softer=lambda: calciumSilicate("masonry"),
+        brief=True,
+    )
+
+
+def dryGranite(level, height):
+    """Granite blocks with dry joints, for :class:`masonry.scene.scene.Scene`. Parameters as of :func:`dryGraniteJoints`."""
+    return Masonry(graniteUnit(), dryGraniteJoints(level, height), brief=True)
+
+
+#: What stones with dry joints have if nothing else is said.
+DRY = {
+    "friction": 0.7,
+    "normalStiffness": 5e9,
+    "density": 2600.0,
+    "young": 20e9,
+    "poisson": 0.2,
+}
+
+
+def dry(
+    friction=None,
+    normalStiffness=None,
+    shearStiffness=None,
+    density=None,
+    young=None,
+    poisson=None,
+):
+    """Stones with dry joints that do not crush: no tension, no cohesion, Coulomb friction without dilatancy.
+
+    What is not given is assumed, and a scene says so.
+
+    :param friction: [-]; default 0.7, usual for rough stone
+    :param normalStiffness: of the joints [Pa/m], default 5e9; ``shearStiffness`` by default 0.4 of it
+    :param density: of the stones [kg/m³], default 2600; ``young`` [Pa], default 20e9, and ``poisson`` [-], default 0.2,
+        count for deformable stones. Rigid ones have them lumped into the joints
+    """
+    own = dict(
+        friction=friction,
+        normalStiffness=normalStiffness,
+        density=density,
+        young=young,
+        poisson=poisson,
+    )
+    sources = {n: f"default of dry(): {DRY[n]:g}" for n, v in own.items() if v is None}
+    found = {n: DRY[n] if v is None else v for n, v in own.items()}
+    if shearStiffness is None:
+        sources["shearStiffness"] = "default of dry(): 0.4 of the normal stiffness"
+        shearStiffness = 0.4 * found["normalStiffness"]
+    stated = lambda *names: {n: sources[n] for n in names if n in sources}
+    joints = {
+        name: state(
+            MasonryJoint(
+                name=name,
+                normalStiffness=found["normalStiffness"],
+                shearStiffness=shearStiffness,
+                tensileStrength=0,
+                cohesion=0,
+                friction=found["friction"],
+                residualFriction=found["friction"],
+                cap=False,
+            ),
+            **stated("friction", "normalStiffness", "shearStiffness"),
+        )
+        for name in ("bed", "support")
+    }
+    unit = MasonryMat(
+        label="stone",
+        young=found["young"],
+        poisson=found["poisson"],
+        density=found["density"],
+    )
+    return Masonry(state(unit, **stated("density", "young", "poisson")), joints)
+
+
+BED_DIRECTION, HEAD_DIRECTION = Vector3(0, 0, 1), Vector3(1, 0, 0)
+
+
+def calciumSilicateUnit():
+    """Calcium-silicate brick of the TUD-COMP walls: the paper's table 2."""
+    unit = MasonryMat(
+        label="calcium silicate",
+        young=4.8e9,
+        poisson=0.16,
+        density=1800,
+        jointSet="brick",
+    )
+    return state(unit)
+
+
+#: Height and length of a calcium-silicate unit, mortar included: the distances between two bed joints and between two
+#: head joints [m].
+BED_SPACING, HEAD_SPACING = 0.081, 0.220
+
+#: "Modulus of elasticity Eu" [Pa] in the paper's table 2, by joint. The table has it among the properties of the
+#: interface, but eq. (26) does not use it: it is the modulus of the masonry, across its bed and its head joints.
+CALCIUM_SILICATE_MASONRY = {"bed": 3174e6, "head": 2212e6}
+
+DECIDED = "assumed by calciumSilicateJoints(); the paper gives no value"
+
+#: What the paper does not say of bed and head joints, and what it does not say of the crack joints of a brick.
+CALCIUM_SILICATE_ASSUMED = [
+    "residualCohesion",
+    "residualFriction",
+    "dilatancy",
+    "residualStrengthRatio",
+    "modeIFractureEnergy",
+    "modeIIFractureEnergy",
+    "capNormal",
+    "capShear",
+    "capLinear",
+]
+CRACK_ASSUMED = [
+    "normalStiffness",
+    "shearStiffness",
+    "tensileStrength",
+    "modeIFractureEnergy",
+    "cohesion",
+    "residualCohesion",
+    "modeIIFractureEnergy",
+    "friction",
+    "residualFriction",
+    "dilatancy",
+]
+
+
+def calciumSilicateJoints(brittle=False, stiffness="joint"):
+    """Support, bed, head and crack joints of the calcium-silicate walls, as a dict by name.
+
+    Pairs of units get the first of support, bed and head that fits. The crack joint is for the halves of one brick, and
+    no pair of units gets it by itself: its joint set is one that no unit has, so it needs a rule of :func:`connect`.
+
+    Strengths, friction, compressive fracture energy and peak ratio are those of the paper's table 2. Stiffnesses follow
+    from its eq. (26) with a mortar 10 mm thick.
+
+    The paper gives no value for these, and yade_plugin/law/README.md (parameters; crack surfaces) says why they were
+    chosen: residual cohesion 0, one value of friction, no dilatancy, a residual compressive strength of 0.2 of the peak,
+    fracture energies of 16 J/m² in mode I and 160 J/m² in mode II, the shape of the cap, and all of the brick's crack
+    surface. The crack surface is ten times as stiff as a bed joint. In series with rigid half bricks, whose Young's
+    modulus is E and whose length is L, that leaves 0.99 E/L.
+
+    With eq. (26) the masonry is stiffer than the moduli of table 2, CALCIUM_SILICATE_MASONRY, say: 4079 MPa across its
+    bed joints and 4507 MPa across its head joints, not 3174 and 2212 MPa. ``stiffness="masonry"`` is the variant that
+    has these: 1/kn = spacing (1/Eu - 1/E), which is 116 N/mm³ for the bed and 18.6 N/mm³ for the head joint, and
+    ks = kn/(2(1 + nu)). The closure at the compressive strength ucp = n fcp/kn stays as it is, 1.54 mm for the bed joint
+    and 1.21 mm for the head joint, so n becomes smaller as kn does. Table 2's n is the ratio to an elastic closure with
+    the kn of eq. (26); with the same n a softer kn would put the peak at 4.5 mm and 22 mm, and Gc would be too small
+    for it. Support joints follow the bed joint. Crack joints stay: they are brick, and table 2 says nothing of them.
+
+    :param brittle: whether to give the brittle Coulomb slip joints instead, for comparison
+    :param stiffness: ``"joint"`` for the stiffnesses of eq. (26), ``"masonry"`` for those that give the masonry the
+        moduli of table 2
+    :raises ValueError: if ``stiffness`` is neither
+    """
+    if stiffness not in ("joint", "masonry"):
+        raise ValueError(f"stiffness {stiffness!r} must be 'joint' or 'masonry'")
+    bed = MasonryJoint(name="bed", jointSet="brick", direction=BED_DIRECTION)
+    head = MasonryJoint(
+        name="head",
+        jointSet="brick",
+        direction=HEAD_DIRECTION,
+        compressiveStrength=5.93e6,
+        compressiveFractureEnergy=31500,
+    )
+    # before kn of the bed joint changes
+    crack = MasonryJoint(
+        name="crack",
+        jointSet="within one brick",
+        normalStiffness=10 * bed.normalStiffness,
+        shearStiffness=10 * bed.shearStiffness,
+        tensileStrength=1.5e6,
+        modeIFractureEnergy=60,
+        cohesion=3e6,
+        modeIIFractureEnergy=500,
+        friction=0.75,
+        residualFriction=0.75,
+        cap=False,
+    )
+    if stiffness == "masonry":
+        for joint, spacing in ((bed, BED_SPACING), (head, HEAD_SPACING)):
+            _softenTo(joint, CALCIUM_SILICATE_MASONRY[joint.name], spacing)
+    support = MasonryJoint(
+        name="support",
+        jointSet="support",
+        elastic=True,
+        normalStiffness=bed.normalStiffness,
+        shearStiffness=bed.shearStiffness,
+    )
+    for joint in (bed, head):
+        state(joint, **dict.fromkeys(CALCIUM_SILICATE_ASSUMED, DECIDED))
+    state(crack, **dict.fromkeys(CRACK_ASSUMED, DECIDED))
+    return byName([state(support), bed, head, crack], brittle)
+
+
+def _softenTo(joint, masonry, spacing):
+    """Give a joint the stiffness with which masonry of calcium-silicate units has this modulus [Pa] across joints with
+    this spacing [m]; the closure at its compressive strength stays."""
+    unit = calciumSilicateUnit()
+    kn = 1 / (spacing * (1 / masonry - 1 / unit.young))
+    joint.updateAttrs(
+        {
+            "peakRatio": joint.peakRatio * kn / joint.normalStiffness,
+            "normalStiffness": kn,
+            "shearStiffness": kn / (2 * (1 + unit.poisson)),
+        }
+    )
+
+
+#: Young's modulus [Pa] of dry granite masonry at each vertical load [kN] of the tests (Vanin et al. 2017).
+DRY_GRANITE_MASONRY = {100: 3.287e9, 175: 4.068e9, 250: 4.722e9}
+
+
+def graniteUnit():
+    """Sawn granite block of the dry-joint walls of Vasconcelos and Lourenço (2009).
+
+    Young's modulus is that of the data of Vanin et al. (2017), doi 10.1007/s10518-017-0188-5. Poisson's ratio 0.2 and
+    density 2600 kg/m³ are not in the data; they are assumed, as usual for granite.
+    """
+    unit = MasonryMat(
+        label="granite", young=20.2e9, poisson=0.2, density=2600, jointSet="granite"
+    )
+    usual = "assumed by graniteUnit(), usual for granite; not in the data"
+    return state(unit, poisson=usual, density=usual)
+
+
+def dryGraniteJoints(level, height, brittle=False):
+    """Support, bed and head joints of the dry-joint granite walls, as a dict by name.
+
+    The joints have no tensile strength and no cohesion. Their normal stiffness kn is what is missing between block and
+    masonry, with one joint a course: 1/kn = height (1/Em - 1/E). The modulus Em of the masonry at the load level and E
+    of the block are from the data of Vanin et al. (2017). These are assumed, since they are not in the data: friction
+    0.65, shear stiffness 0.4 kn, no dilatancy, and head joints and joints to the support and to the loading block like
+    bed joints. Crushing (the masonry's strength is 73 MPa) and cracks in the blocks are not modelled.
+
+    :param level: vertical load of the test [kN], a key of DRY_GRANITE_MASONRY
+    :param height: of a course [m]
+    :param brittle: whether to give brittle Coulomb slip joints instead; they are the same here, where nothing softens
+    """
+    problems = []
+    if level not in DRY_GRANITE_MASONRY:
+        problems.append(
+            f"level {level} kN was not tested, there are {', '.join(map(str, DRY_GRANITE_MASONRY))}"
+        )
+    if not 0 < height < math.inf:
+        problems.append(f"height of a course {height} m must be above 0")
+    if problems:
+        raise ValueError("dry granite joints: " + "; ".join(problems))
+    young = graniteUnit().young
+    stiffness = 1 / (height * (1 / DRY_GRANITE_MASONRY[level] - 1 / young))
+    dry = dict(
+        normalStiffness=stiffness,
+        shearStiffness=0.4 * stiffness,
+        tensileStrength=0,
+        cohesion=0,
+        friction=0.65,
+        residualFriction=0.65,
+        cap=False,
+    )
+    support = MasonryJoint(name="support", jointSet="support", **dry)
+    bed = MasonryJoint(name="bed", direction=BED_DIRECTION, **dry)
+    head = MasonryJoint(name="head", direction=HEAD_DIRECTION, **dry)
+    why = "assumed by dryGraniteJoints(); not in the data"
+    names = ["shearStiffness", "friction", "residualFriction", "dilatancy"]
+    state(bed, **dict.fromkeys(names, why))
+    for joint in (head, support):
+        state(joint, **dict.fromkeys(["normalStiffness", *names], f"{why}, like bed"))
+    return byName([support, bed, head], brittle)
+
+
+def loadingBlock():
+    """A block that supports or loads a wall, section 4.1 of the paper: so stiff that only its joint gives way."""
+    block = MasonryMat(
+        label="loading block", young=1e16, poisson=0.0, density=1800, jointSet="support"
+    )
+    return state(block)

@@ -1,0 +1,341 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What was not given of a masonry is noted, printed and written; what cannot be assumed is refused."""
+
+import json
+import pydoc
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as some
+
+import masonry
+from masonry import MasonryJoint, MasonryMat, Scene, bricks, materials
+from masonry.assembly.given import DESCRIBED, assumed, copied, state
+from masonry.basics import GRAVITY
+
+#: Values that are no defaults, of every number of a joint that goes with the others.
+OTHER = {
+    "normalStiffness": 3.4e11,
+    "shearStiffness": 1e11,
+    "tensileStrength": 0.05e6,
+    "modeIFractureEnergy": 10.0,
+    "cohesion": 0.2e6,
+    "residualCohesion": 0.01e6,
+    "friction": 0.7,
+    "residualFriction": 0.4,
+    "dilatancy": 0.1,
+    "dilatancyDecay": 1.0,
+    "modeIIFractureEnergy": 90.0,
+    "compressiveStrength": 5e6,
+    "elasticLimitRatio": 0.4,
+    "residualStrengthRatio": 0.1,
+    "peakRatio": 20.0,
+    "compressiveFractureEnergy": 20000.0,
+    "capNormal": 1.1,
+    "capShear": 8.0,
+    "capLinear": 1.0,
+}
+STRENGTHS = dict(tensileStrength=0.1e6, cohesion=0.2e6, friction=0.6, compressiveStrength=8e6)  # fmt: skip
+
+
+def own(joint=None, unit=None, **joints):
+    """Masonry of one's own, complete but for what is given otherwise."""
+    bed = MasonryJoint(**(STRENGTHS if joint is None else joint))
+    unit = MasonryMat(**({"density": 1900} if unit is None else unit))
+    return materials.Masonry(unit, {"bed": bed, **joints})
+
+
+def scene(masonry, folder, *words, blocks=None, **settings):
+    """A scene of two stones on a platen, before its first stage."""
+    blocks = blocks or bricks.stack(2, (0.2, 0.1, 0.1))
+    words = ["--no-vtk", "--out", str(folder), *words]
+    made = Scene("own", blocks, masonry, arguments=words, **settings)
+    made.platen("bottom")
+    return made
+
+
+def names(entries):
+    return {entry["name"] for entry in entries}
+
+
+# -- what counts as given ---------------------------------------------------------------------------------------------
+
+
+@given(
+    given_by=some.dictionaries(
+        some.sampled_from(sorted(OTHER)),
+        some.sampled_from(["made", "attribute", "set", "updateAttrs"]),
+    ),
+    brittle=some.booleans(),
+)
+@settings(max_examples=100)
+def test_all_that_was_not_given_is_noted(given_by, brittle):
+    by = lambda one: {n: OTHER[n] for n, how in given_by.items() if how == one}
+    joint = MasonryJoint(**by("made"))
+    for name, value in by("attribute").items():
+        setattr(joint, name, value)
+    joint.set(**by("set")).updateAttrs(by("updateAttrs"))
+    joint = copied(joint)
+    rest = set(DESCRIBED[MasonryJoint]) - set(given_by)
+    if brittle:
+        joint = joint.brittleCoulomb()
+        rest -= {"cap", "tensionTable", "shearTable"}
+    assert set(assumed(joint)) == rest
+    entries = materials.Masonry(
+        MasonryMat(density=1, young=1e9, poisson=0), {"bed": joint, "support": joint}
+    ).assumed()
+    assert not names(entries) & {f"bed.{name}" for name in given_by}
+    assert not names(entries) & {f"unit.{n}" for n in ("density", "young", "poisson")}
+    for entry in entries:
+        kind, _, name = entry["name"].partition(".")
+        assert entry["value"] == getattr(joint, name) and entry["source"]
+        assert entry["unit"] == DESCRIBED[MasonryJoint][name]["unit"]
+
+
+def test_a_value_that_is_refused_is_not_given():
+    joint = MasonryJoint()
+    with pytest.raises(ValueError):
+        joint.friction = -1
+    with pytest.raises(ValueError):
+        joint.set(friction=-1)
+    assert "friction" in assumed(joint)
+
+
+@pytest.mark.parametrize(
+    "changes, without",
+    [
+        (dict(elastic=True), "residualFriction dilatancy peakRatio capNormal"),
+        (dict(cap=False), "peakRatio elasticLimitRatio compressiveFractureEnergy"),
+        (dict(tensionTable=[(1, 0), (2, 1)]), "modeIFractureEnergy"),
+        (dict(shearTable=[(1, 0), (2, 1)]), "modeIIFractureEnergy"),
+        (dict(tensileStrength=0), "modeIFractureEnergy"),
+    ],
+)
+def test_what_has_no_effect_is_not_named(changes, without):
+    all_ = names(own().assumed())
+    found = names(own({**STRENGTHS, **changes}).assumed())
+    for name in without.split():
+        assert f"bed.{name}" in all_ and f"bed.{name}" not in found
+    assert "bed.normalStiffness" in found and "bed.name" not in found
+
+
+# -- what must be given -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "joint, unit, message",
+    [
+        ({}, None, "joint 'bed': tensileStrength [Pa], cohesion [Pa], friction [-], compressiveStrength [Pa] must be given"),
+        (dict(cap=False), None, "joint 'bed': tensileStrength [Pa], cohesion [Pa], friction [-] must be given"),
+        ({n: v for n, v in STRENGTHS.items() if n != "cohesion"}, None, "joint 'bed': cohesion [Pa] must be given"),
+        (None, dict(young=10e9), "unit 'unit': density [kg/m³] must be given"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_assumed_is_refused(joint, unit, message, tmp_path, capsys):
+    with pytest.raises(SystemExit) as end:
+        scene(own(joint, unit), tmp_path / "r").settle()
+    assert end.value.code == 2 and message in capsys.readouterr().err
+    assert not (tmp_path / "r" / "run.json").exists()
+
+
+def test_all_that_is_missing_is_named_with_the_other_problems(tmp_path, capsys):
+    masonry = own({}, {}, head=MasonryJoint(**{**STRENGTHS, "cap": False}), pier=MasonryJoint())  # fmt: skip
+    with pytest.raises(SystemExit):
+        scene(masonry, tmp_path / "r", "--set", "bed.frictoin=1").settle()
+    said = capsys.readouterr().err
+    for part in ("joint 'bed':", "joint 'pier':", "unit 'unit':", "bed.frictoin"):
+        assert part in said
+    assert "joint 'head'" not in said and "joint 'support'" not in said
+
+
+def test_what_the_command_line_gives_is_given(tmp_path):
+    words = [f"--set=bed.{name}={value}" for name, value in STRENGTHS.items()]
+    made = scene(own({}), tmp_path / "r", *words)
+    made.settle()
+    assert not names(made.assumed) & {f"bed.{name}" for name in STRENGTHS}
+    # --set keeps one value of friction, where there is one
+    assert made.masonry.joints["bed"].residualFriction == STRENGTHS["friction"]
+    made.finish()
+
+
+def test_an_elastic_joint_needs_no_strength(tmp_path):
+    made = scene(own(dict(elastic=True)), tmp_path / "r")
+    assert made.settle() == masonry.AT_REST
+    made.finish()
+
+
+# -- what is said -----------------------------------------------------------------------------------------------------
+
+
+def test_a_scene_prints_once_what_it_assumes_and_writes_it(tmp_path, capsys):
+    made = scene(own(), tmp_path / "r", "--density-scaling", "4")
+    made.settle()
+    made.run(0.001)
+    made.finish()
+    said = capsys.readouterr().out
+    assert said.count("assumed, because it was not given") == 1
+    line = (
+        "  bed: residualFriction 0.43  (default of MasonryJoint, for calcium silicate: "
+    )
+    assert said.count(line) == 1
+    assert said.count("joints to platens take the bed joint") == 1
+    entries = json.load(open(tmp_path / "r" / "run.json"))["assumed"]
+    (friction,) = [e for e in entries if e["name"] == "bed.residualFriction"]
+    assert friction["value"] == 0.43 and friction["unit"] == "-"
+    assert "law/README.md" in friction["source"]
+    assert {"unit.young", "unit.poisson", "support"} < names(entries)
+
+
+def test_a_scene_with_all_given_says_nothing(tmp_path, capsys):
+    unit = dict(young=1e10, poisson=0.2, density=1900)
+    bed = MasonryJoint(**{**OTHER, "name": "bed"})
+    masonry = own(OTHER, unit, support=bed)
+    made = scene(masonry, tmp_path / "r")
+    made.settle()
+    made.finish()
+    assert "assumed" not in capsys.readouterr().out
+    assert json.load(open(tmp_path / "r" / "run.json"))["assumed"] == []
+
+
+def test_published_sets_name_what_they_assume(tmp_path, capsys):
+    found = names(materials.calciumSilicate().assumed())
+    assert {
+        "bed.residualFriction",
+        "head.modeIFractureEnergy",
+        "crack.cohesion",
+    } < found
+    assert not found & {"bed.friction", "head.compressiveStrength", "unit.density"}
+    assert not any(name.startswith("support") for name in found)
+    granite = materials.dryGranite(175, 0.15).assumed()
+    assert {"unit.density", "unit.poisson", "bed.friction", "head.normalStiffness"} < names(granite)  # fmt: skip
+    assert not names(granite) & {"bed.normalStiffness", "bed.cohesion", "unit.young"}
+    changed = materials.calciumSilicate()
+    changed.joints["bed"].dilatancy = 0.1
+    assert found - names(changed.assumed()) == {"bed.dilatancy"}
+    made = scene(changed, tmp_path / "r")
+    made.settle()
+    made.finish()
+    assert f"note: {len(found) - 1} properties of the materials are assumed" in capsys.readouterr().out  # fmt: skip
+
+
+DRY = dict(friction=0.6, normalStiffness=1e10, shearStiffness=5e9, density=2500, young=3e10, poisson=0.1)  # fmt: skip
+
+
+@given(own=some.sets(some.sampled_from(sorted(DRY))))
+def test_dry_joints_name_the_defaults_that_were_not_given(own):
+    masonry = materials.dry(**{name: DRY[name] for name in own})
+    of = lambda n: ["unit"] if n in ("density", "young", "poisson") else ["bed", "support"]  # fmt: skip
+    expected = {f"{kind}.{n}" for n in set(DRY) - own for kind in of(n)}
+    assert names(masonry.assumed()) == expected
+    for name in own:
+        thing = masonry.unit if of(name) == ["unit"] else masonry.joints["support"]
+        assert getattr(thing, name) == DRY[name]
+
+
+def test_the_defaults_of_dry_joints_are_those_of_its_help():
+    masonry = materials.dry()
+    bed, unit = masonry.joints["bed"], masonry.unit
+    assert (bed.friction, bed.residualFriction, bed.normalStiffness) == (0.7, 0.7, 5e9)
+    assert (bed.shearStiffness, bed.cohesion, bed.tensileStrength) == (2e9, 0, 0)
+    assert (unit.density, unit.young, unit.poisson) == (2600, 20e9, 0.2)
+
+
+# -- joints to platens ------------------------------------------------------------------------------------------------
+
+
+def test_stones_slide_on_their_platen(tmp_path):
+    stones = bricks.stack(2, (0.3, 0.2, 0.1))
+    bed = dict(normalStiffness=1e10, shearStiffness=4e9, tensileStrength=0, cohesion=0, friction=0.4, residualFriction=0.4, cap=False)  # fmt: skip
+    density = 216 / GRAVITY / 0.012  # 216 N in all
+    made = scene(own(bed, dict(density=density)), tmp_path / "r", blocks=stones, rate=1)
+    pushed = made.handle(0, name="lower")
+    assert made.settle() == masonry.AT_REST
+    made.push(pushed, 0.3)
+    made.finish()
+    run = json.load(open(tmp_path / "r" / "run.json"))
+    assert run["bound_base_shear_kN"] == pytest.approx(0.0864, rel=1e-6)
+    assert run["base_shear_end_kN"] == pytest.approx(0.0864, rel=0.03)
+    assert run["peak_base_shear_kN"] < 1.3 * 0.0864  # the push begins with a jerk
+
+
+def test_a_support_joint_follows_the_bed_joint_until_it_is_given():
+    masonry = own()
+    masonry.joints["bed"].friction = 0.5
+    masonry.joints["support"].cohesion = 0.3e6
+    made = masonry.variant(masonry_options())
+    made.apply([("bed", "cohesion", "0.25e6"), ("support", "dilatancy", "0.1")])
+    support = made.joints["support"]
+    assert (support.friction, support.cohesion, support.dilatancy) == (0.5, 0.3e6, 0.1)
+    assert made.joints["bed"].dilatancy == 0 and not support.elastic
+    made.apply([("bed", "tensileStrength", "0.02e6"), ("bed", "dilatancy", "0.2")])
+    assert (support.tensileStrength, support.dilatancy) == (0.02e6, 0.1)
+
+
+def masonry_options(*words):
+    return masonry.options.parser("", until=1).parse_args(list(words))
+
+
+def test_joints_without_a_name_have_that_of_their_place():
+    both = MasonryJoint(**STRENGTHS)
+    masonry = own(STRENGTHS, None, head=both, collar=both)
+    assert [j.name for j in masonry.joints.values()] == ["bed", "head", "head", "support"]  # fmt: skip
+    for words in ([], ["--joints", "brittle"]):
+        made = masonry.variant(masonry_options(*words))
+        assert list(made.joints) == ["bed", "head", "collar", "support"]
+
+
+# -- properties that go together --------------------------------------------------------------------------------------
+
+
+@given(some.permutations(["friction", "residualFriction", "dilatancy", "cohesion", "tensileStrength"]))  # fmt: skip
+def test_properties_are_set_together_in_any_order(order):
+    values = dict(friction=0.2, residualFriction=0.15, dilatancy=0.1, cohesion=0.9e6, tensileStrength=1e6)  # fmt: skip
+    joint = MasonryJoint()
+    assert joint.set(**{name: values[name] for name in order}) is joint
+    assert {name: getattr(joint, name) for name in order} == values
+
+
+def test_what_cannot_be_set_together_has_all_problems_and_changes_nothing():
+    joint = MasonryJoint()
+    before, noted = joint.dict(), dict(assumed(joint))
+    with pytest.raises(ValueError) as refused:
+        joint.set(residualFrictoin=0.1, friction=-1, cohesion=2e5)
+    assert "no property 'residualFrictoin', did you mean 'residualFriction'?" in str(refused.value)  # fmt: skip
+    assert "friction -1 must be at least 0" in str(refused.value)
+    with pytest.raises(ValueError, match="residual friction 0.43 must be at most 0.3"):
+        joint.set(friction=0.3)
+    assert joint.dict() == before and assumed(joint) == noted
+
+
+@pytest.mark.parametrize(
+    "name, value, together",
+    [
+        ("friction", 0.5, True),
+        ("friction", 0, True),
+        ("residualFriction", 0.8, True),
+        ("tensileStrength", 1e6, True),
+        ("cap", True, True),
+        ("friction", -1, False),
+        ("cohesion", -1, False),
+        ("elasticLimitRatio", 1.0, False),
+    ],
+)
+def test_an_error_names_how_to_set_several(name, value, together):
+    joint = MasonryJoint(friction=0.7, residualFriction=0.7, cap=name != "cap", compressiveFractureEnergy=100 if name == "cap" else 15000)  # fmt: skip
+    with pytest.raises(ValueError) as refused:
+        setattr(joint, name, value)
+    assert (f"joint.set({name}=..., ...)" in str(refused.value)) == together
+
+
+def test_the_manual_of_a_joint_is_found_as_the_package_tells():
+    assert "help(masonry.MasonryJoint)" in masonry.__doc__
+    text = pydoc.plain(pydoc.render_doc(masonry.MasonryJoint))
+    assert "set(friction=0.6, residualFriction=0.6)" in text
+    assert "Residual friction coefficient tan(phi_r)" in text
+
+
+def test_what_yade_has_loaded_counts_as_given():
+    joint = MasonryJoint()
+    del joint.__dict__["_assumed"]
+    assert assumed(joint) == {} and assumed(copied(joint)) == {}
+    assert assumed(state(joint, friction="a test")) == {"friction": "a test"}

@@ -1,0 +1,269 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Masonry of one's own by formulas: the numbers of its joints, what it refuses and warns of, and one wall that has its modulus."""
+
+import math
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as some
+
+from masonry import AT_REST, Scene, bricks, materials
+from masonry.basics import Refused
+
+SIZE, MORTAR = (0.25, 0.12, 0.065), 0.010
+CLAY = dict(E=4e9, unit_E=9e9, fm=14e6, fv0=0.25e6, friction=0.6, ft=0.2e6, unit=SIZE, joint=MORTAR, density=1800)  # fmt: skip
+
+
+def clay(**changes):
+    values = {**CLAY, **changes}
+    return materials.masonry(**{n: v for n, v in values.items() if v is not None})
+
+
+def sources(masonry):
+    return {entry["name"]: entry["source"] for entry in masonry.assumed()}
+
+
+legal = some.fixed_dictionaries(
+    dict(
+        E=some.floats(1e9, 8e9),
+        share=some.floats(0.05, 0.9),  # E over unit_E
+        fm=some.floats(2e6, 20e6),
+        fv0=some.floats(0.05e6, 0.5e6),
+        friction=some.floats(0.4, 1.0),
+        bond=some.floats(0.01, 1.0),  # ft over fv0/friction
+        poisson=some.floats(0.0, 0.3),
+        length=some.floats(0.15, 0.4),
+        height=some.floats(0.04, 0.25),
+        joint=some.floats(0.001, 0.02),
+        stiff=some.floats(0.1, 0.9),  # G over its bound
+        along=some.floats(0.2, 0.9),  # head_E over unit_E
+        strain=some.floats(1.5, 2.5),  # peak strain over fm/E
+    )
+)
+
+
+@given(legal)
+@settings(max_examples=80)
+def test_bricks_and_joints_in_series_are_the_masonry(p):
+    unitE = p["E"] / p["share"]
+    shear = 1 / (2 * (1 + p["poisson"]))
+    values = dict(
+        E=p["E"],
+        unit_E=unitE,
+        fm=p["fm"],
+        fv0=p["fv0"],
+        friction=p["friction"],
+        ft=p["bond"] * p["fv0"] / p["friction"],
+        unit=(p["length"], 0.1, p["height"]),
+        joint=p["joint"],
+        poisson=p["poisson"],
+        G=p["stiff"] * shear * unitE,
+        head_E=p["along"] * unitE,
+        Gc=1e6,
+        peak_strain=p["strain"] * max(p["fm"] / p["E"], p["fm"] / (p["along"] * unitE)),
+    )
+    assume(values["peak_strain"] < 0.09)
+    made = clay(**values)
+    bed, head = made.joints["bed"], made.joints["head"]
+    bedSpacing, headSpacing = p["height"] + p["joint"], p["length"] + p["joint"]
+    inSeries = lambda k, spacing, own: 1 / (1 / (k * spacing) + 1 / own)
+    assert inSeries(bed.normalStiffness, bedSpacing, unitE) == pytest.approx(p["E"])
+    assert inSeries(head.normalStiffness, headSpacing, unitE) == pytest.approx(values["head_E"])  # fmt: skip
+    assert inSeries(bed.shearStiffness, bedSpacing, shear * unitE) == pytest.approx(values["G"])  # fmt: skip
+    # brick and joint together have the peak strain at fm
+    closure = bed.peakRatio * p["fm"] / bed.normalStiffness
+    strain = closure / bedSpacing + p["fm"] / unitE
+    assert strain == pytest.approx(values["peak_strain"])
+    assert made.joints["support"].dict() == {**bed.dict(), "name": "support"}
+    # the crack surface leaves 0.99 of half a brick
+    half = headSpacing / 2 / unitE
+    assert half / (half + 1 / made.joints["crack"].normalStiffness) == pytest.approx(1 / 1.01)  # fmt: skip
+    said = sources(made)
+    for name in ("bed.shearStiffness", "head.normalStiffness", "bed.tensileStrength", "bed.peakRatio", "unit.poisson", "bed.compressiveFractureEnergy"):  # fmt: skip
+        assert name not in said
+
+
+@given(legal, some.floats(0.5e6, 5e6))
+@settings(max_examples=80)
+def test_what_is_assumed_is_what_the_law_can_follow(p, brickStrength):
+    unitE = p["E"] / p["share"]
+    assume(p["fm"] / p["E"] * (p["height"] + p["joint"]) < 3e-4)  # else Gc is too small
+    made = clay(
+        E=p["E"],
+        unit_E=unitE,
+        fm=p["fm"],
+        fv0=p["fv0"],
+        friction=p["friction"],
+        ft=p["bond"] * p["fv0"] / p["friction"],
+        unit=(p["length"], 0.1, p["height"]),
+        joint=p["joint"],
+        poisson=p["poisson"],
+        unit_ft=brickStrength,
+    )
+    length, shearing = p["length"] + p["joint"], 2 * (1 + p["poisson"])
+    distances = {"bed": p["height"] + p["joint"], "head": length, "crack": length / 2}  # fmt: skip
+    for name, distance in distances.items():
+        joint = made.joints[name]
+        lumped = distance / unitE
+        tension = materials.leastEnergy(joint.tensileStrength, joint.normalStiffness, lumped)  # fmt: skip
+        shear = materials.leastEnergy(joint.cohesion, joint.shearStiffness, shearing * lumped)  # fmt: skip
+        assert joint.modeIFractureEnergy >= max(0.029e-3 * joint.tensileStrength, 1.099 * tension)  # fmt: skip
+        assert joint.modeIIFractureEnergy >= max(0.093e-3 * joint.cohesion, 1.099 * shear)  # fmt: skip
+    bed = made.joints["bed"]
+    assert bed.peakRatio == pytest.approx(1 + 1 / (1 - p["share"]))  # of 2 fm/E
+    assert bed.shearStiffness * shearing == pytest.approx(bed.normalStiffness)
+    assert bed.residualFriction == p["friction"] and bed.dilatancy == 0
+    said = sources(made)
+    assert "Kaushik" in said["bed.peakRatio"] and "Lourenço" in said["bed.compressiveFractureEnergy"]  # fmt: skip
+    assert not {"bed.cohesion", "bed.friction", "unit.density", "unit.young"} & set(said)  # fmt: skip
+
+
+def test_the_compressive_fracture_energy_is_that_of_its_sources():
+    energy = lambda fm: materials.compressiveFractureEnergy(fm)[0]
+    assert energy(20e6) == pytest.approx(22160)  # 15 + 8.6 - 1.44 N/mm
+    assert energy(10e6) == pytest.approx(16000) and energy(100e6) == pytest.approx(33000)  # fmt: skip
+    for edge in (12e6, 80e6):  # the parts nearly meet
+        assert energy(edge * (1 - 1e-9)) == pytest.approx(energy(edge * (1 + 1e-9)), rel=0.03)  # fmt: skip
+
+
+@pytest.mark.parametrize("fm, said", [(5e6, "1.6 mm·fm"), (14e6, ""), (90e6, "0.33 mm·fm")])  # fmt: skip
+def test_outside_its_range_a_formula_is_a_warning(fm, said, capsys):
+    made = clay(fm=fm, E=40e9, unit_E=120e9)
+    printed = capsys.readouterr().out
+    assert ("outside of 12 to 80 MPa" in printed and said in printed) == bool(said)
+    assert said in sources(made)["bed.compressiveFractureEnergy"]
+    clay(fm=fm, E=40e9, unit_E=120e9, Gc=40000)
+    assert not capsys.readouterr().out
+
+
+def test_a_bond_wrench_strength_is_converted_and_said():
+    made = clay(ft=None, bond_wrench=0.3e6)
+    assert made.joints["bed"].tensileStrength == pytest.approx(0.2e6)
+    said = sources(made)["bed.tensileStrength"]
+    assert "bond_wrench 300000 Pa over 1.5" in said and "van der Pluijm" in said
+    other = clay(ft=None, bond_wrench=0.3e6, bond_ratio=2)
+    assert other.joints["head"].tensileStrength == pytest.approx(0.15e6)
+    assert "bed.tensileStrength" not in sources(clay())
+
+
+def test_head_joints_are_of_the_same_mortar_or_have_their_share():
+    bed, head = (clay().joints[name].dict() for name in ("bed", "head"))
+    alike = {"normalStiffness", "shearStiffness", "tensileStrength", "cohesion", "friction", "peakRatio", "compressiveStrength"}  # fmt: skip
+    assert {n: bed[n] for n in alike} == {n: head[n] for n in alike}
+    poor = clay(head_share=0.5, GfI=20).joints
+    assert poor["head"].tensileStrength == 0.1e6 and poor["head"].cohesion == 0.125e6
+    assert poor["head"].modeIFractureEnergy == 10
+    dry = clay(head_share=0).joints["head"]
+    assert dry.tensileStrength == 0 and dry.cohesion == 0
+
+
+def test_bricks_crack_if_their_strength_is_given():
+    assert clay().joints["crack"].elastic
+    assert "bricks do not crack" in sources(clay())["crack.elastic"]
+    made = clay(unit_ft=2e6, unit_GfI=90, unit_fv0=3e6, unit_friction=0.9, unit_GfII=700)  # fmt: skip
+    crack = made.joints["crack"]
+    assert not (crack.elastic or crack.cap)
+    assert (crack.tensileStrength, crack.modeIFractureEnergy) == (2e6, 90)
+    assert (crack.cohesion, crack.friction, crack.modeIIFractureEnergy) == (3e6, 0.9, 700)  # fmt: skip
+    assert "crack.elastic" not in sources(made) and "crack.cohesion" not in sources(made)  # fmt: skip
+
+
+# -- what is refused, and what is a warning ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "changes, message",
+    [
+        (dict(E=9e9), "E 9e+09 Pa must be below unit_E 9e+09 Pa: bricks and joints are in series"),
+        (dict(E=4000), "E 4000 Pa must be 1e+06 to 1e+12 Pa: is it in Pa?"),
+        (dict(fm=math.nan), "fm nan Pa must be"),
+        (dict(fm="14"), "fm must be a number in Pa, got '14'"),
+        (dict(friction=True), "friction must be a number, got True"),
+        (dict(joint=10), "joint 10 m must be 0 to 0.1 m"),
+        (dict(joint=0.07), "joint 0.07 m must be below length and height of the unit"),
+        (dict(unit=(250, 120, 65)), "must be at most 5 m: is it in m?"),
+        (dict(unit=(0.25, 0.12)), "unit must be length, thickness and height"),
+        (dict(ft=None), "give either ft, the direct tensile strength of bed joints, or bond_wrench"),
+        (dict(bond_wrench=0.3e6), "give either ft, the direct"),
+        (dict(ft=0.5e6), "ft 500000 Pa must be at most fv0/friction = 416667 Pa, the apex of the Coulomb cone"),
+        (dict(ft=None, bond_wrench=0.9e6), "bond_wrench/1.5 = 600000 Pa must be at most fv0/friction = 416667 Pa"),
+        (dict(unit_ft=2e6, unit_fv0=1e6), "unit_ft 2e+06 Pa must be at most unit_fv0/unit_friction = 1.33333e+06 Pa"),
+        (dict(G=4e9), "G 4e+09 Pa must be below that of the bricks, unit_E/(2 (1 + nu)) = 3.75e+09 Pa"),
+        (dict(residual_friction=0.7), "residual_friction 0.7 must be at most friction 0.6"),
+        (dict(dilatancy=0.5, residual_friction=0.4), "dilatancy 0.5 must be at most residual_friction 0.4"),
+        (dict(peak_strain=1e-3), "peak_strain 0.001 must be at least fm/E = 0.0035"),
+        (dict(Gc=3000), "compressive fracture energy 3000 J/m² is too small for peak ratio"),
+        (dict(unit_GfI=60), "unit_GfI without unit_ft: bricks do not crack then"),
+        (dict(bond_ratio=2), "bond_ratio goes with bond_wrench"),
+        (dict(density=None, fm=None), "fm, density must be given"),
+    ],
+)  # fmt: skip
+def test_wrong_values_are_refused_with_the_bound(changes, message):
+    with pytest.raises(Refused) as refused:
+        clay(**changes)
+    assert message in str(refused.value)
+    assert all(line.startswith("materials.masonry: ") for line in str(refused.value).splitlines())  # fmt: skip
+
+
+def test_all_wrong_values_are_named_at_once():
+    with pytest.raises(Refused) as refused:
+        clay(E=10e9, fm=-1, joint=1, density=None, friction=9)
+    for word in ("E 1e+10", "fm -1", "joint 1 m", "density must be given", "friction 9"):  # fmt: skip
+        assert word in str(refused.value)
+
+
+def wall(masonry, folder, length=0.52, height=0.375, **settings):
+    """A small wall of these bricks between platens, before its first stage, and its upper platen."""
+    blocks = bricks.Wall(length, height, unit=SIZE, joint=MORTAR)
+    words = ["--no-vtk", "--lean", "--out", str(folder)]
+    scene = Scene("own", blocks, masonry, arguments=words, **settings)
+    scene.platen("bottom")
+    return scene, scene.platen("top", rotation="held")
+
+
+@pytest.mark.parametrize(
+    "energy, joint, strength, stiffness, distance, changes",
+    [
+        ("GfI", "head", "tensileStrength", "normalStiffness", 0.26, dict(ft=0.4e6)),
+        ("GfII", "head", "cohesion", "shearStiffness", 0.26, {}),
+        ("unit_GfI", "crack", "tensileStrength", "normalStiffness", 0.13, dict(unit_ft=2e6)),
+        ("unit_GfII", "crack", "cohesion", "shearStiffness", 0.13, dict(unit_ft=2e6)),
+    ],
+)  # fmt: skip
+def test_softening_that_snaps_back_is_a_warning_and_no_scene(
+    energy, joint, strength, stiffness, distance, changes, tmp_path, capsys
+):
+    # so stiff a joint has most of its elasticity from the units
+    changes = dict(E=7e9, fm=20e6, unit_E=7.5e9, **changes)
+    made = clay(**changes).joints[joint]
+    soft = 2.4 if "II" in energy else 1.0  # E/G of the bricks
+    least = materials.leastEnergy(getattr(made, strength), getattr(made, stiffness), soft * distance / 7.5e9)  # fmt: skip
+    for share, snaps in ((1.02, False), (0.4, True)):
+        capsys.readouterr()
+        masonry = clay(**changes, **{energy: share * least})
+        said = capsys.readouterr().out
+        assert (f"it must be above {least:.4g} J/m²" in said) == snaps
+        if snaps:
+            assert f"{energy} {share * least:.4g} J/m² of the {joint} joint" in said
+        scene, _ = wall(masonry, tmp_path / "r")
+        if snaps:
+            with pytest.raises(ValueError, match="would snap back"):
+                scene.settle()
+        else:
+            assert scene.settle() == AT_REST
+            scene.finish()
+
+
+# -- one wall ---------------------------------------------------------------------------------------------------------
+
+
+def test_a_wall_has_the_modulus_of_its_masonry(tmp_path):
+    scene, top = wall(clay(), tmp_path / "r", height=0.75, gravity=0)
+    lower = scene.watch((0.26, 0.06, 0.1125), name="lower")
+    upper = scene.watch((0.26, 0.06, 0.6375), name="upper")
+    scene.press(top, 0.4e6)
+    assert scene.settle() == AT_REST
+    moved = [scene.model.moved(target)[0][2] for target in (lower, upper)]
+    scene.finish()
+    strain = (moved[0] - moved[1]) / (0.6375 - 0.1125)
+    assert 0.4e6 / strain == pytest.approx(CLAY["E"], rel=0.01)
