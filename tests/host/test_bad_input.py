@@ -886,7 +886,7 @@ def test_the_command_line_ends_with_status_2_and_leaves_what_is_there(
     "name, words, most, lost",
     [
         ("couplet", ["--no-vtk"], 100e3, "curve.csv"),  # in the middle of the run
-        ("wall_comp0a", ["--until", "0.1"], 150e3, "joints_0001.vtp"),
+        ("wall_comp0a", ["--until", "0.1"], 160e3, "joints_0001.vtp"),
         ("wall_comp0a", ["--until", "0.05", "--no-vtk"], 60e3, "curve.png"),
     ],
 )

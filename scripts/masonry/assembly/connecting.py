@@ -105,7 +105,7 @@ def _pairs(tolerance, allowGaps):
         problems[-1] += f"; the tolerance is {1e3 * bound:.3g} mm"
     refuse(
         problems,
-        "move them; gaps on purpose are allowed by allowGaps=True of Scene or of connect(), whose help has the tolerance",
+        "move them, or allow gaps on purpose with allowGaps=True, of Scene or of connect; see help(masonry.connect) for its tolerance",
     )
     if not pairs:
         raise ValueError(
