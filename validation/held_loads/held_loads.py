@@ -3,7 +3,7 @@
 
 yade -n -x validation/held_loads/held_loads.py [--only NAME ...] [--quick] [--out FILE]
 
-A held load must be a bracket of 1 %, lie between 0.94 of limit analysis without dilatancy and 1.02 of the associated one,
+A held load must be in a bracket of 1 %, lie between 0.94 of limit analysis without dilatancy and 1.02 of the associated one,
 and move by less than 1 % if the load grows at a third of the rate.
 """
 

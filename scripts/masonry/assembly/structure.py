@@ -173,7 +173,9 @@ class Structure:
                     f"handle: {target.name} is a deformable brick, and loads and drives act on rigid ones: load a platen, "
                     "or choose --blocks rigid"
                 )
-            on = dict(body=target.body, point=target.point)
+            # a brick keeps its numerical damping until it is driven
+            brick = target.brick is not None
+            on = dict(body=target.body, point=target.point, damped=brick)
             if target.pressed is not None or target.force is not None:
                 loads.append(MasonryLoad(label=f"{target.name}_force", **on))
             for axis in target.drives:
@@ -257,7 +259,8 @@ class Structure:
 
     def forceOf(self, target):
         """The engine of the dead load on a target; it is made if it is missing."""
-        return self._addLoad(f"{target.name}_force", target.body, target.point)
+        brick = target.brick is not None
+        return self._addLoad(f"{target.name}_force", target.body, target.point, brick)
 
     def pressOf(self, target):
         """The engine of a press, whose resultant goes through the middle of what the platen presses, and the area of that
@@ -370,6 +373,7 @@ class Structure:
         for label, other in self.loads.items():
             if "_drive" in label:
                 other.velocity = 0
+        load.damped = False
         load.direction, load.driven = direction, True
         self.target, self.direction, self.loads["push"] = target, direction, load
         self.followed, self.origin, self.pushing = target, (0, 0), True

@@ -21,7 +21,7 @@ from .rest import CALM, EVERY, LOOKS, REST, rampTime
 from .stage import AT_REST, DONE, Answer
 from .timed import Timed, timed
 
-WITHIN = 0.01  # width of the bracket, over its upper end [-]
+WITHIN = 0.005  # width of the bracket, over its upper end [-]
 LEAST = 0.05  # of the whole growth: the width of a bracket below this load is that of a bracket at it [-]
 TRIAL = 4.0  # [s] in the scene after which a trial is given up
 MOST_KEPT, LEAST_KEPT = 128, 8  # states that are kept during a growth

@@ -157,7 +157,8 @@ def _carryOut(scene, act, traits, args, settings):
         if scene.only and not traits.bounded:
             say(f"note: --preset bound: no run, {name} is left out")
             return DONE
-        before, running.loading = running.entered, traits.grows
+        before = running.entered
+        running.loading = traits.grows and not scene.grown
         ended = act(scene, *args, **settings)
         _answer(scene, name, traits, before)
         return ended

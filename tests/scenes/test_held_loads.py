@@ -1,0 +1,273 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Loads that grow and the search for the one that is held; loads in later stages; pushes of any direction."""
+
+import math
+import os
+import subprocess
+import sys
+import time
+
+import pytest
+from conftest import ROOT
+from masonry import AT_REST, COLLAPSED, DONE, Scene, bricks, materials
+from masonry.read.files import readCurve, readRun
+
+sys.path[:0] = [os.path.join(ROOT, "validation", *f) for f in (["held_loads"], [])]
+import held_loads  # noqa: E402
+
+STONE = materials.dry(friction=0.7, normalStiffness=1e11, density=2600)
+WEIGHT = 2600 * 9.81 * 0.3 * 0.3 * 0.6  # of the stack [N]
+
+
+def stack(folder, *words, blocks=None, **settings):
+    """Three stones, 0.3 m wide and 0.6 m high, on a base: the scene, and its highest stone."""
+    blocks = blocks or bricks.stack(3, (0.3, 0.3, 0.2))
+    words = ["--no-vtk", "--out", str(folder), *words]
+    scene = Scene("stones", blocks, STONE, arguments=words, **settings)
+    scene.platen("bottom")
+    return scene, scene.handle(len(blocks) - 1, name="stone")
+
+
+def found(folder, name):
+    answers = readRun(str(folder))["answers"]
+    return [a["value"] for a in answers if a["name"] == name]
+
+
+@pytest.mark.parametrize("name", held_loads.QUICK)
+def test_a_held_load_is_that_of_limit_analysis(scene, name):
+    cells, met = held_loads.row(name, slow=False)
+    assert met, cells
+
+
+@pytest.mark.parametrize("rate", [0.2, 1.0, 4.0])
+def test_the_rate_of_the_growth_hardly_counts(scene, tmp_path, rate):
+    s, stone = stack(tmp_path)
+    s.settle()
+    assert s.accelerate(1.5, rate=rate) == COLLAPSED
+    s.finish()
+    (held,), (lost,) = (
+        found(tmp_path, f"factor_{end}") for end in ("held", "not_held")
+    )
+    assert held < 0.5 * 1.001 and lost > 0.5 * 0.999  # b/h, when it tips
+    assert lost - held <= 0.005 * lost * 1.001
+    run = readRun(str(tmp_path))
+    assert run["factor"] == held == s.factor
+    assert {mark["y"] for mark in run["figure"]["marks"]} == {held, lost}
+    curve = readCurve(str(tmp_path))
+    rows = run["figure"]["rows"]
+    # the line is the growth: the load over the displacement of the stone
+    assert curve["load_factor"][rows[-1]] > held
+    assert curve["displacement_mm"][rows[-1]] > 1
+
+
+def test_a_structure_that_stands_has_a_load_that_was_held_and_no_other(scene, tmp_path):
+    s, stone = stack(tmp_path)
+    s.settle()
+    assert s.accelerate(0.2, rate=0.4) == AT_REST
+    assert s.lean(0.3) == AT_REST  # it stands yet
+    s.finish()
+    assert found(tmp_path, "factor_held") == [pytest.approx(0.2, rel=0.01), 0.3]
+    assert found(tmp_path, "factor_not_held") == [None, None]
+
+
+def test_a_structure_that_never_rests_has_no_number(scene, tmp_path, capsys):
+    stone = lambda: bricks.stack(1, (0.3, 0.3, 0.2))
+    s, _ = stack(tmp_path, blocks=stone() + stone().moved(0.2, 0, 0.2))
+    assert s.tilt(40, rate=40) == COLLAPSED  # the upper stone falls by itself
+    s.finish()
+    assert found(tmp_path, "factor_held") == [None]
+    assert math.isnan(s.factor) and "factor" not in readRun(str(tmp_path))
+    assert "came to rest under no load that was tried" in capsys.readouterr().out
+
+
+SCRIPT = """
+from masonry import Scene, bricks, materials
+blocks = bricks.stack(3, (0.3, 0.3, 0.2))
+stone = materials.dry(friction=0.7, normalStiffness=1e11, density=2600)
+scene = Scene("stones", blocks, stone)
+scene.platen("bottom")
+top = scene.handle(2, name="stone")
+scene.settle()
+scene.load(top, (100, 0, -500))
+scene.wind(100, (1, 0, 0))
+scene.hold(top, "z")
+scene.run(0.02)
+scene.release(top, "z")
+scene.settle()
+scene.growLoad(top, (4000, 0, 0))
+scene.finish()
+"""
+
+
+def test_a_search_and_loads_of_later_stages_resume_bit_for_bit(tmp_path):
+    script = tmp_path / "stones.py"
+    script.write_text(SCRIPT)
+    env = dict(os.environ, OMP_NUM_THREADS="1")
+    play = lambda *words: subprocess.Popen(
+        ["yade", "-n", "-x", str(script), "--no-vtk", *words], cwd=tmp_path, env=env,
+        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+    )  # fmt: skip
+    began = time.monotonic()
+    assert play("--out", "whole").wait() == 0
+    whole = time.monotonic() - began
+    stopped = 0
+    for n in range(4):
+        run = play("--out", f"r{n}")
+        time.sleep(whole * (0.45 + 0.12 * n))
+        run.terminate()
+        if run.wait() == 130:
+            stopped += 1
+            assert play("--resume", f"r{n}").wait() == 0
+        curves = [(tmp_path / d / "curve.csv").read_bytes() for d in ("whole", f"r{n}")]
+        assert curves[0] == curves[1]
+        runs = [readRun(str(tmp_path / d)) for d in ("whole", f"r{n}")]
+        for key in ("answers", "factor", "bounds", "figure", "steps"):
+            assert runs[0][key] == runs[1][key], key
+    assert stopped
+
+
+def test_loads_of_later_stages_replace_those_before_and_can_be_bracketed(
+    scene, tmp_path
+):
+    s, stone = stack(tmp_path)
+    s.load(stone, (0, 0, -1000))
+    s.settle()
+    down = lambda: -1e3 * s.results.column("base_force_z_kN")[-1]
+    assert down() == pytest.approx(WEIGHT + 1000, rel=1e-3)
+    assert s.load(stone, (0, 0, -3000)) == AT_REST
+    assert down() == pytest.approx(WEIGHT + 3000, rel=1e-3)
+    carries = lambda f: s.load(stone, (f, 0, -3000)) == AT_REST
+    # it tips about its foot: the force is 0.5 m above the ground
+    tips = (WEIGHT + 3000) * 0.15 / 0.5
+    low, high = s.bracket(carries, 0.5 * tips, 1.5 * tips)
+    assert low * 0.99 < tips < high * 1.01
+    s.finish()
+
+
+@pytest.mark.parametrize(
+    "grow, expected",
+    [
+        # the highest stone slides
+        (lambda s, t: s.growLoad(t, (3000, 0, 0)), 1e-3 * 0.7 * WEIGHT / 3),
+        # on all of its face
+        (lambda s, t: s.growWind(2e4, (1, 0, 0)), 1e-3 * WEIGHT * 0.15 / 0.3 / (0.3 * 0.6)),
+    ],
+)  # fmt: skip
+def test_growing_loads_hold_what_statics_says(scene, tmp_path, grow, expected):
+    s, stone = stack(tmp_path)
+    s.settle()
+    assert grow(s, stone) == COLLAPSED
+    s.finish()
+    assert s.factor == pytest.approx(expected, rel=0.01)
+    entry = [e for e in readRun(str(tmp_path))["bounds"] if "factor" in e][-1]
+    assert s.factor < 1.002 * entry["factor"] < 1.02 * expected
+
+
+def test_supports_of_later_stages_take_their_reaction(scene, tmp_path):
+    s, stone = stack(tmp_path)
+    s.settle()
+    s.hold(stone, "x")
+    assert s.lean(0.6) == AT_REST  # it would fall without
+    column = s.results.column
+    both = column("base_force_x_kN")[-1] + column("stone_force_x_kN")[-1]
+    # of the held stone itself nothing goes through joints
+    assert both == pytest.approx(0.6e-3 * WEIGHT * 2 / 3, rel=0.01)
+    assert column("stone_force_x_kN")[-1] > 0.1 * both
+    s.release(stone, "x")
+    assert s.settle() == COLLAPSED
+    s.finish()
+
+
+@pytest.mark.parametrize("direction", [(0, 0, -1), (0.6, 0, -0.8), (-1, 0, 0)])
+def test_a_push_is_counted_in_its_direction_without_dead_weight(scene, tmp_path, direction):  # fmt: skip
+    s, stone = stack(tmp_path, "--rate", "2")
+    s.load(stone, (50, 0, -1000))
+    s.settle()
+    s.push(stone, 0.06, direction=direction)
+    s.finish()
+    run, curve = readRun(str(tmp_path)), readCurve(str(tmp_path))
+    top, base = curve["top_shear_kN"], curve["base_shear_kN"]
+    assert base[-1] == pytest.approx(top[-1], rel=0.05, abs=0.01)
+    assert abs(base[1]) < 0.02 * max(base)  # no weight in it
+    assert run["peak_base_shear_kN"] == pytest.approx(max(base), rel=1e-8)
+    assert not run["too_fast"] and run["initial_stiffness_kN_per_mm"] > 0
+
+
+def test_a_bound_changes_nothing_of_the_scene(scene, tmp_path):
+    s, stone = stack(tmp_path)
+    s.settle()
+    entry = s.bound(stone, direction=(1, 0, 0))
+    assert entry["factor"] == pytest.approx(0.7e-3 * WEIGHT / 3, rel=0.01)
+    assert s.lean(0.6) == COLLAPSED  # no drive holds the stone
+    s.finish()
+
+
+def test_a_driven_platen_is_a_support_in_limit_analysis(scene, tmp_path):
+    s, stone = stack(tmp_path)
+    top = s.platen("top", rotation="held", drive="xz")
+    s.settle()
+    entry = s.bound(towards=(1, 0, 0))
+    assert "nothing gives way" in entry["note"]
+    s.finish()
+    assert {"top_force_x_kN", "top_force_z_kN"} <= set(readCurve(str(tmp_path)))
+
+
+def test_pushes_along_two_lines_have_numbers_of_the_last(scene, tmp_path):
+    s, stone = stack(tmp_path, "--rate", "2")
+    lower = s.handle(1, name="lower")
+    s.settle()
+    s.push(stone, 0.05, direction=(0, 0, -1))
+    first = len(s.results.rows)
+    s.push(lower, 0.05)
+    s.finish()
+    run, curve = readRun(str(tmp_path)), readCurve(str(tmp_path))
+    assert run["figure"]["rows"][0] == first
+    largest = max(curve["base_shear_kN"][first:])
+    assert run["peak_base_shear_kN"] == pytest.approx(largest, rel=1e-8)
+    assert max(curve["base_shear_kN"]) > run["peak_base_shear_kN"]
+
+
+def test_a_very_short_push_ends_where_it_was_asked_to_and_asks_for_the_unit(scene, tmp_path, capsys):  # fmt: skip
+    s, stone = stack(tmp_path, "--rate", "0.1")
+    s.settle()
+    assert s.push(stone, 0.002) == DONE
+    s.finish()
+    assert "until 0.002 mm: is it in mm, not m?" in capsys.readouterr().out
+    end = readRun(str(tmp_path))["displacement_end_mm"]
+    assert end == pytest.approx(0.002, rel=0.06)
+
+
+def test_a_result_of_the_script_is_an_answer(scene, tmp_path, capsys):
+    s, stone = stack(tmp_path)
+    with pytest.raises(ValueError, match="comes after the first stage"):
+        s.result("height", 1.0)
+    s.settle()
+    s.result("height", 0.6, "m")
+    s.result("height", 0.7, "m")
+    for wrong in (("a b", 1), ("x", math.nan), ("x", "one"), ("x", 1, "")):
+        with pytest.raises(ValueError, match="result"):
+            s.result(*wrong)
+    s.finish()
+    assert found(tmp_path, "height") == [0.7]
+    assert "script: height 0.7 m\n" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "act, message",
+    [
+        (lambda s, t: s.accelerate(1, within=2), "within 2 must be at least 1e-4"),
+        (lambda s, t: s.growLoad(t, (0, 0, 0)), "force must not be zero"),
+        (lambda s, t: s.growLoad(t, (1, 0, 0), over=0), "over: rate 0 must be"),
+        (lambda s, t: s.growWind(100, (0, 0, 1)), "direction must be horizontal"),
+        (lambda s, t: s.press(t, 1e5), "only a platen that moves can be pressed"),
+        (lambda s, t: s.hold(t, "q"), "axes must be some of 'xyzXYZ'"),
+        (lambda s, t: s.hold("stone"), "only a handle"),
+        (lambda s, t: s.load(t, (0, 1, 0)), "in the x-z plane"),
+        (lambda s, t: s.load(t, (math.inf, 0, 0)), "must be three finite numbers"),
+    ],
+)
+def test_wrong_loads_of_later_stages_are_refused(scene, tmp_path, act, message):
+    s, stone = stack(tmp_path)
+    s.settle()
+    with pytest.raises(ValueError, match=message):
+        act(s, stone)
