@@ -84,7 +84,7 @@ if "yade" in sys.modules:
     import yade.wrapper as _wrapper
 
     globals().update({_name: getattr(_wrapper, _name) for _name in classes})
-    from .assembly import given, ports
+    from .assembly import given, ports, threads
     from .scene import options
     from .run.checkpoints import loadCheckpoint, readCheckpoint, saveCheckpoint
     from .assembly.blocks import addBlock
@@ -95,3 +95,4 @@ if "yade" in sys.modules:
     from .scene.stages import AT_REST, COLLAPSED, DONE, MOVING
 
     ports.close()
+    threads.limit()

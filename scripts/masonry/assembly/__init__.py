@@ -7,5 +7,6 @@
 - :mod:`masonry.assembly.structure`: what a scene is in YADE; :mod:`masonry.assembly.motion`: how its blocks move
 - :mod:`masonry.assembly.columns`: what a row of curve.csv holds
 - :mod:`masonry.assembly.window`: the scene in YADE's own 3-D view while it runs
+- :mod:`masonry.assembly.threads`: how many threads YADE has in plain Python
 - :mod:`masonry.assembly.ports`: the ports that YADE opens when it starts
 """

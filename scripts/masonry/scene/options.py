@@ -25,7 +25,7 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     :param loops: whether the scene has ``--history``; its value is None in all others
     """
     p = Parser(
-        prog="yade " + os.path.basename(sys.argv[0]),
+        prog="yade " + os.path.basename((sys.argv or ["SCENE"])[0]),
         description=description,
         epilog=f"masonry {version}, commit {commit}",
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
@@ -218,6 +218,10 @@ def ofScene(name, arguments, usual):
     :param usual: what the script says, which holds unless the command line gives the same option: :mod:`.keywords`
     :raises Refused: with all problems
     """
+    if arguments is None and (not sys.argv or "ipykernel" in sys.argv[0]):
+        arguments = (
+            []
+        )  # of a notebook, or of YADE's importer: these words are not the scene's
     if arguments is None or isinstance(arguments, (list, tuple)):
         main = sys.modules.get("__main__")
         own = parser(getattr(main, "__doc__", None), until=None)
