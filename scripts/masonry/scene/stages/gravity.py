@@ -96,12 +96,19 @@ def lean(scene, factor, towards=(1, 0, 0), longest=None):
     """
     towards = sideways(scene, towards, "lean")
     scene.findBound("lean", towards)
-    if scene.only:
-        carried = scene.bounds.describe().get("bound_acceleration", 0.0)
-        scene.ended = AT_REST if factor <= carried else MOVING
-        return scene.ended
     load = Acceleration(scene.model, factor, towards, nameOfLean(towards))
+    if scene.only:
+        return boundAlone(scene, load)
     return putOn(scene, "lean", load, towards, longest, LEAN_GROWS)
+
+
+def boundAlone(scene, load):
+    """How a stage of ``--preset bound`` ends that puts a load on, which stays if limit analysis finds that it is carried."""
+    carried = scene.bounds.entries.get(load.name, {}).get("factor", 0.0)
+    scene.ended = AT_REST if load.most <= carried else MOVING
+    if scene.ended == AT_REST:
+        load.put(load.at(load.now(), 1.0))
+    return scene.ended
 
 
 def putOn(scene, name, load, towards, longest, over=0.0):

@@ -25,7 +25,7 @@ WITHIN = 0.005  # width of the bracket, over its upper end [-]
 LEAST = 0.05  # of the whole growth: the width of a bracket below this load is that of a bracket at it [-]
 TRIAL = 4.0  # [s] in the scene after which a trial is given up
 MOST_KEPT, LEAST_KEPT = 128, 8  # states that are kept during a growth
-KEPT_BYTES = 200e6  # that they may have in all
+KEPT_BYTES = 100e6  # that they may have in all; a checkpoint during the growth or the search has them
 #: A block of a trial that is so fast, over one that has fallen, and twice as fast as in the first half of the trial, does not
 #: come to rest [-]: see :meth:`masonry.assembly.motion.Motion.fastest`.
 SURE = 0.25
@@ -46,6 +46,7 @@ class Growing(Timed):
     lastState: str = ""  # the state then, as text
     steps: int = 0  # that the growth took
     # -- of the search
+    over: int = 0  # 1 when it has ended, and only the last state at rest is kept
     trials: list = ()
     held: list = None  # factor and displacement [mm] of the largest load that was held
     lost: list = (
@@ -212,7 +213,7 @@ class _Search:
     def run(self, name):
         """Make trials until the bracket is narrow, or nothing is left to try."""
         at = self.at
-        while True:
+        while not at.over:
             if at.goal < 0:
                 chosen = self._next()
                 if chosen is None:
@@ -243,11 +244,16 @@ class _Search:
             if self.running.recordedAt() != O.time:
                 self.running.record()
             self.running.flush()
+            if not at.over:
+                at.kept, at.lastState, at.over = [], "", 1
+                self.running.mark()
             scene.ended = AT_REST
             return scene.ended
-        loadScene(_state(at.lastState))
+        if not at.over:
+            loadScene(_state(at.lastState))
+            at.kept, at.lastState, at.over = [], "", 1
+            self.running.mark()
         self.model.loadFactor = at.last
-        self.running.mark()
         if at.fell:
             raise Collapsed(at.fell)
         scene.ended = DONE

@@ -17,9 +17,9 @@ from ..bounds import nameOf
 from ..loads import checkedForce, checkPress, windFaces
 from ..targets import Target
 from .acting import Forces
-from .gravity import checkWithin, putOn, putOnAnswers
+from .gravity import boundAlone, checkWithin, putOn, putOnAnswers
 from .growing import WITHIN, found, grow
-from .stage import AT_REST, MOVING, stage
+from .stage import stage
 from .supports import atOnce
 from .timed import checkedRate
 
@@ -167,7 +167,7 @@ def _putOn(scene, name, made, towards, longest):
     if not any(made.now()):
         scene.findBound("forces", made.name, made.unit, made.pairs())
     if scene.only:
-        return _boundAlone(scene, made)
+        return boundAlone(scene, made)
     return putOn(scene, name, made, towards, longest)
 
 
@@ -176,13 +176,6 @@ def _grow(scene, name, made, towards, over, within):
     checkWithin(within, name)
     scene.findBound("forces", made.name, made.unit, made.pairs())
     return grow(scene, name, made, over, towards, within)
-
-
-def _boundAlone(scene, made):
-    """How a stage of ``--preset bound`` ends."""
-    carried = scene.bounds.entries.get(made.name, {}).get("factor", 0.0)
-    scene.ended = AT_REST if made.most <= carried else MOVING
-    return scene.ended
 
 
 @stage()

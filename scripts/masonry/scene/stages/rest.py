@@ -50,7 +50,8 @@ def settle(scene, longest=None, damping=None, record=True):
             f"settle: damping must be 'local' or 'combined', got {damping!r}"
         )
     if scene.only:
-        scene.ended = AT_REST
+        scene.model.grow(1.0)
+        scene.grown, scene.ended = True, AT_REST
         return AT_REST
     model, args = scene.model, scene.args
     grow, scene.grown = (lambda x: None) if scene.grown else model.grow, True
