@@ -9,6 +9,7 @@ import pytest
 from conftest import ROOT
 from masonry import materials
 from masonry.scene import options
+from masonry.scene.settings import applySettings
 
 sys.path.insert(0, os.path.join(ROOT, "validation"))
 sys.path.insert(0, os.path.join(ROOT, "validation", "sensitivity"))
@@ -65,7 +66,7 @@ def test_a_variation_changes_joints_within_their_bounds(row):
     assert row.low or row.high
     for text in (row.low, row.high):
         args = options.parser("a wall", until=1).parse_args(text.split())
-        options.applySettings(materials.calciumSilicateJoints(), args.set)
+        applySettings(materials.calciumSilicateJoints(), args.set)
 
 
 AXES = [axis for axis in stability.AXES if "COMP-4" not in axis]

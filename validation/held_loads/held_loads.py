@@ -12,6 +12,7 @@ import contextlib
 import io
 import os
 import sys
+import tempfile
 import time
 
 from masonry import Scene, bricks, materials
@@ -92,7 +93,7 @@ def grown(name, slower=1.0):
     """A scene in which the load of a case has grown, with its memory: (scene, memory, processor time [s])."""
     make, tilts = CASES[name]
     blocks, dry, settings, towards, most, rate = make()
-    words = ["--no-vtk", "--lean", "--out", "results/held_loads"]
+    words = ["--no-vtk", "--lean", "--out", tempfile.mkdtemp(prefix="held_loads")]
     scene = Scene("held_loads", blocks, dry, arguments=words, **settings)
     if name == "arch":
         scene.hold(7, name="one"), scene.hold(8, name="other")
@@ -115,7 +116,7 @@ def limits(name):
     """Limit analysis of a case at rest: associated, and without dilatancy, or the same if that is exact."""
     make, tilts = CASES[name]
     blocks, dry, settings, towards, _, _ = make()
-    words = ["--preset", "bound", "--out", "results/held_loads"]
+    words = ["--preset", "bound", "--out", tempfile.mkdtemp(prefix="held_loads")]
     scene = Scene("held_loads", blocks, dry, arguments=words, **settings)
     if name == "arch":
         scene.hold(7), scene.hold(8)

@@ -6,7 +6,7 @@ import math
 from yade import O, Vector3
 from yade.wrapper import MasonryJoint, MasonryLoad, MasonryZones
 
-from .._masonry import criticalTimeStep
+from .._masonry import criticalTimeStep, loadScene, saveScene
 from ..basics import GRAVITY, Refused
 from ..bricks import boxCorners
 from .blocks import addBlock
@@ -53,6 +53,7 @@ class Structure:
         #: What is pushed; from the beginning the target that a drive holds.
         self.target = next((t for t in description.targets.values() if t.drives), None)
         self.followed = self.target  # whose displacement is recorded along the load
+        self.atRest = None  # the last state at rest, as saveScene gave it
         self.loadFactor = 0.0  # of the load that a stage puts on or lets grow [-]
         self.direction = Vector3.UnitX  # of the present push or load
         self.pushing = False  # whether the present load is a push
@@ -251,9 +252,17 @@ class Structure:
         """A load that a stage adds: an engine before that of the energy balance."""
         if label not in self.loads:
             load = MasonryLoad(label=label, body=body, point=point, damped=damped)
-            engines = list(O.engines)
-            at = next(n for n, one in enumerate(engines) if one.label == "energy")
-            O.engines = [*engines[:at], load, *engines[at:]]
+            before = list(O.engines)
+            at = next(n for n, one in enumerate(before) if one.label == "energy")
+            engines = [*before[:at], load, *before[at:]]
+            if self.atRest is not None:  # the state at rest gets the engine, too
+                now = saveScene("null")
+                loadScene(self.atRest)
+                O.engines = engines
+                self.atRest = saveScene("null")
+                O.engines = before
+                loadScene(now)
+            O.engines = engines
             self.loads[label] = load
         return self.loads[label]
 
@@ -340,6 +349,13 @@ class Structure:
     def driveOf(self, target, axis):
         """The load that drives a target along an axis, or None."""
         return self.loads.get(f"{target.name}_drive_{axis}")
+
+    def pushOf(self, target, axis):
+        """The drive that a push made, if it holds a target along an axis, else None."""
+        load = self.loads.get(f"{target.name}_drive")
+        if axis not in "xyz" or not (load and load.driven):
+            return None
+        return load if abs(load.direction["xyz".index(axis)]) > 1e-12 else None
 
     def driveForce(self, target, axis):
         """Force of the drive of a target along an axis [N], as a vector."""

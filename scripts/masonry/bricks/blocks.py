@@ -396,7 +396,7 @@ class Bricks:
         for n in range(len(self._blocks)):
             group, row = solids.groups[solids.groupOf[n]], solids.rowOf[n]
             for face, normal in enumerate(group.normals[row]):
-                if normal @ sight < LOOKING:
+                if normal @ sight < LOOKING - COINCIDENT:
                     continue
                 corners = [tuple(c) for c in solids.face(n, face)]
                 area, _, middle = measures(corners, normal)

@@ -191,7 +191,7 @@ def _report(run, scene):
         for line in scene.outcome.report(entries):
             say(line)
         say(
-            f"{entries['steps']} steps of {entries['microseconds_per_step']:.0f} µs, {entries['wall_clock_s']:.1f} s in all; "
+            f"{entries['steps']} steps of {entries.get('microseconds_per_step', 0):.0f} µs, {entries['wall_clock_s']:.1f} s in all; "
             f"see {run.results.directory}"
         )
     if run.preset:

@@ -30,6 +30,11 @@ class Place:
     #: What stages pushed or put on, by their numbers: the kind (``push``, ``lean`` or ``growth``), the name of the load and
     #: that of the opposite one.
     loads: dict = field(default_factory=dict)
+    ended: dict = field(default_factory=dict)  # how stages ended, by their numbers
+    fall: str = ""  # what has fallen, as of Run.fall
+    loadFactor: float = 0.0  # of the load that a stage put on or let grow last [-]
+    #: The last state at rest, as text, of a run with stages after which a script may step back to it.
+    atRest: str = ""
     answers: dict = field(default_factory=dict)  # of the stages, by their number
     supportsMoved: bool = False  # whether a stage has moved supports
     resumed: list = field(default_factory=list)  # times at which it was taken up [s]
@@ -107,6 +112,7 @@ class Saved:
             and all(alike(stage, ["", 0, 0.0, 0]) for stage in at.stages)
             and all(map(_isAnswers, at.answers.items()))
             and alike(list(at.held.values()), None)
+            and all(alike(ended, "") for ended in at.ended.values())
             and all(alike(load, ["", "", ""]) for load in at.loads.values())
             and alike(at.frames + at.resumed, None)
         ):

@@ -67,9 +67,12 @@ class Run:
         self.progress = Progress()
         self.advanced = False  # whether this process has taken steps of it
         self.entered = 0  # number of the stage that was entered last
+        #: number of the stage of the checkpoint, if that was over and cannot go farther, else None
+        self.over = None
         #: whether that lets the dead loads grow, and is no test yet
         self.loading = False
         self._memory = SimpleNamespace()  # of that stage
+        self._savedIn = 0  # number of the stage in which the checkpoint was made
         self._live = None  # adds a row to yade.plot
         self._readings = []  # rows that are not in curve.csv yet
         self._safe = None  # what a checkpoint keeps, None while steps are taken
@@ -104,6 +107,7 @@ class Run:
                     f"--resume: {args.resume} holds a run of {self._saved.scene}, this is {self.name}"
                 )
             self.at = self._saved.place()
+            self._savedIn = self.at.number
         for number in (signal.SIGINT, signal.SIGTERM):
             self._handlers[number] = signal.signal(number, self._interrupt)
         self.preset = presetOf(args, self.name)
@@ -140,6 +144,10 @@ class Run:
         yield
         self.at.seconds[part] += time.perf_counter() - began
 
+    def reload(self):
+        """Give the scene of a run that is resumed the state of its checkpoint again."""
+        self._saved.load()
+
     @property
     def resumes(self):
         """Whether the run goes on from a checkpoint."""
@@ -162,8 +170,9 @@ class Run:
     def takeUp(self):
         """From here on files are written; those of a run that is resumed are cut back to its checkpoint."""
         if self._saved:
-            # what the stage did before it advanced was done before these steps
-            self._saved.load()
+            # what the stage did before it advanced was done before the steps that the checkpoint has
+            if self.entered == self._savedIn != self.over:
+                self._saved.load()
             try:
                 self.results.takeUp(
                     self._saved.rows, len(self.at.frames), self._saved.seconds
@@ -184,7 +193,7 @@ class Run:
             hold. Checkpoints keep it.
         """
         self.entered += 1
-        if self.entered < self.at.number:
+        if self.leftOut(self.entered - 1):
             return None
         if self.entered == self.at.number:
             if self.at.stage != name:
@@ -261,6 +270,11 @@ class Run:
             "stages": at.stages,
             "frames": at.frames,
         }
+
+    def markFall(self):
+        """As :meth:`mark`, of a structure that was seen to fall between two steps; what fell within one has no checkpoint."""
+        if self._safe:
+            self.mark()
 
     def mark(self):
         """Note what a checkpoint of this moment keeps, after a stage has put the scene into another state."""
@@ -364,6 +378,12 @@ class Run:
         """Whether steps of the stages after this number were taken, and not left out because they were over before."""
         return self.entered > before and self.entered >= self.at.number
 
+    def leftOut(self, before):
+        """Whether the stage after this number was over before the run was resumed."""
+        if self.entered <= before or self.advanced or not self._saved:
+            return False
+        return self.entered < self.at.number or self.entered == self.over
+
     def recordedAt(self):
         """Time of the last row that was read [s], or None."""
         return self._recordedTime
@@ -371,7 +391,7 @@ class Run:
     def fall(self, what):
         """Note that the structure has fallen."""
         self.collapsed = True
-        self.results.run["collapse"] = what
+        self.results.run["collapse"] = self.at.fall = what
         say(f"collapsed: {what}")
 
     def _interrupt(self, number, frame):

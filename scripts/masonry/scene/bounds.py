@@ -74,11 +74,12 @@ class Bounds:
         scaled = GRAVITY / self.model.args.density_scaling
         what = nameOfLean(towards, tilts)
         live = lambda a: a.weights(scaled * np.array(towards))
+        down = (0, 0, -self.model.gravity)  # it replaces another acceleration
         if not tilts:
-            return self._find(what, "g", live, lowerUpTo)
+            return self._find(what, "g", live, lowerUpTo, gravity=down)
         share = self.model.gravity / scaled
         turned = lambda a: share * live(a)
-        return self._find(what, "", turned, lowerUpTo, tilts=True)
+        return self._find(what, "", turned, lowerUpTo, tilts=True, gravity=down)
 
     def forces(self, what, unit, loads, lowerUpTo=0):
         """Find the bound of forces that grow together. Returns its entry of run.json.
@@ -98,7 +99,9 @@ class Bounds:
 
         return self._find(what, unit, live, lowerUpTo)
 
-    def _find(self, what, unit, load, lowerUpTo, tilts=False, pushed=None):
+    def _find(
+        self, what, unit, load, lowerUpTo, tilts=False, pushed=None, gravity=None
+    ):
         known = self.entries.get(what)
         if known and not lowerUpTo:
             return known
@@ -121,7 +124,7 @@ class Bounds:
             assembly = limit.read()
             seconds = ASKED if lowerUpTo else UNASKED
             assembly.deadline = time.monotonic() + seconds
-            down = assembly.weights(model.now)
+            down = assembly.weights(gravity or model.now)
             forces = self._forces(assembly, pushed)
             live = load(assembly)
             bound = assembly.largest(live, down + forces)

@@ -222,6 +222,10 @@ def ofScene(name, arguments, usual):
         arguments = (
             []
         )  # of a notebook, or of YADE's importer: these words are not the scene's
+    if isinstance(arguments, str):
+        raise Refused(
+            f"scene {name}: arguments must be a list of words, such as {arguments.split()!r}, got {arguments!r}"
+        )
     if arguments is None or isinstance(arguments, (list, tuple)):
         main = sys.modules.get("__main__")
         own = parser(getattr(main, "__doc__", None), until=None)

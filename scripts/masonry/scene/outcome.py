@@ -58,16 +58,19 @@ class Outcome:
         return pushes[-1] if pushes else []
 
     def _pushRows(self):
-        """The rows of curve.csv that numbers of the push are of: all, if all pushes go along one line."""
+        """The rows of curve.csv that numbers of the push are of: those of the last push, and of those along its line."""
         loads, stages = self._loads(), self.scene.running.at.stages
         pushes = [(number, load[1:]) for number, load in loads if load[0] == "push"]
-        alike = [number for number, names in pushes if names == pushes[-1][1]]
-        if len(alike) == len(pushes):
-            return slice(None)
-        first = max(n for n, names in pushes if names != pushes[-1][1])
-        first, last = min(n for n in alike if n > first), alike[-1]
-        end = stages[last][3] if last < len(stages) else None
-        return slice(stages[first - 1][3], end)
+        if len(pushes) == len(loads) and all(p[1] == pushes[0][1] for p in pushes):
+            return list(range(len(self.results.rows)))
+        others = [number for number, names in pushes if names != pushes[-1][1]]
+        ends = [stage[3] for stage in stages[1:]] + [len(self.results.rows)]
+        return [
+            row
+            for number, names in pushes
+            if number > max(others, default=0)
+            for row in range(stages[number - 1][3], ends[number - 1])
+        ]
 
     def space(self):
         """Bytes that a run writes at least, and those that it will probably write."""
@@ -128,14 +131,14 @@ class Outcome:
     def summary(self):
         """Entries of run.json that follow from the rows."""
         scene, column = self.scene, self.results.column
-        rows = self._pushRows() if self.pushed else slice(None)
         found = dict(collapse=self.results.run.get("collapse"), ended=scene.ended)
         found["answers"] = scene.answers
         found.update(self._ofJoints(column))
         if math.isfinite(scene.factor):
             found["factor"] = scene.factor
         if self.pushed:
-            found.update(self._ofPush(lambda head: column(head)[rows]))
+            rows = self._pushRows()
+            found.update(self._ofPush(lambda head: [column(head)[n] for n in rows]))
             found.update(self._ofCracks(column))
         return found
 
@@ -264,14 +267,14 @@ class Outcome:
                 "label": f"displacement of {target.name}, {height} [mm]",
             },
             "y": [
-                {"column": "base_shear_kN", "label": "base"},
+                {"column": "base_shear_kN", "label": "supports"},
                 {"column": "top_shear_kN", "label": "loaded point"},
             ],
             "y_label": "force along the push [kN]",
             "looped": bool(self.pushed.history),
             "marks": self._marks(),
             "bounds": list(self.scene.bounds.lines(self._pushes())),
-            **self._rowsOf(range(len(self.results.rows))[self._pushRows()]),
+            **self._rowsOf(self._pushRows()),
         }
 
     def _rowsOf(self, rows):
@@ -293,7 +296,7 @@ class Outcome:
                 "x": found[f"displacement_{end}"],
                 "y": found[f"factor_{end}"],
                 "text": f"{what} at {found[f'factor_{end}']:.4g}",
-                "below": True,
+                "below": end == "held",
             }
             for end, what in (("held", "held"), ("not_held", "not held"))
             if found.get(f"displacement_{end}") is not None
@@ -304,7 +307,7 @@ class Outcome:
                 "label": f"displacement of {followed.name} along the load [mm]",
             },
             "y": [{"column": "load_factor", "label": "load"}],
-            "y_label": f"load factor [{self._unitOf(name)}]",
+            "y_label": f"load{' while it grows' * (kind == 'growth')} [{self._unitOf(name)}]",
             "looped": False,
             "marks": marks,
             "bounds": list(self.scene.bounds.linesOf(name)),
@@ -354,8 +357,9 @@ class Outcome:
 
     def _marks(self):
         """Peaks of the push, for the figure."""
-        force = self.results.column("base_shear_kN")
-        moved = self.results.column("displacement_mm")
+        column, rows = self.results.column, self._pushRows()
+        force = [column("base_shear_kN")[n] for n in rows]
+        moved = [column("displacement_mm")[n] for n in rows]
         if not force:
             return []
         ends = [max(range(len(force)), key=force.__getitem__)]

@@ -21,6 +21,7 @@ command line work, ``--help`` explains them: ``--preset``, ``--rate``, ``--set``
 """
 
 import atexit
+import base64
 import functools
 import math
 
@@ -117,7 +118,6 @@ class Scene:
         self.grown = False  # whether presses and dead loads have their whole
         #: whether there is no run, but limit analysis alone
         self.only = arguments.preset == BOUND
-        self._atRest = None  # the last state at rest
         self._entered = False  # whether a ``with`` block ends it
 
     # -- what describes it ----------------------------------------------------------------------------------------
@@ -164,7 +164,7 @@ class Scene:
         """Keep a number of one's own with the answers of the stages: in run.json, on the terminal and as a column of study.csv.
 
         :param name: letters, digits and underscores; another result of this name is replaced
-        :param value: a number, or None if it was not found
+        :param value: a number; None, or what is not a number, if it was not found
         :param unit: ``"-"`` if it has none
         :param how: how it was found, a sentence
         :raises ValueError: with all problems
@@ -177,7 +177,7 @@ class Scene:
         if not self.model:
             problems.append(f"result {name}: it comes after the first stage")
         try:
-            value = None if value is None else float(value)
+            value = None if value is None or value != value else float(value)
         except (TypeError, ValueError):
             problems.append(f"result {name}: value must be a number, got {value!r}")
         else:
@@ -242,6 +242,12 @@ class Scene:
             self._prepare()
         self._noteRows()
         self.running.start(model, self.outcome.space())
+        if self.running.at.atRest:
+            self.model.atRest = base64.b64decode(self.running.at.atRest)
+            loadScene(self.model.atRest)
+            model.motion.restart()
+            self.running.reload()
+        model.loadFactor = self.running.at.loadFactor
         Scene.present = self
         atexit.register(self._remind)
 
@@ -270,25 +276,35 @@ class Scene:
     def keepState(self, ended):
         """Keep the state of a structure that is at rest for :meth:`stepBack`. Returns how the stage ended."""
         if ended == AT_REST and (self.running.advanced or not self.running.resumes):
-            self._atRest = saveScene("null")
+            self.model.atRest = saveScene("null")
+            self.model.motion.restart()
         return ended
 
     def keptAtRest(self, state):
         """Keep a state at rest for :meth:`stepBack`, as ``saveScene`` gave it."""
-        self._atRest = state
+        self.model.atRest = state
+        self.rememberRest()
 
     def stepBack(self):
-        """Take the scene back to its last state at rest, also after a collapse. Rows of curve.csv stay."""
+        """Take the scene back to its last state at rest, also after a collapse. The load that was held then acts again, also the
+        one that a growth or a bracket has found. Rows of curve.csv stay."""
         if self.only:
             return
-        if self._atRest is None:
+        if not self.model or self.model.atRest is None:
             raise ValueError(
                 "stepBack: the scene has not been at rest in this run of the script"
             )
-        loadScene(self._atRest)
+        loadScene(self.model.atRest)
+        if self.running.advanced or not self.running.resumes:
+            self.running.mark()  # else the checkpoint has what is later
         self.running.collapsed, self.ended = False, AT_REST
         self.results.run.pop("collapse", None)
         self.model.motion.restart()
+
+    def rememberRest(self):
+        """Let checkpoints have the last state at rest, for :meth:`stepBack` in a run that is resumed."""
+        if self.model.atRest is not None:
+            self.running.at.atRest = base64.b64encode(self.model.atRest).decode()
 
     def bound(self, target=None, direction=(1, 0, 0), towards=None):
         """Limit analysis of the scene as it stands, with a collapse without dilatancy: see :mod:`masonry.limit`.
@@ -304,6 +320,10 @@ class Scene:
         if (target is None) == (towards is None):
             raise ValueError("bound: give either target or towards")
         self.begin()
+        if self.collapsed:
+            raise ValueError(
+                "bound: the structure has fallen; stepBack() goes back to its last state at rest"
+            )
         if target is not None:
             if not isinstance(target, Target) or not target.loaded:
                 raise ValueError(

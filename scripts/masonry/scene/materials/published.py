@@ -31,6 +31,7 @@ def dryGranite(level, height):
     return Masonry(graniteUnit(), dryGraniteJoints(level, height), brief=True)
 
 
+MOST_FRICTION = 5.0  # [-] of a joint: a larger one is an angle
 #: What stones with dry joints have if nothing else is said.
 DRY = {
     "friction": 0.7,
@@ -58,6 +59,10 @@ def dry(
     :param density: of the stones [kg/m³], default 2600; ``young`` [Pa], default 20e9, and ``poisson`` [-], default 0.2,
         count for deformable stones. Rigid ones have them lumped into the joints
     """
+    if friction is not None and not 0 <= friction <= MOST_FRICTION:
+        raise ValueError(
+            f"dry: friction {friction!r} must be from 0 to {MOST_FRICTION:g}; it is the tangent of the angle"
+        )
     own = dict(
         friction=friction,
         normalStiffness=normalStiffness,

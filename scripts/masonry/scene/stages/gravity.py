@@ -123,6 +123,7 @@ def putOn(scene, name, load, towards, longest, over=0.0):
     running, model, scene.loadUnit = scene.running, scene.model, load.unit
     running.note("lean", load.name)
     follow(scene, f"{name} {[round(v, 9) for v in towards]}", towards)
+    scene.rememberRest()
     at = running.stage(name, Resting())
     if at is None:
         return AT_REST
@@ -137,6 +138,7 @@ def putOn(scene, name, load, towards, longest, over=0.0):
         model.loadFactor = share * at.goal
 
     ended = waitForRest(scene, at, longest or LEANING, growing, over=over)
+    running.at.loadFactor = at.goal
     if ended == AT_REST:
         scene.bounds.hold(load.name, at.goal)
     return ended
@@ -154,7 +156,10 @@ def bracket(scene, carries, low, high, within=0.01):
     """
     if not 0 <= low < high < math.inf:
         raise ValueError(f"bracket: low {low} must be at least 0 and below high {high}")
+    if scene.collapsed:
+        scene.stepBack()
     if not carries(low):
+        scene.stepBack()
         raise ValueError(
             f"bracket: the structure does not carry {low:g}, the lower end"
         )

@@ -29,6 +29,7 @@ KEPT_BYTES = 100e6  # that they may have in all; a checkpoint during the growth 
 #: A block of a trial that is so fast, over one that has fallen, and twice as fast as in the first half of the trial, does not
 #: come to rest [-]: see :meth:`masonry.assembly.motion.Motion.fastest`.
 SURE = 0.25
+FAR = 0.95  # of an exact bound: when less is held, a note says so
 SETTING_OFF = 3.0  # the structure has left rest where its speed is so many times the usual one [-]
 
 
@@ -80,6 +81,7 @@ def grow(scene, name, load, duration, towards, within=WITHIN):
     running, scene.loadUnit = scene.running, load.unit
     running.note("growth", load.name)
     follow(scene, f"stage {running.entered + 1}", towards)
+    scene.rememberRest()
     at = running.stage(name, Growing())
     if at is None:
         return DONE
@@ -91,13 +93,26 @@ def grow(scene, name, load, duration, towards, within=WITHIN):
     within = within if scene.share == 1 else max(within, 0.5)
     search = _Search(scene, at, load, growth.share, within)
     search.run(name)
+    running.at.loadFactor = at.last
     if at.held:
         scene.bounds.hold(load.name, at.held[0])
+        _compare(scene, name, load, at)
     if at.lost and at.held:
         low, high = at.held[0], at.lost[0]
         unit = "" if load.unit == "-" else f" {load.unit}"
         say(f"{name}: held at {low:.4g}{unit}, not held at {high:.4g}{unit}")
     return search.end()
+
+
+def _compare(scene, name, load, at):
+    """Say that much less is held than rigid blocks would carry."""
+    entry = scene.bounds.entries.get(load.name, {})
+    if at.lost and entry.get("exact") and at.held[0] < FAR * entry["factor"]:
+        say(
+            f"note: {name}: rigid blocks would carry {entry['factor']:.4g}, and the run held {100 * (1 - at.held[0] / entry['factor']):.0f} % "
+            "less: joints that are soft let the structure lean before it falls. Try stiffer joints (normalStiffness), and more "
+            "points (--subcontacts, --rows)"
+        )
 
 
 def follow(scene, name, towards):
@@ -173,6 +188,7 @@ class _Growth:
             at.kept = [[0.0, _text(saveScene("null"))]]
         try:
             timed(scene, at, scene.share * self.whole, self._before, self._after)
+            self._put(scene.share)
         except Collapsed as collapse:
             at.fell = str(collapse)
         at.steps, at.last = at.done, model.loadFactor
@@ -186,7 +202,9 @@ class _Growth:
         return self.load.shareOf(factor)
 
     def _before(self, done, beyond):
-        share = min(1.0, 0.5 * (done + beyond) * O.dt / self.whole)
+        self._put(min(1.0, 0.5 * (done + beyond) * O.dt / self.whole))
+
+    def _put(self, share):
         self.load.put(self.load.at(self.at.begun, share))
         self.model.loadFactor = self.load.factor(share)
 

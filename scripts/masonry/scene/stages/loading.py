@@ -32,9 +32,12 @@ GROWS = 2.0  # [s] in which a load grows to its whole
 def _forceOn(scene, target, force, name):
     """The load of a force on a target, in kN along its direction. Raises ValueError."""
     force = checkedForce(scene.description, target, force, name)
-    if not force.norm() > 0:
+    engine = scene.model.forceOf(target)
+    if not force.norm() > 0 and name != "load":
         raise ValueError(f"{name}: force must not be zero")
-    engine, towards = scene.model.forceOf(target), force.normalized()
+    # a load that is taken away keeps its direction
+    along = force if force.norm() > 0 else engine.force
+    towards = along.normalized() if along.norm() > 0 else Vector3.UnitZ
     what = f"load on {target.name} along {nameOf(towards)}"
     return Forces([engine], [1e3 * towards], what, "kN", 1e-3 * force.norm()), towards
 
@@ -47,7 +50,7 @@ def load(scene, target, force, longest=None):
     that the target has, described or put on; it changes within 0.02 s, and longer for tall structures. So
     ``bracket(lambda f: scene.load(target, (0, 0, -f)) == AT_REST, 1e3, 9e3)`` finds the largest that is held.
 
-    :param force: three numbers [N]
+    :param force: three numbers [N]; zeros take the load away
     :param longest: time in the scene after which it is given up [s]; None: 4 s
     :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
     """
@@ -74,7 +77,8 @@ def growLoad(scene, target, force, over=GROWS, within=WITHIN):
 
 def _windOn(scene, pressure, towards, part, name):
     towards = vector(towards, f"{name}: direction")
-    faces = windFaces(scene.description, pressure, towards, part, name)
+    calm = name == "wind" and pressure == 0  # the wind of before ends
+    faces = windFaces(scene.description, pressure or float(calm), towards, part, name)
     towards = math.copysign(1, pressure) * towards.normalized()
     engines = scene.model.windOf(windLabel(towards, part), faces)
     sign = math.copysign(1e3, pressure)
@@ -97,7 +101,8 @@ def wind(scene, pressure, towards, part=None, longest=None):
     Before the first stage :meth:`wind` describes a wind that grows in :meth:`settle`, and to which this one is added. Another
     :meth:`wind` of the same direction and part after the first stage replaces it.
 
-    :param pressure: [Pa]; ``towards`` and ``part``: as before the first stage; ``longest``: as of :meth:`load`
+    :param pressure: [Pa]; 0 takes the wind away; ``towards`` and ``part``: as before the first stage; ``longest``: as of
+        :meth:`load`
     :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
     """
     made, towards = _windOn(scene, pressure, towards, part, "wind")

@@ -18,7 +18,7 @@ OPTIONS = "until", "history", "rate"
 
 
 def peaks(scene, rows):
-    """The largest force at the base, of both directions if the push goes there and back, with the displacement there."""
+    """The largest force at the supports, of both directions if the push goes there and back, with the displacement there."""
     base, top = rows.column("base_shear_kN"), rows.column("top_shear_kN")
     moved = rows.column("displacement_mm")
     if not base or not top or not moved:
@@ -31,12 +31,12 @@ def peaks(scene, rows):
         at = max(range(len(forces)), key=forces.__getitem__)
         ends = peakAtBothEnds([sign * force for force in top], forces)
         how = (
-            f"the largest force at the base; base and loaded point carried at most {ends:.4g} kN at once, and "
-            f"{100 * dynamicImbalance(top, base):.1f} % of the force did not reach the base on the way there. How far rate, "
+            f"the largest force at the supports; supports and loaded point carried at most {ends:.4g} kN at once, and "
+            f"{100 * dynamicImbalance(top, base):.1f} % of the force did not reach the supports on the way there. How far rate, "
             "mesh and points change it is not known from one run"
         )
         found.append(Answer(name, "kN", sign * forces[at], how))
-        how = "displacement of the pushed point where the base carried most"
+        how = "displacement of the pushed point where the supports carried most"
         found.append(Answer(f"displacement_at_{name}", "mm", moved[at], how))
     return found
 

@@ -234,7 +234,7 @@ def tooFast(args, imbalance):
     slower = f"--rate {float(f'{args.rate * IMBALANCE / imbalance:.2g}'):g}"
     cure = "--damping-kind combined" if args.damping_kind == "local" else slower
     return (
-        f"warning: the push is too fast: {100 * imbalance:.0f} % of the force does not reach the base, "
+        f"warning: the push is too fast: {100 * imbalance:.0f} % of the force does not reach the supports, "
         f"more than {100 * IMBALANCE:.0f} % spoil the peak; {cure} would do"
     )
 

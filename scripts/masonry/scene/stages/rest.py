@@ -104,7 +104,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True):
         missing, moving = model.unrest()
         say(
             f"note: the structure is not at rest after {at.done * O.dt:.2f} s: {100 * missing:.2f} % of the load is "
-            f"missing at the supports, kinetic over elastic energy is {moving:.1e}"
+            f"missing at the supports, kinetic over elastic energy is {moving:.1e}; longest=... [s] waits longer"
         )
     scene.ended = AT_REST if at.quiet == LOOKS else MOVING
     if record:

@@ -52,7 +52,12 @@ def answersText(answers):
     each other, as the trials of a bracket, have one line.
     """
     searches = lambda one: one["name"] in ("factor_held", "factor_not_held")
-    alike = lambda one: (one["stage"], one["unit"]) if searches(one) else None
+    trial = (
+        lambda one: one["stage"] in ("lean", "load", "wind", "press") or one["number"]
+    )
+    alike = (
+        lambda one: (one["stage"], trial(one), one["unit"]) if searches(one) else None
+    )
     shown = [a for a in answers if not a["name"].startswith("displacement_held")]
     shown = [a for a in shown if not a["name"].startswith("displacement_not_held")]
     for kind, group in itertools.groupby(shown, alike):
@@ -153,28 +158,48 @@ def _carryOut(scene, act, traits, args, settings):
         if not running.advanced:
             scene.script.compare(running.scriptBefore)
         if scene.collapsed:
+            say(
+                f"note: {name} is left out, because the structure has fallen; stepBack() takes it to its last state at rest"
+            )
             return COLLAPSED
         if scene.only and not traits.bounded:
             say(f"note: --preset bound: no run, {name} is left out")
             return DONE
         before = running.entered
         running.loading = traits.grows and not scene.grown
+        number = str(before + 1)
+        if number in running.at.ended and not traits.farther:
+            running.over = before + 1
         ended = act(scene, *args, **settings)
+        if running.resumes and running.leftOut(before):
+            return _asBefore(scene, running.at.ended.get(number, ended))
+        running.at.ended = {**running.at.ended, number: ended}
         _answer(scene, name, traits, before)
         return ended
     except Collapsed as collapse:
         scene.ended = COLLAPSED
+        running.at.ended = {**running.at.ended, str(before + 1): COLLAPSED}
         running.fall(str(collapse))
         try:
             if running.recordedAt() != O.time:
                 running.record()
             running.flush()
+            running.markFall()
         except FloatingPointError:
             pass  # what has fallen may have left finite numbers
         _answer(scene, name, traits, before)
         return COLLAPSED
     except BaseException as error:
         return scene.failed(error)
+
+
+def _asBefore(scene, ended):
+    """What a stage returns that was over before the run was resumed: how it ended then."""
+    running = scene.running
+    if ended == COLLAPSED:
+        running.collapsed, running.results.run["collapse"] = True, running.at.fall
+    scene.ended = ended
+    return ended
 
 
 def _answer(scene, name, traits, before):

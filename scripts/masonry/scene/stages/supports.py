@@ -16,7 +16,7 @@ from .timed import Timed, checkedRate, timed
 def release(scene, target, axes, force=None):
     """Take a support away, or let the drive of a platen go. What follows is the next stage's, for example ``settle``.
 
-    :param target: a brick or platen that is held, or a platen with a drive
+    :param target: a brick or platen that is held, a platen with a drive, or what a push has left under its drive
     :param axes: along which it becomes free, some of xyz, and about which, XYZ
     :param force: three numbers [N] of a load that stays in place of a drive; None: none
     """
@@ -56,8 +56,9 @@ def letGo(scene, target, axes, force):
     state = O.bodies[target.body].state
     if plane:  # nothing moves along the others
         axes = "".join(a for a in axes if a in "xzY") or axes
+    driven = any(model.driveOf(target, a) or model.pushOf(target, a) for a in axes)
     for axis in axes:
-        drive = model.driveOf(target, axis)
+        drive = model.driveOf(target, axis) or model.pushOf(target, axis)
         if drive:
             drive.driven, drive.velocity = False, 0
             drive.force = vector(force or (0, 0, 0), "release: force [N]")
@@ -65,7 +66,7 @@ def letGo(scene, target, axes, force):
             state.blockedDOFs = state.blockedDOFs.replace(axis, "")
         else:
             problems.append(f"release: {target.name} is not held along {axis}")
-    if force is not None and not any(model.driveOf(target, a) for a in axes):
+    if force is not None and not driven:
         problems.append("release: only in place of a drive a force can stay")
     if problems:
         raise ValueError("\n".join(problems))
