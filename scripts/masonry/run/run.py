@@ -193,7 +193,7 @@ class Run:
             hold. Checkpoints keep it.
         """
         self.entered += 1
-        if self.leftOut(self.entered - 1):
+        if self.wasOver(self.entered - 1):
             return None
         if self.entered == self.at.number:
             if self.at.stage != name:
@@ -378,7 +378,7 @@ class Run:
         """Whether steps of the stages after this number were taken, and not left out because they were over before."""
         return self.entered > before and self.entered >= self.at.number
 
-    def leftOut(self, before):
+    def wasOver(self, before):
         """Whether the stage after this number was over before the run was resumed."""
         if self.entered <= before or self.advanced or not self._saved:
             return False

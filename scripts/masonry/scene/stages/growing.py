@@ -29,6 +29,8 @@ KEPT_BYTES = 100e6  # that they may have in all; a checkpoint during the growth 
 #: A block of a trial that is so fast, over one that has fallen, and twice as fast as in the first half of the trial, does not
 #: come to rest [-]: see :meth:`masonry.assembly.motion.Motion.fastest`.
 SURE = 0.25
+#: How trials end that are not held.
+WHY = "it fell", "it moved faster and faster", f"it was still moving after {TRIAL:g} s"
 FAR = 0.95  # of an exact bound: when less is held, a note says so
 SETTING_OFF = 3.0  # the structure has left rest where its speed is so many times the usual one [-]
 
@@ -50,12 +52,9 @@ class Growing(Timed):
     over: int = 0  # 1 when it has ended, and only the last state at rest is kept
     trials: list = ()
     held: list = None  # factor and displacement [mm] of the largest load that was held
-    lost: list = (
-        None  # of the smallest that was not, and 1 if that trial began at rest, else 0
-    )
-    climbs: int = (
-        0  # trials above a load that was not held when it grew, but is held from rest
-    )
+    #: Of the smallest that was not, 1 if that trial began at rest, else 0, and how it ended: a number of WHY.
+    lost: list = None
+    climbs: int = 0  # trials above a load that was not held when it grew, but is held from rest
     heldState: str = ""  # at rest under the load that was held
     # -- of the present trial
     goal: float = -1.0  # its factor [-], or below 0 if none is going on
@@ -63,6 +62,7 @@ class Growing(Timed):
     calm: int = 0  # 1 if that state is at rest, else 0
     taken: int = 0  # steps so far
     quiet: int = 0  # looks that found the structure at rest, one after the other
+    ended: int = 0  # how the last one ended that was not held: a number of WHY
     marks: list = ()  # velocities after 1, 2, 4, ... looks [-]
 
 
@@ -82,6 +82,7 @@ def grow(scene, name, load, duration, towards, within=WITHIN):
     running.note("growth", load.name)
     follow(scene, f"stage {running.entered + 1}", towards)
     scene.rememberRest()
+    _noteDrives(scene, name)
     at = running.stage(name, Growing())
     if at is None:
         return DONE
@@ -100,8 +101,21 @@ def grow(scene, name, load, duration, towards, within=WITHIN):
     if at.lost and at.held:
         low, high = at.held[0], at.lost[0]
         unit = "" if load.unit == "-" else f" {load.unit}"
-        say(f"{name}: held at {low:.4g}{unit}, not held at {high:.4g}{unit}")
+        say(
+            f"{name}: held at {low:.4g}{unit}, not held at {high:.4g}{unit} ({WHY[at.lost[3]]})"
+        )
     return search.end()
+
+
+def _noteDrives(scene, name):
+    """Say which bricks a push has left under its drive."""
+    for target in scene.targets.values():
+        along = [a for a in "xyz" if scene.model.pushOf(target, a)]
+        if along and target.brick is not None:
+            say(
+                f"note: {name}: the drive of a push holds {target.name} along {', '.join(along)}, without numerical damping, so "
+                f"trials may come to rest late or not at all; release({target.name}, {''.join(along)!r}) lets it go"
+            )
 
 
 def _compare(scene, name, load, at):
@@ -140,7 +154,8 @@ def found(scene, rows):
         if at.trials:
             least = min(factor for factor, _ in at.trials)
             held += f", of {len(at.trials)} from {least:.4g} on"
-    lost = f"the smallest load factor under which it did not come to rest; {what}"
+    why = f": {WHY[at.lost[3]]}" if at.lost else ""
+    lost = f"the smallest load factor under which it did not come to rest{why}; {what}"
     if at.lost is None:
         lost = f"the load ended at {at.last:.4g} while the structure stood"
     return ends(scene, at.held, held, at.lost, lost)
@@ -248,7 +263,7 @@ class _Search:
                 if at.lost and at.goal >= at.lost[0]:
                     at.lost, at.climbs = None, 1
             elif at.lost is None or at.goal < at.lost[0] or at.calm:
-                at.lost = [*end, at.calm]
+                at.lost = [*end, at.calm, at.ended]
             at.trials = [*at.trials, [at.goal, int(held)]]
             at.goal = -1.0
             self._show(name)
@@ -296,7 +311,7 @@ class _Search:
         if chosen or at.held is None:
             return chosen
         if at.lost is None:
-            at.lost = [at.last, 1e3 * self._alongThen(), 0]
+            at.lost = [at.last, 1e3 * self._alongThen(), 0, 0]
         width = self.within * max(at.lost[0], LEAST * at.last)
         if at.lost[0] - at.held[0] > width:
             return self._fromRest(0.5 * (at.held[0] + at.lost[0]))
@@ -363,13 +378,18 @@ class _Search:
                 at.taken += EVERY
                 model.motion.checkFall()
             except Collapsed:
+                at.ended = 0
                 return False
             missing, moving = model.unrest()
             rests = abs(missing) < REST and moving < CALM and x == 1
             at.quiet = at.quiet + 1 if rests else 0
             if at.quiet == LOOKS:
                 return True
-            if at.taken >= most or self._accelerates(model.motion.fastest()):
+            if self._accelerates(model.motion.fastest()):
+                at.ended = 1
+                return False
+            if at.taken >= most:
+                at.ended = 2
                 return False
 
     def _accelerates(self, speed):

@@ -171,7 +171,7 @@ def _carryOut(scene, act, traits, args, settings):
         if number in running.at.ended and not traits.farther:
             running.over = before + 1
         ended = act(scene, *args, **settings)
-        if running.resumes and running.leftOut(before):
+        if running.resumes and running.wasOver(before):
             return _asBefore(scene, running.at.ended.get(number, ended))
         running.at.ended = {**running.at.ended, number: ended}
         _answer(scene, name, traits, before)
