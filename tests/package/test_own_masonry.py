@@ -267,3 +267,15 @@ def test_a_wall_has_the_modulus_of_its_masonry(tmp_path):
     scene.finish()
     strain = (moved[0] - moved[1]) / (0.6375 - 0.1125)
     assert 0.4e6 / strain == pytest.approx(CLAY["E"], rel=0.01)
+
+
+def test_bricks_of_another_course_than_that_of_the_joints_are_noted(tmp_path, capsys):
+    for name, size in (("same", SIZE), ("other", (0.25, 0.12, 0.09))):
+        wall = bricks.Wall(2 * (size[0] + 0.01), 2 * (size[2] + 0.01), unit=size, joint=0.01)  # fmt: skip
+        words = ["--lean", "--out", str(tmp_path / name)]
+        scene = Scene(name, wall, clay(), arguments=words)
+        scene.platen("bottom")
+        scene.settle()
+        said = capsys.readouterr().out
+        assert ("the joints are for courses of 75 mm" in said) == (name == "other")
+        scene.finish()

@@ -241,6 +241,7 @@ class Scene:
             model.build(loadingBlock())
             self._prepare()
         self._noteRows()
+        self._noteCourse()
         self.running.start(model, self.outcome.space())
         if self.running.at.atRest:
             self.model.atRest = base64.b64decode(self.running.at.atRest)
@@ -250,6 +251,17 @@ class Scene:
         model.loadFactor = self.running.at.loadFactor
         Scene.present = self
         atexit.register(self._remind)
+
+    def _noteCourse(self):
+        """Say that the bricks are not those for which the stiffness of the joints was made."""
+        course, bricks = self.description.materials.course, self.description.bricks
+        heights = {max(p[2] for p in b.corners) - min(p[2] for p in b.corners) for b in bricks}  # fmt: skip
+        if course and not any(abs(h - course) < 0.01 * course for h in heights):
+            found = ", ".join(f"{1e3 * h:.4g}" for h in sorted(heights)[:5])
+            say(
+                f"note: the joints are for courses of {1e3 * course:.4g} mm, mortar included, and the bricks have {found} mm: "
+                "give bricks the same unit= and joint= as the materials"
+            )
 
     def _noteRows(self):
         """Say that three rows of points are few where bonded joints bend out of a plane."""

@@ -34,8 +34,8 @@ def platen(
     :param height: [m]
     :param name: in curve.csv; None: base and top
     :param point: (x, y, z) [m] on which loads act; None: the middle of the platen's outer side
-    :param guided: axes along which the one at the top cannot move: ``"x"``, ``"y"`` or ``"xy"``; its top support then
-        carries horizontal force
+    :param guided: axes along which the middle of the one at the top cannot move: ``"x"``, ``"y"`` or ``"xy"``; its top
+        support then carries horizontal force
     :param part: name of a part of the bricks; the platen is over this part alone. None: over all
     :param upTo: z of its outer side [m], in place of ``height``: where a testing machine pushes
     :param recorded: z of the point whose displacement is recorded [m], on the line through ``point``; None: that of

@@ -355,7 +355,7 @@ def masonry(
         ] = "unit_ft was not given: bricks do not crack"
     brick = MasonryMat(label="brick", young=unit_E, poisson=poisson, density=density)
     usual = {} if "poisson" in given else {"poisson": "usual for masonry units"}
-    return Masonry(state(brick, **usual), joints)
+    return Masonry(state(brick, **usual), joints, course=height)
 
 
 def _problems(given):

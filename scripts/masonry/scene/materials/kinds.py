@@ -65,6 +65,8 @@ class Masonry:
     #: What :meth:`vary` was given: joint, property, function and step.
     varied: list = field(default_factory=list)
     brief: bool = False
+    #: Height of a course for which the stiffness of the joints was made [m]; None: for any.
+    course: float = None
 
     def __post_init__(self):
         problems = []
@@ -176,6 +178,7 @@ class Masonry:
             self.choose,
             [*self.varied],
             self.brief,
+            self.course,
         )
         own._follow()
         for text in args.field:

@@ -54,7 +54,8 @@ class Growing(Timed):
     held: list = None  # factor and displacement [mm] of the largest load that was held
     #: Of the smallest that was not, 1 if that trial began at rest, else 0, and how it ended: a number of WHY.
     lost: list = None
-    climbs: int = 0  # trials above a load that was not held when it grew, but is held from rest
+    #: Trials above a load that was not held when it grew, but is held from rest.
+    climbs: int = 0
     heldState: str = ""  # at rest under the load that was held
     # -- of the present trial
     goal: float = -1.0  # its factor [-], or below 0 if none is going on
