@@ -517,6 +517,10 @@ class Structure:
         applied, carried = self.applied(), self.carried()
         if self.description.plane:
             applied[1] = carried[1] = 0
-        missing = (applied + carried).norm() / (applied.norm() or 1.0)
+        size = applied.norm()
+        loads = sum(load.force.norm() for n, load in self.loads.items() if n != "push")
+        if size < 1e-6 * loads:  # loads that balance each other
+            size = loads
+        missing = (applied + carried).norm() / (size or 1.0)
         moving = abs(energy["kinetic"])
         return missing, moving / elastic if elastic else math.inf

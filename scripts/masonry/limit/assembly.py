@@ -207,7 +207,9 @@ class Assembly:
             left = self.deadline - time.monotonic()
             values, dual = solve(programme, cost, loads, left)
             if most is None and values[last] / step > self._endless(live, dead):
-                raise Unsolved("it has no end")
+                raise Unsolved(
+                    "no largest load was found; is a joint so strong that it never fails?"
+                )
         except Unsolved as unsolved:
             if most is not None:
                 raise

@@ -195,7 +195,7 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     p.add_argument(
         "--quick",
         action="store_true",
-        help="a tenth of every displacement and time, and wide brackets, to see whether the scene works",
+        help="a tenth of every displacement, time and load that grows, and wide brackets, to see whether the scene works",
     )
     p.add_argument(
         "--no-vtk",

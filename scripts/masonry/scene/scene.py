@@ -106,7 +106,7 @@ class Scene:
         self.model = self.bounds = self.outcome = None  # when it is built
         self.columns = []  # of curve.csv, when it is built
         self.finished = False
-        #: of displacements and times [-]
+        #: of displacements, times and loads that grow [-]
         self.share = 0.1 if arguments.quick else 1.0
         self.ended = None  # how the last stage ended
         self.assumed = (

@@ -103,7 +103,7 @@ def grow(scene, name, load, duration, towards, within=WITHIN):
         low, high = at.held[0], at.lost[0]
         unit = "" if load.unit == "-" else f" {load.unit}"
         say(
-            f"{name}: held at {low:.4g}{unit}, not held at {high:.4g}{unit} ({WHY[at.lost[3]]})"
+            f"{name}: held at {low:.5g}{unit}, not held at {high:.5g}{unit} ({WHY[at.lost[3]]})"
         )
     return search.end()
 
