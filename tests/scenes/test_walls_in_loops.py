@@ -170,7 +170,7 @@ def test_figures_and_measures_show_both_sides(looped, monkeypatch, capsys):
     for bounds, name in ((top.get_xlim(), "displacement_mm"), (top.get_ylim(), "base_shear_kN")):  # fmt: skip
         assert bounds[0] < data[name].min() < 0 < data[name].max() < bounds[1]
     lines = {line.get_label(): line for line in top.lines}
-    assert lines["envelope"].get_linewidth() > lines["base"].get_linewidth()
+    assert lines["envelope"].get_linewidth() > lines["supports"].get_linewidth()
     assert len(shown) == 2  # and cracks.png
 
     numbers = measure.measure(str(looped))

@@ -72,7 +72,6 @@ class Run:
         #: whether that lets the dead loads grow, and is no test yet
         self.loading = False
         self._memory = SimpleNamespace()  # of that stage
-        self._savedIn = 0  # number of the stage in which the checkpoint was made
         self._live = None  # adds a row to yade.plot
         self._readings = []  # rows that are not in curve.csv yet
         self._safe = None  # what a checkpoint keeps, None while steps are taken
@@ -107,7 +106,6 @@ class Run:
                     f"--resume: {args.resume} holds a run of {self._saved.scene}, this is {self.name}"
                 )
             self.at = self._saved.place()
-            self._savedIn = self.at.number
         for number in (signal.SIGINT, signal.SIGTERM):
             self._handlers[number] = signal.signal(number, self._interrupt)
         self.preset = presetOf(args, self.name)
@@ -170,8 +168,8 @@ class Run:
     def takeUp(self):
         """From here on files are written; those of a run that is resumed are cut back to its checkpoint."""
         if self._saved:
-            # what the stage did before it advanced was done before the steps that the checkpoint has
-            if self.entered == self._savedIn != self.over:
+            # what the stage did before it advanced was done before these steps
+            if self.at.left:
                 self._saved.load()
             try:
                 self.results.takeUp(
