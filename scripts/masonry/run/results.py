@@ -71,8 +71,10 @@ A run that pushes, leans or tilts has these, if limit analysis (:mod:`masonry.li
 
 A run with a push has these, too:
 
-- ``peak_base_shear_kN``, ``displacement_at_peak_mm``: the largest force along the push at all that is held, and where it is reached
-- ``peak_at_both_ends_kN``: the largest force that the loaded point and the supports carried at once (:func:`masonry.read.curves.peakAtBothEnds`)
+- ``peak_base_shear_kN``, ``displacement_at_peak_mm``: the largest force along the push at all that
+  is held, and where it is reached
+- ``peak_at_both_ends_kN``: the largest force that the loaded point and the supports carried at once
+  (:func:`masonry.read.curves.peakAtBothEnds`)
 - ``base_shear_end_kN``, ``displacement_end_mm``: the last row
 - ``initial_stiffness_kN_per_mm``: as :func:`masonry.read.curves.initialStiffness` fits it
 - ``displacement_at_first_crack_mm``: where the first crack of the push is seen: the first row at which the joints have

@@ -109,9 +109,8 @@ class Scene:
         #: of displacements, times and loads that grow [-]
         self.share = 0.1 if arguments.quick else 1.0
         self.ended = None  # how the last stage ended
-        self.assumed = (
-            []
-        )  # of the materials, when the scene is built: an entry of run.json
+        #: what was not given of the materials, when the scene is built: an entry of run.json
+        self.assumed = []
         self.pushed = None  # options of the last push
         self.loadUnit = "-"  # of the load that a stage put on or let grow last
         self.replaced = False  # whether --until or --history have been used

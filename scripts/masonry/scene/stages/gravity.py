@@ -6,13 +6,12 @@ import math
 from ...assembly.blocks import vector
 from ..bounds import nameOfLean
 from .acting import Acceleration, Tilting
-from .growing import WITHIN, ends, follow, found, grow
+from .growing import TRIAL, WITHIN, ends, follow, found, grow
 from .rest import Resting, waitForRest
 from .stage import AT_REST, MOVING, stage
 from .timed import checkedRate
 
 LEAN_GROWS = 0.2  # [s] in which a lean grows
-LEANING = 4.0  # [s] after which a lean is given up
 
 
 def putOnAnswers(scene, rows):
@@ -117,7 +116,7 @@ def putOn(scene, name, load, towards, longest, over=0.0):
     :param name: of the stage
     :param load: :class:`masonry.scene.stages.acting.Acting`
     :param towards: direction along which displacements are counted
-    :param longest: time in the scene after which it is given up [s]; None: :data:`LEANING`
+    :param longest: time in the scene after which it is given up [s]; None: :data:`masonry.scene.stages.growing.TRIAL`
     :param over: time in which it grows at least [s]
     """
     running, model, scene.loadUnit = scene.running, scene.model, load.unit
@@ -137,7 +136,7 @@ def putOn(scene, name, load, towards, longest, over=0.0):
         load.put([was + share * (end - was) for was, end in zip(first, ends)])
         model.loadFactor = share * at.goal
 
-    ended = waitForRest(scene, at, longest or LEANING, growing, over=over)
+    ended = waitForRest(scene, at, longest or TRIAL, growing, over=over)
     running.at.loadFactor = at.goal
     if ended == AT_REST:
         scene.bounds.hold(load.name, at.goal)

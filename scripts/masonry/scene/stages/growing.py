@@ -89,11 +89,10 @@ def grow(scene, name, load, duration, towards, within=WITHIN):
         return DONE
     if at.begun is None:
         at.begun = load.now()
-    growth = _Growth(scene, at, load, duration)
     if at.last < 0:
-        growth.run()
+        _Growth(scene, at, load, duration).run()
     within = within if scene.share == 1 else max(within, 0.5)
-    search = _Search(scene, at, load, growth.share, within)
+    search = _Search(scene, at, load, within)
     search.run(name)
     running.at.loadFactor = at.last
     if at.held:
@@ -210,12 +209,8 @@ class _Growth:
         at.steps, at.last = at.done, model.loadFactor
         try:
             at.lastState = _text(saveScene("null"))
-        except ValueError:  # what has fallen may have left finite numbers
+        except ValueError:  # a number of what has fallen may no longer be finite
             at.lastState = at.kept[-1][1]
-
-    def share(self, factor):
-        """Share of the growth at which the load has a factor, for loads that grow evenly or turn."""
-        return self.load.shareOf(factor)
 
     def _before(self, done, beyond):
         self._put(min(1.0, 0.5 * (done + beyond) * O.dt / self.whole))
@@ -239,9 +234,8 @@ class _Growth:
 class _Search:
     """The search for the largest load that is held, trial by trial."""
 
-    def __init__(self, scene, at, load, share, within):
-        self.scene, self.at, self.load = scene, at, load
-        self.share, self.within = share, within
+    def __init__(self, scene, at, load, within):
+        self.scene, self.at, self.load, self.within = scene, at, load, within
         self.model, self.running = scene.model, scene.running
 
     def run(self, name):
@@ -372,7 +366,7 @@ class _Search:
         while True:
             x = min(1.0, (at.taken + EVERY) / growing)
             factor = at.source + x * x * (3 - 2 * x) * (at.goal - at.source)
-            self.load.put(self.load.at(at.begun, self.share(factor)))
+            self.load.put(self.load.at(at.begun, self.load.shareOf(factor)))
             model.loadFactor = factor
             try:
                 self.running.advance(EVERY)

@@ -76,6 +76,7 @@ def growLoad(scene, target, force, over=GROWS, within=WITHIN):
 
 
 def _windOn(scene, pressure, towards, part, name):
+    """The load of a wind, in kPa, and its direction. Raises ValueError."""
     towards = vector(towards, f"{name}: direction")
     calm = name == "wind" and pressure == 0  # the wind of before ends
     faces = windFaces(scene.description, pressure or float(calm), towards, part, name)
@@ -126,13 +127,14 @@ def growWind(scene, pressure, towards, part=None, over=GROWS, within=WITHIN):
 
 
 def _pressOn(scene, platen, stress, name):
+    """The load of a press, in MPa. Raises ValueError."""
     checkPress(platen, stress, name)
     if not stress > 0:
         raise ValueError(f"{name}: stress {stress!r} must be above 0 Pa")
     engine, area = scene.model.pressOf(platen)
     down = -1e6 * area * Vector3.UnitZ
     what = f"press of {platen.name}"
-    return engine, area, Forces([engine], [down], what, "MPa", 1e-6 * stress)
+    return Forces([engine], [down], what, "MPa", 1e-6 * stress)
 
 
 @stage(bounded=True, answers=putOnAnswers)
@@ -145,7 +147,7 @@ def press(scene, platen, stress, longest=None):
     :param longest: as of :meth:`load`
     :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
     """
-    engine, area, made = _pressOn(scene, platen, stress, "press")
+    made = _pressOn(scene, platen, stress, "press")
     made.beside = [0, 0, scene.model.weightOf(platen)]
     return _putOn(scene, "press", made, -Vector3.UnitZ, longest)
 
@@ -160,7 +162,7 @@ def growPress(scene, platen, stress, over=GROWS, within=WITHIN):
     :param within: as of :meth:`tilt`
     :returns: as of :meth:`tilt`; the unit of ``scene.factor`` is MPa
     """
-    engine, area, made = _pressOn(scene, platen, stress, "growPress")
+    made = _pressOn(scene, platen, stress, "growPress")
     return _grow(scene, "growPress", made, -Vector3.UnitZ, over, within)
 
 
