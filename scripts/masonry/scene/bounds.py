@@ -10,6 +10,7 @@ import os
 import time
 
 import numpy as np
+from yade import O
 
 from .. import limit
 from ..basics import GRAVITY, Refused, say
@@ -36,6 +37,7 @@ class Bounds:
     def __init__(self, model, place):
         self.model, self.place = model, place
         self.last = None  # what was found last: limit.Bound and its entry
+        self._beside = {}  # what acted and held when a bound was found, by the load
 
     @property
     def entries(self):
@@ -102,10 +104,14 @@ class Bounds:
     def _find(
         self, what, unit, load, lowerUpTo, tilts=False, pushed=None, gravity=None
     ):
-        known = self.entries.get(what)
-        if known and not lowerUpTo:
+        known, model = self.entries.get(what), self.model
+        beside = self._acting(gravity or model.now)
+        same = self._beside.setdefault(what, beside) == beside
+        if known and same and not lowerUpTo:
             return known
-        model = self.model
+        if not same:  # what was held before was held beside other loads
+            self._beside[what] = beside
+            self.place.held = {k: v for k, v in self.place.held.items() if k != what}
         entry = self.entries[what] = {"load": what, "unit": unit}
         if self.place.supportsMoved:
             reason = (
@@ -143,6 +149,12 @@ class Bounds:
             entry["note"] = str(refused)
             say(f"note: {refused}")
         return entry
+
+    def _acting(self, gravity):
+        """What acts beside a load and what holds the structure now: data that can be compared."""
+        loads = [(load.body, tuple(force), load.driven) for load, force in self.model.deadLoads()]  # fmt: skip
+        held = [O.bodies[target.body].state.blockedDOFs for target in self.model.held]
+        return tuple(gravity), tuple(loads), tuple(held)
 
     def _forces(self, assembly, pushed):
         """Presses, dead loads and wind with their whole, and props at the points that drives hold.
