@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from masonry import AT_REST, MasonryVtkRecorder, Scene, bricks, materials
+from masonry import AT_REST, MasonryVtkRecorder, Scene, bricks, engine, materials
 from masonry._masonry import loadScene, saveScene
 from masonry.basics import GRAVITY, Refused
 from masonry.read.files import readCurve, readRun
@@ -166,7 +166,8 @@ def test_damping_of_joints_is_a_part_of_what_they_transmit(tmp_path, scene):
     wall.press(top, 0.1e6)
     foot = wall.section(0)
     wall.settle()
-    wall.model.dampJoints(1e-4)
+    engine("joints").stiffnessDamping = 1e-4
+    wall.model.chooseTimeStep()
     wall.push(top, 0.02, rate=50)
     felt = O.forces.f(base.body, True)
     assert (foot.forces()[0] - felt).norm() < 1e-6 * felt.norm()

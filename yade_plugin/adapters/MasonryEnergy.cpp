@@ -58,8 +58,8 @@ void MasonryEnergy::watchOver(SceneStore& store) {
         if (anew) throw std::runtime_error("unstable: " + masonry::described(store, limit));
     }
     if (!tenth) return;
-    if (scene->iter % SceneStore::collapseEvery == 0) stopIfCollapsed(store);
-    if (scene->iter % 1000 == 0 && scene->iter > 0) warnOfBalance(store);
+    // The step is finished first, so that the energies belong to one instant.
+    if (scene->iter % SceneStore::collapseEvery == 0) store.endsWith = findCollapse(store);
     const auto all = inventory(store);
     const double motion = std::abs(all.moving);
     if (!std::isfinite(motion)) {
@@ -79,25 +79,51 @@ void MasonryEnergy::watchOver(SceneStore& store) {
     }
 }
 
-void MasonryEnergy::stopIfCollapsed(SceneStore& store, const std::string& besides) {
+std::string MasonryEnergy::findCollapse(SceneStore& store) {
     const auto found = store.findCollapse({turnLimit, slideLimit, closureLimit, openingLimit});
     collapsedBlock = found.block;
     collapse = found.what;
-    if (found.block < 0) return;
-    throw std::runtime_error("collapsed: " + found.what + (besides.empty() ? "" : ". Besides, " + besides));
+    return found.block < 0 ? "" : "collapsed: " + found.what;
 }
 
-// A look costs less than a step, and is made every thousandth.
-void MasonryEnergy::warnOfBalance(const SceneStore& store) {
-    if (warned) return;
-    const auto balance = presentBalance(store);
-    if (!(std::abs(balance.error) > 0.01)) return;
+void MasonryEnergy::stopIfCollapsed(SceneStore& store, const std::string& besides) {
+    const auto found = findCollapse(store);
+    if (!found.empty()) throw std::runtime_error(found + (besides.empty() ? "" : ". Besides, " + besides));
+}
+
+namespace {
+
+double sumOf(const Energies& energies) { return energies.tension + energies.shear + energies.compression; }
+
+} // namespace
+
+// In a step this engine finds the joints of the step, but the ledger of the step before. So it keeps the energies of
+// the joints in every thousandth step, and compares them in the next one with the ledger, which then belongs to the
+// same instant. This costs less than a step.
+void MasonryEnergy::lookAtBalance(const SceneStore& store) {
+    const double lossOfLoop = store.loop ? store.loop->dampingWork : 0;
+    if (stepThen >= 0 && scene->iter == stepThen + 1) {
+        const auto all = inventory(store);
+        const double in = all.work + all.falls;
+        const double out = all.moving + all.drag - lossOfLoop + all.inUnits + jointsThen;
+        const double size = std::max(std::abs(all.work) + std::abs(all.falls), std::abs(out));
+        if (size > 0) warnOfBalance(std::abs(in - out) / size);
+    }
+    if (scene->iter % 1000 != 0 || scene->iter == 0) return;
+    const auto now = presentBalance(store);
+    jointsThen = sumOf(now.stored) + sumOf(now.dissipated) + lossOfLoop;
+    stepThen = int(scene->iter);
+}
+
+void MasonryEnergy::warnOfBalance(double error) {
+    if (!(error > 0.01 && error > 2 * reportedError)) return;
     warned = true;
-    std::cerr << "warning: at step " + std::to_string(scene->iter) + " the energy balance is off by " +
-                     text(std::round(1000 * std::abs(balance.error)) / 10) +
+    reportedError = error;
+    std::cerr << "warning: at step " + std::to_string(stepThen) + " the energy balance is off by " +
+                     text(std::round(1000 * error) / 10) +
                      " % of the work done: a smaller time step, slower loading or more damping helps; what a script "
-                     "does between steps to places, velocities and forces is not counted (this is reported once, see "
-                     "MasonryEnergy.balance())\n"
+                     "does between steps to places, velocities and forces is not counted (this is reported again if "
+                     "it becomes twice as large, see MasonryEnergy.balance())\n"
               << std::flush;
 }
 
@@ -143,8 +169,15 @@ void MasonryEnergy::given() {
 void MasonryEnergy::action() {
     const EngineTurn turn(*scene, *this);
     if (!begun) countPresentMotion(turn.store());
-    if (watch) watchOver(turn.store());
-    if (turn->integrator) return; // MasonryIntegrator counts the energies of rigid bodies itself
+    if (watch) {
+        lookAtBalance(turn.store());
+        watchOver(turn.store());
+    }
+    if (!turn->integrator) countBodies(turn); // MasonryIntegrator counts the energies of rigid bodies itself
+    turn.end();
+}
+
+void MasonryEnergy::countBodies(const EngineTurn& turn) {
     const Vector3r gravity = turn->gravity();
     const BodyDamping damping{turn->damping(), turn->hostIntegrator != nullptr, nullptr};
     auto& forces = scene->forces();

@@ -9,6 +9,7 @@
 
 namespace masonry {
 
+class EngineTurn;
 class SceneStore;
 
 class MasonryEnergy : public Adapter<MasonryEnergy, yade::GlobalEngine>, public EnergyLedger, public GravityWork {
@@ -26,7 +27,8 @@ public:
         "that begins with 'unstable:' or 'numbers'. A collapse ends it with an error that begins with 'collapsed:': a "
         "block has turned, slid, been crushed or gone away so far that the joints, whose geometry is that of the "
         "reference state, mean nothing any more; see turnLimit, slideLimit, closureLimit and openingLimit. An energy "
-        "balance that is off by more than 1 % of the work done is reported once, on the terminal's error stream.";
+        "balance that is off by more than 1 % of the work done is reported on the terminal's error stream, and again "
+        "if it becomes twice as large.";
 
     // See attributes() for the meaning and unit of each. Users set `watch` and the limits only.
     bool watch = true;
@@ -37,6 +39,9 @@ public:
     int collapsedBlock = -1;
     std::string collapse;
     bool warned = false;
+    double reportedError = 0;
+    double jointsThen = 0;
+    int stepThen = -1;
     bool begun = false;
     double largestError = 0;
     double largestMade = 0;
@@ -80,7 +85,12 @@ public:
         visit("collapse", &E::collapse, described("What that block did, and when; empty: none has collapsed"),
               ReadOnly);
         visit("warned", &E::warned,
-              described("Whether a balance that is off by more than 1 % has been told on the terminal"), ReadOnly);
+              described("Whether a balance that is off by more than 1 % has been reported on the terminal"), ReadOnly);
+        visit("reportedError", &E::reportedError,
+              number("-", "Error of the balance that was reported last; one of twice that is reported again"), Hidden);
+        visit("jointsThen", &E::jointsThen,
+              number("J", "Energies of the joints, stored and lost, at the last look at the balance"), Hidden);
+        visit("stepThen", &E::stepThen, number("", "Step of the last look at the balance; -1: there was none"), Hidden);
         visit("largestError", &E::largestError,
               number("-", "Largest error of the balance seen by balance(), relative to the work done"), ReadOnly);
         visit("largestMade", &E::largestMade,
@@ -121,13 +131,17 @@ private:
         double error;                // relative to that [-]
     };
     Balance presentBalance(const SceneStore&) const;
+    void lookAtBalance(const SceneStore&);
     py::dict balance();
     void given();
     void countPresentMotion(SceneStore&);
     void watchOver(SceneStore&);
-    // Ends the run if a block has collapsed; `besides` says what else is wrong.
+    void countBodies(const EngineTurn&);
+    // Looks whether a block has collapsed. Returns why the run ends, or an empty text.
+    std::string findCollapse(SceneStore&);
+    // Ends the run at once if a block has collapsed; `besides` says what else is wrong.
     void stopIfCollapsed(SceneStore&, const std::string& besides = "");
-    void warnOfBalance(const SceneStore&);
+    void warnOfBalance(double error);
 
     double checkedStep_ = 0;    // time step at the last check [s]
     long checkedRevision_ = -1; // SceneStore::revision() at the last check

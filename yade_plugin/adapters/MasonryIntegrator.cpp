@@ -10,6 +10,7 @@ namespace masonry {
 void MasonryIntegrator::action() {
     const EngineTurn turn(*scene, *this);
     advance(*scene, turn->bodies, turn->loads);
+    turn.end();
 }
 
 } // namespace masonry

@@ -14,6 +14,7 @@ void MasonryLoad::action() {
         throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) +
                                     " is a deformable unit; load a rigid block joined to it");
     act(*scene, turn->gravity());
+    turn.end();
 }
 
 Vector3r MasonryLoad::displacement() const {

@@ -17,6 +17,7 @@ void MasonryZones::action() {
     const EngineTurn turn(*scene, *this);
     if (!turn->loop) gatherFromFunctors(turn->joints, *this);
     advance(*scene, turn->bodies, turn->gravity(), turn->massDamping());
+    turn.end();
 }
 
 py::tuple MasonryZones::nodesOf(int body) {

@@ -3,6 +3,8 @@
 #include "SceneCheck.hpp"
 #include "StepGate.hpp"
 #include <exception>
+#include <stdexcept>
+#include <utility>
 
 namespace masonry {
 
@@ -33,6 +35,11 @@ EngineTurn::EngineTurn(yade::Scene& scene) : errors_(std::uncaught_exceptions())
         StepGate::instance().exit(true);
         throw;
     }
+}
+
+void EngineTurn::end() const {
+    if (engine_ == store_->last && !store_->endsWith.empty())
+        throw std::runtime_error(std::exchange(store_->endsWith, {}));
 }
 
 EngineTurn::~EngineTurn() {

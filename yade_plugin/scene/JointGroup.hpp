@@ -116,6 +116,10 @@ struct JointShapes : JointGroup {
         makeViscous();
         setVector(viscous, at(point, joint), value);
     }
+    void dropViscous() {
+        for (auto& column : viscous)
+            column.clear();
+    }
     void makeViscous() {
         for (auto& column : viscous)
             column.resize(jump[0].size(), 0);

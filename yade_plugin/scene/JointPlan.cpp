@@ -485,9 +485,14 @@ double JointPlan::advance(SceneStore& store, double stiffnessDamping) {
         noticeBodies(store);
     }
     if (zones_) moveDependentPoints(store);
-    if (stiffnessDamping > 0)
-        for (auto& kind : store.kinds)
-            if (kind.shapes->viscous[0].empty()) kind.shapes->makeViscous();
+    // The step that follows damping takes half of its work; after that there is nothing left of it.
+    const bool over = stiffnessDamping == 0 && lastDamping_ == 0;
+    lastDamping_ = stiffnessDamping;
+    for (auto& kind : store.kinds) {
+        auto& shapes = *kind.shapes;
+        if (stiffnessDamping > 0 && shapes.viscous[0].empty()) shapes.makeViscous();
+        if (over && !shapes.viscous[0].empty()) shapes.dropViscous();
+    }
     const int count = int(batches_.size());
     taken_.resize(count);
 #pragma omp parallel for schedule(static)

@@ -52,6 +52,7 @@ public:
     const yade::NewtonIntegrator* hostIntegrator = nullptr;
     const yade::Engine* first = nullptr; // the first of this plugin's engines in a step
     const yade::Engine* last = nullptr;  // the last of this plugin's engines in a step; recorders do not count
+    std::string endsWith;                // why the run ends after this step; empty: it goes on
     bool watched = false;                // whether an engine watches over the run: it looks for a collapse itself
     std::vector<Load*> loads;
     std::vector<Load*> allLoads; // also those that are dead, whose work so far counts
@@ -67,7 +68,10 @@ public:
     // Whether an engine finds the store as it must be in the present step: another engine has opened the step by
     // update() and checkBeforeStep(), and neither engines nor joints have changed since.
     bool isOpenFor(const yade::Engine&) const;
-    void opened() { openedStep_ = scene_.iter; }
+    void opened() {
+        openedStep_ = scene_.iter;
+        endsWith.clear();
+    }
 
     // For checkBeforeStep().
     bool checked = false;   // whether the scene was checked since it changed

@@ -30,6 +30,17 @@ class Motion:
         """From now on :meth:`checkFall` counts displacements."""
         self._places = [Vector3(state.pos) for state in self._states]
 
+    @property
+    def places(self):
+        """From where :meth:`checkFall` counts displacements: three numbers for every block, in one list [m]."""
+        return [value for place in self._places for value in place]
+
+    @places.setter
+    def places(self, values):
+        if len(values) != 3 * len(self._places):
+            raise ValueError("has places of other blocks")
+        self._places = [Vector3(*values[n : n + 3]) for n in range(0, len(values), 3)]
+
     def _speeds(self):
         """Velocity of every block [m/s]: of its centre, or, of deformable ones, the mean of their nodes."""
         speeds = [state.vel.norm() for state in self._states]

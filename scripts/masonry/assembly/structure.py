@@ -29,8 +29,8 @@ class Structure:
     - ``interactions``: the joints between blocks; ``subcontacts``: how many points they have
     - ``loads``: MasonryLoad engines by label; ``push`` is the one that drives the pushed target
     - ``zones``: the engine of deformable units, or None; ``energy``, ``integrator``: these engines
+    - ``limit``: the stable limit of the time step under the present damping [s]
     - ``held``: targets of which a direction is held; ``motion``: how blocks move
-    - ``limit``: the stable limit of the time step [s]
 
     :param description: :class:`masonry.scene.description.Description`
     :param masonry: its materials for these options: :class:`masonry.scene.materials.Masonry`
@@ -59,7 +59,7 @@ class Structure:
         self.pushing = False  # whether the present load is a push
         self.grown = False  # whether presses, dead loads and wind have their whole
         #: Displacement of the followed point when the push or load began, along it and up [m].
-        self.origin = 0, 0
+        self.origin = 0.0, 0.0
         #: Point of the history that the drive is going to: its number, from 1, and its displacement [mm].
         self.goal = 0, 0.0
 
@@ -159,8 +159,7 @@ class Structure:
         self.interactions = connect(
             self.masonry.rule(blocks), allowGaps=description.allowGaps
         )
-        self.limit = criticalTimeStep()[0]
-        O.dt = args.dt_fraction * self.limit
+        self._usualLimit = self.chooseTimeStep()
         self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)
 
     def _loads(self):
@@ -304,7 +303,8 @@ class Structure:
         if target not in self.held:
             self.held.append(target)
             self._freeMass -= O.bodies[target.body].state.mass
-        target.freedom = "".join({*(target.freedom or ""), *axes})
+        held = {*(target.freedom or ""), *axes}
+        target.freedom = "".join(a for a in "xyzXYZ" if a in held)
 
     def grow(self, x):
         """Let presses and dead loads grow smoothly: 0 to 1 is from nothing to their whole."""
@@ -319,18 +319,34 @@ class Structure:
             if load and label != "push":
                 yield load, load.force if self.grown else self._grown.get(label, load.force)  # fmt: skip
 
-    def damp(self, damping, kind):
-        """Choose damping [-] and its kind, local or combined, for what moves: deformable units, else rigid ones."""
+    def damp(self, damping, kind, massDamping=0.0, stiffnessDamping=0.0):
+        """Choose the damping from now on; :meth:`chooseTimeStep` follows it.
+
+        :param damping: numerical damping constant of what moves: deformable units, else rigid ones [-]
+        :param kind: of that, ``local`` or ``combined``
+        :param massDamping: viscous, of the motion [1/s]
+        :param stiffnessDamping: viscous, of the joints [s]
+        """
         if self.zones:
             self.zones.damping, self.zones.dampingKind = damping, kind
         else:
             self.integrator.damping, self.integrator.dampingKind = damping, kind
-
-    def dampJoints(self, stiffnessDamping):
-        """Viscous damping of the joints from now on [s], with the time step that it allows."""
+        self.integrator.massDamping = massDamping
         engine("joints").stiffnessDamping = stiffnessDamping
-        self.limit = criticalTimeStep()[0]
+
+    def dampByOptions(self):
+        """Choose the damping that the options say, with its time step, for a stage that says nothing else."""
+        self.damp(self.args.damping, self.args.damping_kind)
+        self.chooseTimeStep(self._usualLimit)
+
+    def chooseTimeStep(self, limit=None):
+        """Choose the time step that the present damping allows. Returns the stable limit.
+
+        :param limit: the stable limit if it is known [s]: that of blocks that have moved differs in its third digit
+        """
+        self.limit = limit or criticalTimeStep()[0]
         O.dt = self.args.dt_fraction * self.limit
+        return self.limit
 
     def setGravity(self, gravity):
         """Gravity from now on [m/s²]; deformable units follow."""
@@ -416,6 +432,40 @@ class Structure:
             along = drive.displacement()
             away = (along[0], 0 if self.description.plane else along[1], 0)
             load.point = self._lines[target.name] - Vector3(*away)
+
+    # -- what a checkpoint keeps beside the state in YADE ------------------------------------------------------------
+
+    def state(self):
+        """What stages have set, beside what YADE keeps: a dict of values that JSON can hold."""
+        push = self.loads["push"]
+        nameOf = lambda target: target.name if target else ""
+        return {
+            "target": nameOf(self.target),
+            "followed": nameOf(self.followed),
+            "push": push.label if push else "",
+            "direction": list(self.direction),
+            "pushing": self.pushing,
+            "grown": self.grown,
+            "origin": list(self.origin),
+            "goal": list(self.goal),
+            "loadFactor": self.loadFactor,
+            "held": {target.name: target.freedom for target in self.held},
+            "freeMass": self._freeMass,
+            "limit": self.limit,
+        }
+
+    def putState(self, state):
+        """Give it a state of :meth:`state`. Raises KeyError if it names a target or a load that is not there."""
+        targets, loads = {"": None, **self.description.targets}, {"": None, **self.loads}
+        self.target, self.followed = targets[state["target"]], targets[state["followed"]]  # fmt: skip
+        self.loads["push"] = loads[state["push"]]
+        self.direction, self.origin = Vector3(*state["direction"]), tuple(state["origin"])  # fmt: skip
+        self.pushing, self.grown = state["pushing"], state["grown"]
+        self.goal, self.loadFactor = tuple(state["goal"]), state["loadFactor"]
+        self._freeMass, self.limit = state["freeMass"], state["limit"]
+        self.held = [targets[name] for name in state["held"]]
+        for name, freedom in state["held"].items():
+            targets[name].freedom = freedom
 
     # -- what is measured -----------------------------------------------------------------------------------------
 

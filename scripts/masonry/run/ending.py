@@ -177,7 +177,7 @@ def _report(run, scene):
         scene.outcome.draw(run.results.directory)
     off, made = entries.get("energy_balance_error", 0), entries.get("energy_made", 0)
     wrong = []
-    if off > OFF and not scene.model.energy.warned:
+    if off > OFF:
         wrong.append(f"the energy balance is off by {100 * off:.1f} % of the work done")
     if made > OFF:
         wrong.append(

@@ -14,11 +14,18 @@ PARTS = "setup", "steps", "rows", "frames"  # of a run's time
 class Place:
     """How far a run has come, beside the state of the scene."""
 
+    #: What the scene is at the beginning of the present stage and at the checkpoint, beside its state in YADE, as
+    #: :func:`masonry.scene.resuming.stateOf` gives it.
+    before: dict = field(default_factory=dict)
+    now: dict = field(default_factory=dict)
+    begun: int = 0  # number of the stage whose beginning ``before`` is
     number: int = 0  # of the present stage, from 1
     stage: str = ""  # its name
     memory: dict = field(default_factory=dict)  # what the stage must know to go on
     steps: int = 0  # taken so far
     left: int = 0  # of the present advance that are not taken yet
+    rows: int = 0  # of curve.csv when the memory was as it is here
+    frameCount: int = 0  # ParaView frames then
     #: Of every stage so far: its name, and the steps, their seconds of wall-clock time and the rows before it.
     stages: list = field(default_factory=list)
     seconds: dict = field(default_factory=lambda: dict.fromkeys(PARTS, 0.0))
@@ -30,11 +37,13 @@ class Place:
     #: What stages pushed or put on, by their numbers: the kind (``push``, ``lean`` or ``growth``), the name of the load and
     #: that of the opposite one.
     loads: dict = field(default_factory=dict)
-    ended: dict = field(default_factory=dict)  # how stages ended, by their numbers
+    #: How stages ended, by their numbers, and the number of the last stage then: a stage may consist of several.
+    ended: dict = field(default_factory=dict)
     fall: str = ""  # what has fallen, as of Run.fall
-    loadFactor: float = 0.0  # of the load that a stage put on or let grow last [-]
-    #: The last state at rest, as text, of a run with stages after which a script may step back to it.
-    atRest: str = ""
+    #: What acted beside a load and held the structure when its bound was found, by the load.
+    beside: dict = field(default_factory=dict)
+    atRest: str = ""  # the last state at rest, as text, for stepBack()
+    places: list = field(default_factory=list)  # of masonry.assembly.motion.Motion
     answers: dict = field(default_factory=dict)  # of the stages, by their number
     supportsMoved: bool = False  # whether a stage has moved supports
     resumed: list = field(default_factory=list)  # times at which it was taken up [s]
@@ -112,7 +121,11 @@ class Saved:
             and all(alike(stage, ["", 0, 0.0, 0]) for stage in at.stages)
             and all(map(_isAnswers, at.answers.items()))
             and alike(list(at.held.values()), None)
-            and all(alike(ended, "") for ended in at.ended.values())
+            and all(alike(ended, ["", 0]) for ended in at.ended.values())
+            and at.rows <= len(self.rows)
+            and at.frameCount <= len(at.frames)
+            and at.number <= len(at.stages)
+            and alike(at.places, None)
             and all(alike(load, ["", "", ""]) for load in at.loads.values())
             and alike(at.frames + at.resumed, None)
         ):

@@ -67,9 +67,9 @@ class Run:
         self.progress = Progress()
         self.advanced = False  # whether this process has taken steps of it
         self.entered = 0  # number of the stage that was entered last
-        #: number of the stage of the checkpoint, if that was over and cannot go farther, else None
-        self.over = None
-        #: whether that lets the dead loads grow, and is no test yet
+        #: whether the present stage is that in which the checkpoint of a resumed run was made
+        self.redoes = False
+        #: whether the present stage lets the dead loads grow, and is no test yet
         self.loading = False
         self._memory = SimpleNamespace()  # of that stage
         self._live = None  # adds a row to yade.plot
@@ -112,22 +112,22 @@ class Run:
         if self.preset:
             say(presetNote(self.preset, self.name))
 
-    def start(self, model, space):
+    def start(self, model, space, state):
         """Take up the model that now stands in YADE, in the state of the checkpoint if the run is resumed.
 
         :param model: :class:`masonry.assembly.structure.Structure`
         :param space: bytes that the run writes at least, and those that it will probably write
+        :param state: what a checkpoint keeps of the scene beside its state in YADE:
+            :class:`masonry.scene.resuming.State`
         """
-        self.model = model
+        self.model, self.state = model, state
         self.results.checkSpace(*space)
         if self._saved:
             width = len(self._values)
             if any(len(row) != width for row in self._saved.rows):
                 raise Refused(f"--resume: its rows are not of {width} columns")
+            self.state.takeRest(self.at)
             self._saved.load()
-            self.results.rows += self._saved.rows
-            if self._saved.rows and self.results.columns[0] == "time_s":
-                self._recordedTime = self._saved.rows[-1][0]
             self.at.resumed.append(O.time)
             self._saved.compareHost(hostNow())
         self._recorder = MasonryVtkRecorder(
@@ -142,10 +142,6 @@ class Run:
         yield
         self.at.seconds[part] += time.perf_counter() - began
 
-    def reload(self):
-        """Give the scene of a run that is resumed the state of its checkpoint again."""
-        self._saved.load()
-
     @property
     def resumes(self):
         """Whether the run goes on from a checkpoint."""
@@ -156,6 +152,11 @@ class Run:
         """What the script said up to the checkpoint of a run that is resumed, as data."""
         return self._saved.script if self._saved else []
 
+    @property
+    def optionsBefore(self):
+        """The options of the run that is resumed, as data."""
+        return self._saved.options
+
     def note(self, kind, name, opposite=""):
         """Note what the next stage loads, as of :class:`masonry.run.place.Place`."""
         self.at.loads = {**self.at.loads, str(self.entered + 1): [kind, name, opposite]}
@@ -165,15 +166,42 @@ class Run:
         """What the stage remembers that was entered last."""
         return self._memory
 
+    @property
+    def takesUp(self):
+        """Whether the run is resumed, and has taken no steps since."""
+        return self.resumes and not self.advanced
+
+    def goOnFrom(self, number, redoes):
+        """Let the rows, frames and the state beside YADE be those before a stage, in a run that is resumed and has taken no steps
+        yet.
+
+        :param number: of the stage
+        :param redoes: whether it is that of the checkpoint
+        """
+        at, rows = self.at, self._saved.rows
+        self.redoes = redoes
+        if redoes:
+            rows, at.frames = rows[: at.rows], at.frames[: at.frameCount]
+            self._recorder.times = at.frames
+        elif number <= len(at.stages):
+            rows = rows[: at.stages[number - 1][3]]
+        self.results.rows[:] = rows
+        if rows and self.results.columns[0] == "time_s":
+            self._recordedTime = rows[-1][0]
+
     def takeUp(self):
         """From here on files are written; those of a run that is resumed are cut back to its checkpoint."""
         if self._saved:
+            at = self.at
             # what the stage did before it advanced was done before these steps
-            if self.at.left:
+            if self.redoes and str(at.begun) not in at.ended:
                 self._saved.load()
+                self.state.put(at.now)
+            elif not self.state.restored:
+                self.state.put(at.now)
             try:
                 self.results.takeUp(
-                    self._saved.rows, len(self.at.frames), self._saved.seconds
+                    [*self.results.rows], len(at.frames), self._saved.seconds
                 )
                 if self.at.frames:
                     self._recorder.collect()
@@ -191,9 +219,9 @@ class Run:
             hold. Checkpoints keep it.
         """
         self.entered += 1
-        if self.wasOver(self.entered - 1):
+        if self.redoes and not self.advanced and self.entered < self.at.number:
             return None
-        if self.entered == self.at.number:
+        if self.redoes and not self.advanced:
             if self.at.stage != name:
                 raise otherVersion(f"stage '{self.at.stage}'")
             memory = restored(memory, self.at.memory)
@@ -219,10 +247,13 @@ class Run:
         at = self.at
         if self.advanced or not self._saved:
             self.advanced, at.left = True, steps
-        else:  # the scene of a checkpoint is that after some of the steps or all
+        elif self.redoes:  # the scene of a checkpoint is that after some of the steps or all
             if at.left > steps:
                 raise otherVersion(f"{at.left} of {steps} steps are left")
             self.takeUp()
+        else:
+            self.takeUp()
+            at.left = steps
         while True:
             self._take(steps, one)
             self._keepSafe()
@@ -250,23 +281,26 @@ class Run:
             if not collapsed:
                 raise
             raise Collapsed(what.strip()) from None
-        self._now = now
-        at.seconds["steps"] += now - began
-        at.steps += number - (steps - at.left)
-        at.left = steps - number
+        finally:
+            self._now = now
+            at.seconds["steps"] += now - began
+            at.steps += number - (steps - at.left)
+            at.left = steps - number
 
     def _keepSafe(self):
         """Note what a checkpoint of this moment keeps, beside the scene."""
         at = self.at
-        rows = len(self.results.rows) + len(self._readings)
-        self._safe = rows, {
+        self._safe = {
+            "begun": at.begun,
+            "before": at.before,
             "number": at.number,
             "stage": at.stage,
             "memory": vars(self._memory).copy(),
             "steps": at.steps,
             "left": at.left,
+            "rows": len(self.results.rows) + len(self._readings),
+            "frameCount": len(at.frames),
             "stages": at.stages,
-            "frames": at.frames,
         }
 
     def markFall(self):
@@ -340,8 +374,7 @@ class Run:
         if not (self.args.checkpoint_every and self._safe):
             return False
         self.flush()
-        rows, place = self._safe
-        if len(self.results.rows) < rows or self.results.earlier:
+        if len(self.results.rows) < self._safe["rows"] or self.results.earlier:
             return False
         self.results.begin()
         progress = dict(
@@ -351,8 +384,8 @@ class Run:
                 for name, value in vars(self.args).items()
                 if name not in ASIDE
             },
-            at={**vars(self.at), **place},
-            rows=self.results.rows[:rows],
+            at={**vars(self.at), **self.state.kept(), **self._safe},
+            rows=self.results.rows,
             script=self.script,
             seconds=self.results.seconds(),
             host=hostNow(),
@@ -371,16 +404,6 @@ class Run:
             return False
 
     # -- the end --------------------------------------------------------------------------------------------------
-
-    def carriedOut(self, before):
-        """Whether steps of the stages after this number were taken, and not left out because they were over before."""
-        return self.entered > before and self.entered >= self.at.number
-
-    def wasOver(self, before):
-        """Whether the stage after this number was over before the run was resumed."""
-        if self.entered <= before or self.advanced or not self._saved:
-            return False
-        return self.entered < self.at.number or self.entered == self.over
 
     def recordedAt(self):
         """Time of the last row that was read [s], or None."""

@@ -37,7 +37,6 @@ class Bounds:
     def __init__(self, model, place):
         self.model, self.place = model, place
         self.last = None  # what was found last: limit.Bound and its entry
-        self._beside = {}  # what acted and held when a bound was found, by the load
 
     @property
     def entries(self):
@@ -106,11 +105,11 @@ class Bounds:
     ):
         known, model = self.entries.get(what), self.model
         beside = self._acting(gravity or model.now)
-        same = self._beside.setdefault(what, beside) == beside
+        same = self.place.beside.get(what, beside) == beside
+        self.place.beside = {**self.place.beside, what: beside}
         if known and same and not lowerUpTo:
             return known
         if not same:  # what was held before was held beside other loads
-            self._beside[what] = beside
             self.place.held = {k: v for k, v in self.place.held.items() if k != what}
         entry = self.entries[what] = {"load": what, "unit": unit}
         if self.place.supportsMoved:
@@ -152,9 +151,9 @@ class Bounds:
 
     def _acting(self, gravity):
         """What acts beside a load and what holds the structure now: data that can be compared."""
-        loads = [(load.body, tuple(force), load.driven) for load, force in self.model.deadLoads()]  # fmt: skip
+        loads = [[load.body, *force, load.driven] for load, force in self.model.deadLoads()]  # fmt: skip
         held = [O.bodies[target.body].state.blockedDOFs for target in self.model.held]
-        return tuple(gravity), tuple(loads), tuple(held)
+        return [list(gravity), loads, held]
 
     def _forces(self, assembly, pushed):
         """Presses, dead loads and wind with their whole, and props at the points that drives hold.

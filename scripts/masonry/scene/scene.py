@@ -21,7 +21,6 @@ command line work, ``--help`` explains them: ``--preset``, ``--rate``, ``--set``
 """
 
 import atexit
-import base64
 import functools
 import math
 
@@ -34,14 +33,15 @@ from ..run.ending import end
 from ..run.presets import BOUND
 from ..run.run import Run
 from . import loads, options, probing, records, supports
-from .bounds import EVERY, SMALL, Bounds
+from .bounds import EVERY, SMALL, Bounds, nameOfLean, nameOfPush
 from .description import Description
 from .materials import linesOf, loadingBlock
 from .outcome import Outcome
+from .resuming import State
 from .stages import AT_REST, LATER, STAGES, gravity, prepare
 from .stages.stage import Answer
 from .targets import Target
-from .words import Script
+from .words import RESULT, Script
 
 
 OWN = "0"  # the stage of the results of the script, which all stages follow
@@ -156,8 +156,9 @@ class Scene:
         """What the stages were run for, in their order: a list of dicts, as of
         :class:`masonry.scene.stages.stage.Answer`, with the ``stage`` and its ``number``.
         """
-        kept = self.running.at.answers
-        return [one for number in sorted(kept, key=int) for one in kept[number]]
+        kept, entered = self.running.at.answers, self.running.entered
+        numbers = [number for number in sorted(kept, key=int) if int(number) <= entered]
+        return [one for number in numbers for one in kept[number]]
 
     def result(self, name, value, unit="-", how="the script found it"):
         """Keep a number of one's own with the answers of the stages: in run.json, on the terminal and as a column of study.csv.
@@ -187,7 +188,10 @@ class Scene:
                 problems.append(f"result {name}: {what} must be a text, got {text!r}")
         if problems:
             raise ValueError("\n".join(problems))
-        at = self.running.at
+        at, before = self.running.at, self.running.scriptBefore
+        later = [word for word, _ in before[len(self.script.words) + 1 :]]
+        if self._saidBefore(RESULT, name=name) and any(w != RESULT for w in later):
+            return  # it was found in the state of that time
         kept = [one for one in at.answers.get(OWN, []) if one["name"] != name]
         answer = {
             "stage": "script",
@@ -241,13 +245,7 @@ class Scene:
             self._prepare()
         self._noteRows()
         self._noteCourse()
-        self.running.start(model, self.outcome.space())
-        if self.running.at.atRest:
-            self.model.atRest = base64.b64decode(self.running.at.atRest)
-            loadScene(self.model.atRest)
-            model.motion.restart()
-            self.running.reload()
-        model.loadFactor = self.running.at.loadFactor
+        self.running.start(model, self.outcome.space(), State(self))
         Scene.present = self
         atexit.register(self._remind)
 
@@ -286,36 +284,40 @@ class Scene:
 
     def keepState(self, ended):
         """Keep the state of a structure that is at rest for :meth:`stepBack`. Returns how the stage ended."""
-        if ended == AT_REST and (self.running.advanced or not self.running.resumes):
+        if ended == AT_REST:
             self.model.atRest = saveScene("null")
             self.model.motion.restart()
         return ended
-
-    def keptAtRest(self, state):
-        """Keep a state at rest for :meth:`stepBack`, as ``saveScene`` gave it."""
-        self.model.atRest = state
-        self.rememberRest()
 
     def stepBack(self):
         """Take the scene back to its last state at rest, also after a collapse. The load that was held then acts again, also the
         one that a growth or a bracket has found. Rows of curve.csv stay."""
         if self.only:
             return
-        if not self.model or self.model.atRest is None:
+        known = self.model is not None and self.model.atRest is not None
+        before, at = self.running.scriptBefore, len(self.script.words)
+        if self.running.takesUp and at < len(before):  # it had none yet
+            known = before[at][1].get("known", known)
+        said = self._saidBefore("stepBack", known=known)
+        if not known:
             raise ValueError(
                 "stepBack: the scene has not been at rest in this run of the script"
             )
-        loadScene(self.model.atRest)
-        if self.running.advanced or not self.running.resumes:
-            self.running.mark()  # else the checkpoint has what is later
         self.running.collapsed, self.ended = False, AT_REST
         self.results.run.pop("collapse", None)
+        if said:
+            return
+        loadScene(self.model.atRest)
+        self.running.mark()
         self.model.motion.restart()
 
-    def rememberRest(self):
-        """Let checkpoints have the last state at rest, for :meth:`stepBack` in a run that is resumed."""
-        if self.model.atRest is not None:
-            self.running.at.atRest = base64.b64encode(self.model.atRest).decode()
+    def _saidBefore(self, word, **said):
+        """Note a word that is no stage. Returns whether the script of a run that is resumed said it before the checkpoint."""
+        self.script.add(word, said)
+        if not self.running.takesUp:
+            return False
+        self.script.compare(self.running.scriptBefore)
+        return len(self.script.words) <= len(self.running.scriptBefore)
 
     def bound(self, target=None, direction=(1, 0, 0), towards=None):
         """Limit analysis of the scene as it stands, with a collapse without dilatancy: see :mod:`masonry.limit`.
@@ -335,20 +337,28 @@ class Scene:
             raise ValueError(
                 "bound: the structure has fallen; stepBack() goes back to its last state at rest"
             )
+        before = self._saidBefore("bound", target=getattr(target, "name", ""))
         if target is not None:
             if not isinstance(target, Target) or not target.loaded:
                 raise ValueError(
                     f"bound: only a platen that moves or a handle() can be pushed, got {target!r}"
                 )
             direction = vector(direction, "bound: direction").normalized()
+            known = self.bounds.entries.get(nameOfPush(target, direction))
+            if before and known:
+                return known
             return self.bounds.push(target, direction, lowerUpTo=EVERY)
         towards = gravity.sideways(self, towards, "bound")
+        known = self.bounds.entries.get(nameOfLean(towards))
+        if before and known:
+            return known
         return self.bounds.lean(towards, lowerUpTo=EVERY)
 
     def findBound(self, kind, *load):
         """Find the bound of a stage, which pushes or leans: a method of :class:`masonry.scene.bounds.Bounds`."""
-        if self.args.lean and not self.only:
-            return
+        goesOn = self.running.redoes and self.running.takesUp
+        if self.args.lean and not self.only or goesOn:
+            return  # in a stage that goes on it was found when that began
         getattr(self.bounds, kind)(*load, lowerUpTo=SMALL if self.only else 0)
 
     # -- the end --------------------------------------------------------------------------------------------------

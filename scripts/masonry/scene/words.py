@@ -7,6 +7,8 @@ import math
 
 from ..basics import Refused
 
+RESULT = "result"  # the word that keeps a number of the script's own
+
 
 def describes(act):
     """A word that describes a scene: it comes before the first stage, and is noted.
@@ -70,25 +72,34 @@ class Script:
     def note(self, act, first, args, settings, farther=()):
         """Note a word. ``farther`` names those of its arguments that say how far a stage goes."""
         said = asData(argumentsOf(act, first, args, settings))
-        self.words.append([act.__name__, said])
+        self.add(act.__name__, said, farther)
+
+    def add(self, word, said, farther=()):
+        """Add a word and its arguments as data."""
+        self.words.append([word, said])
         self._farther.append(set(farther))
 
     def compare(self, before):
         """Refuse a script that says something else than that of the run that is resumed.
 
-        :param before: ``words`` of that run, up to its checkpoint. The last of them is the stage in which that was made,
-            which may go farther now
+        :param before: ``words`` of that run, up to its checkpoint. The last of them, but for results, is the stage in which
+            that was made, which may go farther now
+        :returns: whether it does
         """
+        last = max((n for n, (word, _) in enumerate(before) if word != RESULT), default=-1)  # fmt: skip
+        farther = False
         for at, (was, now) in enumerate(zip(before, self.words)):
             if was == now:
                 continue
             (name, known), (other, said) = was, now
-            may = self._farther[at] if at == len(before) - 1 else set()
+            may = self._farther[at] if at == last else set()
             changed = {n for n in {**known, **said} if known.get(n) != said.get(n)}
             if name != other or not changed <= may:
                 raise Refused(
                     f"--resume: a run goes on as it began: the script said {spoken(was)}, now it says {spoken(now)}"
                 )
+            farther = True
+        return farther
 
 
 def spoken(word):

@@ -122,10 +122,7 @@ def putOn(scene, name, load, towards, longest, over=0.0):
     running, model, scene.loadUnit = scene.running, scene.model, load.unit
     running.note("lean", load.name)
     follow(scene, f"{name} {[round(v, 9) for v in towards]}", towards)
-    scene.rememberRest()
     at = running.stage(name, Resting())
-    if at is None:
-        return AT_REST
     at.goal = load.factor(1.0)
     if at.begun is None:
         at.begun = load.now()
@@ -137,7 +134,6 @@ def putOn(scene, name, load, towards, longest, over=0.0):
         model.loadFactor = share * at.goal
 
     ended = waitForRest(scene, at, longest or TRIAL, growing, over=over)
-    running.at.loadFactor = at.goal
     if ended == AT_REST:
         scene.bounds.hold(load.name, at.goal)
     return ended

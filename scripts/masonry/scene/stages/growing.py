@@ -82,11 +82,8 @@ def grow(scene, name, load, duration, towards, within=WITHIN):
     running, scene.loadUnit = scene.running, load.unit
     running.note("growth", load.name)
     follow(scene, f"stage {running.entered + 1}", towards)
-    scene.rememberRest()
     _noteDrives(scene, name)
     at = running.stage(name, Growing())
-    if at is None:
-        return DONE
     if at.begun is None:
         at.begun = load.now()
     if at.last < 0:
@@ -94,7 +91,6 @@ def grow(scene, name, load, duration, towards, within=WITHIN):
     within = within if scene.share == 1 else max(within, 0.5)
     search = _Search(scene, at, load, within)
     search.run(name)
-    running.at.loadFactor = at.last
     if at.held:
         scene.bounds.hold(load.name, at.held[0])
         _compare(scene, name, load, at)
@@ -267,20 +263,18 @@ class _Search:
         """Take the scene to where the stage ends, and return how it ended."""
         at, scene = self.at, self.scene
         if at.held:
-            scene.keptAtRest(_state(at.heldState))
+            self.model.atRest = _state(at.heldState)
         if not at.fell and at.lost is None and at.held:
             if self.running.recordedAt() != O.time:
                 self.running.record()
             self.running.flush()
             if not at.over:
                 at.kept, at.lastState, at.over = [], "", 1
-                self.running.mark()
             scene.ended = AT_REST
             return scene.ended
         if not at.over:
             loadScene(_state(at.lastState))
             at.kept, at.lastState, at.over = [], "", 1
-            self.running.mark()
         self.model.loadFactor = at.last
         if at.fell:
             raise Collapsed(at.fell)

@@ -217,6 +217,7 @@ def hold(scene, target, axes="xyzXYZ"):
         )
 
     def act():
+        scene.model.holdAlso(target, axes)
         state = O.bodies[target.body].state
         blocked = {*state.blockedDOFs, *axes}
         state.blockedDOFs = "".join(a for a in "xyzXYZ" if a in blocked)
@@ -224,7 +225,7 @@ def hold(scene, target, axes="xyzXYZ"):
         state.vel = Vector3(*(v * f for v, f in zip(state.vel, free[:3])))
         state.angVel = Vector3(*(v * f for v, f in zip(state.angVel, free[3:])))
 
-    return atOnce(scene, "hold", act, lambda: scene.model.holdAlso(target, axes))
+    return atOnce(scene, "hold", act)
 
 
 def prepare(scene, word, said):

@@ -110,11 +110,6 @@ def drivePush(scene, name, args, began, continued=False):
     """
     run, model = scene.running, scene.model
     at = run.stage(name, Pushing())
-    if at is None:  # what later stages count from is as it was after this one
-        goals = aim(args)
-        model.origin = run.at.origins[began]
-        model.goal = len(goals), goals[-1].displacement
-        return
     first, origin = at.origin is None, at.origin
     if first:
         origin = here = list(model.topDisplacement())
@@ -140,7 +135,6 @@ def drivePush(scene, name, args, began, continued=False):
         run.frame()
         at.nextFrame = spacing
     model.origin = at.origin
-    model.damp(args.damping, args.damping_kind)
 
     def detail():
         if not args.history:

@@ -56,15 +56,10 @@ def settle(scene, longest=None, damping=None, record=True):
     model, args = scene.model, scene.args
     grow, scene.grown = (lambda x: None) if scene.grown else model.grow, True
     memory = scene.running.stage("settle", Resting())
-    if memory is None:
-        return scene.keepState(AT_REST)
     if damping:
         most = SETTLING if model.zones and damping == "local" else 1.0
         model.damp(min(most, args.damping), damping)
-    ended = waitForRest(scene, memory, longest, grow, record=record)
-    if damping:
-        model.damp(args.damping, args.damping_kind)
-    return ended
+    return waitForRest(scene, memory, longest, grow, record=record)
 
 
 def waitForRest(scene, at, longest, grow, over=0.0, record=True):

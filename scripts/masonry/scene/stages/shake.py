@@ -3,6 +3,7 @@
 
 import itertools
 import math
+from dataclasses import dataclass
 
 from yade import O, Vector3
 
@@ -44,6 +45,13 @@ def displacements(scene, rows):
     return found
 
 
+@dataclass
+class Damped(Timed):
+    """What a stage remembers that has a damping of its own."""
+
+    limit: float = 0.0  # the stable limit of its time step, or 0 before that is known [s]
+
+
 @stage(answers=displacements)
 def shake(
     scene,
@@ -64,7 +72,8 @@ def shake(
     samples the acceleration changes evenly.
 
     Joints that slide, crack and crush take energy. The default adds no other damping, since none is measured for
-    masonry that rocks. :func:`rayleigh` gives the two viscous ones from a damping ratio.
+    masonry that rocks. :func:`rayleigh` gives the two viscous ones from a damping ratio. The stages that follow have the
+    damping of the options again.
 
     :param accelerations: a list, or the path of a text file with one or two columns: acceleration, or time
         [s] and acceleration
@@ -82,13 +91,10 @@ def shake(
     direction = sideways(scene, direction, "shake")
     if scene.args.density_scaling != 1:
         raise Refused("--density-scaling: a scene that is shaken runs in real time")
-    at = scene.running.stage("shake", Timed())
-    if at is None:
-        return DONE
+    at = scene.running.stage("shake", Damped())
     model = scene.model
-    model.damp(damping, scene.args.damping_kind)
-    model.integrator.massDamping = massDamping
-    model.dampJoints(stiffnessDamping)
+    model.damp(damping, scene.args.damping_kind, massDamping, stiffnessDamping)
+    at.limit = model.chooseTimeStep(at.limit)
     down = -scene.description.gravity * Vector3.UnitZ
 
     def before(done, beyond):
@@ -114,12 +120,11 @@ def run(scene, seconds, damping=None):
     :param seconds: time in the scene [s]
     :param damping: damping constant during it [-]; None: that of the options
     """
-    at = scene.running.stage("run", Timed())
-    if at is None:
-        return DONE
+    at = scene.running.stage("run", Damped())
     if not 0 < seconds < math.inf:
         raise ValueError(f"run: {seconds} s must be above 0")
     if damping is not None:
         scene.model.damp(damping, scene.args.damping_kind)
+        at.limit = scene.model.chooseTimeStep(at.limit)
     timed(scene, at, scene.share * seconds, lambda done, beyond: None)
     return DONE

@@ -11,6 +11,7 @@ from yade import O
 
 from ...basics import Collapsed, say
 from ...run import batch
+from ..resuming import enter
 from ..words import argumentsOf
 
 #: How a stage ends.
@@ -155,8 +156,9 @@ def _carryOut(scene, act, traits, args, settings):
         if batch.PROBE in os.environ:
             return scene.probe(name, traits, argumentsOf(act, scene, args, settings))
         scene.script.note(act, scene, args, settings, traits.farther)
+        farther = False
         if not running.advanced:
-            scene.script.compare(running.scriptBefore)
+            farther = scene.script.compare(running.scriptBefore)
         if scene.collapsed:
             say(
                 f"note: {name} is left out, because the structure has fallen; stepBack() takes it to its last state at rest"
@@ -166,19 +168,20 @@ def _carryOut(scene, act, traits, args, settings):
             say(f"note: --preset bound: no run, {name} is left out")
             return DONE
         before = running.entered
+        over = enter(scene, before + 1, farther)
+        if over:
+            return _asBefore(scene, over)
         running.loading = traits.grows and not scene.grown
-        number = str(before + 1)
-        if number in running.at.ended and not traits.farther:
-            running.over = before + 1
+        scene.model.dampByOptions()
         ended = act(scene, *args, **settings)
-        if running.resumes and running.wasOver(before):
-            return _asBefore(scene, running.at.ended.get(number, ended))
-        running.at.ended = {**running.at.ended, number: ended}
+        _noteEnd(running, before, ended)
+        if not traits.farther:
+            running.mark()
         _answer(scene, name, traits, before)
         return ended
     except Collapsed as collapse:
         scene.ended = COLLAPSED
-        running.at.ended = {**running.at.ended, str(before + 1): COLLAPSED}
+        _noteEnd(running, before, COLLAPSED)
         running.fall(str(collapse))
         try:
             if running.recordedAt() != O.time:
@@ -191,6 +194,11 @@ def _carryOut(scene, act, traits, args, settings):
         return COLLAPSED
     except BaseException as error:
         return scene.failed(error)
+
+
+def _noteEnd(running, before, ended):
+    """Note how the stage ended that follows these."""
+    running.at.ended = {**running.at.ended, str(before + 1): [ended, running.entered]}
 
 
 def _asBefore(scene, ended):
@@ -208,7 +216,7 @@ def _answer(scene, name, traits, before):
     :param before: how many stages the run had entered before it
     """
     running = scene.running
-    if scene.only or before is None or not running.carriedOut(before):
+    if scene.only or before is None or running.entered == before:
         return
     rows = Rows(running.results, running.at.stages[before][3])
     found = [

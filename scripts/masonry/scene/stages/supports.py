@@ -25,25 +25,16 @@ def release(scene, target, axes, force=None):
 
 @dataclass
 class Instant:
-    """What a stage remembers that takes no time."""
-
-    done: int = 0  # 1 when it is over
+    """What a stage remembers that takes no time: nothing."""
 
 
-def atOnce(scene, name, act, also=None):
+def atOnce(scene, name, act):
     """A stage that takes no time.
 
     :param act: function that changes the state of the scene
-    :param also: function that changes what no checkpoint keeps, and is called in a run that is resumed, too
     """
-    at = scene.running.stage(name, Instant())
-    if also:
-        also()
-    if at is not None and not at.done:
-        act()
-        at.done = 1
-        if not scene.running.resumes or scene.running.advanced:
-            scene.running.mark()
+    scene.running.stage(name, Instant())
+    act()
     scene.ended = DONE
     return DONE
 
@@ -102,8 +93,6 @@ def move(scene, target, x=0.0, y=0.0, z=0.0, rate=None):
         raise ValueError("move: only a platen or brick that is held can be moved")
     at = scene.running.stage("move", Timed())
     path = scene.share * vector((x, y, z), "move: displacement [mm]")
-    if at is None:
-        return DONE
     if scene.description.plane and path[1]:
         raise ValueError(
             "move: the scene is in the x-z plane; Scene(..., plane=False) is in space"

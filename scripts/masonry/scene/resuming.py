@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a run that is resumed finds in place of the stages that were over.
+
+A script is read from its beginning again. Words that it said before the checkpoint are left out: a stage that was over gives
+what it returned then, with the rows of that time. The stage in which the checkpoint was made begins from the state of the
+scene in Python as it was when the stage began, and goes on from the state of the checkpoint with its first steps: see
+:mod:`masonry.run.run`. YADE keeps the rest of the state: :func:`masonry.saveCheckpoint`.
+"""
+
+import base64
+from types import SimpleNamespace
+
+from .._masonry import loadScene
+from ..run.checkpoints import alike
+from ..run.place import otherVersion
+from .words import asData
+
+
+def stateOf(scene):
+    """What stages have set of a scene, beside what YADE keeps: a dict of values that JSON can hold."""
+    pushed = scene.pushed
+    return {
+        "model": scene.model.state(),
+        "grown": scene.grown,
+        "loadUnit": scene.loadUnit,
+        "replaced": scene.replaced,
+        "pushed": (
+            {name: getattr(pushed, name) for name in ("until", "history", "rate")}
+            if pushed
+            else {}
+        ),
+    }
+
+
+def putState(scene, state):
+    """Give a scene a state of :func:`stateOf`. Raises Refused if it is not of the kind of the present one."""
+    like = stateOf(scene)
+    try:
+        if not (_alike(state, like) and _alike(state["model"], like["model"])):
+            raise otherVersion("the state of the scene")
+        scene.model.putState(state["model"])
+    except KeyError as error:
+        raise otherVersion(f"the state of the scene, {error}") from None
+    scene.grown, scene.loadUnit = state["grown"], state["loadUnit"]
+    scene.replaced, pushed = state["replaced"], state["pushed"]
+    scene.pushed = SimpleNamespace(**{**vars(scene.args), **pushed}) if pushed else None
+
+
+def _alike(state, like):
+    return state.keys() == like.keys() and all(alike(state[n], like[n]) for n in like)
+
+
+class State:
+    """What a checkpoint keeps of a scene beside its state in YADE.
+
+    :param scene: :class:`masonry.scene.scene.Scene`, when it is built
+    """
+
+    def __init__(self, scene):
+        self._scene = scene
+        self._rest = None, ""  # the last state at rest, and it as text
+        self.restored = False  # whether the scene has the state of a checkpoint again
+
+    def kept(self):
+        """Entries of :class:`masonry.run.place.Place`."""
+        atRest = self._scene.model.atRest
+        if atRest is not self._rest[0]:
+            self._rest = atRest, base64.b64encode(atRest).decode()
+        return {
+            "now": stateOf(self._scene),
+            "atRest": self._rest[1],
+            "places": self._scene.model.motion.places,
+        }
+
+    def put(self, state):
+        """Give the scene the state of a checkpoint."""
+        putState(self._scene, state)
+        self.restored = True
+
+    def takeRest(self, at):
+        """Take the last state at rest from a checkpoint. YADE then stands in that state. Raises Refused.
+
+        :param at: :class:`masonry.run.place.Place`
+        """
+        model = self._scene.model
+        try:
+            if at.atRest:
+                model.atRest = base64.b64decode(at.atRest, validate=True)
+                loadScene(model.atRest)
+            model.motion.places = at.places
+        except (ValueError, TypeError) as error:
+            raise otherVersion(f"its state at rest {error}") from None
+
+
+def enter(scene, number, farther):
+    """Begin a stage. Returns how it ended if it was over before the run was resumed, else None.
+
+    :param number: of the stage
+    :param farther: whether what the script says of it goes farther than before
+    """
+    running, at = scene.running, scene.running.at
+    if running.takesUp and not running.redoes:
+        ended, last = at.ended.get(str(number), (None, 0))
+        farther = number == at.begun and (farther or _optionsDiffer(scene))
+        if ended and not farther:
+            running.entered = last
+            running.goOnFrom(last + 1, False)
+            return ended
+        redoes = number == at.begun
+        running.goOnFrom(number, redoes)
+        if not running.state.restored:
+            running.state.put(at.before if redoes else at.now)
+    at.begun, at.before = number, stateOf(scene)
+    return None
+
+
+def _optionsDiffer(scene):
+    """Whether the command line says something else about how far the push goes in which the checkpoint was made."""
+    if scene.running.at.before["replaced"]:
+        return False
+    was, now = scene.running.optionsBefore, asData(vars(scene.args))
+    return any(was.get(name) != now[name] for name in ("until", "history"))
