@@ -45,7 +45,7 @@ def _end(run, scene, error):
         error = refused
     if not run.advanced:
         if isinstance(error, Refused):
-            print(error, file=sys.stderr)
+            say(error, sys.stderr)
             run.status = 2
         return run.status == 2
     if error and not isinstance(error, Collapsed) and run.results.earlier:
