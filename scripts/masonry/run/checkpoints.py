@@ -8,7 +8,6 @@
 import contextlib
 import json
 import os
-import sys
 
 from .._masonry import loadScene, saveScene, savedText
 from ..basics import plain
@@ -16,6 +15,7 @@ from ..folders import fromJson, replaced
 from ..read.files import readWhole
 
 NAME = "run.checkpoint"  # in the folder of a run
+LARGEST = 1e100  # no number of a run is beyond; its square can be computed
 LONGEST = 500  # characters of a reason: it can quote a file that somebody has made up
 
 
@@ -102,7 +102,7 @@ def _size(head):
 def alike(value, example):
     """Whether a value that JSON gave is of the kind of another one.
 
-    An int is a counter, from 0 on; a float is any finite number that a float can hold; a list or tuple has as many values, each of the kind of its
+    An int is a counter, from 0 on; a float is any number up to LARGEST; a list or tuple has as many values, each of the kind of its
     counterpart, and an empty one stands for any list; None stands for None and for a list of finite numbers.
     """
     if example is None:
@@ -121,4 +121,4 @@ def alike(value, example):
         return False
     if isinstance(example, int):
         return isinstance(value, int) and 0 <= value < 2**63
-    return abs(value) <= sys.float_info.max
+    return abs(value) <= LARGEST

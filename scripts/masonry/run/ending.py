@@ -13,6 +13,7 @@ from .._masonry import commit, version
 from ..assembly.columns import meanings
 from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
 from .checkpoints import NAME
+from .plausible import DAMAGES, brief
 from .presets import presetNote
 
 OFF = 0.01  # of the work done: a larger error of the energy balance is a warning
@@ -36,6 +37,7 @@ def end(run, scene, error):
 
 
 def _end(run, scene, error):
+    error = _ofCheckpoint(run, error)
     if not run.results and not isinstance(error, Refused):
         return False
     try:
@@ -86,6 +88,26 @@ def _end(run, scene, error):
     fell = run.collapsed and run.loading
     run.status = 1 if stopped or fell else 130 if run.interrupted else 0
     return True
+
+
+def _ofCheckpoint(run, error):
+    """The error, or a refusal if it was raised in this package by what a checkpoint says, before anything was written."""
+    if run.advanced or not run.args.resume or not isinstance(error, DAMAGES):
+        return error
+    if isinstance(error, Refused) or not _isOwn(error):
+        return error
+    return Refused(
+        f"--resume: {os.path.join(run.args.resume, NAME)} cannot be taken up: {brief(error)}"
+    )
+
+
+def _isOwn(error):
+    """Whether an error was raised in this package, and not in the script that uses it."""
+    trace = error.__traceback__
+    while trace and trace.tb_next:
+        trace = trace.tb_next
+    inside = os.path.join(os.path.dirname(os.path.dirname(__file__)), "")
+    return bool(trace) and trace.tb_frame.f_code.co_filename.startswith(inside)
 
 
 def _keepEarlier(run, error):

@@ -414,9 +414,9 @@ class Results:
 
     def takeUp(self, rows, frames, seconds):
         """Go on after these rows, so many ParaView frames and seconds of wall-clock time. What came later is removed."""
-        curve = (
-            self._curve()
-        )  # first of all, so that nothing is changed if it cannot be written
+        # what is wrong with the rows or the file comes before anything is changed
+        "".join(self._line % tuple(row) for row in rows)
+        curve = self._curve()
         for name in os.listdir(self.directory):
             number = re.fullmatch(r"(?:blocks|joints)_(\d+)\.vt[up]", name)
             if number and int(number[1]) >= frames:

@@ -19,9 +19,9 @@ import yade.config
 from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
-from .._masonry import commit, version
+from .._masonry import commit, loadScene, version
 from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
-from . import batch
+from . import batch, plausible
 from .checkpoints import NAME, saveCheckpoint
 from .place import Place, Saved, otherVersion, restored
 from .plotting import live
@@ -106,6 +106,7 @@ class Run:
                     f"--resume: {args.resume} holds a run of {self._saved.scene}, this is {self.name}"
                 )
             self.at = self._saved.place()
+            plausible.check(self._saved, self.at)
         for number in (signal.SIGINT, signal.SIGTERM):
             self._handlers[number] = signal.signal(number, self._interrupt)
         self.preset = presetOf(args, self.name)
@@ -125,6 +126,9 @@ class Run:
             if any(len(row) != width for row in self._saved.rows):
                 raise Refused(f"--resume: its rows are not of {width} columns")
             self._saved.load()
+            plausible.checkBodies(O.bodies)
+            if plausible.checkStates(self.at, loadScene):
+                self._saved.load()
             self.results.rows += self._saved.rows
             if self._saved.rows and self.results.columns[0] == "time_s":
                 self._recordedTime = self._saved.rows[-1][0]
@@ -179,6 +183,8 @@ class Run:
                     self._recorder.collect()
             except (TypeError, OSError, RuntimeError, Unwritable, ValueError) as error:
                 raise Refused(f"--resume: {error}") from None
+            except ArithmeticError as error:
+                raise otherVersion(plausible.brief(error)) from None
         self.advanced = True
 
     # -- what stages call -----------------------------------------------------------------------------------------
