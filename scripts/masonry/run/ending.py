@@ -3,8 +3,11 @@
 
 import contextlib
 import os
+import site
 import socket
 import sys
+import sysconfig
+import traceback
 
 import yade.config
 from yade import O
@@ -102,12 +105,16 @@ def _ofCheckpoint(run, error):
 
 
 def _isOwn(error):
-    """Whether an error was raised in this package, and not in the script that uses it."""
-    trace = error.__traceback__
-    while trace and trace.tb_next:
-        trace = trace.tb_next
-    inside = os.path.join(os.path.dirname(os.path.dirname(__file__)), "")
-    return bool(trace) and trace.tb_frame.f_code.co_filename.startswith(inside)
+    """Whether an error was raised in this package or in a library that it called, and not in the script that uses it."""
+    frames = [frame.f_code.co_filename for frame, _ in traceback.walk_tb(error.__traceback__)]  # fmt: skip
+    ours = os.path.join(os.path.dirname(os.path.dirname(__file__)), "")
+    libraries = tuple({*sysconfig.get_paths().values(), *site.getsitepackages()})
+    for name in reversed(frames):
+        if name.startswith(ours):
+            return True
+        if not name.startswith((*libraries, "<")):
+            return False
+    return False
 
 
 def _keepEarlier(run, error):

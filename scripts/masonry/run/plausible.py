@@ -14,6 +14,8 @@ LONGEST = 200  # characters of a reason
 #: How data that somebody has made up show themselves.
 DAMAGES = (ValueError, TypeError, LookupError, AttributeError, ArithmeticError)
 DAMAGES += (MemoryError, RecursionError)
+#: Answers of a stage that looks for the load that is held: both ends come together.
+ENDS = {"factor_held", "factor_not_held"}
 FARTHEST = 1e9  # [m], [m/s], [rad/s]
 
 
@@ -68,13 +70,22 @@ def _isBound(entry):
 def _isAnswer(entry):
     """Whether the answers of a stage are those of :class:`masonry.scene.stages.stage.Answer`."""
     number, found = entry
+    ends = [one for one in found if one["name"] in ENDS]
     unknown = lambda value: value is None or alike(value, 0.0)
-    return _isNumber(number) and all(
-        all(isinstance(one[name], str) for name in ("stage", "name", "unit", "how"))
-        and one["number"] == int(number)
-        and unknown(one["value"])
-        and unknown(one["uncertainty"])
-        for one in found
+    return (
+        _isNumber(number)
+        and all(
+            all(isinstance(one[name], str) for name in ("stage", "name", "unit", "how"))
+            and one["number"] == int(number)
+            and unknown(one["value"])
+            and unknown(one["uncertainty"])
+            for one in found
+        )
+        and (
+            not ends
+            or {one["name"] for one in ends} == ENDS
+            and len({(one["stage"], one["unit"]) for one in ends}) == 1
+        )
     )
 
 
@@ -105,7 +116,7 @@ def checkStates(at, load):
     for text in found:
         try:
             load(base64.b64decode(text, validate=True))
-        except ValueError as error:
+        except (ValueError, TypeError) as error:
             raise otherVersion(f"a state within it {brief(error)}") from None
     return bool(found)
 

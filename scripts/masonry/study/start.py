@@ -105,7 +105,7 @@ def _checkSpace(folder, needed):
     free = shutil.disk_usage(at).free
     if free < needed + SPARE:
         return [
-            f"--out: {at} has {1e-6 * free:.0f} MB free, the study writes some {1e-6 * needed:.0f} MB"
+            f"--out: {at} has {1e-6 * free:.0f} MB free, the study writes some {1e-6 * needed:.0f} MB and keeps {1e-6 * SPARE:.0f} MB free"
         ]
     return []
 
