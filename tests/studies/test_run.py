@@ -424,12 +424,12 @@ def contents(folder):
 @pytest.mark.parametrize(
     "pattern, text, message",
     [
-        (r"(?m)^(0003 .*?)0\.\d+", r"\g<1>0.5", r"row 0003: bed.friction is 0.5, and the study draws 0\.\d+"),
+        (r"(?m)^(0003 .*) 0\.4\d+", r"\g<1> 0.5", r"row 0003: bed.friction is 0.5, and the study draws 0\.\d+"),
         (r"(?m)$", " !EXEC", "column !EXEC is not of the study"),
         (r"(?m)^0004 .*\n", "", "it has 3 rows, and the study 4"),
         (r"\Z", "0005 True 5 1 0.002 0.4 'cyclic' 'x'\n", "it has 5 rows, and the study 4"),
         (r"(?m)^0002", "../x", "row 0002: description is ../x, and the study draws 0002"),
-        (r"\Z", "\n", "its blanks or ends of lines are others"),
+        (r"(?m)^0001 ", "0001  ", "its blanks or ends of lines are others"),
     ],
 )  # fmt: skip
 def test_a_table_that_the_study_does_not_draw_is_refused(
@@ -479,7 +479,7 @@ def test_a_row_whose_checkpoint_has_other_values_begins_again(packed):
     assert (row / "run.checkpoint.refused").exists()
 
 
-@pytest.mark.parametrize("name", ["study.csv", "table.txt.new", "rows/0001.log", "rows/0009"])  # fmt: skip
+@pytest.mark.parametrize("name", ["study.csv", "rows/0001.log"])
 @pytest.mark.parametrize("kind", ["link", "pipe"])
 def test_a_folder_with_links_or_pipes_is_refused(packed, tmp_path, name, kind):
     again, out = packed
