@@ -547,7 +547,7 @@ def test_a_damaged_record_of_an_attempt_counts_as_none(packed, text):
 def test_what_a_row_said_steers_no_terminal(packed):
     again, out = packed
     shutil.rmtree(out / "rows" / "0002")
-    record = dict(host="h", status=1, seconds=1.0, told="\x1b]0;owned\x07")
+    record = {"host": "h", "status": 1, "seconds": 1.0, "told": "\x1b]0;owned\x07"}
     (out / "rows" / "0002.job").write_text(json.dumps(record))
     (out / "rows" / "0003" / "run.json").write_text('{"options": "\\u001b[2J"}')
     done = again("--gather")

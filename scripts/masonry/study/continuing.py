@@ -7,7 +7,6 @@ that the table gives it; a row that goes on from a checkpoint is refused by the 
 and begins again. What a row has found cannot be compared with anything: whoever wants to be sure runs it again.
 """
 
-import os
 
 from ..basics import Refused
 from ..read.files import readWhole

@@ -130,7 +130,7 @@ def _isStudy(record):
 
 def _isJob(record):
     """Whether a record of an attempt is of the form that :mod:`masonry.study.row` gives it."""
-    kinds = dict(host=str, status=int, seconds=(int, float), told=str)
+    kinds = {"host": str, "status": int, "seconds": (int, float), "told": str}
     return (
         isinstance(record, dict)
         and record.keys() == kinds.keys()
