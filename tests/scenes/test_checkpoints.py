@@ -268,11 +268,11 @@ def test_a_run_whose_results_cannot_be_written_goes_on_when_there_is_room(
             os.dup2(full, run.results._file.fileno())
             os.close(full)
         elif lost == "run.json.new":
-            monkeypatch.setattr(Results, "close", full(Results.close))
+            monkeypatch.setattr(Results, "close", withoutSpace(Results.close))
         else:
             os.symlink("/dev/full", out / lost)
 
-    def full(close):
+    def withoutSpace(close):
         def closed(self):
             with monkeypatch.context() as disk:
                 disk.setattr(os, "fsync", noSpace)

@@ -6,6 +6,7 @@ end a run with an error when files have been written. What is found here is foun
 """
 
 import base64
+import math
 
 from .checkpoints import alike
 from .place import otherVersion
@@ -28,8 +29,7 @@ def check(saved, at):
     rows = len(saved.rows)
     heads = {
         "seconds": saved.seconds >= 0 and all(s >= 0 for s in at.seconds.values()),
-        "the stage": at.number == len(at.stages)
-        and (not at.stages or at.stages[-1][0] == at.stage),
+        "the number of the stage": at.number == len(at.stages),
         "the stages": _grow([s[1] for s in at.stages], at.steps)
         and _grow([s[3] for s in at.stages], rows),
         "the frames": all(t >= 0 for t in at.frames) and _grow(at.frames),
@@ -103,22 +103,30 @@ def _isMemory(entry):
     return name not in LONG or not value or alike(value, [0.0] * LONG[name])
 
 
+def checkReading(values, reading):
+    """Refuse a state of which a column of curve.csv has no finite number.
+
+    :param values: functions of a reading
+    :param reading: of the state
+    """
+    if not all(math.isfinite(value(reading)) for value in values):
+        raise otherVersion("its state has left finite numbers")
+
+
 def checkStates(at, load):
-    """Refuse states within a checkpoint that this scene cannot take: the last one at rest, and those of a growth.
+    """Refuse states within a checkpoint that this scene cannot take: the last one at rest, and those of a growth. The scene
+    has the last of them then.
 
     :param at: :class:`masonry.run.place.Place`
     :param load: function that gives the scene the bytes of a state, and raises ValueError
-    :returns: whether there are any, so that the scene has another state now
     """
     kept = [text for _, text in at.memory.get("kept", ())]
     kept += [text for name, text in at.memory.items() if name.endswith("State")]
-    found = [text for text in [at.atRest, *kept] if text]
-    for text in found:
+    for text in filter(None, [at.atRest, *kept]):
         try:
             load(base64.b64decode(text, validate=True))
         except (ValueError, TypeError) as error:
             raise otherVersion(f"a state within it {brief(error)}") from None
-    return bool(found)
 
 
 def checkBodies(bodies):

@@ -89,6 +89,8 @@ class Run:
         """
         args = self.args
         self._values = [column.value for column in columns]
+        # those of the package; a function of the script may count how often it is called
+        self._ownValues = [c.value for c in columns if c.unit is not None]
         heads = [column.head for column in columns]
         self._live = live(heads)
         folder = args.out or os.path.join("results", self.name)
@@ -127,8 +129,9 @@ class Run:
                 raise Refused(f"--resume: its rows are not of {width} columns")
             self._saved.load()
             plausible.checkBodies(O.bodies)
-            if plausible.checkStates(self.at, loadScene):
-                self._saved.load()
+            plausible.checkReading(self._ownValues, model.read())
+            plausible.checkStates(self.at, loadScene)
+            self._saved.load()  # as it was before these looked at it
             self.results.rows += self._saved.rows
             if self._saved.rows and self.results.columns[0] == "time_s":
                 self._recordedTime = self._saved.rows[-1][0]
