@@ -28,7 +28,9 @@ def check(saved, at):
     """
     rows = len(saved.rows)
     heads = {
-        "seconds": saved.seconds >= 0 and all(s >= 0 for s in at.seconds.values()),
+        "seconds": saved.seconds >= 0
+        and all(s >= 0 for s in at.seconds.values())
+        and (at.seconds["steps"] > 0 or at.steps == 0),
         "the number of the stage": at.number == len(at.stages),
         "the stages": _grow([s[1] for s in at.stages], at.steps)
         and _grow([s[3] for s in at.stages], rows),
