@@ -2,6 +2,7 @@
 """What every part of the package shares: gravity, how a run can end before its time, and what is said on the terminal."""
 
 import contextlib
+import re
 import sys
 
 GRAVITY = 9.81  # [m/s²]
@@ -13,10 +14,22 @@ for _stream in (sys.stdout, sys.stderr):
             _stream.reconfigure(errors="backslashreplace")
 
 
+#: What a terminal obeys and does not show: control characters but for the ends of lines and tabs, and marks that turn the
+#: direction of a text.
+_CONTROL = re.compile(
+    r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069]"
+)
+
+
+def plain(text):
+    """A text in which control characters are written out, as ``\\x1b``: what comes from a file must not steer a terminal."""
+    return _CONTROL.sub(lambda found: ascii(found[0])[1:-1], str(text))
+
+
 def say(text, stream=None):
-    """Print a text. A terminal that is gone or a log that is full is no reason to stop a run."""
+    """Print a text, as :func:`plain` writes it. A terminal that is gone or a log that is full is no reason to stop a run."""
     with contextlib.suppress(OSError):
-        print(text, file=stream, flush=True)
+        print(plain(text), file=stream, flush=True)
 
 
 # How a run can end before its time. Each of these ends it in order, and what was computed is kept.

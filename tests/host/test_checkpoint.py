@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A scene's state on disk and back: to the last bit, whole or not at all, and never into another scene."""
 
+import collections
+import errno
+import itertools
 import os
 import struct
 
 import numpy as np
 import pytest
+from crafted import TITLE, Crafted
 from masonry import loadCheckpoint, readCheckpoint, saveCheckpoint
 from test_joint_loop import CASES, energy, panel, state
 from yade import O, Vector3
@@ -213,15 +217,93 @@ def test_text_that_is_no_json_is_refused(saved):
         readCheckpoint(path)
 
 
-def test_a_disk_that_is_full_leaves_the_old_checkpoint(saved):
+def test_a_disk_that_is_full_leaves_the_old_checkpoint(saved, monkeypatch):
     path, data = saved
-    os.symlink("/dev/full", path + ".new")
     run(10)
-    with pytest.raises(OSError, match="No space left on device"):
-        saveCheckpoint(path)
+    with monkeypatch.context() as full:
+        full.setattr(os, "fsync", noSpace)
+        with pytest.raises(OSError, match="No space left on device"):
+            saveCheckpoint(path)
     assert open(path, "rb").read() == data and not os.path.lexists(path + ".new")
     saveCheckpoint(path)
     assert readCheckpoint(path) is None
+
+
+def noSpace(file):
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+@pytest.mark.parametrize("end", ["", ".new"])
+@pytest.mark.parametrize("kind", ["symbolic link", "regular file", "hard link"])
+def test_a_checkpoint_is_written_through_no_link_and_into_no_pipe(saved, end, kind):
+    path, data = saved
+    other = path + ".other"
+    with open(other, "wb") as f:
+        f.write(b"of the user")
+    if end == "":
+        os.remove(path)
+    if kind == "symbolic link":
+        os.symlink(other, path + end)
+    elif kind == "hard link":
+        os.link(other, path + end)
+    else:
+        os.mkfifo(path + end)
+    if kind == "hard link" and end == "":
+        saveCheckpoint(path)  # it takes the place of one of both names
+    else:
+        with pytest.raises(OSError, match=kind):
+            saveCheckpoint(path)
+        assert os.path.lexists(path + end)
+    assert open(other, "rb").read() == b"of the user"
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_crafted_checkpoints_are_value_errors_and_change_nothing(saved, seed):
+    """Two hundred a seed: damaged heads, sizes, records, numbers and texts, most of them below a sum that fits."""
+    path, data = saved
+    saveCheckpoint(path, {"at": [1, {"b": "text"}], "rows": [[0.5]]})
+    data = open(path, "rb").read()
+    interactions, counts = panel(False), collections.Counter()
+    run(30)
+    for kind, crafted in itertools.islice(Crafted(data, seed), 200):
+        with open(path, "wb") as f:
+            f.write(crafted)
+        before = bits(interactions)
+        try:
+            readCheckpoint(path)
+            loadCheckpoint(path)
+        except ValueError as error:
+            assert str(error).startswith(path + " ") and len(str(error)) < 1000
+            assert str(error).isprintable(), str(error)
+            assert bits(interactions) == before
+            counts["refused"] += 1
+        else:
+            counts["read"] += 1
+            with open(path, "wb") as f:
+                f.write(data)
+            loadCheckpoint(path)
+    assert counts["refused"] > 60, counts
+
+
+@pytest.mark.parametrize("size", [2**40, 2**63, 2**64 - 1])
+def test_the_size_that_a_file_says_is_no_reason_to_take_memory(saved, size):
+    path, data = saved
+    with open(path, "wb") as f:
+        f.write(TITLE + struct.pack("<Q", size))
+    with pytest.raises(ValueError, match=f"{path} is cut short"):
+        loadCheckpoint(path)
+
+
+def test_an_extra_that_cannot_be_read_leaves_the_scene_as_it_is(saved):
+    path, data = saved
+    interactions = panel(False)
+    run(30)
+    before = bits(interactions)
+    with open(path, "wb") as f:
+        f.write(Crafted(data, 0).withText(b"[" * 200_000))
+    with pytest.raises(ValueError, match="nested too deeply"):
+        loadCheckpoint(path)
+    assert bits(interactions) == before
 
 
 def test_a_state_that_has_left_finite_numbers_is_not_saved(saved):

@@ -12,6 +12,7 @@ import pytest
 from masonry.basics import Refused
 from masonry.read import crack_figure, curve_figure, drawing, figures, frames
 from masonry.read.crack_figure import merged
+from masonry.read.files import readRun
 from masonry.read.views import viewOf
 
 L, T, H = 0.2, 0.1, 0.08  # [m] of a brick
@@ -339,3 +340,40 @@ def test_a_script_of_yade_draws_without_harm(scene, tmp_path):
     run = subprocess.run([sys.executable, "-m", "masonry.read.figures", folder], capture_output=True, text=True)  # fmt: skip
     assert run.returncode == 0, run.stderr
     assert inside == {name: (tmp_path / name).read_bytes() for name in inside}
+
+
+@pytest.mark.parametrize("kind", ["link", "pipe"])
+def test_figures_are_drawn_into_no_folder_with_links_or_pipes(tmp_path, kind):
+    rows = [[0.1 * n, n] for n in range(5)]
+    entry = {"x": axis("time_s"), "y": [axis("top_mm")], "y_label": "top"}
+    folder = writeRun(tmp_path / "run", ["time_s", "top_mm"], rows, figure=entry)
+    picture = tmp_path / "run" / "curve.png"
+    (tmp_path / "other").write_text("of the user")
+    if kind == "link":
+        picture.symlink_to("../other")
+    else:
+        os.mkfifo(picture)
+    command = [sys.executable, "-m", "masonry.read.figures", folder]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 2 and "curve.png" in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert (tmp_path / "other").read_text() == "of the user"
+    with pytest.raises(OSError):  # a picture by itself goes through no link, either
+        drawing.save(drawing.empty(1, 1), str(picture), 50)
+    picture.unlink()
+    assert subprocess.run(command).returncode == 0 and picture.stat().st_size > 1000
+
+
+def test_texts_of_a_run_steer_no_terminal(tmp_path):
+    (tmp_path / "run.json").write_text('{"a": "\\u001b[2J"}')
+    (tmp_path / "curve.csv").write_text("time_s\n\x1b[2J\n")
+    command = [sys.executable, "-m", "masonry.read.figures", str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 2 and "\\x1b[2J" in done.stderr
+    assert "\x1b" not in done.stdout + done.stderr
+
+
+def test_run_json_that_is_nested_too_deeply_is_refused(tmp_path):
+    (tmp_path / "run.json").write_text("[" * 200_000)
+    with pytest.raises(Refused, match="nested too deeply"):
+        readRun(str(tmp_path))

@@ -1,18 +1,25 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Runs that are killed, interrupted or stopped by a full disk, and resumed. Their curve must be that of a whole run."""
 
+import errno
+import io
+import itertools
 import os
 import random
 import signal
 import subprocess
 import time
+from contextlib import redirect_stderr
 
 import pytest
 from conftest import ROOT
+from crafted import Crafted
 from masonry import readCheckpoint, saveCheckpoint
 from masonry.read.files import readCurve, readRun
 from masonry.run import checkpoints
+from masonry.run.results import Results
 from masonry.run.run import Run
+from masonry.scene.outcome import Outcome
 from masonry.assembly.structure import Structure
 from small import SMALL, Wall, carryOut, parsed, scene as runScript
 
@@ -217,7 +224,13 @@ def test_a_run_that_fails_can_be_taken_up_where_it_failed(
     assert files(tmp_path / "failed") == files(tmp_path / "whole")
 
 
-def test_a_full_disk_is_reported_and_the_run_goes_on(scene, tmp_path, at, capsys):
+def noSpace(file):
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def test_a_full_disk_is_reported_and_the_run_goes_on(
+    scene, tmp_path, at, capsys, monkeypatch
+):
     assert run(tmp_path / "whole", *PUSH) == 0
     kept = str(tmp_path / "full" / "run.checkpoint")
     seen = {}
@@ -225,8 +238,9 @@ def test_a_full_disk_is_reported_and_the_run_goes_on(scene, tmp_path, at, capsys
     def fill(run):
         run.checkpoint()
         seen["before"] = open(kept, "rb").read()
-        os.symlink("/dev/full", kept + ".new")
-        run.checkpoint()
+        with monkeypatch.context() as full:
+            full.setattr(os, "fsync", noSpace)
+            run.checkpoint()
         seen["after"] = open(kept, "rb").read()
 
     at(60, fill)
@@ -243,7 +257,7 @@ def test_a_full_disk_is_reported_and_the_run_goes_on(scene, tmp_path, at, capsys
 
 @pytest.mark.parametrize("lost", ["curve.csv", "joints_0001.vtp", "run.json.new"])
 def test_a_run_whose_results_cannot_be_written_goes_on_when_there_is_room(
-    scene, tmp_path, at, capsys, lost
+    scene, tmp_path, at, capsys, monkeypatch, lost
 ):
     assert run(tmp_path / "whole", *PUSH) == 0
     out = tmp_path / "full"
@@ -253,12 +267,23 @@ def test_a_run_whose_results_cannot_be_written_goes_on_when_there_is_room(
             full = os.open("/dev/full", os.O_WRONLY)
             os.dup2(full, run.results._file.fileno())
             os.close(full)
+        elif lost == "run.json.new":
+            monkeypatch.setattr(Results, "close", withoutSpace(Results.close))
         else:
             os.symlink("/dev/full", out / lost)
+
+    def withoutSpace(close):
+        def closed(self):
+            with monkeypatch.context() as disk:
+                disk.setattr(os, "fsync", noSpace)
+                close(self)
+
+        return closed
 
     at(32 if lost == "joints_0001.vtp" else 60, fill)
     assert run(out, *PUSH) == 1
     said = capsys.readouterr()
+    monkeypatch.undo()
     lost = lost.removesuffix(".new")
     assert f"{lost}: No space left on device; what was written before" in said.err
     assert f"--resume {out} goes on from here" in said.out
@@ -357,6 +382,63 @@ def refused(out, *words, wall=SMALL):
 def test_options_that_would_change_the_run_are_refused(broken, capsys, words, message):
     assert refused(broken, *words) == 2
     assert message.replace("\\", "") in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["curve.csv", "run.json", "run.json.new", "run.checkpoint.new", "joints_0007.vtp", "curve.png"])  # fmt: skip
+@pytest.mark.parametrize("kind", ["link", "pipe"])
+def test_results_with_links_or_pipes_are_not_taken_up(
+    broken, tmp_path, capsys, name, kind
+):
+    other = tmp_path / "other"
+    other.write_text("of the user")
+    (broken / name).unlink(missing_ok=True)
+    if kind == "link":
+        os.symlink(other, broken / name)
+    else:
+        os.mkfifo(broken / name)
+    names = set(os.listdir(broken))
+    assert run(broken, resume=True) == 2
+    message = capsys.readouterr().err
+    assert name in message and len(message.splitlines()) == 1
+    assert set(os.listdir(broken)) == names and other.read_text() == "of the user"
+
+
+def test_a_curve_with_a_second_name_is_not_written(broken, tmp_path, capsys):
+    os.link(broken / "curve.csv", tmp_path / "backup.csv")
+    before = (tmp_path / "backup.csv").read_bytes()
+    assert refused(broken) == 2
+    assert "a second name, a hard link" in capsys.readouterr().err
+    assert (tmp_path / "backup.csv").read_bytes() == before
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_crafted_checkpoints_are_refused_in_a_sentence_and_change_nothing(
+    scene, tmp_path, monkeypatch, seed
+):
+    """What passes is taken up like any other: its numbers are possible ones."""
+    monkeypatch.setattr(Outcome, "draw", lambda self, directory: None)
+    words = ["--until", "0.1", "--rate", "100", "--no-vtk"]
+    assert run(tmp_path / "whole", *words) == 0
+    whole = {n: (tmp_path / "whole" / n).read_bytes() for n in os.listdir(tmp_path / "whole")}  # fmt: skip
+    out, count = tmp_path / "out", 0
+    out.mkdir()
+    for kind, data in itertools.islice(Crafted(whole["run.checkpoint"], seed), 150):
+        for name in os.listdir(out):
+            os.remove(out / name)
+        for name, text in {**whole, "run.checkpoint": data}.items():
+            (out / name).write_bytes(text)
+        with redirect_stderr(io.StringIO()) as message:
+            try:
+                status = run(out, resume=True)
+            except SystemExit as end:
+                status = end.code
+        assert status in (0, 2), kind
+        if status == 2:
+            count += 1
+            assert len(message.getvalue().splitlines()) == 1, message.getvalue()
+            now = {n: (out / n).read_bytes() for n in os.listdir(out)}
+            assert now == {**whole, "run.checkpoint": data}
+    assert count > 90
 
 
 def test_options_that_say_the_same_are_welcome(broken):

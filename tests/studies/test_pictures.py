@@ -383,7 +383,7 @@ def test_studies_of_other_walls_or_options_are_not_joined(studies):
 
     def write(scene="wall_comp4", **more):
         for (name, own), directory in zip(options.items(), studies):
-            study = {"scene": "wall_comp4", "runs": 15, "options": own}
+            study = {"scene": "wall_comp4", "runs": 15, "options": own, "vary": {}}
             if name == "fast":
                 study = {**study, "scene": scene, "options": {**own, **more}}
             message = {"study": study, "script": scene + ".py"}
@@ -403,7 +403,8 @@ def test_studies_of_other_rates_and_meshes_are_joined(studies):
     for (name, more), directory in zip(
         {"accurate": {}, "fast": {"rate": 20, "subcontacts": 2}}.items(), studies
     ):
-        study = {"scene": "wall_comp4", "runs": 15, "options": {"preset": name, **more}}
+        options = {"preset": name, **more}
+        study = {"scene": "wall_comp4", "runs": 15, "options": options, "vary": {}}
         message = json.dumps({"study": study, "script": "wall_comp4.py"})
         (pathlib.Path(directory) / "study.json").write_text(message)
     few, many = map(records.Record, studies[:2])

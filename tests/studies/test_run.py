@@ -401,6 +401,181 @@ def test_a_changed_scene_is_another_study(whole, tmp_path):
     assert done.returncode == 2 and "the file of its scene" in done.stderr
 
 
+# -- a folder that somebody else has packed ---------------------------------------------------------------------------
+
+
+@pytest.fixture
+def packed(whole, tmp_path):
+    """A copy of a study that has ended: a function that goes on with it, and its folder."""
+    out = tmp_path / "out"
+    shutil.copytree(whole[0], out)
+    path = write(tmp_path)
+    return lambda *words: study(path, "--out", out, *words), out
+
+
+def contents(folder):
+    """What is in a folder, by paths; of what is no file its kind."""
+    return {
+        str(p.relative_to(folder)): p.read_bytes() if p.is_file() else p.is_fifo()
+        for p in folder.rglob("*")
+    }
+
+
+@pytest.mark.parametrize(
+    "pattern, text, message",
+    [
+        (r"(?m)^(0003 .*) 0\.4\d+", r"\g<1> 0.5", r"row 0003: bed.friction is 0.5, and the study draws 0\.\d+"),
+        (r"(?m)$", " !EXEC", "column !EXEC is not of the study"),
+        (r"(?m)^0004 .*\n", "", "it has 3 rows, and the study 4"),
+        (r"\Z", "0005 True 5 1 0.002 0.4 'cyclic' 'x'\n", "it has 5 rows, and the study 4"),
+        (r"(?m)^0002", "../x", "row 0002: description is ../x, and the study draws 0002"),
+        (r"(?m)^0001 ", "0001  ", "its blanks or ends of lines are others"),
+    ],
+)  # fmt: skip
+def test_a_table_that_the_study_does_not_draw_is_refused(
+    packed, pattern, text, message
+):
+    again, out = packed
+    table, whole = out / "table.txt", read(out, "table.txt")
+    table.write_text(re.sub(pattern, text, table.read_text()))
+    shutil.rmtree(out / "rows" / "0003")
+    before = contents(out)
+    done = again()
+    assert done.returncode == 2 and re.search(message, done.stderr), done.stderr
+    assert contents(out) == before
+    os.remove(table)
+    assert again("--prepare").returncode == 0
+    assert table.read_bytes() == whole
+
+
+def test_rows_that_ended_with_other_values_are_refused(packed):
+    again, out = packed
+    path = out / "rows" / "0002" / "run.json"
+    run = json.loads(path.read_text())
+    run["options"]["set"][0][2] = "0.77"
+    path.write_text(json.dumps(run))
+    for words in ([], ["--gather"]):
+        done = again(*words)
+        assert done.returncode == 2
+        assert "row 0002 was run with --set=['bed.friction=0.77'" in done.stderr
+    shutil.rmtree(path.parent)
+    assert again("--prepare").returncode == 0
+
+
+def test_a_row_whose_checkpoint_has_other_values_begins_again(packed):
+    again, out = packed
+    before, row = read(out), out / "rows" / "0002"
+    words = batch.optionWords(batch.readTable(str(out / "table.txt"))[3])
+    words = [re.sub(r"(bed.friction)=.*", r"\1=0.6", word) for word in words]
+    shutil.rmtree(row)
+    command = ["yade", "-n", "-x", SMALL, *words, "--out", row]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+    wait(lambda: (row / "run.checkpoint").exists(), 60)
+    process.terminate()
+    assert process.wait() == 130
+    done = again()
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert read(out) == before
+    assert (row / "run.checkpoint.refused").exists()
+
+
+@pytest.mark.parametrize("name", ["study.csv", "rows/0001.log"])
+@pytest.mark.parametrize("kind", ["link", "pipe"])
+def test_a_folder_with_links_or_pipes_is_refused(packed, tmp_path, name, kind):
+    again, out = packed
+    other = tmp_path / "other"
+    other.write_text("of the user")
+    (out / name).unlink(missing_ok=True)
+    if kind == "link":
+        os.symlink(other, out / name)
+    else:
+        os.mkfifo(out / name)
+    before = contents(out)
+    row = [sys.executable, "-m", "masonry.study.row", "--scene", SMALL, str(out), "1"]
+    for done in (
+        again(),
+        again("--gather"),
+        subprocess.run(row, capture_output=True, text=True, timeout=60),
+    ):
+        assert done.returncode == 2, done.stdout
+        assert os.path.basename(name) in done.stderr and done.stderr.count("\n") == 1
+    assert contents(out) == before and other.read_text() == "of the user"
+
+
+def test_a_row_runs_the_scene_that_its_user_names(packed, tmp_path):
+    _, out = packed
+
+    def row(*words):
+        command = [sys.executable, "-P", "-m", "masonry.study.row", *map(str, words)]
+        return subprocess.run(command, capture_output=True, text=True)
+
+    done = row(out, 1)
+    assert done.returncode == 2 and "outside the folder of the study" in done.stderr
+    done = row("--scene", SMALL, out, 1, 2)
+    assert done.returncode == 0
+    assert done.stdout.splitlines() == [f"note: this runs {SMALL}"]
+    other = tmp_path / "other.py"
+    other.write_text("print('another one')")
+    done = row("--scene", other, out, 1)
+    assert done.returncode == 2 and "another file than the one" in done.stderr
+    shutil.copy(SMALL, out / "scene.py")
+    record = json.loads((out / "study.json").read_text())
+    record["script"] = str(out / "scene.py")
+    (out / "study.json").write_text(json.dumps(record))
+    assert row(out, 1).returncode == 0
+
+
+@pytest.mark.parametrize("text", ["[" * 100_000, "{}", '{"study": {"runs": 4}}', "[1]"])
+def test_a_damaged_description_is_refused(packed, text):
+    again, out = packed
+    (out / "study.json").write_text(text)
+    done = again()
+    assert done.returncode == 2 and "study" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("text", ["[" * 100_000, '{"status": "x"}', '{"status": 1}'])
+def test_a_damaged_record_of_an_attempt_counts_as_none(packed, text):
+    again, out = packed
+    shutil.rmtree(out / "rows" / "0002")
+    (out / "rows" / "0002.job").write_text(text)
+    done = again("--gather")
+    assert done.returncode == 1 and "1 missing" in done.stdout
+    assert "Traceback" not in done.stderr
+
+
+def test_what_a_row_said_steers_no_terminal(packed):
+    again, out = packed
+    shutil.rmtree(out / "rows" / "0002")
+    record = {"host": "h", "status": 1, "seconds": 1.0, "told": "\x1b]0;owned\x07"}
+    (out / "rows" / "0002.job").write_text(json.dumps(record))
+    (out / "rows" / "0003" / "run.json").write_text('{"options": "\\u001b[2J"}')
+    done = again("--gather")
+    assert "\x1b" not in done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("seconds", [0.3, 0.8, 1.2, 2.0])
+def test_ctrl_c_while_a_study_is_prepared_ends_in_order(tmp_path, seconds):
+    command = [*COMMAND, write(tmp_path), "--out", tmp_path / "out", "--prepare"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)  # fmt: skip
+    time.sleep(seconds)
+    process.send_signal(signal.SIGINT)
+    message = process.communicate(timeout=60)[0]
+    if process.returncode or "4 rows" not in message:
+        assert process.returncode == 130 and message.startswith("interrupted: ")
+        assert message.count("\n") == 1 and not (tmp_path / "out").exists()
+
+
+def test_a_limit_on_the_size_of_files_fails_rows_in_order(tmp_path):
+    path, out = write(tmp_path), tmp_path / "out"
+    limited = f"ulimit -f 8; exec {' '.join(COMMAND)} {path} --out {out} --jobs 2"
+    done = subprocess.run(["bash", "-c", limited], capture_output=True, text=True)
+    assert done.returncode == 1 and "Traceback" not in done.stdout + done.stderr
+    assert "File too large" in done.stdout + done.stderr
+    done = study(path, "--out", out, "--jobs", "2")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
 @pytest.mark.parametrize("engine, words", [("yade-batch", []), ("sbatch", ["--slurm"])])
 def test_a_missing_engine_is_reported_before_anything_runs(tmp_path, engine, words):
     (tmp_path / "bin").mkdir()
@@ -443,9 +618,9 @@ def test_a_disk_that_fills_up_stops_the_study_in_order(whole, tmp_path):
         (small / "filler").write_bytes(bytes(shutil.disk_usage(small).free - 6_000_000))
         path = write(tmp_path)
         done = study(path, "--out", small / "out", "--jobs", "2")
-        assert done.returncode == 2 and "Traceback" not in done.stderr
+        assert done.returncode == 1 and "Traceback" not in done.stderr
         assert re.search(r"has [56].\d MB free, too little for 2 runs", done.stderr)
-        assert "goes on when there is room" in done.stderr
+        assert "goes on when there is space" in done.stderr
         os.remove(small / "filler")
         assert study(path, "--out", small / "out", "--jobs", "2").returncode == 0
         assert read(small / "out") == read(whole[0])

@@ -9,7 +9,7 @@ import sys
 
 import numpy as np
 
-from ..basics import Refused
+from ..basics import Refused, say
 from . import drawing
 from .files import readCurve, readRun
 
@@ -195,8 +195,8 @@ def main(words=None):
     parser.add_argument("--out", default="plot.png", help=".png, .pdf or .svg file (default plot.png)")  # fmt: skip
     args = parser.parse_args(words)
     try:
-        print(compare(args.result, args.csv, args.x, args.y, args.label, args.out, args.title))  # fmt: skip
+        say(compare(args.result, args.csv, args.x, args.y, args.label, args.out, args.title))  # fmt: skip
     except Refused as problem:
-        print(problem, file=sys.stderr)
+        say(problem, sys.stderr)
         return 2
     return 0

@@ -3,6 +3,8 @@
 
 import os
 
+from ..folders import replaced
+
 
 def empty(width, height):
     """An empty figure [inch]. It has no window, and pyplot, whose settings YADE changes, has no part in it."""
@@ -20,9 +22,6 @@ def style():
 
 def save(figure, path, dpi):
     """Write a picture, whole or not at all."""
-    try:
-        figure.savefig(path, dpi=dpi)
-    except OSError:
-        if os.path.exists(path):
-            os.remove(path)
-        raise
+    kind = os.path.splitext(path)[1][1:]
+    with replaced(path, "wb") as file:
+        figure.savefig(file, dpi=dpi, format=kind)

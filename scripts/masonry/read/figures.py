@@ -13,13 +13,15 @@ import glob
 import os
 import sys
 
+from .. import folders
 from .crack_figure import cracks
 from .curve_figure import curve
 from .files import filesOf, onFolder
 
 
 def draw(directory):
-    """Draw all figures that the files of a run allow. Raises Refused if something is wrong with them."""
+    """Draw all figures that the files of a run allow. Raises Refused if something is wrong with them, or with the folder."""
+    folders.check(directory)
     with filesOf(directory):
         curve(directory)
         if glob.glob(os.path.join(glob.escape(directory), "joints_*.vtp")):

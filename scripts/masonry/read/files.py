@@ -4,29 +4,30 @@
 import contextlib
 import csv
 import errno
-import json
 import math
 import os
 import stat
 import sys
 
-from ..basics import Refused
+from ..basics import Refused, say
+from ..folders import fromJson
 
 
 def readWhole(path, sizeOf=None):
     """The bytes of a file. Raises OSError for what is no file, too: a pipe never ends, and a device has no end.
 
     :param sizeOf: function of the first 64 bytes that gives how many the file should have; of a longer one, which may be
-        an endless hole, one byte more is read
+        an endless hole, one byte more is read. Never more is asked of the memory than the file has
     """
     number = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     with open(number, "rb") as f:
-        if not stat.S_ISREG(os.fstat(number).st_mode):
+        found = os.fstat(number)
+        if not stat.S_ISREG(found.st_mode):
             raise OSError(errno.EINVAL, "it is no regular file", path)
         head = f.read(64)
         if not sizeOf:
             return head + f.read()
-        return head + f.read(max(0, sizeOf(head) + 1 - len(head)))
+        return head + f.read(max(0, min(sizeOf(head) + 1, found.st_size) - len(head)))
 
 
 def _read(path):
@@ -67,8 +68,10 @@ def readRun(directory):
     """run.json of a run as a dict; this module's docstring lists its keys. Raises Refused if there is none."""
     path = os.path.join(directory, "run.json")
     try:
-        run = json.loads(_read(path))
-    except json.JSONDecodeError as error:
+        run = fromJson(_read(path))
+    except ValueError as error:
+        if isinstance(error, Refused):
+            raise
         raise Refused(f"{path}: {error}") from None
     if not isinstance(run, dict):
         raise Refused(f"{path}: is no record of a run")
@@ -93,9 +96,9 @@ def onFolder(act, words):
             raise Refused("name one folder of results, for example results/wall_comp4")
         act(words[0])
     except Refused as problem:
-        print(problem, file=sys.stderr)
+        say(problem, sys.stderr)
         return 2
     except OSError as error:
-        print(f"cannot write to {words[0]}: {error.strerror}", file=sys.stderr)
+        say(f"cannot write to {words[0]}: {error.strerror}", sys.stderr)
         return 2
     return 0

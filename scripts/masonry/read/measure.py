@@ -15,6 +15,7 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 
+from ..basics import say
 from . import loops
 from .cracks import (
     crushing,
@@ -186,15 +187,15 @@ def show(directory):
     """Print all numbers of a run, and a table of its cycles if there are any."""
     numbers, wall = measure(directory), readRun(directory).get("wall")
     for name, value in numbers.items():
-        print(f"{name:34} {value:.6g}")
+        say(f"{name:34} {value:.6g}")
     if wall and "slid_share" in numbers:
         looped, curve = readRun(directory).get("history"), readCurve(directory)
         grows = not looped and stillGrows(curve["displacement_mm"], curve["base_shear_kN"])  # fmt: skip
-        print(f"{'failure_mode':34} {failureMode(numbers, wall, grows)}")
+        say(f"{'failure_mode':34} {failureMode(numbers, wall, grows)}")
     cycles = readRun(directory).get("cycles")
     if cycles:
         with filesOf(directory):
-            print("\n".join(["", *cycleTable(cycles)]))
+            say("\n".join(["", *cycleTable(cycles)]))
 
 
 if __name__ == "__main__":

@@ -16,7 +16,8 @@ import tempfile
 
 import numpy as np
 
-from ..basics import Refused
+from .. import folders
+from ..basics import Refused, say
 from .crack_figure import magnificationOf, whenOf
 from .cracks import CRACK, DAMAGED
 from .files import filesOf, readCurve, readRun
@@ -229,8 +230,8 @@ def _fresh(path):
     path = os.path.abspath(path)
     if not os.path.isdir(os.path.dirname(path)):
         raise Refused(f"cannot write {path}: there is no folder {os.path.dirname(path)}")  # fmt: skip
-    if os.path.isfile(path):
-        os.remove(path)
+    if os.path.lexists(path) and not os.path.isdir(path):
+        os.remove(path)  # also a link, which would lead elsewhere
     return path
 
 
@@ -255,6 +256,7 @@ def render(directories, picture=None, film=None, at=None, magnification=None, si
             if os.path.splitext(path)[1]:
                 raise Refused(f"--film: {path} must end in {', '.join(FILMS)}, or be a folder")  # fmt: skip
             os.makedirs(path, exist_ok=True)
+            folders.check(path)
             target = os.path.join(os.path.abspath(path), "frame.png")
         else:
             if what == "picture" and not path.lower().endswith(".png"):
@@ -314,6 +316,6 @@ def main(words=None):
             else:
                 show(args.result, args.at, args.magnify)
     except (Refused, OSError) as problem:
-        print(problem, file=sys.stderr)
+        say(problem, sys.stderr)
         return 2
     return 0

@@ -12,8 +12,8 @@ underscores for dashes, and properties of joints. Values are written as in Pytho
 - ``field:JOINT.PROPERTY``: as ``--field``; several of them that vary alike are joined by ``+``
 - ``description``: names the row; its results are in the folder ``rows/DESCRIPTION`` beside the table
 
-A row that was run to its end is not run again, and one that was stopped goes on from its checkpoint, with the values that it
-began with. So a row with other values needs another description.
+A row that was run to its end is not run again, and one that was stopped goes on from its checkpoint, if that has the values of
+the table, and is refused if not. So a row with other values needs another description.
 """
 
 import ast
@@ -22,8 +22,13 @@ import os
 import re
 
 from ..basics import Refused
-from ..read.files import readRun
+from ..read.files import readRun, readWhole
 
+#: Options that a study itself gives, or that a row of it cannot have.
+OWN = {"out", "resume", "lean", "set", "field", "no_vtk", "vtk_every", "help"}
+SCENE = (
+    "MASONRY_SCENE"  # of the environment: the scene that the user of a study has named
+)
 VARIABLE = "YADE_BATCH"  # of the environment: path of the table and number of the line
 ROWS = "rows"  # folder of the results, beside the table
 FIELD = "field:"  # begins the name of a column
@@ -35,10 +40,12 @@ PROBE = "MASONRY_PROBE"
 def readTable(path):
     """The rows of a table by the number of their line, from 1: dicts of texts. Raises Refused if it is none."""
     try:
-        with open(path, encoding="utf-8") as f:
-            lines = [re.sub(r"\s*#.*", "", line).split() for line in f]
-    except (OSError, UnicodeDecodeError) as error:
+        text = readWhole(path).decode("utf-8")
+    except OSError as error:
+        raise Refused(f"cannot read {path}: {error.strerror}") from None
+    except UnicodeDecodeError as error:
         raise Refused(f"cannot read {path}: {error}") from None
+    lines = [re.sub(r"\s*#.*", "", line).split() for line in text.split("\n")]
     used = [number for number, words in enumerate(lines, 1) if words]
     if not used:
         raise Refused(f"{path}: there is no row")
@@ -52,6 +59,11 @@ def readTable(path):
             )
         row = {h: before.get(h, w) if w == "=" else w for h, w in zip(heads, words)}
         rows[number] = before = row
+    odd = [
+        name for row in rows.values() if (name := nameOf(row, "row")).strip(".") == ""
+    ]
+    if odd:
+        raise Refused(f"{path}: description {odd[0]!r} cannot name a folder")
     names = collections.Counter(folder(path, row, line) for line, row in rows.items())
     twice = [os.path.basename(name) for name, count in names.items() if count > 1]
     if twice:
@@ -63,7 +75,7 @@ def value(text):
     """The value that a text of a table stands for; what is no value of Python is the text itself."""
     try:
         return ast.literal_eval(text)
-    except (ValueError, SyntaxError):
+    except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
         return text
 
 
@@ -85,6 +97,17 @@ def optionWords(row):
     return words
 
 
+def isColumn(name):
+    """Whether a column of a study can have this name: an option, or properties of joints with one value or field.
+
+    Columns that begin with ``!`` are orders to yade-batch: ``!EXEC`` is a program that it runs.
+    """
+    one = r"[A-Za-z_]\w*(\.\w+)?"
+    names = name.removeprefix(FIELD)
+    whole = re.fullmatch(rf"{one}(\+{one})*", names, re.ASCII)
+    return bool(whole) and not OWN.intersection(names.split("+"))
+
+
 def place(text):
     """Path of the table and number of the line of what stands in the environment. Raises Refused."""
     path, _, line = text.rpartition(":")
@@ -100,8 +123,13 @@ def named(number):
 
 def folder(path, row, line):
     """The folder of the results of a row."""
-    name = row.get("description", f"line_{line}").replace("/", "_").strip("'\"")
+    name = nameOf(row, f"line_{line}")
     return os.path.join(os.path.dirname(os.path.abspath(path)), ROWS, name)
+
+
+def nameOf(row, usual):
+    """The name of a row, which is that of a folder; ``usual`` if it has no description."""
+    return row.get("description", usual).replace("/", "_").strip("'\"")
 
 
 def ended(directory):
@@ -132,7 +160,8 @@ def present():
     if ended(out):
         raise Done(out)
     if os.path.exists(os.path.join(out, "run.checkpoint")):
-        return [f"--resume={out}"]
+        # the values of the table are compared with those of the checkpoint
+        return [*optionWords(rows[line]), f"--resume={out}"]
     return [*optionWords(rows[line]), f"--out={out}"]
 
 

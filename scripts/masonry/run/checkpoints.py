@@ -5,14 +5,18 @@
 :mod:`masonry.run.place` is what such a checkpoint tells of the run.
 """
 
+import contextlib
 import json
-import math
 import os
 
 from .._masonry import loadScene, saveScene, savedText
+from ..basics import plain
+from ..folders import fromJson, replaced
 from ..read.files import readWhole
 
 NAME = "run.checkpoint"  # in the folder of a run
+LARGEST = 1e100  # no number of a run is beyond; its square can be computed
+LONGEST = 500  # characters of a reason: it can quote a file that somebody has made up
 
 
 def saveCheckpoint(path, extra=None):
@@ -25,20 +29,11 @@ def saveCheckpoint(path, extra=None):
     :param path: file to write; ``path + ".new"`` is beside it for a moment
     :param extra: what your script must know to go on: anything that JSON can hold
     :raises ValueError: if a number of the state is not finite; nothing is written then
-    :raises OSError: if the file cannot be written; the old one stays
+    :raises OSError: if the file cannot be written, or one of both is a symbolic link; the old one stays
     """
     data = saveScene(json.dumps(extra, allow_nan=False))
-    beside = path + ".new"
-    try:
-        with open(beside, "wb") as f:
-            f.write(data)
-            f.flush()
-            os.fsync(f.fileno())
-        os.replace(beside, path)
-    except OSError:
-        if os.path.lexists(beside):
-            os.remove(beside)
-        raise
+    with replaced(path, "wb") as f:
+        f.write(data)
     folder = os.open(os.path.dirname(os.path.abspath(path)), os.O_RDONLY)
     try:
         os.fsync(folder)
@@ -53,7 +48,11 @@ def loadCheckpoint(path):
     :raises ValueError: if the file is damaged, or of another scene or version; the scene stays as it is
     :raises OSError: if it cannot be read
     """
-    return _extra(path, loadScene, _bytesOf(path))
+    data = _bytesOf(path)
+    extra = _extra(path, savedText, data)  # first, so that a wrong one changes nothing
+    with _says(path):
+        loadScene(data)
+    return extra
 
 
 def readCheckpoint(path):
@@ -70,19 +69,26 @@ def readState(directory):
 
 
 def _bytesOf(path):
-    try:
+    with _says(path):
         return readWhole(path, _size)
-    except MemoryError:
-        raise ValueError(f"{path} is too large for the memory") from None
 
 
 def _extra(path, textOf, data):
+    with _says(path):
+        return fromJson(textOf(data))
+
+
+@contextlib.contextmanager
+def _says(path):
+    """Let every error in the contents of a checkpoint be a ValueError that names the file and is short enough to read."""
     try:
-        return json.loads(textOf(data))
-    except ValueError as error:
-        raise ValueError(f"{path} {error}") from None
+        yield
     except MemoryError:
         raise ValueError(f"{path} is too large for the memory") from None
+    except (ValueError, OverflowError) as error:
+        why = plain(error)
+        why = why if len(why) < LONGEST else why[:LONGEST] + " ..."
+        raise ValueError(f"{path} {why}") from None
 
 
 def _size(head):
@@ -96,7 +102,7 @@ def _size(head):
 def alike(value, example):
     """Whether a value that JSON gave is of the kind of another one.
 
-    An int is a counter, from 0 on; a float is any finite number; a list or tuple has as many values, each of the kind of its
+    An int is a counter, from 0 on; a float is any number up to LARGEST; a list or tuple has as many values, each of the kind of its
     counterpart, and an empty one stands for any list; None stands for None and for a list of finite numbers.
     """
     if example is None:
@@ -115,4 +121,4 @@ def alike(value, example):
         return False
     if isinstance(example, int):
         return isinstance(value, int) and 0 <= value < 2**63
-    return abs(value) < math.inf
+    return abs(value) <= LARGEST

@@ -3,8 +3,11 @@
 
 import contextlib
 import os
+import site
 import socket
 import sys
+import sysconfig
+import traceback
 
 import yade.config
 from yade import O
@@ -13,6 +16,7 @@ from .._masonry import commit, version
 from ..assembly.columns import meanings
 from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
 from .checkpoints import NAME
+from .plausible import DAMAGES, brief
 from .presets import presetNote
 
 OFF = 0.01  # of the work done: a larger error of the energy balance is a warning
@@ -36,6 +40,7 @@ def end(run, scene, error):
 
 
 def _end(run, scene, error):
+    error = _ofCheckpoint(run, error)
     if not run.results and not isinstance(error, Refused):
         return False
     try:
@@ -45,7 +50,7 @@ def _end(run, scene, error):
         error = refused
     if not run.advanced:
         if isinstance(error, Refused):
-            print(error, file=sys.stderr)
+            say(error, sys.stderr)
             run.status = 2
         return run.status == 2
     if error and not isinstance(error, Collapsed) and run.results.earlier:
@@ -86,6 +91,30 @@ def _end(run, scene, error):
     fell = run.collapsed and run.loading
     run.status = 1 if stopped or fell else 130 if run.interrupted else 0
     return True
+
+
+def _ofCheckpoint(run, error):
+    """The error, or a refusal if it was raised in this package by what a checkpoint says, before anything was written."""
+    if run.advanced or not run.args.resume or not isinstance(error, DAMAGES):
+        return error
+    if isinstance(error, Refused) or not _isOwn(error):
+        return error
+    return Refused(
+        f"--resume: {os.path.join(run.args.resume, NAME)} cannot be taken up: {brief(error)}"
+    )
+
+
+def _isOwn(error):
+    """Whether an error was raised in this package or in a library that it called, and not in the script that uses it."""
+    frames = [frame.f_code.co_filename for frame, _ in traceback.walk_tb(error.__traceback__)]  # fmt: skip
+    ours = os.path.join(os.path.dirname(os.path.dirname(__file__)), "")
+    libraries = tuple({*sysconfig.get_paths().values(), *site.getsitepackages()})
+    for name in reversed(frames):
+        if name.startswith(ours):
+            return True
+        if not name.startswith((*libraries, "<")):
+            return False
+    return False
 
 
 def _keepEarlier(run, error):

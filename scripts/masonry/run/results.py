@@ -128,6 +128,7 @@ import socket
 import stat
 import time
 
+from .. import folders
 from ..basics import Refused, Unwritable, say
 from ..read.files import readWhole
 
@@ -194,11 +195,9 @@ class Lock:
     def _open(self):
         """The file, locked. Another run may remove it between two of our calls; then there is a new one."""
         while True:
-            how = os.O_RDWR | os.O_CREAT | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC
-            file = open(os.open(self.path, how, 0o644), "r+b", buffering=0)
+            how = os.O_RDWR | os.O_CREAT
+            file = open(folders.inside(self.path, how), "r+b", buffering=0)
             try:
-                if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-                    raise OSError(errno.EINVAL, f"{LOCK} is no regular file")
                 try:
                     fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 except BlockingIOError:
@@ -260,7 +259,7 @@ class Lock:
 def held(directory):
     """Whether a run is writing to a folder now, as far as its lock tells."""
     try:
-        file = open(os.path.join(directory, LOCK), "rb")
+        file = open(os.path.join(directory, LOCK), "rb", opener=_lockFile)
     except OSError:
         return False
     with file:
@@ -279,10 +278,19 @@ def held(directory):
         return False
 
 
+def _lockFile(path, flags):
+    """The ``opener`` of a lock, which is a file if a run has left it: a pipe would never end."""
+    number = os.open(path, flags | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC)
+    if stat.S_ISREG(os.fstat(number).st_mode):
+        return number
+    os.close(number)
+    raise OSError(errno.EINVAL, f"{LOCK} is no regular file", path)
+
+
 def _object(data):
     """The JSON object in some bytes, or an empty one."""
     try:
-        record = json.loads(data)
+        record = folders.fromJson(data)
     except ValueError:
         record = None
     return record if isinstance(record, dict) else {}
@@ -326,6 +334,7 @@ class Results:
             self._made = not resumed and not os.path.isdir(self.directory)
             if self._made:
                 os.makedirs(self.directory)
+            folders.check(self.directory)
             self._lock = Lock(self.directory, scene)
             #: names of the files of an earlier run, which are still there
             self.earlier = [] if resumed else self._earlier()
@@ -376,7 +385,7 @@ class Results:
                 with contextlib.suppress(FileNotFoundError):
                     os.remove(self.path(name))
             self.earlier = []
-            self._file = open(self.path("curve.csv"), "ab", buffering=0)
+            self._file = self._curve()
             self._write(self._head())
             os.fsync(self._file.fileno())
         except OSError as error:
@@ -395,17 +404,25 @@ class Results:
     def path(self, name):
         return os.path.join(self.directory, name)
 
+    def _curve(self):
+        """curve.csv, open to add to it."""
+        path = self.path("curve.csv")
+        return open(path, "ab", buffering=0, opener=folders.inside)
+
     def _head(self):
         return ",".join(self.columns) + "\r\n"
 
     def takeUp(self, rows, frames, seconds):
         """Go on after these rows, so many ParaView frames and seconds of wall-clock time. What came later is removed."""
+        # what is wrong with the rows or the file comes before anything is changed
+        "".join(self._line % tuple(row) for row in rows)
+        curve = self._curve()
         for name in os.listdir(self.directory):
             number = re.fullmatch(r"(?:blocks|joints)_(\d+)\.vt[up]", name)
             if number and int(number[1]) >= frames:
                 os.remove(self.path(name))
         self._lock.ours = True
-        self._file = open(self.path("curve.csv"), "ab", buffering=0)
+        self._file = curve
         self._file.truncate(0)
         self._write(self._head())
         self.rows.clear()
@@ -479,11 +496,8 @@ class Results:
         self._file.close()
         path = self.path("run.json")
         try:
-            with open(path + ".new", "w") as f:
+            with folders.replaced(path) as f:
                 json.dump(self.run, f, indent=2)
                 f.write("\n")
-            os.replace(path + ".new", path)
         except OSError as error:
-            with contextlib.suppress(OSError):
-                os.remove(path + ".new")
             raise Unwritable(f"cannot write {path}: {error.strerror}") from None

@@ -19,9 +19,9 @@ import yade.config
 from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
-from .._masonry import commit, version
+from .._masonry import commit, loadScene, version
 from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
-from . import batch
+from . import batch, plausible
 from .checkpoints import NAME, saveCheckpoint
 from .place import Place, Saved, otherVersion, restored
 from .plotting import live
@@ -89,6 +89,8 @@ class Run:
         """
         args = self.args
         self._values = [column.value for column in columns]
+        # those of the package; a function of the script may count how often it is called
+        self._ownValues = [c.value for c in columns if c.unit is not None]
         heads = [column.head for column in columns]
         self._live = live(heads)
         folder = args.out or os.path.join("results", self.name)
@@ -106,6 +108,7 @@ class Run:
                     f"--resume: {args.resume} holds a run of {self._saved.scene}, this is {self.name}"
                 )
             self.at = self._saved.place()
+            plausible.check(self._saved, self.at)
         for number in (signal.SIGINT, signal.SIGTERM):
             self._handlers[number] = signal.signal(number, self._interrupt)
         self.preset = presetOf(args, self.name)
@@ -128,6 +131,10 @@ class Run:
                 raise Refused(f"--resume: its rows are not of {width} columns")
             self.state.takeRest(self.at)
             self._saved.load()
+            plausible.checkBodies(O.bodies)
+            plausible.checkReading(self._ownValues, model.read())
+            plausible.checkStates(self.at, loadScene)
+            self._saved.load()  # as it was before these looked at it
             self.at.resumed.append(O.time)
             self._saved.compareHost(hostNow())
         self._recorder = MasonryVtkRecorder(
@@ -207,6 +214,8 @@ class Run:
                     self._recorder.collect()
             except (TypeError, OSError, RuntimeError, Unwritable, ValueError) as error:
                 raise Refused(f"--resume: {error}") from None
+            except ArithmeticError as error:
+                raise otherVersion(plausible.brief(error)) from None
         self.advanced = True
 
     # -- what stages call -----------------------------------------------------------------------------------------

@@ -5,10 +5,11 @@ import argparse
 import math
 import re
 
-from ..basics import Refused
+from ..basics import Refused, plain
 from ..run import batch
 from ..run.checkpoints import alike
 from ..run.place import Saved
+from ..run.plausible import DAMAGES, brief
 from ..run.presets import HARMLESS, PRESETS, asOption
 from . import fields, history
 
@@ -134,6 +135,9 @@ class Parser(argparse.ArgumentParser):
             self.problems.append(str(error))
             return action.default
 
+    def _print_message(self, message, file=None):
+        super()._print_message(plain(message or ""), file)
+
     def error(self, message):
         super().error("\n  ".join([*self.problems, message]))
 
@@ -215,7 +219,7 @@ class Parser(argparse.ArgumentParser):
             return not isinstance(value, (list, dict, bool)) and (
                 action.type is None or action.type(str(value)) == value
             )
-        except argparse.ArgumentTypeError:
+        except (argparse.ArgumentTypeError, ValueError, TypeError, ArithmeticError):
             return False
 
     def _resumed(self, args, folder):
@@ -225,11 +229,14 @@ class Parser(argparse.ArgumentParser):
             self._checkKnown(known, folder)
         except Refused as refused:
             self.exit(2, f"{refused}\n")
+        except DAMAGES as error:
+            self.exit(2, f"--resume: {folder} cannot be taken up: {brief(error)}\n")
         known["set"] = [tuple(setting) for setting in known["set"]]
         known["out"] = folder
-        start = Options(self, **{**known, "set": []})
+        start = Options(self, **{**known, "set": [], "field": []})
         given = super().parse_args(args, start)
         given.set = given.set or known["set"]
+        given.field = given.field or known["field"]
         fixed = [
             f"{asOption(name)} is {value}"
             for name, value in known.items()

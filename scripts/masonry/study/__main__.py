@@ -6,12 +6,21 @@ import os
 import runpy
 import sys
 
+from . import interrupts
+
+if __name__ == "__main__":
+    interrupts.block()
+
 from ..basics import Interrupted, Refused, Unwritable, say
 from . import slurm
+from .continuing import checkRows, rowsOf
 from .gathering import CSV, Folder, gather
 from .local import Local, yadeBatch
 from .plan import Study
-from .start import begin
+from .start import NOTHING, begin
+
+
+KEPT = "what was computed is kept, and the same command goes on when there is space"
 
 
 def parser():
@@ -54,7 +63,8 @@ def load(path):
     """The study that a file makes. Raises Refused if it makes none or several."""
     if not os.path.isfile(path):
         raise Refused(f"no file {path}")
-    made = runpy.run_path(path)
+    with interrupts.watched(NOTHING):
+        made = runpy.run_path(path)
     studies = {id(v): v for v in made.values() if isinstance(v, Study)}
     if len(studies) != 1:
         raise Refused(
@@ -65,7 +75,10 @@ def load(path):
 
 def tell(folder):
     """Gather, and say what is there. Returns the exit status: 0 if all rows are ended."""
-    counts = gather(folder)
+    folder.check()
+    table = rowsOf(folder)
+    checkRows(folder, table)
+    counts = gather(folder, table)
     said = ", ".join(f"{n} {status}" for status, n in sorted(counts.items()))
     say(f"{said}; see {folder.of(CSV)}")
     return 0 if set(counts) == {"ended"} else 1
@@ -103,11 +116,28 @@ def main(words):
         return tell(folder)
     except KeyboardInterrupt:
         say("interrupted: what was computed is kept; the same command goes on")
-        return 130
-    except (Refused, Unwritable) as problem:
-        print(problem, file=sys.stderr)
+        return interrupts.STATUS
+    except Refused as problem:
+        say(problem, sys.stderr)
         return 2
+    except Unwritable as problem:
+        say(f"{problem}; {KEPT}", sys.stderr)
+        return 1
+    except OSError as error:
+        name = error.filename or args.out
+        say(f"cannot write {name}: {error.strerror}; {KEPT}", sys.stderr)
+        return 1
+
+
+def program(words):
+    """The program, with Ctrl-C as it was before this module was imported. Returns the exit status."""
+    try:
+        interrupts.unblock()
+        return main(words)
+    except KeyboardInterrupt:
+        say(NOTHING)
+        return interrupts.STATUS
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(program(sys.argv[1:]))

@@ -7,13 +7,14 @@ the same to the last digit whoever ran the rows. ``times.csv`` has what is not: 
 
 import csv
 import io
-import json
+import math
 import os
 import re
 
 from ..run import batch
+from .. import folders
 from ..basics import Refused, Unwritable
-from ..read.files import readWhole
+from ..read.files import filesOf, readWhole
 from ..run.results import held
 
 TABLE, STUDY, CSV, TIMES = "table.txt", "study.json", "study.csv", "times.csv"
@@ -72,24 +73,32 @@ class Folder:
         """The file that says how the last attempt at a row ended."""
         return self.row(number) + ".job"
 
-    def description(self):
-        """study.json. Raises Refused if there is none."""
+    def check(self):
+        """Refuse a folder, or one of rows, that holds what is neither file nor folder; a row looks at its own."""
         try:
-            record = json.loads(readWhole(self.of(STUDY)))
-            record["study"]["runs"], record["script"]
-            return record
-        except (OSError, ValueError, KeyError, TypeError):
+            folders.check(self.path, self.of(batch.ROWS))
+        except OSError as error:
+            raise Refused(f"cannot read {error.filename}: {error.strerror}") from None
+
+    def description(self):
+        """study.json. Raises Refused if there is none, or if it is no description of a study."""
+        try:
+            record = folders.fromJson(readWhole(self.of(STUDY)))
+        except (OSError, ValueError):
             raise Refused(
                 f"{self.path} is no folder of a study: it has no {STUDY}"
             ) from None
+        if not _isStudy(record):
+            raise Refused(f"{self.of(STUDY)} is damaged: it describes no study")
+        return record
 
     def lastJob(self, number):
         """How the last attempt at a row ended: a dict with ``host``, ``status``, ``seconds``, ``told``; or an empty one."""
         try:
-            record = json.loads(readWhole(self.job(number)))
+            record = folders.fromJson(readWhole(self.job(number)))
         except (OSError, ValueError):
             return {}
-        return record if isinstance(record, dict) else {}
+        return record if _isJob(record) else {}
 
     def isEnded(self, number):
         return batch.ended(self.row(number)) is not None
@@ -107,14 +116,34 @@ class Folder:
         return "failed" if status not in (0, 130) else "missing"
 
 
+def _isStudy(record):
+    """Whether study.json is of the form that :meth:`masonry.study.plan.Study.describe` gives it."""
+    study = record.get("study") if isinstance(record, dict) else None
+    return (
+        isinstance(study, dict)
+        and isinstance(study.get("runs"), int)
+        and all(isinstance(study.get(name), dict) for name in ("options", "vary"))
+        and all(isinstance(what, dict) for what in study["vary"].values())
+        and isinstance(record.get("script"), str)
+    )
+
+
+def _isJob(record):
+    """Whether a record of an attempt is of the form that :mod:`masonry.study.row` gives it."""
+    kinds = {"host": str, "status": int, "seconds": (int, float), "told": str}
+    return (
+        isinstance(record, dict)
+        and record.keys() == kinds.keys()
+        and all(isinstance(record[name], kind) for name, kind in kinds.items())
+        and 0 <= record["seconds"] < math.inf
+    )
+
+
 def written(path, text):
     """Write a file, whole or not at all. Raises Unwritable."""
     try:
-        with open(path + ".new", "w", newline="") as f:
+        with folders.replaced(path, newline="") as f:
             f.write(text)
-            f.flush()
-            os.fsync(f.fileno())
-        os.replace(path + ".new", path)
     except OSError as error:
         raise Unwritable(f"cannot write {path}: {error.strerror}") from None
 
@@ -151,10 +180,12 @@ def _text(value):
     return repr(value) if isinstance(value, float) else str(value)
 
 
-def gather(folder):
-    """Write study.csv and times.csv. Returns how many rows have each status."""
+def gather(folder, table):
+    """Write study.csv and times.csv. Returns how many rows have each status.
+
+    :param table: the rows of the table, as of :func:`masonry.study.continuing.rowsOf`
+    """
     record = folder.description()["study"]
-    table = [*batch.readTable(folder.of(TABLE)).values()]
     names, found, times, counts = list(record["vary"]), [], [], {}
     for number, row in enumerate(table, 1):
         run, status = batch.ended(folder.row(number)) or {}, folder.status(number)
@@ -164,7 +195,9 @@ def gather(folder):
             for n, v in run.items()
             if n not in ASIDE and (v is None or isinstance(v, (bool, int, float, str)))
         }
-        measures.update((_answerName(a), a["value"]) for a in run.get("answers", []))
+        with filesOf(folder.row(number)):
+            answers = run.get("answers", [])
+            measures.update((_answerName(a), a["value"]) for a in answers)
         found.append(
             (
                 [batch.named(number), *(_varied(n, row[n]) for n in names), status],

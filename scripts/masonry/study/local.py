@@ -12,6 +12,7 @@ import time
 
 from ..run import batch
 from ..basics import Interrupted, Refused, Unwritable, say
+from ..folders import inside
 from ..run.progress import Progress
 from .gathering import TABLE
 
@@ -52,6 +53,7 @@ class Local:
 
     def __init__(self, folder, runs, jobs):
         self.folder, self.runs, self.jobs = folder, runs, jobs
+        self.scene = folder.description()["script"]
         self.open = {n for n in range(1, runs + 1) if not folder.isEnded(n)}
         self.failed, self.interrupted = {}, False
         self.progress = Progress()
@@ -98,11 +100,11 @@ class Local:
         command += ["-j", str(self.jobs), "--job-threads", "1", "--disable-pynotify"]
         command += ["--nice", "0", "--plot-update", "0", "--log", f"{batch.ROWS}/@.log"]
         command += ["--executable", shlex.join(runner), "--lines", lines(numbers)]
-        # the scene of a row is that of study.json; the name tells yade-batch that it is one
+        # the scene of a row is that of the study; the name tells yade-batch that it is one
         command += [TABLE, "scene.py"]
-        env = {**os.environ, "OMP_NUM_THREADS": "1"}
+        env = {**os.environ, "OMP_NUM_THREADS": "1", batch.SCENE: self.scene}
         env.pop(batch.VARIABLE, None)
-        with open(self.folder.of(LOG), "ab") as log:
+        with open(self.folder.of(LOG), "ab", opener=inside) as log:
             self._process = subprocess.Popen(
                 command,
                 cwd=self.folder.path,
@@ -124,8 +126,7 @@ class Local:
         if free < FREE_SPACE * self.jobs:
             self._stop()
             raise Unwritable(
-                f"{self.folder.path} has {1e-6 * free:.1f} MB free, too little for {self.jobs} runs at a time: stopped; what "
-                "was computed is kept, and the same command goes on when there is room"
+                f"{self.folder.path} has {1e-6 * free:.1f} MB free, too little for {self.jobs} runs at a time: stopped"
             )
 
     def _stop(self):

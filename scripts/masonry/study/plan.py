@@ -13,8 +13,6 @@ from . import designs
 from .variables import Choice, Distribution, Field, choice
 
 MOST = 100_000  # rows of a study
-#: Options that the study itself gives, or that a row cannot have.
-OWN = {"out", "resume", "lean", "set", "field", "no_vtk", "vtk_every", "help"}
 
 
 class Study:
@@ -253,7 +251,7 @@ def _wrongOption(name, value):
         return [
             f"{name!r} must be an option, with underscores for dashes, or JOINT.PROPERTY"
         ]
-    if name in OWN:
+    if name in batch.OWN:
         return [f"option {name!r} is the study's own"]
     if value is not None and not isinstance(value, (bool, int, float, str)):
         return [f"{name}: {value!r} must be a number, a text, or True or False"]

@@ -16,7 +16,8 @@ import sys
 
 import numpy as np
 
-from ..basics import Refused
+from ..basics import Refused, say
+from ..folders import check
 from . import estimate, pictures, sensitivity, statistics
 from .records import Record, paired
 
@@ -206,15 +207,16 @@ def main(words=None):
             raise Refused(
                 f"--prices {args.prices} must be two numbers, for example 60,4"
             )
+        check(args.study)
         record = Record(args.study)
         args.measure = args.measure or record.measure(MEASURE)
         for text in (*table(record, args.measure), *modes(record), *statuses(record)):
-            print(text)
+            say(text)
         if demands:
             values = record.complete(args.measure)[2]
-            print(f"probability that {label(args.measure)} is not above")
+            say(f"probability that {label(args.measure)} is not above")
             for demand, *found in zip(demands, *statistics.fragility(values, demands)):
-                print(line(f"{demand:g}", statistics.Interval(*found), "{:.3f}"))
+                say(line(f"{demand:g}", statistics.Interval(*found), "{:.3f}"))
         if args.cheap:
             for text in compare(
                 record,
@@ -224,15 +226,15 @@ def main(words=None):
                 args.method,
                 prices,
             ):
-                print(text)
+                say(text)
         if not args.no_pictures:
             for text in draw(record, args.measure):
-                print(text)
+                say(text)
     except Refused as refused:
-        print(refused, file=sys.stderr)
+        say(refused, sys.stderr)
         return 2
     except OSError as error:
-        print(f"cannot write to {args.study}: {error.strerror}", file=sys.stderr)
+        say(f"cannot write to {args.study}: {error.strerror}", sys.stderr)
         return 2
     return 0
 

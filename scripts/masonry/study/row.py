@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs rows of a study: ``/usr/bin/python3 -P -m masonry.study.row DIR NUMBER...``
+"""Runs rows of a study: ``/usr/bin/python3 -P -m masonry.study.row --scene FILE DIR NUMBER...``
 
 A row that was run is left out, one that was stopped goes on from its checkpoint, and one that somebody else is running is
 left alone. ``DIR/rows/NUMBER.log`` has what it says. This is what a task of Slurm, or of GNU parallel, calls; yade-batch calls
-it too, with the row in its environment. The exit status is 0 if all rows are ended.
+it too, with the row and the scene in its environment. The exit status is 0 if all rows are ended.
+
+The scene is a program, and the folder of a study is data: that study.json names a scene is no reason to run it. So the user
+names it, unless it is in the folder itself, and it must be the file with which the study began. The first line says what runs.
 """
 
+import hashlib
 import json
 import os
 import signal
@@ -15,9 +19,11 @@ import sys
 import time
 
 from ..run import batch
-from ..basics import Refused
-from ..read.files import readRun
-from .gathering import TABLE, Folder, reason
+from ..basics import Refused, say
+from ..folders import inside
+from ..read.files import readRun, readWhole
+from .continuing import rowsOf
+from .gathering import STUDY, TABLE, Folder, reason
 
 REFUSED = 2  # exit status of a scene that refuses its input
 ATTEMPTS = (
@@ -31,11 +37,15 @@ class Job:
 
     :param path: folder of the study
     :param more: words for YADE
+    :param scene: its file, as the user has named it; None: that of study.json, if it is in the folder
+    :raises Refused: if the folder is not as a study leaves it, or the scene is another one
     """
 
-    def __init__(self, path, more=()):
+    def __init__(self, path, more=(), scene=None):
         self.folder, self.more = Folder(path), list(more)
-        self.script = self.folder.description()["script"]
+        self.folder.check()
+        self.script = _sceneOf(self.folder, scene)
+        rowsOf(self.folder)
         self.stopped = 0  # number of the signal that ended it
         self._child = None
         for number in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1):
@@ -58,7 +68,7 @@ class Job:
         own = log is None
         if own and folder.isHeld(number):
             return REFUSED  # somebody else runs it, and writes this log
-        log = open(folder.row(number) + ".log", "wb") if own else log
+        log = open(folder.row(number) + ".log", "wb", opener=inside) if own else log
         # what an attempt took that left a checkpoint belongs to the price of the row
         checkpoint = os.path.join(folder.row(number), "run.checkpoint")
         spent = folder.lastJob(number).get("seconds", 0)
@@ -77,7 +87,8 @@ class Job:
             "told": message,
         }
         if status == 0 or not (folder.isHeld(number) or folder.isEnded(number)):
-            with open(folder.job(number) + f".{os.getpid()}", "w") as f:
+            path = folder.job(number) + f".{os.getpid()}"
+            with open(path, "w", opener=inside) as f:
                 json.dump(record, f)
             os.replace(f.name, folder.job(number))
         return 0 if folder.isEnded(number) else status
@@ -151,10 +162,33 @@ class Job:
         return error or "; ".join(reason(self._tail(number))[-3:])
 
 
+def _sceneOf(folder, named):
+    """The path of the scene that rows run. Raises Refused if the user has not named it, or if it has changed."""
+    record = folder.description()
+    path = os.path.abspath(named or record["script"])
+    within = os.path.join(os.path.realpath(folder.path), "")
+    if not named and not os.path.realpath(path).startswith(within):
+        raise Refused(
+            f"{folder.of(STUDY)} names the scene {path}, which is outside the folder of the study: a scene is a program, so "
+            "name it yourself, with --scene FILE before the folder"
+        )
+    try:
+        found = hashlib.sha256(readWhole(path)).hexdigest()
+    except OSError as error:
+        raise Refused(f"cannot read the scene {path}: {error.strerror}") from None
+    if found != record.get("scene_sha256"):
+        raise Refused(
+            f"the scene {path} is another file than the one with which the study in {folder.path} began"
+        )
+    return path
+
+
 def _batched(words):
     """The row that yade-batch runs, with its words for YADE."""
     path, line = batch.place(os.environ[batch.VARIABLE])
-    job = Job(os.path.dirname(os.path.abspath(path)), words[: words.index("-x")])
+    folder, scene = os.path.dirname(os.path.abspath(path)), os.environ.get(batch.SCENE)
+    job = Job(folder, words[: words.index("-x")], scene)
+    say(f"note: this runs {job.script}")
     return job.run(line - 1, sys.stdout.buffer)
 
 
@@ -166,27 +200,39 @@ def requeue(job):
 
 
 def main(words):
-    if batch.VARIABLE in os.environ and "-x" in words:
-        return _batched(words)
     try:
-        if len(words) < 2 or not all(w.isdecimal() for w in words[1:]):
-            raise Refused("name the folder of a study and the numbers of its rows")
-        job = Job(words[0], ["--threads=1"])
-        runs = job.folder.description()["study"]["runs"]
-        beyond = [w for w in words[1:] if not 1 <= int(w) <= runs]
-        if beyond:
-            raise Refused(f"no row {', '.join(beyond)}: {words[0]} has {runs}")
+        if batch.VARIABLE in os.environ and "-x" in words:
+            return _batched(words)
+        return _rows(words)
     except Refused as refused:
-        print(refused, file=sys.stderr)
+        say(refused, sys.stderr)
         return REFUSED
+    except OSError as error:
+        say(f"cannot write {error.filename}: {error.strerror}", sys.stderr)
+        return 1
+
+
+def _rows(words):
+    """Run the rows that the command line names. Returns the exit status."""
+    scene = None
+    if words[:1] == ["--scene"]:
+        scene, words = "".join(words[1:2]), words[2:]
+    if len(words) < 2 or not all(w.isdecimal() for w in words[1:]):
+        raise Refused(
+            "name the scene, the folder of a study and the numbers of its rows: --scene FILE DIR NUMBER..."
+        )
+    job = Job(words[0], ["--threads=1"], scene)
+    runs = job.folder.description()["study"]["runs"]
+    beyond = [w for w in words[1:] if not 1 <= int(w) <= runs]
+    if beyond:
+        raise Refused(f"no row {', '.join(beyond)}: {words[0]} has {runs}")
+    say(f"note: this runs {job.script}")
     worst = 0
     for word in words[1:]:
         status = job.run(int(word))
         if status:
-            print(
-                f"row {batch.named(int(word))}: {job.folder.lastJob(int(word)).get('told') or f'exit status {status}'}",
-                file=sys.stderr,
-            )
+            why = job.folder.lastJob(int(word)).get("told") or f"exit status {status}"
+            say(f"row {batch.named(int(word))}: {why}", sys.stderr)
         worst = max(worst, status if status >= 0 else 128 - status)
         if job.stopped:
             requeue(job)

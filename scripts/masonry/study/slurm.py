@@ -62,7 +62,9 @@ def script(folder, rows, largest):
     """The batch script of some rows. If they are more than an array may have tasks, a task has several, in turn."""
     each = -(-len(rows) // largest)
     tasks = -(-len(rows) // each)
-    runner = shlex.join([sys.executable, "-P", "-m", "masonry.study.row", folder.path])
+    scene = folder.description()["script"]
+    words = ["masonry.study.row", "--scene", scene, folder.path]
+    runner = shlex.join([sys.executable, "-P", "-m", *words])
     return f"""#!/bin/bash
 #SBATCH --job-name=study
 #SBATCH --array=0-{tasks - 1}

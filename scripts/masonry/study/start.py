@@ -9,9 +9,13 @@ import tempfile
 
 from ..run import batch
 from ..basics import Refused, say
+from ..folders import fromJson
+from .continuing import checkRows, compareTable, rowsOf
 from .gathering import STUDY, TABLE, Folder, reason, written
+from .interrupts import watched
 from .variables import NEVER, Distribution, Field
 
+NOTHING = "interrupted: nothing was run"  # while a study is looked at
 VERSION = 1  # of study.json
 SPARE = 20e6  # bytes that a study leaves free on the disk
 PROBING = 600  # [s] after which a scene that should only be built is given up
@@ -27,14 +31,22 @@ def begin(study, path, near):
     :raises Refused: with all problems at once. Nothing is written then
     """
     folder = Folder(path)
+    folder.check()
     script, fingerprint = study.script(near)
     now = {"version": VERSION, "study": study.describe(), "scene_sha256": fingerprint}
-    now = json.loads(json.dumps(now))
-    if os.path.exists(folder.of(STUDY)):
-        _compare(folder, folder.description(), now)
+    now, known = json.loads(json.dumps(now)), None
+    with watched(NOTHING):
+        table = study.table()
+    if os.path.lexists(folder.of(STUDY)):
+        known = folder.description()
+        _compare(folder, known, now)
+        if os.path.lexists(folder.of(TABLE)):
+            compareTable(folder, table)
+        else:
+            written(folder.of(TABLE), table)
+        checkRows(folder, rowsOf(folder))
     else:
         _checkEmpty(folder)
-        table = study.table()
         problems, needed = _look(study, script, table)
         problems += _checkSpace(folder, study.runs * needed)
         if problems:
@@ -44,7 +56,9 @@ def begin(study, path, near):
         except OSError as error:
             raise Refused(f"--out: cannot write to {path}: {error.strerror}") from None
         written(folder.of(TABLE), table)
-    written(folder.of(STUDY), json.dumps({**now, "script": script}, indent=2) + "\n")
+    now["script"] = script
+    if known != now:
+        written(folder.of(STUDY), json.dumps(now, indent=2) + "\n")
     return folder
 
 
@@ -91,7 +105,7 @@ def _checkSpace(folder, needed):
     free = shutil.disk_usage(at).free
     if free < needed + SPARE:
         return [
-            f"--out: {at} has {1e-6 * free:.0f} MB free, the study writes some {1e-6 * needed:.0f} MB"
+            f"--out: {at} has {1e-6 * free:.0f} MB free, the study writes some {1e-6 * needed:.0f} MB and keeps {1e-6 * SPARE:.0f} MB free"
         ]
     return []
 
@@ -114,7 +128,8 @@ def _look(study, script, table):
             )
     if isinstance(found, str):
         return [f"its scene cannot be built: {found}"], 0
-    problems = _names(study, found) + _ranges(study, found) + found["problems"]
+    with watched(NOTHING):
+        problems = _names(study, found) + _ranges(study, found) + found["problems"]
     for name, why in found["doubtful"].items():
         if name in study.vary:
             say(f"warning: {name} varies, and the scene may not use it: {why}")
@@ -147,7 +162,7 @@ def _probed(script, table, path, line=2):
         return f"it is not built after {PROBING} s"
     try:
         with open(path) as f:
-            return json.load(f)
+            return fromJson(f.read())
     except (OSError, ValueError):
         lines = reason(done.stderr) or [f"no masonry.Scene began a stage in {script}"]
         return "\n  ".join(lines[:10])

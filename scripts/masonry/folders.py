@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Folders that others may have packed: what is written in them stays in them, and what is read from them is data.
+
+Results, studies and checkpoints are handed on as folders, and an archive keeps symbolic links. A file in such a folder is
+opened for writing by :func:`inside` or :func:`replaced` alone, which follow no link, and :func:`check` names all links of a
+folder before anything is written there. ``scripts/README.md`` says what may be shared. This module needs no YADE.
+"""
+
+import contextlib
+import errno
+import json
+import os
+import stat
+
+from .basics import Refused
+
+MOST = 5  # names that are listed
+
+
+def check(*folders):
+    """Refuse folders that hold symbolic links, pipes or devices, all at once. A folder that is missing holds none.
+
+    A folder itself may be reached through a link: its user has named it.
+
+    :raises Refused: if there are any; an OSError if a folder cannot be listed
+    """
+    problems = []
+    for folder in folders:
+        names = sorted(filter(None, map(_odd, _entries(folder))))
+        if names:
+            more = " and more" * (len(names) > MOST)
+            problems.append(
+                f"{folder} holds {', '.join(names[:MOST])}{more}: nothing is written where a name can lead elsewhere; "
+                "remove these, or name another folder"
+            )
+    if problems:
+        raise Refused("\n".join(problems))
+
+
+def _entries(folder):
+    try:
+        with os.scandir(folder) as entries:
+            return list(entries)
+    except FileNotFoundError:
+        return []
+
+
+def _odd(entry):
+    """The name of an entry and what it is, or None for a file or a folder."""
+    if entry.is_symlink():
+        return f"{entry.name}, a symbolic link"
+    if not (entry.is_file() or entry.is_dir()):
+        return f"{entry.name}, no regular file"
+    return None
+
+
+def inside(path, flags):
+    """The ``opener`` of Python's ``open`` for a file that is written in such a folder.
+
+    It follows no symbolic link, does not wait for a pipe, and refuses a file that has a second name (a hard link), because
+    what is written would change that, too.
+
+    :raises OSError: with the reason
+    """
+    safe = os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
+    try:
+        number = os.open(path, flags & ~os.O_TRUNC | safe, 0o666)
+    except OSError as error:
+        if error.errno == errno.ELOOP:
+            raise OSError(errno.ELOOP, "it is a symbolic link", path) from None
+        if error.errno == errno.ENXIO:
+            raise OSError(errno.ENXIO, "it is no regular file", path) from None
+        raise
+    try:
+        found = os.fstat(number)
+        if not stat.S_ISREG(found.st_mode):
+            raise OSError(errno.EINVAL, "it is no regular file", path)
+        if found.st_nlink > 1:
+            raise OSError(errno.EMLINK, "it has a second name, a hard link", path)
+        if flags & os.O_TRUNC:
+            os.ftruncate(number, 0)
+    except BaseException:
+        os.close(number)
+        raise
+    return number
+
+
+@contextlib.contextmanager
+def replaced(path, mode="w", **settings):
+    """A file to write, which takes the place of ``path`` when it is whole and on the disk; else ``path`` stays as it is.
+
+    It is ``path + ".new"`` until then, and is removed after an error.
+
+    :param mode: and ``settings``: as of Python's ``open``
+    :raises OSError: if it cannot be written, or if ``path`` is a symbolic link or no regular file
+    """
+    path = os.fspath(path)
+    beside = path + ".new"
+    if os.path.lexists(path) and not stat.S_ISREG(os.lstat(path).st_mode):
+        raise OSError(
+            errno.EINVAL, "it is a symbolic link or no regular file", path
+        ) from None
+    with open(beside, mode, opener=inside, **settings) as file:
+        try:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+            os.replace(beside, path)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                os.remove(beside)
+            raise
+
+
+def fromJson(data):
+    """The value that a JSON text or its bytes stand for.
+
+    :raises ValueError: if it is none, also if it is nested too deeply or is no text
+    """
+    try:
+        return json.loads(data)
+    except RecursionError:
+        raise ValueError("its brackets are nested too deeply") from None
+    except MemoryError:
+        raise ValueError("it is too large for the memory") from None

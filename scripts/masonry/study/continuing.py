@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a folder of a study must be before the study goes on in it: its table and its rows are those of the study.
+
+The folder may have been on other machines, and anybody may have written in it. So nothing in it is believed that can be
+compared: the table must be what the study draws, to the last digit; a row that has ended must have been run with the values
+that the table gives it; a row that goes on from a checkpoint is refused by the scene itself if the checkpoint has other values,
+and begins again. What a row has found cannot be compared with anything: whoever wants to be sure runs it again.
+"""
+
+
+from ..basics import Refused
+from ..read.files import readWhole
+from ..run import batch, presets
+from .gathering import TABLE
+
+SHOWN = 5  # differences that are named
+
+#: Options of which run.json has the value that the table gives.
+COMPARED = {*presets.USUAL, "until", "preset", "joints", "crack_surfaces"}
+COMPARED |= {"joint_stiffness", "density_scaling", "quick"}
+
+
+def compareTable(folder, drawn):
+    """Refuse a table that is not what the study draws.
+
+    :param folder: :class:`masonry.study.gathering.Folder`
+    :param drawn: the text of the table
+    """
+    path = folder.of(TABLE)
+    try:
+        text = readWhole(path).decode()
+    except OSError as error:
+        raise Refused(f"cannot read {path}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise Refused(f"cannot read {path}: it is no text") from None
+    if text == drawn:
+        return
+    found = _differences(_cells(text), _cells(drawn))
+    found = found or ["its blanks or ends of lines are others"]
+    more = [f"and {len(found) - SHOWN} more"] if len(found) > SHOWN else []
+    raise Refused(
+        f"--out: {path} is not what the study draws; remove it, and it is drawn again. There\n  "
+        + "\n  ".join(found[:SHOWN] + more)
+    )
+
+
+def _cells(text):
+    return [line.split() for line in text.splitlines()]
+
+
+def _differences(there, drawn):
+    """Sentences on what two tables, lists of lists of words, differ in."""
+    heads = drawn[0]
+    if there[:1] != [heads]:
+        columns = there[0] if there else []
+        return [
+            f"column {c} is not of the study" for c in columns if c not in heads
+        ] + [f"column {c} is missing" for c in heads if c not in columns] or [
+            "its columns have another order"
+        ]
+    if len(there) != len(drawn):
+        return [f"it has {len(there) - 1} rows, and the study {len(drawn) - 1}"]
+    found = []
+    for number, (one, other) in enumerate(zip(there[1:], drawn[1:]), 1):
+        row = f"row {batch.named(number)}"
+        if len(one) != len(heads):
+            found.append(f"{row} has {len(one)} values in {len(heads)} columns")
+            continue
+        found += [
+            f"{row}: {head} is {was}, and the study draws {now}"
+            for head, was, now in zip(heads, one, other)
+            if was != now
+        ]
+    return found
+
+
+def rowsOf(folder):
+    """The rows of the table of a study, in turn, as dicts of texts: as many as it has runs, with its columns and names.
+
+    :raises Refused: if the table is another one
+    """
+    study, path = folder.description()["study"], folder.of(TABLE)
+    rows = [*batch.readTable(path).values()]
+    needed = {"description", "lean", *study["options"], *study["vary"]}
+    fields = [name for name in study["vary"] if name.startswith(batch.FIELD)]
+    known = needed | {name[len(batch.FIELD) :] for name in fields}
+    heads = set(rows[0]) if rows else set()
+    foreign = [
+        name
+        for name in [*(rows[0] if rows else ()), *needed]
+        if name not in known
+        or not (batch.isColumn(name) or name in ("description", "lean"))
+    ]
+    problems = [f"column {name} is not of the study" for name in foreign]
+    problems += [f"column {name} is missing" for name in needed - heads]
+    if len(rows) != study["runs"]:
+        problems.append(f"it has {len(rows)} rows, and the study {study['runs']}")
+    problems += [
+        f"row {batch.named(number)} is called {row['description']}"
+        for number, row in enumerate(rows, 1)
+        if row.get("description", "") != batch.named(number)
+    ]
+    if problems:
+        raise Refused(
+            f"{path} is not the table of its study:\n  " + "\n  ".join(problems[:SHOWN])
+        )
+    return rows
+
+
+def checkRows(folder, rows):
+    """Refuse rows that have ended with other values than the table gives them, as far as run.json tells.
+
+    :param rows: as of :func:`rowsOf`
+    """
+    problems = []
+    for number, row in enumerate(rows, 1):
+        run = batch.ended(folder.row(number))
+        if run is not None:
+            problems += [
+                f"row {batch.named(number)} was run with {was}, and the table has {now}"
+                for was, now in _otherOptions(row, run.get("options"))
+            ]
+    if problems:
+        more = len(problems) - SHOWN
+        raise Refused(
+            f"{folder.of(batch.ROWS)}: remove the folders of these rows, and they are run again:\n  "
+            + "\n  ".join(problems[:SHOWN] + [f"and {more} more"] * (more > 0))
+        )
+
+
+def _otherOptions(row, options):
+    """What a row was run with and what the table says, pairs of texts, where they differ.
+
+    :param options: of run.json
+    """
+    if not isinstance(options, dict):
+        return [("options that run.json does not name", "its own")]
+    words = batch.optionWords(row)
+    pairs = []
+    for name, was in (("set", _settings(options)), ("field", options.get("field"))):
+        mark = f"--{name}="
+        now = [word[len(mark) :] for word in words if word.startswith(mark)]
+        if was != now:
+            pairs.append((f"{mark}{was}", now))
+    for name in COMPARED.intersection(row):
+        was, now = options.get(name), batch.value(row[name])
+        if now is not None and now is not False and now != "*" and not _same(was, now):
+            pairs.append((f"{name} {was}", now))
+    return pairs
+
+
+def _settings(options):
+    """``--set`` of run.json as the command line has it."""
+    try:
+        return [f"{joint}.{name}={value}" for joint, name, value in options["set"]]
+    except (KeyError, TypeError, ValueError):
+        return None
+
+
+def _same(was, now):
+    if isinstance(was, bool) or isinstance(now, bool) or isinstance(was, str):
+        return str(was) == str(now)
+    try:
+        return float(was) == float(now)
+    except (TypeError, ValueError):
+        return False
