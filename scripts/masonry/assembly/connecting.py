@@ -15,10 +15,12 @@ from yade.wrapper import (
 )
 
 from .._masonry import connected, dropFaces, gather, neighbours
+from ..arguments import anything, flag, shown, takes
 from .blocks import properties, refuse
 from .engines import LAWS, functorLoop
 
 
+@takes(rule=anything, tolerance=anything, allowGaps=flag)
 def connect(rule=None, tolerance=1e-4, allowGaps=False):
     """Make the joints between all blocks that share a face. The present state is the reference. Returns the interactions.
 
@@ -42,7 +44,7 @@ def connect(rule=None, tolerance=1e-4, allowGaps=False):
         )
     if rule is not None and not callable(rule):
         raise ValueError(
-            f"rule must be a function (body1, body2, geom) or None, got {rule!r}"
+            f"rule must be a function (body1, body2, geom) or None, got {shown(rule)}"
         )
     if isinstance(loop, InteractionLoop):
         geometry, physics = (

@@ -8,13 +8,13 @@ YADE has loaded from a file has none: everything counts as given.
 Both classes also get ``set``, which takes properties that depend on each other together.
 """
 
-import difflib
 import math
 import re
 
 from yade.wrapper import MasonryJoint, MasonryMat
 
-from .blocks import properties
+from ..arguments import label, nearest, number, text, vector, writable
+from .blocks import properties, refuse
 
 NOTE = "_assumed"  # in an object: sources of what was not given, by property
 
@@ -86,15 +86,44 @@ def _depends(cls, name, value, message):
     return within and bool(_TOGETHER.search(message))
 
 
+#: Kinds of arguments of the properties that the classes themselves do not check: texts, directions, the density, and what only
+#: another law than the default one reads.
+KINDS = {
+    MasonryJoint: {"name": text, "jointSet": label, "direction": vector()},
+    MasonryMat: {"label": label, "jointSet": label, "density": number("kg/m³", 0)},
+}
+for _law in MasonryJoint.laws()[1:]:
+    for _name in set(_law["properties"]) - set(MasonryJoint.laws()[0]["properties"]):
+        _p = DESCRIBED[MasonryJoint][_name]
+        KINDS[MasonryJoint][_name] = number(_p["unit"].strip("-"), _p["low"], _p["high"])  # fmt: skip
+
+
+def _misfits(cls, values):
+    """Sentences on values that are not of their kinds, by the names of the properties."""
+    found = {}
+    for name, value in values.items():
+        try:
+            KINDS[cls].get(name, writable)(value)
+        except ValueError as error:
+            found[name] = f"{cls.__name__}: {name} {error}"
+    return found
+
+
+def _checkKinds(cls, values):
+    refuse([*_misfits(cls, values).values()])
+
+
 def _note(cls):
     """Let a class note what is given."""
     make, setOne, setMany = cls.__init__, cls.__setattr__, cls.updateAttrs
 
     def __init__(self, *args, **values):
+        _checkKinds(cls, values)
         make(self, *args, **values)
         state(self, **{n: s for n, s in DEFAULTS[cls].items() if n not in values})
 
     def __setattr__(self, name, value):
+        _checkKinds(cls, {name: value})
         try:
             setOne(self, name, value)
         except ValueError as error:
@@ -106,6 +135,7 @@ def _note(cls):
         assumed(self).pop(name, None)
 
     def updateAttrs(self, values):
+        _checkKinds(cls, values)
         setMany(self, values)
         for name in values:
             assumed(self).pop(name, None)
@@ -115,14 +145,15 @@ def _note(cls):
         problems = []
         for name in values:
             if name not in known:
-                close = difflib.get_close_matches(name, known, 1)
-                hint = f", did you mean {close[0]!r}?" if close else ""
-                problems.append(f"{cls.__name__} has no property {name!r}{hint}")
+                problems.append(f"{cls.__name__} has no property {name!r}{nearest(name, known)}")  # fmt: skip
+        known = {n: v for n, v in values.items() if n in known}
+        misfits = _misfits(cls, known)
+        problems += misfits.values()
         if not problems:
             self.updateAttrs(values)
             return self
         try:  # the other problems, of a copy
-            copied(self).updateAttrs({n: v for n, v in values.items() if n in known})
+            copied(self).updateAttrs({n: v for n, v in known.items() if n not in misfits})  # fmt: skip
         except ValueError as error:
             problems.append(str(error))
         raise ValueError("\n".join(problems))

@@ -10,11 +10,15 @@ import math
 import os
 
 from .._masonry import loadScene, saveScene, savedText
+from ..arguments import anything
+from ..arguments import path as pathOf
+from ..arguments import shown, takes
 from ..read.files import readWhole
 
 NAME = "run.checkpoint"  # in the folder of a run
 
 
+@takes(path=pathOf, extra=anything)
 def saveCheckpoint(path, extra=None):
     """Save the state of the scene in a file, so that :func:`loadCheckpoint` goes on from it bit for bit.
 
@@ -27,7 +31,11 @@ def saveCheckpoint(path, extra=None):
     :raises ValueError: if a number of the state is not finite; nothing is written then
     :raises OSError: if the file cannot be written; the old one stays
     """
-    data = saveScene(json.dumps(extra, allow_nan=False))
+    try:
+        kept = json.dumps(extra, allow_nan=False)
+    except (TypeError, RecursionError) as error:
+        raise ValueError(f"saveCheckpoint: extra {shown(extra)} must be what JSON can hold: {error}") from None  # fmt: skip
+    data = saveScene(kept)
     beside = path + ".new"
     try:
         with open(beside, "wb") as f:
@@ -46,6 +54,7 @@ def saveCheckpoint(path, extra=None):
         os.close(folder)
 
 
+@takes(path=pathOf)
 def loadCheckpoint(path):
     """Give the scene, built by the same script with the same parameters, the state of a checkpoint.
 
@@ -56,6 +65,7 @@ def loadCheckpoint(path):
     return _extra(path, loadScene, _bytesOf(path))
 
 
+@takes(path=pathOf)
 def readCheckpoint(path):
     """The ``extra`` of a checkpoint alone, of a file that is whole. Raises what :func:`loadCheckpoint` raises."""
     return _extra(path, savedText, _bytesOf(path))

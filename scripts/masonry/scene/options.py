@@ -10,7 +10,7 @@ from ..assembly.engines import LAWS
 from ..basics import Refused
 from ..run.presets import BOUND, PRESETS, USUAL
 from . import keywords
-from .parsing import Parser, count, field, folder, number, pathOf
+from .parsing import DAMPINGS, RATES, Parser, count, field, folder, number, pathOf
 from .settings import setting
 
 #: Fewest rows of points that give a joint its stiffness against bending: two give three times that, one none.
@@ -57,7 +57,7 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     p.add_argument(
         "--rate",
         metavar="MM_PER_S",
-        type=lambda text: number(text, 1e-3, 1000),
+        type=lambda text: number(text, *RATES),
         default=rate,
         help="loading rate [mm/s]",
     )
@@ -104,7 +104,7 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     p.add_argument(
         "--damping",
         metavar="A",
-        type=lambda t: number(t, 0, 0.99),
+        type=lambda t: number(t, *DAMPINGS),
         default=USUAL["damping"],
         help="damping constant, the paper's eq. (3) [-]",
     )

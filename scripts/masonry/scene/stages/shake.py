@@ -2,15 +2,16 @@
 """Real time: ``shake`` and ``run``."""
 
 import itertools
-import math
 
 from yade import O, Vector3
 
+from ...arguments import number, oneOf, orNone, takes
 from ...basics import Refused
-from ..ground import readRecord
-from .gravity import sideways
+from ..ground import UNITS, readRecord, record
+from ..parsing import DAMPING
+from .gravity import LEVEL, sideways
 from .stage import DONE, Answer, stage
-from .timed import Timed, timed
+from .timed import DURATION, TIME, Timed, timed
 
 
 def displacements(scene, rows):
@@ -45,6 +46,17 @@ def displacements(scene, rows):
 
 
 @stage(answers=displacements)
+@takes(
+    accelerations=record,
+    every=orNone(DURATION),
+    direction=LEVEL,
+    scale=number("", -1e6, 1e6),
+    unit=orNone(oneOf(*UNITS)),
+    after=TIME,
+    damping=DAMPING,
+    massDamping=number("1/s", 0, 1e6),
+    stiffnessDamping=number("s", 0, 1e3),
+)
 def shake(
     scene,
     accelerations,
@@ -108,6 +120,7 @@ def shake(
 
 
 @stage(farther=("seconds",), answers=displacements)
+@takes(seconds=DURATION, damping=orNone(DAMPING))
 def run(scene, seconds, damping=None):
     """Let time pass.
 
@@ -117,8 +130,6 @@ def run(scene, seconds, damping=None):
     at = scene.running.stage("run", Timed())
     if at is None:
         return DONE
-    if not 0 < seconds < math.inf:
-        raise ValueError(f"run: {seconds} s must be above 0")
     if damping is not None:
         scene.model.damp(damping, scene.args.damping_kind)
     timed(scene, at, scene.share * seconds, lambda done, beyond: None)
