@@ -21,6 +21,7 @@ A scene of one's own is bricks, materials and stages::
 - :mod:`masonry.read`: what reads the files of a run: numbers, figures, pictures by ParaView
 - :mod:`masonry.run`: a run: checkpoints, results, presets, rows of a table
 - :mod:`masonry.assembly`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by body; the 3-D view
+- :mod:`masonry.arguments`: how every word checks what it is given
 - :mod:`masonry.basics`: gravity, how a run can end before its time, what is said on the terminal
 
 ``masonry.read``, ``masonry.study``, ``masonry.bricks`` and what they import work without YADE.

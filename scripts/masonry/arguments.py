@@ -74,6 +74,8 @@ def number(unit="", low=-math.inf, high=math.inf, above=False, below=False):
     if high < math.inf:
         bounds.append(f"{'below' if below else 'at most'} {high:g}")
     bounds, of = " and ".join(bounds), unit and f" {unit}"
+    if low == -high > -math.inf:
+        bounds = f"from {low:g} to {high:g}"
 
     def take(value, first=None):
         if not isNumber(value):
@@ -125,18 +127,6 @@ def text(value, first=None):
 def label(value, first=None):
     """The kind of a text as of :func:`text`, or of an empty one."""
     return value if isinstance(value, str) and not value else text(value)
-
-
-def writable(value, first=None):
-    """The kind of anything but a text that no file can hold."""
-    return text(value) if isinstance(value, str) and not _isUtf8(value) else value
-
-
-def _isUtf8(text):
-    try:
-        return text.encode() is not None
-    except UnicodeEncodeError:
-        return False
 
 
 def name(value, first=None):

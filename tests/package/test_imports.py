@@ -10,9 +10,17 @@ from conftest import ROOT
 PACKAGE = os.path.join(ROOT, "scripts", "masonry")
 
 #: The rooms of the package. Each imports only those above it, and itself.
-LAYERS = ["basics", "bricks", "read", "assembly", "run", "limit", "scene", "study"]
+LAYERS = ["basics", "arguments", "bricks", "read", "assembly", "run", "limit", "scene", "study"]  # fmt: skip
 #: Rooms and modules that work where YADE is not installed, with all that they import.
-WITHOUT_YADE = ["basics", "bricks", "read", "study", "run.batch", "run.presets"]
+WITHOUT_YADE = [
+    "basics",
+    "arguments",
+    "bricks",
+    "read",
+    "study",
+    "run.batch",
+    "run.presets",
+]
 WITHOUT_YADE += ["run.progress", "run.results", "scene.fields", "scene.history"]
 PACKAGES = [name for name in LAYERS if os.path.isdir(os.path.join(PACKAGE, name))]
 MODULES = ["__init__"] + sorted(

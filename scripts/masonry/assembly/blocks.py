@@ -82,7 +82,9 @@ def addBlock(vertices, material, inPlane=False, color=(0.75, 0.7, 0.65)):
     """
     problems = misfits("block: ", {"inPlane": flag}, {"inPlane": inPlane})
     if not isinstance(material, MasonryMat):
-        problems.append(f"block: material must be a MasonryMat, got {shown(material)}")
+        problems.append(
+            f"block: material must be a MasonryMat, got {printed(material)}"
+        )
     color = vector(color, "block: color", problems)
     try:
         vertices = list(vertices)

@@ -16,7 +16,7 @@ from yade.wrapper import (
     NewtonIntegrator,
 )
 
-from ..arguments import flag, items, misfits, shown, takes, vector
+from ..arguments import flag, isListed, items, misfits, shown, takes
 from .blocks import refuse
 
 MOST_STEPS = 10**15  # that no run has time for
@@ -35,7 +35,7 @@ if hasattr(NewtonIntegrator, "rotAlgorithm"):
 
 
 #: Kinds of the arguments of :func:`engines` that no class of the plugin checks.
-OWN = {"gravity": vector("m/s²"), "inPlane": flag, "functors": flag}
+OWN = {"inPlane": flag, "functors": flag}
 
 
 @takes()
@@ -84,8 +84,9 @@ def engines(
         knows no other. Combined damping takes energy from vibration and hardly brakes a steady motion. Local damping is
         the paper's eq. (3); it holds back what moves steadily, so a mechanism that turns slowly seems stronger than it is
     """
-    given = {"gravity": gravity, "inPlane": inPlane, "functors": functors}
-    problems = misfits("engines: ", OWN, given)
+    problems = misfits("engines: ", OWN, {"inPlane": inPlane, "functors": functors})
+    if isListed(gravity) and items(gravity) is None:
+        gravity = shown(gravity)  # an array without dimensions, which no class answers
     kinds = ("local",) if functors else ("combined", "local")
     if dampingKind not in (None, *kinds):
         problems.append(
@@ -120,7 +121,7 @@ def engines(
         lambda: MasonryIntegrator(
             damping=damping,
             dampingKind=dampingKind or kinds[0],
-            gravity=(0, 0, 0) if problems and "gravity" in problems[0] else gravity,
+            gravity=gravity,
             label="integrator",
         )
     )

@@ -13,7 +13,17 @@ import re
 
 from yade.wrapper import MasonryJoint, MasonryMat
 
-from ..arguments import label, nearest, number, text, vector, writable
+from ..arguments import (
+    isListed,
+    isNumber,
+    items,
+    label,
+    misfits,
+    nearest,
+    number,
+    plain,
+    vector,
+)
 from .blocks import properties, refuse
 
 NOTE = "_assumed"  # in an object: sources of what was not given, by property
@@ -29,6 +39,9 @@ DESCRIBED[MasonryMat]["density"] = {
     "low": 0.0,
     "high": math.inf,
 }
+
+#: Names of the properties that each law reads, the default law first.
+LAWS = {law["name"]: set(law["properties"]) for law in MasonryJoint.laws()}
 
 #: Where the default of a property is from, by class and name; the paper is that of yade_plugin/law/README.md.
 DEFAULTS = {
@@ -86,31 +99,54 @@ def _depends(cls, name, value, message):
     return within and bool(_TOGETHER.search(message))
 
 
-#: Kinds of arguments of the properties that the classes themselves do not check: texts, directions, the density, and what only
-#: another law than the default one reads.
-KINDS = {
-    MasonryJoint: {"name": text, "jointSet": label, "direction": vector()},
-    MasonryMat: {"label": label, "jointSet": label, "density": number("kg/m³", 0)},
+#: Properties that only another law than the default one reads, and that the class checks under that law alone: their kinds.
+OF_OTHER_LAWS = {
+    name: number(p["unit"].strip("-"), p["low"], p["high"])
+    for law in list(LAWS)[1:]
+    for name, p in DESCRIBED[MasonryJoint].items()
+    if name in LAWS[law] and name not in next(iter(LAWS.values()))
 }
-for _law in MasonryJoint.laws()[1:]:
-    for _name in set(_law["properties"]) - set(MasonryJoint.laws()[0]["properties"]):
-        _p = DESCRIBED[MasonryJoint][_name]
-        KINDS[MasonryJoint][_name] = number(_p["unit"].strip("-"), _p["low"], _p["high"])  # fmt: skip
 
 
-def _misfits(cls, values):
-    """Sentences on values that are not of their kinds, by the names of the properties."""
+def _kindOf(name, value, usual):
+    """The kind of a value that a class takes, or cannot answer in a sentence, though it means nothing; else None.
+
+    :param usual: whether the joint follows the default law
+    """
+    if isinstance(value, (str, bytes)):
+        return label
+    if isListed(value) and (items(value) is None or name == "direction" and _isHuge(value)):  # fmt: skip
+        return vector()
+    if name == "density" and (isinstance(value, bool) or isNumber(value) and plain(value) == math.inf):  # fmt: skip
+        return number("kg/m³", 0)
+    return OF_OTHER_LAWS.get(name) if usual and isNumber(value) else None
+
+
+def _isHuge(value):
+    """Whether three numbers are finite, and their length is not."""
+    found = items(value)
+    fine = len(found) == 3 and all(isNumber(v) and abs(plain(v)) < math.inf for v in found)  # fmt: skip
+    return fine and math.hypot(*map(plain, found)) == math.inf
+
+
+def _misfits(cls, values, law=None):
+    """Sentences on values of a material or a joint that mean nothing, by the names of the properties.
+
+    :param law: of the joint, if it is there; None: the default one
+    """
+    usual = values.get("law", law) in (None, next(iter(LAWS)))
     found = {}
     for name, value in values.items():
-        try:
-            KINDS[cls].get(name, writable)(value)
-        except ValueError as error:
-            found[name] = f"{cls.__name__}: {name} {error}"
+        kind = _kindOf(name, value, usual)
+        sentences = misfits(f"{cls.__name__}: ", {name: kind}, values) if kind else []  # fmt: skip
+        if sentences:
+            found[name] = sentences[0]
     return found
 
 
-def _checkKinds(cls, values):
-    refuse([*_misfits(cls, values).values()])
+def _check(thing, values):
+    law = getattr(thing, "law", None)
+    refuse([*_misfits(type(thing), values, law).values()])
 
 
 def _note(cls):
@@ -118,12 +154,12 @@ def _note(cls):
     make, setOne, setMany = cls.__init__, cls.__setattr__, cls.updateAttrs
 
     def __init__(self, *args, **values):
-        _checkKinds(cls, values)
+        refuse([*_misfits(cls, values).values()])
         make(self, *args, **values)
         state(self, **{n: s for n, s in DEFAULTS[cls].items() if n not in values})
 
     def __setattr__(self, name, value):
-        _checkKinds(cls, {name: value})
+        _check(self, {name: value})
         try:
             setOne(self, name, value)
         except ValueError as error:
@@ -135,7 +171,7 @@ def _note(cls):
         assumed(self).pop(name, None)
 
     def updateAttrs(self, values):
-        _checkKinds(cls, values)
+        _check(self, values)
         setMany(self, values)
         for name in values:
             assumed(self).pop(name, None)
@@ -147,13 +183,13 @@ def _note(cls):
             if name not in known:
                 problems.append(f"{cls.__name__} has no property {name!r}{nearest(name, known)}")  # fmt: skip
         known = {n: v for n, v in values.items() if n in known}
-        misfits = _misfits(cls, known)
-        problems += misfits.values()
+        wrong = _misfits(cls, known, getattr(self, "law", None))
+        problems += wrong.values()
         if not problems:
             self.updateAttrs(values)
             return self
         try:  # the other problems, of a copy
-            copied(self).updateAttrs({n: v for n, v in known.items() if n not in misfits})  # fmt: skip
+            copied(self).updateAttrs({n: v for n, v in known.items() if n not in wrong})  # fmt: skip
         except ValueError as error:
             problems.append(str(error))
         raise ValueError("\n".join(problems))

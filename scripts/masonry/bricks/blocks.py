@@ -212,7 +212,7 @@ class Bricks:
         """
         problems = []
         if not (_isNumber(degrees) and abs(degrees) <= FARTHEST):
-            problems.append(f"angle [°] must be a finite number, at most {FARTHEST:g}, got {shown(degrees)}")  # fmt: skip
+            problems.append(f"angle [°] must be at most {FARTHEST:g}, and a finite number, got {shown(degrees)}")  # fmt: skip
         if not isinstance(axis, str) or axis not in ("x", "y", "z"):
             problems.append(f'axis must be "x", "y" or "z", got {shown(axis)}')
         refuse("turned", problems)
@@ -496,7 +496,7 @@ def positive(value, name, problems, unit="m", zero=False):
     problems."""
     fine = _isNumber(value) and (value >= 0 if zero else value > 0) and value < math.inf
     if fine and value > FARTHEST:
-        problems.append(f"{name} {shown(value)} {unit} must be at most {FARTHEST:g} {unit}")  # fmt: skip
+        problems.append(f"{name} {shown(value)} {unit} must be at most {FARTHEST:g} {unit}: is it in {unit}?")  # fmt: skip
         return False
     if not fine:
         bound = "0 or more" if zero else "above 0"

@@ -70,7 +70,10 @@ def fromFile(path, scale=1.0, kind="block"):
     blocks = []
     for surface in surfaces:
         for corners in _solids(surface, scale, problems):
-            blocks.append(Block(corners, len(blocks), surface.name, -1, kind))
+            try:
+                blocks.append(Block(corners, len(blocks), surface.name, -1, kind))
+            except ValueError as error:  # of its name
+                problems.append(str(error))
     if not blocks and not problems:
         problems.append("no faces, so no solids")
     refuse(path, problems)
