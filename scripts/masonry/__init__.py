@@ -71,7 +71,7 @@ def __dir__():
 
 if "yade" in sys.modules:
     try:
-        from ._masonry import classes, commit, criticalTimeStep, touchingPairs
+        from ._masonry import classes, commit, criticalTimeStep
     except ImportError as error:
         if "undefined symbol" not in str(error):
             raise
@@ -89,7 +89,7 @@ if "yade" in sys.modules:
     from .scene import options
     from .run.checkpoints import loadCheckpoint, readCheckpoint, saveCheckpoint
     from .assembly.blocks import addBlock
-    from .assembly.connecting import connect
+    from .assembly.connecting import connect, touchingPairs
     from .assembly.engines import advance, engine, engines
     from .scene.ground import rayleigh
     from .scene.scene import Scene

@@ -82,7 +82,7 @@ def number(unit="", low=-math.inf, high=math.inf, above=False, below=False):
             raise ValueError(f"{shown(value)} must be a number{bounds and ' '}{bounds}{of}")  # fmt: skip
         found = plain(value)
         if not math.isfinite(found):
-            raise ValueError(f"{shown(value)}{of} must be a finite number{bounds and ', '}{bounds}")  # fmt: skip
+            raise ValueError(f"{shown(value)}{of} must be a finite number{bounds and ' '}{bounds}")  # fmt: skip
         fine = (found > low if above else found >= low) and (
             found < high if below else found <= high
         )
@@ -250,13 +250,13 @@ def items(value):
         return None
 
 
-def vector(unit="", size=math.inf, most=math.inf):
+def vector(unit="", most=1e100):
     """The kind of three finite numbers.
 
     :param most: largest amount of each
     """
     of = unit and f" {unit}"
-    bound = f" of at most {most:g}{of}" if most < math.inf else ""
+    bound = f" of at most {most:g}{of}" if most < 1e100 else ""
 
     def take(value, first=None):
         found = items(value)
@@ -317,8 +317,8 @@ def orFunction(kind):
 
 
 def anything(value, first=None):
-    """The kind of what the word checks by itself."""
-    return value
+    """The kind of what the word checks by itself. Real numbers become Python's own."""
+    return plain(value) if isNumber(value) else value
 
 
 # -- checks -----------------------------------------------------------------------------------------------------------

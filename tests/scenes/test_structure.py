@@ -258,7 +258,7 @@ def test_nothing_held_is_refused(tmp_path):
             lambda s: s.platen("bottom", rotation="free"),
             "the one at the bottom is fixed",
         ),
-        (lambda s: s.platen("top", height=-1), "height -1 m must be above 0"),
+        (lambda s: s.platen("top", height=-1), "height -1 m must be at least 1e-06"),
         (
             lambda s: s.press(s.platen("bottom"), 1e6),
             "platen 'base' must be a platen of this scene that moves",

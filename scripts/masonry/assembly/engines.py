@@ -87,18 +87,20 @@ def engines(
     problems = misfits("engines: ", OWN, {"inPlane": inPlane, "functors": functors})
     if isListed(gravity) and items(gravity) is None:
         gravity = shown(gravity)  # an array without dimensions, which no class answers
-    kinds = ("local",) if functors else ("combined", "local")
-    if dampingKind not in (None, *kinds):
+    kinds = ("local",) if functors is True else ("combined", "local")
+    if dampingKind is not None and not (isinstance(dampingKind, str) and dampingKind in kinds):  # fmt: skip
         problems.append(
             f"engines: dampingKind must be {' or '.join(kinds)}"
             + (" with functors" if functors else "")
-            + f", got {dampingKind!r}"
+            + f", got {shown(dampingKind)}"
         )
         dampingKind = None
 
     def made(make):
         try:
             return make()
+        except UnicodeError as error:
+            problems.append(f"engines: {shown(error.object)} must be a number")
         except ValueError as error:
             problems.append(str(error))
 

@@ -108,6 +108,9 @@ OF_OTHER_LAWS = {
 }
 
 
+HUGE = 1e100  # a number of a direction may not be larger
+
+
 def _kindOf(name, value, usual):
     """The kind of a value that a class takes, or cannot answer in a sentence, though it means nothing; else None.
 
@@ -116,17 +119,16 @@ def _kindOf(name, value, usual):
     if isinstance(value, (str, bytes)):
         return label
     if isListed(value) and (items(value) is None or name == "direction" and _isHuge(value)):  # fmt: skip
-        return vector()
+        return vector(most=HUGE)
     if name == "density" and (isinstance(value, bool) or isNumber(value) and plain(value) == math.inf):  # fmt: skip
         return number("kg/m³", 0)
     return OF_OTHER_LAWS.get(name) if usual and isNumber(value) else None
 
 
 def _isHuge(value):
-    """Whether three numbers are finite, and their length is not."""
-    found = items(value)
-    fine = len(found) == 3 and all(isNumber(v) and abs(plain(v)) < math.inf for v in found)  # fmt: skip
-    return fine and math.hypot(*map(plain, found)) == math.inf
+    """Whether one of some finite numbers is larger than the square of it can be."""
+    sizes = [abs(plain(v)) for v in items(value) if isNumber(v)]
+    return any(HUGE < size < math.inf for size in sizes)
 
 
 def _misfits(cls, values, law=None):
@@ -134,7 +136,8 @@ def _misfits(cls, values, law=None):
 
     :param law: of the joint, if it is there; None: the default one
     """
-    usual = values.get("law", law) in (None, next(iter(LAWS)))
+    chosen = values.get("law", law)
+    usual = chosen is None or isinstance(chosen, str) and chosen == next(iter(LAWS))
     found = {}
     for name, value in values.items():
         kind = _kindOf(name, value, usual)
@@ -142,6 +145,11 @@ def _misfits(cls, values, law=None):
         if sentences:
             found[name] = sentences[0]
     return found
+
+
+def _unknown(cls, name):
+    """The sentence on a property that a class does not have."""
+    return f"{cls.__name__} has no property {name!r}{nearest(name, DESCRIBED[cls])}"
 
 
 def _check(thing, values):
@@ -154,7 +162,9 @@ def _note(cls):
     make, setOne, setMany = cls.__init__, cls.__setattr__, cls.updateAttrs
 
     def __init__(self, *args, **values):
-        refuse([*_misfits(cls, values).values()])
+        unknown = [n for n in values if not hasattr(cls, n)]
+        problems = [_unknown(cls, n) for n in unknown]
+        refuse([*problems, *_misfits(cls, values).values()])
         make(self, *args, **values)
         state(self, **{n: s for n, s in DEFAULTS[cls].items() if n not in values})
 
@@ -181,7 +191,7 @@ def _note(cls):
         problems = []
         for name in values:
             if name not in known:
-                problems.append(f"{cls.__name__} has no property {name!r}{nearest(name, known)}")  # fmt: skip
+                problems.append(_unknown(cls, name))
         known = {n: v for n, v in values.items() if n in known}
         wrong = _misfits(cls, known, getattr(self, "law", None))
         problems += wrong.values()

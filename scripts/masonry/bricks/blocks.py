@@ -9,7 +9,7 @@ from numbers import Integral
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from ..arguments import anything, flag, isA, misfits, shown, takes, text
+from ..arguments import anything, flag, isA, items, misfits, shown, takes, text
 from . import checks
 from .geometry import COINCIDENT, Solids, cutCorners, measures
 
@@ -93,6 +93,7 @@ class Bricks:
     :param blocks: the :class:`Block` records
     """
 
+    @takes()
     def __init__(self, blocks=()):
         try:
             self._blocks = tuple(blocks)
@@ -257,7 +258,7 @@ class Bricks:
             raise ValueError(
                 f"where: needs a function of a block, got {shown(function)}"
             )
-        return Bricks(b for b in self._blocks if function(b))
+        return Bricks([b for b in self._blocks if function(b)])
 
     @takes()
     def within(self, low, high):
@@ -467,7 +468,7 @@ def summary(bricks):
 def boxCorners(low, high):
     """The eight corners of an axis-parallel box, x slowest and z fastest."""
     for corner, what in ((low, "low"), (high, "high")):
-        if not hasattr(corner, "__getitem__") or len(corner) != 3:
+        if len(items(corner) or ()) != 3:
             raise ValueError(f"boxCorners: {what} [m] must be three numbers, got {shown(corner)}")  # fmt: skip
     return tuple(
         (x, y, z)

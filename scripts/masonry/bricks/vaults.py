@@ -145,7 +145,7 @@ def Dome(
     good = positive(radius, "radius", problems)
     positive(thickness, "thickness", problems)
     fine = wholeNumber(courses, "courses", problems)
-    fine &= wholeNumber(stones, "stones", problems, 2 if staggered else 3)
+    fine &= wholeNumber(stones, "stones", problems, 2 if staggered is True else 3)
     if fine:
         _few(2 * courses * stones, problems)
     opening = _angle(angle, problems)

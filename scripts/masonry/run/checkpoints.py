@@ -33,7 +33,7 @@ def saveCheckpoint(path, extra=None):
     """
     try:
         kept = json.dumps(extra, allow_nan=False)
-    except (TypeError, RecursionError) as error:
+    except (TypeError, ValueError, RecursionError) as error:
         raise ValueError(f"saveCheckpoint: extra {shown(extra)} must be what JSON can hold: {error}") from None  # fmt: skip
     data = saveScene(kept)
     beside = path + ".new"

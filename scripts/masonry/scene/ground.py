@@ -81,7 +81,9 @@ def readRecord(accelerations, every, scale=1.0, unit=None):
     if len(values) < 2 or not all(map(math.isfinite, values)):
         raise Refused("shake: a record needs two finite accelerations at least")
     if not (isinstance(every, (int, float)) and 0 < every < math.inf):
-        raise Refused(f"shake: the time between samples, {every!r} s, must be above 0")
+        raise Refused(
+            f"shake: every {every!r} s, the time between samples, must be above 0"
+        )
     peak = abs(scale) * max(map(abs, values))
     if unit is None and peak > 0 and not LOWEST_PEAK <= peak <= HIGHEST_PEAK:
         other = "g" if peak < LOWEST_PEAK else "cm/s²"

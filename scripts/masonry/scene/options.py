@@ -6,6 +6,7 @@ import os
 import sys
 
 from .._masonry import commit, version
+from ..arguments import shown
 from ..assembly.engines import LAWS
 from ..basics import Refused
 from ..run.presets import BOUND, PRESETS, USUAL
@@ -226,6 +227,10 @@ def ofScene(name, arguments, usual):
         raise Refused(
             f"scene {name}: arguments must be a list of words, such as {arguments.split()!r}, got {arguments!r}"
         )
+    if isinstance(arguments, (list, tuple)):
+        wrong = [one for one in arguments if not isinstance(one, str)]
+        if wrong:
+            raise Refused(f"scene {name}: arguments must be a list of words, got {shown(wrong[0])}")  # fmt: skip
     if arguments is None or isinstance(arguments, (list, tuple)):
         main = sys.modules.get("__main__")
         own = parser(getattr(main, "__doc__", None), until=None)

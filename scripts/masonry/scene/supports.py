@@ -20,7 +20,7 @@ COORDINATE, POINT = number("m", -1e6, 1e6), numbers("m", 1e6)
 @takes(
     where=oneOf("bottom", "top"),
     rotation=orNone(oneOf("held", "free")),
-    height=number("m", 0, 1e6, above=True),
+    height=number("m", 1e-6, 1e6),
     name=orNone(nameOf),
     point=orNone(POINT),
     guided=axes("xy", none=True),

@@ -461,7 +461,7 @@ def _ofUnit(unit, joint):
         sides = []
     if len(sides) != 3 or not all(0 < side < math.inf for side in sides):
         return [
-            f"unit must be length, thickness and height of a brick without mortar above 0 m, got {unit!r}"
+            f"unit must be length, thickness and height of a brick without mortar above 0 m, got {shown(unit)}"
         ]
     if max(sides) > 5:
         return [f"unit {unit} m must be at most 5 m: is it in m?"]

@@ -34,6 +34,7 @@ FACTOR = number("", 0, above=True)  # the kind of what a variation gives
 STEEP = math.cos(math.radians(45))
 
 
+@takes(names=names, joints=dictOf(isA(MasonryJoint)))
 def withResidual(names, joints):
     """Names of properties that change alike, and with them the residual friction of joints that have one value of friction.
 
@@ -47,6 +48,13 @@ def withResidual(names, joints):
         if n in joints and joints[n].friction == joints[n].residualFriction
     ]
     return [*dict.fromkeys([*names, *(n + ".residualFriction" for n in one)])]
+
+
+def _options(value, first=None):
+    """The kind of the options of a scene."""
+    if not hasattr(value, "joint_stiffness"):
+        raise ValueError(f"{shown(value)} must be the options of a scene")
+    return value
 
 
 def _varied(value, first=None):
@@ -181,6 +189,7 @@ class Masonry:
         values = self.joints[joint].dict() if joint in self.joints else {}
         return [n for n, v in values.items() if isNumber(v)]
 
+    @takes(args=_options)
     def variant(self, args):
         """A copy for the options ``--joints`` and ``--joint-stiffness``; this one stays as it is."""
         source = self

@@ -41,7 +41,7 @@ def tested(value, first=None):
     return value
 
 
-OF_GRANITE = dict(level=tested, height=number("m", 0, 10, above=True))
+OF_GRANITE = dict(level=tested, height=number("m", 1e-3, 10))
 
 
 @takes(**OF_GRANITE)

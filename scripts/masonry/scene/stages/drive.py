@@ -66,9 +66,12 @@ def drive(scene, target, x=0.0, y=0.0, z=0.0):
 def _distance(axis, value):
     """A displacement [mm], which a function may give. Raises ValueError."""
     try:
-        return MILLIMETRES(value() if callable(value) else value)
+        found = MILLIMETRES(value() if callable(value) else value)
     except ValueError as error:
         raise ValueError(f"drive: {axis} {error}") from None
+    if not found:
+        raise ValueError(f"drive: {axis} {found} mm must be other than 0")
+    return found
 
 
 def checkStress(scene, target, joint, stress):

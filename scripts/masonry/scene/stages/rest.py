@@ -87,8 +87,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True):
     most = int(longest / O.dt)
     if most < 1:
         raise Refused(
-            f"longest {longest:g} s, the time after which waiting for rest is given up, must be above the time step, "
-            f"{O.dt:.3g} s"
+            f"longest {longest:g} s, after which the wait for rest ends, must be above the time step, {O.dt:.3g} s"
         )
     while at.done < most and at.quiet < LOOKS:
         load = min(1.0, (at.done + EVERY) / growing)

@@ -55,7 +55,7 @@ def displacements(scene, rows):
     after=TIME,
     damping=DAMPING,
     massDamping=number("1/s", 0, 1e6),
-    stiffnessDamping=number("s", 0, 1e3),
+    stiffnessDamping=number("s", 0, 1),
 )
 def shake(
     scene,
