@@ -28,9 +28,10 @@ SHOWN = 80  # characters of a value that are shown
 def shown(value):
     """A value as a message has it, not too long."""
     try:
-        text = repr(value)
+        text = repr(value[:LONGEST_TEXT] if isinstance(value, str) else value)
     except Exception:  # of a class of the user's own
         text = object.__repr__(value)
+    text = " ".join(text.split())  # of a matrix, in one line
     return text if len(text) < SHOWN else text[: SHOWN - 3] + "..."
 
 

@@ -131,7 +131,7 @@ def engines(
     geometry = made(
         lambda: Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom(
             **{name: n for name, n in counts.items() if n is not None},
-            rowDirection=(0, 1, 0) if inPlane else (0, 0, 0),
+            rowDirection=(0, 1, 0) if inPlane is True else (0, 0, 0),
         )
     )
     refuse(problems)

@@ -34,7 +34,14 @@ FACTOR = number("", 0, above=True)  # the kind of what a variation gives
 STEEP = math.cos(math.radians(45))
 
 
-@takes(names=names, joints=dictOf(isA(MasonryJoint)))
+def _slides(value, first=None):
+    """The kind of a joint that has friction."""
+    if not (hasattr(value, "friction") and hasattr(value, "residualFriction")):
+        raise ValueError(f"{shown(value)} must be a MasonryJoint")
+    return value
+
+
+@takes(names=names, joints=dictOf(_slides))
 def withResidual(names, joints):
     """Names of properties that change alike, and with them the residual friction of joints that have one value of friction.
 
