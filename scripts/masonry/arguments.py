@@ -18,6 +18,8 @@ import math
 import os
 from numbers import Integral, Real
 
+import numpy as np
+
 from .basics import Refused
 
 LONGEST_NAME, LONGEST_TEXT = 100, 1000  # characters of a name, and of a text
@@ -109,9 +111,9 @@ def whole(low=0, high=None):
 
 def flag(value, first=None):
     """The kind of True and False."""
-    if not isinstance(value, bool):
+    if not isinstance(value, (bool, np.bool_)):
         raise ValueError(f"{shown(value)} must be True or False")
-    return value
+    return bool(value)
 
 
 def text(value, first=None):
