@@ -320,7 +320,12 @@ def orFunction(kind):
 
 
 def anything(value, first=None):
-    """The kind of what the word checks by itself. Real numbers become Python's own."""
+    """The kind of what the word checks by itself."""
+    return value
+
+
+def plainly(value, first=None):
+    """The kind of what the word checks by itself, after real numbers have become Python's own."""
     return plain(value) if isNumber(value) else value
 
 

@@ -4,7 +4,7 @@
 import math
 from dataclasses import dataclass
 
-from ..arguments import anything, isNumber, listOf, misfits, number, shown, takes, text
+from ..arguments import plainly, isNumber, listOf, misfits, number, shown, takes, text
 from ..scene import fields
 from ..basics import Refused
 
@@ -125,7 +125,7 @@ def _between(kind, mean, cov, low, high):
     return sign * (below(high, sign) - below(low, sign))
 
 
-@takes(mean=anything, cov=anything, low=anything, high=anything)
+@takes(mean=plainly, cov=plainly, low=plainly, high=plainly)
 def lognormal(mean, cov, low=None, high=None):
     """A lognormal distribution.
 
@@ -137,13 +137,13 @@ def lognormal(mean, cov, low=None, high=None):
     return _aboutMean("lognormal", mean, cov, low, high)
 
 
-@takes(mean=anything, cov=anything, low=anything, high=anything)
+@takes(mean=plainly, cov=plainly, low=plainly, high=plainly)
 def normal(mean, cov, low=None, high=None):
     """A normal distribution. Parameters are those of :func:`lognormal`. Most properties need a ``low`` end."""
     return _aboutMean("normal", mean, cov, low, high)
 
 
-@takes(low=anything, high=anything)
+@takes(low=plainly, high=plainly)
 def uniform(low, high):
     """All values between two ends alike."""
     _finite(low=low, high=high)
@@ -234,7 +234,7 @@ class Field:
         return fields.written(self.kind, self.cov, self.length, seed)
 
 
-@takes(distribution=anything, length=anything, cov=anything)
+@takes(distribution=plainly, length=plainly, cov=plainly)
 def field(distribution=None, length=0.0, cov=None):
     """A property that varies from joint to joint, with another field in every row.
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from yade.wrapper import MasonryJoint, MasonryMat
 
-from ...arguments import anything, isNumber, number, plain, shown, takes
+from ...arguments import plainly, isNumber, number, plain, shown, takes
 from ...assembly.given import DEFAULTS, state
 from ...basics import Refused, say
 from .kinds import Masonry
@@ -150,7 +150,7 @@ class _Kind:
         return state(joint, **{**rest, **self.sources})
 
 
-@takes(**dict.fromkeys([*RANGES, "unit"], anything))
+@takes(**dict.fromkeys([*RANGES, "unit"], plainly))
 def masonry(
     *,
     E=None,
