@@ -22,6 +22,7 @@ A scene of one's own is bricks, materials and stages::
 - :mod:`masonry.run`: a run: checkpoints, results, presets, rows of a table
 - :mod:`masonry.assembly`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by body; the 3-D view
 - :mod:`masonry.folders`: what is written in folders that others may have packed, and how
+- :mod:`masonry.arguments`: how every word checks what it is given
 - :mod:`masonry.basics`: gravity, how a run can end before its time, what is said on the terminal
 
 ``masonry.read``, ``masonry.study``, ``masonry.bricks`` and what they import work without YADE.
@@ -71,7 +72,7 @@ def __dir__():
 
 if "yade" in sys.modules:
     try:
-        from ._masonry import classes, commit, criticalTimeStep, touchingPairs
+        from ._masonry import classes, commit, criticalTimeStep
     except ImportError as error:
         if "undefined symbol" not in str(error):
             raise
@@ -89,7 +90,7 @@ if "yade" in sys.modules:
     from .scene import options
     from .run.checkpoints import loadCheckpoint, readCheckpoint, saveCheckpoint
     from .assembly.blocks import addBlock
-    from .assembly.connecting import connect
+    from .assembly.connecting import connect, touchingPairs
     from .assembly.engines import advance, engine, engines
     from .scene.ground import rayleigh
     from .scene.scene import Scene

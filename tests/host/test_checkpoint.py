@@ -313,7 +313,7 @@ def test_a_state_that_has_left_finite_numbers_is_not_saved(saved):
         saveCheckpoint(path)
     with pytest.raises(ValueError):
         saveCheckpoint(path, float("nan"))
-    with pytest.raises(TypeError):
+    with pytest.raises(ValueError, match="extra {1, 2} must be what JSON can hold"):
         saveCheckpoint(path, {1, 2})
     assert open(path, "rb").read() == data and os.listdir(os.path.dirname(path)) == [
         "c"

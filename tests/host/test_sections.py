@@ -192,10 +192,10 @@ def test_the_parts_of_a_corner_add_up_to_the_whole(tmp_path, scene):
 @pytest.mark.parametrize(
     "act, message",
     [
-        (lambda s: s.section("a"), "section: z must be a finite number in m, got 'a'"),
-        (lambda s: s.section(math.nan), "section: z must be a finite number in m"),
-        (lambda s: s.section(0.1, part="roof"), "section: no part 'roof'; there are wall"),
-        (lambda s: s.section(0.1, name="a b"), "section: a name must be letters"),
+        (lambda s: s.section("a"), "section: z 'a' must be a number from"),
+        (lambda s: s.section(math.nan), "section: z nan m must be a finite number"),
+        (lambda s: s.section(0.1, part="roof"), "section: part 'roof' must be one of wall"),
+        (lambda s: s.section(0.1, name="a b"), "section: name 'a b' must be a name of letters"),
         (lambda s: s.section(3), "no brick reaches z = 3 m; they are from 0 to 0.324 m"),
         (lambda s: s.section(0.324) and s.begin(), "section section0: no joint crosses z = 0.324 m"),
         (lambda s: s.section(0.1).forces(), "section section0: the scene is not built yet"),

@@ -570,7 +570,7 @@ def test_a_stem_in_the_wrong_place_is_reported_the_nearest_right_one():
         (dict(openings=3), "openings must be a list of Opening, got 3"),
         (dict(courses=[]), "courses must be a list of at least one"),
         (dict(courses=[0.1, math.nan]), "course 1 .* got nan"),
-        (dict(part=3), "part must be a text, got 3"),
+        (dict(part=3), "part 3 must be a text"),
         (
             dict(length=3.0, height=1.0, bond="x"),
             "bond must.*; length 3 m.*; height 1 m",

@@ -282,10 +282,10 @@ def test_a_file_without_solids_is_refused(tmp_path, name, text, said):
 def test_bad_arguments_are_refused(tmp_path):
     with pytest.raises(
         ValueError,
-        match="scale .* got 0; kind must be a text, got 3; a.obj: no such file",
+        match="scale .* got 0; kind 3 must be a text; a.obj: no such file",
     ):
         fromFile("a.obj", scale=0, kind=3)
-    with pytest.raises(ValueError, match="path must be the name of a file, got 7.5"):
+    with pytest.raises(ValueError, match="path 7.5 must be the name of a file"):
         fromFile(7.5)
 
 

@@ -45,8 +45,8 @@ def test_a_seed_gives_the_same_field_again_and_another_seed_another_one():
 @pytest.mark.parametrize(
     "wrong, message",
     [
-        (dict(cov=0), "coefficient of variation 0 must be above 0"),
-        (dict(cov=0.1, length=-1), "correlation length -1 m must be at least 0"),
+        (dict(cov=0), "cov 0 must be above 0"),
+        (dict(cov=0.1, length=-1), "length -1 m must be at least 0"),
         (dict(cov=0.1, seed=1.5), "seed 1.5 must be a whole number"),
     ],
 )

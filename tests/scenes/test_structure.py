@@ -170,9 +170,12 @@ def test_two_scenes_at_once_are_refused(tmp_path):
 @pytest.mark.parametrize(
     "act, message",
     [
-        (lambda s, t: s.push(t, 0.1, rate=0), "push: rate 0 must be a number above 0"),
-        (lambda s, t: s.accelerate(0.3, rate=-1), "accelerate: rate -1 must be"),
-        (lambda s, t: s.tilt(5, rate=0), "tilt: rate 0 must be a number above 0"),
+        (
+            lambda s, t: s.push(t, 0.1, rate=0),
+            "push: rate 0 mm/s must be at least 0.001",
+        ),
+        (lambda s, t: s.accelerate(0.3, rate=-1), "accelerate: rate -1 g/s must be"),
+        (lambda s, t: s.tilt(5, rate=0), "tilt: rate 0 degrees/s must be at least"),
         (lambda s, t: s.bracket(lambda f: f < 0.1, 0.2, 0.3), "does not carry 0.2"),
         (
             lambda s, t: s.bracket(lambda f: True, 0.2, 0.3),
@@ -250,39 +253,39 @@ def test_nothing_held_is_refused(tmp_path):
 @pytest.mark.parametrize(
     "act, message",
     [
-        (lambda s: s.platen("left"), "where must be 'bottom' or 'top', got 'left'"),
+        (lambda s: s.platen("left"), "where 'left' must be one of bottom, top"),
         (
             lambda s: s.platen("bottom", rotation="free"),
             "the one at the bottom is fixed",
         ),
-        (lambda s: s.platen("top", height=-1), "height -1 m must be above 0"),
+        (lambda s: s.platen("top", height=-1), "height -1 m must be at least 1e-06"),
         (
             lambda s: s.press(s.platen("bottom"), 1e6),
-            "only a platen that moves can be pressed",
+            "platen 'base' must be a platen of this scene that moves",
         ),
-        (lambda s: s.press(s.platen("top"), -1), "stress -1 must be at least 0 Pa"),
-        (lambda s: s.hold(99), "brick 99: there are 2 bricks"),
+        (lambda s: s.press(s.platen("top"), -1), "stress -1 Pa must be at least 0"),
+        (lambda s: s.hold(99), "where 99: there are 2 bricks"),
         (lambda s: s.hold((9, 9, 9)), "no brick is near"),
-        (lambda s: s.hold(0, axes="q"), "axes must be some of 'xyzXYZ', got 'q'"),
+        (lambda s: s.hold(0, axes="q"), "axes 'q' must be some of the axes 'xyzXYZ'"),
         (
             lambda s: (s.hold(0, name="a"), s.hold(1, name="a")),
             "two targets of the name 'a'",
         ),
         (
             lambda s: s.hold(0, name="my brick"),
-            "must be letters, digits and underscores",
+            "must be a name of letters, digits and underscores",
         ),
-        (lambda s: s.column("x", "", 3), "column x: value must be a function"),
+        (lambda s: s.column("x", "", 3), "column: value 3 must be a function"),
         (
             lambda s: s.column("my x", "", lambda: 1),
-            "a name must be letters, digits and",
+            "name 'my x' must be a name of letters",
         ),
         (
             lambda s: s.load(s.platen("top"), (0, 9, 0)),
             "load: the scene is in the x-z plane",
         ),
         (lambda s: s.hold(0, axes="y"), "in the x-z plane no block moves along y"),
-        (lambda s: s.platen("top", part="roof"), "no part 'roof'; there are stack"),
+        (lambda s: s.platen("top", part="roof"), "part 'roof' must be one of stack"),
     ],
 )
 def test_wrong_words_are_refused(tmp_path, act, message):
@@ -297,7 +300,7 @@ def test_wrong_words_are_refused(tmp_path, act, message):
         (dict(name="a/b"), "name must be a text that can name a folder"),
         (dict(bricks=[]), "bricks must be a list of blocks"),
         (dict(materials=5), "materials must be a masonry.materials.Masonry, got 5"),
-        (dict(gravity=-1), "gravity -1 must be at least 0"),
+        (dict(gravity=-1), "gravity -1 m/s² must be at least 0"),
     ],
 )
 def test_wrong_scenes_are_refused(wrong, message):
@@ -417,8 +420,8 @@ def test_wind_that_cannot_be_is_refused(tmp_path):
     scene = made(tmp_path, blocks, materials.dry(), plane=False)
     for pressure, sign, message in (
         (0, (0, 1, 0), "pressure 0 Pa must be other than 0"),
-        (500, (0, 0, 1), "the direction must be horizontal"),
-        (500, (0, 0, 0), "the direction must be horizontal"),
+        (500, (0, 0, 1), "must be a horizontal direction"),
+        (500, (0, 0, 0), "must be a direction, whose length is not zero"),
     ):
         with pytest.raises(ValueError, match=message):
             scene.wind(pressure, sign)

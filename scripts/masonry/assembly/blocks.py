@@ -6,6 +6,10 @@ import math
 from yade import Body, O, Vector3
 from yade.wrapper import MasonryBlock, MasonryMat
 
+from ..arguments import flag, misfits, shown, takes
+
+LONGEST = 200  # characters of a value that a message shows
+
 #: A body that is thinner than this share of its length is no block.
 THINNEST = 1e-6
 
@@ -22,6 +26,14 @@ def properties(cls):
 def units(cls):
     """Units of the properties of a class of the plugin: a dict of name -> unit, of those that have one."""
     return {p["name"]: p["unit"] for p in properties(cls) if p["unit"]}
+
+
+def printed(value):
+    """A value as a message has it: as ``print`` shows it, not too long."""
+    try:
+        return str(value)[:LONGEST]
+    except Exception:  # of a class of the user's own
+        return shown(value)
 
 
 def refuse(problems, hint=None, most=10):
@@ -45,7 +57,7 @@ def vector(value, what, problems=None):
             return found
     except Exception:  # Boost.Python's ArgumentError has no name in Python
         pass
-    message = f"{what} must be three finite numbers, got {value}"
+    message = f"{what} must be three finite numbers, got {printed(value)}"
     if problems is None:
         raise ValueError(message)
     problems.append(message)
@@ -60,6 +72,7 @@ def _extent(points):
     return away.norm(), height / side.norm() if side.norm() > 0 else 0.0
 
 
+@takes()
 def addBlock(vertices, material, inPlane=False, color=(0.75, 0.7, 0.65)):
     """Append a convex block to the scene. Returns its body id.
 
@@ -67,14 +80,16 @@ def addBlock(vertices, material, inPlane=False, color=(0.75, 0.7, 0.65)):
     :param material: MasonryMat
     :param inPlane: only x, z and the rotation about y stay free: a wall in the x-z plane
     """
-    problems = []
+    problems = misfits("block: ", {"inPlane": flag}, {"inPlane": inPlane})
     if not isinstance(material, MasonryMat):
-        problems.append(f"block: material must be a MasonryMat, got {material}")
+        problems.append(
+            f"block: material must be a MasonryMat, got {printed(material)}"
+        )
     color = vector(color, "block: color", problems)
     try:
         vertices = list(vertices)
     except TypeError:
-        problems.append(f"block: corners must be a list of points, got {vertices}")
+        problems.append(f"block: corners must be a list of points, got {printed(vertices)}")  # fmt: skip
         vertices = []
     else:
         if len(vertices) < 4:

@@ -14,11 +14,24 @@ from yade.wrapper import (
     NewtonIntegrator,
 )
 
+from .. import _masonry
 from .._masonry import connected, dropFaces, gather, neighbours
+from ..arguments import anything, flag, number, shown, takes
 from .blocks import properties, refuse
 from .engines import LAWS, functorLoop
 
 
+#: The kind of the largest gap or overlap of faces that coincide, over the size of the smaller block.
+TOLERANCE = number("", 0, 0.01, above=True)
+
+
+@takes(tolerance=TOLERANCE)
+def touchingPairs(tolerance=1e-4):
+    """Pairs of ids of the blocks that share a face, smaller id first. Parameters as of :func:`connect`."""
+    return _masonry.touchingPairs(tolerance)
+
+
+@takes(rule=anything, tolerance=TOLERANCE, allowGaps=flag)
 def connect(rule=None, tolerance=1e-4, allowGaps=False):
     """Make the joints between all blocks that share a face. The present state is the reference. Returns the interactions.
 
@@ -42,7 +55,7 @@ def connect(rule=None, tolerance=1e-4, allowGaps=False):
         )
     if rule is not None and not callable(rule):
         raise ValueError(
-            f"rule must be a function (body1, body2, geom) or None, got {rule!r}"
+            f"rule must be a function (body1, body2, geom) or None, got {shown(rule)}"
         )
     if isinstance(loop, InteractionLoop):
         geometry, physics = (

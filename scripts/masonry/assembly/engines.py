@@ -16,7 +16,10 @@ from yade.wrapper import (
     NewtonIntegrator,
 )
 
+from ..arguments import flag, isListed, items, misfits, shown, takes
 from .blocks import refuse
+
+MOST_STEPS = 10**15  # that no run has time for
 
 #: The functor that makes joints of blocks. Its subclasses do so where a block is one of YADE's own Polyhedra.
 _GEOMETRY = Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom
@@ -31,6 +34,11 @@ if hasattr(NewtonIntegrator, "rotAlgorithm"):
     ROTATION["rotAlgorithm"] = "Fincham1992"
 
 
+#: Kinds of the arguments of :func:`engines` that no class of the plugin checks.
+OWN = {"inPlane": flag, "functors": flag}
+
+
+@takes()
 def engines(
     joints,
     damping=0.8,
@@ -76,33 +84,34 @@ def engines(
         knows no other. Combined damping takes energy from vibration and hardly brakes a steady motion. Local damping is
         the paper's eq. (3); it holds back what moves steadily, so a mechanism that turns slowly seems stronger than it is
     """
-    problems = []
-    kinds = ("local",) if functors else ("combined", "local")
-    if dampingKind not in (None, *kinds):
+    problems = misfits("engines: ", OWN, {"inPlane": inPlane, "functors": functors})
+    if isListed(gravity) and items(gravity) is None:
+        gravity = shown(gravity)  # an array without dimensions, which no class answers
+    kinds = ("local",) if functors is True else ("combined", "local")
+    if dampingKind is not None and not (isinstance(dampingKind, str) and dampingKind in kinds):  # fmt: skip
         problems.append(
             f"engines: dampingKind must be {' or '.join(kinds)}"
             + (" with functors" if functors else "")
-            + f", got {dampingKind!r}"
+            + f", got {shown(dampingKind)}"
         )
         dampingKind = None
 
     def made(make):
         try:
             return make()
+        except UnicodeError as error:
+            problems.append(f"engines: {shown(error.object)} must be a number")
         except ValueError as error:
             problems.append(str(error))
 
     def listed(values, what, kind):
-        try:
-            values = list(values)
-            wrong = [v for v in values if not isinstance(v, kind)]
-        except TypeError:
-            wrong = [values]
+        found = items(values)
+        wrong = [values] if found is None else [v for v in found if not isinstance(v, kind)]  # fmt: skip
         if wrong:
             problems.append(
-                f"engines: {what} must be a list of {kind.__name__}, got {wrong[0]!r}"
+                f"engines: {what} must be a list of {kind.__name__}, got {shown(wrong[0])}"
             )
-        return values
+        return found or []
 
     joints = listed(joints, "joints", MasonryJoint)
     loads = listed(loads, "loads", MasonryLoad)
@@ -122,7 +131,7 @@ def engines(
     geometry = made(
         lambda: Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom(
             **{name: n for name, n in counts.items() if n is not None},
-            rowDirection=(0, 1, 0) if inPlane else (0, 0, 0),
+            rowDirection=(0, 1, 0) if inPlane is True else (0, 0, 0),
         )
     )
     refuse(problems)
@@ -149,12 +158,13 @@ def engines(
     ] + ([zones] if zones else [])
 
 
+@takes()
 def engine(label):
     """The engine of O.engines with this label. Raises ValueError, with the labels that there are."""
     found = {e.label: e for e in O.engines if e.label}
-    if label not in found:
+    if not isinstance(label, str) or label not in found:
         raise ValueError(
-            f"no engine has the label {label!r}; there are {', '.join(found) or 'none'}"
+            f"no engine has the label {shown(label)}; there are {', '.join(found) or 'none'}"
         )
     return found[label]
 
@@ -167,9 +177,9 @@ def advance(steps):
 
     :param steps: how many, a whole number from 0 on
     """
-    if isinstance(steps, bool) or not isinstance(steps, int) or steps < 0:
+    if isinstance(steps, bool) or not isinstance(steps, int) or not 0 <= steps < MOST_STEPS:  # fmt: skip
         raise ValueError(
-            f"advance: steps must be a whole number from 0 on, got {steps!r}"
+            f"advance: steps must be a whole number from 0 on, below {MOST_STEPS:g}, got {shown(steps)}"
         )
     step = O.step
     for _ in range(steps):

@@ -8,13 +8,23 @@ YADE has loaded from a file has none: everything counts as given.
 Both classes also get ``set``, which takes properties that depend on each other together.
 """
 
-import difflib
 import math
 import re
 
 from yade.wrapper import MasonryJoint, MasonryMat
 
-from .blocks import properties
+from ..arguments import (
+    isListed,
+    isNumber,
+    items,
+    label,
+    misfits,
+    nearest,
+    number,
+    plain,
+    vector,
+)
+from .blocks import properties, refuse
 
 NOTE = "_assumed"  # in an object: sources of what was not given, by property
 
@@ -29,6 +39,9 @@ DESCRIBED[MasonryMat]["density"] = {
     "low": 0.0,
     "high": math.inf,
 }
+
+#: Names of the properties that each law reads, the default law first.
+LAWS = {law["name"]: set(law["properties"]) for law in MasonryJoint.laws()}
 
 #: Where the default of a property is from, by class and name; the paper is that of yade_plugin/law/README.md.
 DEFAULTS = {
@@ -86,15 +99,77 @@ def _depends(cls, name, value, message):
     return within and bool(_TOGETHER.search(message))
 
 
+#: Properties that only another law than the default one reads, and that the class checks under that law alone: their kinds.
+OF_OTHER_LAWS = {
+    name: number(p["unit"].strip("-"), p["low"], p["high"])
+    for law in list(LAWS)[1:]
+    for name, p in DESCRIBED[MasonryJoint].items()
+    if name in LAWS[law] and name not in next(iter(LAWS.values()))
+}
+
+
+HUGE = 1e100  # a number of a direction may not be larger
+
+
+def _kindOf(name, value, usual):
+    """The kind of a value that a class takes, or cannot answer in a sentence, though it means nothing; else None.
+
+    :param usual: whether the joint follows the default law
+    """
+    if isinstance(value, (str, bytes)):
+        return label
+    if isListed(value) and (items(value) is None or name == "direction" and _isHuge(value)):  # fmt: skip
+        return vector(most=HUGE)
+    if name == "density" and (isinstance(value, bool) or isNumber(value) and plain(value) == math.inf):  # fmt: skip
+        return number("kg/m³", 0)
+    return OF_OTHER_LAWS.get(name) if usual and isNumber(value) else None
+
+
+def _isHuge(value):
+    """Whether one of some finite numbers is larger than the square of it can be."""
+    sizes = [abs(plain(v)) for v in items(value) if isNumber(v)]
+    return any(HUGE < size < math.inf for size in sizes)
+
+
+def _misfits(cls, values, law=None):
+    """Sentences on values of a material or a joint that mean nothing, by the names of the properties.
+
+    :param law: of the joint, if it is there; None: the default one
+    """
+    chosen = values.get("law", law)
+    usual = chosen is None or isinstance(chosen, str) and chosen == next(iter(LAWS))
+    found = {}
+    for name, value in values.items():
+        kind = _kindOf(name, value, usual)
+        sentences = misfits(f"{cls.__name__}: ", {name: kind}, values) if kind else []  # fmt: skip
+        if sentences:
+            found[name] = sentences[0]
+    return found
+
+
+def _unknown(cls, name):
+    """The sentence on a property that a class does not have."""
+    return f"{cls.__name__} has no property {name!r}{nearest(name, DESCRIBED[cls])}"
+
+
+def _check(thing, values):
+    law = getattr(thing, "law", None)
+    refuse([*_misfits(type(thing), values, law).values()])
+
+
 def _note(cls):
     """Let a class note what is given."""
     make, setOne, setMany = cls.__init__, cls.__setattr__, cls.updateAttrs
 
     def __init__(self, *args, **values):
+        unknown = [n for n in values if not hasattr(cls, n)]
+        problems = [_unknown(cls, n) for n in unknown]
+        refuse([*problems, *_misfits(cls, values).values()])
         make(self, *args, **values)
         state(self, **{n: s for n, s in DEFAULTS[cls].items() if n not in values})
 
     def __setattr__(self, name, value):
+        _check(self, {name: value})
         try:
             setOne(self, name, value)
         except ValueError as error:
@@ -106,6 +181,7 @@ def _note(cls):
         assumed(self).pop(name, None)
 
     def updateAttrs(self, values):
+        _check(self, values)
         setMany(self, values)
         for name in values:
             assumed(self).pop(name, None)
@@ -115,14 +191,15 @@ def _note(cls):
         problems = []
         for name in values:
             if name not in known:
-                close = difflib.get_close_matches(name, known, 1)
-                hint = f", did you mean {close[0]!r}?" if close else ""
-                problems.append(f"{cls.__name__} has no property {name!r}{hint}")
+                problems.append(_unknown(cls, name))
+        known = {n: v for n, v in values.items() if n in known}
+        wrong = _misfits(cls, known, getattr(self, "law", None))
+        problems += wrong.values()
         if not problems:
             self.updateAttrs(values)
             return self
         try:  # the other problems, of a copy
-            copied(self).updateAttrs({n: v for n, v in values.items() if n in known})
+            copied(self).updateAttrs({n: v for n, v in known.items() if n not in wrong})  # fmt: skip
         except ValueError as error:
             problems.append(str(error))
         raise ValueError("\n".join(problems))

@@ -4,13 +4,17 @@
 import math
 from collections import Counter
 from dataclasses import dataclass, replace
-from numbers import Integral, Real
+from numbers import Integral
 
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from ..arguments import anything, flag, isA, items, misfits, shown, takes, text
 from . import checks
 from .geometry import COINCIDENT, Solids, cutCorners, measures
+
+#: No corner of masonry is farther from the origin [m].
+FARTHEST = 1e6
 
 LOOKING = math.cos(math.radians(45))  # of the angle between a face and where it looks
 ALONG = 1 - 1e-6  # of the angle between normals of one face of a convex block
@@ -42,25 +46,25 @@ class Block:
             corners = ()
         if len(corners) < 4:
             problems.append(
-                f"corners must be at least 4 points, got {_short(self.corners)}"
+                f"corners must be at least 4 points, got {shown(self.corners)}"
             )
         for n, corner in enumerate(corners):
             if len(corner) != 3 or not all(
                 type(x) is float or _isNumber(x) for x in corner
             ):
                 problems.append(
-                    f"corner {n} must be three numbers [m], got {_short(corner)}"
+                    f"corner {n} must be three numbers [m], got {shown(corner)}"
                 )
-            elif not all(map(math.isfinite, corner)):
-                problems.append(f"corner {n} [m] must be finite, got {_short(corner)}")
-        for what in ("brick", "course"):
-            if not isinstance(getattr(self, what), Integral):
+            elif not all(abs(x) <= FARTHEST for x in corner):
                 problems.append(
-                    f"{what} must be a whole number, got {getattr(self, what)!r}"
+                    f"corner {n} [m] must be finite, and at most {FARTHEST:g} m from the origin, got {shown(corner)}"
                 )
+        for what in ("brick", "course"):
+            value = getattr(self, what)
+            if not isinstance(value, Integral) or isinstance(value, bool):
+                problems.append(f"{what} must be a whole number, got {shown(value)}")
         for what in ("part", "kind"):
-            if not isinstance(getattr(self, what), str):
-                problems.append(f"{what} must be a text, got {getattr(self, what)!r}")
+            fits(text, getattr(self, what), what, problems)
         refuse("block", problems)
         object.__setattr__(self, "corners", corners)
 
@@ -89,17 +93,18 @@ class Bricks:
     :param blocks: the :class:`Block` records
     """
 
+    @takes()
     def __init__(self, blocks=()):
         try:
             self._blocks = tuple(blocks)
         except TypeError:
             raise ValueError(
-                f"Bricks needs a list of blocks, got {_short(blocks)}"
+                f"Bricks needs a list of blocks, got {shown(blocks)}"
             ) from None
         refuse(
             "Bricks",
             [
-                f"item {n} is {_short(b)}, not a Block"
+                f"item {n} is {shown(b)}, not a Block"
                 for n, b in enumerate(self._blocks)
                 if not isinstance(b, Block)
             ],
@@ -192,11 +197,13 @@ class Bricks:
 
     # -- moving and naming ----------------------------------------------------------------------------------------
 
+    @takes()
     def moved(self, dx=0.0, dy=0.0, dz=0.0):
         """The blocks moved along the axes [m]."""
         by = _vector((dx, dy, dz), "moved: way [m]")
         return self._mapped(lambda c: tuple(x + d for x, d in zip(c, by)))
 
+    @takes()
     def turned(self, degrees, axis="z", about=(0, 0, 0)):
         """The blocks turned about an axis through a point, by the right-hand rule. Quarter turns are exact.
 
@@ -205,10 +212,10 @@ class Bricks:
         :param about: point of the axis [m]
         """
         problems = []
-        if not (_isNumber(degrees) and math.isfinite(degrees)):
-            problems.append(f"angle [°] must be a finite number, got {_short(degrees)}")
-        if axis not in ("x", "y", "z"):
-            problems.append(f'axis must be "x", "y" or "z", got {_short(axis)}')
+        if not (_isNumber(degrees) and abs(degrees) <= FARTHEST):
+            problems.append(f"angle [°] must be at most {FARTHEST:g}, and a finite number, got {shown(degrees)}")  # fmt: skip
+        if not isinstance(axis, str) or axis not in ("x", "y", "z"):
+            problems.append(f'axis must be "x", "y" or "z", got {shown(axis)}')
         refuse("turned", problems)
         about = _vector(about, "turned: about [m]")
         quarters = degrees / 90
@@ -227,10 +234,12 @@ class Bricks:
 
         return self._mapped(turn)
 
+    @takes()
     def named(self, part):
         """The blocks as a part of this name."""
         return Bricks(replace(b, part=part) for b in self._blocks)
 
+    @takes()
     def ofKind(self, kind):
         """The blocks as blocks of this kind."""
         return Bricks(replace(b, kind=kind) for b in self._blocks)
@@ -242,14 +251,16 @@ class Bricks:
 
     # -- choosing -------------------------------------------------------------------------------------------------
 
+    @takes()
     def where(self, function):
         """The blocks for which a function of the :class:`Block` is true, with their numbers of bricks."""
         if not callable(function):
             raise ValueError(
-                f"where: needs a function of a block, got {_short(function)}"
+                f"where: needs a function of a block, got {shown(function)}"
             )
-        return Bricks(b for b in self._blocks if function(b))
+        return Bricks([b for b in self._blocks if function(b)])
 
+    @takes()
     def within(self, low, high):
         """The blocks whose middle lies in a box, its sides included.
 
@@ -283,6 +294,7 @@ class Bricks:
 
     # -- cutting --------------------------------------------------------------------------------------------------
 
+    @takes(point=anything, normal=anything, own=flag)
     def cut(self, point, normal, own=False):
         """The blocks, with every one that a plane crosses cut in two. Order and numbers of bricks stay.
 
@@ -375,6 +387,7 @@ class Bricks:
         """
         return list(self._pairs()[0])
 
+    @takes()
     def freeFaces(self, direction):
         """Faces that look in a direction, within 45 degrees, with what no joint covers of them.
 
@@ -433,6 +446,7 @@ class Bricks:
         return list(self._found["problems"])
 
 
+@takes(bricks=lambda value, first=None: isA(Bricks)(value))
 def summary(bricks):
     """Counts and sizes of a collection of blocks: a dict with units in its names."""
     count = lambda what: dict(Counter(getattr(b, what) for b in bricks))
@@ -453,6 +467,9 @@ def summary(bricks):
 
 def boxCorners(low, high):
     """The eight corners of an axis-parallel box, x slowest and z fastest."""
+    for corner, what in ((low, "low"), (high, "high")):
+        if len(items(corner) or ()) != 3:
+            raise ValueError(f"boxCorners: {what} [m] must be three numbers, got {shown(corner)}")  # fmt: skip
     return tuple(
         (x, y, z)
         for x in (low[0], high[0])
@@ -468,46 +485,55 @@ def refuse(what, problems, most=10):
         raise ValueError(f"{what}: " + "; ".join([*problems[:most], *more]))
 
 
+def fits(kind, value, name, problems):
+    """Whether a value is of a kind of :mod:`masonry.arguments`; else a sentence is added to the problems."""
+    found = misfits("", {name: kind}, {name: value})
+    problems += found
+    return not found
+
+
 def positive(value, name, problems, unit="m", zero=False):
-    """Whether a value is a finite number above 0 (or 0, too); else a sentence is added to the problems."""
-    fine = _isNumber(value) and math.isfinite(value)
-    fine = fine and (value >= 0 if zero else value > 0)
+    """Whether a value is a number above 0 (or 0, too) and not more than any length of masonry; else a sentence is added to the
+    problems."""
+    fine = _isNumber(value) and (value >= 0 if zero else value > 0) and value < math.inf
+    if fine and value > FARTHEST:
+        problems.append(f"{name} {shown(value)} {unit} must be at most {FARTHEST:g} {unit}: is it in {unit}?")  # fmt: skip
+        return False
     if not fine:
         bound = "0 or more" if zero else "above 0"
-        problems.append(
-            f"{name} [{unit}] must be a number {bound}, got {_short(value)}"
-        )
+        problems.append(f"{name} [{unit}] must be a number {bound}, got {shown(value)}")
     return fine
 
 
-def wholeNumber(value, name, problems, least=1):
+def wholeNumber(value, name, problems, least=1, most=10**9):
     """Whether a value is a whole number of at least `least`; else a sentence is added to the problems."""
     fine = isinstance(value, Integral) and not isinstance(value, bool)
     fine = fine and value >= least
+    if fine and value > most:
+        problems.append(f"{name} {shown(value)} must be at most {most}")
+        return False
     if not fine:
         problems.append(
-            f"{name} must be a whole number of at least {least}, got {_short(value)}"
+            f"{name} must be a whole number of at least {least}, got {shown(value)}"
         )
     return fine
 
 
 def _isNumber(value):
-    return isinstance(value, Real) and not isinstance(value, (bool, np.bool_))
-
-
-def _short(value):
-    text = repr(value)
-    return text if len(text) < 80 else text[:77] + "..."
+    floats = (int, float, np.integer, np.floating)
+    return isinstance(value, floats) and not isinstance(value, bool)
 
 
 def _vector(value, what, finite=True):
     try:
         found = tuple(value)
         good = len(found) == 3 and all(map(_isNumber, found))
-        good = good and not any(map(math.isnan, found))
-        good = good and (not finite or all(map(math.isfinite, found)))
-    except TypeError:
+        good = good and not any(v != v for v in found)
+        good = good and (not finite or all(abs(v) <= FARTHEST for v in found))
+    except Exception:  # arrays without dimensions, classes of the user's own
         good = False
     if not good:
-        raise ValueError(f"{what} must be three finite numbers, got {_short(value)}")
+        raise ValueError(
+            f"{what} must be three finite numbers, each at most {FARTHEST:g}, got {shown(value)}"
+        )
     return found

@@ -12,7 +12,9 @@ from collections import namedtuple
 
 import numpy as np
 
-from .blocks import Block, Bricks, positive, refuse
+from ..arguments import path as pathOf
+from ..arguments import takes, text
+from .blocks import FARTHEST, Block, Bricks, fits, positive, refuse
 from .checks import where
 from .geometry import FLAT
 
@@ -24,13 +26,11 @@ SAME = 1e-6
 #: turns the smallest faces by less, and no solid has so sharp an edge.
 COINCIDE = 1e-3
 
-#: No corner of masonry is farther from the origin [m].
-FARTHEST = 1e6
-
 #: A surface as a file has it: name, points (n, 3), and faces, tuples of point numbers.
 _Surface = namedtuple("_Surface", "name points faces")
 
 
+@takes()
 def fromFile(path, scale=1.0, kind="block"):
     """Blocks from a file, one for each closed convex surface in it: a :class:`Bricks`, each block a brick of its own.
 
@@ -46,13 +46,10 @@ def fromFile(path, scale=1.0, kind="block"):
     """
     problems = []
     positive(scale, "scale", problems, "m")
-    if not isinstance(kind, str):
-        problems.append(f"kind must be a text, got {kind!r}")
-    try:
-        path = os.fspath(path)
-    except TypeError:
-        problems.append(f"path must be the name of a file, got {path!r}")
+    fits(text, kind, "kind", problems)
+    if not fits(pathOf, path, "path", problems):
         refuse("fromFile", problems)
+    path = os.fspath(path)
     ending = os.path.splitext(path)[1].lower()
     readers = {
         ".obj": _readObj,
@@ -73,7 +70,10 @@ def fromFile(path, scale=1.0, kind="block"):
     blocks = []
     for surface in surfaces:
         for corners in _solids(surface, scale, problems):
-            blocks.append(Block(corners, len(blocks), surface.name, -1, kind))
+            try:
+                blocks.append(Block(corners, len(blocks), surface.name, -1, kind))
+            except ValueError as error:  # of its name
+                problems.append(str(error))
     if not blocks and not problems:
         problems.append("no faces, so no solids")
     refuse(path, problems)

@@ -3,6 +3,7 @@
 
 from dataclasses import dataclass, replace
 
+from ..arguments import items, named, shown
 from .blocks import Block, Bricks, boxCorners, positive, refuse
 from .checks import components, where
 
@@ -10,6 +11,7 @@ from .checks import components, where
 WHOLE = 1e-6
 
 
+@named
 @dataclass(frozen=True)
 class Lintel:
     """One block over an opening.
@@ -22,6 +24,7 @@ class Lintel:
     height: float
 
 
+@named
 @dataclass(frozen=True)
 class Opening:
     """A rectangular hole through a wall. Bricks inside are left out, those at its edge are cut.
@@ -66,12 +69,12 @@ def opened(bricks, openings, unit, levels, ends, ys, part, crossed=None):
     :param bricks: a number each
     :param ends: from where to where openings may be [m]
     """
-    try:
-        openings = tuple(openings)
-    except TypeError:
+    found = items(openings)
+    if found is None:
         raise ValueError(
-            f"{part}: openings must be a list of Opening, got {openings!r}"
-        ) from None
+            f"{part}: openings must be a list of Opening, got {shown(openings)}"
+        )
+    openings = tuple(found)
     if not openings:
         return bricks, []
     problems = []
@@ -109,7 +112,7 @@ def _holes(openings, unit, levels, ends, crossed, problems):
     for n, opening in enumerate(openings):
         name = f"opening {n}"
         if not isinstance(opening, Opening):
-            problems.append(f"{name} must be an Opening, got {opening!r}")
+            problems.append(f"{name} must be an Opening, got {shown(opening)}")
             continue
         good = [
             positive(opening.x, f"{name}: x", problems, zero=True),
@@ -119,7 +122,9 @@ def _holes(openings, unit, levels, ends, crossed, problems):
         ]
         lintel = opening.lintel
         if lintel is not None and not isinstance(lintel, Lintel):
-            problems.append(f"{name}: lintel must be a Lintel or None, got {lintel!r}")
+            problems.append(
+                f"{name}: lintel must be a Lintel or None, got {shown(lintel)}"
+            )
             good.append(False)
         elif lintel is not None:
             good.append(

@@ -3,12 +3,14 @@
 
 import math
 
-from .blocks import Block, Bricks, positive, refuse, wholeNumber
+from ..arguments import flag, takes, text
+from .blocks import Block, Bricks, fits, positive, refuse, wholeNumber
 
 #: No arch, vault or dome has more stones.
 MOST_STONES = 100_000
 
 
+@takes()
 def Arch(
     thickness,
     depth,
@@ -45,6 +47,7 @@ def Arch(
     positive(depth, "depth", problems)
     if skewback is not None:
         positive(skewback, "skewback", problems)
+    fits(text, part, "part", problems)
     refuse("arch", problems)
     points = _ring(radius, thickness, stones, angle)
     voussoirs = [
@@ -64,6 +67,7 @@ def Arch(
     return Bricks(voussoirs)
 
 
+@takes()
 def BarrelVault(
     thickness,
     length,
@@ -93,6 +97,8 @@ def BarrelVault(
     positive(length, "length", problems)
     if wholeNumber(rows, "rows", problems) and not problems:
         _few(stones * rows, problems)
+    fits(text, part, "part", problems)
+    fits(flag, staggered, "staggered", problems)
     refuse("vault", problems)
     points = _ring(radius, thickness, stones, angle)
     blocks = []
@@ -107,6 +113,7 @@ def BarrelVault(
     return Bricks(blocks)
 
 
+@takes()
 def Dome(
     radius,
     thickness,
@@ -138,7 +145,7 @@ def Dome(
     good = positive(radius, "radius", problems)
     positive(thickness, "thickness", problems)
     fine = wholeNumber(courses, "courses", problems)
-    fine &= wholeNumber(stones, "stones", problems, 2 if staggered else 3)
+    fine &= wholeNumber(stones, "stones", problems, 2 if staggered is True else 3)
     if fine:
         _few(2 * courses * stones, problems)
     opening = _angle(angle, problems)
@@ -148,6 +155,8 @@ def Dome(
             problems.append(
                 f"oculus {oculus:g} m must be smaller than the springing's radius, {most:g} m"
             )
+    fits(text, part, "part", problems)
+    fits(flag, staggered, "staggered", problems)
     refuse("dome", problems)
     lowest = math.radians(angle / 2)
     # polar angles of the bed joints, from below

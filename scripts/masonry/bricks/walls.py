@@ -8,7 +8,8 @@ meet face to face. All positions along a wall are multiples of a quarter unit, e
 import math
 from dataclasses import replace
 
-from .blocks import Block, Bricks, boxCorners, positive, refuse, wholeNumber
+from ..arguments import anything, flag, items, nearest, shown, takes, text
+from .blocks import Block, Bricks, boxCorners, fits, positive, refuse, wholeNumber
 from .bonds import layout
 from .geometry import FLAT
 from .openings import WHOLE, LaidBrick, finished, numbered, opened
@@ -22,6 +23,7 @@ MOST_BRICKS = 100_000
 BONDS = ("running", "stack", "header", "english", "flemish")
 
 
+@takes()
 def Wall(
     length,
     height=None,
@@ -69,18 +71,19 @@ def Wall(
     """
     problems = []
     unit = _unit(unit, problems, joint=joint)
-    if bond not in BONDS:
-        problems.append(f"bond must be one of {', '.join(BONDS)}, got {bond!r}")
-    through = bond in ("header", "english", "flemish")
-    if wholeNumber(wythes, "wythes", problems) and bond in BONDS:
+    known = isinstance(bond, str) and bond in BONDS
+    if not known:
+        problems.append(f"bond must be one of {', '.join(BONDS)}, got {shown(bond)}{nearest(bond, BONDS) if isinstance(bond, str) else ''}")  # fmt: skip
+    through = known and bond in ("header", "english", "flemish")
+    if wholeNumber(wythes, "wythes", problems, most=100) and known:
         if through and wythes != 2:
             problems.append(
                 f"{bond} bond has headers that go through the wall and needs wythes=2, got {wythes}"
             )
     if collar is not None:
         positive(collar, "collar", problems, zero=True)
-    if not isinstance(part, str):
-        problems.append(f"part must be a text, got {part!r}")
+    fits(text, part, "part", problems)
+    fits(flag, halves, "halves", problems)
     step = 4 if bond == "stack" else 2
     quarters = _quarters(length, unit, "length", step, problems)
     levels = _levels(height, courses, unit, problems)
@@ -90,10 +93,10 @@ def Wall(
         if collar is None:
             collar = max(deep - 2 * thickness, 0.0)
         if abs(2 * thickness + collar - deep) > WHOLE * unit[0]:
-            fits = deep - 2 * thickness
+            fitting = deep - 2 * thickness
             hint = (
-                f"; collar {fits:g} m fits"
-                if fits >= 0
+                f"; collar {fitting:g} m fits"
+                if fitting >= 0
                 else f"; a thickness of {deep / 2:g} m fits"
             )
             problems.append(
@@ -129,6 +132,7 @@ def Wall(
     return finished(kept + lintels)
 
 
+@takes()
 def Corner(
     length,
     length2,
@@ -158,6 +162,7 @@ def Corner(
     one = _quarters(length, unit, "length", 2, problems, least=6)
     two = _quarters(length2, unit, "length2", 2, problems, least=6)
     levels = _levels(height, courses, unit, problems)
+    fits(flag, halves, "halves", problems)
     refuse("corner", problems)
     _few(one + two, levels, 1, problems)
     refuse("corner", problems)
@@ -169,6 +174,7 @@ def Corner(
     return finished(_joined([walls[0], _along(walls[1])]))
 
 
+@takes()
 def Tee(
     length,
     length2,
@@ -215,6 +221,7 @@ def Tee(
         problems.append(
             f"a junction needs a unit no thicker than 0.75 of its length, got {unit[1]:g} m and {unit[0]:g} m"
         )
+    fits(flag, halves, "halves", problems)
     refuse("tee", problems)
     _few(one + two, levels, 1, problems)
     refuse("tee", problems)
@@ -228,6 +235,7 @@ def Tee(
     return finished(_joined([walls[0], _along(walls[1])]))
 
 
+@takes()
 def Room(
     length,
     width,
@@ -262,6 +270,7 @@ def Room(
         problems.append(
             f"a room needs a unit no thicker than its length, got {unit[1]:g} m and {unit[0]:g} m"
         )
+    fits(flag, halves, "halves", problems)
     refuse("room", problems)
     _few(2 * (one + two), levels, 1, problems)
     refuse("room", problems)
@@ -283,6 +292,7 @@ def Room(
     )
 
 
+@takes()
 def stack(count, size, part="stack"):
     """Blocks on top of each other, the lowest one's lower left front corner at the origin: a :class:`Bricks`.
 
@@ -292,6 +302,7 @@ def stack(count, size, part="stack"):
     problems = []
     wholeNumber(count, "count", problems)
     size = _unit(size, problems, "size")
+    fits(text, part, "part", problems)
     refuse("stack", problems)
     if count > MOST_BRICKS:
         raise ValueError(f"stack: {count} blocks are more than {MOST_BRICKS}")
@@ -307,11 +318,11 @@ def stack(count, size, part="stack"):
     )
 
 
+@takes(low=anything, high=anything, part=text, kind=text)
 def block(low, high, part="block", kind="block"):
     """One block, a box between two opposite corners [m]: a :class:`Bricks`. It can be a platen, a pier or a beam."""
-    found = Block(
-        boxCorners(_triple(low, "low"), _triple(high, "high")), 0, part, -1, kind
-    )
+    low, high = _triple(low, "low"), _triple(high, "high")
+    found = Block(boxCorners(low, high), 0, part, -1, kind)
     if not all(a < b for a, b in zip(low, high)):
         raise ValueError(
             f"block: low corner {tuple(low)} m must lie below high corner {tuple(high)} m on every axis"
@@ -323,15 +334,12 @@ def block(low, high, part="block", kind="block"):
 
 
 def _triple(value, what):
-    try:
-        found = tuple(value)
-    except TypeError:
-        found = ()
+    found = items(value) or ()
     if len(found) != 3:
         raise ValueError(
-            f"block: {what} corner [m] must be three numbers, got {value!r}"
+            f"block: {what} corner [m] must be three numbers, got {shown(value)}"
         )
-    return found
+    return tuple(found)
 
 
 def _unit(unit, problems, what="unit", joint=0.0):
@@ -352,7 +360,7 @@ def _unit(unit, problems, what="unit", joint=0.0):
     except TypeError:
         pass
     problems.append(
-        f"{what} must be a length, thickness and height above 0 m, got {unit!r}"
+        f"{what} must be a length, thickness and height above 0 m, got {shown(unit)}"
     )
 
 
@@ -423,7 +431,7 @@ def _levels(height, courses, unit, problems):
     if not positive(height, "height", problems) or not unit:
         return None
     count = height / unit[2]
-    if not count < 1e9:
+    if not count < MOST_BRICKS:
         problems.append(f"height {height:g} m is {count:.3g} courses: is it in m?")
         return None
     nearest = round(count)

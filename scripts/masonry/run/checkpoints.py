@@ -10,6 +10,9 @@ import json
 import os
 
 from .._masonry import loadScene, saveScene, savedText
+from ..arguments import anything
+from ..arguments import path as pathOf
+from ..arguments import shown, takes
 from ..basics import plain
 from ..folders import fromJson, replaced
 from ..read.files import readWhole
@@ -19,6 +22,7 @@ LARGEST = 1e100  # no number of a run is beyond; its square can be computed
 LONGEST = 500  # characters of a reason: it can quote a file that somebody has made up
 
 
+@takes(path=pathOf, extra=anything)
 def saveCheckpoint(path, extra=None):
     """Save the state of the scene in a file, so that :func:`loadCheckpoint` goes on from it bit for bit.
 
@@ -31,7 +35,11 @@ def saveCheckpoint(path, extra=None):
     :raises ValueError: if a number of the state is not finite; nothing is written then
     :raises OSError: if the file cannot be written, or one of both is a symbolic link; the old one stays
     """
-    data = saveScene(json.dumps(extra, allow_nan=False))
+    try:
+        kept = json.dumps(extra, allow_nan=False)
+    except (TypeError, ValueError, RecursionError) as error:
+        raise ValueError(f"saveCheckpoint: extra {shown(extra)} must be what JSON can hold: {error}") from None  # fmt: skip
+    data = saveScene(kept)
     with replaced(path, "wb") as f:
         f.write(data)
     folder = os.open(os.path.dirname(os.path.abspath(path)), os.O_RDONLY)
@@ -41,6 +49,7 @@ def saveCheckpoint(path, extra=None):
         os.close(folder)
 
 
+@takes(path=pathOf)
 def loadCheckpoint(path):
     """Give the scene, built by the same script with the same parameters, the state of a checkpoint.
 
@@ -55,6 +64,7 @@ def loadCheckpoint(path):
     return extra
 
 
+@takes(path=pathOf)
 def readCheckpoint(path):
     """The ``extra`` of a checkpoint alone, of a file that is whole. Raises what :func:`loadCheckpoint` raises."""
     return _extra(path, savedText, _bytesOf(path))

@@ -6,10 +6,23 @@ and :mod:`masonry.scene.records`. :class:`masonry.assembly.structure.Structure` 
 """
 
 import math
+from numbers import Integral
 
+from ..arguments import flag, listOf, misfits, number, orNone, shown, text, vector
 from ..assembly import columns
 from ..basics import GRAVITY, Refused
 from .materials import Masonry
+
+
+#: Kinds of what a scene is given beside bricks and materials.
+KINDS = {
+    "title": orNone(text),
+    "plane": orNone(flag),
+    "gravity": number("m/s²", 0, 1e6),
+    "columns": orNone(listOf(text)),
+    "functors": flag,
+    "allowGaps": flag,
+}
 
 
 class Description:
@@ -31,6 +44,7 @@ class Description:
         choice=None,
         functors=False,
         deformable=False,
+        allowGaps=False,
     ):
         problems = []
         try:
@@ -38,30 +52,30 @@ class Description:
             self.bricks[0].corners[0][2]
         except Exception:
             problems.append(
-                f"scene {name}: bricks must be a list of blocks, as masonry.bricks makes them, got {bricks!r}"
+                f"scene {name}: bricks must be a list of blocks, as masonry.bricks makes them, got {shown(bricks)}"
             )
         if not isinstance(materials, Masonry):
             problems.append(
-                f"scene {name}: materials must be a masonry.materials.Masonry, got {materials!r}"
+                f"scene {name}: materials must be a masonry.materials.Masonry, got {shown(materials)}"
             )
-        if not (isinstance(gravity, (int, float)) and 0 <= gravity < math.inf):
-            problems.append(
-                f"scene {name}: gravity {gravity!r} must be at least 0 m/s², downwards"
-            )
+        given = dict(title=title, plane=plane, gravity=gravity, columns=choice, functors=functors, allowGaps=allowGaps)  # fmt: skip
+        problems += misfits(f"scene {name}: ", KINDS, given)
         if problems:
             raise Refused("\n".join(problems))
         self.name, self.title = name, title or name
         self.materials, self.gravity = materials, gravity  # [m/s²], downwards
         self.functors = functors  # as of masonry.assembly.engines.engines
         self.deformable = deformable  # whether bricks are
-        self.allowGaps = False  # as of masonry.assembly.connecting.connect
+        self.allowGaps = allowGaps  # as of masonry.assembly.connecting.connect
         points = [p for block in self.bricks for p in block.corners]
         #: corners of the box around all bricks [m]
         self.low, self.high = (
             [f(p[i] for p in points) for i in range(3)] for f in (min, max)
         )
         self.plane = self._inPlane() if plane is None else plane
-        self.choice = choice  # heads of columns, None: all
+        self.choice = (
+            None if choice is None else list(choice)
+        )  # heads of columns, None: all
         self.targets = {}  # by name
         self.joints = []  # whose means are recorded
         self.drifts = []
@@ -148,35 +162,28 @@ class Description:
 
     # -- where bricks are -----------------------------------------------------------------------------------------
 
-    def checkPart(self, part, what):
-        """Refuse a part that there is not. ``what`` begins the sentence."""
-        parts = sorted({block.part for block in self.bricks})
-        if part is not None and part not in parts:
-            raise ValueError(f"{what}: no part {part!r}; there are {', '.join(parts)}")
-
     def find(self, where):
-        """Index of a brick, and the point by which it is named, or None."""
+        """Index of a brick, and the point by which it is named, or None. Raises ValueError with a sentence as of a kind of
+        :mod:`masonry.arguments`."""
         count, point = len(self.bricks), None
-        if isinstance(where, int) and not isinstance(where, bool):
+        if isinstance(where, Integral) and not isinstance(where, bool):
             if not -count <= where < count:
-                raise ValueError(f"brick {where}: there are {count} bricks, from 0")
-            index = where % count
+                raise ValueError(f"{shown(where)}: there are {count} bricks, from 0")
+            index = int(where) % count
         elif any(where is block for block in self.bricks):
             index = next(i for i, block in enumerate(self.bricks) if block is where)
         else:
             try:
-                point = tuple(float(v) for v in where)
-                if len(point) != 3 or not all(map(math.isfinite, point)):
-                    raise TypeError
-            except (TypeError, ValueError):
+                point = tuple(float(v) for v in vector()(where))
+            except ValueError:
                 raise ValueError(
-                    f"a brick is named by its index, by a point (x, y, z) in m, or by itself, got {where!r}"
+                    f"{shown(where)} must be a brick: its index, a point (x, y, z) [m], or the block itself"
                 ) from None
             index = min(range(count), key=lambda i: self._distance(i, point))
             away, size = self._distance(index, point), self.size(index)
             if away > size:
                 raise ValueError(
-                    f"no brick is near {point} m: the nearest is {away:g} m away"
+                    f"{point} m: no brick is near it, the nearest is {away:g} m away"
                 )
         return index, point
 

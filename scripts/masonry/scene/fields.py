@@ -14,19 +14,13 @@ import re
 
 import numpy as np
 
+from ..arguments import number, shown, takes, whole
+
 WAVES = 512  # cosines of a field: its moments are off by some 1/sqrt(WAVES) at most
 
 
 def _standard(length, seed):
     """A field of mean 0 and variance 1."""
-    if not (isinstance(seed, int) and seed >= 0):
-        raise ValueError(
-            f"random field: seed {seed!r} must be a whole number from 0 on"
-        )
-    if not 0 <= length < math.inf:
-        raise ValueError(
-            f"random field: correlation length {length} m must be at least 0"
-        )
     if length == 0:
 
         def independent(x, y, z):
@@ -43,13 +37,13 @@ def _standard(length, seed):
     )
 
 
-def _checked(cov):
-    if not 0 < cov < math.inf:
-        raise ValueError(
-            f"random field: coefficient of variation {cov} must be above 0"
-        )
+#: Kinds of what a random field takes: coefficient of variation, correlation length and seed.
+OF_FIELDS = dict(
+    cov=number("", 0, 100, above=True), length=number("m", 0, 1e6), seed=whole()
+)
 
 
+@takes(**OF_FIELDS)
 def lognormal(cov, length=0.0, seed=0):
     """Factors that are lognormally distributed about the mean 1.
 
@@ -57,7 +51,6 @@ def lognormal(cov, length=0.0, seed=0):
     :param length: correlation length [m]; 0: every joint has its own value
     :param seed: the same number gives the same field
     """
-    _checked(cov)
     field, spread = _standard(length, seed), math.sqrt(math.log1p(cov * cov))
     return lambda x, y, z: math.exp(spread * field(x, y, z) - spread * spread / 2)
 
@@ -65,11 +58,9 @@ def lognormal(cov, length=0.0, seed=0):
 LEAST = 0.05  # factor below which a normal field does not go
 
 
+@takes(least=number("", 0, 1, above=True, below=True), **OF_FIELDS)
 def normal(cov, length=0.0, seed=0, least=LEAST):
     """Factors that are normally distributed about the mean 1, but not below ``least``. Other parameters: :func:`lognormal`."""
-    _checked(cov)
-    if not 0 < least < 1:
-        raise ValueError(f"random field: least {least} must be above 0, below 1")
     field = _standard(length, seed)
     return lambda x, y, z: max(least, 1 + cov * field(x, y, z))
 
@@ -82,11 +73,11 @@ _TEXT = re.compile(
 
 def parts(text):
     """Names, kind, coefficient of variation, length [m] and seed of a field that is written as :func:`read` takes it."""
-    found = _TEXT.fullmatch(text)
+    found = _TEXT.fullmatch(text) if isinstance(text, str) else None
     names = found["names"].split("+") if found else []
     if not found or not all(re.fullmatch(r"[^.\s]+\.\w+", name) for name in names):
         raise ValueError(
-            f"'{text}' must read JOINT.PROPERTY=KIND(cov=C,length=L,seed=N), KIND lognormal or normal, L in m"
+            f"{shown(text)} must read JOINT.PROPERTY=KIND(cov=C,length=L,seed=N), KIND lognormal or normal, L in m"
         )
     try:
         numbers = float(found["cov"]), float(found["length"])

@@ -4,14 +4,18 @@
 import argparse
 import difflib
 import os
-from numbers import Real
 
+from ..arguments import flag, isNumber, oneOf, plain, shown
 from ..basics import Refused, say
 from ..run.presets import HARMLESS, PRESETS, asOption
 from .parsing import UNITS, Options
 
 #: What a script cannot say: it is about the run at hand.
 OF_THE_RUN = {"help", "resume"}
+
+
+#: Names that a scene takes beside its options.
+BESIDE = "title", "plane", "gravity", "columns", "functors", "arguments", "allowGaps"
 
 
 def checked(parser, name, usual):
@@ -25,7 +29,7 @@ def checked(parser, name, usual):
     found, problems = {}, []
     for option, value in usual.items():
         if option not in actions:
-            close = difflib.get_close_matches(option, actions, 1)
+            close = difflib.get_close_matches(option, [*actions, *BESIDE], 1)
             hint = (
                 f"did you mean {close[0]}?"
                 if close
@@ -52,33 +56,26 @@ def _value(action, value):
     if value is None and (action.default is None or action.dest == "until"):
         return None
     if action.choices:
-        if value in action.choices:
-            return value
-        choices = ", ".join(map(str, action.choices))
-        close = difflib.get_close_matches(str(value), map(str, action.choices), 1)
-        hint = f", did you mean {close[0]!r}?" if close else ""
-        raise ValueError(f"{value!r} must be one of {choices}{hint}")
+        return oneOf(*action.choices)(value)
     if action.nargs == 0:
-        if isinstance(value, bool):
-            return value
-        raise ValueError(f"{value!r} must be True or False")
+        return flag(value)
     if isinstance(action.default, list):
         if isinstance(value, str):
             value = [value]
         if not isinstance(value, (list, tuple)):
-            raise ValueError(f"{value!r} must be a list of texts")
+            raise ValueError(f"{shown(value)} must be a list of texts")
         return [_typed(action, one) for one in value]
     return _typed(action, value)
 
 
 def _typed(action, value):
     """A value as the type of an option makes it of a text."""
-    if isinstance(value, Real) and not isinstance(value, bool):
-        value = str(value)
+    if isNumber(value):
+        value = str(plain(value))
     elif isinstance(value, os.PathLike):
         value = os.fspath(value)
     if not isinstance(value, str):
-        raise ValueError(f"{value!r} must be a number or a text")
+        raise ValueError(f"{shown(value)} must be a number or a text")
     return action.type(value) if action.type else value
 
 

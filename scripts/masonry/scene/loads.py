@@ -1,34 +1,32 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What loads a structure from its first stage on: words that describe a scene."""
 
-import math
-
+from ..arguments import direction, flag, number, orNone, takes
+from ..arguments import vector as numbers
 from ..assembly.blocks import vector
 from ..basics import Refused, say
 from ..bricks import Bricks
-from .targets import Target
+from .targets import LOADED, MOVING_PLATEN
+from .targets import part as partName
 from .words import describes
 
 
-def checkPress(platen, stress, name):
-    """Refuse what is no platen that moves, or no stress. Raises ValueError."""
-    if not isinstance(platen, Target) or not platen.box or platen.fixed:
-        raise ValueError(f"{name}: only a platen that moves can be pressed")
-    if not (isinstance(stress, (int, float)) and 0 <= stress < math.inf):
-        raise ValueError(f"{name}: stress {stress!r} must be at least 0 Pa")
+#: Kinds of arguments: a mean stress, a force and the pressure of a wind, as of :mod:`masonry.arguments`. More than these would
+#: crush or throw over any masonry.
+STRESS = number("Pa", 0, 1e12)
+FORCE = numbers("N", 1e15)
+PRESSURE = number("Pa", -1e9, 1e9)
+
+
+def doubtPress(stress, name):
+    """Say that a stress looks as if it were in MPa."""
     if 0 < stress < 1e3:
         say(f"warning: {name}: {stress:g} Pa: is it in Pa, not MPa?")
 
 
-def checkedForce(description, target, force, name):
-    """A force on a target as a vector [N]. Raises ValueError."""
-    if not isinstance(target, Target) or not target.loaded:
-        raise ValueError(
-            f"{name}: only a platen that moves or a handle() can be loaded"
-        )
+def checkedForce(description, force, name):
+    """A force as a vector [N]. Raises ValueError."""
     force = vector(force, f"{name}: force [N]")
-    if not all(map(math.isfinite, force)):
-        raise ValueError(f"{name}: force {tuple(force)} N must be finite")
     if description.plane and force[1]:
         raise ValueError(
             f"{name}: the scene is in the x-z plane; Scene(..., plane=False) is in space"
@@ -38,17 +36,14 @@ def checkedForce(description, target, force, name):
 
 def windFaces(description, pressure, towards, part, name):
     """The faces that a wind loads: tuples of brick, normal, area [m²] and middle. Raises ValueError."""
-    if not isinstance(pressure, (int, float)) or not 0 < abs(pressure) < math.inf:
+    if not pressure:
         raise ValueError(f"{name}: pressure {pressure!r} Pa must be other than 0")
     if abs(pressure) > 1e5:
         say(f"warning: {name}: {pressure:g} Pa: is it in Pa? A storm has about 1000 Pa")
-    if towards[2] or not towards.norm():
-        raise ValueError(f"{name}: the direction must be horizontal, got {towards}")
     if description.plane and towards[1]:
         raise ValueError(
             f"{name}: the scene is in the x-z plane; Scene(..., plane=False) is in space"
         )
-    description.checkPart(part, name)
     if description.deformable:
         raise Refused(f"{name}: it loads rigid bricks; choose --blocks rigid")
     faces = [
@@ -62,28 +57,31 @@ def windFaces(description, pressure, towards, part, name):
 
 
 @describes
+@takes(platen=MOVING_PLATEN, stress=STRESS, riding=flag)
 def press(description, platen, stress, riding=True):
     """Press a platen on the bricks below it. The load grows in :meth:`settle`, and stays.
 
     :param stress: mean vertical stress that the bricks feel [Pa]; the weight of the platen is part of it
     :param riding: whether the load moves with the platen; else it keeps its line in space, as over rollers
     """
-    checkPress(platen, stress, "press")
-    platen.pressed, platen.riding = float(stress), bool(riding)
+    doubtPress(stress, "press")
+    platen.pressed, platen.riding = float(stress), riding
 
 
 @describes
+@takes(target=LOADED, force=FORCE)
 def load(description, target, force):
     """A dead load on a target. It grows in :meth:`settle`, and stays; loads on one target add up.
 
     :param force: three numbers [N]
     """
-    force = checkedForce(description, target, force, "load")
+    force = checkedForce(description, force, "load")
     before = target.force or (0.0, 0.0, 0.0)
     target.force = tuple(a + b for a, b in zip(force, before))
 
 
 @describes
+@takes(pressure=PRESSURE, towards=direction(level=True), part=orNone(partName))
 def wind(description, pressure, towards, part=None):
     """A pressure on the faces that look against a horizontal direction. It grows in :meth:`settle`, and stays.
 

@@ -6,11 +6,12 @@ import os
 import sys
 
 from .._masonry import commit, version
+from ..arguments import shown
 from ..assembly.engines import LAWS
 from ..basics import Refused
 from ..run.presets import BOUND, PRESETS, USUAL
 from . import keywords
-from .parsing import Parser, count, field, folder, number, pathOf
+from .parsing import DAMPINGS, RATES, Parser, count, field, folder, number, pathOf
 from .settings import setting
 
 #: Fewest rows of points that give a joint its stiffness against bending: two give three times that, one none.
@@ -57,7 +58,7 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     p.add_argument(
         "--rate",
         metavar="MM_PER_S",
-        type=lambda text: number(text, 1e-3, 1000),
+        type=lambda text: number(text, *RATES),
         default=rate,
         help="loading rate [mm/s]",
     )
@@ -104,7 +105,7 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     p.add_argument(
         "--damping",
         metavar="A",
-        type=lambda t: number(t, 0, 0.99),
+        type=lambda t: number(t, *DAMPINGS),
         default=USUAL["damping"],
         help="damping constant, the paper's eq. (3) [-]",
     )
@@ -226,6 +227,10 @@ def ofScene(name, arguments, usual):
         raise Refused(
             f"scene {name}: arguments must be a list of words, such as {arguments.split()!r}, got {arguments!r}"
         )
+    if isinstance(arguments, (list, tuple)):
+        wrong = [one for one in arguments if not isinstance(one, str)]
+        if wrong:
+            raise Refused(f"scene {name}: arguments must be a list of words, got {shown(wrong[0])}")  # fmt: skip
     if arguments is None or isinstance(arguments, (list, tuple)):
         main = sys.modules.get("__main__")
         own = parser(getattr(main, "__doc__", None), until=None)

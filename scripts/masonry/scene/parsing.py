@@ -5,6 +5,7 @@ import argparse
 import math
 import re
 
+from .. import arguments
 from ..basics import Refused, plain
 from ..run import batch
 from ..run.checkpoints import alike
@@ -20,6 +21,10 @@ UNITS = {
     "vtk_every": "mm",
     "checkpoint_every": "min",
 }
+
+#: Kinds of arguments with the bounds of the options ``--rate`` and ``--damping``, as of :mod:`masonry.arguments`.
+RATES, DAMPINGS = (1e-3, 1000.0), (0.0, 0.99)
+RATE, DAMPING = arguments.number("mm/s", *RATES), arguments.number("", *DAMPINGS)
 
 #: Options that can be changed when a run is resumed.
 FREE = {"until", "history", "checkpoint_every", "vtk_every", "no_vtk", "lean"}

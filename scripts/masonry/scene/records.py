@@ -1,16 +1,25 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a scene records beside its targets, and how its figures look: words that describe a scene."""
 
-import math
-
+from ..arguments import direction as directionOf
+from ..arguments import function, orNone, shown, takes, text
+from ..arguments import name as nameOf
 from ..assembly.blocks import vector
 from ..assembly.columns import Column
 from .sections import Section
-from .targets import Drift, JointRecord, Target
+from .supports import COORDINATE
+from .targets import ANY, Drift, JointRecord, brick
+from .targets import part as partName
 from .words import describes
 
 
+def nameOrNothing(value, first=None):
+    """The kind of a name, or of an empty text."""
+    return value if isinstance(value, str) and not value else nameOf(value)
+
+
 @describes
+@takes(lower=ANY, upper=ANY, name=orNone(nameOf))
 def drift(description, lower, upper, name=None):
     """Record how far a target moves horizontally against a lower one, for example two floors.
 
@@ -19,22 +28,17 @@ def drift(description, lower, upper, name=None):
     :param lower: a target, as :meth:`platen` or :meth:`watch` give it; ``upper``: one above it
     :param name: of the columns; None: that of ``upper`` with ``_drift``
     """
-    if not isinstance(lower, Target) or not isinstance(upper, Target):
-        raise ValueError("drift: needs two targets, such as platens or watch()")
     if not upper.recorded[2] - lower.recorded[2] > 0:
         raise ValueError(
             f"drift: {upper.name} at z = {upper.recorded[2]:g} m must be above {lower.name} at "
             f"{lower.recorded[2]:g} m"
         )
     name = name or f"{upper.name}_drift"
-    if not (isinstance(name, str) and name.isidentifier()):
-        raise ValueError(
-            f"drift: a name must be letters, digits and underscores, got {name!r}"
-        )
     description.drifts.append(Drift(name, lower, upper))
 
 
 @describes
+@takes(name=nameOf, meaning=text, value=function)
 def column(description, name, meaning, value):
     """Record something of one's own: a column of curve.csv.
 
@@ -42,18 +46,19 @@ def column(description, name, meaning, value):
     :param meaning: one line for run.json
     :param value: function without arguments that gives a number
     """
-    if not callable(value):
-        raise ValueError(f"column {name}: value must be a function, got {value!r}")
-    if not (isinstance(name, str) and name.isidentifier()):
-        raise ValueError(
-            f"column: a name must be letters, digits and underscores, got {name!r}"
-        )
-    description.extra.append(
-        Column(name, None, meaning, lambda reading: float(value()))
-    )
+
+    def read(reading):
+        found = value()
+        try:
+            return float(found)
+        except (TypeError, ValueError, OverflowError):
+            raise ValueError(f"column {name}: its function must give a number, got {shown(found)}") from None  # fmt: skip
+
+    description.extra.append(Column(name, None, meaning, read))
 
 
 @describes
+@takes(one=brick, two=brick, name=orNone(nameOrNothing))
 def joint(description, one, two, name=None):
     """Record the means of a joint: opening, slide, normal and shear stress, as columns of curve.csv.
 
@@ -65,15 +70,12 @@ def joint(description, one, two, name=None):
     if pair[0] == pair[1]:
         raise ValueError(f"joint: both are brick {pair[0]}")
     name = f"joint{len(description.joints)}" if name is None else name
-    if name and not (isinstance(name, str) and name.isidentifier()):
-        raise ValueError(
-            f"joint: a name must be letters, digits and underscores, got {name!r}"
-        )
     description.joints.append(JointRecord(name, pair))
     return description.joints[-1]
 
 
 @describes
+@takes(z=COORDINATE, part=orNone(partName), name=orNone(nameOf))
 def section(description, z, part=None, name=None):
     """Record what a horizontal section transmits: normal force, shear force and moment, as columns of curve.csv.
 
@@ -95,14 +97,7 @@ def section(description, z, part=None, name=None):
     :param name: before the names of the columns; None: ``section`` and a number
     :returns: a :class:`masonry.scene.sections.Section`, whose ``forces()`` can be read between stages, too
     """
-    if isinstance(z, bool) or not (isinstance(z, (int, float)) and math.isfinite(z)):
-        raise ValueError(f"section: z must be a finite number in m, got {z!r}")
-    description.checkPart(part, "section")
     name = f"section{len(description.sections)}" if name is None else name
-    if not (isinstance(name, str) and name.isidentifier()):
-        raise ValueError(
-            f"section: a name must be letters, digits and underscores, got {name!r}"
-        )
     points = [
         block.corners for block in description.bricks if part in (None, block.part)
     ]
@@ -126,6 +121,7 @@ def section(description, z, part=None, name=None):
 
 
 @describes
+@takes(direction=directionOf(), part=orNone(partName))
 def view(description, direction, part=None):
     """From where the crack figure sees the structure: the direction of sight, for example (1, 0, 0) for a panel that
     bows out of its plane.
@@ -134,9 +130,5 @@ def view(description, direction, part=None):
     """
     sight = vector(direction, "view: direction")
     names = {block.part for block in description.bricks}
-    if not sight.norm() or part not in (None, *names):
-        raise ValueError(
-            f"view: no direction {direction!r} of part {part!r}; there are {', '.join(sorted(names))}"
-        )
-    for name in [part] if part else names:
+    for name in [part] if part is not None else names:
         description.views[name] = [float(v) for v in sight]

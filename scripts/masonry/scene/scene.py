@@ -25,6 +25,10 @@ import functools
 import math
 
 from .._masonry import loadScene, saveScene
+from ..arguments import LONGEST_NAME
+from ..arguments import direction as directionOf
+from ..arguments import name as nameOf
+from ..arguments import number, orNone, shown, takes, text
 from ..assembly.blocks import vector
 from ..assembly.structure import Structure
 from ..basics import GRAVITY, Interrupted, Refused, say
@@ -40,11 +44,17 @@ from .outcome import Outcome
 from .resuming import State
 from .stages import AT_REST, LATER, STAGES, gravity, prepare
 from .stages.stage import Answer
-from .targets import Target
+from .targets import LOADED
 from .words import RESULT, Script
 
 
 OWN = "0"  # the stage of the results of the script, which all stages follow
+
+
+def finding(value, first=None):
+    """The kind of a number that was found, or None or what is not a number if it was not."""
+    missing = value is None or isinstance(value, float) and math.isnan(value)
+    return value if missing else number()(value)
 
 
 class Scene:
@@ -74,6 +84,7 @@ class Scene:
 
     present = None  # the scene that stands in YADE
 
+    @takes()
     def __init__(
         self,
         name,
@@ -88,14 +99,22 @@ class Scene:
         allowGaps=False,
         **usual,
     ):
-        if not isinstance(name, str) or not name.strip(".") or "/" in name:
+        fine = isinstance(name, str) and name.strip(". ") and name.isprintable()
+        if not fine or "/" in name or len(name.encode()) > LONGEST_NAME:
             raise Refused(
-                f"scene: name must be a text that can name a folder, got {name!r}"
+                f"scene: name must be a text that can name a folder, got {shown(name)}"
             )
         self.description = Description(
-            name, bricks, materials, title, plane, gravity, columns, functors
+            name,
+            bricks,
+            materials,
+            title,
+            plane,
+            gravity,
+            columns,
+            functors,
+            allowGaps=allowGaps,
         )
-        self.description.allowGaps = allowGaps
         arguments = options.ofScene(name, arguments, usual)
         self.name, self.args = name, arguments
         if arguments.crack_surfaces == "off":
@@ -160,6 +179,7 @@ class Scene:
         numbers = [number for number in sorted(kept, key=int) if int(number) <= entered]
         return [one for number in numbers for one in kept[number]]
 
+    @takes(name=nameOf, value=finding, unit=text, how=text)
     def result(self, name, value, unit="-", how="the script found it"):
         """Keep a number of one's own with the answers of the stages: in run.json, on the terminal and as a column of study.csv.
 
@@ -169,29 +189,13 @@ class Scene:
         :param how: how it was found, a sentence
         :raises ValueError: with all problems
         """
-        problems = []
-        if not (isinstance(name, str) and name.isidentifier()):
-            problems.append(
-                f"result: a name must be letters, digits and underscores, got {name!r}"
-            )
         if not self.model:
-            problems.append(f"result {name}: it comes after the first stage")
-        try:
-            value = None if value is None or value != value else float(value)
-        except (TypeError, ValueError):
-            problems.append(f"result {name}: value must be a number, got {value!r}")
-        else:
-            if value is not None and not math.isfinite(value):
-                problems.append(f"result {name}: value {value} must be finite")
-        for what, text in (("unit", unit), ("how", how)):
-            if not (isinstance(text, str) and text.strip()):
-                problems.append(f"result {name}: {what} must be a text, got {text!r}")
-        if problems:
-            raise ValueError("\n".join(problems))
+            raise ValueError(f"result {name}: it comes after the first stage")
         at, before = self.running.at, self.running.scriptBefore
         later = [word for word, _ in before[len(self.script.words) + 1 :]]
         if self._saidBefore(RESULT, name=name) and any(w != RESULT for w in later):
             return  # it was found in the state of that time
+        value = None if value is None or math.isnan(value) else float(value)
         kept = [one for one in at.answers.get(OWN, []) if one["name"] != name]
         answer = {
             "stage": "script",
@@ -319,6 +323,11 @@ class Scene:
         self.script.compare(self.running.scriptBefore)
         return len(self.script.words) <= len(self.running.scriptBefore)
 
+    @takes(
+        target=orNone(LOADED),
+        direction=directionOf(),
+        towards=orNone(directionOf(level=True)),
+    )
     def bound(self, target=None, direction=(1, 0, 0), towards=None):
         """Limit analysis of the scene as it stands, with a collapse without dilatancy: see :mod:`masonry.limit`.
 
@@ -339,10 +348,6 @@ class Scene:
             )
         before = self._saidBefore("bound", target=getattr(target, "name", ""))
         if target is not None:
-            if not isinstance(target, Target) or not target.loaded:
-                raise ValueError(
-                    f"bound: only a platen that moves or a handle() can be pushed, got {target!r}"
-                )
             direction = vector(direction, "bound: direction").normalized()
             known = self.bounds.entries.get(nameOfPush(target, direction))
             if before and known:

@@ -1,16 +1,34 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What holds a structure, and what of it is watched: words that describe a scene."""
 
-import math
-
+from ..arguments import axes, number, oneOf, orNone, takes
+from ..arguments import name as nameOf
+from ..arguments import vector as numbers
 from ..assembly.blocks import vector
-from .targets import Target
+from ..basics import Refused
+from .targets import Target, brick
+from .targets import part as partName
 from .words import describes
 
 PLATEN = 0.2  # [m] height of a platen
 
+#: Kinds of arguments: a coordinate and a point, not farther from the origin than any masonry.
+COORDINATE, POINT = number("m", -1e6, 1e6), numbers("m", 1e6)
+
 
 @describes
+@takes(
+    where=oneOf("bottom", "top"),
+    rotation=orNone(oneOf("held", "free")),
+    height=number("m", 1e-6, 1e6),
+    name=orNone(nameOf),
+    point=orNone(POINT),
+    guided=axes("xy", none=True),
+    part=orNone(partName),
+    upTo=orNone(COORDINATE),
+    recorded=orNone(COORDINATE),
+    drive=axes("xyz", none=True),
+)
 def platen(
     description,
     where,
@@ -43,30 +61,24 @@ def platen(
     :param drive: axes along which a drive holds the one at the top from the beginning: ``"x"``, or ``"xz"``; None of
         them: it is free until it is pushed
     """
-    if where not in ("bottom", "top"):
-        raise ValueError(f"platen: where must be 'bottom' or 'top', got {where!r}")
-    if where == "bottom" and rotation not in (None, "held"):
-        raise ValueError("platen: the one at the bottom is fixed and cannot turn")
-    if rotation not in (None, "held", "free"):
-        raise ValueError(f"platen: rotation must be 'held' or 'free', got {rotation!r}")
-    if guided not in ("", "x", "y", "xy") or guided and where == "bottom":
-        raise ValueError(
-            f"platen: guided must be 'x', 'y' or 'xy', of the one at the top, got {guided!r}"
-        )
-    if not 0 < height < math.inf:
-        raise ValueError(f"platen: height {height} m must be above 0")
     bottom = where == "bottom"
     level = description.low[2] if bottom else description.high[2]
     side = "below" if bottom else "above"
+    problems = []
+    if bottom and rotation == "free":
+        problems.append("platen: the one at the bottom is fixed and cannot turn")
+    if bottom and guided:
+        problems.append(f"platen: guided {guided!r} is for the one at the top")
+    if bottom and drive:
+        problems.append(f"platen: drive {drive!r} is for the one at the top")
+    if "y" in drive and description.plane:
+        problems.append(f"platen: drive {drive!r}: the scene is in the x-z plane; Scene(..., plane=False) is in space")  # fmt: skip
     if upTo is not None and not 0 < (level - upTo if bottom else upTo - level):
-        raise ValueError(
+        problems.append(
             f"platen: upTo {upTo} m must be {side} the bricks, which end at {level:g} m"
         )
-    if set(drive) - set("xz" if description.plane else "xyz") or drive and bottom:
-        raise ValueError(
-            f"platen: drive must be some of 'x', 'y' and 'z', of the one at the top, got {drive!r}"
-        )
-    description.checkPart(part, "platen")
+    if problems:
+        raise Refused("\n".join(problems))
     touching = [
         p
         for block in description.bricks
@@ -95,9 +107,8 @@ def platen(
         else ("yXZ" if description.plane else "")
     )
     freedom += "".join(axis for axis in guided if axis not in freedom)
-    point = tuple(vector(point or middle, "platen: point [m]"))
-    if recorded is not None and not isinstance(recorded, (int, float)):
-        raise ValueError(f"platen: recorded must be a z in m, got {recorded!r}")
+    point = middle if point is None else point
+    point = tuple(vector(point, "platen: point [m]"))
     if recorded is not None and not min(level, outer) <= recorded * (1 + 1e-12):
         raise ValueError(
             f"platen: recorded {recorded:g} m is not on the platen, which begins at {min(level, outer):g} m"
@@ -117,6 +128,7 @@ def platen(
 
 
 @describes
+@takes(where=brick, name=orNone(nameOf), axes=axes("xyzXYZ"))
 def hold(description, where, name=None, axes="xyzXYZ"):
     """Hold a brick, so that it neither moves nor turns but by :meth:`move`.
 
@@ -125,8 +137,6 @@ def hold(description, where, name=None, axes="xyzXYZ"):
     :param axes: along which it is held, xyz, and about which it cannot turn, XYZ; a prop against a wall that leans is
         ``"y"``
     """
-    if not axes or set(axes) - set("xyzXYZ"):
-        raise ValueError(f"hold: axes must be some of 'xyzXYZ', got {axes!r}")
     if description.plane and not set(axes) - set("yXZ"):
         raise ValueError(
             f"hold: in the x-z plane no block moves along {axes} anyway; Scene(..., plane=False) is in space"
@@ -139,12 +149,14 @@ def hold(description, where, name=None, axes="xyzXYZ"):
 
 
 @describes
+@takes(where=brick, name=orNone(nameOf))
 def watch(description, where, name=None):
     """Record the motion of a brick. Parameters as of :meth:`hold`; a point is the one that is recorded."""
     return _brick(description, where, name, fixed=False, loaded=False)
 
 
 @describes
+@takes(where=brick, name=orNone(nameOf))
 def handle(description, where, name=None):
     """A brick that loads act on, at its centre or at the point that is given. Parameters as of :meth:`hold`."""
     return _brick(description, where, name, fixed=False)

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene records: platens and bricks that are held, loaded or watched, and joints. Plain records with their columns."""
+"""What a scene records: platens and bricks that are held, loaded or watched, and joints. Plain records with their columns,
+and the kinds of arguments that name them."""
 
 from dataclasses import dataclass
 
+from ..arguments import oneOf, shown
 from ..assembly.columns import Column
 
 
@@ -161,3 +163,60 @@ OF_JOINTS = (
     ("normal_stress", "MPa", "mean normal stress of {}, positive in tension", 1e-6, JointRecord.normalStress),
     ("shear_stress", "MPa", "mean shear stress of {}, along the slide", 1e-6, JointRecord.shearStress),
 )  # fmt: skip
+
+
+# -- kinds of arguments, as of masonry.arguments ----------------------------------------------------------------------
+
+
+def _descriptionOf(first):
+    """The description of a scene, which is the first argument of a word, or belongs to it."""
+    return getattr(first, "description", first)
+
+
+def _target(what, fits):
+    """The kind of a target of the scene for which a function is true."""
+
+    def take(value, first):
+        known = isinstance(value, Target)
+        own = known and _descriptionOf(first).targets.get(value.name) is value
+        if not (own and fits(value)):
+            got = repr(value.name) if known else shown(value)
+            other = ", which is of another scene" if known and not own else ""
+            raise ValueError(f"{got}{other} must be {what}")
+        return value
+
+    return take
+
+
+ANY = _target(
+    "a target of this scene, as platen(), hold(), watch() or handle() give it",
+    lambda target: True,
+)
+LOADED = _target(
+    "a platen that moves, or a handle(), of this scene", lambda target: target.loaded
+)
+MOVING_PLATEN = _target(
+    "a platen of this scene that moves", lambda target: target.box and not target.fixed
+)
+HELD = _target(
+    "a platen or brick of this scene that is held", lambda target: target.fixed
+)
+
+
+def recordedJoint(value, first):
+    """The kind of a joint of the scene, as :meth:`masonry.scene.scene.Scene.joint` gave it."""
+    if not any(value is one for one in _descriptionOf(first).joints):
+        raise ValueError(f"{shown(value)} must be a joint of this scene, as joint() gave it")  # fmt: skip
+    return value
+
+
+def part(value, first):
+    """The kind of the name of a part of the bricks."""
+    parts = {block.part for block in _descriptionOf(first).bricks}
+    return oneOf(*sorted(parts))(value)
+
+
+def brick(value, first):
+    """The kind of a brick: its index, a point in it or near it [m], or the block itself."""
+    _descriptionOf(first).find(value)
+    return value

@@ -4,8 +4,11 @@
 import math
 from dataclasses import dataclass
 
+from ..arguments import plainly, isNumber, listOf, misfits, number, shown, takes, text
 from ..scene import fields
 from ..basics import Refused
+
+LEAST_COV = 1e-6  # coefficient of variation below which nothing varies [-]
 
 #: What a distribution may give beyond a bound of a property: less than once in a thousand million draws.
 NEVER = 1e-9
@@ -23,11 +26,9 @@ def openturns():
 
 
 def _finite(**values):
-    for name, value in values.items():
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise Refused(f"{name} {value!r} must be a number")
-        if not math.isfinite(value):
-            raise Refused(f"{name} {value} must be finite")
+    problems = misfits("", dict.fromkeys(values, number()), values)
+    if problems:
+        raise Refused("\n".join(problems))
 
 
 @dataclass(frozen=True)
@@ -86,8 +87,8 @@ def _aboutMean(kind, mean, cov, low, high):
         {n: v for n, v in (("low", low), ("high", high)) if v is not None}
     )
     _finite(**parameters)
-    if not cov > 0:
-        raise Refused(f"{kind}: coefficient of variation {cov} must be above 0")
+    if not cov >= LEAST_COV:
+        raise Refused(f"{kind}: coefficient of variation {cov} must be above 0, and at least {LEAST_COV:g}")  # fmt: skip
     if mean == 0 or (kind == "lognormal" and mean < 0):
         raise Refused(f"{kind}: mean {mean:g} must be above 0")
     if low is not None and high is not None and not low < high:
@@ -124,6 +125,7 @@ def _between(kind, mean, cov, low, high):
     return sign * (below(high, sign) - below(low, sign))
 
 
+@takes(mean=plainly, cov=plainly, low=plainly, high=plainly)
 def lognormal(mean, cov, low=None, high=None):
     """A lognormal distribution.
 
@@ -135,11 +137,13 @@ def lognormal(mean, cov, low=None, high=None):
     return _aboutMean("lognormal", mean, cov, low, high)
 
 
+@takes(mean=plainly, cov=plainly, low=plainly, high=plainly)
 def normal(mean, cov, low=None, high=None):
     """A normal distribution. Parameters are those of :func:`lognormal`. Most properties need a ``low`` end."""
     return _aboutMean("normal", mean, cov, low, high)
 
 
+@takes(low=plainly, high=plainly)
 def uniform(low, high):
     """All values between two ends alike."""
     _finite(low=low, high=high)
@@ -172,6 +176,19 @@ class Choice:
         }
 
 
+WEIGHT = number("", 0, 1e9, above=True)
+
+
+def _chosen(value, first=None):
+    """The kind of a value of a choice."""
+    if isinstance(value, (bool, str)):
+        return value if isinstance(value, bool) else text(value)
+    if isNumber(value):
+        return number()(value)
+    raise ValueError(f"{shown(value)} must be a number, a text, or True or False")
+
+
+@takes()
 def choice(*values, weights=None):
     """One of some values, for example ``choice("softening", "brittle")``. A list in ``vary`` means the same.
 
@@ -179,15 +196,17 @@ def choice(*values, weights=None):
     """
     if not values:
         raise Refused("choice: needs at least one value")
-    wrong = [v for v in values if not isinstance(v, (bool, int, float, str))]
-    if wrong:
-        raise Refused(
-            f"choice: {wrong[0]!r} must be a number, a text, or True or False"
-        )
+    problems = [p for v in values for p in misfits("choice: ", {"value": _chosen}, {"value": v})]  # fmt: skip
+    if problems:
+        raise Refused("\n".join(problems))
     if len(set(values)) != len(values):
         raise Refused(f"choice: {list(values)} has a value twice")
+    if weights is not None:
+        problems = misfits("choice: ", {"weights": listOf(WEIGHT)}, {"weights": weights})  # fmt: skip
+        if problems:
+            raise Refused(problems[0])
     weights = [1] * len(values) if weights is None else list(weights)
-    if len(weights) != len(values) or not all(w > 0 for w in weights):
+    if len(weights) != len(values):
         raise Refused(f"choice: {len(values)} values need as many weights above 0")
     return Choice(values, tuple(w / sum(weights) for w in weights))
 
@@ -215,6 +234,7 @@ class Field:
         return fields.written(self.kind, self.cov, self.length, seed)
 
 
+@takes(distribution=plainly, length=plainly, cov=plainly)
 def field(distribution=None, length=0.0, cov=None):
     """A property that varies from joint to joint, with another field in every row.
 
@@ -237,7 +257,7 @@ def field(distribution=None, length=0.0, cov=None):
         not isinstance(distribution, Distribution)
         or distribution.kind not in fields.KINDS
     ):
-        raise Refused(f"field: {distribution} must be lognormal or normal")
+        raise Refused(f"field: {shown(distribution)} must be lognormal or normal")
     p = dict(distribution.parameters)
     if "low" in p or "high" in p:
         raise Refused("field: its distribution cannot be cut off")

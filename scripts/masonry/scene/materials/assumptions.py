@@ -3,6 +3,7 @@
 
 from yade.wrapper import MasonryJoint
 
+from ...arguments import flag, isA, listOf, takes
 from ...assembly.engines import LAWS
 from ...assembly.given import DESCRIBED, NEEDED, assumed, isDefault
 
@@ -101,6 +102,7 @@ def missing(masonry):
     return problems
 
 
+@takes(entries=listOf(isA(dict), 0), brief=flag)
 def linesOf(entries, brief):
     """What a scene prints of its entries ``assumed``: lines of text.
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from yade.wrapper import MasonryJoint, MasonryMat
 
+from ...arguments import plainly, isNumber, number, plain, shown, takes
 from ...assembly.given import DEFAULTS, state
 from ...basics import Refused, say
 from .kinds import Masonry
@@ -59,6 +60,7 @@ RANGES = {
 REQUIRED = ["E", "unit_E", "fm", "fv0", "friction", "unit", "joint", "density"]
 
 
+@takes(fm=number("Pa", *RANGES["fm"][:2]))
 def compressiveFractureEnergy(fm):
     """Compressive fracture energy of masonry [J/m²], and where it is from.
 
@@ -79,6 +81,11 @@ def compressiveFractureEnergy(fm):
     )
 
 
+@takes(
+    strength=number("Pa", 0, 1e12),
+    stiffness=number("Pa/m", 0, above=True),
+    lumped=number("m/Pa", 0),
+)
 def leastEnergy(strength, stiffness, lumped=0.0):
     """The least fracture energy [J/m²] with which the law softens as it is asked to.
 
@@ -143,6 +150,7 @@ class _Kind:
         return state(joint, **{**rest, **self.sources})
 
 
+@takes(**dict.fromkeys([*RANGES, "unit"], plainly))
 def masonry(
     *,
     E=None,
@@ -373,14 +381,14 @@ def _problems(given):
         if name not in given:
             continue
         value, what = given[name], "" if unit == "-" else f" {unit}"
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
+        if not isNumber(value):
             found.append(
-                f"{name} must be a number{what and f' in{what}'}, got {value!r}"
+                f"{name} must be a number{what and f' in{what}'}, got {shown(value)}"
             )
         elif not low <= value <= high:
             hint = f": is it in{what}?" if unit != "-" else ""
             found.append(
-                f"{name} {value:g}{what} must be {low:g} to {high:g}{what}{hint}"
+                f"{name} {plain(value):g}{what} must be {low:g} to {high:g}{what}{hint}"
             )
         else:
             numbers[name] = value
@@ -453,7 +461,7 @@ def _ofUnit(unit, joint):
         sides = []
     if len(sides) != 3 or not all(0 < side < math.inf for side in sides):
         return [
-            f"unit must be length, thickness and height of a brick without mortar above 0 m, got {unit!r}"
+            f"unit must be length, thickness and height of a brick without mortar above 0 m, got {shown(unit)}"
         ]
     if max(sides) > 5:
         return [f"unit {unit} m must be at most 5 m: is it in m?"]

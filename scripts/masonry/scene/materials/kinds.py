@@ -7,16 +7,41 @@ from dataclasses import dataclass, field
 from yade.wrapper import MasonryJoint, MasonryMat
 
 from .. import fields
+from ...arguments import (
+    byName as dictOf,
+    flag,
+    function,
+    isA,
+    isNumber,
+    misfits,
+    named,
+    names,
+    nearest,
+    number,
+    orNone,
+    shown,
+    takes,
+)
 from ...assembly.engines import LAWS
 from ...assembly.given import assumed, copied, isDefault, state
 from ...basics import Refused
 from ..settings import applySettings
 from .assumptions import AS_BED, entriesOf, missing
 
+FACTOR = number("", 0, above=True)  # the kind of what a variation gives
+
 #: A joint whose normal is steeper than this is a bed joint: 45 degrees.
 STEEP = math.cos(math.radians(45))
 
 
+def _slides(value, first=None):
+    """The kind of a joint that has friction."""
+    if not (hasattr(value, "friction") and hasattr(value, "residualFriction")):
+        raise ValueError(f"{shown(value)} must be a MasonryJoint")
+    return value
+
+
+@takes(names=names, joints=dictOf(_slides))
 def withResidual(names, joints):
     """Names of properties that change alike, and with them the residual friction of joints that have one value of friction.
 
@@ -32,6 +57,34 @@ def withResidual(names, joints):
     return [*dict.fromkeys([*names, *(n + ".residualFriction" for n in one)])]
 
 
+def _options(value, first=None):
+    """The kind of the options of a scene."""
+    if not hasattr(value, "joint_stiffness"):
+        raise ValueError(f"{shown(value)} must be the options of a scene")
+    return value
+
+
+def _varied(value, first=None):
+    """The kind of what :meth:`Masonry.vary` keeps."""
+    if not isinstance(value, list) or not all(isinstance(v, tuple) and len(v) == 4 for v in value):  # fmt: skip
+        raise ValueError(f"{shown(value)} must be a list that vary() has made")
+    return value
+
+
+#: Kinds of what a :class:`Masonry` is made of.
+KINDS = {
+    "unit": isA(MasonryMat),
+    "joints": dictOf(isA(MasonryJoint), "bed"),
+    "units": dictOf(isA(MasonryMat)),
+    "softer": orNone(function),
+    "choose": orNone(function),
+    "varied": _varied,
+    "brief": flag,
+    "course": orNone(number("m", 0, above=True)),
+}
+
+
+@named
 @dataclass
 class Masonry:
     """Bricks and joints of a structure, and which joint a pair of blocks gets.
@@ -69,23 +122,7 @@ class Masonry:
     course: float = None
 
     def __post_init__(self):
-        problems = []
-        if not isinstance(self.unit, MasonryMat):
-            problems.append(f"masonry: unit must be a MasonryMat, got {self.unit!r}")
-        for kind, mat in self.units.items():
-            if not isinstance(mat, MasonryMat):
-                problems.append(
-                    f"masonry: unit {kind!r} must be a MasonryMat, got {mat!r}"
-                )
-        wrong = [
-            name
-            for name, joint in self.joints.items()
-            if not isinstance(joint, MasonryJoint)
-        ]
-        if wrong:
-            problems.append(f"masonry: joints must be MasonryJoint, not {wrong}")
-        elif "bed" not in self.joints:
-            problems.append("masonry: there must be a joint 'bed'")
+        problems = misfits("Masonry: ", KINDS, vars(self))
         if problems:
             raise ValueError("\n".join(problems))
         for name, joint in self.joints.items():
@@ -125,6 +162,7 @@ class Masonry:
         """Sentences on what must be given, and is not."""
         return missing(self)
 
+    @takes(name=names, value=function, step=number("", 1e-6, 1, below=True))
     def vary(self, name, value, step=0.01):
         """Let a property change from place to place. Returns the same masonry.
 
@@ -136,21 +174,29 @@ class Masonry:
             :mod:`masonry.scene.fields` has random ones
         :param step: width of the steps, relative to the value; at most half of it is the error of rounding
         """
+        found, problems = [], []
         for one in [name] if isinstance(name, str) else name:
-            joint, dot, attribute = one.partition(".")
-            if joint not in self.joints or not hasattr(self.joints[joint], attribute):
-                raise ValueError(
-                    f"vary: no property {one!r}; joints are {', '.join(self.joints)}, help(masonry.MasonryJoint) lists properties"
+            joint, _, attribute = one.partition(".")
+            numbers = self._numbersOf(joint)
+            if attribute in numbers:
+                found.append((joint, attribute, value, step))
+            else:
+                close = nearest(one, [f"{joint}.{n}" for n in numbers])
+                problems.append(
+                    f"vary: no property {one!r}; joints are {', '.join(self.joints)}, help(masonry.MasonryJoint) lists "
+                    f"properties{close}"
                 )
-            if not callable(value):
-                raise ValueError(
-                    f"vary {one}: value must be a function of x, y, z, got {value!r}"
-                )
-            if not 0 < step < 1:
-                raise ValueError(f"vary {one}: step {step} must be above 0, below 1")
-            self.varied.append((joint, attribute, value, step))
+        if problems:
+            raise ValueError("\n".join(problems))
+        self.varied += found
         return self
 
+    def _numbersOf(self, joint):
+        """Names of the properties of a joint that are numbers, or none if there is no such joint."""
+        values = self.joints[joint].dict() if joint in self.joints else {}
+        return [n for n, v in values.items() if isNumber(v)]
+
+    @takes(args=_options)
     def variant(self, args):
         """A copy for the options ``--joints`` and ``--joint-stiffness``; this one stays as it is."""
         source = self
@@ -225,11 +271,12 @@ class Masonry:
         centre = [sum(c[i] for c in centres) / len(centres) for i in range(3)]
         for kind, attribute, value, step in self.varied:
             if kind == name:
-                factor = float(value(*centre))
-                if not 0 < factor < math.inf:
+                try:
+                    factor = FACTOR(value(*centre))
+                except ValueError as error:
                     raise ValueError(
-                        f"vary {kind}.{attribute}: the factor at {centre} m must be above 0, got {factor}"
-                    )
+                        f"vary {kind}.{attribute}: the factor at {centre} m: {error}"
+                    ) from None
                 wide = math.log1p(step)
                 changes[attribute] = round(math.log(factor) / wide)
         if not any(changes.values()):

@@ -4,15 +4,18 @@
 The paper: see yade_plugin/law/README.md.
 """
 
-import math
-
 from yade import Vector3
 from yade.wrapper import MasonryJoint, MasonryMat
 
+from ...arguments import flag, isNumber, number, oneOf, orNone, shown, takes
 from ...assembly.given import state
 from .kinds import Masonry, byName
 
 
+STIFFNESS = oneOf("joint", "masonry")  # the kind of an argument
+
+
+@takes(stiffness=STIFFNESS)
 def calciumSilicate(stiffness="joint"):
     """Calcium-silicate masonry of the TUD-COMP walls, for :class:`masonry.scene.scene.Scene`.
 
@@ -26,12 +29,29 @@ def calciumSilicate(stiffness="joint"):
     )
 
 
+#: Young's modulus [Pa] of dry granite masonry at each vertical load [kN] of the tests (Vanin et al. 2017).
+DRY_GRANITE_MASONRY = {100: 3.287e9, 175: 4.068e9, 250: 4.722e9}
+
+
+def tested(value, first=None):
+    """The kind of a vertical load of the tests [kN]."""
+    if not isNumber(value) or value not in DRY_GRANITE_MASONRY:
+        levels = ", ".join(map(str, DRY_GRANITE_MASONRY))
+        raise ValueError(f"{shown(value)} kN was not tested, there are {levels}")
+    return value
+
+
+OF_GRANITE = dict(level=tested, height=number("m", 1e-3, 10))
+
+
+@takes(**OF_GRANITE)
 def dryGranite(level, height):
     """Granite blocks with dry joints, for :class:`masonry.scene.scene.Scene`. Parameters as of :func:`dryGraniteJoints`."""
     return Masonry(graniteUnit(), dryGraniteJoints(level, height), brief=True)
 
 
 MOST_FRICTION = 5.0  # [-] of a joint: a larger one is an angle
+STIFFNESS_RANGE = number("Pa/m", 0, 1e20, above=True)  # the kind of an argument
 #: What stones with dry joints have if nothing else is said.
 DRY = {
     "friction": 0.7,
@@ -42,6 +62,14 @@ DRY = {
 }
 
 
+@takes(
+    friction=orNone(number("", 0, MOST_FRICTION)),
+    normalStiffness=orNone(STIFFNESS_RANGE),
+    shearStiffness=orNone(STIFFNESS_RANGE),
+    density=orNone(number("kg/m³", 0, above=True)),
+    young=orNone(number("Pa", 0, above=True)),
+    poisson=orNone(number("", -1, 0.5, above=True, below=True)),
+)
 def dry(
     friction=None,
     normalStiffness=None,
@@ -59,10 +87,6 @@ def dry(
     :param density: of the stones [kg/m³], default 2600; ``young`` [Pa], default 20e9, and ``poisson`` [-], default 0.2,
         count for deformable stones. Rigid ones have them lumped into the joints
     """
-    if friction is not None and not 0 <= friction <= MOST_FRICTION:
-        raise ValueError(
-            f"dry: friction {friction!r} must be from 0 to {MOST_FRICTION:g}; it is the tangent of the angle"
-        )
     own = dict(
         friction=friction,
         normalStiffness=normalStiffness,
@@ -152,6 +176,7 @@ CRACK_ASSUMED = [
 ]
 
 
+@takes(brittle=flag, stiffness=STIFFNESS)
 def calciumSilicateJoints(brittle=False, stiffness="joint"):
     """Support, bed, head and crack joints of the calcium-silicate walls, as a dict by name.
 
@@ -180,8 +205,6 @@ def calciumSilicateJoints(brittle=False, stiffness="joint"):
         moduli of table 2
     :raises ValueError: if ``stiffness`` is neither
     """
-    if stiffness not in ("joint", "masonry"):
-        raise ValueError(f"stiffness {stiffness!r} must be 'joint' or 'masonry'")
     bed = MasonryJoint(name="bed", jointSet="brick", direction=BED_DIRECTION)
     head = MasonryJoint(
         name="head",
@@ -234,10 +257,6 @@ def _softenTo(joint, masonry, spacing):
     )
 
 
-#: Young's modulus [Pa] of dry granite masonry at each vertical load [kN] of the tests (Vanin et al. 2017).
-DRY_GRANITE_MASONRY = {100: 3.287e9, 175: 4.068e9, 250: 4.722e9}
-
-
 def graniteUnit():
     """Sawn granite block of the dry-joint walls of Vasconcelos and Lourenço (2009).
 
@@ -251,6 +270,7 @@ def graniteUnit():
     return state(unit, poisson=usual, density=usual)
 
 
+@takes(brittle=flag, **OF_GRANITE)
 def dryGraniteJoints(level, height, brittle=False):
     """Support, bed and head joints of the dry-joint granite walls, as a dict by name.
 
@@ -264,15 +284,6 @@ def dryGraniteJoints(level, height, brittle=False):
     :param height: of a course [m]
     :param brittle: whether to give brittle Coulomb slip joints instead; they are the same here, where nothing softens
     """
-    problems = []
-    if level not in DRY_GRANITE_MASONRY:
-        problems.append(
-            f"level {level} kN was not tested, there are {', '.join(map(str, DRY_GRANITE_MASONRY))}"
-        )
-    if not 0 < height < math.inf:
-        problems.append(f"height of a course {height} m must be above 0")
-    if problems:
-        raise ValueError("dry granite joints: " + "; ".join(problems))
     young = graniteUnit().young
     stiffness = 1 / (height * (1 / DRY_GRANITE_MASONRY[level] - 1 / young))
     dry = dict(

@@ -5,12 +5,14 @@ from dataclasses import dataclass
 
 from yade import O
 
+from ...arguments import number, orFunction, takes
 from ...basics import Refused
-from ..targets import Target
+from ..targets import ANY, recordedJoint
 from .stage import DONE, Answer, stage
-from .supports import letGo
+from .supports import MILLIMETRES, letGo
 
 ROWS = 2000  # of curve.csv while a block is driven over a distance
+DISTANCE = orFunction(MILLIMETRES)  # the kind of an argument
 
 
 @dataclass
@@ -39,6 +41,7 @@ def stresses(scene, rows):
 
 
 @stage(options=("rate",), answers=stresses)
+@takes(target=ANY, x=DISTANCE, y=DISTANCE, z=DISTANCE)
 def drive(scene, target, x=0.0, y=0.0, z=0.0):
     """Drive a target along an axis at ``--rate`` from the first step on, for example two bricks and their joint.
 
@@ -51,17 +54,24 @@ def drive(scene, target, x=0.0, y=0.0, z=0.0):
     given = {
         axis: value for axis, value in zip("xyz", (x, y, z)) if callable(value) or value
     }
-    if (
-        not isinstance(target, Target)
-        or len(given) != 1
-        or [*given][0] not in target.drives
-    ):
+    if len(given) != 1 or [*given][0] not in target.drives:
         raise ValueError(
             f"drive: give one displacement other than 0, along an axis that has a drive; {_drivesOf(target)}"
         )
     ((axis, value),) = given.items()
-    distance = lambda: 1e-3 * scene.share * (value() if callable(value) else value)
+    distance = lambda: 1e-3 * scene.share * _distance(axis, value)
     return _driveBy(scene, target, axis, distance)
+
+
+def _distance(axis, value):
+    """A displacement [mm], which a function may give. Raises ValueError."""
+    try:
+        found = MILLIMETRES(value() if callable(value) else value)
+    except ValueError as error:
+        raise ValueError(f"drive: {axis} {error}") from None
+    if not found:
+        raise ValueError(f"drive: {axis} {found} mm must be other than 0")
+    return found
 
 
 def checkStress(scene, target, joint, stress):
@@ -75,6 +85,7 @@ def checkStress(scene, target, joint, stress):
 
 
 @stage(options=("rate",), check=checkStress, answers=stresses)
+@takes(target=ANY, joint=recordedJoint, stress=number("Pa", -1e12, 1e12))
 def pressJoint(scene, target, joint, stress):
     """Bring a bed joint to a mean normal stress by a drive along z, then hold that by its force: nothing swings.
 
@@ -82,7 +93,7 @@ def pressJoint(scene, target, joint, stress):
     :param joint: as :meth:`joint` gave it
     :param stress: [Pa], negative if it presses; one that crushes the joint is refused
     """
-    if not isinstance(target, Target) or "z" not in target.drives:
+    if "z" not in target.drives:
         raise ValueError(f"pressJoint: needs a drive along z; {_drivesOf(target)}")
     distance = stress / joint.normalStiffness
     _driveBy(scene, target, "z", lambda: distance)
@@ -122,6 +133,4 @@ def _driveBy(scene, target, axis, distance):
 
 
 def _drivesOf(target):
-    name = getattr(target, "name", repr(target))
-    drives = ", ".join(getattr(target, "drives", "") or "") or "none"
-    return f"drives of {name}: {drives}"
+    return f"drives of {target.name}: {', '.join(target.drives) or 'none'}"

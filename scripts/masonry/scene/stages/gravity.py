@@ -3,13 +3,14 @@
 
 import math
 
+from ...arguments import direction, function, number, orNone, takes
 from ...assembly.blocks import vector
 from ..bounds import nameOfLean
 from .acting import Acceleration, Tilting
 from .growing import TRIAL, WITHIN, ends, follow, found, grow
 from .rest import Resting, waitForRest
 from .stage import AT_REST, MOVING, stage
-from .timed import checkedRate
+from .timed import DURATION
 
 LEAN_GROWS = 0.2  # [s] in which a lean grows
 
@@ -27,8 +28,6 @@ def putOnAnswers(scene, rows):
 def sideways(scene, towards, name):
     """A horizontal direction as a unit vector. Raises ValueError."""
     towards = vector(towards, f"{name}: direction")
-    if towards[2] or not towards.norm():
-        raise ValueError(f"{name}: the direction must be horizontal, got {towards}")
     if scene.description.plane and towards[1]:
         raise ValueError(
             f"{name}: the scene is in the x-z plane; Scene(..., plane=False) is in space"
@@ -36,13 +35,19 @@ def sideways(scene, towards, name):
     return towards.normalized()
 
 
-def checkWithin(within, name):
-    """Refuse a width of a bracket that is none. Raises ValueError."""
-    if not (isinstance(within, (int, float)) and 1e-4 <= within < 1):
-        raise ValueError(f"{name}: within {within!r} must be at least 1e-4, below 1")
+#: Kinds of arguments: a horizontal direction, the width of a bracket, and an acceleration.
+LEVEL = direction(level=True)
+WIDTH = number("", 1e-4, 1, below=True)
+ACCELERATION = number("g", 0, 1e3, above=True)
 
 
 @stage(bounded=True, answers=found)
+@takes(
+    degrees=number("degrees", 0, 90, above=True, below=True),
+    towards=LEVEL,
+    rate=number("degrees/s", 1e-6, 1e6),
+    within=WIDTH,
+)
 def tilt(scene, degrees, towards=(1, 0, 0), rate=1.0, within=WITHIN):
     """Tilt the ground, and with it gravity, until the structure falls or the angle is reached; then search for the tilt that
     it holds.
@@ -55,17 +60,14 @@ def tilt(scene, degrees, towards=(1, 0, 0), rate=1.0, within=WITHIN):
         constant load, see :mod:`masonry.scene.stages.growing`; the scene stays as it was at the end of the growth
     """
     towards = sideways(scene, towards, "tilt")
-    angle = math.radians(degrees)
-    if not 0 < angle < math.pi / 2:
-        raise ValueError(f"tilt: {degrees} degrees must be above 0, below 90")
-    duration = degrees / checkedRate(rate, "tilt")
-    checkWithin(within, "tilt")
+    angle, duration = math.radians(degrees), degrees / rate
     scene.findBound("lean", towards, True)
     load = Tilting(scene.model, angle, towards, nameOfLean(towards, tilts=True))
     return grow(scene, "tilt", load, duration, towards, within)
 
 
 @stage(bounded=True, answers=found)
+@takes(most=ACCELERATION, towards=LEVEL, rate=number("g/s", 1e-6, 1e6), within=WIDTH)
 def accelerate(scene, most, towards=(1, 0, 0), rate=0.5, within=WITHIN):
     """Let a horizontal acceleration grow evenly, until the structure falls or ``most`` is reached; then search for the one
     that it holds.
@@ -77,16 +79,14 @@ def accelerate(scene, most, towards=(1, 0, 0), rate=0.5, within=WITHIN):
     :returns: as of :meth:`tilt`
     """
     towards = sideways(scene, towards, "accelerate")
-    if not 0 < most < math.inf:
-        raise ValueError(f"accelerate: {most} g must be above 0")
-    duration = most / checkedRate(rate, "accelerate")
-    checkWithin(within, "accelerate")
+    duration = most / rate
     scene.findBound("lean", towards)
     load = Acceleration(scene.model, most, towards, nameOfLean(towards))
     return grow(scene, "accelerate", load, duration, towards, within)
 
 
 @stage(bounded=True, answers=putOnAnswers)
+@takes(factor=number("g", 0, 1e3), towards=LEVEL, longest=orNone(DURATION))
 def lean(scene, factor, towards=(1, 0, 0), longest=None):
     """Put a horizontal acceleration on the structure, and wait until it is at rest or falls.
 
@@ -139,6 +139,9 @@ def putOn(scene, name, load, towards, longest, over=0.0):
     return ended
 
 
+@takes(
+    carries=function, low=number("", 0), high=number("", 0, above=True), within=WIDTH
+)
 def bracket(scene, carries, low, high, within=0.01):
     """Find the largest load that the structure carries, by halving: each trial starts from the last state at rest.
 
@@ -149,8 +152,8 @@ def bracket(scene, carries, low, high, within=0.01):
     :returns: the two ends of the bracket
     :raises ValueError: if the structure does not carry ``low``, or carries ``high``
     """
-    if not 0 <= low < high < math.inf:
-        raise ValueError(f"bracket: low {low} must be at least 0 and below high {high}")
+    if not low < high:
+        raise ValueError(f"bracket: low {low} must be below high {high}")
     if scene.collapsed:
         scene.stepBack()
     if not carries(low):

@@ -11,17 +11,20 @@ import re
 
 from yade import O, Vector3
 
+from ...arguments import axes as axesOf
+from ...arguments import orNone, takes
 from ...assembly.blocks import vector
 from ...basics import Refused
 from ..bounds import nameOf
-from ..loads import checkedForce, checkPress, windFaces
-from ..targets import Target
+from ..loads import FORCE, PRESSURE, STRESS, checkedForce, doubtPress, windFaces
+from ..targets import ANY, LOADED, MOVING_PLATEN
+from ..targets import part as partName
 from .acting import Forces
-from .gravity import boundAlone, checkWithin, putOn, putOnAnswers
+from .gravity import LEVEL, WIDTH, boundAlone, putOn, putOnAnswers
 from .growing import WITHIN, found, grow
 from .stage import stage
 from .supports import atOnce
-from .timed import checkedRate
+from .timed import DURATION
 
 GROWS = 2.0  # [s] in which a load grows to its whole
 
@@ -31,7 +34,7 @@ GROWS = 2.0  # [s] in which a load grows to its whole
 
 def _forceOn(scene, target, force, name):
     """The load of a force on a target, in kN along its direction. Raises ValueError."""
-    force = checkedForce(scene.description, target, force, name)
+    force = checkedForce(scene.description, force, name)
     engine = scene.model.forceOf(target)
     if not force.norm() > 0 and name != "load":
         raise ValueError(f"{name}: force must not be zero")
@@ -43,6 +46,7 @@ def _forceOn(scene, target, force, name):
 
 
 @stage(bounded=True, answers=putOnAnswers)
+@takes(target=LOADED, force=FORCE, longest=orNone(DURATION))
 def load(scene, target, force, longest=None):
     """Give a target another dead load, and wait until the structure is at rest or falls.
 
@@ -59,6 +63,7 @@ def load(scene, target, force, longest=None):
 
 
 @stage(bounded=True, answers=found)
+@takes(target=LOADED, force=FORCE, over=DURATION, within=WIDTH)
 def growLoad(scene, target, force, over=GROWS, within=WITHIN):
     """Let a dead load grow evenly beside what is there, until the structure falls or the force is reached; then search for the
     load that is held.
@@ -95,6 +100,9 @@ def windLabel(towards, part):
 
 
 @stage(bounded=True, answers=putOnAnswers)
+@takes(
+    pressure=PRESSURE, towards=LEVEL, part=orNone(partName), longest=orNone(DURATION)
+)
 def wind(scene, pressure, towards, part=None, longest=None):
     """Give the faces that look against a horizontal direction another pressure, and wait until the structure is at rest or
     falls.
@@ -111,6 +119,13 @@ def wind(scene, pressure, towards, part=None, longest=None):
 
 
 @stage(bounded=True, answers=found)
+@takes(
+    pressure=PRESSURE,
+    towards=LEVEL,
+    part=orNone(partName),
+    over=DURATION,
+    within=WIDTH,
+)
 def growWind(scene, pressure, towards, part=None, over=GROWS, within=WITHIN):
     """Let a wind grow evenly until the structure falls or the pressure is reached; then search for the one that is held.
 
@@ -128,9 +143,9 @@ def growWind(scene, pressure, towards, part=None, over=GROWS, within=WITHIN):
 
 def _pressOn(scene, platen, stress, name):
     """The load of a press, in MPa. Raises ValueError."""
-    checkPress(platen, stress, name)
     if not stress > 0:
-        raise ValueError(f"{name}: stress {stress!r} must be above 0 Pa")
+        raise ValueError(f"{name}: stress {stress!r} Pa must be above 0")
+    doubtPress(stress, name)
     engine, area = scene.model.pressOf(platen)
     down = -1e6 * area * Vector3.UnitZ
     what = f"press of {platen.name}"
@@ -138,6 +153,7 @@ def _pressOn(scene, platen, stress, name):
 
 
 @stage(bounded=True, answers=putOnAnswers)
+@takes(platen=MOVING_PLATEN, stress=STRESS, longest=orNone(DURATION))
 def press(scene, platen, stress, longest=None):
     """Press a platen with another mean stress on the bricks below it, and wait until the structure is at rest or falls.
 
@@ -153,6 +169,7 @@ def press(scene, platen, stress, longest=None):
 
 
 @stage(bounded=True, answers=found)
+@takes(platen=MOVING_PLATEN, stress=STRESS, over=DURATION, within=WIDTH)
 def growPress(scene, platen, stress, over=GROWS, within=WITHIN):
     """Let a press grow evenly beside what presses already, until the structure falls or the stress is reached; then search for
     the one that is held.
@@ -179,13 +196,12 @@ def _putOn(scene, name, made, towards, longest):
 
 
 def _grow(scene, name, made, towards, over, within):
-    checkedRate(over, f"{name}: over")
-    checkWithin(within, name)
     scene.findBound("forces", made.name, made.unit, made.pairs())
     return grow(scene, name, made, over, towards, within)
 
 
 @stage()
+@takes(target=ANY, axes=axesOf("xyzXYZ"))
 def hold(scene, target, axes="xyzXYZ"):
     """Hold a target where it is now. What follows is the next stage's.
 
@@ -194,17 +210,11 @@ def hold(scene, target, axes="xyzXYZ"):
     :param target: a :meth:`handle`, or a brick or platen that was held and released: what has columns for its reaction
     :param axes: along which it is held, xyz, and about which it cannot turn, XYZ
     """
-    recorded = isinstance(target, Target) and (
-        target.fixed or target.loaded and target.brick is not None
-    )
-    if not recorded:
-        name = getattr(target, "name", repr(target))
+    if not (target.fixed or target.loaded and target.brick is not None):
         raise ValueError(
             f"hold: after the first stage only a handle(), or what was held and released, can be held: curve.csv has no "
-            f"columns for the reaction of {name}"
+            f"columns for the reaction of {target.name}"
         )
-    if not axes or set(axes) - set("xyzXYZ"):
-        raise ValueError(f"hold: axes must be some of 'xyzXYZ', got {axes!r}")
     zones = scene.model.zones
     if zones and target.body in zones.bodies:
         raise Refused(

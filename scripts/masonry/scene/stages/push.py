@@ -3,15 +3,18 @@
 
 from types import SimpleNamespace
 
+from ...arguments import direction as directionOf
+from ...arguments import flag, listOf, number, orNone, takes, whole
+from ...arguments import path as pathOf
 from ...assembly.blocks import vector
 from ...basics import Refused, say
 from ...read.curves import dynamicImbalance, peakAtBothEnds
 from .. import history
 from ..bounds import nameOfPush
-from ..targets import Target
+from ..parsing import RATE
+from ..targets import LOADED
 from .pushing import SHORT, drivePush
 from .stage import DONE, Answer, stage
-from .timed import checkedRate
 
 #: What the stages of this file take from the command line.
 OPTIONS = "until", "history", "rate"
@@ -41,7 +44,17 @@ def peaks(scene, rows):
     return found
 
 
+#: What pushes take beside their aim: kinds of arguments. A rate is bounded as ``--rate`` is.
+PUSHED = dict(
+    target=LOADED,
+    direction=directionOf(),
+    rate=orNone(RATE),
+    continued=flag,
+)
+
+
 @stage(bounded=True, farther=("until",), options=OPTIONS, answers=peaks)
+@takes(until=orNone(number("mm", 0, history.MOST, above=True)), **PUSHED)
 def push(scene, target, until=None, direction=(1, 0, 0), rate=None, continued=False):
     """Push a target at a constant velocity, as the drive of a testing machine does.
 
@@ -53,12 +66,17 @@ def push(scene, target, until=None, direction=(1, 0, 0), rate=None, continued=Fa
     :param continued: whether displacements count on from where the push before began, of this target in this direction,
         and not from where the target is now
     """
-    if isinstance(until, (int, float)):
+    if until is not None:
         until *= scene.share
     return _drive(scene, "push", target, dict(until=until), direction, rate, continued)
 
 
 @stage(bounded=True, farther=("amplitudes", "repeats"), options=OPTIONS, answers=peaks)
+@takes(
+    amplitudes=listOf(number("mm", history.LEAST, history.MOST)),
+    repeats=whole(1, history.CYCLES),
+    **PUSHED,
+)
 def cycle(
     scene,
     target,
@@ -80,6 +98,7 @@ def cycle(
 
 
 @stage(bounded=True, farther=("path",), options=OPTIONS, answers=peaks)
+@takes(path=pathOf, **PUSHED)
 def follow(scene, target, path, direction=(1, 0, 0), rate=None, continued=False):
     """Push a target through the displacements of a CSV file, which has a column ``displacement_mm``.
 
@@ -90,12 +109,8 @@ def follow(scene, target, path, direction=(1, 0, 0), rate=None, continued=False)
 
 
 def _drive(scene, name, target, aims, direction, rate, continued):
-    if not isinstance(target, Target) or not target.loaded:
-        raise ValueError(
-            f"{name}: only a platen that moves or a handle() can be pushed"
-        )
     args = _argumentsOf(scene, name, aims)
-    args.rate = args.rate if rate is None else checkedRate(rate, name)
+    args.rate = args.rate if rate is None else rate
     model = scene.model
     direction = vector(direction, f"{name}: direction").normalized()
     model.pushTo(target, direction, name)

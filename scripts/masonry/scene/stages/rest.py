@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 from yade import O
 
-from ...basics import Collapsed, say
+from ...arguments import flag, number, oneOf, orNone, takes
+from ...basics import Collapsed, Refused, say
 from .stage import AT_REST, MOVING, stage
 
 RAMP = 0.02  # [s] in which loads and velocities grow: some ten periods of a wave through the height of a wall
@@ -33,6 +34,11 @@ class Resting:
 
 
 @stage(bounded=True, grows=True)
+@takes(
+    longest=orNone(number("s", 0, 86400, above=True)),
+    damping=orNone(oneOf("local", "combined")),
+    record=flag,
+)
 def settle(scene, longest=None, damping=None, record=True):
     """Let gravity, presses and dead loads act until the structure is at rest.
 
@@ -45,10 +51,6 @@ def settle(scene, longest=None, damping=None, record=True):
     :param record: whether its end is a row of curve.csv
     :returns: ``AT_REST``; ``MOVING`` if it is not at rest by then; ``COLLAPSED``
     """
-    if damping not in (None, "local", "combined"):
-        raise ValueError(
-            f"settle: damping must be 'local' or 'combined', got {damping!r}"
-        )
     if scene.only:
         scene.model.grow(1.0)
         scene.grown, scene.ended = True, AT_REST
@@ -76,7 +78,12 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True):
     ramp *= max(1.0, (box.high[2] - box.low[2]) / 3)
     ramp = max(ramp, over)
     growing = max(1, int(ramp / O.dt))
-    most = int((longest or 20 * ramp) / O.dt)
+    longest = longest or 20 * ramp
+    most = int(longest / O.dt)
+    if most < 1:
+        raise Refused(
+            f"longest {longest:g} s, after which the wait for rest ends, must be above the time step, {O.dt:.3g} s"
+        )
     while at.done < most and at.quiet < LOOKS:
         load = min(1.0, (at.done + EVERY) / growing)
         grow(load)

@@ -2,16 +2,17 @@
 """Real time: ``shake`` and ``run``."""
 
 import itertools
-import math
 from dataclasses import dataclass
 
 from yade import O, Vector3
 
+from ...arguments import number, oneOf, orNone, takes
 from ...basics import Refused
-from ..ground import readRecord
-from .gravity import sideways
+from ..ground import UNITS, readRecord, record
+from ..parsing import DAMPING
+from .gravity import LEVEL, sideways
 from .stage import DONE, Answer, stage
-from .timed import Timed, timed
+from .timed import DURATION, TIME, Timed, timed
 
 
 def displacements(scene, rows):
@@ -53,6 +54,17 @@ class Damped(Timed):
 
 
 @stage(answers=displacements)
+@takes(
+    accelerations=record,
+    every=orNone(DURATION),
+    direction=LEVEL,
+    scale=number("", -1e6, 1e6),
+    unit=orNone(oneOf(*UNITS)),
+    after=TIME,
+    damping=DAMPING,
+    massDamping=number("1/s", 0, 1e6),
+    stiffnessDamping=number("s", 0, 1),
+)
 def shake(
     scene,
     accelerations,
@@ -114,6 +126,7 @@ def shake(
 
 
 @stage(farther=("seconds",), answers=displacements)
+@takes(seconds=DURATION, damping=orNone(DAMPING))
 def run(scene, seconds, damping=None):
     """Let time pass.
 
@@ -121,8 +134,6 @@ def run(scene, seconds, damping=None):
     :param damping: damping constant during it [-]; None: that of the options
     """
     at = scene.running.stage("run", Damped())
-    if not 0 < seconds < math.inf:
-        raise ValueError(f"run: {seconds} s must be above 0")
     if damping is not None:
         scene.model.damp(damping, scene.args.damping_kind)
         at.limit = scene.model.chooseTimeStep(at.limit)

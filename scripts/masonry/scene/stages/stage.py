@@ -124,7 +124,8 @@ class Traits:
 
 
 def stage(**traits):
-    """Make a stage of a function of the scene and what the user says; the keywords are those of :class:`Traits`.
+    """Make a stage of a function of the scene and what the user says, which has its kinds of arguments from
+    :func:`masonry.arguments.takes`; the keywords are those of :class:`Traits`.
 
     The stage builds the scene if it is the first, is left out after a collapse, and ends the run in order on errors.
     """
@@ -150,6 +151,7 @@ def _carryOut(scene, act, traits, args, settings):
         )
     running, before = scene.running, None
     try:
+        (_, *args), settings = act.checked((scene, *args), settings)
         if traits.check:
             traits.check(scene, *args, **settings)
         scene.begin()

@@ -5,14 +5,23 @@ from dataclasses import dataclass
 
 from yade import O, Vector3
 
+from ...arguments import axes as axesOf
+from ...arguments import number, orNone, takes
 from ...assembly.blocks import vector
-from ..targets import Target
+from ..history import MOST
+from ..loads import FORCE
+from ..parsing import RATE
+from ..targets import ANY, HELD
 from .rest import rampTime
 from .stage import DONE, Answer, stage
-from .timed import Timed, checkedRate, timed
+from .timed import Timed, timed
+
+#: The kind of a displacement.
+MILLIMETRES = number("mm", -MOST, MOST)
 
 
 @stage()
+@takes(target=ANY, axes=axesOf("xyzXYZ"), force=orNone(FORCE))
 def release(scene, target, axes, force=None):
     """Take a support away, or let the drive of a platen go. What follows is the next stage's, for example ``settle``.
 
@@ -42,8 +51,6 @@ def atOnce(scene, name, act):
 def letGo(scene, target, axes, force):
     """Free a target along some axes, with a force in place of its drive."""
     problems, model, plane = [], scene.model, scene.description.plane
-    if not isinstance(target, Target):
-        raise ValueError(f"release: not a target: {target!r}")
     state = O.bodies[target.body].state
     if plane:  # nothing moves along the others
         axes = "".join(a for a in axes if a in "xzY") or axes
@@ -82,6 +89,7 @@ def displacement(scene, rows):
 
 
 @stage(farther=("x", "y", "z"), options=("rate",), answers=displacement)
+@takes(target=HELD, x=MILLIMETRES, y=MILLIMETRES, z=MILLIMETRES, rate=orNone(RATE))
 def move(scene, target, x=0.0, y=0.0, z=0.0, rate=None):
     """Move a fixed target by a displacement [mm], in a straight line: settlement or spreading of a support.
 
@@ -89,8 +97,6 @@ def move(scene, target, x=0.0, y=0.0, z=0.0, rate=None):
 
     :param rate: [mm/s]; None: ``--rate``
     """
-    if not isinstance(target, Target) or not target.fixed:
-        raise ValueError("move: only a platen or brick that is held can be moved")
     at = scene.running.stage("move", Timed())
     path = scene.share * vector((x, y, z), "move: displacement [mm]")
     if scene.description.plane and path[1]:
@@ -100,7 +106,7 @@ def move(scene, target, x=0.0, y=0.0, z=0.0, rate=None):
     loose = [a for a, w in zip("xyz", path) if w and a not in target.freedom]
     if loose:
         raise ValueError(f"move: {target.name} is not held along {', '.join(loose)}")
-    rate = scene.args.rate if rate is None else checkedRate(rate, "move")
+    rate = scene.args.rate if rate is None else rate
     distance, rate = 1e-3 * path.norm(), 1e-3 * rate
     if not distance > 0:
         raise ValueError("move: the displacement must not be zero")

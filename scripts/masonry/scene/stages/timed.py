@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Stages that last for a given time: steps, rows and frames evenly in time."""
 
-import math
 from dataclasses import dataclass
 
 from yade import O
 
+from ...arguments import number
 from .stage import DONE
 
 ROWS = 500  # of curve.csv in such a stage
@@ -20,11 +20,8 @@ class Timed:
     nextFrame: int = 0  # number of the step after which a frame is due
 
 
-def checkedRate(rate, name):
-    """A rate that is a number above 0, else ValueError."""
-    if not (isinstance(rate, (int, float)) and 0 < rate < math.inf):
-        raise ValueError(f"{name}: rate {rate!r} must be a number above 0")
-    return rate
+#: Kinds of arguments: a time that is not longer than a day, and one above 0 [s].
+TIME, DURATION = number("s", 0, 86400), number("s", 0, 86400, above=True)
 
 
 def timed(scene, at, duration, before, after=None, each=None):

@@ -1,0 +1,417 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a script says to a word is checked here: every argument, before the word does anything. This module needs no YADE.
+
+A word names a kind for each of its parameters::
+
+    @takes(platen=MOVING, stress=number("Pa", 0), riding=flag)
+    def press(description, platen, stress, riding=True): ...
+
+A kind is a function of a value and of the first argument of the word, the scene or its description. It returns the value as
+the word uses it, or raises ValueError with a sentence that goes on behind the name: "-1 Pa must be at least 0". All problems of
+a word are in one error, and an argument that is not known is answered with the nearest name.
+"""
+
+import difflib
+import functools
+import inspect
+import math
+import os
+from numbers import Integral, Real
+
+import numpy as np
+
+from .basics import Refused
+
+LONGEST_NAME, LONGEST_TEXT = 100, 1000  # characters of a name, and of a text
+SHORTEST, FARTHEST = 1e-100, 1e100  # lengths of a direction [-]
+SHOWN = 80  # characters of a value that are shown
+
+
+def shown(value):
+    """A value as a message has it, not too long."""
+    try:
+        text = repr(value[:LONGEST_TEXT] if isinstance(value, str) else value)
+    except Exception:  # of a class of the user's own
+        text = object.__repr__(value)
+    text = " ".join(text.split())  # of a matrix, in one line
+    return text if len(text) < SHOWN else text[: SHOWN - 3] + "..."
+
+
+def nearest(name, names):
+    """The end of a sentence that names what is nearest to a name: ``, did you mean 'x'?``, or nothing."""
+    close = difflib.get_close_matches(str(name)[:SHOWN], [str(n) for n in names], 1)
+    return f", did you mean {close[0]!r}?" if close else ""
+
+
+# -- kinds ------------------------------------------------------------------------------------------------------------
+
+
+def isNumber(value):
+    """Whether a value is a real number. True and False are none."""
+    return isinstance(value, Real) and not isinstance(value, bool)
+
+
+def plain(value):
+    """A real number as one of Python's own, or infinity if there is no float so large."""
+    if type(value) in (int, float) and abs(value) < 2**1000:
+        return value
+    try:
+        return float(value) if not isinstance(value, Integral) else _whole(value)
+    except OverflowError:
+        return math.inf
+
+
+def _whole(value):
+    float(value)
+    return int(value)
+
+
+def number(unit="", low=-math.inf, high=math.inf, above=False, below=False):
+    """The kind of a finite number.
+
+    :param above: whether it must be above ``low``, not at least; ``below``: likewise
+    """
+    bounds = []
+    if low > -math.inf:
+        bounds.append(f"{'above' if above else 'at least'} {low:g}")
+    if high < math.inf:
+        bounds.append(f"{'below' if below else 'at most'} {high:g}")
+    bounds, of = " and ".join(bounds), unit and f" {unit}"
+    if low == -high > -math.inf:
+        bounds = f"from {low:g} to {high:g}"
+
+    def take(value, first=None):
+        if not isNumber(value):
+            raise ValueError(f"{shown(value)} must be a number{bounds and ' '}{bounds}{of}")  # fmt: skip
+        found = plain(value)
+        if not math.isfinite(found):
+            raise ValueError(f"{shown(value)}{of} must be a finite number{bounds and ' '}{bounds}")  # fmt: skip
+        fine = (found > low if above else found >= low) and (
+            found < high if below else found <= high
+        )
+        if not fine:
+            raise ValueError(f"{shown(value)}{of} must be {bounds}")
+        return found
+
+    return take
+
+
+def whole(low=0, high=None):
+    """The kind of a whole number."""
+    bounds = f"at least {low}" if high is None else f"from {low} to {high}"
+
+    def take(value, first=None):
+        fine = isinstance(value, Integral) and not isinstance(value, bool)
+        if not fine or value < low or high is not None and value > high:
+            raise ValueError(f"{shown(value)} must be a whole number {bounds}")
+        return int(value)
+
+    return take
+
+
+def flag(value, first=None):
+    """The kind of True and False."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise ValueError(f"{shown(value)} must be True or False")
+    return bool(value)
+
+
+def text(value, first=None):
+    """The kind of a text that can be printed and written to a file."""
+    if not (isinstance(value, str) and value.strip()):
+        raise ValueError(f"{shown(value)} must be a text")
+    if len(value) > LONGEST_TEXT or not value.replace("\n", " ").isprintable():
+        raise ValueError(
+            f"{shown(value)} must be a text of characters that can be printed, at most {LONGEST_TEXT} of them"
+        )
+    return value
+
+
+def label(value, first=None):
+    """The kind of a text as of :func:`text`, or of an empty one."""
+    return value if isinstance(value, str) and not value else text(value)
+
+
+def name(value, first=None):
+    """The kind of a name that begins names of columns."""
+    fine = isinstance(value, str) and value.isidentifier()
+    if not fine or len(value) > LONGEST_NAME:
+        raise ValueError(
+            f"{shown(value)} must be a name of letters, digits and underscores, at most {LONGEST_NAME} of them"
+        )
+    return value
+
+
+def names(value, first=None):
+    """The kind of a text, or of a list of texts."""
+    return text(value) if isinstance(value, str) else listOf(text)(value)
+
+
+def path(value, first=None):
+    """The kind of a name of a file."""
+    try:
+        found = os.fspath(value)
+        fine = isinstance(found, str) and found and "\0" not in found
+        fine = fine and len(os.fsencode(found)) < 4096
+    except (TypeError, UnicodeEncodeError):
+        fine = False
+    if not fine:
+        raise ValueError(f"{shown(value)} must be the name of a file")
+    return found
+
+
+def function(value, first=None):
+    """The kind of a function."""
+    if not callable(value):
+        raise ValueError(f"{shown(value)} must be a function")
+    return value
+
+
+def oneOf(*choices):
+    """The kind of one of some texts."""
+
+    def take(value, first=None):
+        if not (isinstance(value, str) and value in choices):
+            close = nearest(value, choices) if isinstance(value, str) else ""
+            named = ", ".join(choices)
+            raise ValueError(f"{shown(value)} must be one of {named}{close}")
+        return value
+
+    return take
+
+
+def isA(cls, what=None):
+    """The kind of an object of a class.
+
+    :param what: the words for it; None: the name of the class
+    """
+
+    def take(value, first=None):
+        if not isinstance(value, cls):
+            raise ValueError(f"{shown(value)} must be a {what or cls.__name__}")
+        return value
+
+    return take
+
+
+def byName(kind, *needed):
+    """The kind of a dict from names to values of a kind, some of which are needed."""
+
+    def take(value, first=None):
+        if not isinstance(value, dict) or not all(isinstance(n, str) for n in value):
+            raise ValueError(f"{shown(value)} must be a dict by name")
+        missing = [n for n in needed if n not in value]
+        if missing:
+            raise ValueError(f"{shown(value)} must have {', '.join(map(repr, missing))}")  # fmt: skip
+        problems = []
+        for one, thing in value.items():
+            try:
+                kind(thing)
+            except ValueError as error:
+                problems.append(f"{one!r}: {error}")
+        if problems:
+            raise ValueError("; ".join(problems))
+        return value
+
+    return take
+
+
+def axes(letters, none=False):
+    """The kind of some axes, as ``"xz"``: letters without repeats, or a list of them.
+
+    :param none: whether there may be none
+    """
+
+    def take(value, first=None):
+        listed = isinstance(value, (list, tuple, set, frozenset))
+        fine = isinstance(value, str) or (
+            listed and all(isinstance(a, str) and len(a) == 1 for a in value)
+        )
+        fine = fine and len(set(value)) == len(value) and (none or value)
+        if not fine or set(value) - set(letters):
+            raise ValueError(f"{shown(value)} must be some of the axes {letters!r}, each once")  # fmt: skip
+        ordered = sorted(value) if isinstance(value, (set, frozenset)) else value
+        return "".join(ordered)
+
+    return take
+
+
+def isListed(value):
+    """Whether a value is a list, a tuple, an array or the like. Texts and dicts are none."""
+    if isinstance(value, (str, bytes, bytearray, dict, type)):
+        return False
+    return hasattr(value, "__len__") and hasattr(value, "__getitem__")
+
+
+def items(value):
+    """The values of a list, a tuple, an array or the like, or None if it is none."""
+    if not isListed(value):
+        return None
+    try:
+        return [value[n] for n in range(len(value))]
+    except Exception:  # arrays without dimensions, classes of the user's own
+        return None
+
+
+def vector(unit="", most=1e100):
+    """The kind of three finite numbers.
+
+    :param most: largest amount of each
+    """
+    of = unit and f" {unit}"
+    bound = f" of at most {most:g}{of}" if most < 1e100 else ""
+
+    def take(value, first=None):
+        found = items(value)
+        fine = found is not None and len(found) == 3 and all(map(isNumber, found))
+        fine = fine and all(math.isfinite(plain(v)) and abs(v) <= most for v in found)
+        if not fine or not math.isfinite(math.hypot(*map(float, found))):
+            raise ValueError(f"{shown(value)} must be three finite numbers{bound}")
+        return value if all(type(v) in (int, float) for v in found) else tuple(map(plain, found))  # fmt: skip
+
+    return take
+
+
+def direction(level=False):
+    """The kind of a direction: three numbers, of any length but zero.
+
+    :param level: whether it must be horizontal
+    """
+    three = vector()
+
+    def take(value, first=None):
+        value = three(value)
+        if not SHORTEST <= math.hypot(*value) <= FARTHEST:
+            raise ValueError(f"{shown(value)} must be a direction, whose length is not zero")  # fmt: skip
+        if level and value[2]:
+            raise ValueError(f"{shown(value)} must be a horizontal direction")
+        return value
+
+    return take
+
+
+def listOf(kind, least=1):
+    """The kind of a list of values of a kind."""
+
+    def take(value, first=None):
+        found = items(value)
+        if found is None or len(found) < least:
+            raise ValueError(f"{shown(value)} must be a list with at least {least} value{'s' * (least > 1)}")  # fmt: skip
+        return [_inList(kind, n, one, first) for n, one in enumerate(found)]
+
+    return take
+
+
+def _inList(kind, n, one, first):
+    try:
+        return kind(one, first)
+    except ValueError as error:
+        raise ValueError(f"(value {n} of the list) {error}") from None
+
+
+def orNone(kind):
+    """The kind of None, or of another kind."""
+    return lambda value, first=None: None if value is None else kind(value, first)
+
+
+def orFunction(kind):
+    """The kind of a function that gives the value later, or of another kind."""
+    return lambda value, first=None: value if callable(value) else kind(value, first)
+
+
+def anything(value, first=None):
+    """The kind of what the word checks by itself."""
+    return value
+
+
+def plainly(value, first=None):
+    """The kind of what the word checks by itself, after real numbers have become Python's own."""
+    return plain(value) if isNumber(value) else value
+
+
+# -- checks -----------------------------------------------------------------------------------------------------------
+
+
+def misfits(word, kinds, values):
+    """Sentences on values that are not of their kinds.
+
+    :param word: that begins each sentence, as ``"Masonry: "``
+    :param kinds: dict of kinds by name; ``values``: likewise
+    """
+    found = []
+    for one, kind in kinds.items():
+        if one in values:
+            try:
+                kind(values[one])
+            except ValueError as error:
+                found.append(f"{word}{one} {error}")
+    return found
+
+
+# -- words ------------------------------------------------------------------------------------------------------------
+
+
+def takes(**kinds):
+    """Let a word check its arguments, each by the kind with its name.
+
+    The word gets ``kinds``, and ``checked``, a function of its positional and its named arguments that gives both as the
+    kinds return them.
+
+    :raises Refused: from the word, with all problems
+    """
+
+    def made(act):
+        signature = inspect.signature(act)
+
+        name = act.__qualname__.removesuffix(".__init__").rpartition(".")[2]
+
+        def checked(args, settings):
+            return _checked(name, signature, kinds, args, settings)
+
+        @functools.wraps(act)
+        def word(*args, **settings):
+            args, settings = checked(args, settings)
+            return act(*args, **settings)
+
+        word.kinds, word.checked = kinds, checked
+        return word
+
+    return made
+
+
+def named(cls):
+    """Let a class answer an argument that it does not know with the nearest name."""
+    cls.__init__ = takes()(cls.__init__)
+    return cls
+
+
+def _checked(word, signature, kinds, args, settings):
+    parameters, problems = signature.parameters, []
+    more = {p.name for p in parameters.values() if p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD)}  # fmt: skip
+    known = {n: v for n, v in settings.items() if more or n in parameters}
+    offered = [n for n in parameters if n in kinds or not kinds and n != "self"]
+    for unknown in settings.keys() - known.keys():
+        close = nearest(unknown, offered) or f"; there are {', '.join(offered)}"
+        problems.append(f"{word}: no argument {unknown!r}{close}")
+    try:
+        bound = signature.bind_partial(*args, **known)
+    except TypeError as error:  # too many, or one of them twice
+        problems.append(f"{word}: {error}; it takes {', '.join(offered)}")
+        raise Refused("\n".join(problems)) from None
+    first = args[0] if args else None
+    missing = [
+        n
+        for n, p in parameters.items()
+        if p.default is p.empty and n not in bound.arguments and n not in more
+    ]
+    if missing:
+        problems.append(f"{word}: {', '.join(missing)} must be given")
+    for one, value in bound.arguments.items():
+        if one in kinds:
+            try:
+                bound.arguments[one] = kinds[one](value, first)
+            except ValueError as error:
+                problems.append(f"{word}: {one} {error}")
+    if problems:
+        raise Refused("\n".join(problems))
+    return bound.args, bound.kwargs

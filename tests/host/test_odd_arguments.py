@@ -1,0 +1,480 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Every word that a script may use, with odd values: each is refused in a sentence, or means something.
+
+A word is found by looking at the package; one without an example here is a failure. The values of an argument are drawn with
+a seed that the message of a failure has; ODD_SEED=number draws others.
+"""
+
+import contextlib
+import inspect
+import io
+import math
+import os
+import random
+import re
+import signal
+from decimal import Decimal
+from fractions import Fraction
+
+import masonry
+import numpy as np
+import pytest
+from masonry import (
+    Scene,
+    addBlock,
+    bricks,
+    connect,
+    criticalTimeStep,
+    engines,
+    fields,
+    materials,
+)
+from masonry.basics import Refused
+from masonry.scene import options
+from masonry.study import variables
+from yade import O, Vector3
+from yade.wrapper import MasonryJoint, MasonryMat
+
+SEED = int(os.environ.get("ODD_SEED", 1))
+DRAWN = 4  # values of each argument
+LONGEST = 20  # [s] that one word may take
+
+WALL = bricks.Wall(0.44, 0.243)
+UNIT = (0.22, 0.102, 0.081)
+SCENE_OPTIONS = ["--out", "odd", "--lean", "--quick"]
+
+
+class Odd:
+    pass
+
+
+def odd():
+    """Odd values, by what they are. Another scene and its targets are among them."""
+    other = Scene("other", bricks.stack(2, (0.2, 0.1, 0.1)), materials.dry(0.5), arguments=["--out", "other"])  # fmt: skip
+    return {
+        "nan": math.nan, "inf": math.inf, "-1": -1, "0": 0, "1e300": 1e300, "-1e300": -1e300, "1e-300": 1e-300,
+        "huge whole number": 10**400, "True": True, "False": False, "'1'": "1", "''": "", "'x'": "x", "None": None,
+        "[]": [], "{}": {}, "two numbers": (1, 2), "four numbers": (1, 2, 3, 4), "zeros": (0, 0, 0), "nans": (math.nan, 0, 0),
+        "texts": ("a", "b", "c"), "huge numbers": (1e300,) * 3, "nested": [[1, 2, 3]], "array": np.array([1.0, 0, 0]),
+        "array without dimensions": np.array(1.0), "matrix": np.ones((3, 3)), "float32": np.float32(0.5),
+        "int64": np.int64(1), "bool_": np.bool_(True), "control characters": "a\x00\n\x1b[31mb", "long text": "x" * 100000,
+        "surrogate": "\udc80", "complex": 1 + 2j, "bytes": b"x", "object": Odd(), "Decimal": Decimal("1"),
+        "Fraction": Fraction(1, 3), "set": {1.0}, "scene": other, "target of another scene": other.handle(1, name="theirs"),
+        "module": math, "Ellipsis": ..., "list of nan": [math.nan], "list of True": [True], "list of None": [None],
+        "Vector3": Vector3(1, 0, 0), "joint": MasonryJoint(), "masonry": materials.dry(0.5),
+    }  # fmt: skip
+
+
+# -- examples: what stands before a word, and legal arguments of it ----------------------------------------------------
+
+
+def scene(blocks=WALL, stones=None, **settings):
+    """A scene that has not begun, with a platen below and one above."""
+    made = Scene("odd", blocks, stones or materials.calciumSilicate(), **{"arguments": SCENE_OPTIONS, **settings})  # fmt: skip
+    made.base = made.platen("bottom", name="under")
+    made.top = made.platen("top", name="over")
+    return made
+
+
+def bare():
+    return Scene("odd", WALL, materials.calciumSilicate(), arguments=SCENE_OPTIONS)
+
+
+def space():
+    made = Scene("odd", bricks.stack(3, (0.2, 0.15, 0.1)), materials.dry(0.6), arguments=SCENE_OPTIONS, plane=False)  # fmt: skip
+    made.platen("bottom")
+    return made
+
+
+def settled(make=scene):
+    made = make()
+    made.settle(longest=0.05)
+    return made
+
+
+def holding():
+    made = scene()
+    made.brick, made.grip = made.hold(3), made.handle(5)
+    return settled(lambda: made)
+
+
+def driven():
+    blocks = bricks.stack(2, (0.2, 0.1, 0.05))
+    made = Scene("odd", blocks, materials.calciumSilicate(), arguments=SCENE_OPTIONS, rate=100)  # fmt: skip
+    made.platen("bottom")
+    made.top, made.between = made.platen("top", drive="xz"), made.joint(0, 1)
+    return made
+
+
+class Of:
+    """An argument that belongs to the scene of an example: its attribute of this name."""
+
+    def __init__(self, name):
+        self.name = name
+
+
+TOP, LEVEL = Of("top"), (1, 0, 0)
+PUSHES = dict(target=TOP, direction=LEVEL, rate=200.0, continued=False)
+WINDS = dict(pressure=10.0, towards=LEVEL, part=None)
+GROWS = dict(over=0.02, within=0.5)
+
+#: What stands before a word of a scene, and its arguments. A word that describes, and is a stage later, has two examples.
+WORDS = {
+    "platen": (bare, dict(where="top", rotation=None, height=0.2, name=None, point=None, guided="", part=None, upTo=None, recorded=None, drive="")),
+    "hold": (bare, dict(where=0, name=None, axes="xyzXYZ")),
+    "watch": (bare, dict(where=0, name=None)),
+    "handle": (bare, dict(where=0, name=None)),
+    "press": (scene, dict(platen=TOP, stress=1e5, riding=True)),
+    "load": (scene, dict(target=TOP, force=(0, 0, -1e3))),
+    "wind": (space, WINDS),
+    "drift": (scene, dict(lower=Of("base"), upper=TOP, name=None)),
+    "column": (scene, dict(name="own_mm", meaning="mine", value=lambda: 1.0)),
+    "joint": (scene, dict(one=0, two=1, name=None)),
+    "section": (scene, dict(z=0.1, part=None, name=None)),
+    "view": (scene, dict(direction=(0, 1, 0), part=None)),
+    "settle": (scene, dict(longest=0.05, damping=None, record=True)),
+    "push": (settled, dict(until=0.2, **PUSHES)),
+    "cycle": (settled, dict(amplitudes=[0.3], repeats=1, **PUSHES)),
+    "follow": (settled, dict(path="path.csv", **PUSHES)),
+    "drive": (driven, dict(target=TOP, x=0.0, y=0.0, z=0.01)),
+    "pressJoint": (driven, dict(target=TOP, joint=Of("between"), stress=-1e5)),
+    "release": (holding, dict(target=Of("brick"), axes="xz", force=None)),
+    "move": (settled, dict(target=Of("base"), x=0.0, y=0.0, z=-0.05, rate=20.0)),
+    "tilt": (settled, dict(degrees=0.5, towards=LEVEL, rate=20.0, within=0.5)),
+    "accelerate": (settled, dict(most=0.02, towards=LEVEL, rate=1.0, within=0.5)),
+    "lean": (settled, dict(factor=0.01, towards=LEVEL, longest=0.05)),
+    "shake": (settled, dict(accelerations=[0.0, 2.0, 0.0], every=0.002, direction=LEVEL, scale=1.0, unit=None, after=0.0, damping=0.1, massDamping=0.0, stiffnessDamping=0.0)),
+    "run": (settled, dict(seconds=0.01, damping=None)),
+    "growLoad": (settled, dict(target=TOP, force=(100.0, 0, 0), **GROWS)),
+    "growWind": (lambda: settled(space), {**WINDS, **GROWS}),
+    "growPress": (settled, dict(platen=TOP, stress=1e4, **GROWS)),
+    "bracket": (settled, dict(carries=lambda f: f < 0.5, low=0.0, high=1.0, within=0.3)),
+    "result": (settled, dict(name="mine", value=1.0, unit="-", how="by hand")),
+    "bound": (settled, dict(target=TOP, direction=LEVEL, towards=None)),
+    "load, a stage": (settled, dict(target=TOP, force=(100.0, 0, 0), longest=0.05)),
+    "wind, a stage": (lambda: settled(space), dict(**WINDS, longest=0.05)),
+    "press, a stage": (settled, dict(platen=TOP, stress=1e4, longest=0.05)),
+    "hold, a stage": (holding, dict(target=Of("grip"), axes="xz")),
+}  # fmt: skip
+#: Methods of a scene that scripts do not call with arguments of their own: other parts of the package do.
+INTERNAL = {"checkOpen", "failed", "findBound", "keepState", "keptAtRest", "probe"}
+
+CUBE = bricks.boxCorners((0, 0, 0), (1, 1, 1))
+COURSES = dict(height=0.243, unit=UNIT, courses=None, halves=True, joint=0.0)
+RING = dict(thickness=0.3, stones=9, span=None, radius=2.0, angle=90)
+FIELD = dict(cov=0.2, length=0.5, seed=1)
+ABOUT = dict(mean=1.0, cov=0.1, low=0.5, high=2.0)
+CLAY = dict(
+    E=4e9, unit_E=9e9, fm=12e6, fv0=0.2e6, friction=0.6, unit=(0.25, 0.12, 0.065), joint=0.01, density=1800, ft=None,
+    bond_wrench=0.3e6, bond_ratio=1.5, G=1.2e9, head_E=3e9, poisson=0.2, GfI=20.0, GfII=200.0, Gc=2e4, peak_strain=4e-3,
+    residual_friction=0.5, dilatancy=0.1, head_share=0.5, unit_ft=1.5e6, unit_GfI=60.0, unit_fv0=3e6, unit_friction=0.75,
+    unit_GfII=500.0,
+)  # fmt: skip
+
+
+def opening(**values):
+    return bricks.Wall(0.88, 0.486, openings=[bricks.Opening(**values)])
+
+
+def lintel(**values):
+    over = bricks.Lintel(**values)
+    return bricks.Wall(1.32, 0.486, openings=[bricks.Opening(0.44, 0.081, 0.22, 0.162, over)])  # fmt: skip
+
+
+def twoBlocks():
+    for z in (0, 0.1):
+        corners = bricks.boxCorners((0, 0, z), (0.2, 0.1, z + 0.1))
+        addBlock(corners, MasonryMat(density=1800))
+    O.bodies[0].state.blockedDOFs = "xyzXYZ"
+
+
+def laid():
+    twoBlocks()
+    engines([MasonryJoint()])
+
+
+def joined():
+    laid()
+    connect()
+    O.dt = 0.5 * criticalTimeStep()[0]
+
+
+def nothing():
+    pass
+
+
+def sceneOptions():
+    """The options that a scene takes as keywords, with values that they may have."""
+    actions = options.parser("odd", until=None)._actions
+    aside = {"help", "resume", "preset", "history", "out", "lean", "quick"}
+    return {a.dest: a.default for a in actions if a.dest not in aside}
+
+
+#: Functions and classes by their names: what stands before, what is called, and its arguments.
+CALLS = {
+    "Scene": (nothing, Scene, dict(name="odd", bricks=WALL, materials=materials.calciumSilicate(), title=None, plane=None, gravity=9.81, columns=None, functors=False, arguments=SCENE_OPTIONS, allowGaps=False, **sceneOptions())),
+    "materials.dry": (nothing, materials.dry, dict(friction=0.5, normalStiffness=5e9, shearStiffness=2e9, density=2000, young=2e10, poisson=0.2)),
+    "materials.masonry": (nothing, materials.masonry, CLAY),
+    "materials.Masonry": (nothing, materials.Masonry, dict(unit=MasonryMat(), joints={"bed": MasonryJoint()}, units={}, softer=None, choose=None, varied=[], brief=False, course=None)),
+    "materials.calciumSilicate": (nothing, materials.calciumSilicate, dict(stiffness="joint")),
+    "materials.calciumSilicateJoints": (nothing, materials.calciumSilicateJoints, dict(brittle=False, stiffness="joint")),
+    "materials.dryGranite": (nothing, materials.dryGranite, dict(level=100, height=0.15)),
+    "materials.dryGraniteJoints": (nothing, materials.dryGraniteJoints, dict(level=100, height=0.15, brittle=False)),
+    "materials.compressiveFractureEnergy": (nothing, materials.compressiveFractureEnergy, dict(fm=1e7)),
+    "materials.leastEnergy": (nothing, materials.leastEnergy, dict(strength=1e5, stiffness=1e10, lumped=0.0)),
+    "materials.linesOf": (nothing, materials.linesOf, dict(entries=[], brief=False)),
+    "materials.withResidual": (nothing, materials.withResidual, dict(names=["bed.friction"], joints=materials.calciumSilicateJoints())),
+    "materials.MasonryJoint": (nothing, MasonryJoint, dict(MasonryJoint().dict())),
+    "materials.MasonryMat": (nothing, MasonryMat, {n: v for n, v in MasonryMat().dict().items() if n != "id"}),
+    "Masonry.vary": (nothing, materials.calciumSilicate().vary, dict(name="bed.cohesion", value=lambda x, y, z: 1.0, step=0.01)),
+    "MasonryJoint.set": (nothing, MasonryJoint().set, dict(MasonryJoint().dict())),
+    "MasonryMat.set": (nothing, MasonryMat().set, {n: v for n, v in MasonryMat().dict().items() if n != "id"}),
+    "fields.lognormal": (nothing, fields.lognormal, FIELD),
+    "fields.normal": (nothing, fields.normal, dict(least=0.05, **FIELD)),
+    "study.lognormal": (nothing, variables.lognormal, ABOUT),
+    "study.normal": (nothing, variables.normal, ABOUT),
+    "study.uniform": (nothing, variables.uniform, dict(low=0.5, high=2.0)),
+    "study.field": (nothing, variables.field, dict(distribution=None, length=0.5, cov=0.1)),
+    "study.choice": (nothing, lambda value, weights: variables.choice(value, "other", weights=weights), dict(value=1, weights=[1, 2])),
+    "bricks.Wall": (nothing, bricks.Wall, dict(length=0.88, bond="running", wythes=1, openings=(), collar=None, part="wall", **COURSES)),
+    "bricks.Corner": (nothing, bricks.Corner, dict(length=0.88, length2=0.88, openings=(), openings2=(), **COURSES)),
+    "bricks.Tee": (nothing, bricks.Tee, dict(length=1.1, length2=0.88, at=0.55, openings=(), openings2=(), **COURSES)),
+    "bricks.Room": (nothing, getattr(bricks, "Room"), {**dict(length=0.88, width=0.88, front=(), right=(), back=(), **COURSES), "left": ()}),
+    "bricks.Arch": (nothing, bricks.Arch, dict(depth=0.5, skewback=0.3, part="arch", **RING)),
+    "bricks.BarrelVault": (nothing, bricks.BarrelVault, dict(length=1.0, rows=2, staggered=True, part="vault", **RING)),
+    "bricks.Dome": (nothing, bricks.Dome, dict(radius=2.0, thickness=0.3, courses=3, stones=6, oculus=0.5, angle=120.0, staggered=False, part="dome")),
+    "bricks.stack": (nothing, bricks.stack, dict(count=3, size=(0.2, 0.1, 0.1), part="stack")),
+    "bricks.block": (nothing, bricks.block, dict(low=(0, 0, 0), high=(1, 1, 1), part="block", kind="block")),
+    "bricks.Block": (nothing, bricks.Block, dict(corners=CUBE, brick=0, part="wall", course=-1, kind="brick")),
+    "bricks.Bricks": (nothing, bricks.Bricks, dict(blocks=list(WALL))),
+    "bricks.boxCorners": (nothing, bricks.boxCorners, dict(low=(0, 0, 0), high=(1, 1, 1))),
+    "bricks.summary": (nothing, bricks.summary, dict(bricks=WALL)),
+    "bricks.fromFile": (nothing, bricks.fromFile, dict(path="cube.obj", scale=1.0, kind="block")),
+    "bricks.Opening": (nothing, opening, dict(x=0.22, z=0.081, width=0.22, height=0.162, lintel=None)),
+    "bricks.Lintel": (nothing, lintel, dict(bearing=0.11, height=0.081)),
+    "Bricks.moved": (nothing, WALL.moved, dict(dx=1.0, dy=0.0, dz=0.0)),
+    "Bricks.turned": (nothing, WALL.turned, dict(degrees=30.0, axis="z", about=(0, 0, 0))),
+    "Bricks.named": (nothing, WALL.named, dict(part="p")),
+    "Bricks.ofKind": (nothing, WALL.ofKind, dict(kind="k")),
+    "Bricks.where": (nothing, WALL.where, dict(function=lambda block: True)),
+    "Bricks.within": (nothing, WALL.within, dict(low=(0, 0, 0), high=(1, 1, 1))),
+    "Bricks.cut": (nothing, WALL.cut, dict(point=(0.1, 0, 0), normal=LEVEL, own=False)),
+    "Bricks.freeFaces": (nothing, WALL.freeFaces, dict(direction=(0, 1, 0))),
+    "rayleigh": (nothing, masonry.rayleigh, dict(ratio=0.05, low=1.0, high=10.0)),
+    "addBlock": (nothing, addBlock, dict(vertices=CUBE, material=MasonryMat(density=1800), inPlane=False, color=(0.7, 0.7, 0.7))),
+    "engines": (twoBlocks, engines, dict(joints=[MasonryJoint()], damping=0.8, gravity=(0, 0, -9.81), subcontacts=None, rows=None, inPlane=False, loads=(), zones=None, functors=False, dampingKind=None)),
+    "connect": (laid, connect, dict(rule=None, tolerance=1e-4, allowGaps=False)),
+    "touchingPairs": (laid, masonry.touchingPairs, dict(tolerance=1e-4)),
+    "advance": (joined, masonry.advance, dict(steps=2)),
+    "engine": (joined, masonry.engine, dict(label="joints")),
+    "saveCheckpoint": (joined, masonry.saveCheckpoint, dict(path="saved", extra={"a": 1})),
+    "loadCheckpoint": (joined, masonry.loadCheckpoint, dict(path="kept")),
+    "readCheckpoint": (joined, masonry.readCheckpoint, dict(path="kept")),
+}  # fmt: skip
+
+CUBE_FILE = "".join("v {} {} {}\n".format(*c) for c in CUBE) + "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n"  # fmt: skip
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder with the files of the examples."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "path.csv").write_text("displacement_mm\n0.05\n-0.05\n0\n")
+    (tmp_path / "cube.obj").write_text(CUBE_FILE)
+    O.reset()
+    joined()
+    masonry.saveCheckpoint("kept", 1)
+    yield tmp_path
+    O.reset()
+
+
+# -- what comes of a word ---------------------------------------------------------------------------------------------
+
+
+@contextlib.contextmanager
+def shortly():
+    """A word that takes too long is a failure."""
+
+    def stop(*_):
+        raise AssertionError(f"it takes longer than {LONGEST} s")
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.alarm(LONGEST)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def said(name, change):
+    """What is said when an example is called with other arguments, or None if they are taken."""
+    O.reset()
+    printed, made = io.StringIO(), None
+    with shortly(), contextlib.redirect_stderr(printed), contextlib.redirect_stdout(
+        io.StringIO()
+    ):
+        if name in WORDS:
+            before, legal = WORDS[name]
+            made = before()
+            act = getattr(made, name.partition(",")[0])
+        else:
+            before, act, legal = CALLS[name]
+            before()
+        legal = {n: getattr(made, v.name) if isinstance(v, Of) else v for n, v in legal.items()}  # fmt: skip
+        try:
+            act(**{**legal, **change})
+            return None
+        except ValueError as refused:
+            assert type(refused) in (ValueError, Refused), repr(refused)
+            return str(refused)
+        except FileNotFoundError as missing:
+            assert name in ("loadCheckpoint", "readCheckpoint")  # as they promise
+            return f"{name}: {missing}"
+        except SystemExit as end:
+            assert end.code == 2
+            return printed.getvalue()
+        finally:
+            if made:
+                made.finished = True
+                if made.results:
+                    made.results.release()
+
+
+#: Sentences of Python and of its libraries, which name nothing that a script has said.
+NOT_OURS = "truth value|could not be broadcast|codec can't|JSON compliant|unpack|invalid literal|NoneType"
+#: By what else a message may name an argument: a property in words, points as corners, or what a lintel lies on.
+OTHERWISE = {"addBlock": "corner", "bricks.Lintel": "openings", "MasonryJoint": "", "MasonryMat": ""}  # fmt: skip
+
+
+def isNamed(name, argument, message):
+    """Whether a message names an argument, one value of it, the word or what stands for it."""
+    word = name.partition(",")[0].rpartition(".")[2]
+    one = argument.rstrip("2").removesuffix("s")
+    found = [f for n, f in OTHERWISE.items() if n in name] + [one, word]
+    return any(text.lower() in message.lower() for text in found)
+
+
+@pytest.mark.parametrize("name", [*WORDS, *CALLS])
+def test_odd_values_are_refused_in_a_sentence_or_mean_something(folder, name):
+    values = odd()
+    legal = WORDS[name][1] if name in WORDS else CALLS[name][2]
+    assert said(name, {}) is None
+    for argument in legal:
+        drawn = random.Random(f"{SEED} {name} {argument}")
+        for label in drawn.sample(sorted(values), DRAWN):
+            where = f"{name}({argument}={label}), ODD_SEED={SEED}"
+            try:
+                message = said(name, {argument: values[label]})
+            except Exception as error:
+                raise AssertionError(f"{where}: {error!r}") from error
+            if message is not None:
+                assert not re.search(NOT_OURS, message), f"{where}: {message}"
+                assert isNamed(name, argument, message), f"{where}: {message}"
+
+
+# -- every word is here -----------------------------------------------------------------------------------------------
+
+
+def takesArguments(thing):
+    names = [n for n in inspect.signature(thing).parameters if n != "self"]
+    return bool(names)
+
+
+def test_every_word_of_a_scene_has_an_example_and_kinds_of_all_its_arguments():
+    words = {
+        n
+        for n, thing in inspect.getmembers(Scene, callable)
+        if not n.startswith("_") and n not in INTERNAL and set(inspect.signature(thing).parameters) - {"self", "scene"}  # fmt: skip
+    }
+    examples = {name.partition(",")[0] for name in WORDS}
+    assert words == examples
+    for name in examples:
+        legal = set(WORDS[name][1])
+        act = inspect.unwrap(getattr(Scene, name), stop=lambda f: hasattr(f, "kinds"))
+        assert set(act.kinds) == legal, name
+
+
+def test_every_function_that_scripts_call_has_an_example():
+    ours = {n: getattr(masonry, n) for n in dir(masonry) if not n.startswith("_")}
+    names = {n for n, t in ours.items() if inspect.isfunction(t) and takesArguments(t)}
+    for module, wanted in ((materials, materials.__all__), (bricks, bricks.__all__)):
+        short = module.__name__.rpartition(".")[2]
+        names |= {f"{short}.{n}" for n in wanted if callable(getattr(module, n)) and not _takesNothing(getattr(module, n))}  # fmt: skip
+    names |= {f"Bricks.{n}" for n, t in inspect.getmembers(bricks.Bricks, inspect.isfunction) if n[0] != "_" and takesArguments(t)}  # fmt: skip
+    names -= {"bricks.Joint"}  # a result
+    assert names <= set(CALLS), names - set(CALLS)
+
+
+def _takesNothing(thing):
+    try:
+        return not takesArguments(thing)
+    except ValueError:  # classes of the plugin
+        return False
+
+
+# -- what is refused, in which words ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "name, change, message",
+    [
+        ("push", {"untill": 3}, "push: no argument 'untill', did you mean 'until'?"),
+        ("push", {"until": "3", "rate": 1e300, "continued": 1}, "push: until '3' must be a number above 0 and at most 1000 mm\npush: rate 1e+300 mm/s must be at least 0.001 and at most 1000\npush: continued 1 must be True or False"),
+        ("push", {"direction": (0, 0, 0)}, "push: direction (0, 0, 0) must be a direction, whose length is not zero"),
+        ("cycle", {"amplitudes": [2, math.nan]}, "cycle: amplitudes (value 1 of the list) nan mm must be a finite number at least 0.02"),
+        ("cycle", {"repeats": 1.5}, "cycle: repeats 1.5 must be a whole number from 1 to 10000"),
+        ("settle", {"longest": math.inf}, "settle: longest inf s must be a finite number above 0"),
+        ("settle", {"longest": 1e-6}, "longest 1e-06 s, after which the wait for rest ends, must be above the time step"),
+        ("settle", {"damping": "locl"}, "settle: damping 'locl' must be one of local, combined, did you mean 'local'?"),
+        ("accelerate", {"most": True}, "accelerate: most True must be a number above 0 and at most 1000 g"),
+        ("lean", {"factor": -0.1}, "lean: factor -0.1 g must be at least 0"),
+        ("drive", {"z": lambda: "far"}, "drive: z 'far' must be a number"),
+        ("release", {"axes": ["xz", 3]}, "release: axes ['xz', 3] must be some of the axes 'xyzXYZ', each once"),
+        ("shake", {"accelerations": [0, "1"]}, "shake: accelerations (value 1 of the list) '1' must be a number"),
+        ("run", {"seconds": 1e300}, "run: seconds 1e+300 s must be above 0 and at most 86400"),
+        ("platen", {"name": ""}, "platen: name '' must be a name of letters, digits and underscores"),
+        ("platen", {"drive": 5, "height": []}, "platen: height [] must be a number at least 1e-06 and at most 1e+06 m\nplaten: drive 5 must be some of the axes 'xyz'"),
+        ("section", {"part": "wal"}, "section: part 'wal' must be one of wall, did you mean 'wall'?"),
+        ("column", {"meaning": None}, "column: meaning None must be a text"),
+        ("bracket", {"within": 0}, "bracket: within 0 must be at least 0.0001 and below 1"),
+        ("result", {"unit": "a\x00"}, "result: unit 'a\\x00' must be a text of characters that can be printed"),
+        ("Scene", {"gravty": 9}, "no option gravty; did you mean gravity?"),
+        ("Scene", {"plane": 1, "columns": "x", "allowGaps": None}, "plane 1 must be True or False\nscene odd: columns 'x' must be a list with at least 1 value\nscene odd: allowGaps None must be True or False"),
+        ("Scene", {"arguments": [1]}, "scene odd: arguments must be a list of words, got 1"),
+        ("materials.dry", {"friction": "0.5"}, "dry: friction '0.5' must be a number at least 0 and at most 5"),
+        ("materials.dry", {"fricton": 0.5}, "dry: no argument 'fricton', did you mean 'friction'?"),
+        ("materials.Masonry", {"joints": 5, "brief": None}, "Masonry: joints 5 must be a dict by name\nMasonry: brief None must be True or False"),
+        ("materials.MasonryJoint", {"frictoin": 1}, "MasonryJoint has no property 'frictoin', did you mean 'friction'?"),
+        ("materials.MasonryJoint", {"closureLimit": -1}, "MasonryJoint: closureLimit -1 m must be at least 0"),
+        ("Masonry.vary", {"name": "bed.cohesoin"}, "vary: no property 'bed.cohesoin'"),
+        ("fields.lognormal", {"cov": "0.2", "seed": -1}, "lognormal: cov '0.2' must be a number above 0 and at most 100\nlognormal: seed -1 must be a whole number at least 0"),
+        ("rayleigh", {"ratio": None}, "rayleigh: ratio None must be a number at least 0 and below 1"),
+        ("study.choice", {"value": math.inf}, "choice: value inf must be a finite number"),
+        ("bricks.Wall", {"halves": "no", "height": 1e7}, "wall: halves 'no' must be True or False; height 10000000.0 m must be at most 1e+06 m: is it in m?"),
+        ("bricks.Wall", {"bond": "flemsh"}, "bond must be one of running, stack, header, english, flemish, got 'flemsh', did you mean 'flemish'?"),
+        ("bricks.Opening", {"widht": 1}, "Opening: no argument 'widht', did you mean 'width'?"),
+        ("addBlock", {"inPlane": "yes"}, "block: inPlane 'yes' must be True or False"),
+        ("connect", {"allowGap": True}, "connect: no argument 'allowGap', did you mean 'allowGaps'?"),
+        ("engines", {"functors": None}, "engines: functors None must be True or False"),
+        ("saveCheckpoint", {"path": 1}, "saveCheckpoint: path 1 must be the name of a file"),
+    ],
+)  # fmt: skip
+def test_what_is_refused_is_named_with_its_bound(folder, name, change, message):
+    assert message in said(name, change)
+
+
+def test_a_target_of_another_scene_is_refused(folder):
+    theirs = odd()["target of another scene"]
+    for name, argument in (("load", "target"), ("press", "platen"), ("drift", "lower")):
+        message = said(name, {argument: theirs})
+        assert f"{name}: {argument} 'theirs', which is of another scene" in message
+
+
+def test_numbers_of_other_kinds_are_as_good_as_those_of_python(folder):
+    """A number of numpy or a fraction gives what the same number of Python gives."""
+    for number in (np.float32(0.5), np.float64(0.5), Fraction(1, 2)):
+        made = scene()
+        made.press(made.top, 100000 * number)
+        assert made.top.pressed == 5e4 and type(made.top.pressed) is float
+    assert materials.dry(Fraction(1, 2)).joints["bed"].friction == 0.5
