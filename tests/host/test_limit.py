@@ -362,6 +362,69 @@ def test_a_lean_is_bracketed_by_its_bound_alone(scene, tmp_path):
     assert low <= message(tmp_path / "r")["bound_acceleration"] <= high
 
 
+def stones(out, load):
+    """Three stones, 0.3 m wide and 0.6 m high, on a base, with a dead load [N] on the highest, at rest for limit analysis
+    alone: the scene, the highest stone, and the weight of all [N]."""
+    from masonry import Scene, bricks, materials
+
+    s = Scene("stones", bricks.stack(3, (0.3, 0.3, 0.2)), materials.dry(0.7, density=DENSITY),
+              arguments=["--preset", "bound", "--out", str(out)])  # fmt: skip
+    s.platen("bottom")
+    highest = s.handle(2, name="stone")
+    s.load(highest, load)
+    s.settle()
+    return s, highest, DENSITY * G * 0.3 * 0.3 * 0.6
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_bound_of_a_push_lacks_what_dead_loads_push_already(scene, tmp_path, sign):
+    dead = 100.0  # [N] along x
+    s, highest, weight = stones(tmp_path, (dead, 0, 0))
+    s.push(highest, 1, direction=(sign, 0, 0))
+    s.finish()
+    slides = 0.7 * weight / 3  # the highest stone, before anything tips
+    (entry,) = message(tmp_path)["bounds"]
+    assert entry["factor"] == pytest.approx(1e-3 * (slides - sign * dead), rel=1e-3)
+
+
+def test_the_bound_of_a_tilt_turns_weight_and_not_dead_loads(scene, tmp_path):
+    """W sin(a) h/2 turns the stack over its edge, (W cos(a) + P) b/2 holds it. The bound of an acceleration has the same
+    tip at W a h/2 = (W + P) b/2."""
+    down, b, h = 500.0, 0.3, 0.6
+    s, _, weight = stones(tmp_path, (0, 0, -down))
+    s.tilt(60)
+    s.accelerate(1)
+    s.finish()
+    tilted, leant = message(tmp_path)["bounds"]
+    angle = math.atan(b / h) + math.asin(down * b / (weight * math.hypot(b, h)))
+    assert tilted["load"] == "tilt towards x" and tilted["unit"] == ""
+    assert tilted["factor"] == pytest.approx(math.tan(angle), rel=1e-4)
+    assert leant["factor"] == pytest.approx((1 + down / weight) * b / h, rel=1e-6)
+
+
+@pytest.mark.parametrize("imbalance", [0.0, 0.03])
+def test_a_peak_may_be_above_its_bound_by_two_per_cent_and_the_imbalance(imbalance):
+    from masonry.run.place import Place
+    from masonry.scene.bounds import Bounds
+
+    place = Place(bounds={"lean": {"factor": 0.5, "unit": "g"}})
+    bounds, most = Bounds(None, place), 1.02 + imbalance
+
+    def warned(peak, held):
+        """Whether a push to both sides and a load that was held are above their bounds, of 40 kN, 60 kN and 0.5 g."""
+        place.held = {"lean": 0.5 * held}
+        run = dict(peak_base_shear_kN=40 * peak, bound_base_shear_kN=40, dynamic_imbalance=imbalance,
+                   negative_peak_base_shear_kN=-60 * peak, negative_bound_base_shear_kN=-60)  # fmt: skip
+        return list(bounds.over(run))
+
+    assert warned(0.999 * most, 0.999 * 1.02) == []
+    push, back = warned(1.001 * most, 0.999 * 1.02)
+    assert f"more than {100 * (most - 1):.1f} % above the upper bound" in push
+    assert "40 kN" in push and "-60" not in back and "60 kN" in back
+    (lean,) = warned(0.999 * most, 1.001 * 1.02)  # at rest nothing moves
+    assert lean.startswith("warning: lean: the load that was held, 0.5105 g")
+
+
 def test_a_peak_above_its_bound_is_a_warning_with_both_numbers(scene, tmp_path, capsys):
     s, top = small("--out", str(tmp_path / "r"))
     s.settle()
