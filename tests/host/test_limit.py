@@ -362,12 +362,12 @@ def test_a_lean_is_bracketed_by_its_bound_alone(scene, tmp_path):
     assert low <= message(tmp_path / "r")["bound_acceleration"] <= high
 
 
-def stones(out, load):
+def stones(out, load, friction=0.7):
     """Three stones, 0.3 m wide and 0.6 m high, on a base, with a dead load [N] on the highest, at rest for limit analysis
     alone: the scene, the highest stone, and the weight of all [N]."""
     from masonry import Scene, bricks, materials
 
-    s = Scene("stones", bricks.stack(3, (0.3, 0.3, 0.2)), materials.dry(0.7, density=DENSITY),
+    s = Scene("stones", bricks.stack(3, (0.3, 0.3, 0.2)), materials.dry(friction, density=DENSITY),
               arguments=["--preset", "bound", "--out", str(out)])  # fmt: skip
     s.platen("bottom")
     highest = s.handle(2, name="stone")
@@ -387,19 +387,41 @@ def test_the_bound_of_a_push_lacks_what_dead_loads_push_already(scene, tmp_path,
     assert entry["factor"] == pytest.approx(1e-3 * (slides - sign * dead), rel=1e-3)
 
 
-def test_the_bound_of_a_tilt_turns_weight_and_not_dead_loads(scene, tmp_path):
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.5])
+def test_the_bound_of_a_tilt_turns_weight_and_not_dead_loads(scene, tmp_path, share):
     """W sin(a) h/2 turns the stack over its edge, (W cos(a) + P) b/2 holds it. The bound of an acceleration has the same
     tip at W a h/2 = (W + P) b/2."""
-    down, b, h = 500.0, 0.3, 0.6
-    s, _, weight = stones(tmp_path, (0, 0, -down))
-    s.tilt(60)
+    b, h = 0.3, 0.6
+    down = share * DENSITY * G * b * b * h
+    s, _, weight = stones(tmp_path, (0, 0, -down), friction=4)
+    s.tilt(80)
     s.accelerate(1)
     s.finish()
     tilted, leant = message(tmp_path)["bounds"]
-    angle = math.atan(b / h) + math.asin(down * b / (weight * math.hypot(b, h)))
+    angle = math.atan(b / h) + math.asin(share * b / math.hypot(b, h))
     assert tilted["load"] == "tilt towards x" and tilted["unit"] == ""
-    assert tilted["factor"] == pytest.approx(math.tan(angle), rel=1e-4)
-    assert leant["factor"] == pytest.approx((1 + down / weight) * b / h, rel=1e-6)
+    assert tilted["factor"] == pytest.approx(math.tan(angle), rel=1e-5)
+    assert leant["factor"] == pytest.approx((1 + share) * b / h, rel=1e-6)
+
+
+def test_a_tilt_that_slides_is_the_same_with_and_without_dilatancy(scene, tmp_path):
+    """W sin(a) slides the stack on its base, 0.3 (W cos(a) + P) holds it: no stone above has as much weight for its P."""
+    s, _, weight = stones(tmp_path, (0, 0, -400), friction=0.3)
+    s.tilt(60)
+    s.finish()
+    (entry,) = message(tmp_path)["bounds"]
+    angle = math.atan(0.3) + math.asin(0.3 * 400 / weight / math.hypot(1, 0.3))
+    assert entry["factor"] == pytest.approx(math.tan(angle), rel=1e-5)
+    assert entry["without_dilatancy"] == pytest.approx(math.tan(angle), rel=1e-3)
+
+
+def test_stones_that_are_pressed_hard_are_moved_by_no_tilt(scene, tmp_path):
+    s, _, weight = stones(tmp_path, (0, 0, -3 * DENSITY * G * 0.3 * 0.3 * 0.6), friction=4)  # fmt: skip
+    s.tilt(80)
+    s.finish()
+    (entry,) = message(tmp_path)["bounds"]
+    assert entry["note"].endswith("no tilt below 90 degrees moves the structure")
+    assert "factor" not in entry
 
 
 @pytest.mark.parametrize("imbalance", [0.0, 0.03])

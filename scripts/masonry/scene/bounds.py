@@ -24,6 +24,9 @@ UNASKED, ASKED = 10.0, 600.0
 #: By how much a run may be above its bound [-]: joints of finite stiffness, displacements that are not small, and motion,
 #: whose measured share is added.
 TOLERANCE = 0.02
+#: Of the search for a tilt at which both parts of gravity are those of the tilt: its rounds at most, the difference of two
+#: tilts at which it ends, and the largest tilt [rad].
+TILTS, SAME_TILT, STEEPEST = 20, 1e-6, math.radians(89.9)
 FIGURE = "mechanism.png"
 
 
@@ -133,14 +136,16 @@ class Bounds:
             down = assembly.weights(gravity or model.now)
             forces = self._forces(assembly, pushed)
             live = load(assembly)
-            bound = assembly.largest(live, down + forces)
-            for _ in range(5 if tilts else 0):  # both parts of gravity shrink
-                cos = 1 / np.hypot(1, bound.factor)
-                bound = assembly.largest(cos * live, cos * down + forces)
+
+            def found(find, first):
+                at = lambda cos: find(cos * live, cos * down + forces)
+                return _tilted(at, first) if tilts else at(1.0)
+
+            bound = found(assembly.largest, 0.0)
             entry.update(bound.describe())
             say(bound.sentence(what, unit))
             if not bound.exact and count <= lowerUpTo:
-                least = assembly.withoutDilatancy(live, down + forces)
+                least = found(assembly.withoutDilatancy, math.atan(bound.factor))
                 entry["without_dilatancy"] = least.factor
                 entry["without_dilatancy_settled"] = least.settled
                 say(least.sentence(what, unit))
@@ -254,6 +259,30 @@ class Bounds:
             heading = f"{title}\nlimit analysis, {entry['load']}: {entry['factor']:.4g} {entry['unit']}".rstrip()
             bound.save(directory)
             bound.draw(os.path.join(directory, FIGURE), heading, parts, views)
+
+
+def _tilted(find, first):
+    """The bound of a tilt, at which weights have turned as far as its factor says, while other loads have not: secants find it.
+
+    :param find: function of the cosine of the tilt that gives the bound with weights of that share
+    :param first: tilt with which the search begins [rad]
+    :raises Refused: if there is no such tilt below :data:`STEEPEST`
+    """
+    bound = find(math.cos(first))
+    last, off = first, math.atan(bound.factor) - first
+    angle = math.atan(bound.factor)
+    for _ in range(TILTS):
+        angle = min(max(angle, 0.0), STEEPEST)
+        if abs(angle - last) < SAME_TILT:
+            break
+        bound = find(math.cos(angle))
+        more = math.atan(bound.factor) - angle
+        slope = (more - off) / (angle - last)
+        last, off = angle, more
+        angle = last - off / slope if slope < 0 else last + off
+    if last == STEEPEST and off > 0:
+        raise Refused("limit analysis: no tilt below 90 degrees moves the structure")
+    return bound
 
 
 def _pointOf(load, assembly):
