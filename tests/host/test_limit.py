@@ -11,7 +11,7 @@ import pytest
 from masonry import MasonryJoint, MasonryMat, addBlock, connect, engines, limit
 from masonry.bricks import boxCorners
 from masonry.basics import Refused
-from yade import O
+from yade import O, Vector3
 
 G = 9.81  # [m/s²]
 DENSITY = 2000.0  # [kg/m³]
@@ -385,6 +385,35 @@ def test_the_bound_of_a_push_lacks_what_dead_loads_push_already(scene, tmp_path,
     slides = 0.7 * weight / 3  # the highest stone, before anything tips
     (entry,) = message(tmp_path)["bounds"]
     assert entry["factor"] == pytest.approx(1e-3 * (slides - sign * dead), rel=1e-3)
+
+
+def test_a_cycle_has_the_bounds_of_both_directions(scene, tmp_path):
+    dead = 100.0  # [N] along x
+    s, highest, weight = stones(tmp_path, (dead, 0, 0))
+    s.cycle(highest, [1])
+    s.finish()
+    run, slides = message(tmp_path), 0.7 * weight / 3
+    forward, back = run["bound_base_shear_kN"], run["negative_bound_base_shear_kN"]
+    assert forward == pytest.approx(1e-3 * (slides - dead), rel=1e-3)
+    assert back == pytest.approx(-1e-3 * (slides + dead), rel=1e-3)
+
+
+def test_a_bound_is_found_anew_beside_another_load_and_where_the_structure_went(scene, tmp_path):  # fmt: skip
+    s, highest, weight = stones(tmp_path, (0, 0, -100), friction=4)
+    bound = lambda: s.bounds.lean((1, 0, 0))["factor"]
+    tips = lambda down: pytest.approx((1 + down / weight) * 0.5, rel=1e-6)
+    assert bound() == tips(100)
+    s.bounds.hold("acceleration towards x", 0.5)
+    assert bound() == tips(100) and s.running.at.held
+    s.model.forceOf(highest).force = Vector3(0, 0, -400)
+    assert bound() == tips(400)
+    assert not s.running.at.held  # that was beside the other load
+    for body in O.bodies:  # all goes by half a stone, with the loads on it
+        body.state.pos += Vector3(0.15, 0, 0)
+    assert s.bounds.lean((1, 0, 0), lowerUpTo=1)["factor"] == tips(400)
+    pushed = 1e-3 * (weight + 400) * 0.15 / 0.5
+    assert s.bounds.push(highest, Vector3(1, 0, 0))["factor"] == pytest.approx(pushed, rel=1e-6)  # fmt: skip
+    s.finish()
 
 
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.5])
