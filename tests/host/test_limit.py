@@ -362,13 +362,13 @@ def test_a_lean_is_bracketed_by_its_bound_alone(scene, tmp_path):
     assert low <= message(tmp_path / "r")["bound_acceleration"] <= high
 
 
-def stones(out, load, friction=0.7):
+def stones(out, load, friction=0.7, *words):
     """Three stones, 0.3 m wide and 0.6 m high, on a base, with a dead load [N] on the highest, at rest for limit analysis
     alone: the scene, the highest stone, and the weight of all [N]."""
     from masonry import Scene, bricks, materials
 
     s = Scene("stones", bricks.stack(3, (0.3, 0.3, 0.2)), materials.dry(friction, density=DENSITY),
-              arguments=["--preset", "bound", "--out", str(out)])  # fmt: skip
+              arguments=["--preset", "bound", "--out", str(out), *words])  # fmt: skip
     s.platen("bottom")
     highest = s.handle(2, name="stone")
     s.load(highest, load)
@@ -385,6 +385,27 @@ def test_the_bound_of_a_push_lacks_what_dead_loads_push_already(scene, tmp_path,
     slides = 0.7 * weight / 3  # the highest stone, before anything tips
     (entry,) = message(tmp_path)["bounds"]
     assert entry["factor"] == pytest.approx(1e-3 * (slides - sign * dead), rel=1e-3)
+
+
+def test_a_lean_that_limit_analysis_finds_held_stays(scene, tmp_path):
+    s, highest, weight = stones(tmp_path, (0, 0, 0))
+    assert s.lean(0.2) == "at rest"
+    s.push(highest, 1)
+    s.finish()
+    pushed = message(tmp_path)["bound_base_shear_kN"]
+    assert pushed == pytest.approx(1e-3 * (0.7 - 0.2) * weight / 3, rel=1e-3)
+
+
+def test_scaled_masses_change_no_bound(scene, tmp_path):
+    """Gravity is less by as much as the masses are more: the stack tips at (W + P) b/(W h) with the true W."""
+    s, _, weight = stones(tmp_path, (0, 0, -200), 4, "--density-scaling", "9")
+    s.accelerate(1)
+    s.tilt(60)
+    s.finish()
+    leant, tilted = message(tmp_path)["bounds"]
+    assert leant["factor"] == pytest.approx((1 + 200 / weight) * 0.5, rel=1e-6)
+    angle = math.atan(0.5) + math.asin(200 * 0.5 / weight / math.hypot(1, 0.5))
+    assert tilted["factor"] == pytest.approx(math.tan(angle), rel=1e-5)
 
 
 def test_a_cycle_has_the_bounds_of_both_directions(scene, tmp_path):

@@ -263,6 +263,7 @@ def test_a_support_joint_follows_the_bed_joint_until_it_is_given():
     masonry.joints["bed"].friction = 0.5
     masonry.joints["support"].cohesion = 0.3e6
     made = masonry.variant(masonry_options())
+    assert made.joints["support"].friction == 0.5
     made.apply([("bed", "cohesion", "0.25e6"), ("support", "dilatancy", "0.1")])
     support = made.joints["support"]
     assert (support.friction, support.cohesion, support.dilatancy) == (0.5, 0.3e6, 0.1)

@@ -201,6 +201,9 @@ def test_bricks_crack_if_their_strength_is_given():
     assert (crack.tensileStrength, crack.modeIFractureEnergy) == (2e6, 90)
     assert (crack.cohesion, crack.friction, crack.modeIIFractureEnergy) == (3e6, 0.9, 700)  # fmt: skip
     assert "crack.elastic" not in sources(made) and "crack.cohesion" not in sources(made)  # fmt: skip
+    crack = clay(unit_ft=2e6).joints["crack"]
+    assert crack.cohesion == 2 * 2e6
+    assert crack.friction == crack.residualFriction == 0.75
 
 
 # -- what is refused, and what is a warning ---------------------------------------------------------------------------
