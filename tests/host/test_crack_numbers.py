@@ -6,14 +6,15 @@ import pytest
 from masonry import Scene, bricks, materials
 from masonry.read import cracks, curves
 from masonry.read.files import readCurve, readRun
+from yade import O
 
 WIDTH, HEIGHT, COURSE = 0.4, 0.6, 0.2  # [m] of a pile of three blocks
 
 
-def pile(folder, masonry, push, direction=(1, 0, 0), press=1e5, rate=20):
-    """A pile whose uppermost block is pushed at its centre; run.json and curve.csv."""
+def pile(folder, masonry, push, direction=(1, 0, 0), press=1e5, rate=20, foot=0):
+    """A pile on a foot at a height [m], whose uppermost block is pushed at its centre; run.json and curve.csv."""
     words = ["--no-vtk", "--lean", "--out", str(folder)]
-    blocks = bricks.stack(3, (WIDTH, 0.3, COURSE))
+    blocks = bricks.stack(3, (WIDTH, 0.3, COURSE)).moved(0, 0, foot)
     scene = Scene("pile", blocks, masonry, arguments=words)
     scene.platen("bottom")
     top = scene.platen("top", rotation="free", height=0.1)
@@ -44,6 +45,18 @@ def test_the_first_crack_is_the_first_row_with_a_loss_and_its_drift_is_over_the_
     assert run["largest_crack_bodies"] == list(widest[2:])
     # pushed to the right, it opens on the left
     assert run["largest_crack_at_m"][0] == pytest.approx(0)
+
+
+def test_the_drift_is_over_the_height_above_the_foot_wherever_that_is(tmp_path, scene):
+    runs = []
+    for foot in (0, 3):
+        O.reset()
+        run, _, _ = pile(tmp_path / str(foot), materials.calciumSilicate(), 0.2, foot=foot)  # fmt: skip
+        runs.append(run)
+    moved = runs[1]["displacement_at_first_crack_mm"]
+    assert runs[1]["drift_at_first_crack_mrad"] == pytest.approx(moved / (HEIGHT + 0.1))
+    drifts = [run["drift_at_first_crack_mrad"] for run in runs]
+    assert drifts[1] == pytest.approx(drifts[0], rel=0.05)  # a row or two
 
 
 def test_a_push_that_cracks_nothing_has_no_first_crack(tmp_path, scene):

@@ -396,6 +396,22 @@ def test_a_lean_that_limit_analysis_finds_held_stays(scene, tmp_path):
     assert pushed == pytest.approx(1e-3 * (0.7 - 0.2) * weight / 3, rel=1e-3)
 
 
+def test_a_tilt_is_the_same_under_another_gravity(scene, tmp_path):
+    """The factor is the tangent of the tilt, b/h, and that of an acceleration is in g of the earth."""
+    from masonry import Scene, bricks, materials
+
+    moon = Scene("stones", bricks.stack(3, (0.3, 0.3, 0.2)), materials.dry(0.7), gravity=1.62,
+                 arguments=["--preset", "bound", "--out", str(tmp_path)])  # fmt: skip
+    moon.platen("bottom")
+    moon.settle()
+    moon.tilt(60)
+    moon.accelerate(1)
+    moon.finish()
+    tilted, leant = message(tmp_path)["bounds"]
+    assert tilted["factor"] == pytest.approx(0.5, rel=1e-6)
+    assert leant["factor"] == pytest.approx(0.5 * 1.62 / G, rel=1e-6)
+
+
 def test_scaled_masses_change_no_bound(scene, tmp_path):
     """Gravity is less by as much as the masses are more: the stack tips at (W + P) b/(W h) with the true W."""
     s, _, weight = stones(tmp_path, (0, 0, -200), 4, "--density-scaling", "9")

@@ -13,7 +13,7 @@ from masonry import AT_REST, COLLAPSED, DONE, Scene, bricks, materials
 from masonry._masonry import saveScene
 from masonry.basics import Collapsed
 from masonry.read.files import readCurve, readRun
-from masonry.scene.stages import gravity
+from masonry.scene.stages import gravity, loading
 from yade import O, Vector3
 
 sys.path[:0] = [os.path.join(ROOT, "validation", *f) for f in (["held_loads"], [])]
@@ -235,6 +235,88 @@ def test_supports_of_later_stages_take_their_reaction(scene, tmp_path):
     s.release(stone, "x")
     assert s.settle() == COLLAPSED
     s.finish()
+
+
+def test_a_lean_that_is_held_is_noted_with_its_factor_and_displacement(scene, tmp_path):
+    s, stone = stack(tmp_path)
+    s.settle()
+    before = s.results.column("stone_x_mm")[-1]
+    assert s.lean(0.3) == AT_REST and s.lean(0.2) == AT_REST
+    column = s.results.column
+    assert s.running.at.held == {"acceleration towards x": 0.3}
+    assert s.running.at.loadFactor == column("load_factor")[-1] == 0.2
+    s.finish()
+    # both count from where the first one began
+    ends = [stage[3] - 1 for stage in s.running.at.stages[2:]] + [-1]
+    moved = [column("stone_x_mm")[end] - before for end in ends]
+    assert found(tmp_path, "displacement_held") == pytest.approx(moved, rel=1e-3)
+    assert moved[0] > 1.2 * moved[1] > 0
+
+
+def test_suction_pulls_with_the_pressure_times_the_face(scene, tmp_path):
+    s, stone = stack(tmp_path)
+    s.settle()
+    pulled = lambda: 1e3 * s.results.column("base_force_x_kN")[-1]
+    assert s.wind(-500, (1, 0, 0)) == AT_REST
+    assert pulled() == pytest.approx(-500 * 0.3 * 0.6, rel=0.01)
+    # one from the other side is beside it, and another from this side in its place
+    assert s.wind(200, (-1, 0, 0)) == AT_REST
+    assert pulled() == pytest.approx(-700 * 0.3 * 0.6, rel=0.01)
+    assert s.wind(300, (1, 0, 0)) == AT_REST
+    assert pulled() == pytest.approx(100 * 0.3 * 0.6, rel=0.02)
+    for towards in ((1, 0, 0), (-1, 0, 0)):
+        assert s.wind(-300, towards) == AT_REST
+        assert s.wind(0, towards) == AT_REST
+    assert abs(pulled()) < 1
+    s.finish()
+    labels = [loading.windLabel(towards, part) for towards in ((1, 0, 0), (-1, 0, 0), (0, 1, 0)) for part in (None, "a", "b")]  # fmt: skip
+    assert len(set(labels)) == 9 and all(map(str.isidentifier, labels))
+
+
+def test_a_press_of_a_later_stage_has_its_stress_with_the_weight_of_the_platen(scene, tmp_path):  # fmt: skip
+    s, _ = stack(tmp_path)
+    top = s.platen("top", height=0.2)
+    s.press(top, 0.05e6)
+    s.settle()
+    down = lambda: -1e3 * s.results.column("base_force_z_kN")[-1]
+    assert down() == pytest.approx(0.05e6 * 0.3 * 0.3 + WEIGHT, rel=5e-3)
+    assert s.model.weightOf(top) > 0.02 * down()
+    assert s.press(top, 0.1e6) == AT_REST
+    assert down() == pytest.approx(0.1e6 * 0.3 * 0.3 + WEIGHT, rel=5e-3)
+    s.finish()
+
+
+def test_what_is_held_in_a_later_stage_stops_and_stays_held(scene, tmp_path):
+    s, stone = stack(tmp_path, plane=False)
+    s.settle()
+    state = O.bodies[stone.body].state
+    s.hold(stone, "yZ")
+    state.vel, state.angVel = Vector3(1, 0, 2), Vector3(3, 4, 0)
+    s.hold(stone, "xY")
+    assert set(state.blockedDOFs) == set("xyYZ")
+    assert state.vel == Vector3(0, 0, 2) and state.angVel == Vector3(3, 0, 0)
+    state.vel = state.angVel = Vector3.Zero
+    s.finish()
+
+
+def test_a_support_moves_at_its_rate_and_stands_then(scene, tmp_path):
+    s, _ = stack(tmp_path)
+    base = next(iter(s.description.targets.values()))
+    s.settle()
+    s.move(base, x=3, z=-4, rate=20)
+    assert O.bodies[base.body].state.vel == Vector3.Zero
+    first = len(s.results.rows)
+    s.move(base, z=1, rate=20)
+    column = s.results.column
+    x, z, t = column("base_x_mm"), column("base_z_mm"), column("time_s")
+    assert (x[-1], z[-1]) == pytest.approx((3, -3), rel=1e-6)
+    ways = [math.hypot(x[i + 1] - x[i], z[i + 1] - z[i]) for i in range(len(x) - 1)]
+    speeds = [way / (b - a) for way, a, b in zip(ways, t, t[1:]) if b > a]
+    assert max(speeds) == pytest.approx(20, rel=1e-3)
+    s.finish()
+    # from the first row of each stage, which is at its beginning but for a five-hundredth
+    assert found(tmp_path, "displacement_of_base") == pytest.approx([5, 1], rel=0.01)
+    assert (x[first - 1], z[first - 1]) == pytest.approx((3, -4), rel=1e-6)
 
 
 @pytest.mark.parametrize("direction", [(0, 0, -1), (0.6, 0, -0.8), (-1, 0, 0)])

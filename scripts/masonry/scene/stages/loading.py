@@ -80,8 +80,9 @@ def _windOn(scene, pressure, towards, part, name):
     towards = vector(towards, f"{name}: direction")
     calm = name == "wind" and pressure == 0  # the wind of before ends
     faces = windFaces(scene.description, pressure or float(calm), towards, part, name)
+    # suction has the engines of a pressure on the same faces, so that one replaces the other
+    engines = scene.model.windOf(windLabel(towards.normalized(), part), faces)
     towards = math.copysign(1, pressure) * towards.normalized()
-    engines = scene.model.windOf(windLabel(towards, part), faces)
     sign = math.copysign(1e3, pressure)
     forces = [-sign * area * Vector3(*normal) for _, normal, area, _ in faces]
     what = f"wind towards {nameOf(towards)}" + (f" on {part}" if part else "")
@@ -90,7 +91,7 @@ def _windOn(scene, pressure, towards, part, name):
 
 def windLabel(towards, part):
     """How the labels of the engines of a wind begin. YADE makes names of them."""
-    axes = "_".join(f"{v:.6g}".replace("-", "minus") for v in towards)
+    axes = "_".join(f"{v + 0.0:.6g}".replace("-", "minus") for v in towards)
     return re.sub(r"\W", "_", f"wind_towards_{axes}_{part or 'all'}")
 
 
