@@ -4,6 +4,7 @@
 import pytest
 from masonry import AT_REST, COLLAPSED, Scene, bricks, materials
 from masonry.read.files import readRun
+from masonry.scene.stages.stage import answersText
 from masonry.study.gathering import _answerName
 from small import SMALL, carryOut, parsed
 
@@ -61,6 +62,20 @@ def test_a_lean_answers_with_what_was_held_and_with_nothing_if_it_was_not(tmp_pa
     assert [a["value"] for a in found] == [0.3, None, None, 0.6]
     assert "did not come to rest under 0.6 g" in found[2]["how"]
     assert scene.factor == readRun(str(tmp_path))["factor"] == 0.3
+
+
+def test_the_line_of_a_bracket_has_the_largest_that_was_held_and_the_smallest_that_was_not():
+    def leans(*factors):
+        """Answers of leans that were held, or, of negative factors, not held."""
+        for number, factor in enumerate(factors):
+            values = dict(factor_held=factor if factor > 0 else None, factor_not_held=-factor if factor < 0 else None)  # fmt: skip
+            for name, value in values.items():
+                yield dict(stage="lean", number=number, name=name, unit="g", value=value, uncertainty=None, how="none")  # fmt: skip
+
+    (line,) = answersText(leans(0.2, -0.6, 0.35, -0.4, 0.3, -0.5))
+    assert line == "lean: factor held 0.35 g (6 stages); factor not held 0.4 g"
+    (line,) = answersText(leans(0.2))
+    assert line == "lean: factor held 0.2 g; factor not held: not found: none"
 
 
 def test_a_support_that_moves_and_time_that_passes_answer_with_displacements(tmp_path):

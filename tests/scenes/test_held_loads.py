@@ -245,11 +245,14 @@ def test_a_lean_that_is_held_is_noted_with_its_factor_and_displacement(scene, tm
     column = s.results.column
     assert s.running.at.held == {"acceleration towards x": 0.3}
     assert s.running.at.loadFactor == column("load_factor")[-1] == 0.2
+    assert s.load(stone, (100, 0, 0)) == AT_REST
     s.finish()
-    # both count from where the first one began
+    # both leans count from where the first one began, and the force from where it began itself
     ends = [stage[3] - 1 for stage in s.running.at.stages[2:]] + [-1]
-    moved = [column("stone_x_mm")[end] - before for end in ends]
+    x = [column("stone_x_mm")[end] for end in ends]
+    moved = [x[0] - before, x[1] - before, x[2] - x[1]]
     assert found(tmp_path, "displacement_held") == pytest.approx(moved, rel=1e-3)
+    assert readRun(str(tmp_path))["figure"]["y_label"] == "load [kN]"
     assert moved[0] > 1.2 * moved[1] > 0
 
 
