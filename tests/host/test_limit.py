@@ -412,6 +412,19 @@ def test_a_tilt_is_the_same_under_another_gravity(scene, tmp_path):
     assert leant["factor"] == pytest.approx(0.5 * 1.62 / G, rel=1e-6)
 
 
+def test_limit_analysis_alone_replaces_a_load_and_stands_under_one_that_moves_nothing(scene, tmp_path):  # fmt: skip
+    s, highest, weight = stones(tmp_path, (100, 0, -50))
+    assert s.load(highest, (0, 0, -1e5)) == "at rest"  # on a base that is held
+    assert s.load(highest, (0, 0, 0)) == "at rest"
+    slides = 0.7 * weight / 3  # the highest stone
+    assert s.load(highest, (0.9 * slides, 0, 0)) == "at rest"
+    assert s.load(highest, (1.1 * slides, 0, 0)) == "moving"
+    assert s.model.forceOf(highest).force[0] == pytest.approx(0.9 * slides)
+    low, high = s.bracket(lambda f: s.load(highest, (f, 0, 0)) == "at rest", 1, 1e3)
+    assert low <= slides * 1.001 and slides * 0.999 <= high
+    s.finish()
+
+
 def test_scaled_masses_change_no_bound(scene, tmp_path):
     """Gravity is less by as much as the masses are more: the stack tips at (W + P) b/(W h) with the true W."""
     s, _, weight = stones(tmp_path, (0, 0, -200), 4, "--density-scaling", "9")

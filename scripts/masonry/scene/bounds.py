@@ -14,6 +14,7 @@ from yade import O
 
 from .. import limit
 from ..basics import GRAVITY, Refused, say
+from ..limit.assembly import Endless
 
 #: Up to so many joints a collapse without dilatancy, which takes many rounds, is looked for with --preset bound.
 SMALL = 500
@@ -40,6 +41,7 @@ class Bounds:
     def __init__(self, model, place):
         self.model, self.place = model, place
         self.last = None  # what was found last: limit.Bound and its entry
+        self.endless = set()  # names of loads under which nothing gives way
         self._beside = {}  # what acted and held when a bound was found, by the load
 
     @property
@@ -116,6 +118,7 @@ class Bounds:
             self._beside[what] = beside
             self.place.held = {k: v for k, v in self.place.held.items() if k != what}
         entry = self.entries[what] = {"load": what, "unit": unit}
+        self.endless.discard(what)
         if self.place.supportsMoved:
             reason = (
                 "supports have moved, and joints that are open would be taken as closed"
@@ -152,6 +155,8 @@ class Bounds:
             self.last = bound, entry
         except Refused as refused:
             entry["note"] = str(refused)
+            if isinstance(refused, Endless):
+                self.endless.add(what)
             say(f"note: {refused}")
         return entry
 
@@ -266,7 +271,7 @@ def _tilted(find, first):
 
     :param find: function of the cosine of the tilt that gives the bound with weights of that share
     :param first: tilt with which the search begins [rad]
-    :raises Refused: if there is no such tilt below :data:`STEEPEST`
+    :raises Endless: if there is no such tilt below :data:`STEEPEST`
     """
     bound = find(math.cos(first))
     last, off = first, math.atan(bound.factor) - first
@@ -281,7 +286,7 @@ def _tilted(find, first):
         last, off = angle, more
         angle = last - off / slope if slope < 0 else last + off
     if last == STEEPEST and off > 0:
-        raise Refused("limit analysis: no tilt below 90 degrees moves the structure")
+        raise Endless("limit analysis: no tilt below 90 degrees moves the structure")
     return bound
 
 

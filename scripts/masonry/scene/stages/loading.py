@@ -19,7 +19,7 @@ from ..targets import Target
 from .acting import Forces
 from .gravity import boundAlone, checkWithin, putOn, putOnAnswers
 from .growing import WITHIN, found, grow
-from .stage import stage
+from .stage import AT_REST, stage
 from .supports import atOnce
 from .timed import checkedRate
 
@@ -171,11 +171,16 @@ def growPress(scene, platen, stress, over=GROWS, within=WITHIN):
 
 
 def _putOn(scene, name, made, towards, longest):
-    made.replaces, scene.loadUnit = True, made.unit
-    if not any(made.now()):
+    made.replaces, scene.loadUnit, before = True, made.unit, made.now()
+    if scene.only:  # what it replaces is no load beside it
+        made.put(made.at(before, 0.0))
+    if scene.only or not any(before):
         scene.findBound("forces", made.name, made.unit, made.pairs())
     if scene.only:
-        return boundAlone(scene, made)
+        ended = boundAlone(scene, made)
+        if ended != AT_REST:
+            made.put(before)
+        return ended
     return putOn(scene, name, made, towards, longest)
 
 
