@@ -4,9 +4,11 @@
 import pytest
 from masonry import AT_REST, COLLAPSED, Scene, bricks, materials
 from masonry.read.files import readRun
+from masonry.run import run
 from masonry.scene.stages.stage import answersText
 from masonry.study.gathering import _answerName
 from small import SMALL, carryOut, parsed
+from yade import O
 
 STONE = dict(friction=0.7, normalStiffness=2e9)
 
@@ -115,3 +117,23 @@ def test_a_resumed_run_has_the_answers_of_one_without_a_break(tmp_path):
     after = readRun(str(tmp_path))["answers"]
     assert after[: len(before)] == before
     assert [a["value"] for a in after if a["name"] == "factor_held"] == [0.1, 0.2]
+
+
+def test_a_resumed_run_of_what_fell_says_so_as_before(tmp_path):
+    runs = []
+    for words in ((), ("--resume", str(tmp_path))):
+        scene = stack(tmp_path, *words)
+        assert scene.lean(0.6) == COLLAPSED
+        scene.finish()
+        runs.append(readRun(str(tmp_path)))
+    assert runs[0]["collapse"] and runs[1]["collapse"] == runs[0]["collapse"]
+    assert runs[1]["collapsed"] and runs[1]["steps"] == runs[0]["steps"]
+
+
+def test_steps_are_counted_once_although_a_run_looks_up_between_them(tmp_path, monkeypatch):  # fmt: skip
+    scene = stack(tmp_path)
+    monkeypatch.setattr(run, "LOOK_EVERY", 0.0)  # after every step
+    before, first = scene.running.at.steps, O.iter
+    scene.running.advance(10)
+    assert scene.running.at.steps - before == O.iter - first == 10
+    scene.finish()

@@ -54,6 +54,8 @@ def test_the_rate_of_the_growth_hardly_counts(scene, tmp_path, rate):
     )
     assert held < 0.5 * 1.001 and lost > 0.5 * 0.999  # b/h, when it tips
     assert lost - held <= 0.005 * lost * 1.001
+    times = readCurve(str(tmp_path))["time_s"]
+    assert all(one < other for one, other in zip(times, times[1:]))  # no row twice
     run = readRun(str(tmp_path))
     assert run["factor"] == held == s.factor
     assert {mark["y"] for mark in run["figure"]["marks"]} == {held, lost}
@@ -69,6 +71,8 @@ def test_a_structure_that_stands_has_a_load_that_was_held_and_no_other(scene, tm
     s.settle()
     assert s.accelerate(0.2, rate=0.4) == AT_REST
     assert s.lean(0.3) == AT_REST  # it stands yet
+    times = s.results.column("time_s")
+    assert all(one < other for one, other in zip(times, times[1:]))  # no row twice
     s.finish()
     assert found(tmp_path, "factor_held") == [pytest.approx(0.2, rel=0.01), 0.3]
     assert found(tmp_path, "factor_not_held") == [None, None]
@@ -313,8 +317,8 @@ def test_a_support_moves_at_its_rate_and_stands_then(scene, tmp_path):
     column = s.results.column
     x, z, t = column("base_x_mm"), column("base_z_mm"), column("time_s")
     assert (x[-1], z[-1]) == pytest.approx((3, -3), rel=1e-6)
-    ways = [math.hypot(x[i + 1] - x[i], z[i + 1] - z[i]) for i in range(len(x) - 1)]
-    speeds = [way / (b - a) for way, a, b in zip(ways, t, t[1:]) if b > a]
+    paths = [math.hypot(x[i + 1] - x[i], z[i + 1] - z[i]) for i in range(len(x) - 1)]
+    speeds = [path / (b - a) for path, a, b in zip(paths, t, t[1:]) if b > a]
     assert max(speeds) == pytest.approx(20, rel=1e-3)
     s.finish()
     # from the first row of each stage, which is at its beginning but for a five-hundredth
