@@ -238,3 +238,13 @@ def test_a_structure_that_never_rests_is_tried_down_to_no_load_and_has_no_number
         with pytest.raises(Collapsed):
             found.end()
         assert made.kept == []
+
+
+@pytest.mark.parametrize("held, exact, noted", [(0.94, True, True), (0.96, True, False), (0.5, False, False)])  # fmt: skip
+def test_a_note_says_that_much_less_is_held_than_rigid_blocks_carry(capsys, held, exact, noted):  # fmt: skip
+    entries = {"a": {"exact": exact, "factor": 1.0}}
+    made = SimpleNamespace(bounds=SimpleNamespace(entries=entries))
+    at = growing.Growing(held=[held, 0.0], lost=[0.99, 0.0, 1, 0])
+    growing._compare(made, "tilt", SimpleNamespace(name="a"), at)
+    said = "and the run held 6 % less" in " ".join(capsys.readouterr().out.split())
+    assert said == noted
