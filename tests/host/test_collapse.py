@@ -232,6 +232,18 @@ def test_a_balance_that_is_off_is_reported_once(scene, capfd):
     assert energy().warned
 
 
+@pytest.mark.parametrize("off", [0.0, 0.009, 0.011, 0.05])
+def test_a_balance_is_reported_from_one_per_cent_of_the_work_on(scene, capfd, off):
+    """An uncounted force F beside the weight W moves the block by u: (W + F) u is taken up, and W u is counted."""
+    s = standing(joint=MasonryJoint(elastic=True), damping=0.3)
+    weight = G * s.mass
+    O.forces.setPermF(1, Vector3(0, 0, -weight * off / (1 - off)))  # F/(W + F) is off
+    go(2500 * O.dt)
+    assert energy().balance()["error"] == pytest.approx(-off, abs=2e-4)
+    assert energy().warned == (off > 0.01)
+    assert ("the energy balance is off by" in capfd.readouterr().err) == (off > 0.01)
+
+
 @pytest.mark.parametrize("off", [False, True], ids=["sound", "unwatched"])
 def test_nothing_is_reported_of_a_sound_balance_or_without_the_watch(scene, capfd, off):
     s = standing(joint=MasonryJoint(elastic=True), damping=0.3)

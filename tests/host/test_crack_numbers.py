@@ -1,19 +1,22 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What run.json says of the cracks of a push: the first one, the widest at the end, and the collapse."""
+"""What comes out of a run: its cracks, the first and the widest, its collapse, and the rows of a figure."""
 
+from types import SimpleNamespace
 
 import pytest
 from masonry import Scene, bricks, materials
 from masonry.read import cracks, curves
 from masonry.read.files import readCurve, readRun
+from masonry.scene.outcome import Outcome
+from yade import O
 
 WIDTH, HEIGHT, COURSE = 0.4, 0.6, 0.2  # [m] of a pile of three blocks
 
 
-def pile(folder, masonry, push, direction=(1, 0, 0), press=1e5, rate=20):
-    """A pile whose uppermost block is pushed at its centre; run.json and curve.csv."""
+def pile(folder, masonry, push, direction=(1, 0, 0), press=1e5, rate=20, foot=0):
+    """A pile on a foot at a height [m], whose uppermost block is pushed at its centre; run.json and curve.csv."""
     words = ["--no-vtk", "--lean", "--out", str(folder)]
-    blocks = bricks.stack(3, (WIDTH, 0.3, COURSE))
+    blocks = bricks.stack(3, (WIDTH, 0.3, COURSE)).moved(0, 0, foot)
     scene = Scene("pile", blocks, masonry, arguments=words)
     scene.platen("bottom")
     top = scene.platen("top", rotation="free", height=0.1)
@@ -44,6 +47,18 @@ def test_the_first_crack_is_the_first_row_with_a_loss_and_its_drift_is_over_the_
     assert run["largest_crack_bodies"] == list(widest[2:])
     # pushed to the right, it opens on the left
     assert run["largest_crack_at_m"][0] == pytest.approx(0)
+
+
+def test_the_drift_is_over_the_height_above_the_foot_wherever_that_is(tmp_path, scene):
+    runs = []
+    for foot in (0, 3):
+        O.reset()
+        run, _, _ = pile(tmp_path / str(foot), materials.calciumSilicate(), 0.2, foot=foot)  # fmt: skip
+        runs.append(run)
+    moved = runs[1]["displacement_at_first_crack_mm"]
+    assert runs[1]["drift_at_first_crack_mrad"] == pytest.approx(moved / (HEIGHT + 0.1))
+    drifts = [run["drift_at_first_crack_mrad"] for run in runs]
+    assert drifts[1] == pytest.approx(drifts[0], rel=0.05)  # a row or two
 
 
 def test_a_push_that_cracks_nothing_has_no_first_crack(tmp_path, scene):
@@ -83,6 +98,53 @@ def test_the_first_crack_is_counted_from_the_first_row_of_the_push():
     assert curves.firstCrack(rows.get, slice(1, 4)) is None
     assert curves.firstCrack(rows.get) == 1
     assert curves.firstCrack(rows.get, slice(6, None)) is None
+
+
+def outcome(loads, columns, collapsed=False, answers=()):
+    """What comes out of a scene without joints, of which each stage has two rows.
+
+    :param loads: of the stages in their order: the kind and the name of what each loaded
+    """
+    at = SimpleNamespace(
+        loads={str(n): [*load, ""] for n, load in enumerate(loads, 1)},
+        stages=[["", 0, 0.0, 2 * n] for n in range(len(loads))],
+        answers={str(n): [{"value": value}] for n, value in enumerate(answers, 1)},
+    )
+    made = object.__new__(Outcome)
+    made.scene = SimpleNamespace(running=SimpleNamespace(at=at), collapsed=collapsed)
+    target = SimpleNamespace(recorded=(0, 0, 2.0))
+    made.model = SimpleNamespace(target=target, direction=(1, 0, 0), interactions=[])
+    made.description = SimpleNamespace(low=(0, 0, 0))
+    zero = [0.0] * 2 * len(loads)
+    column = lambda head: columns.get(head, zero)
+    made.results = SimpleNamespace(column=column, rows=zero)
+    return made, column
+
+
+def test_what_is_lost_between_two_pushes_is_no_crack_of_theirs():
+    loads = [("push", "a"), ("lean", "b"), ("push", "a")]
+    for lost, at in (([0, 0, 5, 5, 5, 5], None), ([0, 0, 5, 5, 5, 7], 0.6), ([0, 1, 5, 5, 5, 7], 0.2)):  # fmt: skip
+        moved = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]
+        made, column = outcome(loads, {"dissipated_shear_J": lost, "displacement_mm": moved})  # fmt: skip
+        found = made._ofCracks(column)
+        assert found["displacement_at_first_crack_mm"] == at
+        drift = None if at is None else at / 2.0
+        assert found["drift_at_first_crack_mrad"] == drift
+
+
+@pytest.mark.parametrize("last, collapse", [("push", 0.4), ("lean", None)])
+def test_a_collapse_after_a_push_is_not_its_own(last, collapse):
+    moved = {"displacement_mm": [0.1, 0.2, 0.3, 0.4]}
+    made, column = outcome([("push", "a"), (last, "a")], moved, collapsed=True)
+    assert made._ofCracks(column)["collapse_displacement_mm"] == collapse
+
+
+def test_the_line_of_loads_that_were_put_on_goes_from_rest_up_to_the_largest():
+    loads = [("push", "a"), ("lean", "b"), ("lean", "b"), ("lean", "c"), ("lean", "b")]
+    factors = [0, 0, 0.1, 0.3, 0.2, 0.2, 0.7, 0.7, 0.9, 0.9]
+    made, _ = outcome(loads, {"load_factor": factors}, answers=[1, 0.3, 0.2, 0.7, None])
+    # the end of the push, then those of what was held, by the load
+    assert made._restsUnder("b") == [1, 5, 3]
 
 
 def test_the_widest_crack_is_the_largest_opening():

@@ -121,6 +121,30 @@ def test_blocks_moved_before_the_first_step_fall_from_where_they_are(scene, dire
     assert abs(b["error"]) < 1e-9
 
 
+@pytest.mark.parametrize("direction", ["rigid", "functors"])
+def test_held_blocks_that_go_down_do_the_work_of_their_weight(scene, direction):
+    """Whatever holds them takes that work, so that the balance closes."""
+    stack(direction, gravity=(0, 0, -G), blocked="xyzXYZ")
+    O.dt, bodies = 1e-5, [O.bodies[k].state for k in range(3)]
+    for state in bodies:
+        state.vel = Vector3(0, 0, -0.05)
+    for _ in range(500):
+        O.step()
+    # the balance belongs to the beginning of the last step
+    down, b = 0.05 * (O.time - O.dt), balance()
+    whole = G * sum(state.mass for state in bodies)
+    assert b["gravity"] == pytest.approx(whole * down, rel=1e-9)
+    # what holds them acts along the velocity, which is half a step beside the places
+    half = 0.5 * 0.05 * O.dt * whole
+    assert b["external"] == pytest.approx(-whole * down, abs=1.001 * half)
+    for state in bodies:
+        state.vel = Vector3.Zero
+    for _ in range(20):
+        O.step()
+    stayed = 0.05 * 500 * O.dt  # when they stand again, their work stays
+    assert balance()["gravity"] == pytest.approx(whole * stayed, rel=1e-9)
+
+
 def test_deformable_units_know_one_gravity(scene):
     stack("deformable", gravity=(0, 0, -G))
     zones = engine(MasonryZones)

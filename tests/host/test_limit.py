@@ -11,7 +11,7 @@ import pytest
 from masonry import MasonryJoint, MasonryMat, addBlock, connect, engines, limit
 from masonry.bricks import boxCorners
 from masonry.basics import Refused
-from yade import O
+from yade import O, Vector3
 
 G = 9.81  # [m/s²]
 DENSITY = 2000.0  # [kg/m³]
@@ -360,6 +360,170 @@ def test_a_lean_is_bracketed_by_its_bound_alone(scene, tmp_path):
     low, high = s.bracket(lambda g: s.lean(g) == AT_REST, 0.0, 5.0, within=1e-3)
     s.finish()
     assert low <= message(tmp_path / "r")["bound_acceleration"] <= high
+
+
+def stones(out, load, friction=0.7, *words):
+    """Three stones, 0.3 m wide and 0.6 m high, on a base, with a dead load [N] on the highest, at rest for limit analysis
+    alone: the scene, the highest stone, and the weight of all [N]."""
+    from masonry import Scene, bricks, materials
+
+    s = Scene("stones", bricks.stack(3, (0.3, 0.3, 0.2)), materials.dry(friction, density=DENSITY),
+              arguments=["--preset", "bound", "--out", str(out), *words])  # fmt: skip
+    s.platen("bottom")
+    highest = s.handle(2, name="stone")
+    s.load(highest, load)
+    s.settle()
+    return s, highest, DENSITY * G * 0.3 * 0.3 * 0.6
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_bound_of_a_push_lacks_what_dead_loads_push_already(scene, tmp_path, sign):
+    dead = 100.0  # [N] along x
+    s, highest, weight = stones(tmp_path, (dead, 0, 0))
+    s.push(highest, 1, direction=(sign, 0, 0))
+    s.finish()
+    slides = 0.7 * weight / 3  # the highest stone, before anything tips
+    (entry,) = message(tmp_path)["bounds"]
+    assert entry["factor"] == pytest.approx(1e-3 * (slides - sign * dead), rel=1e-3)
+
+
+def test_a_lean_that_limit_analysis_finds_held_stays(scene, tmp_path):
+    s, highest, weight = stones(tmp_path, (0, 0, 0))
+    assert s.lean(0.2) == "at rest"
+    s.push(highest, 1)
+    s.finish()
+    pushed = message(tmp_path)["bound_base_shear_kN"]
+    assert pushed == pytest.approx(1e-3 * (0.7 - 0.2) * weight / 3, rel=1e-3)
+
+
+def test_a_tilt_is_the_same_under_another_gravity(scene, tmp_path):
+    """The factor is the tangent of the tilt, b/h, and that of an acceleration is in g of the earth."""
+    from masonry import Scene, bricks, materials
+
+    moon = Scene("stones", bricks.stack(3, (0.3, 0.3, 0.2)), materials.dry(0.7), gravity=1.62,
+                 arguments=["--preset", "bound", "--out", str(tmp_path)])  # fmt: skip
+    moon.platen("bottom")
+    moon.settle()
+    moon.tilt(60)
+    moon.accelerate(1)
+    moon.finish()
+    tilted, leant = message(tmp_path)["bounds"]
+    assert tilted["factor"] == pytest.approx(0.5, rel=1e-6)
+    assert leant["factor"] == pytest.approx(0.5 * 1.62 / G, rel=1e-6)
+
+
+def test_limit_analysis_alone_replaces_a_load_and_stands_under_one_that_moves_nothing(scene, tmp_path):  # fmt: skip
+    s, highest, weight = stones(tmp_path, (100, 0, -50))
+    assert s.load(highest, (0, 0, -1e5)) == "at rest"  # on a base that is held
+    assert s.load(highest, (0, 0, 0)) == "at rest"
+    slides = 0.7 * weight / 3  # the highest stone
+    assert s.load(highest, (0.9 * slides, 0, 0)) == "at rest"
+    assert s.load(highest, (1.1 * slides, 0, 0)) == "moving"
+    assert s.model.forceOf(highest).force[0] == pytest.approx(0.9 * slides)
+    low, high = s.bracket(lambda f: s.load(highest, (f, 0, 0)) == "at rest", 1, 1e3)
+    assert low <= slides * 1.001 and slides * 0.999 <= high
+    s.finish()
+
+
+def test_scaled_masses_change_no_bound(scene, tmp_path):
+    """Gravity is less by as much as the masses are more: the stack tips at (W + P) b/(W h) with the true W."""
+    s, _, weight = stones(tmp_path, (0, 0, -200), 4, "--density-scaling", "9")
+    s.accelerate(1)
+    s.tilt(60)
+    s.finish()
+    leant, tilted = message(tmp_path)["bounds"]
+    assert leant["factor"] == pytest.approx((1 + 200 / weight) * 0.5, rel=1e-6)
+    angle = math.atan(0.5) + math.asin(200 * 0.5 / weight / math.hypot(1, 0.5))
+    assert tilted["factor"] == pytest.approx(math.tan(angle), rel=1e-5)
+
+
+def test_a_cycle_has_the_bounds_of_both_directions(scene, tmp_path):
+    dead = 100.0  # [N] along x
+    s, highest, weight = stones(tmp_path, (dead, 0, 0))
+    s.cycle(highest, [1])
+    s.finish()
+    run, slides = message(tmp_path), 0.7 * weight / 3
+    forward, back = run["bound_base_shear_kN"], run["negative_bound_base_shear_kN"]
+    assert forward == pytest.approx(1e-3 * (slides - dead), rel=1e-3)
+    assert back == pytest.approx(-1e-3 * (slides + dead), rel=1e-3)
+
+
+def test_a_bound_is_found_anew_beside_another_load_and_where_the_structure_went(scene, tmp_path):  # fmt: skip
+    s, highest, weight = stones(tmp_path, (0, 0, -100), friction=4)
+    bound = lambda: s.bounds.lean((1, 0, 0))["factor"]
+    tips = lambda down: pytest.approx((1 + down / weight) * 0.5, rel=1e-6)
+    assert bound() == tips(100)
+    s.bounds.hold("acceleration towards x", 0.5)
+    assert bound() == tips(100) and s.running.at.held
+    s.model.forceOf(highest).force = Vector3(0, 0, -400)
+    assert bound() == tips(400)
+    assert not s.running.at.held  # that was beside the other load
+    for body in O.bodies:  # all goes by half a stone, with the loads on it
+        body.state.pos += Vector3(0.15, 0, 0)
+    assert s.bounds.lean((1, 0, 0), lowerUpTo=1)["factor"] == tips(400)
+    pushed = 1e-3 * (weight + 400) * 0.15 / 0.5
+    assert s.bounds.push(highest, Vector3(1, 0, 0))["factor"] == pytest.approx(pushed, rel=1e-6)  # fmt: skip
+    s.finish()
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.5])
+def test_the_bound_of_a_tilt_turns_weight_and_not_dead_loads(scene, tmp_path, share):
+    """W sin(a) h/2 turns the stack over its edge, (W cos(a) + P) b/2 holds it. The bound of an acceleration has the same
+    tip at W a h/2 = (W + P) b/2."""
+    b, h = 0.3, 0.6
+    down = share * DENSITY * G * b * b * h
+    s, _, weight = stones(tmp_path, (0, 0, -down), friction=4)
+    s.tilt(80)
+    s.accelerate(1)
+    s.finish()
+    tilted, leant = message(tmp_path)["bounds"]
+    angle = math.atan(b / h) + math.asin(share * b / math.hypot(b, h))
+    assert tilted["load"] == "tilt towards x" and tilted["unit"] == ""
+    assert tilted["factor"] == pytest.approx(math.tan(angle), rel=1e-5)
+    assert leant["factor"] == pytest.approx((1 + share) * b / h, rel=1e-6)
+
+
+def test_a_tilt_that_slides_is_the_same_with_and_without_dilatancy(scene, tmp_path):
+    """W sin(a) slides the stack on its base, 0.3 (W cos(a) + P) holds it: no stone above has as much weight for its P."""
+    s, _, weight = stones(tmp_path, (0, 0, -400), friction=0.3)
+    s.tilt(60)
+    s.finish()
+    (entry,) = message(tmp_path)["bounds"]
+    angle = math.atan(0.3) + math.asin(0.3 * 400 / weight / math.hypot(1, 0.3))
+    assert entry["factor"] == pytest.approx(math.tan(angle), rel=1e-5)
+    assert entry["without_dilatancy"] == pytest.approx(math.tan(angle), rel=1e-3)
+
+
+def test_stones_that_are_pressed_hard_are_moved_by_no_tilt(scene, tmp_path):
+    s, _, weight = stones(tmp_path, (0, 0, -3 * DENSITY * G * 0.3 * 0.3 * 0.6), friction=4)  # fmt: skip
+    s.tilt(80)
+    s.finish()
+    (entry,) = message(tmp_path)["bounds"]
+    assert entry["note"].endswith("no tilt below 90 degrees moves the structure")
+    assert "factor" not in entry
+
+
+@pytest.mark.parametrize("imbalance", [0.0, 0.03])
+def test_a_peak_may_be_above_its_bound_by_two_per_cent_and_the_imbalance(imbalance):
+    from masonry.run.place import Place
+    from masonry.scene.bounds import Bounds
+
+    place = Place(bounds={"lean": {"factor": 0.5, "unit": "g"}})
+    bounds, most = Bounds(None, place), 1.02 + imbalance
+
+    def warned(peak, held):
+        """Whether a push to both sides and a load that was held are above their bounds, of 40 kN, 60 kN and 0.5 g."""
+        place.held = {"lean": 0.5 * held}
+        run = dict(peak_base_shear_kN=40 * peak, bound_base_shear_kN=40, dynamic_imbalance=imbalance,
+                   negative_peak_base_shear_kN=-60 * peak, negative_bound_base_shear_kN=-60)  # fmt: skip
+        return list(bounds.over(run))
+
+    assert warned(0.999 * most, 0.999 * 1.02) == []
+    push, back = warned(1.001 * most, 0.999 * 1.02)
+    assert f"more than {100 * (most - 1):.1f} % above the upper bound" in push
+    assert "40 kN" in push and "-60" not in back and "60 kN" in back
+    (lean,) = warned(0.999 * most, 1.001 * 1.02)  # at rest nothing moves
+    assert lean.startswith("warning: lean: the load that was held, 0.5105 g")
 
 
 def test_a_peak_above_its_bound_is_a_warning_with_both_numbers(scene, tmp_path, capsys):

@@ -189,6 +189,24 @@ def test_the_parts_of_a_corner_add_up_to_the_whole(tmp_path, scene):
     corner.finish()
 
 
+def test_a_joint_between_two_parts_is_of_the_part_of_its_upper_brick(tmp_path, scene):
+    blocks = bricks.Corner(1.1, 0.88, 0.486, halves=False)
+    corner = made(tmp_path, blocks, masonry=materials.dry(normalStiffness=5e10))
+    corner.platen("bottom")
+    sections = [corner.section(0.243, part) for part in sorted({b.part for b in blocks})]  # fmt: skip
+    corner.settle()
+    partOf = dict(zip(corner.model.ids, (block.part for block in blocks)))
+    between = 0
+    for section in sections:
+        for one, sign in zip(section.interactions, section.signs):
+            lower, upper = (one.id1, one.id2) if sign > 0 else (one.id2, one.id1)
+            assert O.bodies[lower].state.pos[2] < 0.243 < O.bodies[upper].state.pos[2]
+            assert partOf[upper] == section.part
+            between += partOf[lower] != section.part
+    assert between
+    corner.finish()
+
+
 @pytest.mark.parametrize(
     "act, message",
     [

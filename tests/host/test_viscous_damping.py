@@ -13,6 +13,7 @@ from masonry import (
     criticalTimeStep,
     engines,
     loadCheckpoint,
+    rayleigh,
     saveCheckpoint,
 )
 from masonry.bricks import boxCorners as corners
@@ -115,6 +116,25 @@ def test_nodes_of_deformable_units_lose_momentum_at_the_same_rate(scene):
     expected = 0.01 * math.exp(-200 * O.time)
     assert all(v[2] == pytest.approx(expected, rel=1e-4) for v in zones.velocities)
     assert abs(balance()["error"]) < 1e-9
+
+
+@pytest.mark.parametrize("ratio, low, high", [(0.05, 2, 20), (0.3, 0.5, 0.7), (0, 1, 3)])  # fmt: skip
+def test_rayleigh_damping_has_its_ratio_at_both_frequencies_and_less_between(
+    ratio, low, high
+):
+    mass, stiffness = rayleigh(ratio, low, high)
+
+    def share(frequency):
+        """Of the critical damping 2 ω of x'' + (mass + stiffness ω²) x' + ω² x = 0."""
+        omega = 2 * math.pi * frequency
+        return (mass + stiffness * omega**2) / (2 * omega)
+
+    assert share(low) == pytest.approx(ratio, rel=1e-12)
+    assert share(high) == pytest.approx(ratio, rel=1e-12)
+    middle = math.sqrt(
+        low * high
+    )  # where both parts are the same, and their sum is least
+    assert share(middle) == pytest.approx(2 * ratio * middle / (low + high), rel=1e-12)
 
 
 def swing(fraction, ratio):

@@ -283,6 +283,22 @@ TEST_CASE("cyclic: under changing normal stress the cohesion softens by what is 
     CHECK(taken == within(354.5, 0.02));
 }
 
+TEST_CASE("cyclic: at the tip of the Coulomb cone a slide counts over a thousandth of the cohesion") {
+    // There the bond is at its tensile strength c/tan(phi), and the shear strength is zero. Divided by that, any slide
+    // would take the whole bond.
+    JointProperties p = cyclic();
+    p.tensileStrength = p.cohesion / p.friction;
+    for (double share : {0.1, 1.0, 3.0}) {
+        Path path(p);
+        path.step({p.tensileStrength / p.normalStiffness, {}});
+        REQUIRE(path.state.normalStress == within(p.tensileStrength, 1e-12));
+        const double stress = share * 1e-3 * p.cohesion; // trial stress of the slide
+        path.step({0, {stress / p.shearStiffness, 0}});
+        CHECK(path.state.shearSoftening == doctest::Approx(share).epsilon(1e-6).scale(0));
+        CHECK(path.state.shearDamage < 1);
+    }
+}
+
 TEST_CASE("cyclic: an open joint carries no residual cohesion beyond cr/kn, and loses it without a jump") {
     JointProperties p = cyclic();
     p.residualCohesion = 0.05e6;

@@ -4,6 +4,7 @@
 #include "common/Text.hpp"
 #include "law/Laws.hpp"
 #include "law/common/ColumnsSideBySide.hpp"
+#include "law/common/JointDamping.hpp"
 #include "law/piecewise_softening/PiecewiseLaw.hpp"
 #include "law/piecewise_softening/PiecewiseSideBySide.hpp"
 #include <doctest/doctest.h>
@@ -1230,4 +1231,52 @@ TEST_CASE("properties that do not act are not checked") {
     CHECK(problemsOf(p).empty());
     p.tensionTable.clear();
     CHECK(problemsOf(p) == std::vector<std::string>{"mode I fracture energy -1 J/m² must be above 0"});
+}
+
+// ---- viscous damping beside the law ---------------------------------------------------------------------------------
+
+namespace {
+
+constexpr double damped = 1e12, coefficient = 0.6; // [Pa/m] viscous stress over the change of the jump, [-] friction
+
+struct Damped { // the stresses of a subcontact without bond, or with one, after the damping [Pa], and the energy [J]
+    double normal, shearA, shearB, energy;
+    Damped(double sigma, const Shear& tau, const Jump& change, bool bonded = false)
+        : normal(sigma), shearA(tau.a), shearB(tau.b) {
+        const Regime regime = Regime::Elastic;
+        const double damage = 0, area = 2, jump[3] = {change.opening, change.slide.a, change.slide.b};
+        const double* const changes[3] = {&jump[0], &jump[1], &jump[2]};
+        double before[3] = {};
+        double* const viscous[3] = {&before[0], &before[1], &before[2]};
+        energy = addJointDamping(1, {damped, damped, false, bonded, coefficient}, &regime, &damage, &area, changes,
+                                 &normal, &shearA, &shearB, viscous);
+    }
+    double shear() const { return std::hypot(shearA, shearB); }
+};
+
+} // namespace
+
+TEST_CASE("damping of a subcontact without bond may take all of its pressure and never pulls") {
+    const double sigma = -1e6;
+    for (double viscous : {-2e6, -1e3, 1e3, 0.999e6, 1e6, 1.5e6, 1e9}) {
+        const Damped after(sigma, {}, {viscous / damped, {}});
+        const double taken = std::min(viscous, -sigma);
+        CHECK(after.normal == doctest::Approx(sigma + taken).epsilon(1e-12).scale(1e6));
+        CHECK(after.energy == within(2 * 0.5 * taken * viscous / damped, 1e-12)); // area × mean stress × change
+        CHECK(Damped(sigma, {}, {viscous / damped, {}}, true).normal == within(sigma + viscous, 1e-12)); // a bond pulls
+    }
+}
+
+TEST_CASE("damping of a subcontact without bond slips at friction times the pressure with the damping in it") {
+    const double sigma = -1e6, fast = 1e9 / damped;
+    for (double viscous : {-2e6, -0.5e6, 0.0, 0.5e6, 1e6}) { // normal: more pressure, or less
+        const Damped after(sigma, {}, {viscous / damped, {0.6 * fast, -0.8 * fast}});
+        const double bound = coefficient * (-sigma - viscous);
+        CHECK(after.shear() == doctest::Approx(bound).epsilon(1e-9).scale(1e3));
+        CHECK(after.shearA == doctest::Approx(0.6 * bound).epsilon(1e-9).scale(1e3)); // along its own direction
+        // what the law has already is not cut: here as much as friction takes of the pressure of the law
+        const double law = -coefficient * sigma;
+        const Damped more(sigma, {law, 0}, {viscous / damped, {fast, 0}});
+        CHECK(more.shear() == within(std::max(law, bound), 1e-9));
+    }
 }

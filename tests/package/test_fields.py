@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from masonry import fields
+from masonry import fields, materials
 from masonry.scene.materials import withResidual
 
 POINTS = np.random.default_rng(7).uniform(-50, 50, (2000, 3))
@@ -64,3 +64,18 @@ def test_residual_friction_that_is_the_friction_varies_with_it():
     assert withResidual(names, joints) == [*names, "bed.residualFriction"]
     known = [*names, "bed.residualFriction"]
     assert withResidual(known, joints) == known
+
+
+@pytest.mark.parametrize("factor", [1e-3, 0.3, 1.0, 1.7, 250.0])
+def test_a_property_that_varies_is_rounded_by_half_a_step_at_most(factor):
+    """Each kind of joint in its own steps, although the property has the same name."""
+    steps = {"bed": 0.01, "head": 0.5}
+    varied = materials.dry(normalStiffness=1e9)
+    varied.joints["head"] = varied.joints["bed"].__class__(**varied.joints["bed"].dict())  # fmt: skip
+    for name, step in steps.items():
+        varied.vary(f"{name}.normalStiffness", lambda x, y, z: factor * (1 + z), step)
+    geom = SimpleNamespace(centres=[(0, 0, 0), (0, 0, 1)])  # its middle is at z = 0.5
+    for name, step in steps.items():
+        made = varied._at(name, varied.joints[name], geom).normalStiffness
+        off = math.log(made / (1e9 * factor * 1.5)) / math.log1p(step)
+        assert abs(off) <= 0.5 + 1e-6

@@ -101,6 +101,25 @@ def test_a_preset_wins_over_the_script_and_says_so(form, capsys):
 
 
 @pytest.mark.parametrize("form", ["own", "list"])
+@pytest.mark.parametrize(
+    "words, overrides",
+    [
+        ([], []),
+        (["--rate", "100", "--damping", "0.8"], []),  # what the preset has
+        (["--rate", "20"], ["rate"]),
+        (["--until", "3"], []),  # what the script has
+        (["--joints", "softening"], []),  # what everybody has
+        (["--joints", "cyclic", "--until", "4"], ["joints"]),  # how far is free
+    ],
+)
+def test_only_what_differs_from_preset_and_script_goes_beside_a_preset(form, words, overrides):  # fmt: skip
+    """The promise of a preset holds without such options."""
+    args = made(form, words, preset="fast", until=3.0)
+    assert args.rate == (20 if "rate" in overrides else 100)
+    assert args.overrides == overrides
+
+
+@pytest.mark.parametrize("form", ["own", "list"])
 def test_keywords_are_checked_with_all_problems_at_once(form):
     wrong = dict(joints="britle", rate=-50, rat=3, lean=1, resume="x", subcontacts=2.5, out=[], damping=True, set="bed=1", until=1, history="1")  # fmt: skip
     with pytest.raises(Refused) as refused:

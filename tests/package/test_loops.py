@@ -160,6 +160,16 @@ def test_a_force_that_does_not_vanish_leaves_no_residual_displacement():
     assert math.isnan(loops.secantStiffness([1, 1], [0, 1], 0, 1))
 
 
+def test_a_force_that_lasts_to_the_next_extreme_leaves_no_residual_displacement():
+    """It is looked for up to where the next swing to the other side ends, not in later cycles."""
+    moved, force = path((0, 0), (3, 5), (-3, 1), (0, 2), (2, 5), (-2, -5), (0, 0))
+    first, second = loops.cycles(moved, force, 0.1)
+    assert math.isnan(first.residual_positive_mm)
+    assert math.isnan(loops.residualDisplacement(moved, force, 400, 800))
+    # on the way from 5 kN at 2 mm to -5 kN at -2 mm
+    assert second.residual_positive_mm == pytest.approx(0, abs=1e-9)
+
+
 # -- envelope ---------------------------------------------------------------------------------------------------------
 
 

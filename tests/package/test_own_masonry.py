@@ -2,6 +2,7 @@
 """Masonry of one's own by formulas: the numbers of its joints, what it refuses and warns of, and one wall that has its modulus."""
 
 import math
+from types import SimpleNamespace
 
 import pytest
 from hypothesis import assume, given, settings
@@ -157,6 +158,40 @@ def test_head_joints_are_of_the_same_mortar_or_have_their_share():
     assert dry.tensileStrength == 0 and dry.cohesion == 0
 
 
+def test_the_least_fracture_energy_is_that_of_the_law_or_of_rigid_units():
+    """strength²/stiffness, or strength² (lumped + 1/(2 stiffness)) where the units give more than half of that back."""
+    assert materials.leastEnergy(0.2e6, 1e10) == pytest.approx(0.2e6**2 / 1e10)
+    assert materials.leastEnergy(0.2e6, 1e10, 0.4e-10) == pytest.approx(
+        0.2e6**2 / 1e10
+    )
+    lumped = materials.leastEnergy(0.2e6, 1e10, 2e-10)
+    assert lumped == pytest.approx(0.2e6**2 * (2e-10 + 0.5e-10))
+
+
+def test_soft_head_joints_have_the_energy_that_their_own_stiffness_needs():
+    """ft² / kn of the head joint, where units are stiff; 0.029 mm times ft would snap back."""
+    head = clay(head_E=0.05e9, fm=2e6, Gc=1e6, peak_strain=0.09).joints["head"]
+    soft = 0.25 + 0.010
+    assert head.normalStiffness == pytest.approx(1 / (soft / 0.05e9 - soft / 9e9))
+    for strength, stiffness, energy in (
+        (0.2e6, head.normalStiffness, head.modeIFractureEnergy),
+        (0.25e6, head.shearStiffness, head.modeIIFractureEnergy),
+    ):
+        assert energy == pytest.approx(1.1 * strength**2 / stiffness)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("angle, name", [(0, "bed"), (44, "bed"), (46, "head"), (90, "head")])  # fmt: skip
+def test_a_joint_steeper_than_45_degrees_is_a_head_joint(side, angle, name):
+    """Whichever side its normal points to. ``angle``: of the normal with the vertical [degrees]."""
+    one, other = (SimpleNamespace(brick=n, part="wall") for n in (1, 2))
+    turned = math.radians(angle)
+    normal = [side * math.sin(turned), 0, side * math.cos(turned)]
+    assert clay()._kind(one, other, normal) == name
+    assert clay()._kind(one, None, normal) == "support"
+    assert clay()._kind(one, one, normal) == "crack"
+
+
 def test_bricks_crack_if_their_strength_is_given():
     assert clay().joints["crack"].elastic
     assert "bricks do not crack" in sources(clay())["crack.elastic"]
@@ -166,6 +201,9 @@ def test_bricks_crack_if_their_strength_is_given():
     assert (crack.tensileStrength, crack.modeIFractureEnergy) == (2e6, 90)
     assert (crack.cohesion, crack.friction, crack.modeIIFractureEnergy) == (3e6, 0.9, 700)  # fmt: skip
     assert "crack.elastic" not in sources(made) and "crack.cohesion" not in sources(made)  # fmt: skip
+    crack = clay(unit_ft=2e6).joints["crack"]
+    assert crack.cohesion == 2 * 2e6
+    assert crack.friction == crack.residualFriction == 0.75
 
 
 # -- what is refused, and what is a warning ---------------------------------------------------------------------------

@@ -282,6 +282,32 @@ def test_initial_stiffness_is_the_slope_of_a_straight_start(slope):
     assert curves.initialStiffness([], []) == 0
 
 
+def test_initial_stiffness_is_that_between_a_twentieth_and_a_quarter_of_the_peak():
+    force = [0.001 * i for i in range(1001)]  # up to a peak of 1
+    slopes = [3 if f <= 0.05 else 2 if f <= 0.25 else 1 for f in force]
+    moved = [0.0]
+    for slope in slopes[1:]:
+        moved.append(moved[-1] + 0.001 / slope)
+    assert curves.initialStiffness(moved, force) == pytest.approx(2, rel=1e-9)
+    after = [1 - f for f in force]  # what follows on the peak does not count
+    assert curves.initialStiffness(moved + moved, force + after) == pytest.approx(2, rel=1e-9)  # fmt: skip
+
+
+def test_the_damped_share_is_that_of_damping_in_what_was_taken_since_the_first_row():
+    rows = {
+        "damping_J": [5.0, 6.0, 8.0],
+        "dissipated_tension_J": [1.0, 1.0, 2.0],
+        "dissipated_shear_J": [10.0, 12.0, 13.0],
+        "dissipated_compression_J": [0.0, 0.5, 2.0],
+    }
+    taken = (2 - 1) + (13 - 10) + (2 - 0)
+    assert curves.dampedShare(rows.get) == pytest.approx(3 / (3 + taken), rel=1e-12)
+    at = lambda row: {name: [values[row]] * 2 for name, values in rows.items()}
+    assert curves.dampedShare(at(2).get) == 0  # nothing is taken
+    bounced = {**rows, "damping_J": [5.0, 4.0]}  # by round-off it may fall
+    assert curves.dampedShare(bounced.get) == 0
+
+
 @pytest.mark.parametrize("reader", ["curve_figure", "crack_figure", "measure"])
 def test_readers_ask_only_for_keys_of_run_json_that_are_documented(reader):
     source = open(

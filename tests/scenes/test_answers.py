@@ -4,8 +4,11 @@
 import pytest
 from masonry import AT_REST, COLLAPSED, Scene, bricks, materials
 from masonry.read.files import readRun
+from masonry.run import run
+from masonry.scene.stages.stage import answersText
 from masonry.study.gathering import _answerName
 from small import SMALL, carryOut, parsed
+from yade import O
 
 STONE = dict(friction=0.7, normalStiffness=2e9)
 
@@ -63,6 +66,20 @@ def test_a_lean_answers_with_what_was_held_and_with_nothing_if_it_was_not(tmp_pa
     assert scene.factor == readRun(str(tmp_path))["factor"] == 0.3
 
 
+def test_the_line_of_a_bracket_has_the_largest_that_was_held_and_the_smallest_that_was_not():
+    def leans(*factors):
+        """Answers of leans that were held, or, of negative factors, not held."""
+        for number, factor in enumerate(factors):
+            values = dict(factor_held=factor if factor > 0 else None, factor_not_held=-factor if factor < 0 else None)  # fmt: skip
+            for name, value in values.items():
+                yield dict(stage="lean", number=number, name=name, unit="g", value=value, uncertainty=None, how="none")  # fmt: skip
+
+    (line,) = answersText(leans(0.2, -0.6, 0.35, -0.4, 0.3, -0.5))
+    assert line == "lean: factor held 0.35 g (6 stages); factor not held 0.4 g"
+    (line,) = answersText(leans(0.2))
+    assert line == "lean: factor held 0.2 g; factor not held: not found: none"
+
+
 def test_a_support_that_moves_and_time_that_passes_answer_with_displacements(tmp_path):
     scene = Scene(
         "stones",
@@ -100,3 +117,23 @@ def test_a_resumed_run_has_the_answers_of_one_without_a_break(tmp_path):
     after = readRun(str(tmp_path))["answers"]
     assert after[: len(before)] == before
     assert [a["value"] for a in after if a["name"] == "factor_held"] == [0.1, 0.2]
+
+
+def test_a_resumed_run_of_what_fell_says_so_as_before(tmp_path):
+    runs = []
+    for words in ((), ("--resume", str(tmp_path))):
+        scene = stack(tmp_path, *words)
+        assert scene.lean(0.6) == COLLAPSED
+        scene.finish()
+        runs.append(readRun(str(tmp_path)))
+    assert runs[0]["collapse"] and runs[1]["collapse"] == runs[0]["collapse"]
+    assert runs[1]["collapsed"] and runs[1]["steps"] == runs[0]["steps"]
+
+
+def test_steps_are_counted_once_although_a_run_looks_up_between_them(tmp_path, monkeypatch):  # fmt: skip
+    scene = stack(tmp_path)
+    monkeypatch.setattr(run, "LOOK_EVERY", 0.0)  # after every step
+    before, first = scene.running.at.steps, O.iter
+    scene.running.advance(10)
+    assert scene.running.at.steps - before == O.iter - first == 10
+    scene.finish()

@@ -481,3 +481,5 @@ def test_scaled_masses_leave_the_weight_of_a_structure_that_leans(tmp_path, stag
     assert column("base_force_x_kN")[-1] == pytest.approx(0.1 * weight * cos, rel=0.05)
     assert scene.factor == pytest.approx(0.1, rel=0.01)
     scene.finish()
+    material = readRun(str(tmp_path))["unit_material"]
+    assert material["density_kg_per_m3"] == pytest.approx(2600)

@@ -16,6 +16,10 @@ TURNS = 6  # how often the facets of friction are turned at most
 STILL = 1e-3  # change of the factor at which they stand still [-]
 
 
+class Endless(Refused):
+    """No load is so large that anything gives way."""
+
+
 @dataclass
 class Assembly:
     """Rigid blocks and their joints. Arrays run over blocks (n), joints (m) or points of joints (p).
@@ -246,7 +250,7 @@ class Assembly:
                     )
             endless = 1e-3 * self._endless(live, dead)
             if self._solve(live, dead, sense, turn, most=endless).value > 0.9 * endless:
-                return Refused(
+                return Endless(
                     f"{message}nothing gives way, however large the load is: the blocks on which it acts are locked between "
                     "others, or joined by joints that never fail"
                 )

@@ -14,6 +14,7 @@ from yade import O
 
 from .. import limit
 from ..basics import GRAVITY, Refused, say
+from ..limit.assembly import Endless
 
 #: Up to so many joints a collapse without dilatancy, which takes many rounds, is looked for with --preset bound.
 SMALL = 500
@@ -24,6 +25,9 @@ UNASKED, ASKED = 10.0, 600.0
 #: By how much a run may be above its bound [-]: joints of finite stiffness, displacements that are not small, and motion,
 #: whose measured share is added.
 TOLERANCE = 0.02
+#: Of the search for a tilt at which both parts of gravity are those of the tilt: its rounds at most, the difference of two
+#: tilts at which it ends, and the largest tilt [rad].
+TILTS, SAME_TILT, STEEPEST = 20, 1e-6, math.radians(89.9)
 FIGURE = "mechanism.png"
 
 
@@ -37,6 +41,7 @@ class Bounds:
     def __init__(self, model, place):
         self.model, self.place = model, place
         self.last = None  # what was found last: limit.Bound and its entry
+        self.endless = set()  # names of loads under which nothing gives way
 
     @property
     def entries(self):
@@ -112,6 +117,7 @@ class Bounds:
         if not same:  # what was held before was held beside other loads
             self.place.held = {k: v for k, v in self.place.held.items() if k != what}
         entry = self.entries[what] = {"load": what, "unit": unit}
+        self.endless.discard(what)
         if self.place.supportsMoved:
             reason = (
                 "supports have moved, and joints that are open would be taken as closed"
@@ -132,20 +138,24 @@ class Bounds:
             down = assembly.weights(gravity or model.now)
             forces = self._forces(assembly, pushed)
             live = load(assembly)
-            bound = assembly.largest(live, down + forces)
-            for _ in range(5 if tilts else 0):  # both parts of gravity shrink
-                cos = 1 / np.hypot(1, bound.factor)
-                bound = assembly.largest(cos * live, cos * down + forces)
+
+            def found(find, first):
+                at = lambda cos: find(cos * live, cos * down + forces)
+                return _tilted(at, first) if tilts else at(1.0)
+
+            bound = found(assembly.largest, 0.0)
             entry.update(bound.describe())
             say(bound.sentence(what, unit))
             if not bound.exact and count <= lowerUpTo:
-                least = assembly.withoutDilatancy(live, down + forces)
+                least = found(assembly.withoutDilatancy, math.atan(bound.factor))
                 entry["without_dilatancy"] = least.factor
                 entry["without_dilatancy_settled"] = least.settled
                 say(least.sentence(what, unit))
             self.last = bound, entry
         except Refused as refused:
             entry["note"] = str(refused)
+            if isinstance(refused, Endless):
+                self.endless.add(what)
             say(f"note: {refused}")
         return entry
 
@@ -253,6 +263,30 @@ class Bounds:
             heading = f"{title}\nlimit analysis, {entry['load']}: {entry['factor']:.4g} {entry['unit']}".rstrip()
             bound.save(directory)
             bound.draw(os.path.join(directory, FIGURE), heading, parts, views)
+
+
+def _tilted(find, first):
+    """The bound of a tilt, at which weights have turned as far as its factor says, while other loads have not: secants find it.
+
+    :param find: function of the cosine of the tilt that gives the bound with weights of that share
+    :param first: tilt with which the search begins [rad]
+    :raises Endless: if there is no such tilt below :data:`STEEPEST`
+    """
+    bound = find(math.cos(first))
+    last, off = first, math.atan(bound.factor) - first
+    angle = math.atan(bound.factor)
+    for _ in range(TILTS):
+        angle = min(max(angle, 0.0), STEEPEST)
+        if abs(angle - last) < SAME_TILT:
+            break
+        bound = find(math.cos(angle))
+        more = math.atan(bound.factor) - angle
+        slope = (more - off) / (angle - last)
+        last, off = angle, more
+        angle = last - off / slope if slope < 0 else last + off
+    if last == STEEPEST and off > 0:
+        raise Endless("limit analysis: no tilt below 90 degrees moves the structure")
+    return bound
 
 
 def _pointOf(load, assembly):

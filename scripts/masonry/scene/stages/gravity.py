@@ -104,6 +104,7 @@ def lean(scene, factor, towards=(1, 0, 0), longest=None):
 def boundAlone(scene, load):
     """How a stage of ``--preset bound`` ends that puts a load on, which stays if limit analysis finds that it is carried."""
     carried = scene.bounds.entries.get(load.name, {}).get("factor", 0.0)
+    carried = math.inf if load.name in scene.bounds.endless else carried
     scene.ended = AT_REST if load.most <= carried else MOVING
     if scene.ended == AT_REST:
         load.put(load.at(load.now(), 1.0))

@@ -22,7 +22,7 @@ from ..targets import part as partName
 from .acting import Forces
 from .gravity import LEVEL, WIDTH, boundAlone, putOn, putOnAnswers
 from .growing import WITHIN, found, grow
-from .stage import stage
+from .stage import AT_REST, stage
 from .supports import atOnce
 from .timed import DURATION
 
@@ -85,8 +85,9 @@ def _windOn(scene, pressure, towards, part, name):
     towards = vector(towards, f"{name}: direction")
     calm = name == "wind" and pressure == 0  # the wind of before ends
     faces = windFaces(scene.description, pressure or float(calm), towards, part, name)
+    # suction has the engines of a pressure on the same faces, so that one replaces the other
+    engines = scene.model.windOf(windLabel(towards.normalized(), part), faces)
     towards = math.copysign(1, pressure) * towards.normalized()
-    engines = scene.model.windOf(windLabel(towards, part), faces)
     sign = math.copysign(1e3, pressure)
     forces = [-sign * area * Vector3(*normal) for _, normal, area, _ in faces]
     what = f"wind towards {nameOf(towards)}" + (f" on {part}" if part else "")
@@ -95,7 +96,7 @@ def _windOn(scene, pressure, towards, part, name):
 
 def windLabel(towards, part):
     """How the labels of the engines of a wind begin. YADE makes names of them."""
-    axes = "_".join(f"{v:.6g}".replace("-", "minus") for v in towards)
+    axes = "_".join(f"{v + 0.0:.6g}".replace("-", "minus") for v in towards)
     return re.sub(r"\W", "_", f"wind_towards_{axes}_{part or 'all'}")
 
 
@@ -187,11 +188,16 @@ def growPress(scene, platen, stress, over=GROWS, within=WITHIN):
 
 
 def _putOn(scene, name, made, towards, longest):
-    made.replaces, scene.loadUnit = True, made.unit
-    if not any(made.now()):
+    made.replaces, scene.loadUnit, before = True, made.unit, made.now()
+    if scene.only:  # what it replaces is no load beside it
+        made.put(made.at(before, 0.0))
+    if scene.only or not any(before):
         scene.findBound("forces", made.name, made.unit, made.pairs())
     if scene.only:
-        return boundAlone(scene, made)
+        ended = boundAlone(scene, made)
+        if ended != AT_REST:
+            made.put(before)
+        return ended
     return putOn(scene, name, made, towards, longest)
 
 
