@@ -445,7 +445,6 @@ def _takesNothing(thing):
         ("materials.dry", {"friction": "0.5"}, "dry: friction '0.5' must be a number at least 0 and at most 5"),
         ("materials.dry", {"fricton": 0.5}, "dry: no argument 'fricton', did you mean 'friction'?"),
         ("materials.Masonry", {"joints": 5, "brief": None}, "Masonry: joints 5 must be a dict by name\nMasonry: brief None must be True or False"),
-        ("materials.MasonryJoint", {"frictoin": 1}, "MasonryJoint has no property 'frictoin', did you mean 'friction'?"),
         ("materials.MasonryJoint", {"closureLimit": -1}, "MasonryJoint: closureLimit -1 m must be at least 0"),
         ("Masonry.vary", {"name": "bed.cohesoin"}, "vary: no property 'bed.cohesoin'"),
         ("fields.lognormal", {"cov": "0.2", "seed": -1}, "lognormal: cov '0.2' must be a number above 0 and at most 100\nlognormal: seed -1 must be a whole number at least 0"),

@@ -165,8 +165,7 @@ def search(monkeypatch, capacity, moving, last, fell, within, states, setsOff):
     written, here, trials = [], {"state": None}, []
     text = lambda factor: base64.b64encode(repr(factor).encode()).decode()
     load, made = Load(most=1.2 * last), standing()
-    made.kept = []
-    made.keptAtRest = made.kept.append
+    made.model.atRest = None
     made.model.alongNow = lambda: 1e-3 * here["factor"]  # [m]: as many mm as the factor
     factors = [last * n / states for n in range(states + 1)]
     at = growing.Growing(
@@ -228,7 +227,7 @@ def test_a_search_brackets_what_the_structure_holds_from_rest(
             assert made.model.loadFactor == last
         else:
             found.end()
-        assert [float(state) for state in made.kept] == [pytest.approx(held)]
+        assert float(made.model.atRest) == pytest.approx(held)
 
 
 def test_a_structure_that_never_rests_is_tried_down_to_no_load_and_has_no_number():
@@ -237,7 +236,7 @@ def test_a_structure_that_never_rests_is_tried_down_to_no_load_and_has_no_number
         assert at.held is None and at.lost[0] == 0
         with pytest.raises(Collapsed):
             found.end()
-        assert made.kept == []
+        assert made.model.atRest is None
 
 
 @pytest.mark.parametrize("held, exact, noted", [(0.94, True, True), (0.96, True, False), (0.5, False, False)])  # fmt: skip

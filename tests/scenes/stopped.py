@@ -55,7 +55,15 @@ class Writer:
         """The text of the script."""
         self._describe()
         stages = self.dice.choices(self._stages(), k=self.dice.randint(2, 6))
-        describing = [self._press, self._load, self._wind, self._bracket, self._result, self._hold, self._stepBack]
+        describing = [
+            self._press,
+            self._load,
+            self._wind,
+            self._bracket,
+            self._result,
+            self._hold,
+            self._stepBack,
+        ]
         if self.loaded or stages[0] in describing or self.dice.random() < 0.7:
             stages.insert(0, self._settle)
         self.lines += [one() for one in stages]
@@ -82,7 +90,10 @@ class Writer:
         if self.deformable:
             options["divisions"] = 1
         kind = dice.choice(
-            ["calciumSilicate()", "dry(friction=0.6, normalStiffness=2e9, density=1800)"]
+            [
+                "calciumSilicate()",
+                "dry(friction=0.6, normalStiffness=2e9, density=1800)",
+            ]
         )
         said = ", ".join(f"{name}={value!r}" for name, value in options.items())
         self.lines += [
@@ -94,7 +105,9 @@ class Writer:
         if self.platen:
             drive = f", drive={self.drives!r}" if self.drives else ""
             rotation = dice.choice(["held", "free"])
-            self.lines.append(f'top = scene.platen("top", rotation="{rotation}"{drive})')
+            self.lines.append(
+                f'top = scene.platen("top", rotation="{rotation}"{drive})'
+            )
             if self.drives != "xz" and dice.random() < 0.8:
                 self.lines.append(f"scene.press(top, {self._number(5e4, 4e5)})")
                 self.loaded = True
@@ -114,7 +127,6 @@ class Writer:
         return tuple(self._number(-100, 100) * free for free in (1, 0, 1))
 
     def _stages(self):
-        dice = self.dice
         stages = [self._settle, self._lean, self._accelerate, self._tilt, self._bracket]
         stages += [self._shake, self._run, self._stepBack, self._move, self._result]
         stages += [] if self.deformable else [self._wind, self._growWind]
@@ -148,7 +160,9 @@ class Writer:
 
     def _tilt(self):
         most = self._number(5, 50)
-        return f"scene.tilt({most}, {self._towards()}, rate={30 * most:.3g}, within=0.3)"
+        return (
+            f"scene.tilt({most}, {self._towards()}, rate={30 * most:.3g}, within=0.3)"
+        )
 
     def _bracket(self):
         loads = ["lean(f", "wind(1e3 * f, (1, 0, 0)"][: 2 - self.deformable]
@@ -165,7 +179,9 @@ class Writer:
 
     def _shake(self):
         values = [self._number(-3, 3) for _ in range(5)]
-        more = self.dice.choice(["", ", damping=0.2", ", massDamping=5.0", ", stiffnessDamping=1e-5"])
+        more = self.dice.choice(
+            ["", ", damping=0.2", ", massDamping=5.0", ", stiffnessDamping=1e-5"]
+        )
         return f"scene.shake({[0.0, *values, 0.0]}, every={self._number(1e-3, 3e-3)}{more})"
 
     def _run(self):
@@ -173,7 +189,9 @@ class Writer:
         return f"scene.run({self._number(1e-3, 2e-2)}{more})"
 
     def _move(self):
-        return f"scene.move(base, {self.dice.choice('xz')}={self._number(-0.05, -0.01)})"
+        return (
+            f"scene.move(base, {self.dice.choice('xz')}={self._number(-0.05, -0.01)})"
+        )
 
     def _wind(self):
         return f"scene.wind({self._number(100, 900)}, {self._towards()}, {self._longest()})"
@@ -182,10 +200,14 @@ class Writer:
         return f"scene.growWind({self._number(300, 3000)}, {self._towards()}, over=0.03, within=0.3)"
 
     def _pushed(self, kind):
-        way = self.dice.choice(["(1, 0, 0)", "(1, 0, 0)", "(-1, 0, 0)"])
-        more = ", continued=True" if way in self.pushed and self.dice.random() < 0.5 else ""
-        self.pushed.append(way)
-        return f"direction={way}{more}"
+        direction = self.dice.choice(["(1, 0, 0)", "(1, 0, 0)", "(-1, 0, 0)"])
+        more = (
+            ", continued=True"
+            if direction in self.pushed and self.dice.random() < 0.5
+            else ""
+        )
+        self.pushed.append(direction)
+        return f"direction={direction}{more}"
 
     def _push(self):
         much = self._number(0.05, 0.4)
@@ -280,7 +302,9 @@ def killed(folder, step):
     def act(run, taken):
         if taken == step:
             run._kept = -math.inf
-        elif taken > step and os.path.exists(os.path.join(run.results.directory, checkpoints.NAME)):
+        elif taken > step and os.path.exists(
+            os.path.join(run.results.directory, checkpoints.NAME)
+        ):
             shutil.copytree(run.results.directory, folder)
             raise Stopped()
 

@@ -25,7 +25,9 @@ def here(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("seed", range(SEED, SEED + SCRIPTS))
-def test_a_script_that_is_stopped_and_resumed_leaves_what_an_unbroken_run_leaves(here, seed):
+def test_a_script_that_is_stopped_and_resumed_leaves_what_an_unbroken_run_leaves(
+    here, seed
+):
     dice = random.Random(f"{seed} stop")
     for trial in range(100):
         script = stopped.Writer(f"{seed} {trial}").write()
@@ -36,7 +38,11 @@ def test_a_script_that_is_stopped_and_resumed_leaves_what_an_unbroken_run_leaves
     whole = stopped.left(f"whole{trial}")
     for number, how in enumerate((signal.SIGTERM, signal.SIGINT, signal.SIGKILL)):
         step, out = dice.randint(1, steps), f"stopped{number}"
-        act = stopped.killed(f"{out}k", step) if how == signal.SIGKILL else stopped.signalled(how, step)
+        act = (
+            stopped.killed(f"{out}k", step)
+            if how == signal.SIGKILL
+            else stopped.signalled(how, step)
+        )
         status, _, _ = stopped.carryOut(script, "--out", out, stop=act)
         if how == signal.SIGKILL:
             if status == 0:  # there was no checkpoint yet

@@ -164,7 +164,10 @@ def _note(cls):
     def __init__(self, *args, **values):
         unknown = [n for n in values if not hasattr(cls, n)]
         problems = [_unknown(cls, n) for n in unknown]
-        refuse([*problems, *_misfits(cls, values).values()])
+        wrong = [*_misfits(cls, values).values()]
+        if problems and not wrong:  # as of any other class of the plugin
+            raise AttributeError("\n".join(problems))
+        refuse([*problems, *wrong])
         make(self, *args, **values)
         state(self, **{n: s for n, s in DEFAULTS[cls].items() if n not in values})
 

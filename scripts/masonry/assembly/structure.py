@@ -456,7 +456,10 @@ class Structure:
 
     def putState(self, state):
         """Give it a state of :meth:`state`. Raises KeyError if it names a target or a load that is not there."""
-        targets, loads = {"": None, **self.description.targets}, {"": None, **self.loads}
+        targets, loads = {"": None, **self.description.targets}, {
+            "": None,
+            **self.loads,
+        }
         self.target, self.followed = targets[state["target"]], targets[state["followed"]]  # fmt: skip
         self.loads["push"] = loads[state["push"]]
         self.direction, self.origin = Vector3(*state["direction"]), tuple(state["origin"])  # fmt: skip

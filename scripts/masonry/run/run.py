@@ -178,7 +178,7 @@ class Run:
         """Whether the run is resumed, and has taken no steps since."""
         return self.resumes and not self.advanced
 
-    def goOnFrom(self, number, redoes):
+    def continueFrom(self, number, redoes):
         """Let the rows, frames and the state beside YADE be those before a stage, in a run that is resumed and has taken no steps
         yet.
 
@@ -256,7 +256,9 @@ class Run:
         at = self.at
         if self.advanced or not self._saved:
             self.advanced, at.left = True, steps
-        elif self.redoes:  # the scene of a checkpoint is that after some of the steps or all
+        elif (
+            self.redoes
+        ):  # the scene of a checkpoint is that after some of the steps or all
             if at.left > steps:
                 raise otherVersion(f"{at.left} of {steps} steps are left")
             self.takeUp()

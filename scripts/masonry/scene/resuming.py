@@ -104,10 +104,10 @@ def enter(scene, number, farther):
         farther = number == at.begun and (farther or _optionsDiffer(scene))
         if ended and not farther:
             running.entered = last
-            running.goOnFrom(last + 1, False)
+            running.continueFrom(last + 1, False)
             return ended
         redoes = number == at.begun
-        running.goOnFrom(number, redoes)
+        running.continueFrom(number, redoes)
         if not running.state.restored:
             running.state.put(at.before if redoes else at.now)
     at.begun, at.before = number, stateOf(scene)

@@ -361,8 +361,8 @@ class Scene:
 
     def findBound(self, kind, *load):
         """Find the bound of a stage, which pushes or leans: a method of :class:`masonry.scene.bounds.Bounds`."""
-        goesOn = self.running.redoes and self.running.takesUp
-        if self.args.lean and not self.only or goesOn:
+        resumed = self.running.redoes and self.running.takesUp
+        if self.args.lean and not self.only or resumed:
             return  # in a stage that goes on it was found when that began
         getattr(self.bounds, kind)(*load, lowerUpTo=SMALL if self.only else 0)
 

@@ -50,7 +50,9 @@ def displacements(scene, rows):
 class Damped(Timed):
     """What a stage remembers that has a damping of its own."""
 
-    limit: float = 0.0  # the stable limit of its time step, or 0 before that is known [s]
+    limit: float = (
+        0.0  # the stable limit of its time step, or 0 before that is known [s]
+    )
 
 
 @stage(answers=displacements)
