@@ -21,6 +21,7 @@
 #include "scene/Resultant.hpp"
 #include "scene/SceneCheckpoint.hpp"
 #include "scene/SceneStore.hpp"
+#include "scene/StepGate.hpp"
 
 namespace {
 
@@ -189,5 +190,7 @@ extern "C" PyObject* PyInit__masonry() {
                                      nullptr,
                                      nullptr,
                                      nullptr};
-    return py::detail::init_module(definition, &registerAll);
+    auto* made = py::detail::init_module(definition, &registerAll);
+    if (made) StepGate::watchForks();
+    return made;
 }

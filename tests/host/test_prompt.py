@@ -176,6 +176,35 @@ for path in random.Random(1).sample(saved, min(8, len(saved))):
     inYade(reader(blocks) + code)
 
 
+@THREADS
+@pytest.mark.parametrize("beside", [False, True])
+def test_a_forked_process_goes_on(threads, beside):
+    """It has none of the other threads, neither of a run in the background nor of OpenMP."""
+    code = f"""
+import random
+interactions = panel(False, "rigid", damping=0.3)
+for n in range(20):
+    if {beside}:
+        O.run()
+        time.sleep(random.uniform(0, 5e-3))
+    else:
+        [O.step() for _ in range(5)]
+    child = os.fork()
+    if not child:
+        energy()
+        interactions[0].phys.stress
+        {beside} or [O.step() for _ in range(5)]
+        os._exit(7)
+    ends = time.monotonic() + 20
+    while not (done := os.waitpid(child, os.WNOHANG))[0] and time.monotonic() < ends:
+        time.sleep(1e-3)
+    assert done[0] and os.waitstatus_to_exitcode(done[1]) == 7, (n, done)
+O.pause()
+O.step()
+"""
+    inYade(READER.split("def end")[0].format(steps=0) + code, threads)
+
+
 @pytest.mark.slow
 def test_pausing_and_going_on_changes_nothing():
     code = """

@@ -22,11 +22,10 @@ from masonry.run import checkpoints
 from masonry.run.run import Run
 from masonry.scene import Scene
 from masonry.scene.outcome import Outcome
+from masonry.scene.stages import growing
 
 BEGIN = """\
 from masonry import AT_REST, Scene, bricks, materials
-from masonry.scene.stages import growing
-growing.TRIAL = 0.05
 """
 TRY = "try:\n    {}\nexcept ValueError as error:\n    print(error)"
 #: Entries of run.json that may differ between an unbroken run and a resumed one.
@@ -56,6 +55,7 @@ class Writer:
         self._describe()
         stages = self.dice.choices(self._stages(), k=self.dice.randint(2, 6))
         describing = [
+            self._bound,
             self._press,
             self._load,
             self._wind,
@@ -129,6 +129,7 @@ class Writer:
     def _stages(self):
         stages = [self._settle, self._lean, self._accelerate, self._tilt, self._bracket]
         stages += [self._shake, self._run, self._stepBack, self._move, self._result]
+        stages += [self._bound]
         stages += [] if self.deformable else [self._wind, self._growWind]
         if self.platen or not self.deformable:
             stages += [self._push, self._push, self._cycle, self._follow, self._load]
@@ -176,6 +177,9 @@ class Writer:
 
     def _result(self):
         return 'scene.result("time", scene.results.rows[-1][0] if scene.results.rows else 0.0, "s")'
+
+    def _bound(self):
+        return f"print(scene.bound(towards={self._towards()})['load'])"
 
     def _shake(self):
         values = [self._number(-3, 3) for _ in range(5)]
@@ -267,6 +271,7 @@ def carryOut(script, *words, stop=None):
         take(run, steps, act)
 
     draw, Outcome.draw = Outcome.draw, lambda outcome, folder: None
+    trial, growing.TRIAL = growing.TRIAL, 0.05  # [s], so that searches are short
     sys.argv, Run._take, status = ["s.py", *words], counted, 0
     output = io.StringIO()
     try:
@@ -281,6 +286,7 @@ def carryOut(script, *words, stop=None):
         print(error, file=output)
     finally:
         sys.argv, Run._take, Outcome.draw = before, take, draw
+        growing.TRIAL = trial
         scene = Scene.present
         if scene is not None:
             scene.finished = True

@@ -2,6 +2,9 @@
 #include "StepGate.hpp"
 #include "host/Yade.hpp"
 #include <chrono>
+#include <new>
+#include <omp.h>
+#include <pthread.h>
 
 namespace masonry {
 
@@ -77,6 +80,20 @@ void StepGate::lock() {
     }
     ++depth_;
     if (ownAction && depth_ == 1) reader_ = me;
+}
+
+void StepGate::watchForks() {
+    pthread_atfork([] { instance().lock(); }, [] { instance().unlock(); }, [] { instance().startAnew(); });
+}
+
+// Other threads may have held the mutex, or waited, when the process was forked. They are gone, so both are made anew.
+void StepGate::startAnew() {
+    const int depth = depth_ - 1; // without the lock of the fork
+    const auto reader = reader_;
+    new (this) StepGate;
+    depth_ = depth;
+    reader_ = reader;
+    omp_set_num_threads(1);
 }
 
 void StepGate::unlock() {

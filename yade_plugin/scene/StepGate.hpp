@@ -23,7 +23,12 @@ public:
     void lock();
     void unlock();
 
+    // Lets the process be forked between two steps, and not within one. A process that is forked has none of the other
+    // threads: neither that of O.run() nor those of OpenMP, for which it would wait without end.
+    static void watchForks();
+
 private:
+    void startAnew();
     template <class Ready> void wait(std::unique_lock<std::mutex>&, Ready&& ready);
 
     std::mutex mutex_;
