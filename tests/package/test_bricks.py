@@ -739,6 +739,15 @@ def test_a_cut_keeps_the_volume_and_the_brick():
     assert wall.cut((2 * L, 0, 0), (1, 0, 0)) == wall  # the plane touches the end
 
 
+def test_a_thin_block_between_two_others_is_no_gap():
+    wall = Wall(2 * L, 3 * H).cut((0.5148702 * 2 * L, 0, 0), (1, 0, 0))
+    cut = wall.cut((0.2, 0.05, 0.1), (0.3, 1, 0.2))
+    assert [p for p in cut.problems() if "gap" in p] == []
+    far = lambda xs: max(xs) < 0.221 or min(xs) > 0.226
+    apart = Bricks([b for b in cut if far([c[0] for c in b.corners])])
+    assert any("a gap of up to" in p for p in apart.problems())
+
+
 @few
 @given(
     some.tuples(*[some.integers(-9, 9)] * 3).filter(any),
