@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A run in stages, in a folder of results, with checkpoints from which it can be taken up again.
 
-A stage steps by :meth:`Run.advance` alone. What it must know to go on after a checkpoint is a dataclass that it gives to
-:meth:`Run.stage`. In a run that is resumed, stages that were over are left out. The stage in which the checkpoint was made
-is entered with the scene and its memory as they were right after the steps of an ``advance``, and its first ``advance``
-takes the steps that were left, or none. So a stage changes its memory after it has advanced, and what it does before it
-advances may be done twice.
+A stage steps by :meth:`Run.advance` alone. What it must know to go on after a checkpoint is a dataclass that it gives
+to :meth:`Run.stage`. In a run that is resumed, stages that were over are left out (:mod:`masonry.scene.resuming`). The
+stage in which the checkpoint was made is entered with the scene and its memory as they were right after the steps of an
+``advance``, and its first ``advance`` takes the steps that were left, or none. So a stage changes its memory after it
+has advanced, and what it does before it advances may be done twice.
 """
 
 import contextlib
@@ -221,16 +221,17 @@ class Run:
     # -- what stages call -----------------------------------------------------------------------------------------
 
     def stage(self, name, memory):
-        """Enter the next stage. Returns its memory, or None if it was over before the run was resumed.
+        """Enter the next stage. Returns its memory; None if it is a part of the stage of the checkpoint, and was over then.
 
         :param name: what it is called on the terminal
         :param memory: what the stage must know to go on, as it is at the beginning: a dataclass of values that JSON can
             hold. Checkpoints keep it.
         """
         self.entered += 1
-        if self.redoes and not self.advanced and self.entered < self.at.number:
+        resumed = self.redoes and not self.advanced
+        if resumed and self.entered < self.at.number:
             return None
-        if self.redoes and not self.advanced:
+        if resumed:
             if self.at.stage != name:
                 raise otherVersion(f"stage '{self.at.stage}'")
             memory = restored(memory, self.at.memory)
@@ -256,9 +257,8 @@ class Run:
         at = self.at
         if self.advanced or not self._saved:
             self.advanced, at.left = True, steps
-        elif (
-            self.redoes
-        ):  # the scene of a checkpoint is that after some of the steps or all
+        elif self.redoes:
+            # the scene of a checkpoint is that after some of the steps or all
             if at.left > steps:
                 raise otherVersion(f"{at.left} of {steps} steps are left")
             self.takeUp()
