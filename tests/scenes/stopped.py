@@ -332,6 +332,8 @@ def left(folder):
     for name, value in entries.items():
         if name not in TIMES:
             found[f"run.json: {name}"] = value
+    if not os.path.exists(os.path.join(folder, checkpoints.NAME)):
+        return found  # what fell within a step has no state that can be kept
     data, kept = checkpoints.readState(folder)
     for name in ("resumed", "seconds"):
         kept["at"].pop(name)
@@ -356,6 +358,9 @@ def records(data):
     return found
 
 
-def differences(one, other):
-    """Names of what two runs have left that is not alike."""
-    return sorted(n for n in {*one, *other} if one.get(n) != other.get(n))
+def differences(whole, resumed):
+    """Names of what two runs have left that is not alike. A resumed run has the checkpoint from which it went on, if the
+    unbroken one has none."""
+    kept = any(name.startswith("checkpoint") for name in whole)
+    names = {*whole, *(n for n in resumed if kept or not n.startswith("checkpoint"))}
+    return sorted(n for n in names if whole.get(n) != resumed.get(n))
