@@ -165,6 +165,30 @@ def test_a_stack_pulled_apart_is_reported_when_a_block_has_left(scene, direction
     )
 
 
+def test_the_first_body_of_a_scene_is_named_as_any_other(scene):
+    standing(gravity=(0, 0, 0))
+    O.bodies[0].state.blockedDOFs, O.bodies[1].state.blockedDOFs = "yXZ", "xyzXYZ"
+    O.bodies[0].state.vel = Vector3(0, 0, -10)
+    collapses(1, "block 0 has left block 1 by")
+    assert energy().collapsedBlock == 0
+
+
+def test_a_collapse_in_a_step_that_another_engine_fails_does_not_end_the_next(scene):
+    s = standing(gravity=(0, 0, 0))
+    go(100 * O.dt)
+    s.ori = Quaternion(Vector3(0, 1, 0), math.radians(70))
+    ours = list(O.engines)
+    O.engines = [*ours[:-1], PyRunner(command="1 / 0", iterPeriod=1), ours[-1]]
+    while energy().collapsedBlock < 0:
+        with pytest.raises(Exception, match="ZeroDivisionError"):
+            O.step()
+    O.engines = ours
+    energy().watch = False
+    before = O.iter
+    O.step()
+    assert O.iter == before + 1
+
+
 def test_a_collapse_goes_before_motion_out_of_nothing_and_tells_both(scene):
     s = standing(dry(friction=0.1, residualFriction=0.1), (0.25, 0.25, 0.1))
     go(120 * O.dt)
