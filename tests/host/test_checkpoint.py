@@ -378,6 +378,7 @@ POSSIBLE = dict(
         ({"steps": 20}, ""),  # at the beginning of the stage
         ({"stages": [["settle", 0, 0.0, 4], ["push", 0, 0.5, 4]]}, ""),
         ({"steps": 0, "stages": [["settle", 0, 0.0, 0]] * 2}, ""),
+        ({"frames": [0.0, 0.5, 0.2]}, ""),  # a trial began at rest again
         ({"number": 1}, "the number of the stage"),
         ({"steps": 19}, "the stages"),
         ({"stages": [["settle", 21, 0.0, 0], ["push", 20, 0.5, 4]]}, "the stages"),
@@ -385,7 +386,6 @@ POSSIBLE = dict(
         ({"stages": [["settle", 0, 0.0, 0], ["push", 20, 0.5, 5]]}, "the stages"),
         ({"seconds": {"steps": 0.5, "rows": -0.1}}, "seconds"),
         ({"seconds": {"steps": 0.0}}, "seconds"),
-        ({"frames": [0.5, 0.0]}, "the frames"),
         ({"frames": [-0.5, 0.0]}, "the frames"),
         ({"origins": {"push": [0.0]}}, "where pushes began"),
         ({"bounds": {"push": {"load": "push", "unit": 1}}}, "the bounds"),
