@@ -141,6 +141,17 @@ def test_a_checkpoint_of_blocks_of_another_material_is_refused(tmp_path):
         loadCheckpoint(path)
 
 
+@pytest.mark.parametrize("what", ["mass", "inertia"])
+def test_a_checkpoint_of_blocks_of_another_mass_is_refused(tmp_path, what):
+    path = str(tmp_path / "c")
+    panel(False)
+    saveCheckpoint(path)
+    state = O.bodies[1].state
+    setattr(state, what, 1.01 * getattr(state, what))
+    with pytest.raises(ValueError, match="is of another scene: its blocks are others"):
+        loadCheckpoint(path)
+
+
 @pytest.fixture
 def saved(tmp_path):
     path = str(tmp_path / "c")
