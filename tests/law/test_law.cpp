@@ -1267,8 +1267,7 @@ TEST_CASE("damping of a subcontact without bond may take all of its pressure and
     }
 }
 
-TEST_CASE(
-    "a damaged bond is not damped while it pulls, and is damped as no bond while it is pressed") {
+TEST_CASE("a damaged bond is not damped while it pulls, and is damped as no bond while it is pressed") {
     const Jump away{1e5 / damped, {2e5 / damped, 3e5 / damped}};
     const Damped intact(4e5, {}, away, true), torn(4e5, {}, away, true, 0.1), pressed(-0.5e5, {}, away, true, 0.1);
     CHECK(intact.normal == within(5e5, 1e-12));
