@@ -284,15 +284,34 @@ TEST_CASE("a face has three points along and three across at its edges and middl
         const auto grid = subdivide(contact->polygon, contact->normal, motion.rotation().col(0), 3, 3);
         const auto row = subdivide(contact->polygon, contact->normal, motion.rotation().col(0), 3, 1);
         REQUIRE(grid.size() == 9);
+        const auto column = subdivide(contact->polygon, contact->normal, motion.rotation().col(0), 1, 3);
         REQUIRE(row.size() == 3);
+        REQUIRE(column.size() == 3);
         for (int i = 0; i < 3; ++i) {
             CHECK((row[i].centre - motion * Point(0.11 * i, 0.051, 0.081)).norm() < 1e-9);
             CHECK(row[i].area == within(0.22 * 0.102 * share[i], 1e-9));
+            CHECK((column[i].centre - motion * Point(0.11, 0.051 * i, 0.081)).norm() < 1e-9);
+            CHECK(column[i].area == within(0.22 * 0.102 * share[i], 1e-9));
             for (int j = 0; j < 3; ++j) {
                 CHECK((grid[3 * i + j].centre - motion * Point(0.11 * i, 0.051 * j, 0.081)).norm() < 1e-9);
                 CHECK(grid[3 * i + j].area == within(0.22 * 0.102 * share[i] * share[j], 1e-9));
             }
         }
+    }
+}
+
+TEST_CASE("polygons without four corners have the corners and centroids of small triangles, half as many as points") {
+    for (int corners : {3, 5, 6}) {
+        Polygon polygon;
+        for (int i = 0; i < corners; ++i)
+            polygon.push_back({std::cos(2 * M_PI * i / corners), std::sin(2 * M_PI * i / corners), 0});
+        for (int along = 2; along < 9; ++along)
+            for (int across = 2; across < 9; ++across) {
+                const int m = std::max(along, across) / 2; // parts of the line from the centroid to a corner
+                const int inner = corners * m * m, shared = 1 + corners * m * (m + 1) / 2;
+                const auto points = subdivide(polygon, Point::UnitZ(), Point::UnitX(), along, across);
+                CHECK(int(points.size()) == inner + shared);
+            }
     }
 }
 

@@ -77,6 +77,16 @@ TEST_CASE("records that lie about their sizes are refused although the sum is ri
     const auto one = "n" + number(1) + number(8) + "a" + number(0);
     CHECK(refusal(Checkpoint::sealed(one)) == "accepted");
     CHECK(says(Checkpoint::sealed(one + one), "there twice"));
+    const auto text = "t" + number(1) + number(2) + "aok";
+    CHECK(refusal(Checkpoint::sealed(text)) == "accepted");
+    CHECK(says(Checkpoint::sealed(text + text), "there twice"));
     CHECK(says(Checkpoint::sealed("x" + one.substr(1)), "no known kind"));
     CHECK(says(Checkpoint::sealed("n" + number(1) + number(7) + "a1234567"), "no known kind"));
+}
+
+TEST_CASE("a file that is too short for its own sum is said to be damaged") {
+    const auto empty = Checkpoint::sealed("");
+    const auto title = empty.substr(0, empty.size() - 2 * sizeof(std::uint64_t));
+    for (std::uint64_t size = 0; size < sizeof(std::uint64_t); ++size)
+        CHECK(says(title + number(size) + std::string(size, 'x'), "is damaged: its size is not what it says"));
 }

@@ -6,11 +6,15 @@ import errno
 import itertools
 import os
 import struct
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from crafted import TITLE, Crafted
 from masonry import loadCheckpoint, readCheckpoint, saveCheckpoint
+from masonry.basics import Refused
+from masonry.run import plausible
+from masonry.run.place import Place
 from test_joint_loop import CASES, energy, panel, state
 from yade import O, Vector3
 from yade.wrapper import *
@@ -133,6 +137,17 @@ def test_a_checkpoint_of_blocks_of_another_material_is_refused(tmp_path):
     )
     stiffer.young, stiffer.poisson = 1.01 * known.young, known.poisson
     O.bodies[1].mat = stiffer
+    with pytest.raises(ValueError, match="is of another scene: its blocks are others"):
+        loadCheckpoint(path)
+
+
+@pytest.mark.parametrize("what", ["mass", "inertia"])
+def test_a_checkpoint_of_blocks_of_another_mass_is_refused(tmp_path, what):
+    path = str(tmp_path / "c")
+    panel(False)
+    saveCheckpoint(path)
+    state = O.bodies[1].state
+    setattr(state, what, 1.01 * getattr(state, what))
     with pytest.raises(ValueError, match="is of another scene: its blocks are others"):
         loadCheckpoint(path)
 
@@ -342,3 +357,63 @@ def test_a_recorder_goes_on_with_its_series(tmp_path):
     run(20)
     assert (tmp_path / "joints.pvd").read_text() == series
     assert (tmp_path / "joints_0004.vtp").read_bytes() == last
+
+
+# -- numbers of a run that contradict each other -----------------------------------------------------------------------
+
+
+def answers(**other):
+    one = dict(stage="push", number=2, name="peak", unit="kN", value=1.5, how="")
+    return {"2": [{**one, "uncertainty": None, **other}]}
+
+
+#: A run in its second stage that is possible, with 4 rows.
+POSSIBLE = dict(
+    number=2,
+    steps=30,
+    stages=[["settle", 0, 0.0, 0], ["push", 20, 0.5, 4]],
+    seconds={"setup": 0.1, "steps": 0.5, "rows": 0.0, "frames": 0.0},
+    frames=[0.0, 0.5, 0.5],
+    origins={"push": [0.0, 1e-3]},
+    loads={"2": ["push", "push", ""]},
+    ended={"1": ["at rest", 1]},
+    answers=answers(),
+    memory={"origin": [0.0, 1e-3], "kept": [[0.5, "state"]], "marks": [1.0, 2.0]},
+)
+
+
+@pytest.mark.parametrize(
+    "change, what",
+    [
+        ({}, ""),
+        ({"steps": 20}, ""),  # at the beginning of the stage
+        ({"stages": [["settle", 0, 0.0, 4], ["push", 0, 0.5, 4]]}, ""),
+        ({"steps": 0, "stages": [["settle", 0, 0.0, 0]] * 2}, ""),
+        ({"frames": [0.0, 0.5, 0.2]}, ""),  # a trial began at rest again
+        ({"number": 1}, "the number of the stage"),
+        ({"steps": 19}, "the stages"),
+        ({"stages": [["settle", 21, 0.0, 0], ["push", 20, 0.5, 4]]}, "the stages"),
+        ({"stages": [["settle", 0, 0.0, 3], ["push", 20, 0.5, 2]]}, "the stages"),
+        ({"stages": [["settle", 0, 0.0, 0], ["push", 20, 0.5, 5]]}, "the stages"),
+        ({"seconds": {"steps": 0.5, "rows": -0.1}}, "seconds"),
+        ({"seconds": {"steps": 0.0}}, "seconds"),
+        ({"frames": [-0.5, 0.0]}, "the frames"),
+        ({"origins": {"push": [0.0]}}, "where pushes began"),
+        ({"bounds": {"push": {"load": "push", "unit": 1}}}, "the bounds"),
+        ({"loads": {"second": ["push", "push", ""]}}, "the loads"),
+        ({"ended": {"²": ["at rest", 1]}}, "how stages ended"),
+        ({"answers": answers(number=1)}, "the answers"),
+        ({"answers": answers(value="much")}, "the answers"),
+        ({"answers": answers(name="factor_held")}, "the answers"),
+        ({"memory": {"origin": [0.0]}}, "the memory of the stage"),
+        ({"memory": {"kept": [["state", 0.5]]}}, "the memory of the stage"),
+        ({"memory": {"marks": ["1"]}}, "the memory of the stage"),
+    ],
+)
+def test_numbers_of_a_run_that_contradict_each_other_are_named(change, what):
+    saved = SimpleNamespace(rows=[[0.0]] * 4, seconds=1.0)
+    at = Place(**{**POSSIBLE, **change})
+    if not what:
+        return plausible.check(saved, at)
+    with pytest.raises(Refused, match=f": {what} cannot be those of a run$"):
+        plausible.check(saved, at)

@@ -8,7 +8,14 @@ import math
 import re
 
 import pytest
-from masonry import MasonryJoint, addBlock, connect, criticalTimeStep, engines
+from masonry import (
+    MasonryJoint,
+    addBlock,
+    connect,
+    criticalTimeStep,
+    engine,
+    engines,
+)
 from masonry.bricks import boxCorners as corners
 from yade import O, Quaternion, Vector3
 from yade.wrapper import *
@@ -158,6 +165,30 @@ def test_a_stack_pulled_apart_is_reported_when_a_block_has_left(scene, direction
     )
 
 
+def test_the_first_body_of_a_scene_is_named_as_any_other(scene):
+    standing(gravity=(0, 0, 0))
+    O.bodies[0].state.blockedDOFs, O.bodies[1].state.blockedDOFs = "yXZ", "xyzXYZ"
+    O.bodies[0].state.vel = Vector3(0, 0, -10)
+    collapses(1, "block 0 has left block 1 by")
+    assert energy().collapsedBlock == 0
+
+
+def test_a_collapse_in_a_step_that_another_engine_fails_does_not_end_the_next(scene):
+    s = standing(gravity=(0, 0, 0))
+    go(100 * O.dt)
+    s.ori = Quaternion(Vector3(0, 1, 0), math.radians(70))
+    ours = list(O.engines)
+    O.engines = [*ours[:-1], PyRunner(command="1 / 0", iterPeriod=1), ours[-1]]
+    while energy().collapsedBlock < 0:
+        with pytest.raises(Exception, match="ZeroDivisionError"):
+            O.step()
+    O.engines = ours
+    energy().watch = False
+    before = O.iter
+    O.step()
+    assert O.iter == before + 1
+
+
 def test_a_collapse_goes_before_motion_out_of_nothing_and_tells_both(scene):
     s = standing(dry(friction=0.1, residualFriction=0.1), (0.25, 0.25, 0.1))
     go(120 * O.dt)
@@ -253,3 +284,72 @@ def test_nothing_is_reported_of_a_sound_balance_or_without_the_watch(scene, capf
     go(2500 * O.dt)
     assert "balance" not in capfd.readouterr().err
     assert not energy().warned
+
+
+def test_a_wrong_balance_is_reported_again_when_it_is_twice_as_large(scene, capfd):
+    s = standing(joint=MasonryJoint(elastic=True), damping=0.3)
+    reported = 0
+    for share, again in ((0.02, True), (0.04, False), (0.5, True), (0.6, False)):
+        O.forces.setPermF(1, Vector3(0, 0, -share * G * s.mass))
+        go(4500 * O.dt)
+        error = abs(energy().balance()["error"])
+        assert (error > 2 * reported) == again
+        text = capfd.readouterr().err
+        assert text.count("the energy balance is off by") == again
+        reported = error if again else reported
+
+
+def test_a_force_that_takes_energy_is_reported_as_one_that_brings_it(scene, capfd):
+    s = standing(joint=MasonryJoint(elastic=True), damping=0.3)
+    O.forces.setPermF(1, Vector3(0, 0, 0.5 * G * s.mass))
+    go(1500 * O.dt)
+    assert energy().balance()["error"] > 0.1
+    assert "the energy balance is off by" in capfd.readouterr().err
+
+
+SOFT = dict(normalStiffness=1e7, shearStiffness=5e6)  # energies far above round-off
+ELASTIC = dict(tensileStrength=1, cohesion=0, elastic=True, **SOFT)
+RUBBING = dict(friction=0.1, residualFriction=0.1, **SOFT)
+MOVING = {  # properties of the joint, its damping [s], velocity [m/s], and an energy that is not small
+    "vibrating": (ELASTIC, 0, 0, "elastic_compression"),
+    "damped": (ELASTIC, 2e-4, 0, "damping"),
+    "sliding": (RUBBING, 0, 0.4, "dissipated_shear"),
+}
+
+
+@pytest.mark.parametrize("kind", MOVING)
+def test_nothing_is_reported_while_undamped_blocks_move(scene, capfd, kind):
+    """Their energies change in every step, so a sound balance is one of energies of one instant."""
+    properties, damping, speed, taken = MOVING[kind]
+    s = standing(dry(**properties), (0.25, 0.25, 0.1))
+    engine("joints").stiffnessDamping = damping
+    O.dt = 0.1 * criticalTimeStep()[0]
+    s.blockedDOFs = "yXYZ"
+    s.vel = Vector3(speed, 0, 0)
+    for _ in range(3500):
+        O.step()
+        assert not energy().warned
+    b = energy().balance()
+    assert abs(b["error"]) < 1e-9
+    assert b[taken] > 0.05 * (b["gravity"] + b["external"])
+    assert capfd.readouterr().err == ""
+
+
+@FUNCTORS
+def test_the_balance_of_a_run_that_a_collapse_ended_is_that_of_one_instant(
+    scene, functors
+):
+    """A block slides off; in the last step its kinetic energy changes by far more than round-off."""
+    s = standing(dry(**RUBBING), (0.25, 0.25, 0.1), functors=functors)
+    s.blockedDOFs = "yXYZ"
+    s.vel = Vector3(3, 0, 0)
+    O.dt *= 0.1
+    O.step()
+    with pytest.raises(RuntimeError, match="^collapsed: block 1 has slid"):
+        while True:
+            before = energy().balance()
+            assert abs(before["error"]) < 1e-9
+            O.step()
+    b = energy().balance()
+    assert abs(b["error"]) < 1e-9
+    assert abs(b["kinetic"] - before["kinetic"]) > 1e-6 * b["kinetic"]

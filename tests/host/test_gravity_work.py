@@ -186,3 +186,24 @@ def test_the_work_goes_on_after_saving_and_loading(scene, direction, through, tm
     else:
         assert ends[0] == ends[1]
     assert abs(ends[1]["error"]) < 1e-9
+
+
+@WAYS
+def test_a_load_on_a_block_that_vibrates_does_force_times_displacement(
+    scene, direction
+):
+    stack(direction, damping=0, joined=False)
+    load = MasonryLoad(body=2, force=(0, 0, -500), point=(0.11, 0.051, 3 * UNIT[2]))
+    if direction == "deformable":  # loads act on rigid bodies
+        engine(MasonryZones).bodies = [1]
+    at = O.engines.index(engine(MasonryEnergy))
+    O.engines = [*O.engines[:at], load, *O.engines[at:]]
+    connect()
+    O.dt = 0.2 * criticalTimeStep()[0]
+    for _ in range(500):
+        before = O.bodies[2].state.pos[2] - O.bodies[2].state.refPos[2]
+        O.step()
+        b = balance()
+        assert abs(b["error"]) < 1e-6  # round-off of small displacements
+        assert b["external"] == pytest.approx(-500 * before, rel=1e-6, abs=1e-12)
+    assert b["external"] > 1e-5

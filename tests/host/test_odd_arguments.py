@@ -22,6 +22,7 @@ import pytest
 from masonry import (
     Scene,
     addBlock,
+    arguments,
     bricks,
     connect,
     criticalTimeStep,
@@ -461,6 +462,26 @@ def _takesNothing(thing):
 )  # fmt: skip
 def test_what_is_refused_is_named_with_its_bound(folder, name, change, message):
     assert message in said(name, change)
+
+
+@pytest.mark.parametrize(
+    "kind, fine, wrong",
+    [
+        (arguments.number("m", 0, 2), (0, 2), (-5e-324, math.nextafter(2, 3))),
+        (arguments.number("m", 0, 2, above=True), (5e-324, 2), (0, -1)),
+        (arguments.number("m", 0, 2, below=True), (0, math.nextafter(2, 0)), (2, 3)),
+        (arguments.whole(1, 3), (1, 2, 3), (0, 4, 2.0, True)),
+        (arguments.whole(1), (1, 10**30), (0, -1)),
+        (arguments.direction(True), ((1, 1, 0), (0, -2, 0)), ((1, 0, 1e-9), (0, 0, 1))),
+        (arguments.direction(), ((1, 1, 1), (0, 0, -2)), ((0, 0, 0), (1, 1))),
+    ],
+)
+def test_a_kind_takes_its_bounds_and_nothing_beyond(kind, fine, wrong):
+    for value in fine:
+        assert kind(value) == value
+    for value in wrong:
+        with pytest.raises(ValueError, match="must be"):
+            kind(value)
 
 
 def test_a_target_of_another_scene_is_refused(folder):

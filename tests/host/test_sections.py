@@ -2,15 +2,29 @@
 """What horizontal sections transmit, against statics: weight and loads above, and the reaction of the base."""
 
 import math
+import os
+import sys
 
 import numpy as np
 import pytest
-from masonry import AT_REST, MasonryVtkRecorder, Scene, bricks, engine, materials
-from masonry._masonry import loadScene, saveScene
+from conftest import ROOT
+from masonry import (
+    AT_REST,
+    MasonryJoint,
+    MasonryVtkRecorder,
+    Scene,
+    bricks,
+    engine,
+    materials,
+)
+from masonry._masonry import loadScene, resultant, saveScene
 from masonry.basics import GRAVITY, Refused
 from masonry.read.files import readCurve, readRun
 from masonry.read.frames import asFrame
-from yade import O, Vector3
+from yade import O, Quaternion, Vector3
+
+sys.path.insert(0, os.path.join(ROOT, "validation", "closed_forms"))
+from motion_cases import oscillator  # noqa: E402
 
 DENSITY = 1800.0  # [kg/m³] of calcium silicate
 LEVELS = (
@@ -172,6 +186,32 @@ def test_damping_of_joints_is_a_part_of_what_they_transmit(tmp_path, scene):
     felt = O.forces.f(base.body, True)
     assert (foot.forces()[0] - felt).norm() < 1e-6 * felt.norm()
     wall.finish()
+
+
+@pytest.mark.parametrize("damping", [0, 1e-5], ids=["elastic", "damped"])
+@pytest.mark.parametrize("negative", [False, True], ids=["", "negative"])
+def test_a_joint_transmits_what_both_of_its_blocks_feel(scene, damping, negative):
+    """Far from the reference state and by a large jump; a quaternion and its negative are the same rotation."""
+    joint = MasonryJoint(elastic=True, normalStiffness=1e9, shearStiffness=5e8)
+    oscillator(joint, blocked="xyzXYZ")
+    engine("joints").stiffnessDamping, O.dt = damping, 1e-5
+    O.step()
+    turn = Quaternion(Vector3(1, 2, 3).normalized(), 0.5)
+    states = [body.state for body in O.bodies]
+    for state in states:
+        state.pos, state.ori = turn * state.pos, turn * state.ori
+    states[1].pos += Vector3(1e-3, 2e-3, -1.5e-3)
+    states[1].ori = Quaternion(Vector3(2, -1, 1).normalized(), 0.01) * states[1].ori
+    if negative:
+        states[1].ori = Quaternion(*(-value for value in states[1].ori))
+    O.step()
+    made = O.interactions[0, 1]
+    for body, sign in ((0, 1), (1, -1)):
+        force, moment = resultant([made], [sign], states[body].pos)
+        felt, turned = O.forces.f(body, True), O.forces.t(body, True)
+        assert felt.norm() > 1000 and turned.norm() > 10
+        assert (force - felt).norm() < 1e-9 * felt.norm()
+        assert (moment - turned).norm() < 1e-9 * turned.norm()
 
 
 def test_the_parts_of_a_corner_add_up_to_the_whole(tmp_path, scene):

@@ -5,8 +5,10 @@ import math
 import os
 import sys
 
+import numpy as np
 import pytest
 from conftest import ROOT
+from crafted import records
 from masonry import (
     MasonryJoint,
     addBlock,
@@ -16,6 +18,7 @@ from masonry import (
     rayleigh,
     saveCheckpoint,
 )
+from masonry._masonry import loadScene, saveScene
 from masonry.bricks import boxCorners as corners
 from yade import O, Vector3
 from yade.wrapper import *
@@ -252,3 +255,59 @@ def test_a_damped_run_goes_on_bit_for_bit_after_saving_and_loading(
         ends.append((balance(), [tuple(b.state.pos) for b in O.bodies]))
     assert ends[0] == ends[1]
     assert ends[0][0]["damping"] > 0 and abs(ends[0][0]["error"]) < 1e-5
+
+
+def dampingStresses():
+    """The stresses of damping in the state that a checkpoint keeps [Pa], three for every subcontact."""
+    found = {name: value for _, name, value in records(saveScene(""))}
+    joints = O.interactions[0, 1].geom.areas
+    numbers = np.frombuffer(found[b"scene.joints"]).reshape(len(joints), -1)
+    return numbers[:, 3:6]  # after three numbers of the jump
+
+
+def vibrating(blocked=""):
+    """A block on a damped joint in the middle of its vibration."""
+    omega = oscillator(blocked=blocked, gravity=(100, 200, -1000))
+    engine(MasonryJointLoop).stiffnessDamping = 0.1 / omega
+    O.dt = 0.5 * criticalTimeStep()[0]
+    for _ in range(30):
+        O.step()
+
+
+def ended(steps):
+    for _ in range(steps):
+        O.step()
+    return balance(), [tuple(b.state.pos) for b in O.bodies]
+
+
+def test_damping_that_is_switched_off_is_gone_after_the_next_step(scene):
+    """Half of the work of its last stress is done in that step, and the balance stays closed."""
+    vibrating("xyXYZ")
+    assert dampingStresses()[:, 0].all()
+    engine(MasonryJointLoop).stiffnessDamping = 0
+    last = balance()["damping"]
+    O.step()
+    assert not dampingStresses().any()
+    made = O.interactions[0, 1]
+    force = sum(s[0] * a for s, a in zip(made.phys.stress, made.geom.areas))
+    assert O.forces.f(0, True)[2] == pytest.approx(force, rel=1e-9)
+    b = balance()
+    assert b["damping"] > last
+    assert abs(b["error"]) < 1e-9
+    O.step()
+    O.step()
+    assert balance()["damping"] == b["damping"]
+
+
+@pytest.mark.parametrize("steps", [0, 1, 5])
+def test_a_state_right_after_damping_goes_on_bit_for_bit_in_a_scene_that_ran_on(
+    scene, steps
+):
+    vibrating("xyXYZ")
+    engine(MasonryJointLoop).stiffnessDamping = 0
+    saved = saveScene("")
+    whole = ended(20)
+    loadScene(saved)
+    ended(steps)
+    loadScene(saved)
+    assert ended(20) == whole

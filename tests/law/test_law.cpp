@@ -1241,10 +1241,10 @@ constexpr double damped = 1e12, coefficient = 0.6; // [Pa/m] viscous stress over
 
 struct Damped { // the stresses of a subcontact without bond, or with one, after the damping [Pa], and the energy [J]
     double normal, shearA, shearB, energy;
-    Damped(double sigma, const Shear& tau, const Jump& change, bool bonded = false)
+    Damped(double sigma, const Shear& tau, const Jump& change, bool bonded = false, double damage = 0)
         : normal(sigma), shearA(tau.a), shearB(tau.b) {
         const Regime regime = Regime::Elastic;
-        const double damage = 0, area = 2, jump[3] = {change.opening, change.slide.a, change.slide.b};
+        const double area = 2, jump[3] = {change.opening, change.slide.a, change.slide.b};
         const double* const changes[3] = {&jump[0], &jump[1], &jump[2]};
         double before[3] = {};
         double* const viscous[3] = {&before[0], &before[1], &before[2]};
@@ -1267,6 +1267,18 @@ TEST_CASE("damping of a subcontact without bond may take all of its pressure and
     }
 }
 
+TEST_CASE("a damaged bond is not damped while it pulls, and is damped as no bond while it is pressed") {
+    const Jump away{1e5 / damped, {2e5 / damped, 3e5 / damped}};
+    const Damped intact(4e5, {}, away, true), torn(4e5, {}, away, true, 0.1), pressed(-0.5e5, {}, away, true, 0.1);
+    CHECK(intact.normal == within(5e5, 1e-12));
+    CHECK(intact.shear() == within(std::hypot(2e5, 3e5), 1e-12));
+    CHECK(torn.normal == 4e5);
+    CHECK(torn.shear() == 0);
+    CHECK(torn.energy == 0);
+    CHECK(pressed.normal == 0);
+    CHECK(pressed.shear() == 0);
+}
+
 TEST_CASE("damping of a subcontact without bond slips at friction times the pressure with the damping in it") {
     const double sigma = -1e6, fast = 1e9 / damped;
     for (double viscous : {-2e6, -0.5e6, 0.0, 0.5e6, 1e6}) { // normal: more pressure, or less
@@ -1278,5 +1290,23 @@ TEST_CASE("damping of a subcontact without bond slips at friction times the pres
         const double law = -coefficient * sigma;
         const Damped more(sigma, {law, 0}, {viscous / damped, {fast, 0}});
         CHECK(more.shear() == within(std::max(law, bound), 1e-9));
+    }
+}
+
+TEST_CASE("damping adds all of its shear stress where friction bears it, else as much as friction bears") {
+    std::mt19937 dice(5);
+    std::uniform_real_distribution<> u(0, 1);
+    const double bound = coefficient * 1e6;
+    for (int trial = 0; trial < 1000; ++trial) {
+        const double a = 2 * M_PI * u(dice), b = 2 * M_PI * u(dice), size = bound * u(dice),
+                     other = 2 * bound * u(dice);
+        const Shear law{size * std::cos(a), size * std::sin(a)}, added{other * std::cos(b), other * std::sin(b)};
+        const Damped after(-1e6, law, {0, {added.a / damped, added.b / damped}});
+        const double ofWhole = std::hypot(law.a + added.a, law.b + added.b);
+        CHECK(after.shear() == within(std::min(ofWhole, bound), 1e-9));
+        const double along = (after.shearA - law.a) * std::cos(b) + (after.shearB - law.b) * std::sin(b);
+        const double aside = (after.shearB - law.b) * std::cos(b) - (after.shearA - law.a) * std::sin(b);
+        CHECK(std::abs(aside) < 1e-9 * bound);
+        CHECK(along >= 0);
     }
 }

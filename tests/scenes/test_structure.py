@@ -104,6 +104,26 @@ def test_a_resumed_scene_equals_one_without_a_break(tmp_path, stage):
     assert whole == broken
 
 
+def test_stages_that_are_left_out_of_a_resumed_run_have_the_rows_of_their_time(
+    tmp_path,
+):
+    def play(*words):
+        scene = made(tmp_path, bricks.stack(3, (0.4, 0.3, 0.2)), words=words)
+        scene.platen("bottom")
+        top = scene.platen("top")
+        scene.press(top, 1e5)
+        counts = []
+        for stage in (scene.settle, lambda: scene.push(top, 0.05), lambda: scene.run(0.01)):  # fmt: skip
+            stage()
+            counts.append(len(scene.results.column("time_s")))
+        scene.finish()
+        return counts
+
+    whole = play()
+    assert 0 < whole[0] < whole[1] < whole[2]
+    assert play("--resume", str(tmp_path)) == whole
+
+
 def small(folder, *words, press=1e5, push=0.05):
     scene = made(folder, bricks.stack(3, (0.4, 0.3, 0.2)), words=words)
     scene.platen("bottom")

@@ -485,14 +485,9 @@ double JointPlan::advance(SceneStore& store, double stiffnessDamping) {
         noticeBodies(store);
     }
     if (zones_) moveDependentPoints(store);
-    // The step that follows damping takes half of its work; after that there is nothing left of it.
-    const bool over = stiffnessDamping == 0 && lastDamping_ == 0;
-    lastDamping_ = stiffnessDamping;
-    for (auto& kind : store.kinds) {
-        auto& shapes = *kind.shapes;
-        if (stiffnessDamping > 0 && shapes.viscous[0].empty()) shapes.makeViscous();
-        if (over && !shapes.viscous[0].empty()) shapes.dropViscous();
-    }
+    if (stiffnessDamping > 0)
+        for (auto& kind : store.kinds)
+            kind.shapes->makeViscous();
     const int count = int(batches_.size());
     taken_.resize(count);
 #pragma omp parallel for schedule(static)
@@ -503,6 +498,10 @@ double JointPlan::advance(SceneStore& store, double stiffnessDamping) {
         const int left = int(kind.shapes->joints.size()) - from;
         taken_[n] = advanceBatch(store, kind, plan, from, std::min(most, left), stiffnessDamping);
     }
+    // The step that follows damping has taken half of its work; after that there is nothing left of it.
+    if (stiffnessDamping == 0)
+        for (auto& kind : store.kinds)
+            kind.shapes->dropViscous();
     const int bodies = store.bodies.size();
     forces_ = store.scene().forces().forces(bodies);
     torques_ = store.scene().forces().torques(bodies);

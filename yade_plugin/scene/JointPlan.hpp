@@ -97,7 +97,6 @@ private:
     // Scratch of a step. Of every joint between rigid bodies the force on body 1 [N] and the torques about both centres
     // [N m]; of a joint with a deformable side only the moments on the rotations of both bodies [N m].
     std::vector<double> onJoints_;
-    double lastDamping_ = -1;      // stiffness damping of the last step [s]; -1 before the first
     std::vector<double> taken_;    // scratch: energy that damping takes in every batch [J]
     std::vector<double> onPoints_; // scratch: force on side 1 of every subcontact with deformable sides [N]
     Vector3r* forces_ = nullptr;   // the host's forces of the present step [N], to which the joints add theirs
