@@ -119,16 +119,17 @@ class Case:
 
     def _byTests(self, density, friction):
         dice = self.dice
-        unit_E, fv0 = dice.power(6, 12), self._strength()
+        unit_E, fv0 = dice.power(7.1, 11.9), min(self._strength(), 1e8)
+        mortar = min(0.05 * self.unit[0], 0.1, 0.5 * self.height)
         return materials.masonry(
             E=unit_E * dice.uniform(0.1, 0.95),
             unit_E=unit_E,
-            fm=dice.power(4, 9),
+            fm=dice.power(5, 8.9),
             fv0=fv0,
             friction=friction,
             ft=fv0 / max(friction, 1) * dice.uniform(0, 1),
-            unit=(self.unit[0] * 0.95, self.unit[1], self.height - 0.05 * self.unit[0]),
-            joint=0.05 * self.unit[0],
+            unit=(self.unit[0] - mortar, self.unit[1], self.height - mortar),
+            joint=mortar,
             density=density,
         )
 
@@ -136,25 +137,29 @@ class Case:
         return 0.0 if self.dice.often(0.2) else self.dice.power(0, 12)
 
     def _byJoints(self, density, friction, kn):
-        dice, ks = self.dice, kn * self.dice.uniform(0.1, 1)
+        dice, ks, young = self.dice, kn * self.dice.uniform(0.1, 1), self.dice.power(7, 12)  # fmt: skip
+        lumped = 0.0 if self.deformable else max(self.unit) / young  # [m/Pa]
         cohesion, tension = self._strength(), self._strength()
         if friction and dice.often(0.9):  # else it may be refused
             tension = min(tension, 0.99 * cohesion / friction)
-        energy = lambda strength, k: materials.leastEnergy(strength, k) * dice.power(
-            0.1 if dice.often(0.9) else -1, 2
-        )
+        enough = lambda: dice.power(0.1 if dice.often(0.9) else -1, 2)
+        energy = lambda f, k, soft: enough() * materials.leastEnergy(f, k, soft)
         values = dict(cap=False)
         if dice.often(0.4):
             fc, ratio = dice.power(4, 12), dice.uniform(2, 60)
             values = dict(
                 compressiveStrength=fc,
                 peakRatio=ratio,
-                compressiveFractureEnergy=fc * fc / kn * ratio * dice.power(0.3, 2),
+                compressiveFractureEnergy=fc
+                * fc
+                * (ratio / kn + lumped)
+                * enough()
+                * 2,
             )
         if tension:
-            values["modeIFractureEnergy"] = energy(tension, kn)
+            values["modeIFractureEnergy"] = energy(tension, kn, lumped)
         if cohesion:
-            values["modeIIFractureEnergy"] = energy(cohesion, ks)
+            values["modeIIFractureEnergy"] = energy(cohesion, ks, 2.4 * lumped)
         joint = MasonryJoint(
             normalStiffness=kn,
             shearStiffness=ks,
@@ -164,7 +169,7 @@ class Case:
             residualFriction=friction,
             **values,
         )
-        unit = MasonryMat(density=density, young=dice.power(7, 12), poisson=0.2)
+        unit = MasonryMat(density=density, young=young, poisson=0.2)
         return materials.Masonry(unit, {"bed": joint})
 
     # -- closed forms ---------------------------------------------------------------------------------------------
@@ -224,10 +229,10 @@ class Case:
         cosine = lambda f: 1 / math.hypot(1, f) if tilts else 1.0
         carried = lambda f: all(self._carries(n, f, cosine(f)) for n in numbers)
         low, high = 0.0, 1e6
-        for _ in range(200):
-            middle = math.sqrt(low * high) if low > 1e-9 else high / 10
+        for _ in range(100):
+            middle = math.sqrt(max(low, 1e-9) * high)
             low, high = (middle, high) if carried(middle) else (low, middle)
-        return high
+        return high if high > 2e-9 else 0.0
 
     def _carries(self, n, f, cos):
         force, moment = f * cos * self.own, 0.0
@@ -389,6 +394,7 @@ class Play:
 
     def _cycle(self):
         until, rate = self._path() if not self.case.deformable else (0.1, 20)
+        until = max(until, 0.02)  # the least amplitude
         return self._pushed("cycle", [until], until, rate)
 
     def _pushed(self, name, aim, until, rate):
@@ -641,7 +647,7 @@ class Falling(Play):
     def play(self):
         self.scene.begin()
         self._count()
-        self.scene.settle()
+        self.scene.settle(longest=3.0)
 
 
 def describe(number, found):
