@@ -119,14 +119,14 @@ class Case:
 
     def _byTests(self, density, friction):
         dice = self.dice
-        unit_E, fv0 = dice.power(7.1, 11.9), min(self._strength(), 1e8)
+        fm, fv0 = dice.power(5.5, 8), min(self._strength(), 1e8)
         mortar = min(0.05 * self.unit[0], 0.1, 0.5 * self.height)
-        E, fm = unit_E * dice.uniform(0.1, 0.95), dice.power(5, 8.9)
+        E = fm * dice.power(2, 3.5)
         return materials.masonry(
             E=E,
-            unit_E=unit_E,
+            unit_E=E / dice.uniform(0.1, 0.95),
             fm=fm,
-            Gc=fm * fm / E * self.height * dice.power(0.5, 2),
+            Gc=min(max(fm * fm / E * self.height * dice.power(0.5, 2), 10), 1e7),
             fv0=fv0,
             friction=friction,
             ft=fv0 / max(friction, 1) * dice.uniform(0, 1),
