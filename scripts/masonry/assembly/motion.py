@@ -8,6 +8,7 @@ from yade import O, Vector3
 from ..basics import GRAVITY, Collapsed
 
 FALLEN = 0.05  # of the largest side of a block: one that moves so far, and fast, falls
+FAR = 1.0  # likewise: it has fallen, and does not only swing on joints that are soft
 FAST = 0.1  # of √(g·side): the velocity of a block that has fallen by half a hundredth of its side
 
 
@@ -58,12 +59,15 @@ class Motion:
         """Velocity of the fastest block over that of one that has fallen [-]."""
         return max(v / falling for v, falling in zip(self._speeds(), self._falling))
 
-    def checkFall(self):
-        """Raise Collapsed if a block has moved far since the last state at rest, and is fast."""
+    def checkFall(self, far=FALLEN):
+        """Raise Collapsed if a block has moved far since the last state at rest, and is fast.
+
+        :param far: over the largest side of the block [-]
+        """
         speeds = None
         for index, state in enumerate(self._states):
             moved = state.pos - self._places[index]
-            if moved.norm() <= FALLEN * self._sizes[index]:
+            if moved.norm() <= far * self._sizes[index]:
                 continue
             speeds = speeds or self._speeds()
             if speeds[index] >= self._falling[index]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from yade import O
 
 from ...arguments import flag, number, oneOf, orNone, takes
+from ...assembly.motion import FAR
 from ...basics import Collapsed, Refused, say
 from .stage import AT_REST, MOVING, stage
 
@@ -14,6 +15,9 @@ REST = 5e-3  # of the load: what may be missing at the supports of a structure t
 CALM = 1e-5  # kinetic over elastic energy of a structure that is said to be at rest [-]
 LOOKS = 3  # so many looks one after the other find a structure at rest before it is said to be
 EVERY = 100  # steps between two looks
+#: If time steps are long: steps in which a part of the loads is put on, a tenth at most, and after which it is seen whether a
+#: block has fallen far.
+SHORTER = 1, 2, 5, 10, 20, 50, EVERY
 SETTLING = 0.5  # most local damping of deformable units in settle(): with more they creep to rest
 
 
@@ -78,17 +82,21 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True):
     ramp *= max(1.0, (box.high[2] - box.low[2]) / 3)
     ramp = max(ramp, over)
     growing = max(1, int(ramp / O.dt))
+    every = max(n for n in SHORTER if n == 1 or n <= growing / 10)
     longest = longest or 20 * ramp
     most = int(longest / O.dt)
     if most < 1:
         raise Refused(
             f"longest {longest:g} s, after which the wait for rest ends, must be above the time step, {O.dt:.3g} s"
         )
-    while at.done < most and at.quiet < LOOKS:
-        load = min(1.0, (at.done + EVERY) / growing)
+    while (at.done < most or at.done % EVERY) and at.quiet < LOOKS:
+        load = min(1.0, (at.done + every) / growing)
         grow(load)
-        running.advance(EVERY)
-        at.load, at.done = load, at.done + EVERY
+        running.advance(every)
+        at.load, at.done = load, at.done + every
+        if at.done % EVERY:
+            model.motion.checkFall(FAR)
+            continue
         missing, moving = model.unrest()
         rests = abs(missing) < REST and moving < CALM
         rests = rests and at.done > (1.2 if over else 1.1) * growing
