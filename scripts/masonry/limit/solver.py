@@ -23,7 +23,6 @@ NO_PRESOLVE = 1  # so, too
 FOREVER = 1e9  # time that is none for Clp [s]
 STOPPED = 3  # the status of Clp after its longest time
 SIMPLEX = 1500  # from so many variables on HiGHS uses its interior-point method
-BUFFER = 160 << 20  # bytes that numerical libraries must be able to take at once
 PARENT_ENDS = 1  # PR_SET_PDEATHSIG of Linux
 
 
@@ -94,7 +93,7 @@ def withHighs(head, arrays):
     return "solved", "", found.x.tobytes() + found.eqlin.marginals.tobytes()
 
 
-def answer(clp, line, stream):
+def answer(clp, buffer, line, stream):
     """Read the programme whose first line this is, and solve it. Returns as :func:`withClp`."""
     words = line.split()
     head = dict(zip(HEAD, [*map(int, words[:-1]), float(words[-1])]))
@@ -103,8 +102,7 @@ def answer(clp, line, stream):
         one = array.array("i" if len(arrays) < INTS else "d")
         one.frombytes(_read(stream, size * one.itemsize))
         arrays.append(one)
-    # a numerical library that finds no memory for its buffer looks for it without end
-    mmap.mmap(-1, BUFFER).close()
+    mmap.mmap(-1, buffer).close()  # refused where there is too little memory
     return withClp(clp, head, arrays) if clp else withHighs(head, arrays)
 
 
@@ -115,10 +113,11 @@ def _read(stream, size):
     return data
 
 
-def main(library):
+def main(library, buffer):
     """Solve what comes, until the input ends.
 
     :param library: name of the library of Clp
+    :param buffer: bytes that numerical libraries must be able to take at once
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the run hears it, and ends this
     ctypes.CDLL(None).prctl(PARENT_ENDS, signal.SIGKILL, 0, 0, 0)
@@ -128,7 +127,7 @@ def main(library):
         clp = None
     while line := sys.stdin.buffer.readline():
         try:
-            word, text, data = answer(clp, line, sys.stdin.buffer)
+            word, text, data = answer(clp, buffer, line, sys.stdin.buffer)
         except EOFError:
             return
         except (MemoryError, ImportError, OSError) as error:
@@ -141,4 +140,4 @@ def main(library):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(sys.argv[1], int(sys.argv[2]))

@@ -15,6 +15,7 @@ import time
 
 import numpy as np
 
+from .. import memory
 from ..basics import Refused
 from . import solver
 
@@ -40,7 +41,8 @@ class Worker:
                 return
             self.end()
         # -I: nothing of the present folder is run; -S: it starts sooner
-        command = [sys.executable, "-I", "-S", solver.__file__, LIBRARY]
+        command = [sys.executable, "-I", "-S", solver.__file__]
+        command += [LIBRARY, str(memory.BUFFER)]
         try:
             self._process = subprocess.Popen(
                 command,

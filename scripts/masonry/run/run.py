@@ -33,6 +33,9 @@ COLLAPSE = "collapsed:"  # how MasonryEnergy begins its message when a block has
 FLUSH_EVERY = 0.2  # [s] of wall-clock time: rows are on the disk after it
 SHOW_EVERY = 0.05  # [s] of wall-clock time: what is shown on the terminal is not older
 LOOK_EVERY = 0.5  # [s] of wall-clock time: within slow steps a checkpoint that is due is made no later
+PROMPT = (
+    1.2  # [s] after Ctrl-C or SIGTERM: figures that are not drawn by then are left out
+)
 #: Options that say where results are, and are no part of what was run.
 ASIDE = ("resume", "out", "saved")
 
@@ -79,6 +82,8 @@ class Run:
         self._kept = self._flushed = self._recorded = self._shown = now  # [s]
         self._recordedTime = None  # in the scene, of the last row that was read [s]
         self._handlers = {}  # of signals, as they were before
+        self._breaks = False  # whether these end at once what is done
+        self._heard = None  # when the first of them came [s]
 
     # -- beginning ------------------------------------------------------------------------------------------------
 
@@ -406,7 +411,7 @@ class Run:
         try:
             saveCheckpoint(path, progress)
             return True
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, MemoryError) as error:
             stays = "; an earlier one stays" if os.path.exists(path) else ""
             say(
                 f"warning: no checkpoint could be written to {path}: {error}{stays}",
@@ -426,8 +431,30 @@ class Run:
         self.results.run["collapse"] = self.at.fall = what
         say(f"collapsed: {what}")
 
+    @contextlib.contextmanager
+    def breakable(self):
+        """Let Ctrl-C and SIGTERM end a block at once, by Interrupted. It must change nothing that a checkpoint keeps; elsewhere
+        these are obeyed between steps."""
+        self._breaks = True
+        try:
+            if self.interrupted:
+                raise Interrupted()
+            yield
+        finally:
+            self._breaks = False
+
     def _interrupt(self, number, frame):
+        if not self.interrupted:
+            self._heard = time.perf_counter()
         self.interrupted = True
+        if self._breaks:
+            self._breaks = False
+            raise Interrupted()
+
+    @property
+    def moment(self):
+        """How long a run that was interrupted may still take for figures [s]."""
+        return max(0.0, self._heard + PROMPT - time.perf_counter())
 
     def release(self):
         """Let other runs have the folder, and others the signals."""

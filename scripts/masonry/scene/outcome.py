@@ -10,7 +10,8 @@ from yade.wrapper import MasonryVtkRecorder
 
 from ..assembly import columns
 from ..assembly.blocks import units
-from ..basics import Unwritable, say
+from ..basics import Interrupted, Unwritable, say
+from ..memory import FULL
 from ..read import cracks, measure
 from ..read.curves import (
     cycleNumbers,
@@ -376,25 +377,40 @@ class Outcome:
 
     # -- files and terminal ---------------------------------------------------------------------------------------
 
-    def draw(self, directory):
-        """Draw the figures of a run that has ended, in a program of its own. Raises Unwritable if that fails."""
+    def draw(self, directory, seconds=None):
+        """Draw the figures of a run that has ended, in a program of its own.
+
+        :param seconds: that it may take; None: any time
+        :raises Unwritable: if that fails
+        :raises Interrupted: if it takes longer
+        """
         # -P: nothing of the present folder is run
         command = [sys.executable, "-P", "-m", "masonry.read.figures", directory]
-        if subprocess.run(command).returncode:
+        try:
+            # in a session of its own: Ctrl-C is for the run
+            done = subprocess.run(command, timeout=seconds, start_new_session=True)
+        except subprocess.TimeoutExpired:
+            raise Interrupted() from None
+        except OSError as error:
+            raise Unwritable(f"the figures are not drawn: {error.strerror}") from None
+        if done.returncode:
             raise Unwritable("the figures are not drawn")
 
-    def write(self, directory):
-        """Write what the scene has beside rows and frames: the mechanism of limit analysis."""
+    def write(self, directory, draws=True):
+        """Write what the scene has beside rows and frames: the mechanism of limit analysis, with its picture if it is to be
+        drawn."""
         description = self.description
         try:
             self.scene.bounds.write(
-                directory, description.title, self.model.parts, description.views
+                directory,
+                description.title,
+                self.model.parts,
+                description.views,
+                draws,
             )
-        except OSError as error:
-            say(
-                f"the mechanism is not written to {directory}: {error.strerror}",
-                sys.stderr,
-            )
+        except (OSError, MemoryError, ImportError) as error:
+            why = getattr(error, "strerror", None) or FULL
+            say(f"the mechanism is not written to {directory}: {why}", sys.stderr)
 
     def report(self, run):
         """Lines to print at the end, from the entries of run.json."""
