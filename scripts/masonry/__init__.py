@@ -72,9 +72,18 @@ def __dir__():
 
 
 if "yade" in sys.modules:
+    from . import memory
+    from .basics import say as _say
+
+    def _end(text):
+        _say(text, sys.stderr)
+        raise SystemExit(1)
+
     try:
         from ._masonry import classes, commit, criticalTimeStep
     except ImportError as error:
+        if "failed to map" in str(error):
+            _end(memory.FULL)
         if "undefined symbol" not in str(error):
             raise
         from yade.config import version as _version
@@ -87,14 +96,10 @@ if "yade" in sys.modules:
     import yade.wrapper as _wrapper
 
     globals().update({_name: getattr(_wrapper, _name) for _name in classes})
-    from . import memory
-    from .basics import say as _say
-
     try:
         memory.reserve()
     except MemoryError as _error:
-        _say(_error, sys.stderr)
-        raise SystemExit(1) from None
+        _end(_error)
     from .assembly import given, ports, threads
     from .scene import options
     from .run.checkpoints import loadCheckpoint, readCheckpoint, saveCheckpoint

@@ -164,14 +164,11 @@ def _finish(run, scene):
 
 
 def _draw(run, scene):
-    """Draw the figures; in a run that was interrupted only if they take no longer than a moment."""
+    """Draw the figures; a run that is interrupted shall end at once, and leaves them out."""
     directory = run.results.directory
     try:
-        if run.interrupted:
-            scene.outcome.draw(directory, run.moment)
-        else:
-            with run.breakable():
-                scene.outcome.draw(directory)
+        with run.breakable():
+            scene.outcome.draw(directory)
     except Interrupted:
         say(
             f"interrupted: the figures are not drawn; /usr/bin/python3 -m masonry.read.figures {directory} draws them"
@@ -179,14 +176,14 @@ def _draw(run, scene):
 
 
 def _writeMechanism(run, scene):
-    """Write the mechanism of limit analysis; its picture takes too long in a run that was interrupted."""
+    """Write the mechanism of limit analysis, in a run that is interrupted without its picture."""
     directory = run.results.directory
+    if run.interrupted:
+        scene.outcome.write(directory, draws=False)
+        return
     try:
-        if run.interrupted:
-            scene.outcome.write(directory, draws=False)
-        else:
-            with run.breakable():
-                scene.outcome.write(directory)
+        with run.breakable():
+            scene.outcome.write(directory)
     except Interrupted:
         say("interrupted: the mechanism is not drawn")
 

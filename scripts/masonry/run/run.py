@@ -33,9 +33,6 @@ COLLAPSE = "collapsed:"  # how MasonryEnergy begins its message when a block has
 FLUSH_EVERY = 0.2  # [s] of wall-clock time: rows are on the disk after it
 SHOW_EVERY = 0.05  # [s] of wall-clock time: what is shown on the terminal is not older
 LOOK_EVERY = 0.5  # [s] of wall-clock time: within slow steps a checkpoint that is due is made no later
-PROMPT = (
-    1.2  # [s] after Ctrl-C or SIGTERM: figures that are not drawn by then are left out
-)
 #: Options that say where results are, and are no part of what was run.
 ASIDE = ("resume", "out", "saved")
 
@@ -83,7 +80,6 @@ class Run:
         self._recordedTime = None  # in the scene, of the last row that was read [s]
         self._handlers = {}  # of signals, as they were before
         self._breaks = False  # whether these end at once what is done
-        self._heard = None  # when the first of them came [s]
 
     # -- beginning ------------------------------------------------------------------------------------------------
 
@@ -444,17 +440,10 @@ class Run:
             self._breaks = False
 
     def _interrupt(self, number, frame):
-        if not self.interrupted:
-            self._heard = time.perf_counter()
         self.interrupted = True
         if self._breaks:
             self._breaks = False
             raise Interrupted()
-
-    @property
-    def moment(self):
-        """How long a run that was interrupted may still take for figures [s]."""
-        return max(0.0, self._heard + PROMPT - time.perf_counter())
 
     def release(self):
         """Let other runs have the folder, and others the signals."""

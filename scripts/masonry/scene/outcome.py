@@ -10,7 +10,7 @@ from yade.wrapper import MasonryVtkRecorder
 
 from ..assembly import columns
 from ..assembly.blocks import units
-from ..basics import Interrupted, Unwritable, say
+from ..basics import Unwritable, say
 from ..memory import FULL
 from ..read import cracks, measure
 from ..read.curves import (
@@ -377,20 +377,13 @@ class Outcome:
 
     # -- files and terminal ---------------------------------------------------------------------------------------
 
-    def draw(self, directory, seconds=None):
-        """Draw the figures of a run that has ended, in a program of its own.
-
-        :param seconds: that it may take; None: any time
-        :raises Unwritable: if that fails
-        :raises Interrupted: if it takes longer
-        """
+    def draw(self, directory):
+        """Draw the figures of a run that has ended, in a program of its own. Raises Unwritable if that fails."""
         # -P: nothing of the present folder is run
         command = [sys.executable, "-P", "-m", "masonry.read.figures", directory]
         try:
             # in a session of its own: Ctrl-C is for the run
-            done = subprocess.run(command, timeout=seconds, start_new_session=True)
-        except subprocess.TimeoutExpired:
-            raise Interrupted() from None
+            done = subprocess.run(command, start_new_session=True)
         except OSError as error:
             raise Unwritable(f"the figures are not drawn: {error.strerror}") from None
         if done.returncode:
