@@ -21,8 +21,8 @@ from .files import filesOf, onFolder
 
 def draw(directory):
     """Draw all figures that the files of a run allow. Raises Refused if something is wrong with them, or with the folder."""
-    folders.check(directory)
     memory.reserve()
+    folders.check(directory)
     with filesOf(directory):
         curve(directory)
         if glob.glob(os.path.join(glob.escape(directory), "joints_*.vtp")):

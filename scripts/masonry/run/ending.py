@@ -80,7 +80,11 @@ def _end(run, scene, error):
     if stopped:
         run.results.run["error"] = str(stopped[0])
     over = run.args.lean and not stopped and not run.interrupted
-    kept = not over and run.checkpoint()
+    kept = False
+    try:
+        kept = not over and run.checkpoint()
+    except Unwritable as unwritable:
+        stopped.append(unwritable)
     try:
         _finish(run, scene)
         if over:
