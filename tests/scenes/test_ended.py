@@ -174,3 +174,26 @@ def test_a_clock_that_jumps_changes_nothing(scene, tmp_path, monkeypatch, undraw
     assert 0 < two["wall_clock_s"] <= time.monotonic() - began
     curves = [(tmp_path / name / "curve.csv").read_bytes() for name in ("one", "two")]
     assert curves[0] == curves[1]
+
+
+STUDY = """
+from masonry.study import Study, lognormal
+study = Study("s.py", runs=2, vary={"bed.friction": lognormal(mean=0.5, cov=0.1)})
+"""
+STONES = """
+from masonry import Scene, bricks, materials
+scene = Scene("s", bricks.stack(2, (0.3, 0.3, 0.2)), materials.dry(friction=0.6))
+scene.platen("bottom"); scene.settle(); scene.finish()
+"""
+
+
+def test_a_limit_of_the_size_of_files_is_no_fault_of_the_scene_of_a_study(tmp_path):
+    (tmp_path / "study.py").write_text(STUDY)
+    (tmp_path / "s.py").write_text(STONES)
+    done = subprocess.run(
+        ["bash", "-c", f"ulimit -f 1; exec {sys.executable} -m masonry.study study.py --out out --prepare"],
+        cwd=tmp_path, capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == 1
+    assert done.stderr.startswith("cannot write ")
+    assert "File too large" in done.stderr and "scene" not in done.stderr

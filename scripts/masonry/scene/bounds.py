@@ -45,9 +45,11 @@ class Bounds:
         self.model, self.place = model, place
         self.last = None  # what was found last: limit.Bound and its entry
         self.endless = set()  # names of loads under which nothing gives way
-        if not model.args.lean:
-            with contextlib.suppress(Refused):  # it is said when there is a load
-                worker.start()  # it is ready when the structure is at rest
+
+    def prepare(self):
+        """Start the process of the solver, which is ready then when the first load needs it."""
+        with contextlib.suppress(Refused):  # it is said when there is a load
+            worker.start()
 
     @property
     def entries(self):

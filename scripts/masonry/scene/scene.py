@@ -243,6 +243,8 @@ class Scene:
         self.model = model
         self.running.open(self.columns)
         self.bounds = Bounds(model, self.running.at)
+        if not args.lean:
+            self.bounds.prepare()
         self.outcome = Outcome(self)
         with self.running.clock("setup"), self.running.breakable():
             model.build(loadingBlock())
