@@ -22,6 +22,7 @@ A scene of one's own is bricks, materials and stages::
 - :mod:`masonry.run`: a run: checkpoints, results, presets, rows of a table
 - :mod:`masonry.assembly`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by body; the 3-D view
 - :mod:`masonry.folders`: what is written in folders that others may have packed, and how
+- :mod:`masonry.memory`: what numerical libraries take of the memory
 - :mod:`masonry.arguments`: how every word checks what it is given
 - :mod:`masonry.basics`: gravity, how a run can end before its time, what is said on the terminal
 
@@ -71,9 +72,18 @@ def __dir__():
 
 
 if "yade" in sys.modules:
+    from . import memory
+    from .basics import say as _say
+
+    def _end(text):
+        _say(text, sys.stderr)
+        raise SystemExit(1)
+
     try:
         from ._masonry import classes, commit, criticalTimeStep
     except ImportError as error:
+        if "failed to map" in str(error):
+            _end(memory.FULL)
         if "undefined symbol" not in str(error):
             raise
         from yade.config import version as _version
@@ -86,6 +96,10 @@ if "yade" in sys.modules:
     import yade.wrapper as _wrapper
 
     globals().update({_name: getattr(_wrapper, _name) for _name in classes})
+    try:
+        memory.reserve()
+    except MemoryError as _error:
+        _end(_error)
     from .assembly import given, ports, threads
     from .scene import options
     from .run.checkpoints import loadCheckpoint, readCheckpoint, saveCheckpoint

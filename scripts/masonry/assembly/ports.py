@@ -19,11 +19,14 @@ def close():
         return
     for server in [o for o in gc.get_objects() if _isOpen(o, remote)]:
         ends = threading.Thread(target=server.shutdown)
-        ends.start()
-        server.socket.shutdown(
-            socket.SHUT_RDWR
-        )  # wakes it, so that it sees that it ends
-        ends.join()
+        try:
+            ends.start()
+        except RuntimeError:  # a limit of the system: no further thread
+            server.shutdown()  # half a second later it sees by itself that it ends
+        else:
+            # wakes it, so that it sees that it ends
+            server.socket.shutdown(socket.SHUT_RDWR)
+            ends.join()
         server.server_close()
 
 

@@ -5,14 +5,11 @@ import math
 
 import numpy as np
 
+from . import worker
+
 FACETS = 8  # of a friction cone
 SHARE = 12  # entries of the load by which a copy of the factor is multiplied
 KEPT = 1e-6  # how well equilibrium and strength must be kept, relative to the largest force
-SIMPLEX = 1500  # from so many variables on HiGHS uses its interior-point method
-INTERIOR_POINT = 4  # a method of Clp, as its ClpSolve.hpp counts them
-NO_PRESOLVE = 1  # so, too
-FOREVER = 1e9  # time that is none for Clp [s]
-STOPPED = 3  # the status of Clp after its longest time
 
 
 class Programme:
@@ -205,7 +202,7 @@ class Late(Unsolved):
 
 
 def solve(programme, cost, loads, left):
-    """Solve a programme, with Clp's interior-point method if its library is there, else with HiGHS.
+    """Solve a programme, with Clp's interior-point method if its library is there, else with HiGHS, in a process of its own.
 
     On the many contacts of a wall in which forces can be shared in many ways, Clp's method takes a twentieth of the time
     of HiGHS's.
@@ -217,15 +214,16 @@ def solve(programme, cost, loads, left):
     :returns: the variables, and the multipliers of equilibrium
     :raises Unsolved:
     """
+    from scipy.sparse import vstack
+
     if left <= 0:
         raise Late
     equal, unequal = programme.matrices()
     if not (np.isfinite(equal.data).all() and np.isfinite(loads).all()):
         raise Unsolved("the programme has numbers that are not finite")
-    try:
-        values, dual = _clp(programme, cost, loads, equal, unequal, left)
-    except OSError:
-        values, dual = _highs(programme, cost, loads, equal, unequal, left)
+    values, dual = _solved(
+        programme, cost, loads, vstack([equal, unequal], "csc"), left
+    )
     off = np.abs(equal @ values - loads).max()
     over = (unequal @ values - programme.limits).max(initial=0)
     if max(off, over) > KEPT * max(1, np.abs(values).max()):
@@ -235,64 +233,19 @@ def solve(programme, cost, loads, left):
     return values, dual
 
 
-def _highs(programme, cost, loads, equal, unequal, left):
-    from scipy.optimize import linprog
-
-    found = linprog(
-        cost,
-        A_eq=equal,
-        b_eq=loads,
-        A_ub=unequal if unequal.shape[0] else None,
-        b_ub=programme.limits if unequal.shape[0] else None,
-        bounds=np.column_stack([programme.low, programme.high]),
-        method="highs-ds" if programme.columns < SIMPLEX else "highs-ipm",
-        options={"time_limit": left},
-    )
-    if found.status == 1:
-        raise Late
-    if found.status:
-        raise Unsolved(found.message.strip())
-    return found.x, found.eqlin.marginals
-
-
-def _clp(programme, cost, loads, equal, unequal, left):
-    import ctypes
-
-    from scipy.sparse import vstack
-
-    clp = ctypes.CDLL("libClp.so.1")
-    numbers = ctypes.POINTER(ctypes.c_double)
-    clp.Clp_newModel.restype = clp.ClpSolve_new.restype = ctypes.c_void_p
-    for name in ("Clp_primalColumnSolution", "Clp_dualRowSolution"):
-        getattr(clp, name).restype = numbers
-    whole = vstack([equal, unequal], format="csc")
-    rows, columns = whole.shape
-    double = lambda values: np.ascontiguousarray(values, np.float64)
-    low = double(np.append(loads, np.full(len(programme.limits), -np.inf)))
-    high = double(np.append(loads, programme.limits))
-    arrays = [
-        np.ascontiguousarray(whole.indptr, np.int32),
-        np.ascontiguousarray(whole.indices, np.int32),
-        *map(double, (whole.data, programme.low, programme.high, cost, low, high)),
-    ]
-    model = ctypes.c_void_p(clp.Clp_newModel())
+def _solved(programme, cost, loads, whole, left):
     try:
-        clp.Clp_setLogLevel(model, 0)
-        clp.Clp_setMaximumSeconds(model, ctypes.c_double(min(left, FOREVER)))
-        places = [ctypes.c_void_p(array.ctypes.data) for array in arrays]
-        clp.Clp_loadProblem(model, columns, rows, *places)
-        how = ctypes.c_void_p(clp.ClpSolve_new())
-        clp.ClpSolve_setSolveType(how, INTERIOR_POINT, -1)
-        clp.ClpSolve_setPresolveType(how, NO_PRESOLVE, -1)
-        clp.Clp_initialSolveWithOptions(model, how)
-        clp.ClpSolve_delete(how)
-        status = clp.Clp_status(model)
-        if status:
-            if status == STOPPED:
-                raise Late
-            said = {1: "it has no solution", 2: "it has no end"}
-            raise Unsolved(said.get(status, f"Clp ended with status {status}"))
-        values = np.array(clp.Clp_primalColumnSolution(model)[:columns])
-        return values, np.array(clp.Clp_dualRowSolution(model)[: equal.shape[0]])
-    finally:
-        clp.Clp_deleteModel(model)
+        word, text, values, dual = worker.solve(
+            whole,
+            len(loads),
+            programme.low,
+            programme.high,
+            cost,
+            np.append(loads, programme.limits),
+            left,
+        )
+    except worker.Ended:
+        raise Late from None
+    if word == "solved":
+        return values, dual
+    raise Late if word == "late" else Unsolved(text)

@@ -13,7 +13,7 @@ import glob
 import os
 import sys
 
-from .. import folders
+from .. import folders, memory
 from .crack_figure import cracks
 from .curve_figure import curve
 from .files import filesOf, onFolder
@@ -21,6 +21,7 @@ from .files import filesOf, onFolder
 
 def draw(directory):
     """Draw all figures that the files of a run allow. Raises Refused if something is wrong with them, or with the folder."""
+    memory.reserve()
     folders.check(directory)
     with filesOf(directory):
         curve(directory)

@@ -9,6 +9,7 @@ import os
 import stat
 import sys
 
+from .. import memory
 from ..basics import Refused, say
 from ..folders import fromJson
 
@@ -101,4 +102,7 @@ def onFolder(act, words):
     except OSError as error:
         say(f"cannot write to {words[0]}: {error.strerror}", sys.stderr)
         return 2
+    except MemoryError:
+        say(memory.FULL, sys.stderr)
+        return 1
     return 0

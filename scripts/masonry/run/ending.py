@@ -15,6 +15,7 @@ from yade import O
 from .._masonry import commit, version
 from ..assembly.columns import meanings
 from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
+from ..memory import FULL
 from .checkpoints import NAME
 from .plausible import DAMAGES, brief
 from .presets import presetNote
@@ -25,8 +26,8 @@ OFF = 0.01  # of the work done: a larger error of the energy balance is a warnin
 def end(run, scene, error):
     """Finish a run in order after an error, or after none. Returns whether the error is dealt with.
 
-    ``run.status`` is then the exit status of the scene: 0 at the end, 1 if a file cannot be written or if the structure
-    has fallen while its dead loads grew, before its test began, 2 for refused input, 130 after Ctrl-C or SIGTERM. Another
+    ``run.status`` is then the exit status of the scene: 0 at the end, 1 if a file cannot be written, if the memory is
+    too small or if the structure has fallen while its dead loads grew, before its test began, 2 for refused input, 130 after Ctrl-C or SIGTERM. Another
     error is for the caller when the results are finished.
 
     :param run: :class:`masonry.run.run.Run`
@@ -48,11 +49,12 @@ def _end(run, scene, error):
             run.takeUp()
     except Refused as refused:
         error = refused
+    if isinstance(error, MemoryError):
+        error = Unwritable(FULL)
+    if isinstance(error, Interrupted) and scene.only and scene.bounds.entries:
+        run.takeUp()  # the bounds that were found are what was computed
     if not run.advanced:
-        if isinstance(error, Refused):
-            say(error, sys.stderr)
-            run.status = 2
-        return run.status == 2
+        return _beforeSteps(run, error)
     if error and not isinstance(error, Collapsed) and run.results.earlier:
         return _keepEarlier(run, error)
     stopped = []
@@ -60,6 +62,8 @@ def _end(run, scene, error):
         run.flush()
     except Unwritable as unwritable:
         stopped.append(unwritable)
+    except MemoryError:
+        stopped.append(FULL)
     except FloatingPointError as broken:
         error = error or broken
     if isinstance(error, Interrupted):
@@ -76,7 +80,11 @@ def _end(run, scene, error):
     if stopped:
         run.results.run["error"] = str(stopped[0])
     over = run.args.lean and not stopped and not run.interrupted
-    kept = not over and run.checkpoint()
+    kept = False
+    try:
+        kept = not over and run.checkpoint()
+    except Unwritable as unwritable:
+        stopped.append(unwritable)
     try:
         _finish(run, scene)
         if over:
@@ -84,6 +92,8 @@ def _end(run, scene, error):
                 os.remove(run.results.path(NAME))
     except Unwritable as unwritable:
         stopped.append(unwritable)
+    except MemoryError:
+        stopped.append(FULL)
     for text in dict.fromkeys(map(str, stopped)):
         say(f"{text}; what was written before is kept", sys.stderr)
     if kept and (stopped or run.interrupted):
@@ -91,6 +101,20 @@ def _end(run, scene, error):
     fell = run.collapsed and run.loading
     run.status = 1 if stopped or fell else 130 if run.interrupted else 0
     return True
+
+
+def _beforeSteps(run, error):
+    """End a run that has taken no step. Returns whether the error is dealt with."""
+    if isinstance(error, Refused):
+        run.status = 2
+    elif isinstance(error, Interrupted):
+        run.status = 130
+        error = "interrupted before the first step: there are no new results"
+    elif isinstance(error, Unwritable):
+        run.status = 1
+    if run.status:
+        say(error, sys.stderr)
+    return bool(run.status)
 
 
 def _ofCheckpoint(run, error):
@@ -140,7 +164,32 @@ def _finish(run, scene):
             run.results.close()
         _report(run, scene)
     finally:
-        scene.outcome.write(run.results.directory)
+        _writeMechanism(run, scene)
+
+
+def _draw(run, scene):
+    """Draw the figures; a run that is interrupted shall end at once, and leaves them out."""
+    directory = run.results.directory
+    try:
+        with run.breakable():
+            scene.outcome.draw(directory)
+    except Interrupted:
+        say(
+            f"interrupted: the figures are not drawn; /usr/bin/python3 -m masonry.read.figures {directory} draws them"
+        )
+
+
+def _writeMechanism(run, scene):
+    """Write the mechanism of limit analysis, in a run that is interrupted without its picture."""
+    directory = run.results.directory
+    if run.interrupted:
+        scene.outcome.write(directory, draws=False)
+        return
+    try:
+        with run.breakable():
+            scene.outcome.write(directory)
+    except Interrupted:
+        say("interrupted: the mechanism is not drawn")
 
 
 def _describe(run, scene):
@@ -203,7 +252,7 @@ def _stages(at):
 def _report(run, scene):
     entries = run.results.run
     if run.results.rows and not run.args.lean:
-        scene.outcome.draw(run.results.directory)
+        _draw(run, scene)
     off, made = entries.get("energy_balance_error", 0), entries.get("energy_made", 0)
     wrong = []
     if off > OFF:

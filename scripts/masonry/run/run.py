@@ -79,6 +79,7 @@ class Run:
         self._kept = self._flushed = self._recorded = self._shown = now  # [s]
         self._recordedTime = None  # in the scene, of the last row that was read [s]
         self._handlers = {}  # of signals, as they were before
+        self._breaks = False  # whether these end at once what is done
 
     # -- beginning ------------------------------------------------------------------------------------------------
 
@@ -324,6 +325,11 @@ class Run:
         self.at.left = 0
         self._keepSafe()
 
+    def keepBefore(self, state):
+        """Let a checkpoint keep the state of the scene beside YADE before a stage that ends without a step."""
+        if self._safe:
+            self._safe["now"] = state
+
     def record(self):
         """Read the model for a row of curve.csv. Returns the reading.
 
@@ -406,7 +412,7 @@ class Run:
         try:
             saveCheckpoint(path, progress)
             return True
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, MemoryError) as error:
             stays = "; an earlier one stays" if os.path.exists(path) else ""
             say(
                 f"warning: no checkpoint could be written to {path}: {error}{stays}",
@@ -426,8 +432,23 @@ class Run:
         self.results.run["collapse"] = self.at.fall = what
         say(f"collapsed: {what}")
 
+    @contextlib.contextmanager
+    def breakable(self):
+        """Let Ctrl-C and SIGTERM end a block at once, by Interrupted. It must change nothing that a checkpoint keeps; elsewhere
+        these are obeyed between steps."""
+        self._breaks = True
+        try:
+            if self.interrupted:
+                raise Interrupted()
+            yield
+        finally:
+            self._breaks = False
+
     def _interrupt(self, number, frame):
         self.interrupted = True
+        if self._breaks:
+            self._breaks = False
+            raise Interrupted()
 
     def release(self):
         """Let other runs have the folder, and others the signals."""

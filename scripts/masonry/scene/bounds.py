@@ -5,6 +5,7 @@
 what they are.
 """
 
+import contextlib
 import math
 import os
 import time
@@ -13,8 +14,10 @@ import numpy as np
 from yade import O
 
 from .. import limit
-from ..basics import GRAVITY, Refused, say
+from ..basics import GRAVITY, Interrupted, Refused, say
 from ..limit.assembly import Endless
+from ..limit.worker import worker
+from ..memory import FULL
 
 #: Up to so many joints a collapse without dilatancy, which takes many rounds, is looked for with --preset bound.
 SMALL = 500
@@ -42,6 +45,11 @@ class Bounds:
         self.model, self.place = model, place
         self.last = None  # what was found last: limit.Bound and its entry
         self.endless = set()  # names of loads under which nothing gives way
+
+    def prepare(self):
+        """Start the process of the solver, which is ready then when the first load needs it."""
+        with contextlib.suppress(Refused):  # it is said when there is a load
+            worker.start()
 
     @property
     def entries(self):
@@ -157,6 +165,14 @@ class Bounds:
             if isinstance(refused, Endless):
                 self.endless.add(what)
             say(f"note: {refused}")
+        except (MemoryError, ImportError):  # a library cannot be loaded either
+            entry["note"] = f"limit analysis: {FULL}"
+            say(f"note: {entry['note']}")
+        except Interrupted:
+            del self.entries[what]
+            if known:
+                self.entries[what] = known
+            raise
         return entry
 
     def _acting(self, gravity):
@@ -256,13 +272,14 @@ class Bounds:
         if what in self.entries and factor > held.get(what, 0.0):
             self.place.held = {**held, what: factor}
 
-    def write(self, directory, title, parts, views):
-        """Write the mechanism that was found last: mechanism.png, and two files for ParaView."""
+    def write(self, directory, title, parts, views, draws=True):
+        """Write the mechanism that was found last: two files for ParaView and, if it is to be drawn, mechanism.png."""
         if self.last:
             bound, entry = self.last
             heading = f"{title}\nlimit analysis, {entry['load']}: {entry['factor']:.4g} {entry['unit']}".rstrip()
             bound.save(directory)
-            bound.draw(os.path.join(directory, FIGURE), heading, parts, views)
+            if draws:
+                bound.draw(os.path.join(directory, FIGURE), heading, parts, views)
 
 
 def _tilted(find, first):

@@ -11,6 +11,7 @@ from yade.wrapper import MasonryVtkRecorder
 from ..assembly import columns
 from ..assembly.blocks import units
 from ..basics import Unwritable, say
+from ..memory import FULL
 from ..read import cracks, measure
 from ..read.curves import (
     cycleNumbers,
@@ -380,21 +381,29 @@ class Outcome:
         """Draw the figures of a run that has ended, in a program of its own. Raises Unwritable if that fails."""
         # -P: nothing of the present folder is run
         command = [sys.executable, "-P", "-m", "masonry.read.figures", directory]
-        if subprocess.run(command).returncode:
+        try:
+            # in a session of its own: Ctrl-C is for the run
+            done = subprocess.run(command, start_new_session=True)
+        except OSError as error:
+            raise Unwritable(f"the figures are not drawn: {error.strerror}") from None
+        if done.returncode:
             raise Unwritable("the figures are not drawn")
 
-    def write(self, directory):
-        """Write what the scene has beside rows and frames: the mechanism of limit analysis."""
+    def write(self, directory, draws=True):
+        """Write what the scene has beside rows and frames: the mechanism of limit analysis, with its picture if it is to be
+        drawn."""
         description = self.description
         try:
             self.scene.bounds.write(
-                directory, description.title, self.model.parts, description.views
+                directory,
+                description.title,
+                self.model.parts,
+                description.views,
+                draws,
             )
-        except OSError as error:
-            say(
-                f"the mechanism is not written to {directory}: {error.strerror}",
-                sys.stderr,
-            )
+        except (OSError, MemoryError, ImportError) as error:
+            why = getattr(error, "strerror", None) or FULL
+            say(f"the mechanism is not written to {directory}: {why}", sys.stderr)
 
     def report(self, run):
         """Lines to print at the end, from the entries of run.json."""

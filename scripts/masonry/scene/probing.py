@@ -7,12 +7,13 @@ import json
 import math
 import os
 import re
+import sys
 
 from yade.wrapper import MasonryJoint
 
 from ..run import batch
 from . import fields
-from ..basics import Refused
+from ..basics import Refused, say
 from .materials import withResidual
 from .options import check
 from .parsing import Parser
@@ -67,11 +68,15 @@ def probe(scene, stage, traits, arguments):
         for name in {"rate", "until", "history"} - set(used):
             entries["doubtful"][name] = f"its first stage is {stage}()"
     path = os.environ[batch.PROBE]
-    with open(path + ".new", "w") as f:
-        json.dump(entries, f)
-    os.replace(path + ".new", path)
     scene.finished = True
     scene.results.release()
+    try:
+        with open(path + ".new", "w") as f:
+            json.dump(entries, f)
+        os.replace(path + ".new", path)
+    except OSError as error:
+        say(f"{batch.UNWRITTEN}{path}: {error.strerror}", sys.stderr)
+        raise SystemExit(1) from None
     raise SystemExit(0)
 
 

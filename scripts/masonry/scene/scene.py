@@ -243,8 +243,10 @@ class Scene:
         self.model = model
         self.running.open(self.columns)
         self.bounds = Bounds(model, self.running.at)
+        if not args.lean:
+            self.bounds.prepare()
         self.outcome = Outcome(self)
-        with self.running.clock("setup"):
+        with self.running.clock("setup"), self.running.breakable():
             model.build(loadingBlock())
             self._prepare()
         self._noteRows()
@@ -341,6 +343,13 @@ class Scene:
         """
         if (target is None) == (towards is None):
             raise ValueError("bound: give either target or towards")
+        try:
+            return self._bound(target, direction, towards)
+        except Interrupted as error:
+            return self.failed(error)
+
+    def _bound(self, target, direction, towards):
+        """As :meth:`bound`."""
         self.begin()
         if self.collapsed:
             raise ValueError(
@@ -352,19 +361,24 @@ class Scene:
             known = self.bounds.entries.get(nameOfPush(target, direction))
             if before and known:
                 return known
-            return self.bounds.push(target, direction, lowerUpTo=EVERY)
+            return self._find("push", target, direction, lowerUpTo=EVERY)
         towards = gravity.sideways(self, towards, "bound")
         known = self.bounds.entries.get(nameOfLean(towards))
         if before and known:
             return known
-        return self.bounds.lean(towards, lowerUpTo=EVERY)
+        return self._find("lean", towards, lowerUpTo=EVERY)
+
+    def _find(self, kind, *load, lowerUpTo):
+        """Find a bound, which Ctrl-C and SIGTERM end at once: a method of :class:`masonry.scene.bounds.Bounds`."""
+        with self.running.breakable():
+            return getattr(self.bounds, kind)(*load, lowerUpTo=lowerUpTo)
 
     def findBound(self, kind, *load):
-        """Find the bound of a stage, which pushes or leans: a method of :class:`masonry.scene.bounds.Bounds`."""
+        """Find the bound of a stage, which pushes or leans, as :meth:`_find`."""
         resumed = self.running.redoes and self.running.takesUp
         if self.args.lean and not self.only or resumed:
             return  # in a stage that goes on it was found when that began
-        getattr(self.bounds, kind)(*load, lowerUpTo=SMALL if self.only else 0)
+        self._find(kind, *load, lowerUpTo=SMALL if self.only else 0)
 
     # -- the end --------------------------------------------------------------------------------------------------
 

@@ -57,7 +57,7 @@ class Local:
         self.open = {n for n in range(1, runs + 1) if not folder.isEnded(n)}
         self.failed, self.interrupted = {}, False
         self.progress = Progress()
-        self._process, self._begun = None, time.time()
+        self._process, self._before = None, self._stamps()
         self._groups = []  # of processes: every yade-batch with its jobs
         self._shown = False  # whether the end has been shown
 
@@ -94,7 +94,7 @@ class Local:
 
     def _batch(self, numbers):
         """One yade-batch over some rows, to its end."""
-        self._begun = time.time()
+        self._before = self._stamps()
         runner = [sys.executable, "-P", "-m", "masonry.study.row"]
         command = [sys.executable, "-P", "-m", "masonry.study.yadebatch", yadeBatch()]
         command += ["-j", str(self.jobs), "--job-threads", "1", "--disable-pynotify"]
@@ -176,12 +176,21 @@ class Local:
 
     def _job(self, number):
         """How an attempt at a row in this yade-batch ended, or None."""
-        try:
-            if os.stat(self.folder.job(number)).st_mtime < self._begun:
-                return None
-        except OSError:
+        stamp = self._stamp(number)
+        if stamp in (None, self._before.get(number)):
             return None
         return self.folder.lastJob(number) or None
+
+    def _stamps(self):
+        """What the records of earlier attempts are known by: a clock that jumps cannot say which are new."""
+        return {number: self._stamp(number) for number in self.open}
+
+    def _stamp(self, number):
+        try:
+            found = os.stat(self.folder.job(number))
+        except OSError:
+            return None
+        return found.st_ino, found.st_mtime_ns
 
     def _fail(self, number, why):
         self.failed[number] = why

@@ -73,7 +73,7 @@ class Job:
         checkpoint = os.path.join(folder.row(number), "run.checkpoint")
         spent = folder.lastJob(number).get("seconds", 0)
         spent = spent if os.path.exists(checkpoint) else 0
-        began = time.time()
+        began = time.monotonic()
         try:
             status = self._attempts(number, log)
         finally:
@@ -83,7 +83,7 @@ class Job:
         record = {
             "host": socket.gethostname(),
             "status": status,
-            "seconds": round(spent + time.time() - began, 3),
+            "seconds": round(spent + time.monotonic() - began, 3),
             "told": message,
         }
         if status == 0 or not (folder.isHeld(number) or folder.isEnded(number)):

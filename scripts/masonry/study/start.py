@@ -8,7 +8,7 @@ import subprocess
 import tempfile
 
 from ..run import batch
-from ..basics import Refused, say
+from ..basics import Refused, Unwritable, say
 from ..folders import fromJson
 from .continuing import checkRows, compareTable, rowsOf
 from .gathering import STUDY, TABLE, Folder, reason, written
@@ -164,7 +164,10 @@ def _probed(script, table, path, line=2):
         with open(path) as f:
             return fromJson(f.read())
     except (OSError, ValueError):
-        lines = reason(done.stderr) or [f"no masonry.Scene began a stage in {script}"]
+        lines = reason(done.stderr)
+        if lines and lines[-1].startswith(batch.UNWRITTEN + path):
+            raise Unwritable(lines[-1]) from None  # it is no fault of the scene
+        lines = lines or [f"no masonry.Scene began a stage in {script}"]
         return "\n  ".join(lines[:10])
 
 

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A run ends in order and in time when it is interrupted while it does not step, and when the system sets a limit."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+import yade
+from masonry.limit import worker
+from masonry.memory import FULL
+from masonry.read.files import readRun
+from masonry.run.run import Run
+from masonry.scene import outcome
+from masonry.scene.outcome import Outcome
+from small import SMALL, carryOut, parsed
+
+PROMPT = 2.0  # [s] from a signal to the end
+SHORT = ["--until", "0.05", "--rate", "40", "--no-vtk"]
+HOST = os.path.dirname(os.path.dirname(os.path.abspath(yade.__file__)))
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Figures take longer than these runs."""
+    monkeypatch.setattr(Outcome, "draw", lambda self, directory: None)
+
+
+@pytest.fixture
+def own(monkeypatch):
+    """A process of the solver that ends with the test."""
+    monkeypatch.setattr(worker, "worker", worker.Worker())
+    yield worker.worker
+    worker.worker.end()
+
+
+@pytest.fixture
+def signalled():
+    """Function that sends this process a signal when something is so; returns the moments at which signals were sent."""
+    sent, threads = [], []
+
+    def watch(number, isSo):
+        def act():
+            for _ in range(1000):
+                if isSo():
+                    time.sleep(0.1)
+                    sent.append(time.monotonic())
+                    os.kill(os.getpid(), number)
+                    return
+                time.sleep(0.01)
+
+        threads.append(threading.Thread(target=act))
+        threads[-1].start()
+        return sent
+
+    yield watch
+    for thread in threads:
+        thread.join()
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_ends_limit_analysis_and_the_run_finds_its_bound_later(
+    scene, tmp_path, undrawn, own, signalled, number
+):
+    asked, exchange = [], own._exchange
+
+    def slow(ask, until):
+        own._process.send_signal(signal.SIGSTOP)  # a solver that takes its time
+        asked.append(own._process)
+        return exchange(ask, until)
+
+    own._exchange = slow
+    sent = signalled(number, lambda: asked)
+    assert carryOut(SMALL, parsed(*SHORT, "--out", str(tmp_path))) == 130
+    assert time.monotonic() - sent[0] < PROMPT
+    assert asked[0].poll() == -signal.SIGKILL
+    run = readRun(str(tmp_path))
+    assert run["interrupted"] and "bounds" not in run
+    own._exchange = exchange
+    assert carryOut(SMALL, parsed("--resume", str(tmp_path))) == 0
+    assert readRun(str(tmp_path))["bounds"][0]["factor"] > 0
+    assert carryOut(SMALL, parsed(*SHORT, "--out", str(tmp_path / "whole"))) == 0
+    curves = [folder / "curve.csv" for folder in (tmp_path, tmp_path / "whole")]
+    assert curves[0].read_bytes() == curves[1].read_bytes()
+
+
+def test_a_signal_ends_the_drawing_of_figures(
+    scene, tmp_path, monkeypatch, signalled, capsys
+):
+    slow, begun = tmp_path / "slow", tmp_path / "begun"
+    slow.write_text(f"#!/bin/sh\ntouch {begun}\nexec sleep 60\n")
+    slow.chmod(0o755)
+    monkeypatch.setattr(outcome.sys, "executable", str(slow))
+    sent = signalled(signal.SIGTERM, begun.exists)
+    out = tmp_path / "out"
+    assert carryOut(SMALL, parsed(*SHORT, "--out", str(out))) == 130
+    assert time.monotonic() - sent[0] < PROMPT
+    assert "the figures are not drawn; /usr/bin" in capsys.readouterr().out
+    assert readRun(str(out))["ended"] == "done"
+
+
+def test_figures_whose_program_cannot_be_started_are_one_sentence(
+    scene, tmp_path, monkeypatch, own, capsys
+):
+    monkeypatch.setattr(outcome.sys, "executable", "/nowhere/python3")
+    assert carryOut(SMALL, parsed(*SHORT, "--out", str(tmp_path))) == 1
+    said = capsys.readouterr()
+    assert "its solver cannot be started: No such file or directory" in said.out
+    assert "the figures are not drawn: No such file or directory; what" in said.err
+    assert readRun(str(tmp_path))["peak_base_shear_kN"] > 0
+
+
+@pytest.mark.parametrize("steps", [0, 300])
+def test_too_little_memory_in_a_stage_is_one_sentence(
+    scene, tmp_path, monkeypatch, undrawn, capsys, steps
+):
+    take = Run._take
+
+    def full(run, count, one):
+        if run.at.steps >= steps:
+            raise MemoryError
+        take(run, count, one)
+
+    monkeypatch.setattr(Run, "_take", full)
+    assert carryOut(SMALL, parsed(*SHORT, "--out", str(tmp_path))) == 1
+    assert capsys.readouterr().err.startswith(FULL + "; what was written before")
+    assert readRun(str(tmp_path))["error"] == FULL
+
+
+#: Lets a process have 100 MB more than it has.
+LIMITED = """
+import resource
+pages = int(open("/proc/self/statm").read().split()[0])
+most = pages * resource.getpagesize() + (100 << 20)
+resource.setrlimit(resource.RLIMIT_AS, (most, most))
+"""
+SCENE = f"""
+import sys
+sys.path.insert(0, {HOST!r})
+import yade
+{LIMITED}
+from masonry import limit
+"""
+FIGURES = f"""
+import sys
+from masonry.read import figures, files
+{LIMITED}
+sys.exit(files.onFolder(figures.draw, ["nowhere"]))
+"""
+PRODUCT = """
+import numpy as np
+np.ones((9, 9)) @ (2 * np.ones((9, 9)))
+"""
+
+
+@pytest.mark.parametrize("program", [SCENE + PRODUCT, FIGURES], ids=["scene", "figures"])  # fmt: skip
+def test_too_little_memory_for_numerical_libraries_is_one_sentence(program):
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=30)  # fmt: skip
+    assert (done.returncode, done.stderr) == (1, FULL + "\n")
+
+
+def test_a_clock_that_jumps_changes_nothing(scene, tmp_path, monkeypatch, undrawn):
+    words = [*SHORT, "--checkpoint-every", "5"]
+    assert carryOut(SMALL, parsed(*words, "--out", str(tmp_path / "one"))) == 0
+    now = iter(range(10**9, 0, -(10**5)))
+    monkeypatch.setattr(time, "time", lambda: float(next(now)))
+    began = time.monotonic()
+    assert carryOut(SMALL, parsed(*words, "--out", str(tmp_path / "two"))) == 0
+    one, two = (readRun(str(tmp_path / name)) for name in ("one", "two"))
+    assert one["bounds"] == two["bounds"] and one["steps"] == two["steps"]
+    assert 0 < two["wall_clock_s"] <= time.monotonic() - began
+    curves = [(tmp_path / name / "curve.csv").read_bytes() for name in ("one", "two")]
+    assert curves[0] == curves[1]
+
+
+STUDY = """
+from masonry.study import Study, lognormal
+study = Study("s.py", runs=2, vary={"bed.friction": lognormal(mean=0.5, cov=0.1)})
+"""
+STONES = """
+from masonry import Scene, bricks, materials
+scene = Scene("s", bricks.stack(2, (0.3, 0.3, 0.2)), materials.dry(friction=0.6))
+scene.platen("bottom"); scene.settle(); scene.finish()
+"""
+
+
+def test_a_limit_of_the_size_of_files_is_no_fault_of_the_scene_of_a_study(tmp_path):
+    (tmp_path / "study.py").write_text(STUDY)
+    (tmp_path / "s.py").write_text(STONES)
+    done = subprocess.run(
+        ["bash", "-c", f"ulimit -f 1; exec {sys.executable} -m masonry.study study.py --out out --prepare"],
+        cwd=tmp_path, capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == 1
+    assert done.stderr.startswith("cannot write ")
+    assert "File too large" in done.stderr and "scene" not in done.stderr
