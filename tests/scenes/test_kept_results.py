@@ -281,7 +281,7 @@ def test_a_checkpoint_whose_words_are_of_another_kind_is_refused(finished, capsy
                 except SystemExit as end:
                     status = end.code
                 if status == "parsed":
-                    status = run(finished, resume=True)
+                    status = run(finished, "--until", "0.06", resume=True)
                 assert status in (0, 2), (where, key, value)
                 said = capsys.readouterr().err
                 assert "Traceback" not in said

@@ -130,10 +130,10 @@ class Run:
             width = len(self._values)
             if any(len(row) != width for row in self._saved.rows):
                 raise Refused(f"--resume: its rows are not of {width} columns")
-            self.state.takeRest(self.at)
             self._saved.load()
             plausible.checkBodies(O.bodies)
             plausible.checkReading(self._ownValues, model.read())
+            self.state.takeRest(self.at)
             plausible.checkStates(self.at, loadScene)
             self._saved.load()  # as it was before these looked at it
             self.at.resumed.append(O.time)
@@ -394,6 +394,9 @@ class Run:
         if len(self.results.rows) < self._safe["rows"] or self.results.earlier:
             return False
         self.results.begin()
+        kept = self.state.kept()
+        if self._safe["begun"] != self.at.begun:  # the present stage has taken no steps
+            kept["now"] = self.at.before
         progress = dict(
             scene=self.name,
             options={
@@ -401,7 +404,7 @@ class Run:
                 for name, value in vars(self.args).items()
                 if name not in ASIDE
             },
-            at={**vars(self.at), **self.state.kept(), **self._safe},
+            at={**vars(self.at), **kept, **self._safe},
             rows=self.results.rows,
             script=self.script,
             seconds=self.results.seconds(),

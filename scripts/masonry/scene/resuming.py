@@ -13,7 +13,7 @@ from types import SimpleNamespace
 from .._masonry import loadScene
 from ..run.checkpoints import alike
 from ..run.place import otherVersion
-from .words import asData
+from .words import PUSHES, asData
 
 
 def stateOf(scene):
@@ -23,7 +23,6 @@ def stateOf(scene):
         "model": scene.model.state(),
         "grown": scene.grown,
         "loadUnit": scene.loadUnit,
-        "replaced": scene.replaced,
         "pushed": (
             {name: getattr(pushed, name) for name in ("until", "history", "rate")}
             if pushed
@@ -42,7 +41,7 @@ def putState(scene, state):
     except KeyError as error:
         raise otherVersion(f"the state of the scene, {error}") from None
     scene.grown, scene.loadUnit = state["grown"], state["loadUnit"]
-    scene.replaced, pushed = state["replaced"], state["pushed"]
+    pushed = state["pushed"]
     scene.pushed = SimpleNamespace(**{**vars(scene.args), **pushed}) if pushed else None
 
 
@@ -116,7 +115,7 @@ def enter(scene, number, farther):
 
 def _optionsDiffer(scene):
     """Whether the command line says something else about how far the push goes in which the checkpoint was made."""
-    if scene.running.at.before["replaced"]:
+    if not scene.script.isFirst(PUSHES):
         return False
     was, now = scene.running.optionsBefore, asData(vars(scene.args))
     return any(was.get(name) != now[name] for name in ("until", "history"))

@@ -132,7 +132,6 @@ class Scene:
         self.assumed = []
         self.pushed = None  # options of the last push
         self.loadUnit = "-"  # of the load that a stage put on or let grow last
-        self.replaced = False  # whether --until or --history have been used
         self.grown = False  # whether presses and dead loads have their whole
         #: whether there is no run, but limit analysis alone
         self.only = arguments.preset == BOUND

@@ -8,6 +8,7 @@ import math
 from ..basics import Refused
 
 RESULT = "result"  # the word that keeps a number of the script's own
+PUSHES = "push", "cycle", "follow"  # to the first of them --until and --history apply
 
 
 def describes(act):
@@ -78,6 +79,11 @@ class Script:
         """Add a word and its arguments as data."""
         self.words.append([word, said])
         self._farther.append(set(farther))
+
+    def isFirst(self, words):
+        """Whether the last word is the first of some kinds that the script says."""
+        *before, (last, _) = self.words
+        return last in words and not any(word in words for word, _ in before)
 
     def compare(self, before):
         """Refuse a script that says something else than that of the run that is resumed.

@@ -13,6 +13,7 @@ from .. import history
 from ..bounds import nameOfPush
 from ..parsing import RATE
 from ..targets import LOADED
+from ..words import PUSHES
 from .pushing import SHORT, drivePush
 from .stage import DONE, Answer, stage
 
@@ -133,8 +134,7 @@ def _drive(scene, name, target, aims, direction, rate, continued):
 def _argumentsOf(scene, name, aims):
     """The options of the run, with what this push goes to. ``--until`` or ``--history`` are for the first push alone."""
     args = SimpleNamespace(**vars(scene.args))
-    own = bool(args.until or args.history) and not scene.replaced
-    scene.replaced = True
+    own = bool(args.until or args.history) and scene.script.isFirst(PUSHES)
     if own:
         if args.until:
             args.until *= scene.share
