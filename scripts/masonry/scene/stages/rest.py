@@ -15,7 +15,7 @@ REST = 5e-3  # of the load: what may be missing at the supports of a structure t
 CALM = 1e-5  # kinetic over elastic energy of a structure that is said to be at rest [-]
 LOOKS = 3  # so many looks one after the other find a structure at rest before it is said to be
 EVERY = 100  # steps between two looks
-#: If time steps are long: steps in which a part of the loads is put on, a tenth at most, and after which it is seen whether a
+#: If time steps are long: steps in which a part of the loads is put on, a third at most, and after which it is seen whether a
 #: block has fallen far.
 SHORTER = 1, 2, 5, 10, 20, 50, EVERY
 SETTLING = 0.5  # most local damping of deformable units in settle(): with more they creep to rest
@@ -82,7 +82,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True):
     ramp *= max(1.0, (box.high[2] - box.low[2]) / 3)
     ramp = max(ramp, over)
     growing = max(1, int(ramp / O.dt))
-    every = max(n for n in SHORTER if n == 1 or n <= growing / 10)
+    every = max(n for n in SHORTER if n == 1 or n <= growing / 3)
     longest = longest or 20 * ramp
     most = int(longest / O.dt)
     if most < 1:
