@@ -176,6 +176,54 @@ for path in random.Random(1).sample(saved, min(8, len(saved))):
     inYade(reader(blocks) + code)
 
 
+@pytest.mark.slow
+@THREADS
+@KINDS
+def test_random_tries_beside_a_run_do_no_harm(blocks, threads, tmp_path):
+    """Whatever is read, set, saved or loaded beside O.run() works, or is refused in a sentence. ``BESIDE_TRIES`` says how
+    often."""
+    count = int(os.environ.get("BESIDE_TRIES", 1500))
+    code = f"""
+import random
+interactions = panel(False, {blocks!r}, damping=0.3)
+whole, path, dice = O.dt, os.path.join({str(tmp_path)!r}, "beside"), random.Random(1)
+saveCheckpoint(path)
+joints = [i.phys.joint for i in interactions]
+own = [e for e in O.engines if type(e).__name__.startswith("Masonry")]
+one = lambda things: dice.choice(things)
+moves = next(e for e in O.engines if isinstance(e, (MasonryZones, MasonryIntegrator)))
+tries = [
+    lambda: look([one(interactions)]),
+    lambda: write([one(interactions)]),
+    lambda: one(own).dict(),
+    lambda: one(O.bodies).state.dict(),
+    lambda: setattr(one(joints), "friction", dice.uniform(0.5, 0.9)),
+    lambda: setattr(moves, "damping", dice.uniform(0.1, 0.8)),
+    lambda: energy(),
+    lambda: criticalTimeStep(),
+    lambda: next(e for e in O.engines if isinstance(e, MasonryEnergy)).given(),
+    lambda: MasonryVtkRecorder().joints(),
+    lambda: saveCheckpoint(path),
+    lambda: loadCheckpoint(path),
+    lambda: (O.pause(), O.run()),
+]
+refused = 0
+O.run()
+for n in range({count}):
+    try:
+        one(tries)()
+    except ValueError as error:
+        assert "O.pause()" in str(error), error
+        refused += 1
+    assert O.running, n
+O.pause()
+O.wait()
+O.step()
+assert O.iter > 100 and 0 < refused < 0.3 * {count}, (O.iter, refused)
+"""
+    inYade(READER.split("def end")[0].format(steps=0) + code, threads, timeout=300)
+
+
 @THREADS
 @pytest.mark.parametrize("beside", [False, True])
 def test_a_forked_process_goes_on(threads, beside):
