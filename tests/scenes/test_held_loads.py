@@ -195,7 +195,7 @@ def test_a_fall_is_counted_from_the_state_to_which_the_scene_steps_back(scene, t
     state = O.bodies[stone.body].state
     far, fast = Vector3(0.1, 0, 0), Vector3(1, 0, 0)  # a third of the stone, and m/s
     state.pos += far
-    s.keptAtRest(saveScene("null"))
+    s.model.atRest = saveScene("null")
     state.pos += far
     s.stepBack()
     state.vel = fast
@@ -248,7 +248,7 @@ def test_a_lean_that_is_held_is_noted_with_its_factor_and_displacement(scene, tm
     assert s.lean(0.3) == AT_REST and s.lean(0.2) == AT_REST
     column = s.results.column
     assert s.running.at.held == {"acceleration towards x": 0.3}
-    assert s.running.at.loadFactor == column("load_factor")[-1] == 0.2
+    assert s.model.loadFactor == column("load_factor")[-1] == 0.2
     assert s.load(stone, (100, 0, 0)) == AT_REST
     s.finish()
     # both leans count from where the first one began, and the force from where it began itself

@@ -335,9 +335,11 @@ class Structure:
         engine("joints").stiffnessDamping = stiffnessDamping
 
     def dampByOptions(self):
-        """Choose the damping that the options say, with its time step, for a stage that says nothing else."""
+        """Choose the damping that the options say, for a stage that says nothing else, and its time step if a stage has chosen
+        another one. A time step that the script sets stays."""
         self.damp(self.args.damping, self.args.damping_kind)
-        self.chooseTimeStep(self._usualLimit)
+        if self.limit != self._usualLimit:
+            self.chooseTimeStep(self._usualLimit)
 
     def chooseTimeStep(self, limit=None):
         """Choose the time step that the present damping allows. Returns the stable limit.
