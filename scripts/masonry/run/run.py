@@ -325,11 +325,6 @@ class Run:
         self.at.left = 0
         self._keepSafe()
 
-    def keepBefore(self, state):
-        """Let a checkpoint keep the state of the scene beside YADE before a stage that ends without a step."""
-        if self._safe:
-            self._safe["now"] = state
-
     def record(self):
         """Read the model for a row of curve.csv. Returns the reading.
 

@@ -195,8 +195,6 @@ def _carryOut(scene, act, traits, args, settings):
         _answer(scene, name, traits, before)
         return COLLAPSED
     except BaseException as error:
-        if before is not None and running.entered == before and not scene.only:
-            running.keepBefore(running.at.before)  # it has taken no step
         return scene.failed(error)
 
 
