@@ -91,27 +91,21 @@ void MasonryEnergy::stopIfCollapsed(SceneStore& store, const std::string& beside
     if (!found.empty()) throw std::runtime_error(found + (besides.empty() ? "" : ". Besides, " + besides));
 }
 
-namespace {
-
-double sumOf(const Energies& energies) { return energies.tension + energies.shear + energies.compression; }
-
-} // namespace
-
 // In a step this engine finds the joints of the step, but the ledger of the step before. So it keeps the energies of
 // the joints in every thousandth step, and compares them in the next one with the ledger, which then belongs to the
 // same instant. This costs less than a step.
 void MasonryEnergy::lookAtBalance(const SceneStore& store) {
-    const double lossOfLoop = store.loop ? store.loop->dampingWork : 0;
+    const double damping = store.loop ? store.loop->dampingWork : 0;
     if (stepThen >= 0 && scene->iter == stepThen + 1) {
-        const auto all = inventory(store);
-        const double in = all.work + all.falls;
-        const double out = all.moving + all.drag - lossOfLoop + all.inUnits + jointsThen;
-        const double size = std::max(std::abs(all.work) + std::abs(all.falls), std::abs(out));
-        if (size > 0) warnOfBalance(std::abs(in - out) / size);
+        auto all = inventory(store);
+        all.drag += dampingThen - damping;
+        warnOfBalance(std::abs(balanceOf(all, storedThen, lostThen).error));
     }
     if (scene->iter % 1000 != 0 || scene->iter == 0) return;
     const auto now = presentBalance(store);
-    jointsThen = sumOf(now.stored) + sumOf(now.dissipated) + lossOfLoop;
+    storedThen = now.stored;
+    lostThen = now.lost;
+    dampingThen = damping;
     stepThen = int(scene->iter);
 }
 
@@ -205,33 +199,29 @@ void MasonryEnergy::countBodies(const EngineTurn& turn) {
 }
 
 MasonryEnergy::Balance MasonryEnergy::presentBalance(const SceneStore& store) const {
-    LawColumns::Sums joints{};
+    Vector3r stored = Vector3r::Zero(), lost = Vector3r::Zero();
     for (const auto& kind : store.kinds) {
         const auto sums = kind.states->columns->energies(kind.shapes->area.data(), kind.shapes->alike);
-        joints.stored.tension += sums.stored.tension;
-        joints.stored.shear += sums.stored.shear;
-        joints.stored.compression += sums.stored.compression;
-        joints.dissipated.tension += sums.dissipated.tension;
-        joints.dissipated.shear += sums.dissipated.shear;
-        joints.dissipated.compression += sums.dissipated.compression;
+        stored += Vector3r(sums.stored.tension, sums.stored.shear, sums.stored.compression);
+        lost += Vector3r(sums.dissipated.tension, sums.dissipated.shear, sums.dissipated.compression);
     }
-    const auto& stored = joints.stored;
-    const Vector3r lost(joints.dissipated.tension, joints.dissipated.shear, joints.dissipated.compression);
-    const auto all = inventory(store);
+    return balanceOf(inventory(store), stored, lost);
+}
+
+MasonryEnergy::Balance MasonryEnergy::balanceOf(const Inventory& all, const Vector3r& stored, const Vector3r& lost) {
     const auto [work, falls, moving, drag, inUnits] = all;
     const double in = work + falls;
-    const double out = moving + drag + inUnits + stored.tension + stored.shear + stored.compression + lost.sum();
+    const double out = moving + drag + inUnits + stored[0] + stored[1] + stored[2] + lost.sum();
     const double size = std::max(std::abs(work) + std::abs(falls), std::abs(out));
-    return {all, stored, joints.dissipated, size, size > 0 ? (in - out) / size : 0};
+    return {all, stored, lost, size, size > 0 ? (in - out) / size : 0};
 }
 
 py::dict MasonryEnergy::balance() {
     const BetweenSteps still;
     auto& store = SceneStore::present();
     store.update(SceneStore::Look::AtJoints); // a full look would take too long: every row of curve.csv calls this
-    const auto [inventory, stored, dissipated, size, error] = presentBalance(store);
+    const auto [inventory, stored, lost, size, error] = presentBalance(store);
     const auto [work, falls, moving, drag, inUnits] = inventory;
-    const Vector3r lost(dissipated.tension, dissipated.shear, dissipated.compression);
     // Dissipated energies should never fall. They can: where a joint opens or closes within a step, the trapezoidal
     // rule takes the mean of the tractions before and after, and the error is counted as dissipated, also where it is
     // negative. A long undamped series of such steps makes energy. Damping or shorter steps prevent that.
@@ -244,9 +234,9 @@ py::dict MasonryEnergy::balance() {
     all["kinetic"] = moving;
     all["damping"] = drag;
     all["elastic_units"] = inUnits;
-    all["elastic_tension"] = stored.tension;
-    all["elastic_shear"] = stored.shear;
-    all["elastic_compression"] = stored.compression;
+    all["elastic_tension"] = stored[0];
+    all["elastic_shear"] = stored[1];
+    all["elastic_compression"] = stored[2];
     all["dissipated_tension"] = lost[0];
     all["dissipated_shear"] = lost[1];
     all["dissipated_compression"] = lost[2];

@@ -40,7 +40,9 @@ public:
     std::string collapse;
     bool warned = false;
     double reportedError = 0;
-    double jointsThen = 0;
+    Vector3r storedThen = Vector3r::Zero();
+    Vector3r lostThen = Vector3r::Zero();
+    double dampingThen = 0;
     int stepThen = -1;
     bool begun = false;
     double largestError = 0;
@@ -88,8 +90,11 @@ public:
               described("Whether a balance that is off by more than 1 % has been reported on the terminal"), ReadOnly);
         visit("reportedError", &E::reportedError,
               number("-", "Error of the balance that was reported last; one of twice that is reported again"), Hidden);
-        visit("jointsThen", &E::jointsThen,
-              number("J", "Energies of the joints, stored and lost, at the last look at the balance"), Hidden);
+        visit("storedThen", &E::storedThen,
+              number("J", "Energies stored in the joints at the last look at the balance, by mode"), Hidden);
+        visit("lostThen", &E::lostThen,
+              number("J", "Energies dissipated in the joints at the last look at the balance, by mode"), Hidden);
+        visit("dampingThen", &E::dampingThen, number("J", "Work of the damping of joints at that look"), Hidden);
         visit("stepThen", &E::stepThen, number("", "Step of the last look at the balance; -1: there was none"), Hidden);
         visit("largestError", &E::largestError,
               number("-", "Largest error of the balance seen by balance(), relative to the work done"), ReadOnly);
@@ -126,10 +131,11 @@ private:
     Inventory inventory(const SceneStore&) const;
     struct Balance {
         Inventory all;
-        Energies stored, dissipated; // of the joints [J]
-        double size;                 // of the work done [J]
-        double error;                // relative to that [-]
+        Vector3r stored, lost; // in the joints, by mode: tension, shear, compression [J]
+        double size;           // of the work done [J]
+        double error;          // relative to that [-]
     };
+    static Balance balanceOf(const Inventory&, const Vector3r& stored, const Vector3r& lost);
     Balance presentBalance(const SceneStore&) const;
     void lookAtBalance(const SceneStore&);
     py::dict balance();

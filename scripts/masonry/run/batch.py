@@ -26,16 +26,15 @@ from ..read.files import readRun, readWhole
 
 #: Options that a study itself gives, or that a row of it cannot have.
 OWN = {"out", "resume", "lean", "set", "field", "no_vtk", "vtk_every", "help"}
-SCENE = (
-    "MASONRY_SCENE"  # of the environment: the scene that the user of a study has named
-)
+#: Name in the environment of the scene that the user of a study has named.
+SCENE = "MASONRY_SCENE"
 VARIABLE = "YADE_BATCH"  # of the environment: path of the table and number of the line
 ROWS = "rows"  # folder of the results, beside the table
 FIELD = "field:"  # begins the name of a column
 #: Name in the environment of a file: the scene is built, and what it knows is written there. There is no run. The line of
 #: the heads then stands for a scene without options.
 PROBE = "MASONRY_PROBE"
-UNWRITTEN = "cannot write "  # what is said if that file cannot be written begins so
+UNWRITTEN = "cannot write "  # begins what is said if that file cannot be written
 
 
 def readTable(path):

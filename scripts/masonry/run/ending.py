@@ -26,9 +26,9 @@ OFF = 0.01  # of the work done: a larger error of the energy balance is a warnin
 def end(run, scene, error):
     """Finish a run in order after an error, or after none. Returns whether the error is dealt with.
 
-    ``run.status`` is then the exit status of the scene: 0 at the end, 1 if a file cannot be written, if the memory is
-    too small or if the structure has fallen while its dead loads grew, before its test began, 2 for refused input, 130 after Ctrl-C or SIGTERM. Another
-    error is for the caller when the results are finished.
+    ``run.status`` is then the exit status of the scene: 0 at the end; 1 if a file cannot be written, if the memory is too
+    small, or if the structure has fallen while its dead loads grew, before its test began; 2 for refused input; 130 after
+    Ctrl-C or SIGTERM. Another error is for the caller when the results are finished.
 
     :param run: :class:`masonry.run.run.Run`
     :param scene: gives ``model``, ``columns`` and ``outcome``

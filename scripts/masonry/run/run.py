@@ -180,11 +180,11 @@ class Run:
         return self.resumes and not self.advanced
 
     def continueFrom(self, number, redoes):
-        """Let the rows, frames and the state beside YADE be those before a stage, in a run that is resumed and has taken no steps
-        yet.
+        """In a run that is resumed and has taken no steps yet, let rows and frames be those of the beginning of a stage; of the
+        stage of the checkpoint, those of the checkpoint.
 
         :param number: of the stage
-        :param redoes: whether it is that of the checkpoint
+        :param redoes: whether it is the stage of the checkpoint
         """
         at, rows = self.at, self._saved.rows
         self.redoes = redoes
@@ -201,7 +201,7 @@ class Run:
         """From here on files are written; those of a run that is resumed are cut back to its checkpoint."""
         if self._saved:
             at = self.at
-            # what the stage did before it advanced was done before these steps
+            # a stage acts before it advances: that was done before the steps of the checkpoint
             if self.redoes and str(at.begun) not in at.ended:
                 self._saved.load()
                 self.state.put(at.now)

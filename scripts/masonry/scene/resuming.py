@@ -92,10 +92,10 @@ class State:
 
 
 def enter(scene, number, farther):
-    """Begin a stage. Returns how it ended if it was over before the run was resumed, else None.
+    """Begin a stage. Returns how it ended if it was over before the run was resumed and is left out now, else None.
 
     :param number: of the stage
-    :param farther: whether what the script says of it goes farther than before
+    :param farther: whether the script says now that it goes farther; the last stage is then gone on with
     """
     running, at = scene.running, scene.running.at
     if running.takesUp and not running.redoes:

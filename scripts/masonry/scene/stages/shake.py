@@ -50,9 +50,8 @@ def displacements(scene, rows):
 class Damped(Timed):
     """What a stage remembers that has a damping of its own."""
 
-    limit: float = (
-        0.0  # the stable limit of its time step, or 0 before that is known [s]
-    )
+    #: The stable limit of its time step [s]; 0 before that is known.
+    limit: float = 0.0
 
 
 @stage(answers=displacements)
