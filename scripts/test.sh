@@ -19,7 +19,7 @@ if [[ "${1:-}" == quick ]]; then
 else
     # For gates, fuzz and sanitizers, studies, and YADE's 3-D view. ParaView is not among them: it is 77 MB, and its thirteen
     # tests take two of fourteen minutes; where it is installed as scripts/README.md says under "Pictures", they run.
-    bash scripts/setup.sh python3-pytest-xdist clang-format black python3-pyflakes clang libclang-rt-dev libomp-dev \
+    bash scripts/setup.sh python3-pytest-xdist clang-format black python3-pyflakes clang libclang-rt-dev \
         slurm-wlm munge xvfb xauth
     (($#)) && tests=("$@") || tests=(tests --ignore tests/sanitizers)
     workers=$(($# ? 0 : $(nproc)))

@@ -14,6 +14,7 @@
 #include "adapters/MasonryLoad.hpp"
 #include "adapters/MasonryVtkRecorder.hpp"
 #include "adapters/MasonryZones.hpp"
+#include "common/Parallel.hpp"
 #include "common/Text.hpp"
 #include "host/SelfCheck.hpp"
 #include "scene/CriticalTimeStep.hpp"
@@ -88,6 +89,25 @@ py::tuple criticalTimeStep() {
     return py::make_tuple(limit.dt, limit.id1, limit.id2);
 }
 
+// How many threads may be used, and what steps took on them.
+py::list threads() {
+    const BetweenSteps still;
+    py::list all;
+    for (const auto& record : Parallel::instance().choice().records()) {
+        py::dict one;
+        one["threads"] = record.threads;
+        one["steps"] = record.steps;
+        one["time"] = record.time;
+        all.append(one);
+    }
+    return all;
+}
+
+void allowThreads(int most, bool always) {
+    const BetweenSteps still;
+    Parallel::instance().allow(most, always);
+}
+
 void gather() {
     const BetweenSteps still;
     SceneStore::present().update();
@@ -145,6 +165,11 @@ static void registerAll() {
         "of the largest block. Gaps and sizes in m. With keepFaces the joints that are made next take the faces that "
         "were "
         "found, until dropFaces() is called.");
+    py::def("allowThreads", &allowThreads, (py::arg("most"), py::arg("always") = false),
+            "Let steps use so many threads [-] where that is quicker, or always. For masonry.assembly.threads.");
+    py::def(
+        "threads", &threads,
+        "For every number of threads that steps may use: threads [-], steps taken on them, time in their loops [s].");
     py::def("dropFaces", &dropFaces, "Free the memory of the faces that neighbours() has kept. For masonry.connect().");
     py::def("touchingPairs", &touchingPairs, (py::arg("tolerance") = 1e-4),
             "Pairs (id1, id2) of blocks that share a face; tolerance as in "

@@ -332,6 +332,7 @@ def test_a_run_is_the_same_bit_for_bit_with_any_number_of_threads(blocks, tmp_pa
             ["yade", f"-j{threads}", "-n", "-x", str(script)],
             env=dict(
                 os.environ,
+                MASONRY_THREADS="always",
                 PYTHONPATH=os.path.dirname(__file__)
                 + os.pathsep
                 + os.environ.get("PYTHONPATH", ""),

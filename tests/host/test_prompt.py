@@ -58,6 +58,7 @@ def inYade(code, threads=1, timeout=120):
     env = dict(
         os.environ,
         OMP_NUM_THREADS=str(threads),
+        MASONRY_THREADS="always",
         PYTHONFAULTHANDLER="1",
         PYTHONPATH=os.pathsep.join([os.environ.get("PYTHONPATH", ""), *folders]),
     )
@@ -227,7 +228,7 @@ assert O.iter > 10 and 0 < refused < 0.3 * {count}, (O.iter, refused)
 @THREADS
 @pytest.mark.parametrize("beside", [False, True])
 def test_a_forked_process_goes_on(threads, beside):
-    """It has none of the other threads, neither of a run in the background nor of OpenMP."""
+    """It has none of the other threads, neither of a run in the background nor those of the loops."""
     code = f"""
 import random
 interactions = panel(False, "rigid", damping=0.3)

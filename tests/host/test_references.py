@@ -97,6 +97,7 @@ def test_two_threads_give_the_same_numbers(tmp_path):
     for threads in ("-j1", "-j2"):
         run = subprocess.run(
             ["yade", threads, "-n", "-x", program, "--told"],
+            env=dict(os.environ, MASONRY_THREADS="always"),
             capture_output=True,
             text=True,
         )

@@ -57,7 +57,8 @@ bool Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom::go(const shared_ptr<yade::S
                                                         const yade::State& state1, const yade::State& state2,
                                                         const Vector3r&, const bool& force,
                                                         const shared_ptr<yade::Interaction>& interaction) {
-    if (!interaction->geom) {
+    const bool fresh = !interaction->geom;
+    if (fresh) {
         auto face = takeFace(*scene, interaction->id1, interaction->id2, tolerance); // connect() has found it
         if (!face)
             face = coincidentFaces(blockOf(*shape1, state1.pos, state1.ori), blockOf(*shape2, state2.pos, state2.ori),
@@ -77,6 +78,7 @@ bool Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom::go(const shared_ptr<yade::S
     }
     auto& geom = static_cast<MasonryJointGeom&>(*interaction->geom);
     if (geom.made()) geom.follow(state1, state2);
+    if (fresh && force) geom.step.reset(); // connect() makes joints outside a step, and this scratch takes memory
     return true;
 }
 

@@ -226,13 +226,15 @@ void probe(std::vector<std::string>& wrong, const py::object& wrapper) {
            "engines: expected the one ForceResetter of the probe at offset 552");
     scene->forces().addForce(0, Vector3r(1, 2, 4));
     scene->forces().addTorque(0, Vector3r(3, 5, 7));
-    expect(scene->forces().forces(1)[0] == Vector3r(1, 2, 4) && scene->forces().torques(1)[0] == Vector3r(3, 5, 7),
-           "forces: expected those of the first thread at its beginning");
     omega.attr("bodies").attr("append")(wrapper.attr("Body")());
-    const auto summed = scene->forces().summed(2);
-    expect(summed.forces[0] == Vector3r(1, 2, 4) && summed.torques[0] == Vector3r(3, 5, 7) &&
-               summed.forces + 1 == &scene->forces().getForce(1) && summed.torques + 1 == &scene->forces().getTorque(1),
+    const auto sums = scene->forces().sums(2);
+    expect(sums.forces[0] == Vector3r(1, 2, 4) && sums.torques[0] == Vector3r(3, 5, 7) &&
+               sums.forces + 1 == &scene->forces().getForce(1) && sums.torques + 1 == &scene->forces().getTorque(1),
            "forces: expected the sums of all bodies beside each other");
+    sums.forces[1] += Vector3r(6, 8, 9);
+    scene->forces().addForce(1, Vector3r(1, 1, 1));
+    const Vector3r both = py::extract<Vector3r>(omega.attr("forces").attr("f")(1, true));
+    expect(both == Vector3r(7, 9, 10), "forces: expected what is added to a sum to stay in it");
     const Vector3r seen = py::extract<Vector3r>(omega.attr("forces").attr("f")(0, true));
     expect(seen == Vector3r(1, 2, 4), "forces: expected a force added at offset 32 to be seen by O.forces");
 

@@ -12,7 +12,9 @@
 #include <boost/python.hpp>
 #include <boost/serialization/access.hpp>
 #include <boost/shared_ptr.hpp>
+#include <limits>
 #include <map>
+#include <omp.h>
 #include <string>
 #include <vector>
 
@@ -207,37 +209,30 @@ class InteractionContainer : public Serializable {
 
 // No object of this class is made here: its size is not declared, and Scene::forces() gives a reference to YADE's own.
 class ForceContainer {
-    std::vector<std::vector<Vector3r>> forcesOfThreads_, torquesOfThreads_;
-
 public:
-    // The arrays in which the first thread adds up forces [N] and torques [N m]. Each holds at least the bodies with
-    // numbers below `count`. Their values count from the next sync() on. Adding zero makes YADE enlarge the array and
-    // note that there is something to sum.
-    Vector3r* forces(int count) {
-        addForce(count - 1, Vector3r::Zero());
-        return forcesOfThreads_[0].data();
-    }
-    Vector3r* torques(int count) {
-        addTorque(count - 1, Vector3r::Zero());
-        return torquesOfThreads_[0].data();
-    }
-    // The sums over all threads, for bodies below `count`, each body's beside that of the next.
-    struct Summed {
-        const Vector3r *forces, *torques;
+    // The sums of all forces [N] and torques [N m] so far, of bodies below `count`, each body's beside that of the
+    // next. Who adds to them here need not let YADE add up what its threads have: that loop takes longer than the sums.
+    struct Sums {
+        Vector3r *forces, *torques;
     };
-    Summed summed(int count) {
-        addForce(count - 1, Vector3r::Zero()); // makes room
-        addTorque(count - 1, Vector3r::Zero());
+    Sums sums(int count) {
+        const int threads = omp_get_max_threads();
+        omp_set_num_threads(1); // YADE's threads would wait by spinning after its short loop
         sync();
-        return {&getForce(0), &getTorque(0)};
+        if (&getForce(count - 1) ==
+            &getForce(std::numeric_limits<int>::max())) { // the zero for bodies beyond the arrays
+            addForce(count - 1, Vector3r::Zero());
+            addTorque(count - 1, Vector3r::Zero());
+            sync();
+        }
+        omp_set_num_threads(threads);
+        return {const_cast<Vector3r*>(&getForce(0)), const_cast<Vector3r*>(&getTorque(0))};
     }
     void addForce(int id, const Vector3r&);
     void addTorque(int id, const Vector3r&);
     void sync();
     const Vector3r& getForce(int id);
     const Vector3r& getTorque(int id);
-    const Vector3r getForceSingle(int id); // sums up the forces on this body only, so it needs no sync()
-    const Vector3r getTorqueSingle(int id);
     void setPermForce(int id, const Vector3r&);
     void setPermTorque(int id, const Vector3r&);
     bool getPermForceUsed() const;

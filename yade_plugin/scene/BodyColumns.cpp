@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "BodyColumns.hpp"
+#include "common/Parallel.hpp"
 #include <algorithm>
+#include <atomic>
 
 namespace masonry {
 
@@ -29,8 +31,14 @@ void BodyColumns::read(const yade::Scene& scene) {
 
 bool BodyColumns::fits(const yade::Scene& scene) const {
     const auto& all = scene.bodies->body;
-    return std::equal(all.begin(), all.end(), bodies_.begin(), bodies_.end(),
-                      [](const auto& body, const auto* known) { return body.get() == known; });
+    if (all.size() != bodies_.size()) return false;
+    std::atomic<bool> same{true};
+    Parallel::instance().overPieces(int(all.size()), 4096, [&](int first, int beyond) {
+        if (!std::equal(all.begin() + first, all.begin() + beyond, bodies_.begin() + first,
+                        [](const auto& body, const auto* known) { return body.get() == known; }))
+            same = false;
+    });
+    return same;
 }
 
 bool BodyColumns::sameFrame(int b) const {

@@ -2,6 +2,7 @@
 #include "EngineTurn.hpp"
 #include "SceneCheck.hpp"
 #include "StepGate.hpp"
+#include "common/Parallel.hpp"
 #include <exception>
 #include <stdexcept>
 #include <utility>
@@ -19,6 +20,7 @@ EngineTurn::EngineTurn(yade::Scene& scene, const yade::Engine& engine)
             store_->update(SceneStore::Look::InStep);
             checkBeforeStep(*store_);
             store_->opened();
+            Parallel::instance().stepBegins();
         }
     } catch (...) {
         StepGate::instance().exit(true);

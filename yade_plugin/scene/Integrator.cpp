@@ -3,6 +3,7 @@
 #include "BodyCheck.hpp"
 #include "BodyStep.hpp"
 #include "Load.hpp"
+#include "common/Parallel.hpp"
 #include <cstdint>
 
 namespace masonry {
@@ -34,7 +35,7 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
     if (std::size_t(count) < last_[0].size())
         throw std::invalid_argument("MasonryIntegrator remembers forces of " + std::to_string(last_[0].size()) +
                                     " bodies, the scene has " + std::to_string(count));
-    const auto summed = scene.forces().summed(count);
+    const auto on = scene.forces().sums(count);
     for (auto& column : last_)
         if (combined()) column.resize(count, 0);
     for (auto* load : loads) { // a script may have changed its body since the load acted
@@ -44,15 +45,15 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
     // The pieces over which energies are summed up do not depend on the number of threads, so neither do the sums.
     constexpr int piece = RigidMotion::most;
     const int pieces = (count + piece - 1) / piece;
-    std::vector<Sums> sums(pieces);
-#pragma omp parallel for schedule(static)
-    for (int n = 0; n < pieces; ++n)
-        sums[n] =
-            advancePiece(scene, bodies, summed.forces, summed.torques, n * piece, std::min(count, (n + 1) * piece));
+    std::vector<Sums> found(pieces);
+    Parallel::instance().overPieces(pieces, 1, [&](int first, int beyond) {
+        for (int n = first; n < beyond; ++n)
+            found[n] = advancePiece(scene, bodies, on.forces, on.torques, n * piece, std::min(count, (n + 1) * piece));
+    });
     const double before = fallen;
     Vector3r moment = Vector3r::Zero();
     beginStep();
-    for (const auto& sum : sums) {
+    for (const auto& sum : found) {
         add(sum.energies);
         moment += sum.moment;
     }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "JointPlan.hpp"
 #include "Zones.hpp"
+#include "common/Parallel.hpp"
 #include "common/Vectorised.hpp"
 #include "law/common/JointDamping.hpp"
 #include "motion/JointFrames.hpp"
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 
 namespace masonry {
@@ -12,6 +14,8 @@ namespace masonry {
 namespace {
 
 constexpr int most = JointFrames::most; // largest number of joints in a batch
+constexpr int bodiesAPiece = 64;        // how many bodies a thread takes at a time
+constexpr int nodesAPiece = 64;         // how many nodes, or rows of them, a thread takes at a time
 constexpr double flat = 1e-9; // distances [m], angles [rad] and directions out of the plane below this count as none
 
 // Whether a body can only move and turn in a plane y = constant.
@@ -128,8 +132,27 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
     toBodies_.fill(atBodies);
     toNodes_.fill(atPlaces);
     shareOut();
+    orderBatches(store);
     store_ = &store;
     revision_ = store.revision();
+    Parallel::instance().sceneChanged();
+}
+
+// Bodies are numbered course by course as a rule. A thread that takes the joints of the bodies that it moves itself
+// finds them in its own cache.
+void JointPlan::orderBatches(const SceneStore& store) {
+    std::vector<double> middle; // mean number of the bodies of a batch
+    for (const auto& batch : batches_) {
+        const auto& plan = kinds_[batch.kind];
+        const int count = std::min(most, int(store.kinds[batch.kind].shapes->joints.size()) - batch.from);
+        double sum = 0;
+        for (int j = batch.from; j < batch.from + count; ++j)
+            sum += plan.body1[j] + plan.body2[j];
+        middle.push_back(sum / (2 * count));
+    }
+    order_.resize(batches_.size());
+    std::iota(order_.begin(), order_.end(), 0);
+    std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) { return middle[a] < middle[b]; });
 }
 
 void JointPlan::buildKind(SceneStore& store, const JointKind& kind, Kind& made,
@@ -263,21 +286,18 @@ void JointPlan::shareOut() {
 // Takes from the host the bodies that somebody else has moved. Returns false if the plan is for a planar run and a body
 // has left the plane, or is no longer held in it.
 bool JointPlan::noticeBodies(SceneStore& store) {
-    constexpr int piece = 64;
     auto& bodies = store.bodies;
-    const int pieces = (bodies.size() + piece - 1) / piece;
-    bool fits = true;
-#pragma omp parallel for schedule(static) reduction(&& : fits)
-    for (int n = 0; n < pieces; ++n) {
-        const int first = n * piece, beyond = std::min(bodies.size(), first + piece);
+    std::atomic<bool> fits{true};
+    Parallel::instance().overPieces(bodies.size(), bodiesAPiece, [&](int first, int beyond) {
         double aside = 0; // largest distance of a body from its plane [m]
+        bool held = true;
         for (int b = first; b < beyond; ++b) {
             if (!joined_[b]) continue;
             bodies.noticePlace(b);
             aside = std::max(aside, std::abs(bodies.position[1][b] - referenceY_[b]));
-            fits = fits && (bodies.isUnit[b] || !plane_ || heldInPlane(bodies, b));
+            held = held && (bodies.isUnit[b] || !plane_ || heldInPlane(bodies, b));
         }
-        if (!plane_) continue;
+        if (!plane_) return;
         const double* orientation[4];
         const double* fromReference[4];
         for (int d = 0; d < 4; ++d) {
@@ -286,8 +306,8 @@ bool JointPlan::noticeBodies(SceneStore& store) {
         }
         const double turned =
             turnsInPlane(beyond - first, orientation, fromReference, &turn_[0][first], &turn_[1][first]);
-        fits = fits && aside < flat && turned < flat; // also false if a number is not finite
-    }
+        if (!(held && aside < flat && turned < flat)) fits = false; // also if a number is not finite
+    });
     return fits;
 }
 
@@ -368,23 +388,24 @@ double JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const K
 void JointPlan::moveDependentPoints(const SceneStore& store) {
     double* rows = zones_->displacementRows();
     const int count = int(betweenNodes_.size()), next = plane_ ? 2 : 1;
-#pragma omp parallel for schedule(static)
-    for (int n = 0; n < count; ++n) {
-        const auto& point = betweenNodes_[n];
-        const bool two = point.weights[2] == 0;
-        for (int d = 0; d < 3; d += next) {
-            double* to = rows + point.place + d * lanes;
-            const double *a = rows + point.nodes[0] + d * lanes, *b = rows + point.nodes[1] + d * lanes,
-                         *c = rows + point.nodes[2] + d * lanes;
-            const double u = point.weights[0], v = point.weights[1], w = point.weights[2];
-            if (two)
-                for (int lane = 0; lane < lanes; ++lane)
-                    to[lane] = u * a[lane] + v * b[lane];
-            else
-                for (int lane = 0; lane < lanes; ++lane)
-                    to[lane] = u * a[lane] + v * b[lane] + w * c[lane];
+    Parallel::instance().overPieces(count, nodesAPiece, [&](int first, int beyond) {
+        for (int n = first; n < beyond; ++n) {
+            const auto& point = betweenNodes_[n];
+            const bool two = point.weights[2] == 0;
+            for (int d = 0; d < 3; d += next) {
+                double* to = rows + point.place + d * lanes;
+                const double *a = rows + point.nodes[0] + d * lanes, *b = rows + point.nodes[1] + d * lanes,
+                             *c = rows + point.nodes[2] + d * lanes;
+                const double u = point.weights[0], v = point.weights[1], w = point.weights[2];
+                if (two)
+                    for (int lane = 0; lane < lanes; ++lane)
+                        to[lane] = u * a[lane] + v * b[lane];
+                else
+                    for (int lane = 0; lane < lanes; ++lane)
+                        to[lane] = u * a[lane] + v * b[lane] + w * c[lane];
+            }
         }
-    }
+    });
     for (const auto& point : onBodies_) {
         const auto& s = store.bodies.state(point.body);
         const Vector3r moved = s.pos + s.ori * point.local - point.reference;
@@ -396,80 +417,83 @@ void JointPlan::moveDependentPoints(const SceneStore& store) {
 // Sums up for every body the forces and torques of its joints.
 void JointPlan::bringToBodies() {
     const int count = int(toBodies_.receivers.size());
-#pragma omp parallel for schedule(static)
-    for (int r = 0; r < count; ++r) {
-        Vector3r force = Vector3r::Zero(), torque = Vector3r::Zero();
-        const auto* item = &toBodies_.items[toBodies_.start[r]];
-        const auto* beyond = item + (toBodies_.start[r + 1] - toBodies_.start[r]);
-        if (plane_) {
-            double x = 0, z = 0, aboutY = 0;
-            for (; item != beyond; ++item) {
-                const double* on = &onJoints_[4 * item->source];
-                const double sign = item->second ? -1 : 1;
-                x += sign * on[0];
-                z += sign * on[1];
-                aboutY += on[2 + item->second];
-            }
-            force = {x, 0, z};
-            torque = {0, aboutY, 0};
-        } else
-            for (; item != beyond; ++item) {
-                const double* on = &onJoints_[9 * item->source];
-                const double sign = item->second ? -1 : 1;
-                for (int d = 0; d < 3; ++d) {
-                    force[d] += sign * on[d];
-                    torque[d] += on[3 + 3 * item->second + d];
+    Parallel::instance().overPieces(count, bodiesAPiece, [&](int first, int beyond) {
+        for (int r = first; r < beyond; ++r) {
+            Vector3r force = Vector3r::Zero(), torque = Vector3r::Zero();
+            const auto* item = &toBodies_.items[toBodies_.start[r]];
+            const auto* end = item + (toBodies_.start[r + 1] - toBodies_.start[r]);
+            if (plane_) {
+                double x = 0, z = 0, aboutY = 0;
+                for (; item != end; ++item) {
+                    const double* on = &onJoints_[4 * item->source];
+                    const double sign = item->second ? -1 : 1;
+                    x += sign * on[0];
+                    z += sign * on[1];
+                    aboutY += on[2 + item->second];
                 }
+                force = {x, 0, z};
+                torque = {0, aboutY, 0};
+            } else
+                for (; item != end; ++item) {
+                    const double* on = &onJoints_[9 * item->source];
+                    const double sign = item->second ? -1 : 1;
+                    for (int d = 0; d < 3; ++d) {
+                        force[d] += sign * on[d];
+                        torque[d] += on[3 + 3 * item->second + d];
+                    }
+                }
+            const int body = toBodies_.receivers[r];
+            if (momentPlace_[body] >= 0) {
+                for (int d = 0; d < 3; ++d)
+                    (zones_->momentRows() + momentPlace_[body])[d * lanes] = torque[d];
+            } else {
+                forces_[body] += force;
+                torques_[body] += torque;
             }
-        const int body = toBodies_.receivers[r];
-        if (momentPlace_[body] >= 0) {
-            for (int d = 0; d < 3; ++d)
-                (zones_->momentRows() + momentPlace_[body])[d * lanes] = torque[d];
-        } else {
-            forces_[body] += force;
-            torques_[body] += torque;
         }
-    }
+    });
 }
 
 // Sums up for every node the forces of its subcontacts. Those at dependent points go on to their body or nodes.
 void JointPlan::bringToNodes(SceneStore& store) {
     double* forces = zones_->forceRows();
     const int count = int(toNodes_.receivers.size());
-#pragma omp parallel for schedule(static)
-    for (int r = 0; r < count; ++r) {
-        double sum[3] = {0, 0, 0};
-        for (int n = toNodes_.start[r]; n < toNodes_.start[r + 1]; ++n) {
-            const auto& item = toNodes_.items[n];
-            const double sign = item.second ? -1 : 1;
-            if (plane_) {
-                const double* on = &onPoints_[2 * item.source];
-                sum[0] += sign * on[0];
-                sum[2] += sign * on[1];
-            } else {
-                const double* on = &onPoints_[3 * item.source];
-                for (int d = 0; d < 3; ++d)
-                    sum[d] += sign * on[d];
+    Parallel::instance().overPieces(count, nodesAPiece, [&](int first, int beyond) {
+        for (int r = first; r < beyond; ++r) {
+            double sum[3] = {0, 0, 0};
+            for (int n = toNodes_.start[r]; n < toNodes_.start[r + 1]; ++n) {
+                const auto& item = toNodes_.items[n];
+                const double sign = item.second ? -1 : 1;
+                if (plane_) {
+                    const double* on = &onPoints_[2 * item.source];
+                    sum[0] += sign * on[0];
+                    sum[2] += sign * on[1];
+                } else {
+                    const double* on = &onPoints_[3 * item.source];
+                    for (int d = 0; d < 3; ++d)
+                        sum[d] += sign * on[d];
+                }
             }
+            for (int d = 0; d < 3; ++d)
+                (forces + toNodes_.receivers[r])[d * lanes] = sum[d];
         }
-        for (int d = 0; d < 3; ++d)
-            (forces + toNodes_.receivers[r])[d * lanes] = sum[d];
-    }
+    });
     const int sharing = int(shares_.nodes.size()), next = plane_ ? 2 : 1;
-#pragma omp parallel for schedule(static)
-    for (int n = 0; n < sharing; ++n)
-        for (int d = 0; d < 3; d += next) {
-            double sum[lanes];
-            double* to = forces + shares_.nodes[n] + d * lanes;
-            std::copy_n(to, lanes, sum);
-            for (int i = shares_.start[n]; i < shares_.start[n + 1]; ++i) {
-                const double* from = forces + shares_.points[i] + d * lanes;
-                const double weight = shares_.weights[i];
-                for (int lane = 0; lane < lanes; ++lane)
-                    sum[lane] += weight * from[lane];
+    Parallel::instance().overPieces(sharing, nodesAPiece, [&](int first, int beyond) {
+        for (int n = first; n < beyond; ++n)
+            for (int d = 0; d < 3; d += next) {
+                double sum[lanes];
+                double* to = forces + shares_.nodes[n] + d * lanes;
+                std::copy_n(to, lanes, sum);
+                for (int i = shares_.start[n]; i < shares_.start[n + 1]; ++i) {
+                    const double* from = forces + shares_.points[i] + d * lanes;
+                    const double weight = shares_.weights[i];
+                    for (int lane = 0; lane < lanes; ++lane)
+                        sum[lane] += weight * from[lane];
+                }
+                std::copy_n(sum, lanes, to);
             }
-            std::copy_n(sum, lanes, to);
-        }
+    });
     for (const auto& point : onBodies_) {
         const double* on = forces + point.place;
         const Vector3r force(on[0], on[lanes], on[2 * lanes]);
@@ -490,21 +514,22 @@ double JointPlan::advance(SceneStore& store, double stiffnessDamping) {
             kind.shapes->makeViscous();
     const int count = int(batches_.size());
     taken_.resize(count);
-#pragma omp parallel for schedule(static)
-    for (int n = 0; n < count; ++n) {
-        const auto& kind = store.kinds[batches_[n].kind];
-        const auto& plan = kinds_[batches_[n].kind];
-        const int from = batches_[n].from;
-        const int left = int(kind.shapes->joints.size()) - from;
-        taken_[n] = advanceBatch(store, kind, plan, from, std::min(most, left), stiffnessDamping);
-    }
+    Parallel::instance().overPieces(count, 1, [&](int first, int beyond) {
+        for (int place = first; place < beyond; ++place) {
+            const int n = order_[place], from = batches_[n].from;
+            const auto& kind = store.kinds[batches_[n].kind];
+            const int left = int(kind.shapes->joints.size()) - from;
+            taken_[n] =
+                advanceBatch(store, kind, kinds_[batches_[n].kind], from, std::min(most, left), stiffnessDamping);
+        }
+    });
     // The step that follows damping has taken half of its work; after that there is nothing left of it.
     if (stiffnessDamping == 0)
         for (auto& kind : store.kinds)
             kind.shapes->dropViscous();
-    const int bodies = store.bodies.size();
-    forces_ = store.scene().forces().forces(bodies);
-    torques_ = store.scene().forces().torques(bodies);
+    const auto sums = store.scene().forces().sums(store.bodies.size());
+    forces_ = sums.forces;
+    torques_ = sums.torques;
     bringToBodies();
     if (zones_) bringToNodes(store);
     return std::accumulate(taken_.begin(), taken_.end(), 0.0);

@@ -71,6 +71,7 @@ private:
     bool noticeBodies(SceneStore&);
     double advanceBatch(SceneStore&, const JointKind&, const Kind&, int from, int count, double stiffnessDamping);
     void shareOut();
+    void orderBatches(const SceneStore&);
     void moveDependentPoints(const SceneStore&);
     void bringToBodies();
     void bringToNodes(SceneStore&);
@@ -84,6 +85,7 @@ private:
         int from; // number of its first joint within that kind
     };
     std::vector<Batch> batches_;     // joints that a thread takes at a time
+    std::vector<int> order_;         // numbers of batches in the order in which threads take them
     std::vector<double> turn_[4];    // planar runs only: cosine and sine of half the angle by which a body has turned
     std::vector<double> referenceY_; // of all bodies [m]
     std::vector<unsigned char> joined_; // whether a body has joints

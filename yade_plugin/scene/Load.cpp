@@ -17,14 +17,14 @@ void Load::act(yade::Scene& scene, const Vector3r& gravity) {
     if (!damped) state.isDamped = false;
     arm_ = state.ori * state.refOri.conjugate() * (point - state.refPos);
     total_ = force;
-    auto& forces = scene.forces();
+    const auto sums = scene.forces().sums(body + 1);
     if (driven) {
         // R is the force along d that gives the point its velocity V after this step, d·(v' + w' × arm) = V, where
         // v' = v + dt (F + R d) / m + dt g and w' = w + dt I^-1 (T + arm × R d).
         const Vector3r d = direction.normalized(), lever = arm_.cross(d), perMass = inverseMass(state);
         const yade::Matrix3r perInertia = inverseInertia(state);
-        const Vector3r push = forces.getForceSingle(body) + total_ + state.mass * gravity;
-        const Vector3r twist = forces.getTorqueSingle(body) + arm_.cross(total_);
+        const Vector3r push = sums.forces[body] + total_ + state.mass * gravity;
+        const Vector3r twist = sums.torques[body] + arm_.cross(total_);
         const Vector3r v = state.vel + scene.dt * perMass.cwiseProduct(push);
         const Vector3r w = state.angVel + scene.dt * (perInertia * twist);
         const double mobility = d.dot(perMass.cwiseProduct(d)) + lever.dot(perInertia * lever);
@@ -35,8 +35,8 @@ void Load::act(yade::Scene& scene, const Vector3r& gravity) {
         total_ += reaction * d;
     } else
         reaction = 0;
-    forces.addForce(body, total_);
-    forces.addTorque(body, arm_.cross(total_));
+    sums.forces[body] += total_;
+    sums.torques[body] += arm_.cross(total_);
 }
 
 Vector3r Load::displacementIn(const yade::Scene& scene) const {

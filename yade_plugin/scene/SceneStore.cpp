@@ -6,6 +6,7 @@
 #include "Load.hpp"
 #include "Zones.hpp"
 #include <algorithm>
+#include <malloc.h>
 #include <map>
 #include <memory>
 
@@ -175,6 +176,7 @@ void SceneStore::readJoints() {
     std::map<Key, std::multimap<double, std::size_t>> byStiffness; // numbers of groups, sorted by normal stiffness
     std::vector<Group> groups;
     std::vector<JointView> found;
+    found.reserve(scene_.interactions->currSize);
     const Zones* zonesOfJoints = nullptr;
     bool broken = false;
     for (std::size_t n = 0; n < scene_.interactions->currSize; ++n) {
@@ -237,6 +239,9 @@ void SceneStore::readJoints() {
         kind.shapes->left = kind.states->left = !broken;
     kinds = std::move(made);
     joints = std::move(found);
+#if defined(__GLIBC__)
+    malloc_trim(0); // every joint had a group of its own: their memory goes back to the system
+#endif
 }
 
 void SceneStore::connected() {

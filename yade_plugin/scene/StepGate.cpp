@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "StepGate.hpp"
+#include "common/Parallel.hpp"
 #include "host/Yade.hpp"
 #include <chrono>
 #include <new>
@@ -94,6 +95,7 @@ void StepGate::startAnew() {
     depth_ = depth;
     reader_ = reader;
     omp_set_num_threads(1);
+    Parallel::instance().allow(1);
 }
 
 void StepGate::unlock() {

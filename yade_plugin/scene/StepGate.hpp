@@ -24,7 +24,7 @@ public:
     void unlock();
 
     // Lets the process be forked between two steps, and not within one. A process that is forked has none of the other
-    // threads: neither that of O.run() nor those of OpenMP, for which it would wait without end.
+    // threads: neither that of O.run() nor those of the loops, for which it would wait without end.
     static void watchForks();
 
 private:

@@ -3,6 +3,7 @@
 #include "Blocks.hpp"
 #include "Changes.hpp"
 #include "UnitMaterial.hpp"
+#include "common/Parallel.hpp"
 #include <algorithm>
 
 namespace masonry {
@@ -343,11 +344,10 @@ void Zones::advance(yade::Scene& scene, BodyColumns& columns, const Vector3r& of
     std::size_t most = 0; // largest number of nodes of a unit
     for (const auto& batch : batches_)
         most = std::max(most, batch.elasticity->masses().size());
-#pragma omp parallel
-    {
-        std::vector<Row> scratch(6 * most);
-#pragma omp for schedule(static)
-        for (int b = 0; b < count; ++b) {
+    Parallel::instance().overPieces(count, 1, [&](int first, int beyond) {
+        thread_local std::vector<Row> scratch;
+        if (scratch.size() < 6 * most) scratch.resize(6 * most);
+        for (int b = first; b < beyond; ++b) {
             const auto& batch = batches_[b];
             const auto matrix = batch.elasticity->matrix();
             const int row = batch.firstRow;
@@ -368,7 +368,7 @@ void Zones::advance(yade::Scene& scene, BodyColumns& columns, const Vector3r& of
                 columns.setPlace(unit.body, place, Quaternionr(rotation) * unit.orientation);
             }
         }
-    }
+    });
     const double before = fallen;
     const Vector3r moment = moved; // the work is counted up to the beginning of this step
     beginStep();

@@ -9,6 +9,7 @@ from yade.wrapper import MasonryJoint, MasonryLoad, MasonryZones
 from .._masonry import criticalTimeStep, loadScene, saveScene
 from ..basics import GRAVITY, Refused
 from ..bricks import boxCorners
+from . import threads
 from .blocks import addBlock
 from .connecting import connect
 from .engines import engine, engines
@@ -70,6 +71,7 @@ class Structure:
 
         :param loadingBlock: MasonryMat of the platens
         """
+        threads.beginScene(host=self.description.functors)
         O.reset()
         loadingBlock.density *= self.args.density_scaling
         self._addBodies(loadingBlock)

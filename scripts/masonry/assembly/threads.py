@@ -1,17 +1,88 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How many threads YADE has in plain Python."""
+"""How many threads steps use.
+
+``yade -j2`` lets steps use two threads. They are used where that is quicker: the plugin measures, while a run goes on, how
+long steps take on one thread and on more, and takes the quicker number. A small scene has too little to share out, and
+on a machine whose cores are all busy threads would wait for each other. The numbers of a run do not depend on how
+many threads took its steps, to the last bit.
+"""
 
 import contextlib
 import ctypes
 import os
 
+from .._masonry import allowThreads
+from .._masonry import threads as records
+
+#: With ``MASONRY_THREADS=always`` in the environment every step uses all threads, for tests and benchmarks.
+ALWAYS = os.environ.get("MASONRY_THREADS") == "always"
+
+_allowed = 1
+
 
 def limit():
-    """Give YADE one thread if nobody has said how many. Importing :mod:`masonry` does this.
+    """Give steps as many threads as the environment says, and YADE one if it says nothing. ``import masonry`` does this.
 
-    The program ``yade`` sets ``OMP_NUM_THREADS``, 1 by default. After ``import yade`` in plain Python it is not set, and OpenMP
-    takes all cores, whose threads wait by spinning: on a busy machine a step then takes hundreds of times as long.
+    The program ``yade`` sets ``OMP_NUM_THREADS``, 1 by default. After ``import yade`` in plain Python it is not set, and
+    OpenMP takes all cores, whose threads wait by spinning: on a busy machine a step then takes hundreds of times as long.
     """
-    if "OMP_NUM_THREADS" not in os.environ:
-        with contextlib.suppress(AttributeError):  # a YADE without OpenMP
-            ctypes.CDLL(None).omp_set_num_threads(1)
+    global _allowed
+    with contextlib.suppress(AttributeError):  # a YADE without OpenMP
+        openmp = ctypes.CDLL(None)
+        if "OMP_NUM_THREADS" not in os.environ:
+            openmp.omp_set_num_threads(1)
+        _allowed = openmp.omp_get_max_threads()
+    allowThreads(_allowed, ALWAYS)
+
+
+def allowed():
+    """The largest number of threads that steps may use: that of ``yade -j``, or of ``OMP_NUM_THREADS``."""
+    return _allowed
+
+
+def beginScene(host):
+    """Count steps by threads anew, and say whether YADE's own engines may use several threads, before ``O.reset()``.
+
+    YADE adds up forces for each of its threads, and sums these columns in every step, also where a single thread has
+    added all of them.
+
+    :param host: whether they may. If not, they use one thread from now on
+    """
+    with contextlib.suppress(AttributeError):
+        ctypes.CDLL(None).omp_set_num_threads(_allowed if host else 1)
+    allowThreads(_allowed, ALWAYS)
+
+
+def used():
+    """What steps took on each number of threads: a list of dicts.
+
+    :returns: ``threads``; ``steps``, how many were taken on that number; ``microseconds_per_step``, the mean time of their
+        loops over joints and bodies [µs], None if there were none
+    """
+    return [
+        {
+            "threads": r["threads"],
+            "steps": r["steps"],
+            "microseconds_per_step": 1e6 * r["time"] / r["steps"] if r["steps"] else None,
+        }
+        for r in records()
+    ]  # fmt: skip
+
+
+def remark():
+    """A sentence if more threads were allowed than most steps used, else None."""
+    each = [r for r in used() if r["steps"]]
+    taken = sum(r["steps"] for r in each)
+    if _allowed == 1 or not taken:
+        return None
+    most = max(each, key=lambda r: r["steps"])
+    if most["threads"] == _allowed or most["steps"] < 0.5 * taken:
+        return None
+    others = [
+        f"{r['microseconds_per_step']:.0f} µs on {r['threads']}" for r in each if r is not most
+    ]  # fmt: skip
+    return (
+        f"{_allowed} threads were allowed, and {100 * most['steps'] / taken:.0f} % of the steps used {most['threads']}, "
+        f"which was quicker: a step took {most['microseconds_per_step']:.0f} µs"
+        + (f", and {', '.join(others)}" if others else "")
+    )

@@ -10,9 +10,9 @@ import sysconfig
 import traceback
 
 import yade.config
-from yade import O
 
 from .._masonry import commit, version
+from ..assembly import threads
 from ..assembly.columns import meanings
 from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
 from ..memory import FULL
@@ -206,7 +206,8 @@ def _describe(run, scene):
             "masonry": version,
         },
         commit=commit,
-        threads=O.numThreads,
+        threads=threads.allowed(),
+        steps_by_threads=threads.used(),
         host=socket.gethostname(),
         **scene.outcome.describe(),
     )
@@ -272,5 +273,7 @@ def _report(run, scene):
             f"{entries['steps']} steps of {entries.get('microseconds_per_step', 0):.0f} µs, {entries['wall_clock_s']:.1f} s in all; "
             f"see {run.results.directory}"
         )
+    if remark := threads.remark():
+        say(remark)
     if run.preset:
         say(presetNote(run.preset, run.name))

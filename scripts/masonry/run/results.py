@@ -15,7 +15,9 @@
   ``value``, ``unit`` and ``source``. An entry with the name ``support`` says that these joints take the bed joint
 - ``units``: how many bricks or half bricks there are; ``nodes``: how many nodes of deformable units; ``joint_count``: how
   many joints between blocks; ``joints_by_kind``: how many of each kind; ``subcontacts``: how many points of joints
-- ``versions``: of ``yade``, ``python`` and ``masonry``; ``commit``: of the plugin; ``threads``: how many; ``host``: its name
+- ``versions``: of ``yade``, ``python`` and ``masonry``; ``commit``: of the plugin; ``threads``: how many
+  steps may use; ``host``: its name
+- ``steps_by_threads``: what :func:`masonry.assembly.threads.used` says, of the process that ended the run
 - ``time_step_s``, ``time_step_limit_s``: the time step and its stable limit
 - ``steps``: how many were taken; ``microseconds_per_step``, ``nanoseconds_per_subcontact_step``: their mean cost
 - ``stages``: a list with the name of every ``stage``, its ``steps`` and their ``seconds`` of wall-clock time

@@ -20,6 +20,7 @@ from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
 from .._masonry import commit, loadScene, version
+from ..assembly import threads
 from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
 from . import batch, plausible
 from .checkpoints import NAME, saveCheckpoint
@@ -43,7 +44,7 @@ def hostNow():
         "build": commit,
         "masonry": version,
         "YADE": yade.config.version,
-        "threads": O.numThreads,
+        "threads": threads.allowed(),
     }
 
 

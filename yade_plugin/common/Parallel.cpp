@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "Parallel.hpp"
+#include "Crew.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace masonry {
+
+namespace {
+
+// Where many programs share the cores, each runs for some milliseconds at a time. A window holds several of these
+// turns.
+constexpr double window = 0.02; // time in which steps are compared [s]
+constexpr double worst = 0.03;  // share of a run's time that trials of a slower number of threads may cost [-]
+constexpr double rest = 0.2;    // shortest time between two trials [s]
+constexpr double longest = 2;   // longest time between two trials [s]
+constexpr double gain = 0.97;   // of the time of the best number, below which another one takes its place [-]
+constexpr double alarm = 1.25;  // of the time that the best number took before, above which fewer threads are tried [-]
+
+} // namespace
+
+ThreadChoice::ThreadChoice(int most) {
+    for (int n = 1; n < most; n *= 2)
+        counts_.push_back(n);
+    counts_.push_back(std::max(1, most));
+    for (int n : counts_)
+        records_.push_back({n});
+}
+
+void ThreadChoice::forget() {
+    for (auto& record : records_)
+        record.recent = 0;
+    present_ = best_ = 0;
+    next_ = 1;
+    steps_ = confirmed_ = 0;
+    time_ = pause_ = 0;
+}
+
+void ThreadChoice::stepTook(Seconds time) {
+    auto& record = records_[present_];
+    ++record.steps;
+    record.time += time;
+    if (counts_.size() == 1) return;
+    ++steps_;
+    time_ += time;
+    if (time_ >= window) endWindow();
+}
+
+void ThreadChoice::go(int place) {
+    present_ = place;
+    steps_ = 0;
+    time_ = 0;
+}
+
+void ThreadChoice::endWindow() {
+    auto& record = records_[present_];
+    const double mean = time_ / double(steps_), before = record.recent;
+    const double took = time_, count = double(steps_);
+    record.recent = before > 0 && present_ == best_ ? 0.5 * (before + mean) : mean;
+    if (present_ == best_) {
+        pause_ -= took;
+        // On more threads than one a step suddenly takes longer: other programs may need the cores now.
+        const bool slower = best_ > 0 && before > 0 && mean > alarm * before;
+        if (pause_ > 0 && !slower) return go(best_);
+        if (slower) next_ = -1;
+        int place = best_ + next_;
+        if (place < 0 || place >= int(counts_.size())) place = best_ - next_;
+        return go(place);
+    }
+    const double best = records_[best_].recent;
+    if (mean < gain * best) { // it may pay to go further in this direction
+        next_ = present_ > best_ ? 1 : -1;
+        best_ = present_;
+        confirmed_ = 0;
+        pause_ = 0;
+        const int further = best_ + next_;
+        if (further < 0 || further >= int(counts_.size())) settleFor(0);
+    } else {
+        next_ = -next_;
+        ++confirmed_;
+        settleFor((took - count * best) / worst);
+    }
+    go(best_);
+}
+
+// Trials become rare where they find nothing new, and the rarer the more they cost.
+void ThreadChoice::settleFor(Seconds pause) {
+    pause_ = std::max(pause, std::min(longest, rest * std::pow(2.0, confirmed_)));
+}
+
+// ---- loops ------------------------------------------------------------------------------------------------------
+
+Parallel& Parallel::instance() {
+    static auto& one = *new Parallel; // never destroyed: threads may be at work when the process ends
+    return one;
+}
+
+void Parallel::allow(int threads, bool always) {
+    allowed_ = std::clamp(threads, 1, Crew::most);
+    always_ = always;
+    choice_ = ThreadChoice(allowed_);
+    counted_ = false;
+    if (allowed_ > 1 && !crew_) crew_ = new Crew;
+}
+
+void Parallel::stepBegins() {
+    if (allowed_ == 1) return;
+    if (counted_ && !always_) choice_.stepTook(std::chrono::duration<double>(spent_).count());
+    counted_ = true;
+    spent_ = {};
+}
+
+void Parallel::run(const Span& all) {
+    const int threads = always_ ? allowed_ : choice_.threads();
+    if (allowed_ == 1) return all.call(all.body, 0, all.count);
+    const auto began = std::chrono::steady_clock::now();
+    if (threads == 1 || all.count <= all.piece)
+        all.call(all.body, 0, all.count);
+    else
+        runOnThreads(all, threads);
+    spent_ += std::chrono::steady_clock::now() - began;
+}
+
+void Parallel::runOnThreads(const Span& all, int threads) {
+    const auto pieces = [](const void* of, int first, int beyond) {
+        const auto& span = *static_cast<const Span*>(of);
+        span.call(span.body, first * span.piece, std::min(span.count, beyond * span.piece));
+    };
+    crew_->run({&all, pieces, (all.count + all.piece - 1) / all.piece}, threads);
+}
+
+} // namespace masonry
