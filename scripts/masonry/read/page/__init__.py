@@ -69,17 +69,18 @@ def _comment(text):
     return text.replace("--", "- -")
 
 
-def fragment(directory, number=None):
+def fragment(directory, number=None, magnification=None):
     """The picture of a run as an element ``<div class="masonry-view">`` with its data, for a page that has :func:`assets`.
 
     It is as wide as what it stands in, and 70 % of that high. All frames of the run are in it.
 
     :param directory: folder of results
     :param number: of the frame that is shown first, from 0; None: the last one
+    :param magnification: of displacements at first [-]; None: as in cracks.png. The page has a slider for it
     :returns: HTML
     :raises Refused: if the folder has no frames or is no folder of results
     """
-    return _fragment(*dataOf(directory, number))
+    return _fragment(*dataOf(directory, number, magnification))
 
 
 def _fragment(head, numbers):
@@ -93,9 +94,9 @@ def _fragment(head, numbers):
     )
 
 
-def page(directory, number=None):
+def page(directory, number=None, magnification=None):
     """A whole page with the picture of a run; parameters and errors as of :func:`fragment` and :func:`assets`."""
-    head, numbers = dataOf(directory, number)
+    head, numbers = dataOf(directory, number, magnification)
     title = _words(head["title"])
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
@@ -107,12 +108,12 @@ def page(directory, number=None):
     )
 
 
-def write(directory, path, number=None):
+def write(directory, path, number=None, magnification=None):
     """Write :func:`page` to a file, whole or not at all; the other parameters and errors are those of :func:`page`.
 
     :raises OSError: if the file cannot be written, or if its name is that of a symbolic link
     """
-    text = page(directory, number)
+    text = page(directory, number, magnification)
     with replaced(path, encoding="utf-8") as file:
         file.write(text)
 

@@ -65,11 +65,12 @@ class Arrays:
         return base64.b64encode(zlib.compress(b"".join(self._bytes), 9)).decode()
 
 
-def dataOf(directory, number=None):
+def dataOf(directory, number=None, magnification=None):
     """The head, a dict that can be written as JSON, and the arrays as a text in base64.
 
     :param directory: folder of results
     :param number: of the frame that is shown first, from 0; None: the last one
+    :param magnification: of displacements at first [-]; None: as in cracks.png
     :raises Refused: if the folder has no frames, if they are damaged, or without that frame
     """
     motion = Motion(directory)
@@ -78,7 +79,7 @@ def dataOf(directory, number=None):
         raise Refused(f"{directory}: there is no frame {number}; its frames are 0 to {count - 1}")  # fmt: skip
     with filesOf(directory):
         cracks = Cracks(motion)
-        arrays, head = Arrays(), _head(motion)
+        arrays, head = Arrays(), _head(motion, magnification)
     _addBlocks(arrays, motion)
     head["values"] = _addJoints(arrays, cracks)
     head.update(
@@ -91,14 +92,20 @@ def dataOf(directory, number=None):
     return head, arrays.text()
 
 
-def _head(motion):
+def _head(motion, magnification):
     """What is said about a run, and how it is seen first."""
     with filesOf(motion.directory):
         joints = readFrame(motion.directory, "joints", motion.numbers[0])
         view = viewOf(motion.points, joints["normal"], joints["area"])
     low, high = motion.points.min(axis=0), motion.points.max(axis=0)
     size = float((high - low).max())
-    moved = np.linalg.norm(motion.displacements(len(motion.times) - 1), axis=1)
+    moved = motion.displacements(len(motion.times) - 1)
+    if magnification is None:
+        magnification = magnificationOf(size, np.linalg.norm(moved, axis=1))
+    # all is in the picture at the end, but for what flew away, as in cracks.png
+    seen = motion.points + magnification * moved
+    seen = np.clip(seen, low - 0.6 * size, high + 0.6 * size)
+    low, high = np.minimum(low, seen.min(axis=0)), np.maximum(high, seen.max(axis=0))
     courses = _extents(motion)[motion.brick]
     towards = view.towards.tolist()
     return {
@@ -107,13 +114,14 @@ def _head(motion):
             {"time": time, "stage": found["stage"] and plain(found["stage"]), "values": [plain(v) for v in found["values"]]}
             for time, found in zip(motion.times, motion.captions())
         ],
-        "magnification": magnificationOf(size, moved),
+        "magnification": magnification,
         "low": low.tolist(),
         "high": high.tolist(),
         "towards": towards if abs(towards[2]) < 0.9 else [0.0, -1.0, 0.0],
         "flat": abs(towards[2]) < 0.9,
         "course": float(np.median(courses)) if len(courses) else size,
         "farthest": float(motion.farthest.max()),
+        "ramp": nice(float(motion.farthest.max()) or 1.0),
         "blocks": int(len(motion.bodies)),
         "deformable": int((~motion.rigid).sum()),
         "kinds": {"open": OPEN, "slid": SLID, "crushed": CRUSHED_TOO},
@@ -169,6 +177,7 @@ def _addJoints(arrays, cracks):
 
 
 def nice(value):
-    """The smallest of 1, 2, 3, 4, 5, 6 and 8 times a power of ten that is not below a value."""
+    """The smallest number, of two digits at most and a power of ten, that is not below a value and has round quarters."""
     power = 10.0 ** np.floor(np.log10(value))
-    return float(next(s * power for s in (1, 2, 3, 4, 5, 6, 8, 10) if s * power >= value * (1 - 1e-9)))  # fmt: skip
+    steps = (1, 1.2, 1.6, 2, 2.4, 2.8, 3.2, 4, 5, 6, 8, 10)
+    return float(next(s * power for s in steps if s * power >= value * (1 - 1e-9)))

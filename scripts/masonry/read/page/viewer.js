@@ -234,7 +234,7 @@
       body.setAttribute("brick", new THREE.BufferAttribute(brick, 1));
       body.setIndex(new THREE.BufferAttribute(own("triangles"), 1));
       this.look3 = {
-        plain: colour(BRICK), platen: colour(PLATEN), most: { value: head.farthest || 1 }, coloured: { value: false },
+        plain: colour(BRICK), platen: colour(PLATEN), most: { value: head.ramp }, coloured: { value: false },
         ramp: { value: RAMPS.moved.map((hex) => new THREE.Color(hex)) },
       };
       const polygon = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
@@ -326,7 +326,7 @@
       this.magnifyText = make("output");
       this.setMagnify = (value) => {
         this.magnify = value < 10 ? Math.round(value * 10) / 10 : Math.round(value);
-        this.magnifier.value = (1000 * Math.log(this.magnify / least)) / Math.log(most / least);
+        this.magnifier.value = (1000 * Math.log(Math.max(this.magnify, least) / least)) / Math.log(most / least);
         this.magnifyText.textContent = "× " + this.magnify;
         this.shared.magnify.value = this.magnify;
         this.ask();
@@ -449,7 +449,7 @@
         const [unit, factor] = this.joints === "damage" ? ["–", 1] : ["mm", 1e3];
         parts.push(bar(this.joints, `${NAMES[this.joints]} [${unit}]`, least, top, most, factor));
       }
-      if (this.blocks === "moved") parts.push(bar("moved", "displacement [mm]", 0, this.head.farthest || 1, 0, 1e3));
+      if (this.blocks === "moved") parts.push(bar("moved", "displacement [mm]", 0, this.head.ramp, 0, 1e3));
       this.legend.replaceChildren(...parts);
       this.legend.hidden = !parts.length;
     }
@@ -640,7 +640,7 @@
     drawAxes(x, y) {
       const lines = ["x", "y", "z"].map((name, k) => {
         const [right, up] = [x.getComponent(k), y.getComponent(k)];
-        return Math.hypot(right, up) < 0.12 ? "" :
+        return Math.hypot(right, up) < 0.2 ? "" :
           `<line x1="0" y1="0" x2="${24 * right}" y2="${-24 * up}"/><text x="${32 * right}" y="${-32 * up}">${name}</text>`;
       });
       this.axes.innerHTML = `<svg viewBox="-38 -38 76 76" aria-hidden="true">${lines.join("")}</svg>`;
