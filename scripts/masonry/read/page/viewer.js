@@ -233,12 +233,12 @@
       body.setAttribute("moved", this.moved);
       body.setAttribute("brick", new THREE.BufferAttribute(brick, 1));
       body.setIndex(new THREE.BufferAttribute(own("triangles"), 1));
-      this.look3 = {
+      this.looks = {
         plain: colour(BRICK), platen: colour(PLATEN), most: { value: head.ramp }, coloured: { value: false },
         ramp: { value: RAMPS.moved.map((hex) => new THREE.Color(hex)) },
       };
       const polygon = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
-      this.bodies = add(THREE.Mesh, body, shader(BLOCKS, this.look3, { extensions: { derivatives: true }, ...polygon }));
+      this.bodies = add(THREE.Mesh, body, shader(BLOCKS, this.looks, { extensions: { derivatives: true }, ...polygon }));
       const lines = new THREE.BufferGeometry();
       lines.setAttribute("position", points);
       lines.setAttribute("moved", this.moved);
@@ -342,8 +342,8 @@
           ...[["Front", "front"], ["Side", "side"], ["Top", "top"], ["Iso", "iso"]].map(([text, name]) => button(text, () => this.look(name), "view: " + name))),
         make("details", {}, make("summary", {}, "Mouse, touch and keys"), KEYS +
           ` Of ${head.jointPoints.toLocaleString("en")} points of joints, the ${head.keptPoints.toLocaleString("en")} that crack or close in a frame are drawn.`));
-      this.panel.querySelector("select option[value=none]").textContent = "none";
       this.panel.querySelectorAll("select")[1].options[0].textContent = "plain";
+      this.slider.disabled = this.playing.disabled = head.frames.length < 2;
       this.setMagnify(head.magnification);
     }
 
@@ -421,7 +421,7 @@
       give(this.jointColour, owner.length, (i) => i);
       give(this.rimColour, this.sides.length / 2, (i) => this.sides[2 * i]);
       this.cracks.forEach((mesh) => { mesh.visible = joints !== "none"; });
-      this.look3.coloured.value = this.blocks === "moved";
+      this.looks.coloured.value = this.blocks === "moved";
       this.tell();
       this.ask();
     }
@@ -602,7 +602,8 @@
       this.asked = undefined;
       const wide = this.stage.clientWidth, high = this.stage.clientHeight;
       if (!wide || !high || !this.target) return;
-      const dots = Math.min(devicePixelRatio || 1, 3);
+      const dots = Math.min(devicePixelRatio || 1, 3), narrow = wide < 560;
+      this.element.classList.toggle("narrow", narrow); // the legend stands below then, not beside
       const drawn = this.renderer.getSize(new THREE.Vector2());
       if (drawn.x !== wide || drawn.y !== high || this.renderer.getPixelRatio() !== dots) {
         this.renderer.setPixelRatio(dots);
@@ -612,7 +613,7 @@
       const [x, y, z] = this.directions();
       const extent = (axis) => [0, 1, 2].reduce((sum, k) => sum + Math.abs(axis.getComponent(k)) * (this.head.high[k] - this.head.low[k]), 0);
       this.size = Math.max(...[0, 1, 2].map((k) => this.head.high[k] - this.head.low[k]));
-      this.metres = Math.max((1.18 * extent(y)) / high, (1.12 * extent(x)) / Math.max(wide - 150, wide / 2), 1e-9) / this.zoom;
+      this.metres = Math.max((1.18 * extent(y)) / high, (1.12 * extent(x)) / (narrow ? wide : wide - 150), 1e-9) / this.zoom;
       const { camera } = this, deep = 20 * this.size + this.magnify * this.head.farthest;
       const [w, h] = [(wide * this.metres) / 2, (high * this.metres) / 2];
       Object.assign(camera, { left: -w, right: w, top: h, bottom: -h, near: 0, far: 2 * deep });
