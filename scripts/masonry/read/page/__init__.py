@@ -19,7 +19,7 @@ import json
 import os
 
 from ...arguments import whole
-from ...basics import plain
+from ...basics import Refused, plain
 from ...folders import replaced
 from .data import dataOf
 from .library import three
@@ -124,7 +124,11 @@ def show(directory, number=None, height=HEIGHT):
     :param height: of the picture [pixels], 200 to 5000; the others, and the errors, are those of :func:`fragment`
     :returns: a :class:`Picture`
     """
-    return Picture(directory, page(directory, number), whole(200, 5000)(height))
+    try:
+        height = whole(200, 5000)(height)
+    except ValueError as problem:
+        raise Refused(f"height: {problem} pixels") from None
+    return Picture(directory, page(directory, number), height)
 
 
 class Picture:

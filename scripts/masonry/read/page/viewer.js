@@ -492,7 +492,7 @@
       this.ask();
     }
 
-    /** Zooms about a place in the picture, in pixels from its middle. */
+    /** Zooms about a place in the picture, in pixels from the place of the target. */
     enlarge(factor, right = 0, down = 0) {
       const now = Math.min(Math.max(this.zoom * factor, 0.2), 200);
       const gain = 1 - this.zoom / now;
@@ -509,7 +509,7 @@
       const down = new Map();
       const middle = () => { const all = [...down.values()]; return [0, 1].map((k) => all.reduce((sum, p) => sum + p[k], 0) / all.length); };
       const apart = () => { const [p, q] = down.values(); return Math.hypot(p[0] - q[0], p[1] - q[1]); };
-      const place = (event) => { const box = canvas.getBoundingClientRect(); return [event.clientX - box.left - box.width / 2, event.clientY - box.top - box.height / 2]; };
+      const place = (event) => { const box = canvas.getBoundingClientRect(); return [event.clientX - box.left - box.width / 2 + this.beside, event.clientY - box.top - box.height / 2]; };
       let travelled = 0;
       canvas.addEventListener("pointerdown", (event) => {
         canvas.setPointerCapture(event.pointerId);
@@ -615,8 +615,10 @@
       this.size = Math.max(...[0, 1, 2].map((k) => this.head.high[k] - this.head.low[k]));
       this.metres = Math.max((1.18 * extent(y)) / high, (1.12 * extent(x)) / (narrow ? wide : wide - 150), 1e-9) / this.zoom;
       const { camera } = this, deep = 20 * this.size + this.magnify * this.head.farthest;
+      this.beside = narrow ? 0 : 60; // how far the middle of the structure is beside that of the picture, for the legend [pixels]
       const [w, h] = [(wide * this.metres) / 2, (high * this.metres) / 2];
-      Object.assign(camera, { left: -w, right: w, top: h, bottom: -h, near: 0, far: 2 * deep });
+      const aside = this.beside * this.metres;
+      Object.assign(camera, { left: aside - w, right: aside + w, top: h, bottom: -h, near: 0, far: 2 * deep });
       camera.position.copy(this.target).addScaledVector(z, deep);
       camera.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(x, y, z));
       camera.updateProjectionMatrix();
