@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from masonry.basics import Refused
 from masonry.read import frames, gltf, page, viewer
+
 from masonry.read.motion import CRUSHED_TOO, OPEN, SLID, Cracks, Motion, sharpEdges, turned  # fmt: skip
 from masonry.read.page import data, library
 
@@ -245,7 +246,7 @@ needsThree = pytest.mark.skipif(
     not any(os.path.exists(os.path.join(p, library.CODE)) for p in library.PLACES),
     reason="three.js is not installed (apt-get install --no-install-recommends libjs-three)",
 )
-HOSTILE = '</script><script>alert(1)</script><!-- "\' & <b>\u202e\x1b'
+HOSTILE = "</script><script>alert(1)</script><!-- \"' & <b>\u202e\x1b"
 
 
 @needsThree

@@ -15,7 +15,12 @@ from .motion import CRUSHED_TOO, OPEN, SLID, Cracks, Motion
 
 FLOAT, BYTE = 5126, 5121  # numbers of glTF for types of numbers
 VERTICES = 34962  # number of glTF for an array of vertices
-UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # the rotation that turns z to y, (x, y, z, w)
+UP = [
+    -(0.5**0.5),
+    0.0,
+    0.0,
+    0.5**0.5,
+]  # the rotation that turns z to y, (x, y, z, w)
 
 #: Colours as a screen shows them, from 0 to 255; those of joints are as in cracks.png.
 BRICK, PLATEN = (240, 222, 191), (185, 189, 194)

@@ -16,7 +16,11 @@ from .frames import framePaths, frameTimes, readFrame, readSurfaces
 
 SHARP = np.cos(np.radians(20))  # of the angle from which an edge of a block is drawn
 STIFF = 1e-6  # [-] how far corners of a rigid block may be off a rigid motion, of the size of the structure
-OPEN, SLID, CRUSHED_TOO = 1, 2, 4  # kinds of a crack; a joint can be crushed beside the first or the second
+OPEN, SLID, CRUSHED_TOO = (
+    1,
+    2,
+    4,
+)  # kinds of a crack; a joint can be crushed beside the first or the second
 
 
 class Motion:
@@ -156,7 +160,8 @@ class Motion:
 
     def _turns(self, arms, away):
         """Rotations of all blocks as vectors, which bring arms next to where they are. By Horn's method: the quaternion is
-        the eigenvector of the largest eigenvalue of a matrix of the sums of products."""
+        the eigenvector of the largest eigenvalue of a matrix of the sums of products.
+        """
         s = np.empty((3, 3, len(self.bodies)))
         for i in range(3):
             for j in range(3):
