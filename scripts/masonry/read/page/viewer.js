@@ -28,42 +28,63 @@
 
   // -- motion ----------------------------------------------------------------------------------------------------------
 
-  /** Adds to `to` at `at` a share of the displacement of a point that moves with a rigid block in a frame. */
-  function addRigid(data, frame, block, points, n, share, to, at) {
-    const { shift, turn, centres } = data;
-    const from = frame * shift.row + 3 * block;
-    const [wx, wy, wz] = [0, 1, 2].map((k) => turn.values[from + k] * turn.step);
-    const [ax, ay, az] = [0, 1, 2].map((k) => points[3 * n + k] - centres.values[3 * block + k]);
-    const angle = Math.hypot(wx, wy, wz);
-    const first = angle > 1e-9 ? Math.sin(angle) / angle : 1;
-    const second = angle > 1e-9 ? 2 * (Math.sin(angle / 2) / angle) ** 2 : 0.5;
-    const [cx, cy, cz] = [wy * az - wz * ay, wz * ax - wx * az, wx * ay - wy * ax];
-    to[at] += share * (shift.values[from] * shift.step + first * cx + second * (wy * cz - wz * cy));
-    to[at + 1] += share * (shift.values[from + 1] * shift.step + first * cy + second * (wz * cx - wx * cz));
-    to[at + 2] += share * (shift.values[from + 2] * shift.step + first * cz + second * (wx * cy - wy * cx));
+  /** How all rigid blocks move in a frame: of each its shift, and the matrix of its turn less the unit matrix, row by row. */
+  function motions(data, frame) {
+    const { shift, turn, bodies } = data;
+    const found = new Float64Array(12 * bodies.values.length);
+    for (let block = 0; block < bodies.values.length; ++block) {
+      const from = frame * shift.row + 3 * block, at = 12 * block;
+      const x = turn.values[from] * turn.step, y = turn.values[from + 1] * turn.step, z = turn.values[from + 2] * turn.step;
+      const angle = Math.hypot(x, y, z);
+      const first = angle > 1e-9 ? Math.sin(angle) / angle : 1;
+      const second = angle > 1e-9 ? 2 * (Math.sin(angle / 2) / angle) ** 2 : 0.5;
+      for (let k = 0; k < 3; ++k) found[at + k] = shift.values[from + k] * shift.step;
+      found[at + 3] = -second * (y * y + z * z);
+      found[at + 4] = second * x * y - first * z;
+      found[at + 5] = second * x * z + first * y;
+      found[at + 6] = second * x * y + first * z;
+      found[at + 7] = -second * (x * x + z * z);
+      found[at + 8] = second * y * z - first * x;
+      found[at + 9] = second * x * z - first * y;
+      found[at + 10] = second * y * z + first * x;
+      found[at + 11] = -second * (x * x + y * y);
+    }
+    return found;
+  }
+
+  /** Adds to the n-th displacement of `to` a share of that of the n-th point, if it moved with a rigid block. */
+  function addRigid(motion, centres, block, points, n, share, to) {
+    const p = 3 * n, c = 3 * block, m = 12 * block;
+    const x = points[p] - centres[c], y = points[p + 1] - centres[c + 1], z = points[p + 2] - centres[c + 2];
+    for (let k = 0; k < 3; ++k) {
+      const row = m + 3 + 3 * k;
+      to[p + k] += share * (motion[m + k] + motion[row] * x + motion[row + 1] * y + motion[row + 2] * z);
+    }
   }
 
   /** Displacements of the corners of all blocks in a frame, into `to`. */
-  function moveBlocks(data, frame, to) {
+  function moveBlocks(data, frame, motion, to) {
     to.fill(0);
-    const { points, owner, free, moved } = data;
-    for (let n = 0; n < owner.values.length; ++n) addRigid(data, frame, owner.values[n], points.values, n, 1, to, 3 * n);
+    const { points, owner, free, moved, centres } = data;
+    for (let n = 0; n < owner.values.length; ++n) addRigid(motion, centres.values, owner.values[n], points.values, n, 1, to);
     for (let i = 0; i < free.values.length; ++i)
       for (let k = 0; k < 3; ++k)
         to[3 * free.values[i] + k] = moved.values[frame * moved.row + 3 * i + k] * moved.step;
   }
 
   /** Displacements of the corners of all joints in a frame, into `to`: means of those of both blocks. */
-  function moveJoints(data, frame, to) {
-    const { jointPoints, jointOwner, jointBlocks, jointMoved } = data;
+  function moveJoints(data, frame, motion, to) {
+    const { jointPoints, jointOwner, jointBlocks, jointMoved, centres } = data;
     if (jointMoved) {
       for (let i = 0; i < to.length; ++i) to[i] = jointMoved.values[frame * jointMoved.row + i] * jointMoved.step;
       return;
     }
     to.fill(0);
     for (let n = 0; n < jointOwner.values.length; ++n)
-      for (let side = 0; side < 2; ++side)
-        addRigid(data, frame, jointBlocks.values[2 * jointOwner.values[n] + side], jointPoints.values, n, 0.5, to, 3 * n);
+      for (let side = 0; side < 2; ++side) {
+        const block = jointBlocks.values[2 * jointOwner.values[n] + side];
+        addRigid(motion, centres.values, block, jointPoints.values, n, 0.5, to);
+      }
   }
 
   // -- colours ---------------------------------------------------------------------------------------------------------
@@ -353,8 +374,9 @@
     show(frame) {
       const { data, head } = this;
       this.frame = Math.min(Math.max(frame, 0), head.frames.length - 1);
-      moveBlocks(data, this.frame, this.moved.array);
-      moveJoints(data, this.frame, this.jointMoved.array);
+      const motion = motions(data, this.frame);
+      moveBlocks(data, this.frame, motion, this.moved.array);
+      moveJoints(data, this.frame, motion, this.jointMoved.array);
       this.moved.needsUpdate = this.jointMoved.needsUpdate = true;
       this.rimMoved.forEach((attribute, side) => {
         for (let i = 0; i < this.sides.length / 2; ++i)
@@ -397,18 +419,21 @@
       const paint = new Uint8Array(data.jointBlocks.values.length * 2); // four bytes a point of a joint
       const at = (name, n) => data[name].values[this.frame * data[name].row + n] * data[name].step;
       const kinds = [head.kinds.open, head.kinds.slid, head.kinds.crushed].map((bit) => (kind) => (kind & bit) > 0);
+      const plain = Object.fromEntries(Object.entries(KINDS).map(([name, hex]) => [name, rgb(hex)]));
       const shades = joints in RAMPS && Array.from({ length: 256 }, (_, n) => colourOf(RAMPS[joints], n / 255));
       for (let n = 0; n < paint.length / 4; ++n) {
         let found;
         if (joints === "crack") {
           const kind = data.kind.values[this.frame * data.kind.row + n];
           const name = kinds[2](kind) ? "crushed" : kinds[0](kind) ? "open" : kinds[1](kind) ? "slid" : null;
-          found = name && rgb(KINDS[name]);
+          found = name && plain[name];
         } else if (shades) {
           const value = at(joints, n), { least, top } = head.values[joints];
           found = value > least && shades[Math.min(255, Math.round((255 * value) / top))];
         }
-        if (found) paint.set([...found, 255], 4 * n);
+        if (!found) continue;
+        for (let k = 0; k < 3; ++k) paint[4 * n + k] = found[k];
+        paint[4 * n + 3] = 255;
       }
       const owner = data.jointOwner.values;
       const give = (attribute, count, from) => {
