@@ -411,11 +411,25 @@ def test_folders_without_frames_are_refused_with_the_reason(tmp_path):
     for options, words in (
         ({"lean": True}, "was started with --lean$"),
         ({"no_vtk": True}, "was started with --no-vtk$"),
-        ({}, "has no frames to show: no file joints_"),
+        ({}, "has no frames to show: no file blocks_"),
     ):
         writeRun(tmp_path, options=options)
         with pytest.raises(Refused, match=words):
             Motion(str(tmp_path))
+
+
+def test_a_frame_that_a_kill_kept_out_of_the_list_is_not_shown(run):
+    text = (run / "joints.pvd").read_text()
+    lines = text.splitlines(True)
+    last = max(n for n, line in enumerate(lines) if "<DataSet" in line)
+    (run / "joints.pvd").write_text("".join(lines[:last] + lines[last + 1 :]))
+    assert len(Motion(str(run)).times) == len(STEPS) - 1
+
+
+def test_the_last_frame_may_stand_there_twice(run):
+    path = run / "joints.pvd"
+    path.write_text(path.read_text().replace('"3"', '"2"'))
+    assert Motion(str(run)).times == [0, 1, 2, 2]
 
 
 def corrupt(name, change):
@@ -433,8 +447,11 @@ def corrupt(name, change):
         (corrupt("joints_0001.vtp", lambda b: b"{}"), "joints_0001.vtp: it holds no frame"),
         (corrupt("blocks_0000.vtu", lambda b: b.replace(b'"faceoffsets"', b'"faceoffsetz"')), "blocks_0000.vtu: it holds no frame"),
         (corrupt("run.json", lambda b: b"[1]"), "is no record of a run"),
-        (corrupt("joints.pvd", lambda b: b.replace(b"DataSet", b"DataSat", 1)), "joints.pvd"),
-        (lambda run: (run / "joints_0003.vtp").unlink(), "4 files blocks_.*3 files joints_"),
+        (corrupt("joints.pvd", lambda b: b[: len(b) // 2]), "cannot read .*joints.pvd"),
+        (corrupt("joints.pvd", lambda b: b.replace(b'"2"', b'"0.5"')), "the times of its frames in joints.pvd go back or are not finite"),
+        (corrupt("joints.pvd", lambda b: b.replace(b'"3"', b'"nan"')), "the times of its frames in joints.pvd go back or are not finite"),
+        (lambda run: (run / "joints_0003.vtp").unlink(), "joints.pvd lists 4 frames, and there are 4 files blocks_.*3 files joints_"),
+        (corrupt("joints.pvd", lambda b: re.sub(rb"<DataSet[^>]*>", b"", b)), "joints.pvd lists 0 frames"),
         (lambda run: writeRun(run, reference_body=9), "names body 9, which is not in the frames"),
         (lambda run: writeRun(run, parts=[1, 2]), "not the files of a finished run"),
         (lambda run: writeRun(run, stages=[{"steps": 1}], time_step_s=3.0), "not the files of a finished run"),

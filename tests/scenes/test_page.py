@@ -92,6 +92,15 @@ def test_the_page_opens_without_a_request_or_an_error_and_is_small(opened, paper
     assert re.search(r"supports: [\d.]+ kN", text)
 
 
+def test_the_browser_lets_the_page_ask_nobody(opened, tmp_path):
+    """Whatever stood in it: a policy in the page forbids it."""
+    (tmp_path / "other.json").write_text("{}")
+    for address in ("http://127.0.0.1:9/", f"file://{tmp_path}/other.json"):
+        assert opened.value(f"fetch('{address}').then(() => 'came', () => 'refused')") == "refused"  # fmt: skip
+    assert len(opened.problems) >= 2
+    assert all("Content Security Policy" in text for text in opened.problems)
+
+
 def test_the_picture_shows_bricks_and_the_crack_that_grows(opened, tmp_path):
     end = seen(opened, tmp_path)
     assert near(end, BRICK) > 0.15 * end[..., 0].size

@@ -16,6 +16,7 @@ from .frames import framePaths, frameTimes, readFrame, readSurfaces
 
 SHARP = np.cos(np.radians(20))  # of the angle from which an edge of a block is drawn
 STIFF = 1e-6  # [-] how far corners of a rigid block may be off a rigid motion, of the size of the structure
+FARTHEST = 1e6  # [m] from the origin
 OPEN, SLID, CRUSHED_TOO = (
     1,
     2,
@@ -53,23 +54,24 @@ class Motion:
             self.title = str(
                 self.run.get("title") or os.path.basename(os.path.abspath(directory))
             )
-            count = self._count()
+            times = self._times()
+            count = len(times)
             if number is not None and not 0 <= number < count:
                 raise Refused(f"{directory}: there is no frame {number}; its frames are 0 to {count - 1}")  # fmt: skip
             self.numbers = list(range(count)) if number is None else [number]
-            times = frameTimes(directory)
-            if len(times) != count:
-                raise Refused(f"{directory}: joints.pvd lists {len(times)} frames, and there are {count} files joints_*.vtp")  # fmt: skip
             self.times = [times[n] for n in self.numbers]
             self._build()
             self._move()
 
-    def _count(self):
-        """Number of frames. Raises Refused with the reason if there is none."""
+    def _times(self):
+        """Times of the frames, as joints.pvd lists them [s]. Raises Refused with the reason if there is none.
+
+        A run that was killed can have written a frame more, which is not shown.
+        """
         options = self.run.get("options") or {}
         try:
-            count = len(framePaths(self.directory, "joints"))
-            blocks = len(framePaths(self.directory, "blocks"))
+            counts = [len(framePaths(self.directory, k)) for k in ("blocks", "joints")]
+            times = frameTimes(self.directory)
         except Refused as problem:
             for name in ("lean", "no_vtk"):
                 if options.get(name):
@@ -77,9 +79,15 @@ class Motion:
                         f"{self.directory} has no frames to show, because its run was started with --{name.replace('_', '-')}"
                     ) from None
             raise Refused(f"{self.directory} has no frames to show: {problem}") from None  # fmt: skip
-        if count != blocks:
-            raise Refused(f"{self.directory}: there are {blocks} files blocks_*.vtu, and {count} files joints_*.vtp")  # fmt: skip
-        return count
+        # the last frame of a run can be written twice
+        if not (np.isfinite(times).all() and (np.diff(times) >= 0).all()):
+            raise Refused(f"{self.directory}: the times of its frames in joints.pvd go back or are not finite")  # fmt: skip
+        if not times or min(counts) < len(times):
+            raise Refused(
+                f"{self.directory}: joints.pvd lists {len(times)} frames, and there are {counts[0]} files blocks_*.vtu "
+                f"and {counts[1]} files joints_*.vtp"
+            )
+        return times
 
     def _build(self):
         """The blocks as they were built."""
@@ -149,8 +157,9 @@ class Motion:
 
     def _blocks(self, number):
         frame = readFrame(self.directory, "blocks", number)
-        if not all(np.isfinite(frame[k]).all() for k in ("points", "displacement")):
-            raise Refused(f"{self.directory}: a number of the blocks in frame {number} is not finite")  # fmt: skip
+        for name in ("points", "displacement"):
+            if not (np.abs(frame[name]) < FARTHEST).all():
+                raise Refused(f"{self.directory}: a number of the blocks in frame {number} is not finite, or {FARTHEST:g} m and more")  # fmt: skip
         return frame
 
     def _means(self, values):

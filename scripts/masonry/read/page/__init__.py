@@ -24,6 +24,8 @@ from ...folders import replaced
 from .data import dataOf
 from .library import three
 
+#: What a whole page may do: run what stands in it. The browser refuses every request to a network.
+POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
 HEIGHT = 620  # of a picture in a notebook [pixels]
 
 
@@ -100,6 +102,7 @@ def page(directory, number=None, magnification=None):
     title = _words(head["title"])
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         '<meta name="color-scheme" content="light dark">\n'
         '<link rel="icon" href="data:,">\n'
