@@ -200,7 +200,7 @@
   const KEYS =
     "Drag to turn, drag with the right button, with Shift or with two fingers to move, wheel or pinch to zoom. In the picture: " +
     "arrows turn, Shift and arrows move, + and − zoom, Page Up and Page Down change the frame, space plays, Home shows all, " +
-    "1 to 4 are the views. A click on a block tells how it moved.";
+    "1 to 4 are the views. A click on a block says which it is and how it moved.";
 
   // -- the picture -----------------------------------------------------------------------------------------------------
 
@@ -362,7 +362,7 @@
         make("span", { role: "group", "aria-label": "views" },
           ...[["Front", "front"], ["Side", "side"], ["Top", "top"], ["Iso", "iso"]].map(([text, name]) => button(text, () => this.look(name), "view: " + name))),
         make("details", {}, make("summary", {}, "Mouse, touch and keys"), KEYS +
-          ` Of ${head.jointPoints.toLocaleString("en")} points of joints, the ${head.keptPoints.toLocaleString("en")} that crack or close in a frame are drawn.`));
+          ` Of ${head.jointPoints.toLocaleString("en")} points of joints, the ${head.keptPoints.toLocaleString("en")} that crack, slide or close in some frame are drawn.`));
       this.panel.querySelectorAll("select")[1].options[0].textContent = "plain";
       this.slider.disabled = this.playing.disabled = head.frames.length < 2;
       this.setMagnify(head.magnification);
@@ -668,7 +668,7 @@
     drawAxes(x, y) {
       const lines = ["x", "y", "z"].map((name, k) => {
         const [right, up] = [x.getComponent(k), y.getComponent(k)];
-        return Math.hypot(right, up) < 0.2 ? "" :
+        return Math.hypot(right, up) < 0.25 ? "" :
           `<line x1="0" y1="0" x2="${24 * right}" y2="${-24 * up}"/><text x="${32 * right}" y="${-32 * up}">${name}</text>`;
       });
       this.axes.innerHTML = `<svg viewBox="-38 -38 76 76" aria-hidden="true">${lines.join("")}</svg>`;
