@@ -37,7 +37,7 @@ cmake -S . -B build -DCMAKE_BUILD_TYPE=Release -DMASONRY_COMMIT="$commit" >"$out
     cmake --build build --parallel "$(nproc)" --target masonry_module_fit >>"$out/log" 2>&1 || { tail -n 40 "$out/log" >&2; exit 1; }
 package=$root/usr/lib/python3/dist-packages/masonry
 mkdir -p "$package"
-(cd scripts/masonry && find . -name '*.py' -print0 | tar -c --null --files-from=-) | tar -x --no-same-owner --no-same-permissions -C "$package"
+(cd scripts/masonry && find . \( -name '*.py' -o -name '*.js' -o -name '*.css' \) -print0 | tar -c --null --files-from=-) | tar -x --no-same-owner --no-same-permissions -C "$package"
 install -m 644 build/_masonry.so "$package/"
 strip --strip-unneeded --remove-section=.comment --remove-section=.note "$package/_masonry.so"
 
@@ -53,7 +53,7 @@ Architecture: $architecture
 Maintainer: $name <$address>
 Installed-Size: $(du -sk "$root/usr" | cut -f 1)
 Depends: yade (= $yade), python3 (>= $python), python3 (<< $next), python3-matplotlib, python3-meshio, python3-numpy, python3-scipy, python3-vtk9, coinor-libclp1, $libraries
-Suggests: python3-openturns, slurm-client
+Suggests: libjs-three, python3-openturns, slurm-client
 Section: science
 Priority: optional
 Description: masonry walls of blocks and joints in the discrete element code YADE

@@ -6,12 +6,14 @@ import re
 import tree
 
 LICENCE = "SPDX-License-Identifier: GPL-2.0-or-later"
-ENDINGS = tree.CPP + tree.SHELL + (".py", "CMakeLists.txt", ".ci/run")
+ENDINGS = tree.CPP + tree.SHELL + (".py", ".js", ".css", "CMakeLists.txt", ".ci/run")
 
 
 def isMissing(path, root=tree.ROOT):
     first = tree.read(path, root).splitlines()[:3]
-    return not any(re.fullmatch("(#|//) " + LICENCE, line) for line in first)
+    return not any(
+        re.fullmatch(rf"(#|//) {LICENCE}|/\* {LICENCE} \*/", line) for line in first
+    )
 
 
 def missing():

@@ -9,4 +9,6 @@
   :mod:`masonry.read.crack_figure` and :mod:`masonry.read.views` draw them on :mod:`masonry.read.drawing`
 - :mod:`masonry.read.comparison`: figures of several runs
 - :mod:`masonry.read.viewer`: its pictures and films by ParaView, which :mod:`masonry.read.viewer_scene` draws
+- :mod:`masonry.read.motion`: how its blocks move and what its joints do in all frames; :mod:`masonry.read.page`: a page that
+  shows that in any browser, and in a notebook; :mod:`masonry.read.gltf`: a 3-D model of it
 """

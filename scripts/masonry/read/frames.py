@@ -58,10 +58,23 @@ def readFrame(directory, kind, number=-1):
     :param number: of the frame, from 0; negative numbers count from the end
     :raises Refused: if there is no such frame, or if its file is damaged
     """
-    path = framePaths(directory, kind)[number]
+    return _read(framePaths(directory, kind)[number], _frame)
+
+
+def readSurfaces(directory, number=0):
+    """Triangles around the blocks of a frame, as :func:`readFrame` numbers points and cells.
+
+    :returns: the corners of triangles, an array (n, 3) of point numbers; the cell of each of them; and whether cells are
+        rigid blocks, else they are zones of deformable units, all of whose sides are given, also those inside the unit
+    :raises Refused: as of :func:`readFrame`
+    """
+    return _read(framePaths(directory, "blocks")[number], _surfaces)
+
+
+def _read(path, parsed):
+    """What a function makes of a file of a frame. Raises Refused if it is damaged."""
     try:
-        root = ElementTree.parse(path).getroot()
-        return _frame(root)
+        return parsed(ElementTree.parse(path).getroot())
     except OSError as error:
         raise Refused(f"cannot read {path}: {error.strerror}") from None
     except Exception as error:  # whatever a damaged file leads to
@@ -77,8 +90,41 @@ def asFrame(found):
     return frame
 
 
-def _frame(root):
-    """What :func:`readFrame` returns, of the parsed file."""
+POLYHEDRON, TETRAHEDRON = 42, 10  # numbers of VTK for the cells of blocks
+
+
+def _surfaces(root):
+    """What :func:`readSurfaces` returns, of the parsed file."""
+    piece, read = _opened(root)
+    cells = {a.get("Name"): read(a) for a in piece.findall("Cells/DataArray")}
+    types, ends, corners = cells["types"], cells["offsets"], cells["connectivity"]
+    rigid = types == POLYHEDRON
+    if not (rigid | (types == TETRAHEDRON)).all():
+        raise ValueError("its cells are neither polyhedra nor tetrahedra")
+    sides = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)])
+    first = np.append(0, ends[:-1])
+    zones = np.flatnonzero(~rigid)
+    triangles = [corners[first[zones, None, None] + sides].reshape(-1, 3)]
+    owners = [np.repeat(zones, len(sides))]
+    # of a polyhedron: how many faces it has, then of each how many corners, and these
+    stops = cells.get("faceoffsets", np.zeros(0, int))
+    start = 0
+    for cell in np.flatnonzero(rigid):
+        faces = cells["faces"][start : stops[cell]]
+        start = stops[cell]
+        found = faces[1:].reshape(-1, 4)
+        if len(found) != faces[0] or (found[:, 0] != 3).any():
+            raise ValueError(f"faces of cell {cell} are no triangles")
+        triangles.append(found[:, 1:])
+        owners.append(np.full(len(found), cell))
+    triangles = np.concatenate(triangles).astype(int)
+    if triangles.min() < 0 or triangles.max() >= int(piece.get("NumberOfPoints")):
+        raise ValueError("its faces have points that are not there")
+    return triangles, np.concatenate(owners), rigid
+
+
+def _opened(root):
+    """The piece of a parsed file, and a function that reads its arrays."""
     if (root.get("compressor"), root.get("byte_order")) != (
         "vtkZLibDataCompressor",
         "LittleEndian",
@@ -89,8 +135,12 @@ def _frame(root):
         raise ValueError("its numbers are not in base64")
     text = appended.text.strip()[1:]  # the first letter is an underscore
     size = {"UInt32": "I", "UInt64": "Q"}[root.get("header_type")]
-    piece = root[0].find("Piece")
-    read = lambda array: _array(array, text, size)
+    return root[0].find("Piece"), lambda array: _array(array, text, size)
+
+
+def _frame(root):
+    """What :func:`readFrame` returns, of the parsed file."""
+    piece, read = _opened(root)
     frame = {"points": read(piece.find("Points/DataArray"))}
     for array in piece.findall("PointData/DataArray") + piece.findall(
         "CellData/DataArray"

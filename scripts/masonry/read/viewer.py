@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs in ParaView: in its window in a ready state, or as a picture and a film without a display. No YADE is needed.
+"""Runs in ParaView: in its window in a ready state, or as a picture and a film without a display; and in a browser, or as a
+3-D model, without ParaView. No YADE is needed.
 
 ``scripts/view.py`` is the program. ParaView's own Python works in a process of its own (:mod:`masonry.read.viewer_scene`).
 """
@@ -16,8 +17,9 @@ import tempfile
 
 import numpy as np
 
-from .. import folders
+from .. import folders, memory
 from ..basics import Refused, say
+from . import gltf, page
 from .crack_figure import magnificationOf, whenOf
 from .cracks import CRACK, DAMAGED
 from .files import filesOf, readCurve, readRun
@@ -286,18 +288,65 @@ def show(directories, at=None, magnification=None):
     os.execvp("paraview", ["paraview", "--state=" + state])
 
 
+def _onePlace(directory, number, at):
+    """Number of the frame that --frame or --at names, or None if neither does."""
+    if number is not None and at is not None:
+        raise Refused("--frame and --at both name a frame; give one of them")
+    if at is not None:
+        return frameNear(directory, at)
+    return number
+
+
+def _writable(path, directory, name, endings):
+    """The path of a file to write: as it was given, or ``name`` in the folder of the run.
+
+    :raises Refused: if it has another ending, or if it is a folder or in a folder that is not there
+    """
+    if path is None:
+        folders.check(directory)
+        path = os.path.join(directory, name)
+    if os.path.isdir(path):
+        raise Refused(f"{path} is a folder; name a file that ends in {' or '.join(endings)}")  # fmt: skip
+    if not path.endswith(endings):
+        raise Refused(f"{path} must end in {' or '.join(endings)}")
+    if not os.path.isdir(os.path.dirname(path) or "."):
+        raise Refused(f"cannot write {path}: there is no folder {os.path.dirname(path)}")  # fmt: skip
+    return path
+
+
+def _handOn(args):
+    """--html and --gltf: a file that needs no ParaView."""
+    if args.picture or args.film or len(args.result) > 1:
+        raise Refused("--html and --gltf write one file of one run; start view.py again for other files or runs")  # fmt: skip
+    (directory,) = args.result
+    number = _onePlace(directory, args.frame, args.at)
+    try:
+        if args.html is not False:
+            path = _writable(args.html, directory, "view.html", (".html", ".htm"))
+            page.write(directory, path, number, args.magnify)
+            say(f"{path}: {os.path.getsize(path) / 1e6:.2f} MB; any browser opens it")
+        if args.gltf is not None:
+            path = _writable(args.gltf, directory, None, (".glb",))
+            say(gltf.write(directory, path, number, 1.0 if args.magnify is None else args.magnify, args.rate))  # fmt: skip
+    except OSError as problem:
+        raise Refused(f"cannot write {path}: {problem.strerror}") from None
+
+
 def main(words=None):
     """The program ``scripts/view.py``. Returns its exit status."""
     parser = argparse.ArgumentParser(
-        description="Open runs in ParaView, or draw them to a picture or a film without a display."
+        description="Open runs in ParaView, draw them to a picture or a film without a display, or write them for a browser or as a 3-D model."
     )
     parser.add_argument("result", nargs="+", help="folder of results")
     parser.add_argument("--picture", metavar="FILE.png", help="draw a picture")
     parser.add_argument("--film", metavar="FILE", help=f"a film ({', '.join(FILMS)}), or a folder for a picture of every frame")  # fmt: skip
+    parser.add_argument("--html", metavar="FILE", nargs="?", default=False, help="a page that any browser shows in 3-D, without ParaView and without a network (view.html in the folder of results)")  # fmt: skip
+    parser.add_argument("--gltf", metavar="FILE.glb", help="a 3-D model: of the frame that --frame or --at names, else all frames as an animation")  # fmt: skip
+    parser.add_argument("--frame", metavar="N", type=int, help="frame to show first in --html, or to write with --gltf, from 0")  # fmt: skip
     parser.add_argument("--at", metavar="PLACE", help="frame to show: 12, 12mm or 0.5s; else the last one")  # fmt: skip
-    parser.add_argument("--magnify", type=float, help="magnification of displacements; else chosen for each run")  # fmt: skip
+    parser.add_argument("--magnify", type=float, help="magnification of displacements; else chosen for each run, with --gltf 1")  # fmt: skip
     parser.add_argument("--size", default="1500x1000", help="of picture and film in pixels (default 1500x1000)")  # fmt: skip
-    parser.add_argument("--rate", type=int, default=10, help="frames of the film a second (default 10)")  # fmt: skip
+    parser.add_argument("--rate", type=int, default=10, help="frames of the film or of the animation of --gltf a second (default 10)")  # fmt: skip
     args = parser.parse_args(words)
     try:
         size = re.fullmatch(r"(\d+)x(\d+)", args.size)
@@ -310,7 +359,11 @@ def main(words=None):
         for directory in args.result:
             readRun(directory)
         with filesOf(", ".join(args.result)):
-            if args.picture or args.film:
+            if args.html is not False or args.gltf:
+                _handOn(args)
+            elif args.frame is not None:
+                raise Refused("--frame is for --html and --gltf; --at names a frame for ParaView")  # fmt: skip
+            elif args.picture or args.film:
                 pixels = tuple(int(n) for n in size.groups())
                 render(args.result, args.picture, args.film, args.at, args.magnify, pixels, args.rate)  # fmt: skip
             else:
@@ -318,4 +371,7 @@ def main(words=None):
     except (Refused, OSError) as problem:
         say(problem, sys.stderr)
         return 2
+    except MemoryError:
+        say(memory.FULL, sys.stderr)
+        return 1
     return 0

@@ -142,6 +142,7 @@ FILES = [
     "run.json",
     "run.checkpoint",
     "view.pvsm",
+    "view.html",
     "blocks.pvd",
     "joints.pvd",
     "mechanism.png",

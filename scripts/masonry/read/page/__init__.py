@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A run in 3-D in any browser: a page that is one file and needs no server, no network and no ParaView. No YADE is needed.
+
+::
+
+    from masonry.read import page
+
+    page.write("results/wall_comp4", "wall.html")  # a page of its own, as scripts/view.py --html does
+    page.show("results/wall_comp4")                # in a notebook: the picture
+
+A page with more than this on it takes :func:`assets` once and :func:`fragment` for every picture. The drawing is that of
+three.js of the Debian package libjs-three, which goes into the page with its licence; ``viewer.js`` and ``viewer.css`` beside
+this module are ours. :mod:`masonry.read.page.data` turns frames into numbers for them, and :mod:`masonry.read.page.library`
+finds three.js.
+"""
+
+import html
+import json
+import os
+
+from ...arguments import whole
+from ...basics import Refused, plain
+from ...folders import replaced
+from .data import dataOf
+from .library import three
+
+#: What a whole page may do: run what stands in it. The browser refuses every request to a network.
+POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
+HEIGHT = 620  # of a picture in a notebook [pixels]
+
+
+def _own(name):
+    with open(os.path.join(os.path.dirname(__file__), name), encoding="utf-8") as file:
+        return file.read()
+
+
+def _script(code):
+    """A text that can stand in a script element: nothing in it ends or comments out the element."""
+    return code.replace("</script", "<\\/script").replace("<!--", "<\\!--")
+
+
+def _json(value):
+    """JSON that can stand in any element: what HTML could take for a tag is written as an escape."""
+    text = json.dumps(value, allow_nan=False, separators=(",", ":"))
+    for letter in "<>&":
+        text = text.replace(letter, f"\\u{ord(letter):04x}")
+    return text
+
+
+def _words(text):
+    """A text of a file of a run in HTML."""
+    return html.escape(plain(text))
+
+
+def assets():
+    """What a page with pictures needs once, before the first of them: style, three.js with its licence, and the viewer.
+
+    :returns: HTML, some 0.9 MB
+    :raises Refused: if three.js is not installed, with the package that has it
+    """
+    code, licence = three()
+    return (
+        f"<style>{_own('viewer.css')}</style>\n"
+        f"<!-- three.js, which the first script below is:\n{_comment(licence)}\n-->\n"
+        f"<script>{_script(code)}</script>\n"
+        f"<script>{_script(_own('viewer.js'))}</script>\n"
+    )
+
+
+def _comment(text):
+    return text.replace("--", "- -")
+
+
+def fragment(directory, number=None, magnification=None):
+    """The picture of a run as an element ``<div class="masonry-view">`` with its data, for a page that has :func:`assets`.
+
+    It is as wide as what it stands in, and 70 % of that high. All frames of the run are in it.
+
+    :param directory: folder of results
+    :param number: of the frame that is shown first, from 0; None: the last one
+    :param magnification: of displacements at first [-]; None: as in cracks.png. The page has a slider for it
+    :returns: HTML
+    :raises Refused: if the folder has no frames or is no folder of results
+    """
+    return _fragment(*dataOf(directory, number, magnification))
+
+
+def _fragment(head, numbers):
+    title = _words(head["title"])
+    return (
+        f'<div class="masonry-view" role="group" aria-label="{title}, in 3-D">\n'
+        '<p class="masonry-note">This picture needs JavaScript and WebGL, and there is no JavaScript here.</p>\n'
+        f'<script type="application/json">{_json(head)}</script>\n'
+        f'<script type="text/plain">{numbers}</script>\n'
+        "</div>\n"
+    )
+
+
+def page(directory, number=None, magnification=None):
+    """A whole page with the picture of a run; parameters and errors as of :func:`fragment` and :func:`assets`."""
+    head, numbers = dataOf(directory, number, magnification)
+    title = _words(head["title"])
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        '<meta name="color-scheme" content="light dark">\n'
+        '<link rel="icon" href="data:,">\n'
+        f"<title>{title}</title>\n{assets()}</head>\n"
+        f'<body class="masonry-page">\n<h1>{title}</h1>\n{_fragment(head, numbers)}</body>\n</html>\n'
+    )
+
+
+def write(directory, path, number=None, magnification=None):
+    """Write :func:`page` to a file, whole or not at all; the other parameters and errors are those of :func:`page`.
+
+    :raises OSError: if the file cannot be written, or if its name is that of a symbolic link
+    """
+    text = page(directory, number, magnification)
+    with replaced(path, encoding="utf-8") as file:
+        file.write(text)
+
+
+def show(directory, number=None, height=HEIGHT):
+    """The picture of a run for a notebook, which shows what the last line of a cell returns.
+
+    :param height: of the picture [pixels], 200 to 5000; the others, and the errors, are those of :func:`fragment`
+    :returns: a :class:`Picture`
+    """
+    try:
+        height = whole(200, 5000)(height)
+    except ValueError as problem:
+        raise Refused(f"height: {problem} pixels") from None
+    return Picture(directory, page(directory, number), height)
+
+
+class Picture:
+    """A page that a notebook shows in a frame of its own, which may run the script of the page and nothing else: it does not
+    reach the notebook. ``page`` is the whole page, a text."""
+
+    def __init__(self, directory, page, height):
+        self.page, self._directory, self._height = page, directory, height
+
+    def __repr__(self):
+        return f"<the 3-D picture of {self._directory}; a notebook shows it>"
+
+    def _repr_html_(self):
+        return (
+            f'<iframe sandbox="allow-scripts" style="width:100%;height:{self._height}px;border:0" '
+            f'title="3-D picture" srcdoc="{html.escape(self.page)}"></iframe>'
+        )

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""three.js, as the Debian package libjs-three has it, and its licence. This module needs no YADE."""
+
+import os
+import re
+
+from ...basics import Refused
+
+#: Where the package puts it; and where it can be unpacked by those who cannot install packages.
+PLACES = ("/", os.path.expanduser("~/.local/share/masonry/three"))
+CODE = "usr/share/javascript/three/three.min.js"
+COPYRIGHT = "usr/share/doc/libjs-three/copyright"
+
+MISSING = f"""pictures in a browser need three.js, once. As root:
+  apt-get install --no-install-recommends libjs-three
+or as yourself:
+  cd /tmp && apt-get download libjs-three && dpkg -x libjs-three_*.deb {PLACES[1]}"""
+
+
+def three():
+    """The library and its licence, two texts.
+
+    :raises Refused: if it is not there, with the package that has it
+    """
+    for place in PLACES:
+        try:
+            with open(os.path.join(place, CODE), encoding="utf-8") as file:
+                code = file.read()
+            with open(os.path.join(place, COPYRIGHT), encoding="utf-8") as file:
+                licence = _licence(file.read())
+        except OSError:
+            continue
+        return code, licence
+    raise Refused(MISSING)
+
+
+def _licence(copyright):
+    """Of a copyright file of Debian: who holds the rights in the library, and the text of its licence."""
+    paragraphs = re.split(r"\n\s*\n", copyright)
+    about = next((p for p in paragraphs if p.startswith("Files: *\n")), "")
+    name = re.search(r"^License: *(\S+)$", about, re.M)
+    text = name and next(
+        (p for p in paragraphs if p.startswith(f"License: {name[1]}\n")), None
+    )
+    if not text:
+        raise Refused(f"{COPYRIGHT} does not hold the licence of three.js")
+    holders = re.search(r"^Copyright: *(.*)$", about, re.M)[1]
+    lines = [line.strip() for line in text.splitlines()[1:]]
+    return f"Copyright {holders}\nLicence: {name[1]}\n\n" + "\n".join(
+        "" if line == "." else line for line in lines
+    )

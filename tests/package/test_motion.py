@@ -1,0 +1,530 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a page and a 3-D model are made of: motions of blocks and values of joints, found again in recorded frames."""
+
+import base64
+import html.parser
+import json
+import math
+import os
+import re
+import struct
+import subprocess
+import sys
+import zlib
+
+import numpy as np
+import pytest
+from masonry.basics import Refused
+from masonry.read import frames, gltf, page, viewer
+
+from masonry.read.motion import CRUSHED_TOO, OPEN, SLID, Cracks, Motion, sharpEdges, turned  # fmt: skip
+from masonry.read.page import data, library
+
+L, T, H = 0.2, 0.1, 0.08  # [m] of a brick
+BOX = [(x, y, z) for x in (0, L) for y in (0, T) for z in (0, H)]
+#: How the upper block moves from frame to frame: its shift [m], and the axis and angle of its rotation [rad].
+STEPS = [
+    ((0, 0, 0), (0, 0, 1), 0.0),
+    ((1e-4, 0, 2e-4), (0, 1, 0), 1e-3),
+    ((3e-3, -1e-3, 5e-3), (0.6, 0, 0.8), 0.3),
+    ((0.01, 0, 0.02), (0, 0.6, -0.8), 3.1),
+]
+
+
+def rotation(axis, angle):
+    """The matrix of a rotation, from its definition."""
+    x, y, z = axis
+    cross = np.array([(0, -z, y), (z, 0, -x), (-y, x, 0)])
+    return np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross
+
+
+def writeRun(folder, **message):
+    """run.json and curve.csv beside frames."""
+    curve = [[k, k / 10, 5 * k] for k in range(len(STEPS))]
+    lines = ["time_s,displacement_mm,base_shear_kN"] + [",".join(map(str, row)) for row in curve]  # fmt: skip
+    (folder / "curve.csv").write_text("\r\n".join(lines) + "\r\n")
+    figure = {"x": {"column": "displacement_mm", "label": "displacement of the top [mm]"}, "y": [{"column": "base_shear_kN", "label": "supports"}], "y_label": "force [kN]"}  # fmt: skip
+    (folder / "run.json").write_text(json.dumps({"title": "two bricks", "figure": figure, **message}))  # fmt: skip
+    return str(folder)
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    """A block on another that is a platen, moved as STEPS says, frame by frame."""
+    from masonry import MasonryJoint, MasonryMat, addBlock, connect, engines
+    from yade import O, Quaternion, Vector3
+    from yade.wrapper import MasonryVtkRecorder
+
+    O.reset()
+    folder = tmp_path_factory.mktemp("recorded")
+    brick = MasonryMat(young=4.8e9, poisson=0.16, density=1800)
+    for z in (0, H):
+        addBlock([(x, y, v + z) for x, y, v in BOX], brick)
+    for body in O.bodies:
+        body.state.blockedDOFs = "xyzXYZ"
+    engines([MasonryJoint(name="bed", cap=False, tensileStrength=0.1e6)], rows=3)
+    connect()
+    O.dt = 1e-7
+    recorder = MasonryVtkRecorder(directory=str(folder))
+    upper = O.bodies[1].state
+    for shift, axis, angle in STEPS:
+        upper.pos = upper.refPos + Vector3(*shift)
+        upper.ori = Quaternion(Vector3(*axis), angle)
+        O.step()  # the law sees where the block is
+        recorder()
+    O.reset()
+    times = folder / "joints.pvd"
+    number = iter(range(len(STEPS)))
+    times.write_text(re.sub(r'timestep="[^"]*"', lambda _: f'timestep="{next(number)}"', times.read_text()))  # fmt: skip
+    return folder
+
+
+@pytest.fixture
+def run(recorded, tmp_path):
+    """A folder of results of these frames that a test may change."""
+    for path in recorded.iterdir():
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    writeRun(tmp_path, parts={"wall": [1]})
+    return tmp_path
+
+
+# -- motions ---------------------------------------------------------------------------------------------------------
+
+
+def test_the_motion_of_every_block_is_found_again(run):
+    motion = Motion(str(run))
+    assert motion.rigid.all() and list(motion.brick) == [False, True]
+    assert np.abs(motion.shift[:, 0]).max() < 1e-15
+    for k, (shift, axis, angle) in enumerate(STEPS):
+        assert motion.shift[k, 1] == pytest.approx(shift, abs=1e-14)
+        assert motion.turn[k, 1] == pytest.approx(angle * np.array(axis), abs=1e-12)
+        frame = frames.readFrame(str(run), "blocks", k)
+        assert motion.displacements(k) == pytest.approx(frame["displacement"], abs=1e-14)  # fmt: skip
+
+
+def test_corners_of_joints_move_as_both_blocks_on_average(run):
+    motion = Motion(str(run))
+    cracks = Cracks(motion)
+    assert cracks.count == len(cracks.cells) == 9 and cracks.moved is None
+    for k in range(len(STEPS)):
+        frame = frames.readFrame(str(run), "joints", k)
+        assert cracks.displacements(motion, k) == pytest.approx(frame["displacement"], abs=1e-14)  # fmt: skip
+        assert cracks.opening[k] == pytest.approx(frame["opening"])
+        assert cracks.slide[k] == pytest.approx(np.linalg.norm(frame["slide"], axis=1))
+
+
+def test_a_turn_of_any_size_moves_points_as_its_matrix_does():
+    arms = np.random.default_rng(1).normal(size=(50, 3))
+    axis = np.array((2, -1, 2)) / 3
+    for angle in (0.0, 1e-12, 1e-5, 0.7, math.pi, 6.0):
+        turns = np.tile(angle * axis, (50, 1))
+        expected = arms @ (rotation(axis, angle) - np.eye(3)).T
+        assert turned(turns, arms) == pytest.approx(expected, abs=1e-14)
+        x, y, z, w = gltf.quaternions(turns[:1])[0]
+        assert (x, y, z) == pytest.approx(math.sin(angle / 2) * axis, abs=1e-15)
+        assert w == pytest.approx(math.cos(angle / 2), abs=1e-15)
+    # a small turn keeps all its digits
+    small = turned(np.array([[0, 0, 1e-13]]), np.array([[1.0, 0, 0]]))
+    assert small[0, 1] == pytest.approx(1e-13, rel=1e-12)
+
+
+def test_quaternions_take_the_short_turn_from_frame_to_frame():
+    turns = np.array([(0, 0, a) for a in np.linspace(0, 12, 60)])
+    found = gltf.quaternions(np.where(turns > math.pi, turns - 2 * math.pi, turns))
+    assert ((found[1:] * found[:-1]).sum(axis=1) > 0.9).all()
+
+
+def test_edges_are_drawn_where_a_block_bends(run):
+    motion = Motion(str(run))
+    assert len(motion.edges) == 2 * 12 and len(motion.triangles) == 2 * 12
+    ends = motion.points[motion.edges]
+    assert (np.abs(ends[:, 0] - ends[:, 1]) > 1e-9).sum(axis=1).tolist() == [1] * 24
+    # a pyramid so flat that its ridges bend by less than 20° has the edges of its base alone
+    corners = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 0.5, 0.05)])
+    triangles = np.array([(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)])
+    a, b, c = (corners[triangles[:, k]] for k in range(3))
+    found = sharpEdges(triangles, np.cross(b - a, c - a))
+    assert sorted(map(tuple, found.tolist())) == [(0, 1), (0, 3), (1, 2), (2, 3)]
+
+
+def test_surfaces_look_outwards_and_are_closed(run):
+    motion = Motion(str(run))
+    a, b, c = (motion.points[motion.triangles[:, k]] for k in range(3))
+    assert (np.cross(a, b) * c).sum() / 6 == pytest.approx(2 * L * T * H)
+
+
+def test_captions_have_the_numbers_of_curve_csv_with_their_units(run):
+    captions = Motion(str(run)).captions()
+    assert captions[2]["values"] == ["displacement of the top: 0.2 mm", "supports: 10 kN"]  # fmt: skip
+    assert captions[2]["stage"] is None  # run.json says nothing about stages
+    stages = [{"stage": "settle", "steps": 100, "seconds": 1}, {"stage": "push", "steps": 200, "seconds": 1}]  # fmt: skip
+    writeRun(run, stages=stages, time_step_s=0.01)
+    found = [caption["stage"] for caption in Motion(str(run)).captions()]
+    assert found == ["settle", "settle", "push", "push"]
+
+
+def test_the_displacement_of_a_ground_is_taken_off_all_blocks(run):
+    whole = Motion(str(run))
+    writeRun(run, reference_body=1)
+    motion = Motion(str(run))
+    frame = frames.readFrame(str(run), "blocks", 2)
+    mean = frame["displacement"][motion.owner == 1].mean(axis=0)
+    assert motion.displacements(2) == pytest.approx(whole.displacements(2) - mean)
+
+
+# -- the page --------------------------------------------------------------------------------------------------------
+
+
+def unpacked(head, text):
+    """The arrays of a page: what viewer.js makes of them, by the description in masonry/read/page/data.py."""
+    body, found = zlib.decompress(base64.b64decode(text)), {}
+    for name, about in head["arrays"].items():
+        width = int(about["kind"][1])
+        count, row = about["count"], about["row"]
+        planes = np.frombuffer(body, "u1", count * width, about["at"]).reshape(width, count)  # fmt: skip
+        whole = np.zeros(count, f"<u{width}")
+        for k in range(width):
+            whole |= planes[k].astype(whole.dtype) << np.array(8 * k, whole.dtype)
+        whole = np.cumsum(whole.reshape(-1, row), axis=0, dtype=whole.dtype).ravel() if row else whole  # fmt: skip
+        found[name] = whole.view("<" + about["kind"]) * about["step"]
+    return found
+
+
+def test_numbers_in_a_page_are_those_of_the_run_to_half_a_step(run):
+    motion = Motion(str(run))
+    cracks = Cracks(motion)
+    head, text = data.dataOf(str(run))
+    found = unpacked(head, text)
+    count = len(STEPS)
+    assert found["triangles"].reshape(-1, 3).tolist() == motion.triangles.tolist()
+    assert found["points"].reshape(-1, 3) == pytest.approx(motion.points, abs=1e-7)
+    for name, values in (("shift", motion.shift), ("turn", motion.turn)):
+        step = np.abs(values).max() / 32767
+        assert head["arrays"][name]["step"] == pytest.approx(step)
+        assert np.abs(found[name].reshape(values.shape) - values).max() <= 0.51 * step
+    for name in ("opening", "slide"):
+        values = np.clip(getattr(cracks, name), 0, None)
+        step = values.max() / data.LEVELS
+        assert np.abs(found[name].reshape(count, -1) - values).max() <= 0.51 * step
+        assert head["values"][name]["most"] == pytest.approx(values.max())
+    assert found["kind"].reshape(count, -1).tolist() == cracks.kind.tolist()
+    assert {OPEN, SLID, CRUSHED_TOO} == set(head["kinds"].values())
+    assert [f["time"] for f in head["frames"]] == motion.times
+    assert head["first"] == count - 1 and data.dataOf(str(run), 1)[0]["first"] == 1
+
+
+@pytest.mark.parametrize("value, expected", [(12.01, 16), (1, 1), (1.0000000001, 1), (0.00021, 0.00024), (9, 10)])  # fmt: skip
+def test_legends_end_at_round_numbers(value, expected):
+    assert data.nice(value) == pytest.approx(expected)
+
+
+class Elements(html.parser.HTMLParser):
+    """Elements of a page and the text in them."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.found, self._open = [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.found.append([tag, dict(attributes), ""])
+        self._open.append(self.found[-1])
+
+    def handle_endtag(self, tag):
+        while self._open and self._open.pop()[0] != tag:
+            pass
+
+    def handle_data(self, text):
+        if self._open:
+            self._open[-1][2] += text
+
+    def texts(self, tag):
+        return [text for name, _, text in self.found if name == tag]
+
+
+needsThree = pytest.mark.skipif(
+    not any(os.path.exists(os.path.join(p, library.CODE)) for p in library.PLACES),
+    reason="three.js is not installed (apt-get install --no-install-recommends libjs-three)",
+)
+HOSTILE = "</script><script>alert(1)</script><!-- \"' & <b>\u202e\x1b"
+
+
+@needsThree
+def test_what_stands_in_files_of_a_run_is_text_in_its_page(run):
+    plain = Elements(page.page(str(run)))
+    figure = {"x": {"column": "displacement_mm", "label": HOSTILE}, "y": [{"column": "base_shear_kN", "label": HOSTILE}], "y_label": HOSTILE}  # fmt: skip
+    stages = [{"stage": HOSTILE, "steps": 300, "seconds": 1}]
+    writeRun(run, title=HOSTILE, figure=figure, stages=stages, time_step_s=0.01)
+    text = page.page(str(run))
+    hostile = Elements(text)
+    assert [tag for tag, *_ in hostile.found] == [tag for tag, *_ in plain.found]
+    shown = HOSTILE.replace("\u202e", "\\u202e").replace("\x1b", "\\x1b")
+    assert hostile.texts("title") == hostile.texts("h1") == [shown]
+    head = json.loads(hostile.texts("script")[2])
+    assert head["title"] == head["frames"][0]["stage"] == shown
+    assert shown in head["frames"][0]["values"][0]
+    assert "alert(1)</script>" not in text
+
+
+@needsThree
+def test_a_page_is_one_file_with_its_library_and_its_licence(run, tmp_path):
+    path = tmp_path / "wall.html"
+    page.write(str(run), str(path))
+    text = path.read_text()
+    for words in ("three.js authors", "Licence: Expat", "Permission is hereby granted, free of charge", "THE SOFTWARE IS PROVIDED"):  # fmt: skip
+        assert words in text
+    elements = Elements(text)
+    for _, attributes, _ in elements.found:
+        for name in ("src", "href"):
+            assert attributes.get(name, "data:").startswith("data:")
+    assert "url(" not in elements.texts("style")[0]
+    assert page.fragment(str(run)).count("<script") == 2
+    assert page.fragment(str(run)) in text and page.assets() in text
+
+
+@needsThree
+def test_a_notebook_gets_the_page_in_a_frame_that_reaches_nothing(run):
+    picture = page.show(str(run), height=400)
+    ((tag, attributes, _),) = Elements(picture._repr_html_()).found
+    assert tag == "iframe" and attributes["sandbox"] == "allow-scripts"
+    assert attributes["srcdoc"] == picture.page == page.page(str(run))
+    assert "height:400px" in attributes["style"]
+    with pytest.raises(Refused, match="height: 10 must be a whole number from 200 to 5000 pixels"):  # fmt: skip
+        page.show(str(run), height=10)
+
+
+def test_without_three_the_package_is_named(run, monkeypatch):
+    monkeypatch.setattr(library, "PLACES", ("/nowhere",))
+    with pytest.raises(Refused, match="apt-get install --no-install-recommends libjs-three"):  # fmt: skip
+        page.page(str(run))
+
+
+# -- glTF ------------------------------------------------------------------------------------------------------------
+
+#: Prints what VTK reads of a .glb file: its animations, and at some times the numbers of leaves and triangles, and bounds.
+READ = """
+import json, sys
+from vtkmodules.vtkIOGeometry import vtkGLTFReader
+
+def leaves(thing):
+    if hasattr(thing, "GetNumberOfBlocks"):
+        for n in range(thing.GetNumberOfBlocks()):
+            yield from leaves(thing.GetBlock(n))
+    elif thing is not None:
+        yield thing
+
+reader = vtkGLTFReader()
+reader.SetFileName(sys.argv[1])
+reader.SetApplyDeformationsToGeometry(True)
+reader.UpdateInformation()
+found = {"animations": reader.GetNumberOfAnimations(), "at": []}
+if found["animations"]:
+    found["duration"] = reader.GetAnimationDuration(0)
+    reader.EnableAnimation(0)
+for time in map(float, sys.argv[2:]):
+    reader.UpdateTimeStep(time)
+    parts = list(leaves(reader.GetOutput()))
+    bounds = [part.GetBounds() for part in parts]
+    low = [min(b[k] for b in bounds) for k in (0, 2, 4)]
+    high = [max(b[k] for b in bounds) for k in (1, 3, 5)]
+    found["at"].append([len(parts), sum(part.GetNumberOfCells() for part in parts), low, high])
+print(json.dumps(found))
+"""
+
+
+def readByVtk(path, *times):
+    """What VTK reads of a .glb file, in a process of its own: its libraries are not those of YADE's process."""
+    done = subprocess.run(["/usr/bin/python3", "-c", READ, path, *map(str, times)], capture_output=True, text=True)  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def bounds(points):
+    """Lowest and highest coordinates in a glTF file, in which y is up: x stays, z becomes y, y becomes -z."""
+    turned = np.column_stack([points[:, 0], points[:, 2], -points[:, 1]])
+    return turned.min(axis=0).tolist(), turned.max(axis=0).tolist()
+
+
+def test_vtk_reads_the_animation_of_every_block(run, tmp_path):
+    path = str(tmp_path / "run.glb")
+    said = gltf.write(str(run), path, rate=2)
+    assert "2 blocks, an animation of 4 frames at 2 a second" in said
+    motion = Motion(str(run))
+    found = readByVtk(path, 0, 0.5, 1.0, 1.5)
+    assert found["animations"] == 1 and found["duration"] == pytest.approx(1.5)
+    for k, (parts, triangles, low, high) in enumerate(found["at"]):
+        assert (parts, triangles) == (2, 24)
+        expected = bounds(motion.points + motion.displacements(k))
+        assert low == pytest.approx(expected[0], abs=1e-6)
+        assert high == pytest.approx(expected[1], abs=1e-6)
+
+
+@pytest.mark.parametrize("number, magnification", [(1, 1.0), (1, 50.0), (2, 1.0)])
+def test_vtk_reads_the_deformed_shape_of_a_frame_and_its_cracks(run, tmp_path, number, magnification):  # fmt: skip
+    path = str(tmp_path / "run.glb")
+    said = gltf.write(str(run), path, number, magnification)
+    motion = Motion(str(run), number)
+    cracks = Cracks(motion)
+    assert (cracks.kind[0] > 0).all() and "9 points of joints" in said
+    faces = sum(len(cell) - 2 for cell in cracks.cells)
+    found = readByVtk(path, 0)
+    ((parts, triangles, low, high),) = found["at"]
+    assert found["animations"] == 0
+    assert parts == 3 and triangles == 24 + faces
+    expected = bounds(motion.points + magnification * motion.displacements(0))
+    assert low == pytest.approx(expected[0], abs=1e-6)
+    assert high == pytest.approx(expected[1], abs=1e-6)
+
+
+def test_a_glb_file_has_the_parts_that_its_head_says(run, tmp_path):
+    path = tmp_path / "run.glb"
+    gltf.write(str(run), str(path))
+    found = path.read_bytes()
+    magic, version, length = struct.unpack_from("<4sII", found)
+    size, kind = struct.unpack_from("<I4s", found, 12)
+    assert (magic, version, length, kind) == (b"glTF", 2, len(found), b"JSON")
+    model = json.loads(found[20 : 20 + size])
+    binary, kind = struct.unpack_from("<I4s", found, 20 + size)
+    assert kind == b"BIN\0" and 28 + size + binary == len(found)
+    assert model["buffers"] == [{"byteLength": binary}]
+    assert all(v["byteOffset"] % 4 == 0 and v["byteOffset"] + v["byteLength"] <= binary for v in model["bufferViews"])  # fmt: skip
+    names = [node["name"] for node in model["nodes"]]
+    assert names == ["two bricks", "platen 0", "brick 1"]
+    assert model["meshes"][0] != model["meshes"][1]  # one shape, in two colours
+    moving = {c["target"]["node"] for c in model["animations"][0]["channels"]}
+    assert moving == {2}
+
+
+# -- what is refused -------------------------------------------------------------------------------------------------
+
+
+def test_numbers_of_frames_that_are_not_there_are_refused(run):
+    for number in (-1, 4, 99):
+        for act in (Motion, page.fragment):
+            with pytest.raises(Refused, match=f"there is no frame {number}; its frames are 0 to 3"):  # fmt: skip
+                act(str(run), number)
+
+
+def test_folders_without_frames_are_refused_with_the_reason(tmp_path):
+    with pytest.raises(Refused, match="run.json: No such file or directory"):
+        Motion(str(tmp_path / "nowhere"))
+    for options, words in (
+        ({"lean": True}, "was started with --lean$"),
+        ({"no_vtk": True}, "was started with --no-vtk$"),
+        ({}, "has no frames to show: no file blocks_"),
+    ):
+        writeRun(tmp_path, options=options)
+        with pytest.raises(Refused, match=words):
+            Motion(str(tmp_path))
+
+
+def test_a_frame_that_a_kill_kept_out_of_the_list_is_not_shown(run):
+    text = (run / "joints.pvd").read_text()
+    lines = text.splitlines(True)
+    last = max(n for n, line in enumerate(lines) if "<DataSet" in line)
+    (run / "joints.pvd").write_text("".join(lines[:last] + lines[last + 1 :]))
+    assert len(Motion(str(run)).times) == len(STEPS) - 1
+
+
+def test_the_last_frame_may_stand_there_twice(run):
+    path = run / "joints.pvd"
+    path.write_text(path.read_text().replace('"3"', '"2"'))
+    assert Motion(str(run)).times == [0, 1, 2, 2]
+
+
+def corrupt(name, change):
+    def act(run):
+        path = run / name
+        path.write_bytes(change(path.read_bytes()))
+
+    return act
+
+
+@pytest.mark.parametrize(
+    "damage, words",
+    [
+        (corrupt("blocks_0002.vtu", lambda b: b[: len(b) // 2]), "blocks_0002.vtu: it holds no frame"),
+        (corrupt("joints_0001.vtp", lambda b: b"{}"), "joints_0001.vtp: it holds no frame"),
+        (corrupt("blocks_0000.vtu", lambda b: b.replace(b'"faceoffsets"', b'"faceoffsetz"')), "blocks_0000.vtu: it holds no frame"),
+        (corrupt("run.json", lambda b: b"[1]"), "is no record of a run"),
+        (corrupt("joints.pvd", lambda b: b[: len(b) // 2]), "cannot read .*joints.pvd"),
+        (corrupt("joints.pvd", lambda b: b.replace(b'"2"', b'"0.5"')), "the times of its frames in joints.pvd go back or are not finite"),
+        (corrupt("joints.pvd", lambda b: b.replace(b'"3"', b'"nan"')), "the times of its frames in joints.pvd go back or are not finite"),
+        (lambda run: (run / "joints_0003.vtp").unlink(), "joints.pvd lists 4 frames, and there are 4 files blocks_.*3 files joints_"),
+        (corrupt("joints.pvd", lambda b: re.sub(rb"<DataSet[^>]*>", b"", b)), "joints.pvd lists 0 frames"),
+        (lambda run: writeRun(run, reference_body=9), "names body 9, which is not in the frames"),
+        (lambda run: writeRun(run, parts=[1, 2]), "not the files of a finished run"),
+        (lambda run: writeRun(run, stages=[{"steps": 1}], time_step_s=3.0), "not the files of a finished run"),
+    ],
+)  # fmt: skip
+def test_damaged_and_foreign_files_are_refused_in_a_sentence(run, damage, words):
+    damage(run)
+    with pytest.raises(Refused, match=words):
+        page.fragment(str(run))
+
+
+def test_frames_of_another_structure_are_refused(run, monkeypatch):
+    real = frames.readFrame
+
+    def other(directory, kind, number=-1):
+        frame = real(directory, kind, number)
+        if kind == changed and number == 2:
+            frame = {**frame, name: frame[name] * factor}
+        return frame
+
+    monkeypatch.setattr(sys.modules["masonry.read.motion"], "readFrame", other)
+    for changed, name, factor, words in (
+        ("blocks", "points", 2.0, "frame 2 has other blocks than frame 0"),
+        ("joints", "points", 2.0, "frame 2 has other joints than frame 0"),
+        ("blocks", "displacement", np.nan, "a number of the blocks in frame 2 is not finite"),  # fmt: skip
+        ("joints", "opening", np.inf, "the opening of a joint in frame 2 is not finite"),  # fmt: skip
+        ("blocks", "displacement", np.linspace(0.5, 2, 16)[:, None], "block 1 does not move as a rigid body in frame 2"),  # fmt: skip
+    ):
+        with pytest.raises(Refused, match=words):
+            page.fragment(str(run))
+
+
+@needsThree
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        (["nowhere", "--html", "a.html"], "cannot read nowhere/run.json: No such file"),
+        (["RUN", "--html", "a.txt"], "a.txt must end in .html or .htm"),
+        (["RUN", "--html", "no/a.html"], "cannot write no/a.html: there is no folder no"),
+        (["RUN", "--html", "RUN"], "is a folder; name a file that ends in .html or .htm"),
+        (["RUN", "--html", "link.html"], "cannot write link.html: it is a symbolic link or no regular file"),
+        (["RUN", "--gltf", "link.glb"], "cannot write link.glb: it is a symbolic link or no regular file"),
+        (["RUN", "--gltf", "a.obj"], "a.obj must end in .glb"),
+        (["RUN", "--html", "a.html", "--frame", "4"], "there is no frame 4; its frames are 0 to 3"),
+        (["RUN", "--gltf", "a.glb", "--at", "9mm"], "never comes to 9 mm"),
+        (["RUN", "--gltf", "a.glb", "--at", "0", "--frame", "1"], "--frame and --at both name a frame"),
+        (["RUN", "RUN", "--html", "a.html"], "one file of one run"),
+        (["RUN", "--html", "a.html", "--picture", "a.png"], "one file of one run"),
+        (["RUN", "--frame", "1"], "--frame is for --html and --gltf"),
+        (["RUN", "--html", "a.html", "--magnify", "-2"], "--magnify: -2 must be at least 0"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_written_is_refused_and_nothing_is(run, tmp_path_factory, monkeypatch, capsys, words, message):  # fmt: skip
+    here = tmp_path_factory.mktemp("here")
+    monkeypatch.chdir(here)
+    for name in ("link.html", "link.glb"):
+        (here / name).symlink_to("elsewhere")
+    assert viewer.main([str(run) if w == "RUN" else w for w in words]) == 2
+    assert message in capsys.readouterr().err
+    assert sorted(os.listdir(here)) == ["link.glb", "link.html"]
+
+
+@needsThree
+def test_the_program_writes_a_page_into_the_folder_and_a_model_elsewhere(run, tmp_path, capsys):  # fmt: skip
+    assert viewer.main([str(run), "--html"]) == 0
+    assert "view.html: 0." in capsys.readouterr().out
+    first = json.loads(Elements((run / "view.html").read_text()).texts("script")[2])
+    assert first["first"] == 3
+    path = str(tmp_path / "a.glb")
+    assert viewer.main([str(run), "--gltf", path, "--at", "0.2mm"]) == 0
+    assert "2 blocks in frame 2" in capsys.readouterr().out
+    # not into a folder that may lead elsewhere
+    (run / "view.html").unlink()
+    (run / "view.html").symlink_to("elsewhere")
+    assert viewer.main([str(run), "--html"]) == 2
+    assert "view.html, a symbolic link" in capsys.readouterr().err

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Chromium without a window, driven through a pipe by its DevTools protocol. It draws by its own software (SwiftShader)."""
+
+import base64
+import contextlib
+import json
+import os
+import select
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+
+PROGRAM = shutil.which("chromium")
+MISSING = "" if PROGRAM else "Chromium is not installed (apt-get install --no-install-recommends chromium)"  # fmt: skip
+PATIENCE = 120  # for an answer [s]
+
+
+class Browser:
+    """A page in a browser of its own.
+
+    - ``problems``: what the page wrote to the console as an error or a warning, and exceptions that nothing caught
+    - ``requests``: addresses that it asked for, other than parts of itself (``data:`` and ``blob:``)
+    """
+
+    def __init__(self, pipes, process):
+        self._read, self._write = pipes
+        self._process, self._rest, self._number, self._session = process, b"", 0, None
+        self.problems, self.requests = [], []
+
+    def call(self, method, **parameters):
+        """The result of a command of the protocol."""
+        self._number += 1
+        message = {"id": self._number, "method": method, "params": parameters}
+        if self._session:
+            message["sessionId"] = self._session
+        os.write(self._write, json.dumps(message).encode() + b"\0")
+        until = time.monotonic() + PATIENCE
+        while True:
+            answer = self._next(until)
+            if answer.get("id") == self._number:
+                assert "error" not in answer, answer
+                return answer["result"]
+
+    def _next(self, until):
+        while b"\0" not in self._rest:
+            ready = select.select([self._read], [], [], max(0, until - time.monotonic()))[0]  # fmt: skip
+            assert ready, f"Chromium did not answer within {PATIENCE} s"
+            data = os.read(self._read, 1 << 20)
+            assert data, "Chromium ended"
+            self._rest += data
+        text, self._rest = self._rest.split(b"\0", 1)
+        message = json.loads(text)
+        self._note(message.get("method"), message.get("params", {}))
+        return message
+
+    def _note(self, method, about):
+        if method == "Runtime.exceptionThrown":
+            self.problems.append(json.dumps(about["exceptionDetails"]))
+        elif method == "Runtime.consoleAPICalled" and about["type"] in ("error", "warning", "assert"):  # fmt: skip
+            self.problems.append(json.dumps(about["args"]))
+        elif method == "Log.entryAdded" and about["entry"]["level"] in ("error", "warning"):  # fmt: skip
+            # the software that stands in for a graphics card is slow to be read
+            if "ReadPixels" not in about["entry"]["text"]:
+                self.problems.append(json.dumps(about["entry"]))
+        elif method == "Network.requestWillBeSent":
+            url = about["request"]["url"]
+            if not url.startswith(("data:", "blob:")):
+                self.requests.append(url)
+
+    def open(self, path, width=1000, height=700, dark=False, dots=1):
+        """Load a file, and wait until its pictures are drawn."""
+        if not self._session:
+            target = self.call("Target.createTarget", url="about:blank")["targetId"]
+            found = self.call("Target.attachToTarget", targetId=target, flatten=True)
+            self._session = found["sessionId"]
+            for domain in ("Page", "Runtime", "Log", "Network"):
+                self.call(domain + ".enable")
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=dots, mobile=False)  # fmt: skip
+        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+        self.call("Emulation.setEmulatedMedia", features=[scheme])
+        self.call("Page.navigate", url="file://" + os.path.abspath(path))
+        until = time.monotonic() + PATIENCE
+        while not self.value("document.readyState === 'complete'"):
+            assert time.monotonic() < until
+            time.sleep(0.05)
+        self.value("Promise.all(window.masonryViews || []).then(() => 0)")
+        self.drawn()
+
+    def value(self, code):
+        """Value of an expression of JavaScript in the page; of a promise, what it comes to."""
+        found = self.call("Runtime.evaluate", expression=code, awaitPromise=True, returnByValue=True)  # fmt: skip
+        assert "exceptionDetails" not in found, found
+        return found["result"].get("value")
+
+    def drawn(self):
+        """Wait until what was asked for is drawn."""
+        self.value("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(0))))")  # fmt: skip
+
+    def picture(self, path):
+        """Write what is seen to a .png file."""
+        self.drawn()
+        data = self.call("Page.captureScreenshot", format="png")["data"]
+        with open(path, "wb") as file:
+            file.write(base64.b64decode(data))
+
+    def drag(self, start, end, button="left"):
+        """Move the mouse from one place to another with a button down [pixels]."""
+        buttons = {"left": 1, "right": 2}[button]
+        mouse = lambda kind, x, y, **more: self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)  # fmt: skip
+        mouse("mousePressed", *start, button=button, buttons=buttons, clickCount=1)
+        for share in (0.25, 0.5, 0.75, 1):
+            x, y = (a + share * (b - a) for a, b in zip(start, end))
+            mouse("mouseMoved", x, y, button=button, buttons=buttons)
+        mouse("mouseReleased", *end, button=button, clickCount=1)
+        self.drawn()
+
+    def wheel(self, place, pixels):
+        x, y = place
+        self.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=pixels)  # fmt: skip
+        self.drawn()
+
+    def touch(self, *moments):
+        """Fingers on the screen: lists of their places, one after the other."""
+        for kind, places in zip(["touchStart"] + ["touchMove"] * len(moments), moments):
+            points = [{"x": x, "y": y, "id": n} for n, (x, y) in enumerate(places)]
+            self.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
+        self.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+        self.drawn()
+
+    def press(self, key, shift=False):
+        """Press a key in what has the focus; ``key`` as JavaScript names it."""
+        for kind in ("keyDown", "keyUp"):
+            text = {"text": key} if len(key) == 1 and kind == "keyDown" else {}
+            self.call("Input.dispatchKeyEvent", type=kind, key=key, modifiers=8 * shift, **text)  # fmt: skip
+        self.drawn()
+
+    def paper(self, path):
+        """Write what would be printed to a .pdf file."""
+        data = self.call("Page.printToPDF", printBackground=False, landscape=True)
+        with open(path, "wb") as file:
+            file.write(base64.b64decode(data["data"]))
+
+
+@contextlib.contextmanager
+def browser(*options):
+    """A :class:`Browser` for as long as the context lasts.
+
+    :param options: further ones of Chromium
+    """
+    down, up = os.pipe(), os.pipe()  # to Chromium, and from it
+
+    def pipes():  # Chromium reads what is for it from 3, and writes to 4; the ends of this process are above them
+        ends = [os.dup2(end, 100 + n) for n, end in enumerate((down[0], up[1]))]
+        for n, end in enumerate(ends):
+            os.dup2(end, 3 + n)
+
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        command = [
+            PROGRAM, "--headless", "--remote-debugging-pipe", "--user-data-dir=" + folder, "--no-first-run",
+            "--disable-dev-shm-usage", "--disable-background-networking", "--disable-component-update",
+            "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars", *options,
+        ]  # fmt: skip
+        if os.geteuid() == 0:
+            command.append("--no-sandbox")  # Chromium has none for root
+        process = subprocess.Popen(
+            command, preexec_fn=pipes, close_fds=False, start_new_session=True,
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env={**os.environ, "HOME": folder},
+        )  # fmt: skip
+        os.close(down[0])
+        os.close(up[1])
+        try:
+            yield Browser((up[0], down[1]), process)
+        finally:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+            os.close(down[1])
+            os.close(up[0])

@@ -1,0 +1,375 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The 3-D page of real runs in a real browser, as its user sees it. What a page holds, tests/package/test_motion.py compares."""
+
+import os
+import re
+import subprocess
+import time
+
+import browser
+import numpy as np
+import pytest
+from conftest import ROOT
+from masonry.read import page
+from masonry.read.motion import Cracks, Motion
+from matplotlib.image import imread
+
+needsBrowser = pytest.mark.skipif(bool(browser.MISSING), reason=browser.MISSING)
+pytestmark = [needsBrowser, pytest.mark.xdist_group("browser")]
+MOST = 3e6  # [bytes] of the page of COMP-4
+
+
+def ran(folder, scene, *words):
+    """The folder of a run of a scene."""
+    path = os.path.join(ROOT, "scripts", scene + ".py")
+    run = subprocess.run(["yade", "-n", "-x", path, *words, "--out", str(folder)], capture_output=True, text=True)  # fmt: skip
+    assert run.returncode == 0, run.stdout + run.stderr
+    return str(folder)
+
+
+@pytest.fixture(scope="module")
+def comp4(tmp_path_factory):
+    """The wall COMP-4 as it is pushed by default: a stepped crack from corner to corner."""
+    return ran(tmp_path_factory.mktemp("comp4"), "wall_comp4")
+
+
+@pytest.fixture(scope="module")
+def paper(comp4, tmp_path_factory):
+    """Its page, written as a user does."""
+    path = str(tmp_path_factory.mktemp("paper") / "wall.html")
+    program = os.path.join(ROOT, "scripts", "view.py")
+    done = subprocess.run(["/usr/bin/python3", program, comp4, "--html", path], capture_output=True, text=True)  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return path
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    with browser.browser() as found:
+        yield found
+
+
+@pytest.fixture
+def opened(chromium, paper):
+    """The page in the browser, as it opens; ``view`` is the View in it."""
+    chromium.problems.clear()
+    chromium.requests.clear()
+    chromium.open(paper)
+    chromium.value("masonryViews[0].then(found => { window.view = found; return 0 })")
+    return chromium
+
+
+def seen(chromium, tmp_path, name="seen.png"):
+    """Colours of the page, an array (high, wide, 3) from 0 to 1; the picture is in the upper part of it."""
+    path = str(tmp_path / name)
+    chromium.picture(path)
+    return imread(path)[..., :3]
+
+
+def near(pixels, colour, within=0.08):
+    """How many pixels have nearly a colour, given from 0 to 255."""
+    return int((np.abs(pixels - np.array(colour) / 255) < within).all(axis=2).sum())
+
+
+RED, BLUE, BRICK = (214, 39, 40), (31, 119, 180), (232, 215, 184)
+
+
+def chosen(chromium, label, value):
+    """Choose a value in one of the lists of the page, as its user does."""
+    code = f"""(() => {{ const list = [...document.querySelectorAll('label')].find(l => l.textContent.startsWith('{label}')).querySelector('select');
+        list.value = '{value}'; list.dispatchEvent(new Event('change')); return list.value }})()"""
+    assert chromium.value(code) == value
+    chromium.drawn()
+
+
+def test_the_page_opens_without_a_request_or_an_error_and_is_small(opened, paper):
+    assert opened.requests == ["file://" + paper]
+    assert opened.problems == []
+    assert os.path.getsize(paper) < MOST
+    text = opened.value("document.body.innerText")
+    assert "TUD-COMP-4" in text and "13 of 13" in text
+    assert "stage push" in text and re.search(r"displacement of top.*: 12 mm", text)
+    assert re.search(r"supports: [\d.]+ kN", text)
+
+
+def test_the_browser_lets_the_page_ask_nobody(opened, tmp_path):
+    """Whatever stood in it: a policy in the page forbids it."""
+    (tmp_path / "other.json").write_text("{}")
+    for address in ("http://127.0.0.1:9/", f"file://{tmp_path}/other.json"):
+        assert opened.value(f"fetch('{address}').then(() => 'came', () => 'refused')") == "refused"  # fmt: skip
+    assert len(opened.problems) >= 2
+    assert all("Content Security Policy" in text for text in opened.problems)
+
+
+def test_the_picture_shows_bricks_and_the_crack_that_grows(opened, tmp_path):
+    end = seen(opened, tmp_path)
+    assert near(end, BRICK) > 0.15 * end[..., 0].size
+    assert near(end, RED) > 300 and near(end, BLUE) > 300
+    opened.value("(() => { const s = document.querySelector('[aria-label=frame]'); s.value = 0; s.dispatchEvent(new Event('input')); return 0 })()")  # fmt: skip
+    start = seen(opened, tmp_path)
+    assert near(start, RED) < near(end, RED) / 5
+    assert near(start, BRICK) > 0.15 * start[..., 0].size
+    assert opened.value("document.body.innerText").count("1 of 13") == 1
+    # play goes through all frames, and stops at the last
+    opened.value("(() => { document.querySelector('[aria-label=\"play the frames\"]').click(); return 0 })()")  # fmt: skip
+    opened.value("new Promise(done => { const look = () => view.timer ? setTimeout(look, 50) : done(0); look() })")  # fmt: skip
+    again = seen(opened, tmp_path)
+    assert np.abs(again - end).mean() < 1e-3
+
+
+def test_blocks_and_joints_stand_where_the_run_says(opened, comp4):
+    motion = Motion(comp4)
+    cracks = Cracks(motion)
+    for k in (0, 6, 12):
+        opened.value(f"(view.show({k}), 0)")
+        found = np.array(opened.value("[...view.moved.array]")).reshape(-1, 3)
+        expected = motion.displacements(k)
+        # a step of the shift, and one of the turn for a corner that is at most half a metre from the centre of its brick
+        steps = np.abs(motion.shift).max() / 32767 + 0.2 * np.abs(motion.turn).max() / 32767  # fmt: skip
+        brick = motion.brick[motion.owner]
+        assert np.abs(found - expected)[brick].max() < steps
+        assert np.abs(found - expected)[~brick].max() < 20 * steps  # 4 m long
+        joints = np.array(opened.value("[...view.jointMoved.array]")).reshape(-1, 3)
+        expected = cracks.displacements(motion, k)
+        assert np.abs(joints - expected).max() < 20 * steps
+        kinds = cracks.kind[k][cracks.owner]
+        shown = np.array(opened.value("[...view.jointColour.array]")).reshape(-1, 4)
+        assert ((shown[:, 3] > 0) == (kinds > 0)).all()
+        assert (shown[kinds == 1] == (*RED, 255)).all()
+        assert (shown[kinds == 2] == (*BLUE, 255)).all()
+
+
+def test_what_crosses_the_picture_is_what_cracks_png_draws(opened, comp4, tmp_path):
+    """Seen from its front, red lies at the joints that are open, and nowhere else but in the legend."""
+    opened.value("(view.look('front'), view.shared.magnify.value = 0, view.ask(), 0)")
+    pixels = seen(opened, tmp_path)
+    motion = Motion(comp4, 12)
+    cracks = Cracks(motion)
+    metres, middle = opened.value("view.metres"), opened.value("view.target.toArray()")
+    box = opened.value("(() => { const b = view.canvas.getBoundingClientRect(); return [b.left, b.top, b.width, b.height] })()")  # fmt: skip
+    places = []
+    for n in np.flatnonzero((cracks.kind[0] == 1) & (cracks.opening[0] > 3e-4)):
+        part = cracks.points[cracks.cells[n]]
+        if (
+            np.ptp(part[:, [0, 2]], axis=0).max() < 0.03
+        ):  # at the end of a joint, where others cross it
+            continue
+        x, _, z = part.mean(axis=0)
+        places.append((box[0] + box[2] / 2 - 60 + (x - middle[0]) / metres, box[1] + box[3] / 2 - (z - middle[2]) / metres))  # fmt: skip
+    red = (
+        pixels[..., 0] - pixels[..., 1:].max(axis=2) > 0.35
+    )  # also a line between two pixels
+    for x, y in places:
+        x, y = round(x), round(y)
+        assert red[y - 3 : y + 4, x - 3 : x + 4].any(), (x, y)
+    assert len(places) > 40
+    legend = opened.value("view.legend.getBoundingClientRect().left")
+    rows, columns = np.nonzero(red[:, : int(legend)])
+    every = cracks.points[cracks.kind[0][cracks.owner] == 1]
+    for x, y in zip(columns, rows):
+        at = (x - box[0] - box[2] / 2 + 60) * metres + middle[0], middle[2] - (y - box[1] - box[3] / 2) * metres  # fmt: skip
+        assert np.hypot(every[:, 0] - at[0], every[:, 2] - at[1]).min() < 0.12
+
+
+def test_legends_have_the_units_and_the_range_of_their_values(opened):
+    says = lambda: opened.value("view.legend.innerText")
+    assert says().split("\n") == ["open > 0.05 mm", "slid > 0.05 mm", "closed > 0.5 mm"]
+    for value, title in (("opening", "opening [mm]"), ("slide", "slide [mm]"), ("damage", "damage [–]"), ("closure", "plastic closure [mm]")):  # fmt: skip
+        chosen(opened, "joints", value)
+        lines = says().split("\n")
+        marks = [float(line.removeprefix("≥ ")) for line in lines[1:6]]
+        top = opened.value(f"view.head.values.{value}.top")
+        assert lines[0] == title and lines[6].startswith("from 0.05")
+        assert sorted(marks) == pytest.approx([(1 if value == "damage" else 1e3) * top * n / 4 for n in range(5)])  # fmt: skip
+    chosen(opened, "joints", "none")
+    assert opened.value("view.legend.hidden")
+    chosen(opened, "blocks", "moved")
+    assert "displacement [mm]" in says()
+    assert opened.problems == []
+
+
+def test_each_choice_of_colours_changes_the_picture(opened, tmp_path):
+    pictures = []
+    for value in ("crack", "opening", "slide", "damage", "none"):
+        chosen(opened, "joints", value)
+        pictures.append(seen(opened, tmp_path)[:550, :850])
+    chosen(opened, "blocks", "moved")
+    pictures.append(seen(opened, tmp_path)[:550, :850])
+    for n, first in enumerate(pictures):
+        for second in pictures[:n]:
+            assert (np.abs(first - second).max(axis=2) > 0.1).sum() > 100
+
+
+def test_mouse_touch_and_keys_turn_move_and_zoom(opened):
+    where = lambda: opened.value("[view.azimuth, view.elevation, view.zoom, ...view.target.toArray()]")  # fmt: skip
+    first = where()
+    opened.drag((400, 300), (490, 300))
+    second = where()
+    assert second[0] == pytest.approx(first[0] - 0.5) and second[1:] == first[1:]
+    opened.drag((400, 300), (400, 345), button="right")
+    third = where()
+    assert third[:3] == second[:3] and third[5] > second[5]
+    metres = opened.value("view.metres")
+    moved = np.subtract(third[3:], second[3:])
+    assert np.linalg.norm(moved) == pytest.approx(45 * metres, rel=1e-3)
+    # the wheel zooms about the place of the mouse: what is there stays there
+    at = lambda x, y: opened.value(f"(() => {{ const [r, u] = view.directions(), b = view.canvas.getBoundingClientRect(); return view.target.clone().addScaledVector(r, ({x} - b.left - b.width / 2 + view.beside) * view.metres).addScaledVector(u, -({y} - b.top - b.height / 2) * view.metres).toArray() }})()")  # fmt: skip
+    before = at(300, 200)
+    opened.wheel((300, 200), -400)
+    assert where()[2] > 1.5
+    assert at(300, 200) == pytest.approx(before, abs=1e-6)
+    zoom = where()[2]
+    opened.touch([(300, 300), (400, 300)], [(250, 300), (450, 300)])
+    assert where()[2] == pytest.approx(2 * zoom, rel=1e-3)
+    azimuth = where()[0]
+    opened.touch([(300, 300)], [(390, 300)])
+    assert where()[0] == pytest.approx(azimuth - 0.5)
+
+    opened.value("(view.canvas.focus(), 0)")
+    opened.press("Home")
+    assert where() == pytest.approx(first)
+    opened.press("ArrowRight")
+    assert where()[0] == pytest.approx(first[0] - 0.1)
+    opened.press("ArrowUp", shift=True)
+    assert where()[3:] != first[3:]
+    opened.press("+")
+    assert where()[2] == pytest.approx(1.2)
+    opened.press("PageUp")
+    assert opened.value("view.frame") == 11
+    opened.press("1")
+    assert where()[1] == 0
+    opened.press("3")
+    assert where()[1] == pytest.approx(np.pi / 2)
+    opened.press(" ")
+    assert opened.value("Boolean(view.timer)")
+    opened.press(" ")
+    assert not opened.value("Boolean(view.timer)")
+    assert opened.problems == []
+
+
+def test_all_that_can_be_set_is_reached_by_the_tab_key_and_has_a_name(opened):
+    names = opened.value("[...document.querySelectorAll('canvas, input, select, button, summary')].map(e => e.tabIndex < 0 ? 'no' : e.getAttribute('aria-label') || (e.labels && e.labels[0] ? e.labels[0].textContent : e.textContent))")  # fmt: skip
+    assert len(names) == 12 and "no" not in names and all(names)
+
+
+def test_the_magnification_moves_what_is_drawn(opened, tmp_path):
+    pictures = []
+    for value in (0, 700):
+        opened.value(f"(() => {{ const s = document.querySelector('[aria-label=\"magnification of displacements\"]'); s.value = {value}; s.dispatchEvent(new Event('input')); return 0 }})()")  # fmt: skip
+        pictures.append(seen(opened, tmp_path)[:550])
+    assert opened.value("view.magnify") == pytest.approx(1000**0.7, abs=1)
+    assert "displacements × 126" in opened.value("view.scale.innerText")
+    assert (np.abs(pictures[0] - pictures[1]).max(axis=2) > 0.2).mean() > 0.1
+
+
+def test_a_click_on_a_block_says_which_it_is_and_how_it_moved(opened, comp4):
+    opened.value("(view.look('front'), 0)")
+    opened.drawn()
+    motion = Motion(comp4)
+    block = 600
+    moved = motion.shift[-1, block]
+    place = opened.value(f"(() => {{ const [r, u] = view.directions(), b = view.canvas.getBoundingClientRect(), p = new THREE.Vector3(...{(motion.centres[block] + 30 * moved).tolist()}).sub(view.target); return [b.left + b.width / 2 - view.beside + p.dot(r) / view.metres, b.top + b.height / 2 - p.dot(u) / view.metres] }})()")  # fmt: skip
+    opened.drag(place, place)
+    said = opened.value("view.says.innerText")
+    found = re.search(r"block (\d+) at \(.*\) m has moved by \((.*)\) mm", said)
+    assert int(found[1]) == motion.bodies[block]
+    assert list(map(float, found[2].split(", "))) == pytest.approx(1e3 * moved, rel=6e-3, abs=2e-3)  # fmt: skip
+
+
+def test_light_dark_and_print(chromium, paper, tmp_path):
+    corner = {}
+    for dark in (False, True):
+        chromium.open(paper, dark=dark)
+        pixels = seen(chromium, tmp_path)
+        corner[dark] = pixels[150, 20]
+        assert near(pixels, BRICK) > 0.1 * pixels[..., 0].size  # bricks in both
+    assert corner[False].min() > 0.95 and corner[True].max() < 0.2
+    path = tmp_path / "print.pdf"
+    chromium.paper(str(path))
+    printed = path.read_bytes()
+    assert len(re.findall(rb"/Type\s*/Page\b", printed)) == 1
+    assert b"/Subtype /Image" in printed
+    # nothing to set is printed, and no dark ground
+    chromium.call("Emulation.setEmulatedMedia", media="print")
+    assert chromium.value("getComputedStyle(document.querySelector('.masonry-controls')).display") == "none"  # fmt: skip
+    assert chromium.value("getComputedStyle(document.querySelector('.masonry-page')).backgroundColor") == "rgb(255, 255, 255)"  # fmt: skip
+    chromium.call("Emulation.setEmulatedMedia", media="")
+
+
+def test_a_narrow_screen_keeps_all_in_it_and_a_sharp_one_has_all_its_dots(chromium, paper):  # fmt: skip
+    chromium.open(paper, width=390, height=780, dots=2)
+    assert chromium.value("document.documentElement.scrollWidth") <= 390
+    size = chromium.value("(() => { const c = document.querySelector('canvas'); return [c.width, c.clientWidth, c.height, c.clientHeight] })()")  # fmt: skip
+    assert size[0] == 2 * size[1] and size[2] == 2 * size[3] and size[3] > 300
+
+
+def test_two_pictures_stand_in_one_page_with_one_library(chromium, comp4, tmp_path):
+    part = page.fragment(comp4, 3)
+    path = tmp_path / "two.html"
+    path.write_text(f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>two</title>{page.assets()}</head><body>{part}<p>and</p>{part}</body></html>')  # fmt: skip
+    chromium.problems.clear()
+    chromium.open(str(path), height=1600)
+    assert chromium.value("Promise.all(masonryViews).then(all => all.map(v => v.frame))") == [3, 3]  # fmt: skip
+    pixels = seen(chromium, tmp_path)
+    assert min(near(half, BRICK) for half in np.array_split(pixels, 2)) > 20000
+    assert chromium.problems == []
+
+
+def test_a_notebook_shows_the_picture(chromium, comp4, tmp_path):
+    path = tmp_path / "notebook.html"
+    path.write_text(f'<!DOCTYPE html><meta charset="utf-8"><body>{page.show(comp4)._repr_html_()}</body>')  # fmt: skip
+    chromium.problems.clear()
+    chromium.open(str(path))
+    until = 100
+    while near(seen(chromium, tmp_path), BRICK) < 30000 and until:
+        until -= 1
+    assert until and chromium.problems == []
+
+
+def test_a_wall_of_deformable_units_bends_in_the_page(chromium, tmp_path):
+    folder = ran(tmp_path / "out", "wall_comp1", "--blocks", "deformable", "--quick")
+    path = str(tmp_path / "wall.html")
+    page.write(folder, path)
+    chromium.problems.clear()
+    chromium.open(path)
+    motion = Motion(folder)
+    assert (~motion.rigid).sum() == 340
+    found = chromium.value("masonryViews[0].then(v => [[...v.moved.array], [...v.jointMoved.array]])")  # fmt: skip
+    expected = motion.displacements(len(motion.times) - 1)
+    step = np.abs(motion.moved).max() / 32767
+    error = np.abs(np.array(found[0]).reshape(-1, 3) - expected)
+    assert error[motion.free].max() < 0.51 * step
+    cracks = Cracks(motion)
+    assert np.abs(np.array(found[1]).reshape(-1, 3) - cracks.moved[-1]).max() < 0.51 * step  # fmt: skip
+    assert near(seen(chromium, tmp_path), BRICK) > 10000
+    assert chromium.problems == []
+
+
+def test_without_webgl_a_sentence_stands_in_place_of_the_picture(paper):
+    with browser.browser("--disable-3d-apis") as chromium:
+        chromium.open(paper)
+        assert chromium.value("masonryViews[0]") is None
+        text = chromium.value("document.body.innerText")
+        assert "This browser shows no 3-D pictures, because WebGL is switched off or missing" in text  # fmt: skip
+        assert chromium.problems == []
+
+
+def test_without_javascript_a_sentence_says_so(chromium, paper):
+    chromium.call("Emulation.setScriptExecutionDisabled", value=True)
+    try:
+        chromium.call("Page.navigate", url="file://" + paper)
+        until = time.monotonic() + 30
+        while "there is no JavaScript here" not in (chromium.value("document.body && document.body.innerText") or ""):  # fmt: skip
+            assert time.monotonic() < until
+            time.sleep(0.1)
+    finally:
+        chromium.call("Emulation.setScriptExecutionDisabled", value=False)
+
+
+def test_damaged_numbers_are_a_sentence_too(chromium, paper, tmp_path):
+    text = open(paper).read()
+    at = text.index('<script type="text/plain">') + 400
+    path = tmp_path / "damaged.html"
+    path.write_text(text[:at] + "AAAA" + text[at + 4 :])
+    chromium.open(str(path))
+    assert "The picture cannot be drawn:" in chromium.value("document.body.innerText")
