@@ -13,13 +13,13 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 if [[ "${1:-}" == quick ]]; then
     shift
     # for the gates: formats of C++ and Python, unused imports
-    bash scripts/setup.sh python3-pytest-xdist clang-format black python3-pyflakes
+    bash scripts/setup.sh --tests python3-pytest-xdist clang-format black python3-pyflakes
     tests=(tests/common tests/law tests/motion tests/blocks tests/files tests/gates tests/host -m "not slow" "$@")
     workers=$(nproc)
 else
     # For gates, fuzz and sanitizers, studies, and YADE's 3-D view. ParaView is not among them: it is 77 MB, and its thirteen
     # tests take two of fourteen minutes; where it is installed as scripts/README.md says under "Pictures", they run.
-    bash scripts/setup.sh python3-pytest-xdist clang-format black python3-pyflakes clang libclang-rt-dev libomp-dev \
+    bash scripts/setup.sh --tests python3-pytest-xdist clang-format black python3-pyflakes clang libclang-rt-dev libomp-dev \
         slurm-wlm munge xvfb xauth
     (($#)) && tests=("$@") || tests=(tests --ignore tests/sanitizers)
     workers=$(($# ? 0 : $(nproc)))
