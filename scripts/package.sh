@@ -33,7 +33,7 @@ out=build/package
 root=$out/root
 rm -rf "$out"
 mkdir -p "$root/DEBIAN" "$root/usr/share/doc/yade-masonry"
-cmake -S . -B build -DCMAKE_BUILD_TYPE=Release -DMASONRY_COMMIT="$commit" >"$out/log" 2>&1 &&
+cmake -S . -B build -DCMAKE_BUILD_TYPE=Release -DMASONRY_TESTS=OFF -DMASONRY_COMMIT="$commit" >"$out/log" 2>&1 &&
     cmake --build build --parallel "$(nproc)" --target masonry_module_fit >>"$out/log" 2>&1 || { tail -n 40 "$out/log" >&2; exit 1; }
 package=$root/usr/lib/python3/dist-packages/masonry
 mkdir -p "$package"
@@ -52,7 +52,7 @@ Version: $version
 Architecture: $architecture
 Maintainer: $name <$address>
 Installed-Size: $(du -sk "$root/usr" | cut -f 1)
-Depends: yade (= $yade), python3 (>= $python), python3 (<< $next), python3-matplotlib, python3-meshio, python3-numpy, python3-scipy, python3-vtk9, coinor-libclp1, $libraries
+Depends: yade (= $yade), python3 (>= $python), python3 (<< $next), python3-matplotlib, python3-meshio, python3-numpy, python3-scipy, coinor-libclp1, $libraries
 Suggests: libjs-three, python3-openturns, slurm-client
 Section: science
 Priority: optional

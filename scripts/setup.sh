@@ -1,7 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-2.0-or-later
-# Installs what is missing (arguments: further packages), builds the plugin and installs it where plain `yade` finds it.
-# Idempotent, quick when done. No package is ever removed.
+# Installs what is missing for runs, builds the plugin and installs it where plain `yade` finds it. Idempotent, quick when
+# done. No package is ever removed.
+#
+#   bash scripts/setup.sh                        what a run needs, with its figures and bounds
+#   bash scripts/setup.sh --tests [PACKAGE...]   also what tests and studies need, further packages, and the C++ of tests
+#   bash scripts/setup.sh --no-build             the packages that a plugin needs which was built elsewhere; builds nothing
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 logs=$(mktemp -d) # for this user alone
@@ -13,9 +17,36 @@ case $release in
     *) echo "This is no release that the plugin is known to work on (Debian 12 bookworm, Debian 13 trixie) but '$release':" \
             "packages may have other names, and its YADE may be refused." >&2 ;;
 esac
-packages=(yade cmake g++ make libboost-python-dev libboost-serialization-dev libeigen3-dev libcgal-dev libvtk9-dev
-          coinor-libclp1 libxml2-dev libgl-dev python3-dev python3-matplotlib python3-numpy python3-vtk9 python3-scipy python3-meshio
-          python3-openturns python3-pytest python3-hypothesis doctest-dev git "$@")
+# Python's numpy, scipy and matplotlib and the libraries of VTK come with yade, so figures and bounds need little more.
+runs=(yade python3-matplotlib python3-numpy python3-scipy python3-meshio coinor-libclp1)
+builds=(cmake g++ make libboost-python-dev libboost-serialization-dev libeigen3-dev libcgal-dev libgl-dev python3-dev)
+tests=OFF target=masonry_module_fit packages=("${runs[@]}" "${builds[@]}")
+case "${1:-}" in
+    "") ;;
+    --tests)
+        tests=ON target=all
+        packages+=(python3-pytest python3-hypothesis python3-openturns python3-vtk9 doctest-dev git "${@:2}")
+        ;;
+    --no-build) packages=("${runs[@]}") ;;
+    *) sed -n '6,8s/^# *//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+esac
+
+# Says what is done and how long it takes on two cores of 2.5 GHz (Debian's packages at 60 MB/s), then how far it is: on a
+# terminal in place, else nothing but the end. Reads the lines of apt-get's status and of make from the standard input.
+progress() {
+    local what=$1 usual=$2 line part started=$SECONDS
+    echo "$what (usually about $usual)"
+    while IFS= read -r line; do
+        part=
+        [[ $line =~ ^dlstatus:[^:]*:([0-9]+) ]] && part="fetched ${BASH_REMATCH[1]} %"
+        [[ $line =~ ^pmstatus:[^:]*(:[a-z0-9]+)?:([0-9]+)\. ]] && part="unpacked and set up ${BASH_REMATCH[2]} %"
+        [[ $line =~ ^\[\ *([0-9]+)%\] ]] && part="compiled ${BASH_REMATCH[1]} %"
+        [[ -z $part || ! -t 1 ]] || printf '\r  %-32s' "$part, $((SECONDS - started)) s"
+    done
+    [[ ! -t 1 ]] || printf '\r%-40s\r' ''
+    echo "  ended after $((SECONDS - started)) s"
+}
+
 missing=()
 for package in "${packages[@]}"; do
     dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
@@ -36,14 +67,39 @@ if ((${#missing[@]})); then
             "can do without them, or build in a chroot." >&2
         exit 1
     fi
-    echo "installing ${missing[*]}"
-    "${install[@]}" --yes --no-remove "${missing[@]}" >>"$logs/install" 2>&1 || { tail -n 20 "$logs/install" >&2; exit 1; }
+    number=$(grep -c '^Inst ' "$logs/plan" || true)
+    "${install[@]}" --yes --no-remove -o APT::Status-Fd=3 "${missing[@]}" 3>&1 >>"$logs/install" 2>&1 |
+        progress "installing ${missing[*]}: $number packages with what they need" "$((5 + number / 5)) s" ||
+        { tail -n 20 "$logs/install" >&2; exit 1; }
+fi
+
+[[ "${1:-}" != --no-build ]] || exit 0
+
+# Of libvtk9-dev only the headers are needed. They are unpacked, for installed it would bring 250 packages with it.
+if ! compgen -G '/usr/include/vtk-9.*/vtkXMLUnstructuredGridWriter.h' >/dev/null &&
+    ! compgen -G 'build/vtk/usr/include/vtk-9.*/vtkXMLUnstructuredGridWriter.h' >/dev/null; then
+    (cd "$logs" && apt-get download libvtk9-dev && dpkg -x libvtk9-dev_*.deb vtk) >"$logs/vtk.log" 2>&1 || {
+        tail -n 20 "$logs/vtk.log" >&2
+        echo "The headers of VTK could not be fetched. As root: apt-get install --no-install-recommends libvtk9-dev" >&2
+        exit 1
+    }
+    mkdir -p build && rm -rf build/vtk && mv "$logs/vtk" build/vtk
 fi
 
 # Without root the package goes to the user's own folder, which plain yade searches too.
 places=()
 ((EUID == 0)) || places=(-DMASONRY_PACKAGES="$(/usr/bin/python3 -P -m site --user-site)")
 commit=$(git describe --always --dirty 2>/dev/null || echo unknown)
-{ cmake -S . -B build -DCMAKE_BUILD_TYPE=Release -DMASONRY_COMMIT="$commit" "${places[@]}" &&
-    cmake --build build --parallel "$(nproc)" && cmake --install build; } >"$logs/build" 2>&1 ||
-    { tail -n 40 "$logs/build" >&2; exit 1; }
+failed() { tail -n 40 "$logs/build" >&2; exit 1; }
+cmake -S . -B build -DCMAKE_BUILD_TYPE=Release -DMASONRY_TESTS=$tests -DMASONRY_COMMIT="$commit" "${places[@]}" >"$logs/build" 2>&1 || failed
+build=(cmake --build build --parallel "$(nproc)" --target "$target")
+# `make -n` names every compilation that is to come; without any there is nothing to wait for.
+count=$(make -C build -n "$target" 2>/dev/null | grep -c 'Building C' || true)
+if ((count > 2)); then
+    seconds=70
+    [[ $tests == OFF ]] || seconds=160
+    "${build[@]}" 2>&1 | tee -a "$logs/build" | progress "compiling the plugin on $(nproc) cores" "$seconds s on two cores" || failed
+else
+    "${build[@]}" >>"$logs/build" 2>&1 || failed
+fi
+cmake --install build >>"$logs/build" 2>&1 || failed

@@ -13,14 +13,14 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 if [[ "${1:-}" == quick ]]; then
     shift
     # for the gates: formats of C++ and Python, unused imports
-    bash scripts/setup.sh python3-pytest-xdist clang-format black python3-pyflakes
+    bash scripts/setup.sh --tests python3-pytest-xdist clang-format black python3-pyflakes
     tests=(tests/common tests/law tests/motion tests/blocks tests/files tests/gates tests/host -m "not slow" "$@")
     workers=$(nproc)
 else
     # For gates, fuzz and sanitizers, studies, YADE's 3-D view, and the page in 3-D. ParaView is not among them: it is 77 MB, and
     # its thirteen tests take two of fourteen minutes; where it is installed as scripts/README.md says under "Pictures", they
     # run. Nor is Chromium, which is larger: apt-get install --no-install-recommends chromium lets the page's tests in it run.
-    bash scripts/setup.sh python3-pytest-xdist clang-format black python3-pyflakes clang libclang-rt-dev \
+    bash scripts/setup.sh --tests python3-pytest-xdist clang-format black python3-pyflakes clang libclang-rt-dev \
         slurm-wlm munge xvfb xauth libjs-three
     (($#)) && tests=("$@") || tests=(tests --ignore tests/sanitizers)
     workers=$(($# ? 0 : $(nproc)))

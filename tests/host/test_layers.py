@@ -24,7 +24,7 @@ MAY_INCLUDE = {
 WITH_YADE = ("host", "scene", "adapters")
 
 #: What registered classes share, so it is in adapters/ without being one.
-SHARED = {"Adapter.hpp", "Colours.hpp", "FunctorOfLaw.hpp"}
+SHARED = {"Adapter.hpp", "Attribute.hpp", "Colours.hpp", "FunctorOfLaw.hpp"}
 
 
 def sources(folder):

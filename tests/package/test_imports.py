@@ -10,10 +10,11 @@ from conftest import ROOT
 PACKAGE = os.path.join(ROOT, "scripts", "masonry")
 
 #: The rooms of the package. Each imports only those above it, and itself.
-LAYERS = ["basics", "memory", "folders", "arguments", "bricks", "read", "assembly", "run", "limit", "scene", "study"]  # fmt: skip
+LAYERS = ["basics", "packages", "memory", "folders", "arguments", "bricks", "read", "assembly", "run", "limit", "scene", "study"]  # fmt: skip
 #: Rooms and modules that work where YADE is not installed, with all that they import.
 WITHOUT_YADE = [
     "basics",
+    "packages",
     "memory",
     "folders",
     "arguments",

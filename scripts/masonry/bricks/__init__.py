@@ -23,6 +23,10 @@ Lengths are in m and angles in degrees. Every length of a unit contains its join
 with ``joint``, the thickness of the mortar, ``unit`` is the brick without it.
 """
 
+from ..packages import needed
+
+needed("scipy")  # before a module imports a part of it
+
 from .blocks import Block, Bricks, boxCorners, summary
 from .checks import Joint
 from .files import fromFile

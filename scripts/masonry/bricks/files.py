@@ -14,6 +14,7 @@ import numpy as np
 
 from ..arguments import path as pathOf
 from ..arguments import takes, text
+from ..packages import needed
 from .blocks import FARTHEST, Block, Bricks, fits, positive, refuse
 from .checks import where
 from .geometry import FLAT
@@ -193,7 +194,7 @@ def _readPly(path):
 
 
 def _byMeshio(path):
-    import meshio  # takes a second, and few scenes need it
+    meshio = needed("meshio")  # takes a second, and few scenes need it
 
     try:
         mesh = meshio.read(path)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..packages import needed
 from ..read.crack_figure import mechanism
 from .programme import FACETS
 
@@ -265,7 +266,7 @@ class Bound:
 
     def save(self, directory):
         """Write the mechanism for ParaView: ``mechanism_blocks.vtu`` and ``mechanism_joints.vtu``."""
-        from meshio import Mesh
+        Mesh = needed("meshio").Mesh
         from scipy.spatial import ConvexHull
 
         blocks, joints = self.frames()

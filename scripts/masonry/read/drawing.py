@@ -4,10 +4,12 @@
 import os
 
 from ..folders import replaced
+from ..packages import needed
 
 
 def empty(width, height):
     """An empty figure [inch]. It has no window, and pyplot, whose settings YADE changes, has no part in it."""
+    needed("matplotlib")
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height))
@@ -15,6 +17,7 @@ def empty(width, height):
 
 def style():
     """The settings of matplotlib that all figures are drawn with, whatever the caller has set: a context."""
+    needed("matplotlib")
     import matplotlib.style
 
     return matplotlib.style.context("default")

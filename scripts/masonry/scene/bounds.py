@@ -8,6 +8,7 @@ what they are.
 import contextlib
 import math
 import os
+import sys
 import time
 
 import numpy as np
@@ -18,6 +19,7 @@ from ..basics import GRAVITY, Interrupted, Refused, say
 from ..limit.assembly import Endless
 from ..limit.worker import worker
 from ..memory import FULL
+from ..packages import Missing
 
 #: Up to so many joints a collapse without dilatancy, which takes many rounds, is looked for with --preset bound.
 SMALL = 500
@@ -277,7 +279,10 @@ class Bounds:
         if self.last:
             bound, entry = self.last
             heading = f"{title}\nlimit analysis, {entry['load']}: {entry['factor']:.4g} {entry['unit']}".rstrip()
-            bound.save(directory)
+            try:
+                bound.save(directory)
+            except Missing as missing:
+                say(f"the mechanism for ParaView is left out: {missing}", sys.stderr)
             if draws:
                 bound.draw(os.path.join(directory, FIGURE), heading, parts, views)
 

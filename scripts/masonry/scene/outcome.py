@@ -12,6 +12,7 @@ from ..assembly import columns
 from ..assembly.blocks import units
 from ..basics import Unwritable, say
 from ..memory import FULL
+from ..packages import Missing, needed
 from ..read import cracks, measure
 from ..read.curves import (
     cycleNumbers,
@@ -378,7 +379,13 @@ class Outcome:
     # -- files and terminal ---------------------------------------------------------------------------------------
 
     def draw(self, directory):
-        """Draw the figures of a run that has ended, in a program of its own. Raises Unwritable if that fails."""
+        """Draw the figures of a run that has ended, in a program of its own. Raises Unwritable if that fails. Without matplotlib
+        a note says that they are left out."""
+        try:
+            needed("matplotlib")
+        except Missing as missing:
+            say(f"the figures are left out: {missing}", sys.stderr)
+            return
         # -P: nothing of the present folder is run
         command = [sys.executable, "-P", "-m", "masonry.read.figures", directory]
         try:
@@ -401,6 +408,8 @@ class Outcome:
                 description.views,
                 draws,
             )
+        except Missing as missing:
+            say(f"mechanism.png is left out: {missing}", sys.stderr)
         except (OSError, MemoryError, ImportError) as error:
             why = getattr(error, "strerror", None) or FULL
             say(f"the mechanism is not written to {directory}: {why}", sys.stderr)

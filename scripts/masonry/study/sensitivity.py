@@ -12,6 +12,7 @@ import numpy as np
 from scipy import special, stats
 
 from ..basics import Refused
+from ..packages import needed
 from .statistics import CONFIDENCE, Interval
 
 #: What a varied property does. ``change`` of the output, an :class:`Interval`, when the property goes from its 5 % to
@@ -135,7 +136,7 @@ def sobol(inputs, output, seed=1, confidence=CONFIDENCE):
 
 def _polynomials(u, y):
     """The Legendre polynomials that OpenTURNS chooses: their degrees, a line each, the first of which is the constant."""
-    import openturns as ot
+    ot = needed("openturns")
 
     k = u.shape[1]
     uniform = ot.ComposedDistribution([ot.Uniform(0, 1)] * k)

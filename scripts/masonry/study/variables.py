@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from ..arguments import plainly, isNumber, listOf, misfits, number, shown, takes, text
 from ..scene import fields
 from ..basics import Refused
+from ..packages import needed
 
 LEAST_COV = 1e-6  # coefficient of variation below which nothing varies [-]
 
@@ -15,14 +16,8 @@ NEVER = 1e-9
 
 
 def openturns():
-    """The module. Raises Refused where it is missing."""
-    try:
-        import openturns
-    except ImportError:
-        raise Refused(
-            "distributions and designs of studies need OpenTURNS: apt-get install --no-install-recommends python3-openturns"
-        ) from None
-    return openturns
+    """The module. Raises :class:`masonry.packages.Missing` where it is missing."""
+    return needed("openturns")
 
 
 def _finite(**values):

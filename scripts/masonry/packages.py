@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Debian's packages that only a part of the project needs: what is left out without each, and how it is installed.
+
+``scripts/setup.sh`` installs what a run needs, and with ``--tests`` also what studies and tests need.
+"""
+
+import importlib
+
+from .basics import Refused
+
+#: Module -> (its Debian package, what needs it).
+NEEDED_FOR = {
+    "matplotlib": ("python3-matplotlib", "figures need"),
+    "meshio": (
+        "python3-meshio",
+        "PLY files and the mechanism of a bound for ParaView need",
+    ),
+    "openturns": ("python3-openturns", "distributions and designs of studies need"),
+    "scipy": ("python3-scipy", "bricks and bounds need"),
+}
+
+
+class Missing(Refused, ImportError):
+    """A Python module is not installed; the text is one sentence with the command that installs it."""
+
+
+def needed(name):
+    """A Python module that may be missing.
+
+    :param name: one of :data:`NEEDED_FOR`
+    :returns: the module
+    :raises Missing: if it is not installed
+    """
+    try:
+        return importlib.import_module(name)
+    except ModuleNotFoundError as error:
+        if error.name != name:
+            raise
+    package, what = NEEDED_FOR[name]
+    raise Missing(
+        f"{what} the Python module {name}, which is not installed: "
+        f"apt-get install --no-install-recommends {package}"
+    )
