@@ -14,6 +14,7 @@
 #include "adapters/MasonryLoad.hpp"
 #include "adapters/MasonryVtkRecorder.hpp"
 #include "adapters/MasonryZones.hpp"
+#include "common/Memory.hpp"
 #include "common/Parallel.hpp"
 #include "common/Text.hpp"
 #include "host/SelfCheck.hpp"
@@ -118,6 +119,7 @@ void connected() {
     auto& store = SceneStore::present();
     store.update();
     store.connected();
+    giveMemoryBack();
 }
 
 } // namespace

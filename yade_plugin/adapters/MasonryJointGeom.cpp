@@ -15,7 +15,7 @@ const JointShapes& MasonryJointGeom::shapes() const {
 Vector3r MasonryJointGeom::normal() { return group ? shapes().joints[index].normal : Vector3r::Zero(); }
 Vector3r MasonryJointGeom::tangent() { return group ? shapes().joints[index].tangent : Vector3r::Zero(); }
 std::vector<Vector3r> MasonryJointGeom::polygon() {
-    return group ? shapes().joints[index].polygon : std::vector<Vector3r>();
+    return group ? shapes().joints[index].polygon() : std::vector<Vector3r>();
 }
 double MasonryJointGeom::distance1() { return group ? shapes().joints[index].distance(0) : 0; }
 double MasonryJointGeom::distance2() { return group ? shapes().joints[index].distance(1) : 0; }
@@ -79,7 +79,9 @@ private:
 void exchange(Numbers& n, JointReference& r) {
     n(r.normal);
     n(r.tangent);
-    n.list(r.polygon);
+    auto corners = r.polygon();
+    n.list(corners);
+    if (corners != r.polygon()) r.corners = std::make_shared<Polygon>(std::move(corners));
     for (auto& side : r.sides) {
         n(side.body);
         n(side.position);

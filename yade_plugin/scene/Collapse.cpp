@@ -57,8 +57,8 @@ void CollapseWatch::measure(const yade::Scene& scene, const std::vector<JointKin
             Joint joint{r.sides[0].body,
                         r.sides[1].body,
                         r.sides[1].orientation.conjugate() * r.sides[0].orientation,
-                        extent(r.polygon, r.tangent),
-                        extent(r.polygon, r.normal.cross(r.tangent)),
+                        extent(r.polygon(), r.tangent),
+                        extent(r.polygon(), r.normal.cross(r.tangent)),
                         HUGE_VAL,
                         HUGE_VAL};
             for (const auto& side : r.sides)

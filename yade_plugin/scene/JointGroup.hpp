@@ -57,8 +57,9 @@ struct JointReference {
     };
     Vector3r normal = Vector3r::UnitX();  // unit normal, from side 0 to side 1
     Vector3r tangent = Vector3r::UnitY(); // first direction in the joint's plane
-    Polygon polygon;                      // corners of the shared face [m]
-    Side sides[2];                        // bodies 1 and 2 of the interaction
+    // Corners of the shared face [m]. Copies of a joint have them in common.
+    std::shared_ptr<const Polygon> corners = noCorners();
+    Side sides[2]; // bodies 1 and 2 of the interaction
     // How the subcontacts of a joint with a deformable side move with the nodes.
     struct Attached {
         shared_ptr<Zones> zones;
@@ -66,6 +67,11 @@ struct JointReference {
     };
     std::shared_ptr<Attached> attached; // null if both sides are rigid
 
+    const Polygon& polygon() const { return *corners; }
+    static const std::shared_ptr<const Polygon>& noCorners() {
+        static const auto none = std::make_shared<const Polygon>();
+        return none;
+    }
     // Matrix whose columns are the joint's axes: normal, tangent, normal × tangent.
     yade::Matrix3r axes() const {
         yade::Matrix3r columns;
@@ -78,7 +84,8 @@ struct JointReference {
     Vector3r span() const { return axes().transpose() * (sides[1].position - sides[0].position); }
     // Distance of a body's centre from the joint's plane [m].
     double distance(int side) const {
-        return side == 0 ? (polygon[0] - sides[0].position).dot(normal) : (sides[1].position - polygon[0]).dot(normal);
+        return side == 0 ? (polygon()[0] - sides[0].position).dot(normal)
+                         : (sides[1].position - polygon()[0]).dot(normal);
     }
     // Whether the body of a side is rigid.
     bool rigid(int side) const { return !attached || attached->sides[side].empty(); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "JointPlan.hpp"
 #include "Zones.hpp"
+#include "common/Memory.hpp"
 #include "common/Parallel.hpp"
 #include "common/Vectorised.hpp"
 #include "law/common/JointDamping.hpp"
@@ -503,7 +504,10 @@ void JointPlan::bringToNodes(SceneStore& store) {
 }
 
 double JointPlan::advance(SceneStore& store, double stiffnessDamping) {
-    if (store_ != &store || revision_ != store.revision()) build(store, true);
+    if (store_ != &store || revision_ != store.revision()) {
+        build(store, true);
+        giveMemoryBack();
+    }
     if (!noticeBodies(store)) {
         build(store, false);
         noticeBodies(store);

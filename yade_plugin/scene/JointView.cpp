@@ -11,10 +11,10 @@ void JointGeometry::define(const FaceContact& face, const Vector3r& along, int c
     JointReference r;
     r.normal = face.normal;
     r.tangent = along;
-    r.polygon = face.polygon;
+    r.corners = std::make_shared<Polygon>(face.polygon);
     r.sides[0] = {body1, state1.pos, state1.ori};
     r.sides[1] = {body2, state2.pos, state2.ori};
-    const auto cells = subdivide(r.polygon, r.normal, r.tangent, columns, rows);
+    const auto cells = subdivide(r.polygon(), r.normal, r.tangent, columns, rows);
     group.reset(new JointShapes(1, int(cells.size())));
     index = 0;
     for (std::size_t p = 0; p < cells.size(); ++p)
@@ -30,11 +30,11 @@ void JointGeometry::attach(const shared_ptr<Zones>& all) {
     r.attached->zones = all;
     std::optional<Zones::Covered> covers[2];
     for (int side = 0; side < 2; ++side)
-        if (units[side]) covers[side] = all->cover(*units[side], r.polygon, r.normal, r.tangent);
+        if (units[side]) covers[side] = all->cover(*units[side], r.polygon(), r.normal, r.tangent);
     const int lead = units[0] ? 0 : 1;
     bool matching = covers[lead].has_value();
     if (units[0] && units[1]) {
-        const double close = 1e-3 * (r.polygon[2] - r.polygon[0]).norm();
+        const double close = 1e-3 * (r.polygon()[2] - r.polygon()[0]).norm();
         matching = matching && covers[1] && covers[0]->nodes.size() == covers[1]->nodes.size();
         for (std::size_t n = 0; matching && n < covers[0]->nodes.size(); ++n) {
             const Vector3r place = all->reference(*units[0], covers[0]->nodes[n]);
@@ -62,7 +62,7 @@ std::vector<Polygon> JointGeometry::cells() const {
     std::vector<Point> around;
     for (int p = 0; p < points(); ++p)
         around.push_back(centre(p));
-    return nearestCells(reference().polygon, around);
+    return nearestCells(reference().polygon(), around);
 }
 
 // Each body carries the joint's axes along with it. The mean of the two rotations is the frame of the joint. The

@@ -6,7 +6,6 @@
 #include "Load.hpp"
 #include "Zones.hpp"
 #include <algorithm>
-#include <malloc.h>
 #include <map>
 #include <memory>
 
@@ -239,9 +238,6 @@ void SceneStore::readJoints() {
         kind.shapes->left = kind.states->left = !broken;
     kinds = std::move(made);
     joints = std::move(found);
-#if defined(__GLIBC__)
-    malloc_trim(0); // every joint had a group of its own: their memory goes back to the system
-#endif
 }
 
 void SceneStore::connected() {

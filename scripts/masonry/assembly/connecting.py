@@ -145,7 +145,7 @@ def _connect(pairs, physics, rule):
                 len(made) == due
             ):  # what joints leave when they move into columns is free for the next ones
                 gather()
-                due += 256 + due // 4
+                due += 256 + due // 16
             if rule:
                 bodies = O.bodies[interaction.id1], O.bodies[interaction.id2]
                 joint = rule(*bodies, interaction.geom)
