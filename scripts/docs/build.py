@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Makes the site and its PDF; ``scripts/docs.sh`` calls this.
+
+    /usr/bin/python3 scripts/docs/build.py [--out build/docs] [--no-pdf]
+
+Needs Debian's python3-sphinx, python3-myst-parser, furo and libjs-mathjax, for the PDF chromium, and the plugin, which is
+imported. Nothing is fetched from a network.
+"""
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import time
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(os.path.dirname(HERE))
+sys.path[:0] = [
+    HERE,
+    os.path.join(ROOT, "tests", "gates"),
+]  # the gates list the files of the repository
+YADE = "/usr/lib/x86_64-linux-gnu/yade-double/py"
+MATHJAX = "/usr/share/javascript/mathjax"
+#: What equations as SVG need of MathJax, which has eight times as much.
+PARTS = ["MathJax.js", "config/TeX-AMS_SVG-full.js", "extensions", "jax/element", "jax/input/TeX", "jax/output/SVG", "localization/en"]  # fmt: skip
+
+#: The pages of the site by their sections. What stands in a folder of ``validation`` comes below its README.
+SECTIONS = {
+    "First steps": ["scripts/TUTORIAL", "gallery"],
+    "Manual": ["scripts/README", "words", "options", "scripts/STUDIES"],
+    "Laws": ["yade_plugin/law/README", "yade_plugin/law/cyclic_softening/README"],
+    "Validation": ["validation/README"],
+    "Reference": ["api/masonry", "classes"],
+    "Project": ["yade_plugin/README", "yade_plugin/host/README", "CONTRIBUTING", "CHANGELOG", "cite"],  # fmt: skip
+}
+
+
+def toctree(pages, caption=""):
+    """A table of contents, in Markdown, which the page itself does not show."""
+    head = f":caption: {caption}\n" if caption else ""
+    return f"\n```{{toctree}}\n:hidden:\n{head}\n" + "\n".join(pages) + "\n```\n"
+
+
+def contents(documents):
+    """The tables of contents of the documents that have one: dict from a document to Markdown.
+
+    :param documents: those of the repository. Each must be in some table
+    """
+    named = {page for pages in SECTIONS.values() for page in pages}
+    rest = [d.removesuffix(".md") for d in documents if d != "README.md"]
+    rest = [d for d in rest if d not in named]
+    cases = [d for d in rest if d.startswith("validation/")]
+    if set(rest) - set(cases):
+        raise ValueError(f"no section of build.py has {', '.join(sorted(set(rest) - set(cases)))}")  # fmt: skip
+    return {
+        "README.md": "".join(toctree(p, title) for title, p in SECTIONS.items()),
+        "validation/README.md": toctree([c.removeprefix("validation/") for c in cases]),
+    }
+
+
+def stage(folder):
+    """Write all pages of the site to a folder."""
+    import generated
+    import staging
+    from tree import read
+
+    made = staging.Stage(folder)
+    documents = made.documents()
+    for path, table in contents(documents).items():
+        made.document(path, read(path) + table)
+    made.sources()
+    for name, _ in staging.galleryRows():
+        made.copy(f"scripts/gallery/{name}.png")
+    made.write("gallery.md", staging.gallery())
+    made.write("words.rst", generated.words())
+    made.write("options.rst", generated.optionsOfScenes())
+    made.write("classes.rst", generated.classes())
+    made.write("cite.md", generated.cite())
+    for path, text in generated.api():
+        made.write(path, text)
+
+
+def mathjax(folder):
+    """Copy what the pages need of Debian's MathJax."""
+    for part in PARTS:
+        source, target = os.path.join(MATHJAX, part), os.path.join(folder, "mathjax", part)  # fmt: skip
+        if os.path.isdir(source):
+            shutil.copytree(source, target, dirs_exist_ok=True)
+        else:
+            os.makedirs(os.path.dirname(target), exist_ok=True)
+            shutil.copyfile(source, target)
+
+
+def sphinx(out, builder, target, *more):
+    """Run Sphinx on the staged pages; warnings are errors."""
+    from sphinx.cmd.build import main
+
+    words = ["-b", builder, "-c", HERE, "-d", os.path.join(out, "doctrees-" + builder), "-W", "--keep-going", "-q", *more]  # fmt: skip
+    failed = main([*words, os.path.join(out, "source"), target])
+    if failed:
+        raise SystemExit(f"Sphinx failed ({builder}): see above")
+
+
+def pdf(page, target):
+    """Print a page to a PDF with chromium, without a display and without a network."""
+    subprocess.run(
+        [
+            "chromium",
+            "--headless=new",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--disable-background-networking",
+            "--host-resolver-rules=MAP * ~NOTFOUND",
+            "--virtual-time-budget=300000",
+            "--generate-pdf-document-outline",
+            "--no-pdf-header-footer",
+            f"--print-to-pdf={target}",
+            "file://" + os.path.abspath(page),
+        ],
+        check=True,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        timeout=600,
+    )
+
+
+def main(words=None):
+    parser = argparse.ArgumentParser(description="Make the site of the documentation and its PDF.")  # fmt: skip
+    parser.add_argument("--out", metavar="DIR", default=os.path.join(ROOT, "build", "docs"), help="where it goes")  # fmt: skip
+    parser.add_argument("--no-pdf", action="store_true", help="the site alone")
+    args = parser.parse_args(words)
+    out = os.path.abspath(args.out)
+    began = time.monotonic()
+    if os.path.isdir(YADE):
+        sys.path.insert(1, YADE)
+    import yade.config  # noqa: F401, before masonry, so that it registers its classes
+
+    stage(os.path.join(out, "source"))
+    static = os.path.join(out, "static")
+    mathjax(static)
+    os.environ["MASONRY_DOCS_STATIC"] = static
+    sphinx(out, "html", os.path.join(out, "html"))
+    print(
+        f"{os.path.join(out, 'html', 'index.html')}: {time.monotonic() - began:.0f} s"
+    )
+    if not args.no_pdf:
+        sphinx(out, "singlehtml", os.path.join(out, "paper"), "-t", "paper")
+        pdf(os.path.join(out, "paper", "index.html"), os.path.join(out, "masonry.pdf"))
+        print(f"{os.path.join(out, 'masonry.pdf')}: {time.monotonic() - began:.0f} s")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
