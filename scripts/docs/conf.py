@@ -28,7 +28,7 @@ myst_enable_extensions = ["dollarmath", "html_image", "colon_fence"]
 myst_heading_anchors = 4
 root_doc = "index"
 suppress_warnings = ["myst.header"]  # a page may be included below another one
-highlight_language = "none"
+highlight_language = "default"
 nitpicky = False
 
 autodoc_member_order = "bysource"

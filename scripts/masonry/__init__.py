@@ -42,6 +42,7 @@ if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:
 
 import importlib
 import os
+from typing import TYPE_CHECKING
 
 # YADE does not search the folder of its script for modules. It comes last, so that nothing in it hides another module.
 if hasattr(sys, "yade_argv") and sys.argv and os.path.isfile(sys.argv[0]):
@@ -61,10 +62,39 @@ _HANDED_ON = {
 }
 
 
-def __getattr__(name):
-    if name in _HANDED_ON:
-        return importlib.import_module(f"{__name__}.{_HANDED_ON[name]}")
-    raise AttributeError(f"module 'masonry' has no attribute {name!r}")
+if TYPE_CHECKING:  # what is loaded later, for those that check types
+    from yade.wrapper import (
+        Gl1_MasonryBlock,
+        Gl1_MasonryJointPhys,
+        GlExtra_MasonryLegend,
+        Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom,
+        Ig2_MasonryBlock_Polyhedra_MasonryJointGeom,
+        Ig2_Polyhedra_Polyhedra_MasonryJointGeom,
+        Ip2_MasonryMat_MasonryMat_MasonryJointPhys,
+        Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening,
+        Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening,
+        MasonryBlock,
+        MasonryEnergy,
+        MasonryIntegrator,
+        MasonryJoint,
+        MasonryJointGeom,
+        MasonryJointLoop,
+        MasonryJointPhys,
+        MasonryLoad,
+        MasonryMat,
+        MasonryVtkRecorder,
+        MasonryZones,
+    )
+
+    from . import bricks, limit, study
+    from .assembly import window
+    from .scene import fields, materials
+else:
+
+    def __getattr__(name):
+        if name in _HANDED_ON:
+            return importlib.import_module(f"{__name__}.{_HANDED_ON[name]}")
+        raise AttributeError(f"module 'masonry' has no attribute {name!r}")
 
 
 def __dir__():

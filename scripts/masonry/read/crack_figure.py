@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """cracks.png: the deformed structure with its cracks, and the mechanism of limit analysis. This module needs no YADE."""
 
+from __future__ import annotations
+
 import os
 from collections import namedtuple
+from typing import Any
 
 import numpy as np
 
+from ..arguments import FilePath
 from ..basics import Refused
 from . import drawing
 from .cracks import CRACK, CRUSHED, crushed, widths
@@ -165,7 +169,7 @@ def merged(traces):
                 if not len(over):
                     continue
                 best = row[over[np.argmax(sizes[over])]]
-                start, end, kind, first, last = *best[2:4], *best[5:]
+                start, end, _, kind, first, last = best[2:]
                 shares = [np.clip((p - start) / (end - start), 0, 1) for p in (a, b)]
                 lines[kind].append(
                     [
@@ -204,7 +208,7 @@ def magnificationOf(size, moved):
     return max(1, int(nice))
 
 
-def cracks(directory, number=-1):
+def cracks(directory: FilePath, number: int = -1) -> None:
     """Draw cracks.png: the deformed structure, magnified, over the undeformed one, each part in a panel of its own.
 
     Cracks are red, joints that slid are blue, and crushed spots are black. Joints that face the viewer are areas, the
@@ -250,7 +254,14 @@ def cracks(directory, number=-1):
         drawing.save(figure, os.path.join(directory, "cracks.png"), 90)
 
 
-def mechanism(path, blocks, joints, title, groups=None, sights=None):
+def mechanism(
+    path: FilePath,
+    blocks: dict[str, Any],
+    joints: dict[str, Any],
+    title: str,
+    groups: dict[str, Any] | None = None,
+    sights: dict[str, Any] | None = None,
+) -> None:
     """Draw a mechanism of :mod:`masonry.limit` as :func:`cracks` draws a frame.
 
     :param path: of the picture

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """curve.png: what the entry ``figure`` of run.json says, and the energies. This module needs no YADE."""
 
+from __future__ import annotations
+
 import os
 import re
+from typing import Any
 
 import numpy as np
 
+from ..arguments import FilePath
 from ..basics import Refused
 from . import drawing, loops
 from .files import readCurve, readRun
@@ -13,7 +17,9 @@ from .files import readCurve, readRun
 LINES = ["black", "tab:orange", "tab:green", "tab:purple", "tab:brown", "tab:cyan"]
 
 
-def plan(run, data, directory):
+def plan(
+    run: dict[str, Any], data: dict[str, Any], directory: FilePath
+) -> dict[str, Any]:
     """The entry ``figure`` of run.json, with all that may be left out. Raises Refused for one that cannot be drawn.
 
     :param run: what :func:`masonry.read.files.readRun` returns
@@ -42,7 +48,7 @@ def plan(run, data, directory):
     return spec
 
 
-def energies(data):
+def energies(data: dict[str, Any]) -> tuple[dict[str, Any], Any]:
     """Energies to draw, since the first row: a dict of name -> values [J], and the work done, or None if there is none.
 
     :param data: dict of column name -> array; what has an energy ends in ``_J``
@@ -64,7 +70,7 @@ def energies(data):
     return stack, sum(work) if work else None
 
 
-def curve(directory):
+def curve(directory: FilePath) -> None:
     """Draw curve.png: what the entry ``figure`` of run.json says and, below it, the energies.
 
     Loops have axes through zero and their envelope in bold, and their energies are drawn over the length of the way.
@@ -178,7 +184,7 @@ def _limits(spec, data):
     return low - 0.15 * reach, high + 0.15 * reach
 
 
-def unitOf(axis):
+def unitOf(axis: dict[str, Any]) -> str:
     """Unit of an axis: in the brackets of its label, else at the end of the name of its column."""
     found = re.search(r"\[([^\]]*)\]\s*$", axis["label"])
     return found[1] if found else axis["column"].rsplit("_", 1)[-1]

@@ -20,9 +20,14 @@
 """
 
 import importlib
+from typing import TYPE_CHECKING
 
 
-def __getattr__(name):
-    if name == "Scene":
-        return importlib.import_module(f"{__name__}.scene").Scene
-    raise AttributeError(f"module 'masonry.scene' has no attribute {name!r}")
+if TYPE_CHECKING:
+    from .scene import Scene
+else:
+
+    def __getattr__(name):
+        if name == "Scene":
+            return importlib.import_module(f"{__name__}.scene").Scene
+        raise AttributeError(f"module 'masonry.scene' has no attribute {name!r}")

@@ -1,17 +1,25 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The words of a script, noted as data: a run that is resumed can be compared with the script that began it."""
 
+from __future__ import annotations
+
 import functools
 import inspect
 import math
+from typing import Any, Callable, Concatenate, ParamSpec, TypeVar
 
 from ..basics import Refused
+
+P = ParamSpec("P")
+R = TypeVar("R")
 
 RESULT = "result"  # the word that keeps a number of the script's own
 PUSHES = "push", "cycle", "follow"  # to the first of them --until and --history apply
 
 
-def describes(act):
+def describes(
+    act: Callable[Concatenate[Any, P], R]
+) -> Callable[Concatenate[Any, P], R]:
     """A word that describes a scene: it comes before the first stage, and is noted.
 
     :param act: function of a :class:`masonry.scene.description.Description` and what the user says. As a method of the scene
@@ -19,7 +27,7 @@ def describes(act):
     """
 
     @functools.wraps(act)
-    def word(scene, *args, **settings):
+    def word(scene: Any, *args: P.args, **settings: P.kwargs) -> R:
         if scene.model:
             raise ValueError(
                 f"{act.__name__}() must come before the first stage: the scene is built already"

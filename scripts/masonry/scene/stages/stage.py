@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What all stages of a scene share: how they begin and end, their traits, and what they answer."""
 
+from __future__ import annotations
+
 import functools
 import itertools
 import os
 from dataclasses import dataclass
-from typing import Callable
+from typing import Any, Callable, Concatenate, ParamSpec
 
 from yade import O
 
@@ -13,6 +15,10 @@ from ...basics import Collapsed, say
 from ...run import batch
 from ..resuming import enter
 from ..words import argumentsOf
+
+P = ParamSpec("P")
+#: A stage: a function of the scene and what the user says, which returns how it ended.
+Stage = Callable[Concatenate[Any, P], str]
 
 #: How a stage ends.
 AT_REST, MOVING, DONE, COLLAPSED = "at rest", "moving", "done", "collapsed"
@@ -32,9 +38,9 @@ class Answer:
 
     name: str
     unit: str
-    value: float
+    value: float | None
     how: str
-    uncertainty: float = None
+    uncertainty: float | None = None
 
 
 def answerText(answer):
@@ -119,23 +125,24 @@ class Traits:
     farther: tuple = ()
     options: tuple = ()
     grows: bool = False
-    check: Callable = None
+    check: Callable | None = None
     answers: Callable = nothing
 
 
-def stage(**traits):
+def stage(**traits: Any) -> Callable[[Stage[P]], Stage[P]]:
     """Make a stage of a function of the scene and what the user says, which has its kinds of arguments from
     :func:`masonry.arguments.takes`; the keywords are those of :class:`Traits`.
 
     The stage builds the scene if it is the first, is left out after a collapse, and ends the run in order on errors.
     """
 
-    def made(act):
+    def made(act: Stage[P]) -> Stage[P]:
         @functools.wraps(act)
-        def staged(scene, *args, **settings):
-            return _carryOut(scene, act, staged.traits, args, settings)
+        def staged(scene: Any, *args: P.args, **settings: P.kwargs) -> str:
+            return _carryOut(scene, act, known, args, settings)
 
-        staged.traits = Traits(**traits)
+        known = Traits(**traits)
+        vars(staged).update(traits=known)
         return staged
 
     return made
