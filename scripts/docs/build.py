@@ -8,7 +8,9 @@ imported. Nothing is fetched from a network.
 """
 
 import argparse
+import glob
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -22,12 +24,14 @@ sys.path[:0] = [
 ]  # the gates list the files of the repository
 YADE = "/usr/lib/x86_64-linux-gnu/yade-double/py"
 MATHJAX = "/usr/share/javascript/mathjax"
-#: What equations as SVG need of MathJax, which has eight times as much.
-PARTS = ["MathJax.js", "config/TeX-AMS_SVG-full.js", "extensions", "jax/element", "jax/input/TeX", "jax/output/SVG", "localization/en"]  # fmt: skip
+#: What equations as SVG need of MathJax, which has thirty times as much.
+PARTS = ["MathJax.js", "config/TeX-AMS_SVG-full.js", "extensions", "jax/element", "jax/input/TeX", "jax/output/SVG/config.js", "jax/output/SVG/jax.js", "jax/output/SVG/autoload", "jax/output/SVG/fonts/TeX", "localization/en"]  # fmt: skip
 
 #: The pages of the site by their sections. What stands in a folder of ``validation`` comes below its README.
+FIRST = "First steps"
+OPTIONAL = {"scripts/TUTORIAL"}  # where it is not, notebooks are all of the tutorial
 SECTIONS = {
-    "First steps": ["scripts/TUTORIAL", "gallery"],
+    FIRST: ["scripts/TUTORIAL", "gallery"],
     "Manual": ["scripts/README", "words", "options", "scripts/STUDIES"],
     "Laws": ["yade_plugin/law/README", "yade_plugin/law/cyclic_softening/README"],
     "Validation": ["validation/README"],
@@ -42,10 +46,37 @@ def toctree(pages, caption=""):
     return f"\n```{{toctree}}\n:hidden:\n{head}\n" + "\n".join(pages) + "\n```\n"
 
 
-def contents(documents):
+def tutorial(made, out, runs):
+    """Bring the notebooks of the tutorial in. Returns their pages.
+
+    :param runs: whether they are run, and shown with what comes out
+    """
+    import masonry
+    import notebooks
+
+    pages = []
+    for path in sorted(glob.glob(os.path.join(HERE, "tutorial", "*.ipynb"))):
+        name = os.path.splitext(os.path.basename(path))[0]
+        found = notebooks.load(path)
+        if runs:
+            version = f"{masonry.__version__} {masonry.commit}"
+            found = notebooks.run(path, os.path.join(out, "notebooks"), version)
+        target = os.path.relpath(os.path.dirname(path), ROOT)
+
+        def write(file, data):
+            made.write(f"{target}/{file}", data)
+
+        text = notebooks.markdown(found, name, write)
+        made.document(f"{target}/{name}.md", text)
+        pages.append(f"{target}/{name}")
+    return pages
+
+
+def contents(documents, first=()):
     """The tables of contents of the documents that have one: dict from a document to Markdown.
 
     :param documents: those of the repository. Each must be in some table
+    :param first: pages that come first of all
     """
     named = {page for pages in SECTIONS.values() for page in pages}
     rest = [d.removesuffix(".md") for d in documents if d != "README.md"]
@@ -53,21 +84,24 @@ def contents(documents):
     cases = [d for d in rest if d.startswith("validation/")]
     if set(rest) - set(cases):
         raise ValueError(f"no section of build.py has {', '.join(sorted(set(rest) - set(cases)))}")  # fmt: skip
+    sections = {t: [*first, *p] if t == FIRST else p for t, p in SECTIONS.items()}
+    sections = {t: [p for p in pages if p + ".md" in documents or p not in OPTIONAL] for t, pages in sections.items()}  # fmt: skip
     return {
-        "README.md": "".join(toctree(p, title) for title, p in SECTIONS.items()),
+        "README.md": "".join(toctree(p, title) for title, p in sections.items()),
         "validation/README.md": toctree([c.removeprefix("validation/") for c in cases]),
     }
 
 
-def stage(folder):
-    """Write all pages of the site to a folder."""
+def stage(folder, out, runs):
+    """Write all pages of the site to a folder; other parameters as of :func:`tutorial`."""
     import generated
     import staging
     from tree import read
 
     made = staging.Stage(folder)
     documents = made.documents()
-    for path, table in contents(documents).items():
+    lessons = tutorial(made, out, runs)
+    for path, table in contents(documents, lessons).items():
         made.document(path, read(path) + table)
     made.sources()
     for name, _ in staging.galleryRows():
@@ -102,6 +136,19 @@ def sphinx(out, builder, target, *more):
         raise SystemExit(f"Sphinx failed ({builder}): see above")
 
 
+def bundle(static):
+    """Make one script of the two of the theme. Debian leaves them as modules, which browsers do not load from files."""
+    scripts = os.path.join(static, "scripts")
+    with open(os.path.join(scripts, "furo.js"), encoding="utf-8") as file:
+        first, _, rest = file.read().partition("\n")
+    part = re.fullmatch(r'import Gumshoe from "\./([\w-]+\.js)";', first)
+    if part:
+        with open(os.path.join(scripts, part[1]), encoding="utf-8") as file:
+            rest = file.read() + rest
+        with open(os.path.join(scripts, "furo.js"), "w", encoding="utf-8") as file:
+            file.write(rest)
+
+
 def pdf(page, target):
     """Print a page to a PDF with chromium, without a display and without a network."""
     subprocess.run(
@@ -129,6 +176,7 @@ def main(words=None):
     parser = argparse.ArgumentParser(description="Make the site of the documentation and its PDF.")  # fmt: skip
     parser.add_argument("--out", metavar="DIR", default=os.path.join(ROOT, "build", "docs"), help="where it goes")  # fmt: skip
     parser.add_argument("--no-pdf", action="store_true", help="the site alone")
+    parser.add_argument("--no-run", action="store_true", help="show the notebooks without what comes out of them")  # fmt: skip
     args = parser.parse_args(words)
     out = os.path.abspath(args.out)
     began = time.monotonic()
@@ -136,11 +184,12 @@ def main(words=None):
         sys.path.insert(1, YADE)
     import yade.config  # noqa: F401, before masonry, so that it registers its classes
 
-    stage(os.path.join(out, "source"))
+    stage(os.path.join(out, "source"), out, not args.no_run)
     static = os.path.join(out, "static")
     mathjax(static)
     os.environ["MASONRY_DOCS_STATIC"] = static
     sphinx(out, "html", os.path.join(out, "html"))
+    bundle(os.path.join(out, "html", "_static"))
     print(
         f"{os.path.join(out, 'html', 'index.html')}: {time.monotonic() - began:.0f} s"
     )

@@ -35,11 +35,15 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "description"
 autodoc_typehints_description_target = "documented_params"
 autodoc_typehints_format = "short"
-autodoc_preserve_defaults = True
 
 # MathJax of Debian draws equations as SVG: it needs no font and no request, not even where a browser opens files.
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_SVG-full"
-mathjax2_config = {"showMathMenu": False, "messageStyle": "none"}
+mathjax2_config = {
+    "showMathMenu": False,
+    "messageStyle": "none",
+    "tex2jax": {"processClass": "math"},
+}
+myst_update_mathjax = False
 
 html_static_path = [os.path.join(os.path.dirname(os.path.abspath(__file__)), "static"), os.environ["MASONRY_DOCS_STATIC"]]  # fmt: skip
 html_title = f"Masonry for YADE {release}"

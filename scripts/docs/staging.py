@@ -71,11 +71,11 @@ class Stage:
         shutil.rmtree(folder, ignore_errors=True)
 
     def write(self, path, text):
-        """Write a page or another file below the folder."""
+        """Write a page, a text, or another file, bytes, below the folder."""
         target = os.path.join(self.folder, path)
         os.makedirs(os.path.dirname(target), exist_ok=True)
-        with open(target, "w", encoding="utf-8") as file:
-            file.write(text)
+        with open(target, "wb") as file:
+            file.write(text if isinstance(text, bytes) else text.encode())
 
     def copy(self, path):
         """Copy a file of the repository to its own path."""
@@ -98,11 +98,13 @@ class Stage:
             if not os.path.isfile(os.path.join(whole, "README.md")):
                 raise ValueError(f"{path}: {target} leads to a folder without a README")
             there = posixpath.normpath(posixpath.join(there, "README.md"))
-        if moduleOf(there):
+        if moduleOf(there) or not os.path.exists(whole):  # Sphinx finds it, or says so
             return target
         ending = os.path.splitext(there)[1]
         if ending == ".md":
             found = page(there)
+        elif ending == ".ipynb":
+            found = there.removesuffix(".ipynb") + ".md"
         elif ending in SOURCES:
             self.shown.add(there)
             found = there + ".md"

@@ -26,9 +26,9 @@ import numpy as np
 from .basics import Refused
 
 #: What a user gives, as type hints name it: some numbers, some axes, a file or a folder.
-Numbers = Union[Sequence[float], "np.ndarray[Any, Any]"]
+Numbers = Union[Sequence[float], np.ndarray[Any, Any]]
 Axes = Union[str, Sequence[str]]
-FilePath = Union[str, "os.PathLike[str]"]
+FilePath = Union[str, os.PathLike[str]]
 #: A kind of argument, as this module describes it.
 Kind = Callable[..., Any]
 
