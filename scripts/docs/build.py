@@ -23,7 +23,8 @@ sys.path[:0] = [
     os.path.join(ROOT, "tests", "gates"),
 ]  # the gates list the files of the repository
 YADE = "/usr/lib/x86_64-linux-gnu/yade-double/py"
-MATHJAX = "/usr/share/javascript/mathjax"
+JAVASCRIPT = "/usr/share/javascript"  # of Debian
+MATHJAX = os.path.join(JAVASCRIPT, "mathjax")
 #: What equations as SVG need of MathJax, which has thirty times as much.
 PARTS = ["MathJax.js", "config/TeX-AMS_SVG-full.js", "extensions", "jax/element", "jax/input/TeX", "jax/output/SVG/config.js", "jax/output/SVG/jax.js", "jax/output/SVG/autoload", "jax/output/SVG/fonts/TeX", "localization/en"]  # fmt: skip
 
@@ -137,7 +138,18 @@ def sphinx(out, builder, target, *more):
 
 
 def bundle(static):
-    """Make one script of the two of the theme. Debian leaves them as modules, which browsers do not load from files."""
+    """Make one script and one style sheet of those of the theme, which Debian leaves in parts that a web server would put
+    together: browsers load neither modules nor ``/javascript`` from files.
+    """
+    sheet = os.path.join(static, "styles", "furo.css")
+    with open(sheet, encoding="utf-8") as file:
+        rules = file.read()
+    part = re.match(r"@import url\(/javascript/([\w./-]+)\);", rules)
+    if part:
+        with open(os.path.join(JAVASCRIPT, part[1]), encoding="utf-8") as file:
+            rules = file.read() + rules[part.end() :]
+        with open(sheet, "w", encoding="utf-8") as file:
+            file.write(rules)
     scripts = os.path.join(static, "scripts")
     with open(os.path.join(scripts, "furo.js"), encoding="utf-8") as file:
         first, _, rest = file.read().partition("\n")

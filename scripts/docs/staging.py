@@ -30,6 +30,7 @@ _BLOCKS = re.compile(r"^```.*?^```[^\n]*$|^(?: {4}|\t)[^\n]*$", re.M | re.S)
 _CODE = re.compile(r"^```.*?^```[^\n]*$|^(?: {4}|\t)[^\n]*$|(`+)(?!`).*?(?<!`)\1(?!`)", re.M | re.S)  # fmt: skip
 _LINK = re.compile(r"(\]\()([^)\s]+)(\))")
 _TO_MODULE = re.compile(r"\[([^\]]+)\]\(([^)\s]+\.py)\)")
+_EQUATION = re.compile(r"^( *)```math$", re.M)
 _HTML = re.compile(r'(<img src=")([^"]+)(")')
 _ROW = re.compile(r"^\| \[(\w+)\]\((\w+\.py)\) \| ([^|]+) \| ([^|]+) \| <img src=\"([^\"]+)\"", re.M)  # fmt: skip
 
@@ -138,6 +139,9 @@ class Stage:
 
         text = outsideCode(change, read(path) if text is None else text)
         text = outsideCode(toModules, text, _BLOCKS)
+        text = _EQUATION.sub(
+            r"\1```{math}", text
+        )  # GitHub's word for it is another one
         if not re.search(
             "^# ", text, re.M
         ):  # a part of another document, which a page must name
