@@ -8,7 +8,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-packages=(python3-sphinx python3-myst-parser furo libjs-mathjax python3-yaml)
+packages=(python3-sphinx python3-myst-parser furo libjs-mathjax python3-yaml python3-nbclient python3-ipykernel)
 [[ " $* " == *" --no-pdf "* ]] || packages+=(chromium)
-bash scripts/setup.sh "${packages[@]}"
+bash scripts/setup.sh --with "${packages[@]}"
 exec /usr/bin/python3 scripts/docs/build.py "$@"

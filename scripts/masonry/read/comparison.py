@@ -114,7 +114,15 @@ def _label(column, run):
     return f"{' '.join(words[:-1])} [{words[-1]}]" if len(words) > 1 else column
 
 
-def compare(directories: Sequence[FilePath], measured: Sequence[str]=(), x: str | None=None, y: str | None=None, labels: Sequence[str]=(), out: FilePath="plot.png", title: str="") -> FilePath:  # fmt: skip
+def compare(
+    directories: Sequence[FilePath],
+    measured: Sequence[str] = (),
+    x: str | None = None,
+    y: str | None = None,
+    labels: Sequence[str] = (),
+    out: FilePath = "plot.png",
+    title: str = "",
+) -> FilePath:
     """Draw curves over each other. Measured ones are black and behind, runs are in colours. Returns the path.
 
     :param directories: folders of runs
