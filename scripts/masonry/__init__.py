@@ -23,6 +23,7 @@ A scene of one's own is bricks, materials and stages::
 - :mod:`masonry.assembly`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by body; the 3-D view
 - :mod:`masonry.folders`: what is written in folders that others may have packed, and how
 - :mod:`masonry.memory`: what numerical libraries take of the memory
+- :mod:`masonry.packages`: libraries that come when they are first needed, and the Debian packages that have them
 - :mod:`masonry.arguments`: how every word checks what it is given
 - :mod:`masonry.basics`: gravity, how a run can end before its time, what is said on the terminal
 

@@ -67,7 +67,7 @@ def readFrame(directory: FilePath, kind: str, number: int = -1) -> dict[str, Any
     return _read(framePaths(directory, kind)[number], _frame)
 
 
-def readSurfaces(directory, number=0):
+def readSurfaces(directory: FilePath, number: int = 0) -> Any:
     """Triangles around the blocks of a frame, as :func:`readFrame` numbers points and cells.
 
     :returns: the corners of triangles, an array (n, 3) of point numbers; the cell of each of them; and whether cells are
