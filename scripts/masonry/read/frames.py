@@ -67,7 +67,9 @@ def readFrame(directory: FilePath, kind: str, number: int = -1) -> dict[str, Any
     return _read(framePaths(directory, kind)[number], _frame)
 
 
-def readSurfaces(directory: FilePath, number: int = 0) -> Any:
+def readSurfaces(
+    directory: FilePath, number: int = 0
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Triangles around the blocks of a frame, as :func:`readFrame` numbers points and cells.
 
     :returns: the corners of triangles, an array (n, 3) of point numbers; the cell of each of them; and whether cells are
