@@ -25,8 +25,8 @@ COLOURS = {"open": "tab:red", "slid": "tab:blue"}
 
 #: A part in its view. ``faces`` and ``moved`` are outlines of its blocks, from the back to the front, at rest and moved,
 #: where displacements are magnified; ``lines`` are pairs of ends of the cracks by kind; ``areas`` are those that face the
-#: viewer; ``spots`` are crushed places (x, y, closure).
-Picture = namedtuple("Picture", "view faces moved lines areas spots")
+#: viewer; ``spots`` are crushed places (x, y, closure); ``shaded`` are further outlines, lists of them by label and colour.
+Picture = namedtuple("Picture", "view faces moved lines areas spots shaded", defaults=[{}])
 
 
 class _Part:
@@ -205,16 +205,31 @@ def magnificationOf(size, moved):
 
 
 def cracks(directory, number=-1):
-    """Draw cracks.png: the deformed structure, magnified, over the undeformed one, each part in a panel of its own.
-
-    Cracks are red, joints that slid are blue, and crushed spots are black. Joints that face the viewer are areas, the
-    others lines. :func:`viewOf` says how a part is seen.
+    """Draw cracks.png of a frame that a run has left.
 
     :param number: of the frame, from 0; negative numbers count from the end
     """
     run = readRun(directory)
     blocks = readFrame(directory, "blocks", number)
     joints = readFrame(directory, "joints", number)
+    when = whenOf(run, directory, number)
+    with drawing.style():
+        figure = figureOf(run, blocks, joints, when, directory)
+        drawing.save(figure, os.path.join(directory, "cracks.png"), 90)
+
+
+def figureOf(run, blocks, joints, when, directory):
+    """The figure of cracks.png, to be drawn and saved in :func:`masonry.read.drawing.style`: the deformed structure, magnified,
+    over the undeformed one, each part in a panel of its own. Raises Refused.
+
+    Cracks are red, joints that slid are blue, and crushed spots are black. Joints that face the viewer are areas, the
+    others lines. :func:`viewOf` says how a part is seen.
+
+    :param run: entries of run.json: ``title``, ``parts``, ``views`` and ``reference_body``
+    :param blocks: frame of the blocks, and ``joints`` that of the joints
+    :param when: text that says when the frame was written
+    :param directory: folder, for messages
+    """
     still, wrong = np.zeros(3), set()
     bodies = set(map(int, blocks["body"]))
     groups = run.get("parts") or {"": sorted(bodies)}
@@ -242,12 +257,10 @@ def cracks(directory, number=-1):
     magnification = magnificationOf(max(sizes), np.concatenate(moved))
     pictures = {n: part.picture(magnification) for n, part in parts.items()}
     title = (
-        f"{run['title']}\n{whenOf(run, directory, number)}, displacements × {magnification}; "
+        f"{run['title']}\n{when}, displacements × {magnification}; "
         f"open or slid more than {1e3 * CRACK:g} mm, crushed more than {1e3 * CRUSHED:g} mm"
     )
-    with drawing.style():
-        figure = _page(pictures, title)
-        drawing.save(figure, os.path.join(directory, "cracks.png"), 90)
+    return page(pictures, title)
 
 
 def mechanism(path, blocks, joints, title, groups=None, sights=None):
@@ -267,10 +280,10 @@ def mechanism(path, blocks, joints, title, groups=None, sights=None):
         part.sizes()
         pictures[name] = part.picture(1)
     with drawing.style():
-        drawing.save(_page(pictures, title), path, 90)
+        drawing.save(page(pictures, title), path, 90)
 
 
-def _page(pictures, title):
+def page(pictures, title):
     """All parts on a page, in one scale."""
     boxes = {name: _box(picture) for name, picture in pictures.items()}
     if len(pictures) == 1:
@@ -327,10 +340,11 @@ def _page(pictures, title):
 
 def _box(picture):
     """Two corners of what is drawn of a part: all of it, but not much farther than the part is large."""
-    rest = np.concatenate(picture.faces)
+    further = [face for faces in picture.shaded.values() for face in faces]
+    rest = np.concatenate([*picture.faces, *further])
     low, high = rest.min(axis=0), rest.max(axis=0)
     reach = 0.6 * (high - low).max()
-    moved = np.concatenate(picture.moved)
+    moved = np.concatenate([*picture.moved, *further])
     low = np.maximum(np.minimum(low, moved.min(axis=0)), low - reach)
     high = np.minimum(np.maximum(high, moved.max(axis=0)), high + reach)
     rim = 0.045 * (high - low).max()
@@ -349,6 +363,12 @@ def _panel(axes, picture, box, points):
     axes.add_collection(
         PolyCollection(picture.moved, facecolor="#f3e3c8", edgecolor="0.45", lw=thin)
     )
+    for (label, colour), polygons in picture.shaded.items():
+        axes.add_collection(
+            PolyCollection(
+                polygons, facecolor=colour, edgecolor="0.3", lw=thin, label=label
+            )
+        )
     for kind, polygons in picture.areas.items():
         if polygons:
             axes.add_collection(
@@ -360,7 +380,8 @@ def _panel(axes, picture, box, points):
                     label=kind + ", seen face-on",
                 )
             )
-    for kind, wide in (("slid", bold * 1.6 / 1.8), ("open", bold)):
+    wides = {"slid": bold * 1.6 / 1.8, "open": bold}
+    for kind, wide in wides.items() if picture.lines else ():
         axes.add_collection(
             LineCollection(
                 picture.lines[kind], color=COLOURS[kind], lw=wide, label=kind

@@ -29,6 +29,7 @@ from ..arguments import LONGEST_NAME
 from ..arguments import direction as directionOf
 from ..arguments import name as nameOf
 from ..arguments import number, orNone, shown, takes, text
+from .. import notebook
 from ..assembly.blocks import vector
 from ..assembly.structure import Structure
 from ..basics import GRAVITY, Interrupted, Refused, say
@@ -36,7 +37,7 @@ from ..bricks import Bricks
 from ..run.ending import end
 from ..run.presets import BOUND
 from ..run.run import Run
-from . import loads, options, probing, records, supports
+from . import loads, options, probing, records, showing, supports
 from .bounds import EVERY, SMALL, Bounds, nameOfLean, nameOfPush
 from .description import Description
 from .materials import linesOf, loadingBlock
@@ -99,6 +100,8 @@ class Scene:
         allowGaps=False,
         **usual,
     ):
+        #: what it was made with, its name first, for :meth:`resume`
+        self._made = (name, bricks, materials, title, plane, gravity, columns, functors), allowGaps  # fmt: skip
         fine = isinstance(name, str) and name.strip(". ") and name.isprintable()
         if not fine or "/" in name or len(name.encode()) > LONGEST_NAME:
             raise Refused(
@@ -121,6 +124,9 @@ class Scene:
             self.description.bricks = list(Bricks(self.description.bricks).whole())
         self.description.deformable = arguments.blocks == "deformable"
         self.script = Script()
+        #: every word that was said: its function, its arguments, and what it returned if it describes
+        self.calls = []
+        self.staging = False  # whether a stage is being carried out
         self.running = Run(name, arguments, self.script.words)
         self.model = self.bounds = self.outcome = None  # when it is built
         self.columns = []  # of curve.csv, when it is built
@@ -153,6 +159,17 @@ class Scene:
     # -- how it goes ----------------------------------------------------------------------------------------------
 
     bracket = gravity.bracket
+
+    curve = showing.curve
+
+    def _repr_html_(self):
+        """The scene in a notebook: what is built before the first stage, else cracks, curve and results."""
+        return showing.asHtml(self)
+
+    @property
+    def isGone(self):
+        """Whether another scene was built in YADE since this one."""
+        return Scene.present is not self
 
     @property
     def status(self):
@@ -190,6 +207,7 @@ class Scene:
         """
         if not self.model:
             raise ValueError(f"result {name}: it comes after the first stage")
+        self.calls.append((Scene.result, (name, value, unit, how), {}, None))
         at, before = self.running.at, self.running.scriptBefore
         later = [word for word, _ in before[len(self.script.words) + 1 :]]
         if self._saidBefore(RESULT, name=name) and any(w != RESULT for w in later):
@@ -215,7 +233,7 @@ class Scene:
         """Refuse a stage of a scene that is finished, or gone because another one was built. Raises ValueError."""
         if self.finished:
             raise ValueError(f"{name}: the scene is finished")
-        if self.model and Scene.present is not self:
+        if self.model and self.isGone:
             raise ValueError(
                 f"{name}: scene {self.name} is gone, because another one was built since; finish one scene before "
                 "the next begins"
@@ -252,6 +270,7 @@ class Scene:
         self._noteCourse()
         self.running.start(model, self.outcome.space(), State(self))
         Scene.present = self
+        atexit.unregister(self._remind)  # of a run that goes on
         atexit.register(self._remind)
 
     def _noteCourse(self):
@@ -297,6 +316,7 @@ class Scene:
     def stepBack(self):
         """Take the scene back to its last state at rest, also after a collapse. The load that was held then acts again, also the
         one that a growth or a bracket has found. Rows of curve.csv stay."""
+        self.calls.append((Scene.stepBack, (), {}, None))
         if self.only:
             return
         known = self.model is not None and self.model.atRest is not None
@@ -342,8 +362,10 @@ class Scene:
         """
         if (target is None) == (towards is None):
             raise ValueError("bound: give either target or towards")
+        self.calls.append((Scene.bound, (target, direction, towards), {}, None))
         try:
-            return self._bound(target, direction, towards)
+            with self.running.listening():
+                return self._bound(target, direction, towards)
         except Interrupted as error:
             return self.failed(error)
 
@@ -398,10 +420,40 @@ class Scene:
         self.finished = True
         if not error and not self.model:
             return False
-        done = end(self.running, self, error)
+        with self.running.listening():
+            done = end(self.running, self, error)
         if self.status and (done or not error):
+            if notebook.isHere():
+                folder = self.results.directory if self.running.kept else None
+                raise notebook.ended(self.name, self.status, folder, error) from None
             raise SystemExit(self.status)
         return done
+
+    def resume(self):
+        """Go on with a run that was interrupted, as from a following cell of a notebook: the stage that was interrupted is carried
+        out to its end, from the checkpoint that the interruption left.
+
+        Every word of the scene is said again, as ``--resume`` of a script does it, so the result is the same to the last bit.
+        Of a search that the script makes by itself or by :meth:`bracket`, this is the step that was interrupted.
+
+        :returns: how that stage ended
+        :raises ValueError: if the scene was not interrupted, or left no checkpoint
+        """
+        if not (self.finished and self.running.kept):
+            raise ValueError(
+                f"resume: scene {self.name} has no run that was interrupted and left a checkpoint"
+            )
+        folder, calls, given = self.results.directory, self.calls, self.args
+        (name, *made), allowGaps = self._made
+        arguments = given.parser.parse_args(["--resume", folder])
+        vars(self).clear()
+        self.__init__(name, *made, arguments, allowGaps)
+        ended = None
+        for word, args, settings, found in calls:
+            ended = word(self, *args, **settings)
+            if found is not None:  # the script knows the record that was there before
+                self.description.replace(ended, found)
+        return ended
 
     def failed(self, error):
         """End in order after an error of a stage. In a ``with`` block that does it."""

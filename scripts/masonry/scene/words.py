@@ -25,6 +25,7 @@ def describes(act):
                 f"{act.__name__}() must come before the first stage: the scene is built already"
             )
         found = act(scene.description, *args, **settings)
+        scene.calls.append((word, args, settings, found))
         scene.script.note(act, scene, args, settings)
         return found
 

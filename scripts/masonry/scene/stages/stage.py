@@ -133,7 +133,15 @@ def stage(**traits):
     def made(act):
         @functools.wraps(act)
         def staged(scene, *args, **settings):
-            return _carryOut(scene, act, staged.traits, args, settings)
+            if scene.staging:  # it is a part of another stage
+                return _carryOut(scene, act, staged.traits, args, settings)
+            scene.calls.append((staged, args, settings, None))
+            scene.staging = True
+            try:
+                with scene.running.listening():
+                    return _carryOut(scene, act, staged.traits, args, settings)
+            finally:
+                scene.staging = False
 
         staged.traits = Traits(**traits)
         return staged
