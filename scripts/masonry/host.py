@@ -127,10 +127,11 @@ def folders():
 
 def _program():
     """The text of the program ``yade``, or an empty one."""
-    path = shutil.which(YADE) or "/usr/bin/yade"
-    with contextlib.suppress(OSError, UnicodeDecodeError):
-        with open(path, encoding="utf-8") as file:
-            return file.read(1 << 20)
+    path = shutil.which(YADE)
+    if path:
+        with contextlib.suppress(OSError, UnicodeDecodeError):
+            with open(path, encoding="utf-8") as file:
+                return file.read(1 << 20)
     return ""
 
 

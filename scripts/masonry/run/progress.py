@@ -47,7 +47,7 @@ class Progress:
             left = int((now - self.began) * (1 - fraction) / done)
             text += f"  {left // 60}:{left % 60:02d} left"
         if self.line:
-            self.line.show(text, fraction)
+            self.line.show(text, 1.0 if final else fraction)
             return
         if self.kept:
             bar = "#" * int(24 * fraction)

@@ -106,13 +106,16 @@ def _built(scene):
 
 
 def _parts(description):
-    """Blocks of every part with their shades, as of :mod:`masonry.read.block_figure`; a platen is drawn with the parts that it
-    touches."""
-    targets = description.targets.values()
-    shades = {t.brick: _shade(t) for t in targets if t.brick is not None}
+    """Whole bricks of every part, and blocks that are held, loaded or watched with their shades, as of
+    :mod:`masonry.read.block_figure`; a platen is drawn with the parts that it touches."""
+    targets, bricks = description.targets.values(), Bricks(description.bricks)
     parts = {}
-    for number, block in enumerate(description.bricks):
-        parts.setdefault(block.part, []).append((block.corners, shades.get(number)))
+    for block in bricks.whole() if description.halves else bricks:
+        parts.setdefault(block.part, []).append((block.corners, None))
+    for target in targets:
+        if target.brick is not None:
+            block = bricks[target.brick]
+            parts[block.part].append((block.corners, _shade(target)))
     for target in targets:
         if target.box:
             for blocks in parts.values():
