@@ -54,7 +54,6 @@ if hasattr(sys, "yade_argv") and sys.argv and os.path.isfile(sys.argv[0]):
     sys.path.append(os.path.dirname(os.path.abspath(sys.argv[0])))
 
 
-
 def _hasPlugin(folder):
     return bool(glob.glob(os.path.join(glob.escape(folder), "_masonry*.so")))
 

@@ -9,6 +9,8 @@ import html
 import io
 import sys
 
+COLOURS = 64  # of a picture
+
 
 def isHere():
     """Whether this process is the kernel of a notebook."""
@@ -77,11 +79,15 @@ def ended(name, status, folder, error):
 # -- pieces of HTML ---------------------------------------------------------------------------------------------------
 
 
-def picture(figure, dpi=80):
-    """A figure of matplotlib as an image that stands in the HTML itself."""
-    file = io.BytesIO()
-    figure.savefig(file, dpi=dpi, format="png")
-    data = base64.b64encode(file.getvalue()).decode()
+def picture(figure, dpi):
+    """A figure of matplotlib as an image that stands in the HTML itself. It has a palette of :data:`COLOURS` colours, which
+    makes it a third as large."""
+    from PIL import Image
+
+    drawn, small = io.BytesIO(), io.BytesIO()
+    figure.savefig(drawn, dpi=dpi, format="png")
+    Image.open(drawn).convert("RGB").quantize(COLOURS).save(small, "png", optimize=True)
+    data = base64.b64encode(small.getvalue()).decode()
     return f'<img src="data:image/png;base64,{data}"/>'
 
 

@@ -26,7 +26,9 @@ COLOURS = {"open": "tab:red", "slid": "tab:blue"}
 #: A part in its view. ``faces`` and ``moved`` are outlines of its blocks, from the back to the front, at rest and moved,
 #: where displacements are magnified; ``lines`` are pairs of ends of the cracks by kind; ``areas`` are those that face the
 #: viewer; ``spots`` are crushed places (x, y, closure); ``shaded`` are further outlines, lists of them by label and colour.
-Picture = namedtuple("Picture", "view faces moved lines areas spots shaded", defaults=[{}])
+Picture = namedtuple(
+    "Picture", "view faces moved lines areas spots shaded", defaults=[{}]
+)
 
 
 class _Part:

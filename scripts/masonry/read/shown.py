@@ -26,7 +26,7 @@ from . import crack_figure, curve_figure, drawing
 from .files import filesOf, readCurve, readRun
 from .frames import framePaths, readFrame
 
-DPI = 64  # of pictures in a notebook, for 40 to 100 kB each
+DPI = 72  # of pictures in a notebook, for 10 to 50 kB each
 
 
 def unitOf(head, meaning):
@@ -106,9 +106,12 @@ class Curve:
         title = f"{len(self)} rows, {len(self._columns)} columns"
         rows = [(n, self.units[n], *self._ends(n), self._about(n)) for n in self]
         heads = "column", "unit", "first", "last", "smallest", "largest", "meaning"
-        drawn = _drawn(self._draws) if len(self) > 1 else ""
         table = notebook.table(rows, heads)
-        return notebook.titled(title, drawn, notebook.folded("columns", table))
+        return notebook.titled(title, self.picture(), notebook.folded("columns", table))  # fmt: skip
+
+    def picture(self):
+        """What curve.png shows as HTML; nothing where there are less than two rows, or no figure."""
+        return _drawn(self._draws) if len(self) > 1 else ""
 
     def _ends(self, name):
         values = self._columns[name]
@@ -182,7 +185,7 @@ class RunFolder:
             title = f"{run['title']}: {run.get('ended') or 'no rows'}"
             results = notebook.table(resultsOf(run))
             try:
-                curve = _drawn(self.curve()._draws)
+                curve = self.curve().picture()
             except Refused:  # a bound alone has no rows
                 curve = ""
             return notebook.titled(title, self._cracks(), curve, results)

@@ -447,7 +447,8 @@ class Run:
     @contextlib.contextmanager
     def listening(self):
         """Obey Ctrl-C and SIGTERM in a block, in order. In a script the run obeys them from its beginning to its end; in a
-        notebook only while one of its words is carried out, and what else a cell does is interrupted as usual."""
+        notebook only while one of its words is carried out, and what else a cell does is interrupted as usual.
+        """
         if self.results and not self._handlers and notebook.isHere():
             self._takeSignals()
         try:

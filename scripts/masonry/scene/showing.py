@@ -78,12 +78,10 @@ def _standing(scene):
         blocks, joints = (readFrame(folder, kind) for kind in ("blocks", "joints"))
     when = f"after {scene.running.at.stage}" if scene.running.at.stage else "as built"
     rows = resultsOf(run) + [("so far", _state(scene), "")]
-    found = curve(scene)
-    drawn = found._repr_html_() if len(found) > 1 else ""
     return notebook.titled(
         f"{title}: {_state(scene)}",
         cracksOf(run, blocks, joints, when, scene.name),
-        drawn,
+        curve(scene).picture(),
         notebook.table(rows),
     )
 
@@ -107,7 +105,8 @@ def _built(scene):
 
 def _parts(description):
     """Whole bricks of every part, and blocks that are held, loaded or watched with their shades, as of
-    :mod:`masonry.read.block_figure`; a platen is drawn with the parts that it touches."""
+    :mod:`masonry.read.block_figure`; a platen is drawn with the parts that it touches.
+    """
     targets, bricks = description.targets.values(), Bricks(description.bricks)
     parts = {}
     for block in bricks.whole() if description.halves else bricks:
