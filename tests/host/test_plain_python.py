@@ -162,7 +162,7 @@ print(len(bricks.stack(2, (0.3, 0.3, 0.2))))
 """
 
 
-def test_a_machine_without_yade_is_told_in_a_sentence(tmp_path):
+def test_a_machine_without_yade_gives_a_sentence(tmp_path):
     env = environment(PATH=str(tmp_path), YADE_PREFIX=str(tmp_path))
     said = done(ASK, env=env)
     assert "REFUSED: masonry runs in YADE, which is not installed" in said
@@ -170,7 +170,7 @@ def test_a_machine_without_yade_is_told_in_a_sentence(tmp_path):
     assert "Traceback" not in said
 
 
-def test_another_python_is_told_which_one_yade_needs(tmp_path):
+def test_another_python_gives_the_one_that_yade_needs(tmp_path):
     program = tmp_path / "yade"
     text = open("/usr/bin/yade").read()
     program.write_text(re.sub(r"^#!.*", "#!/usr/bin/python3.99", text, 1))
@@ -180,7 +180,7 @@ def test_another_python_is_told_which_one_yade_needs(tmp_path):
     assert said.count("run the script with /usr/bin/python3.99") == 1
 
 
-def test_a_virtual_environment_without_what_yade_needs_is_told_what_to_do(tmp_path):
+def test_a_virtual_environment_without_what_yade_needs_gives_a_sentence(tmp_path):
     (tmp_path / "masonry").symlink_to(INSTALLED)
     env = environment(PYTHONPATH=str(tmp_path))
     run = python("-S", "-c", ASK.split("from masonry import bricks")[0], env=env)
@@ -272,6 +272,7 @@ def test_what_is_refused_is_refused_alike(tmp_path, words):
     assert alike[0] == alike[1]
 
 
+@pytest.mark.slow
 def test_the_help_is_that_of_the_program_that_runs_the_scene(tmp_path):
     (one, first), (two, second) = both(tmp_path, "couplet", "--help")
     assert one.returncode == two.returncode == 0
