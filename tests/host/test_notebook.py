@@ -41,7 +41,10 @@ class Kernel:
 
     def ask(self, code, until=None, seconds=120):
         """Run a cell; ``until``: function of a message after which the kernel is interrupted once. Returns its messages."""
-        sent, found = self.client.execute(code, allow_stdin=False), []
+        sent, found = (
+            self.client.execute(code, allow_stdin=False, stop_on_error=False),
+            [],
+        )
         ends = time.monotonic() + seconds
         while time.monotonic() < ends:
             with contextlib.suppress(queue.Empty):
@@ -111,7 +114,13 @@ def test_a_scene_shows_itself_before_between_and_after_its_stages(kernel, tmp_pa
         "kg/m³",
     ):
         assert text in page.replace(' style="text-align:left"', ""), text
-    progress = kernel.say("scene.settle(); scene.push(top, 1)")
+    (error,) = of(kernel.ask("scene.push(top, 1)"), "error")
+    assert "settle(): call that first" in error["evalue"]
+    assert not (tmp_path / "shown").exists()
+    progress = kernel.say("scene.settle()")
+    (error,) = of(kernel.ask("scene.push(top, -1)"), "error")  # a slip is no end
+    assert error["ename"] == "Refused" and "must be above 0" in error["evalue"]
+    progress += kernel.say("scene.push(top, 1)")
     lines = [c for c in of(progress, "display_data") if "progress" in str(c)]
     assert len(lines) == 2  # one of each stage
     assert {c["transient"]["display_id"] for c in of(progress, "update_display_data")} <= {c["transient"]["display_id"] for c in lines}  # fmt: skip
@@ -145,8 +154,10 @@ print(json.dumps([list(curve), curve.units, {n: list(curve[n]) for n in curve}])
 def test_an_interrupted_run_goes_on_from_a_following_cell_to_the_same_bits(
     kernel, tmp_path
 ):
-    begin = SCENE + "scene.settle()"
-    kernel.say(begin.format(name="stopped", rate=0.5, out="stopped"))
+    kernel.say(SCENE.format(name="stopped", rate=0.5, out="stopped"))
+    for early in ("push(top, 1)", "stepBack()", "result('early', 1)"):
+        assert of(kernel.ask(f"scene.{early}"), "error")
+    kernel.say("scene.settle()\nscene.result('rest', 1.5, 'mm')")
     seen = []
 
     def pushes(message):
@@ -171,8 +182,10 @@ def test_an_interrupted_run_goes_on_from_a_following_cell_to_the_same_bits(
     kernel.say("scene.move(base, z=-0.1)\nscene.finish()")
     kernel.say(
         SCENE.format(name="stopped", rate=0.5, out="whole")
-        + "scene.settle()\nscene.push(top, 1.5)\nscene.move(base, z=-0.1)\nscene.finish()"
+        + "scene.settle()\nscene.result('rest', 1.5, 'mm')\nscene.push(top, 1.5)\nscene.move(base, z=-0.1)\nscene.finish()"
     )
+    kept = json.load(open(tmp_path / "stopped" / "run.json"))["answers"]
+    assert [a["value"] for a in kept if a["name"] == "rest"] == [1.5]
     whole, stopped = (
         (tmp_path / name / "curve.csv").read_bytes() for name in ("whole", "stopped")
     )

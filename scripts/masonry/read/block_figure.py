@@ -28,13 +28,12 @@ def _picture(blocks, sight):
     nothing = np.zeros((0, 3)), np.zeros(0)  # no joints decide from where it is seen
     view = viewOf(np.concatenate(plain or corners), *nothing, sight)
     to = np.column_stack([view.right, view.up])
-    faces, shaded = [], {}
+    faces = []
     for points, (_, shade) in zip(corners, blocks):
         flat, depth = (points - view.start) @ to, points @ view.towards
-        face = flat[outline(flat, depth)]
-        faces.append((depth.max(), face))
-        if shade:
-            shaded.setdefault((shade, SHADES[shade]), []).append(face)
-    faces.sort(key=lambda face: face[0])
-    faces = [face for _, face in faces]
-    return Picture(view, faces, faces, {}, {}, [], shaded)
+        colour = (shade, SHADES[shade]) if shade else None
+        faces.append((depth.max(), flat[outline(flat, depth)], colour))
+    faces.sort(key=lambda face: face[0])  # from the back to the front
+    outlines = [face for _, face, _ in faces]
+    shades = [colour for _, _, colour in faces]
+    return Picture(view, outlines, outlines, {}, {}, [], shades)

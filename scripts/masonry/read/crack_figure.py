@@ -21,13 +21,15 @@ SEEN = 0.002, 0.6
 SHOWN = 0.06  # so large, if the usual magnification is not taken
 FACING = 0.87  # cosine from which a joint that faces the viewer is drawn as an area, not as a line: less than 30°
 
+BRICK = "#f3e3c8"  # the colour of a block
 COLOURS = {"open": "tab:red", "slid": "tab:blue"}
 
 #: A part in its view. ``faces`` and ``moved`` are outlines of its blocks, from the back to the front, at rest and moved,
 #: where displacements are magnified; ``lines`` are pairs of ends of the cracks by kind; ``areas`` are those that face the
-#: viewer; ``spots`` are crushed places (x, y, closure); ``shaded`` are further outlines, lists of them by label and colour.
+#: viewer; ``spots`` are crushed places (x, y, closure); ``shades`` are the colour of every block and its label in the legend,
+#: or None.
 Picture = namedtuple(
-    "Picture", "view faces moved lines areas spots shaded", defaults=[{}]
+    "Picture", "view faces moved lines areas spots shades", defaults=[()]
 )
 
 
@@ -342,11 +344,10 @@ def page(pictures, title):
 
 def _box(picture):
     """Two corners of what is drawn of a part: all of it, but not much farther than the part is large."""
-    further = [face for faces in picture.shaded.values() for face in faces]
-    rest = np.concatenate([*picture.faces, *further])
+    rest = np.concatenate(picture.faces)
     low, high = rest.min(axis=0), rest.max(axis=0)
     reach = 0.6 * (high - low).max()
-    moved = np.concatenate([*picture.moved, *further])
+    moved = np.concatenate(picture.moved)
     low = np.maximum(np.minimum(low, moved.min(axis=0)), low - reach)
     high = np.minimum(np.maximum(high, moved.max(axis=0)), high + reach)
     rim = 0.045 * (high - low).max()
@@ -359,17 +360,16 @@ def _panel(axes, picture, box, points):
 
     course = np.median([np.ptp(face, axis=0).min() for face in picture.faces]) * points
     thin, bold = np.clip(0.041 * course, 0.1, 0.35), np.clip(0.21 * course, 0.7, 1.8)
+    colours = [shade[1] if shade else BRICK for shade in picture.shades] or BRICK
     axes.add_collection(
         PolyCollection(picture.faces, facecolor="0.9", edgecolor="0.8", lw=0.85 * thin)
     )
     axes.add_collection(
-        PolyCollection(picture.moved, facecolor="#f3e3c8", edgecolor="0.45", lw=thin)
+        PolyCollection(picture.moved, facecolor=colours, edgecolor="0.45", lw=thin)
     )
-    for (label, colour), polygons in picture.shaded.items():
+    for label, colour in sorted({shade for shade in picture.shades if shade}):
         axes.add_collection(
-            PolyCollection(
-                polygons, facecolor=colour, edgecolor="0.3", lw=thin, label=label
-            )
+            PolyCollection([], facecolor=colour, edgecolor="0.45", label=label)
         )
     for kind, polygons in picture.areas.items():
         if polygons:

@@ -21,6 +21,7 @@ command line work, ``--help`` explains them: ``--preset``, ``--rate``, ``--set``
 """
 
 import atexit
+import contextlib
 import functools
 import math
 
@@ -46,7 +47,7 @@ from .resuming import State
 from .stages import AT_REST, LATER, STAGES, gravity, prepare
 from .stages.stage import Answer
 from .targets import LOADED
-from .words import RESULT, Script
+from .words import RESULT, Call, Script
 
 
 OWN = "0"  # the stage of the results of the script, which all stages follow
@@ -124,8 +125,7 @@ class Scene:
             self.description.bricks = list(Bricks(self.description.bricks).whole())
         self.description.deformable = arguments.blocks == "deformable"
         self.script = Script()
-        #: every word that was said: its function, its arguments, and what it returned if it describes
-        self.calls = []
+        self.calls = []  # every word that was said
         self.staging = False  # whether a stage is being carried out
         self.running = Run(name, arguments, self.script.words)
         self.model = self.bounds = self.outcome = None  # when it is built
@@ -207,7 +207,7 @@ class Scene:
         """
         if not self.model:
             raise ValueError(f"result {name}: it comes after the first stage")
-        self.calls.append((Scene.result, (name, value, unit, how), {}, None))
+        self.calls.append(Call(Scene.result, (name, value, unit, how), {}))
         at, before = self.running.at, self.running.scriptBefore
         later = [word for word, _ in before[len(self.script.words) + 1 :]]
         if self._saidBefore(RESULT, name=name) and any(w != RESULT for w in later):
@@ -316,7 +316,11 @@ class Scene:
     def stepBack(self):
         """Take the scene back to its last state at rest, also after a collapse. The load that was held then acts again, also the
         one that a growth or a bracket has found. Rows of curve.csv stay."""
-        self.calls.append((Scene.stepBack, (), {}, None))
+        with self.noted(Scene.stepBack):
+            self._stepBack()
+
+    def _stepBack(self):
+        """As :meth:`stepBack`."""
         if self.only:
             return
         known = self.model is not None and self.model.atRest is not None
@@ -362,9 +366,8 @@ class Scene:
         """
         if (target is None) == (towards is None):
             raise ValueError("bound: give either target or towards")
-        self.calls.append((Scene.bound, (target, direction, towards), {}, None))
         try:
-            with self.running.listening():
+            with self.noted(Scene.bound, target, direction, towards), self.running.listening():  # fmt: skip
                 return self._bound(target, direction, towards)
         except Interrupted as error:
             return self.failed(error)
@@ -429,6 +432,17 @@ class Scene:
             raise SystemExit(self.status)
         return done
 
+    @contextlib.contextmanager
+    def noted(self, word, *args, **settings):
+        """Note a word that is carried out in a block, for :meth:`resume`: also one that is refused, but ends no run."""
+        call = Call(word, args, settings)
+        self.calls.append(call)
+        try:
+            yield
+        except ValueError:
+            call.refused = not self.finished
+            raise
+
     def resume(self):
         """Go on with a run that was interrupted, as from a following cell of a notebook: the stage that was interrupted is carried
         out to its end, from the checkpoint that the interruption left.
@@ -449,10 +463,13 @@ class Scene:
         vars(self).clear()
         self.__init__(name, *made, arguments, allowGaps)
         ended = None
-        for word, args, settings, found in calls:
-            ended = word(self, *args, **settings)
-            if found is not None:  # the script knows the record that was there before
-                self.description.replace(ended, found)
+        for call in calls:
+            with contextlib.suppress(*[ValueError] * call.refused):
+                ended = call.word(self, *call.args, **call.settings)
+            if (
+                call.found is not None
+            ):  # the script knows the record that it gave before
+                self.description.replace(ended, call.found)
         return ended
 
     def failed(self, error):

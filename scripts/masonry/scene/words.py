@@ -4,11 +4,29 @@
 import functools
 import inspect
 import math
+from dataclasses import dataclass
+from typing import Callable
 
 from ..basics import Refused
 
 RESULT = "result"  # the word that keeps a number of the script's own
 PUSHES = "push", "cycle", "follow"  # to the first of them --until and --history apply
+
+
+@dataclass
+class Call:
+    """A word as the script said it, for a run that goes on in the same process.
+
+    :param word: function of the scene and of what the script says
+    :param found: what it returned, if it describes
+    :param refused: whether it was refused, and the script went on
+    """
+
+    word: Callable
+    args: tuple
+    settings: dict
+    found: object = None
+    refused: bool = False
 
 
 def describes(act):
@@ -25,7 +43,7 @@ def describes(act):
                 f"{act.__name__}() must come before the first stage: the scene is built already"
             )
         found = act(scene.description, *args, **settings)
-        scene.calls.append((word, args, settings, found))
+        scene.calls.append(Call(word, args, settings, found))
         scene.script.note(act, scene, args, settings)
         return found
 

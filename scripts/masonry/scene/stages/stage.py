@@ -9,6 +9,7 @@ from typing import Callable
 
 from yade import O
 
+from ... import notebook
 from ...basics import Collapsed, say
 from ...run import batch
 from ..resuming import enter
@@ -135,10 +136,12 @@ def stage(**traits):
         def staged(scene, *args, **settings):
             if scene.staging:  # it is a part of another stage
                 return _carryOut(scene, act, staged.traits, args, settings)
-            scene.calls.append((staged, args, settings, None))
+            if notebook.isHere() and not scene.finished:
+                # a word that is wrong can be corrected in the cell: it is no end of the run
+                _check(scene, act, staged.traits, args, settings)
             scene.staging = True
             try:
-                with scene.running.listening():
+                with scene.noted(staged, *args, **settings), scene.running.listening():
                     return _carryOut(scene, act, staged.traits, args, settings)
             finally:
                 scene.staging = False
@@ -147,6 +150,14 @@ def stage(**traits):
         return staged
 
     return made
+
+
+def _check(scene, act, traits, args, settings):
+    """What the user says to a stage, as its kinds return it. Raises Refused."""
+    (_, *args), settings = act.checked((scene, *args), settings)
+    if traits.check:
+        traits.check(scene, *args, **settings)
+    return args, settings
 
 
 def _carryOut(scene, act, traits, args, settings):
@@ -159,9 +170,7 @@ def _carryOut(scene, act, traits, args, settings):
         )
     running, before = scene.running, None
     try:
-        (_, *args), settings = act.checked((scene, *args), settings)
-        if traits.check:
-            traits.check(scene, *args, **settings)
+        args, settings = _check(scene, act, traits, args, settings)
         scene.begin()
         if batch.PROBE in os.environ:
             return scene.probe(name, traits, argumentsOf(act, scene, args, settings))
