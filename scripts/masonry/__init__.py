@@ -132,7 +132,6 @@ def _start():
 def _register():
     """Register the classes of the plugin in the YADE of this process. Raises ImportError."""
     from . import memory
-    from .assembly import ports, threads
     from .basics import say
 
     def end(text):
@@ -165,7 +164,8 @@ def _register():
         memory.reserve()
     except MemoryError as error:
         end(error)
-    from .assembly import given  # noqa: F401: joints and materials note what is given
+    # joints and materials note what is given from here on
+    from .assembly import given, ports, threads  # noqa: F401
 
     ports.close()
     threads.limit()
