@@ -23,6 +23,7 @@ command line work, ``--help`` explains them: ``--preset``, ``--rate``, ``--set``
 from __future__ import annotations
 
 import atexit
+import contextlib
 import functools
 import math
 from typing import (
@@ -42,6 +43,7 @@ from ..arguments import LONGEST_NAME, Numbers
 from ..arguments import direction as directionOf
 from ..arguments import name as nameOf
 from ..arguments import number, orNone, shown, takes, text
+from .. import notebook
 from ..assembly.blocks import vector
 from ..assembly.structure import Structure
 from ..basics import GRAVITY, Interrupted, Refused, say
@@ -50,7 +52,7 @@ from ..run.ending import end
 from ..run.presets import BOUND
 from ..run.results import Results
 from ..run.run import Run
-from . import loads, options, probing, records, stages, supports
+from . import loads, options, probing, records, showing, stages, supports
 from .bounds import EVERY, SMALL, Bounds, nameOfLean, nameOfPush
 from .description import Description
 from .materials import Masonry, linesOf, loadingBlock
@@ -59,7 +61,7 @@ from .resuming import State
 from .stages import AT_REST, STAGES, gravity, prepare
 from .stages.stage import Answer
 from .targets import LOADED, Target
-from .words import RESULT, Script
+from .words import RESULT, Call, Script
 
 
 OWN = "0"  # the stage of the results of the script, which all stages follow
@@ -156,6 +158,8 @@ class Scene:
         allowGaps: bool = False,
         **usual: Any,
     ) -> None:
+        #: what it was made with, its name first, for :meth:`resume`
+        self._made = (name, bricks, materials, title, plane, gravity, columns, functors), allowGaps  # fmt: skip
         fine = isinstance(name, str) and name.strip(". ") and name.isprintable()
         if not fine or "/" in name or len(name.encode()) > LONGEST_NAME:
             raise Refused(
@@ -178,6 +182,8 @@ class Scene:
             self.description.bricks = list(Bricks(self.description.bricks).whole())
         self.description.deformable = arguments.blocks == "deformable"
         self.script = Script()
+        self.calls = []  # every word that was said
+        self.staging = False  # whether a stage is being carried out
         self.running = Run(name, arguments, self.script.words)
         # when it is built
         self.model: Any = None
@@ -223,6 +229,17 @@ class Scene:
     growPress, shake, run = stages.growPress, stages.shake, stages.run
     bracket = gravity.bracket
 
+    curve = showing.curve
+
+    def _repr_html_(self) -> str:
+        """The scene in a notebook: what is built before the first stage, else cracks, curve and results."""
+        return showing.asHtml(self)
+
+    @property
+    def isGone(self) -> bool:
+        """Whether another scene was built in YADE since this one."""
+        return Scene.present is not self
+
     @property
     def status(self) -> int:
         """Exit status of the script, when the scene is finished."""
@@ -265,6 +282,7 @@ class Scene:
         """
         if not self.model:
             raise ValueError(f"result {name}: it comes after the first stage")
+        self.calls.append(Call(Scene.result, (name, value, unit, how), {}))
         at, before = self.running.at, self.running.scriptBefore
         later = [word for word, _ in before[len(self.script.words) + 1 :]]
         if self._saidBefore(RESULT, name=name) and any(w != RESULT for w in later):
@@ -290,7 +308,7 @@ class Scene:
         """Refuse a stage of a scene that is finished, or gone because another one was built. Raises ValueError."""
         if self.finished:
             raise ValueError(f"{name}: the scene is finished")
-        if self.model and Scene.present is not self:
+        if self.model and self.isGone:
             raise ValueError(
                 f"{name}: scene {self.name} is gone, because another one was built since; finish one scene before "
                 "the next begins"
@@ -327,6 +345,7 @@ class Scene:
         self._noteCourse()
         self.running.start(model, self.outcome.space(), State(self))
         Scene.present = self
+        atexit.unregister(self._remind)  # of a run that goes on
         atexit.register(self._remind)
 
     def _noteCourse(self):
@@ -372,6 +391,11 @@ class Scene:
     def stepBack(self) -> None:
         """Take the scene back to its last state at rest, also after a collapse. The load that was held then acts again, also the
         one that a growth or a bracket has found. Rows of curve.csv stay."""
+        with self.noted(Scene.stepBack):
+            self._stepBack()
+
+    def _stepBack(self):
+        """As :meth:`stepBack`."""
         if self.only:
             return
         known = self.model is not None and self.model.atRest is not None
@@ -423,7 +447,8 @@ class Scene:
         if (target is None) == (towards is None):
             raise ValueError("bound: give either target or towards")
         try:
-            return self._bound(target, direction, towards)
+            with self.noted(Scene.bound, target, direction, towards), self.running.listening():  # fmt: skip
+                return self._bound(target, direction, towards)
         except Interrupted as error:
             return self.failed(error)
 
@@ -478,10 +503,54 @@ class Scene:
         self.finished = True
         if not error and not self.model:
             return False
-        done = end(self.running, self, error)
+        with self.running.listening():
+            done = end(self.running, self, error)
         if self.status and (done or not error):
+            if notebook.isHere():
+                folder = self.results.directory if self.running.kept else None
+                raise notebook.ended(self.name, self.status, folder, error) from None
             raise SystemExit(self.status)
         return done
+
+    @contextlib.contextmanager
+    def noted(self, word, *args, **settings):
+        """Note a word that is carried out in a block, for :meth:`resume`: also one that is refused, but ends no run."""
+        call = Call(word, args, settings)
+        self.calls.append(call)
+        try:
+            yield
+        except ValueError:
+            call.refused = not self.finished
+            raise
+
+    def resume(self) -> str:
+        """Go on with a run that was interrupted, as from a following cell of a notebook: the stage that was interrupted is carried
+        out to its end, from the checkpoint that the interruption left.
+
+        Every word of the scene is said again, as ``--resume`` of a script does it, so the result is the same to the last bit.
+        Of a search that the script makes by itself or by :meth:`bracket`, this is the step that was interrupted.
+
+        :returns: how that stage ended
+        :raises ValueError: if the scene was not interrupted, or left no checkpoint
+        """
+        if not (self.finished and self.running.kept):
+            raise ValueError(
+                f"resume: scene {self.name} has no run that was interrupted and left a checkpoint"
+            )
+        folder, calls, given = self.results.directory, self.calls, self.args
+        (name, *made), allowGaps = self._made
+        arguments = given.parser.parse_args(["--resume", folder])
+        vars(self).clear()
+        self.__init__(name, *made, arguments, allowGaps)  # type: ignore[misc]
+        ended = None
+        for call in calls:
+            with contextlib.suppress(*[ValueError] * call.refused):
+                ended = call.word(self, *call.args, **call.settings)
+            if (
+                call.found is not None
+            ):  # the script knows the record that it gave before
+                self.description.replace(ended, call.found)
+        return ended
 
     def failed(self, error: BaseException) -> Any:
         """End in order after an error of a stage. In a ``with`` block that does it."""

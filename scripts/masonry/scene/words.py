@@ -6,6 +6,7 @@ from __future__ import annotations
 import functools
 import inspect
 import math
+from dataclasses import dataclass
 from typing import Any, Callable, Concatenate, ParamSpec, TypeVar
 
 from ..basics import Refused
@@ -15,6 +16,22 @@ R = TypeVar("R")
 
 RESULT = "result"  # the word that keeps a number of the script's own
 PUSHES = "push", "cycle", "follow"  # to the first of them --until and --history apply
+
+
+@dataclass
+class Call:
+    """A word as the script said it, for a run that goes on in the same process.
+
+    :param word: function of the scene and of what the script says
+    :param found: what it returned, if it describes
+    :param refused: whether it was refused, and the script went on
+    """
+
+    word: Callable
+    args: tuple
+    settings: dict
+    found: Any = None
+    refused: bool = False
 
 
 def describes(
@@ -33,6 +50,7 @@ def describes(
                 f"{act.__name__}() must come before the first stage: the scene is built already"
             )
         found = act(scene.description, *args, **settings)
+        scene.calls.append(Call(word, args, settings, found))
         scene.script.note(act, scene, args, settings)
         return found
 

@@ -11,6 +11,7 @@ from typing import Any, Callable, Concatenate, ParamSpec
 
 from yade import O
 
+from ... import notebook
 from ...basics import Collapsed, say
 from ...run import batch
 from ..resuming import enter
@@ -139,13 +140,31 @@ def stage(**traits: Any) -> Callable[[Stage[P]], Stage[P]]:
     def made(act: Stage[P]) -> Stage[P]:
         @functools.wraps(act)
         def staged(scene: Any, *args: P.args, **settings: P.kwargs) -> str:
-            return _carryOut(scene, act, known, args, settings)
+            if scene.staging:  # it is a part of another stage
+                return _carryOut(scene, act, known, args, settings)
+            if notebook.isHere() and not scene.finished:
+                # a word that is wrong can be corrected in the cell: it is no end of the run
+                _check(scene, act, known, args, settings)
+            scene.staging = True
+            try:
+                with scene.noted(staged, *args, **settings), scene.running.listening():
+                    return _carryOut(scene, act, known, args, settings)
+            finally:
+                scene.staging = False
 
         known = Traits(**traits)
         vars(staged).update(traits=known)
         return staged
 
     return made
+
+
+def _check(scene, act, traits, args, settings):
+    """What the user says to a stage, as its kinds return it. Raises Refused."""
+    (_, *args), settings = act.checked((scene, *args), settings)
+    if traits.check:
+        traits.check(scene, *args, **settings)
+    return args, settings
 
 
 def _carryOut(scene, act, traits, args, settings):
@@ -158,9 +177,7 @@ def _carryOut(scene, act, traits, args, settings):
         )
     running, before = scene.running, None
     try:
-        (_, *args), settings = act.checked((scene, *args), settings)
-        if traits.check:
-            traits.check(scene, *args, **settings)
+        args, settings = _check(scene, act, traits, args, settings)
         scene.begin()
         if batch.PROBE in os.environ:
             return scene.probe(name, traits, argumentsOf(act, scene, args, settings))
