@@ -31,6 +31,7 @@ from typing import (
     Callable,
     Concatenate,
     Iterable,
+    Iterator,
     ParamSpec,
     Protocol,
     Sequence,
@@ -513,7 +514,9 @@ class Scene:
         return done
 
     @contextlib.contextmanager
-    def noted(self, word, *args, **settings):
+    def noted(
+        self, word: Callable[..., Any], *args: Any, **settings: Any
+    ) -> Iterator[None]:
         """Note a word that is carried out in a block, for :meth:`resume`: also one that is refused, but ends no run."""
         call = Call(word, args, settings)
         self.calls.append(call)
