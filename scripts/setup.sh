@@ -5,6 +5,7 @@
 #
 #   bash scripts/setup.sh                        what a run needs, with its figures and bounds
 #   bash scripts/setup.sh --tests [PACKAGE...]   also what tests and studies need, further packages, and the C++ of tests
+#   bash scripts/setup.sh --with PACKAGE...      what a run needs, and further packages
 #   bash scripts/setup.sh --no-build             the packages that a plugin needs which was built elsewhere; builds nothing
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -27,8 +28,9 @@ case "${1:-}" in
         tests=ON target=all
         packages+=(python3-pytest python3-hypothesis python3-openturns python3-vtk9 doctest-dev git "${@:2}")
         ;;
+    --with) packages+=("${@:2}") ;;
     --no-build) packages=("${runs[@]}") ;;
-    *) sed -n '6,8s/^# *//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+    *) sed -n '6,9s/^# *//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac
 
 # Says what is done and how long it takes on two cores of 2.5 GHz (Debian's packages at 60 MB/s), then how far it is: on a

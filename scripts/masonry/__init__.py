@@ -23,14 +23,18 @@ A scene of one's own is bricks, materials and stages::
 - :mod:`masonry.assembly`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by body; the 3-D view
 - :mod:`masonry.folders`: what is written in folders that others may have packed, and how
 - :mod:`masonry.memory`: what numerical libraries take of the memory
+- :mod:`masonry.packages`: libraries that come when they are first needed, and the Debian packages that have them
+- :mod:`masonry.host`: how YADE is found and started in plain Python
+- :mod:`masonry.notebook`: what is different in a notebook
 - :mod:`masonry.arguments`: how every word checks what it is given
 - :mod:`masonry.basics`: gravity, how a run can end before its time, what is said on the terminal
 
 ``masonry.read``, ``masonry.study``, ``masonry.bricks`` and what they import work without YADE.
 
-Import it from a YADE script (or after ``import yade``). The classes that it registers in YADE (``masonry.classes``) are
-also in ``yade.wrapper``; their manual is ``help(masonry.MasonryJoint)``, ``help(masonry.MasonryMat)`` and so on, after
-``import masonry``.
+Import it from a script of ``yade``, of plain Python or from a notebook: where YADE does not run yet, it starts when
+something is first used that needs it (:mod:`masonry.host`). The classes that are then registered in YADE
+(``masonry.classes``) are also in ``yade.wrapper``; their manual is ``help(masonry.MasonryJoint)``,
+``help(masonry.MasonryMat)`` and so on.
 """
 
 import sys
@@ -40,75 +44,183 @@ import sys
 if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:
     del sys.path[0]
 
+import contextlib
+import glob
 import importlib
+import importlib.util
 import os
+from typing import TYPE_CHECKING
 
 # YADE does not search the folder of its script for modules. It comes last, so that nothing in it hides another module.
 if hasattr(sys, "yade_argv") and sys.argv and os.path.isfile(sys.argv[0]):
     sys.path.append(os.path.dirname(os.path.abspath(sys.argv[0])))
 
+
+def _hasPlugin(folder):
+    return bool(glob.glob(os.path.join(glob.escape(folder), "_masonry*.so")))
+
+
+# In plain Python the folder of a script comes first. Scripts of a clone of the project lie beside its sources, which have no
+# plugin: then the installed package is used, as in YADE.
+if not _hasPlugin(__path__[0]):
+    _others = (os.path.join(_entry, "masonry") for _entry in sys.path)
+    __path__[:0] = [_folder for _folder in _others if _hasPlugin(_folder)][:1]
+
 #: The version of the project, which the plugin, run.json, checkpoints and the Debian package have from this line.
 __version__ = "3.0.0"
 
-#: Modules and packages that the package hands on under a short name; they are loaded when they are used first.
-_HANDED_ON = {
+#: What the package hands on under a short name: modules, and names of modules. They are loaded when one is used first.
+_MODULES = {
     "bricks": "bricks",
     "fields": "scene.fields",
     "limit": "limit",
     "materials": "scene.materials",
+    "options": "scene.options",
     "study": "study",
     "window": "assembly.window",
 }
+_NAMES = {
+    "AT_REST": "scene.stages",
+    "COLLAPSED": "scene.stages",
+    "DONE": "scene.stages",
+    "MOVING": "scene.stages",
+    "Scene": "scene.scene",
+    "addBlock": "assembly.blocks",
+    "advance": "assembly.engines",
+    "connect": "assembly.connecting",
+    "engine": "assembly.engines",
+    "engines": "assembly.engines",
+    "loadCheckpoint": "run.checkpoints",
+    "rayleigh": "scene.ground",
+    "readCheckpoint": "run.checkpoints",
+    "saveCheckpoint": "run.checkpoints",
+    "touchingPairs": "assembly.connecting",
+}
+#: What is there when the plugin is registered in YADE, beside the classes.
+_OF_PLUGIN = ["classes", "commit", "criticalTimeStep"]
+#: Rooms and modules of this package that work without YADE.
+_WITHOUT_YADE = ["arguments", "basics", "bricks", "fields", "folders", "host", "memory", "notebook", "packages", "read", "study"]  # fmt: skip
 
 
-def __getattr__(name):
-    if name in _HANDED_ON:
-        return importlib.import_module(f"{__name__}.{_HANDED_ON[name]}")
-    raise AttributeError(f"module 'masonry' has no attribute {name!r}")
+if TYPE_CHECKING:  # what is loaded later, for those that check types
+    from yade.wrapper import (
+        Gl1_MasonryBlock,
+        Gl1_MasonryJointPhys,
+        GlExtra_MasonryLegend,
+        Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom,
+        Ig2_MasonryBlock_Polyhedra_MasonryJointGeom,
+        Ig2_Polyhedra_Polyhedra_MasonryJointGeom,
+        Ip2_MasonryMat_MasonryMat_MasonryJointPhys,
+        Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening,
+        Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening,
+        MasonryBlock,
+        MasonryEnergy,
+        MasonryIntegrator,
+        MasonryJoint,
+        MasonryJointGeom,
+        MasonryJointLoop,
+        MasonryJointPhys,
+        MasonryLoad,
+        MasonryMat,
+        MasonryVtkRecorder,
+        MasonryZones,
+    )
 
-
-def __dir__():
-    return sorted({*globals(), *_HANDED_ON})
-
-
-if "yade" in sys.modules:
-    from . import memory
-    from .basics import say as _say
-
-    def _end(text):
-        _say(text, sys.stderr)
-        raise SystemExit(1)
-
-    try:
-        from ._masonry import classes, commit, criticalTimeStep
-    except ImportError as error:
-        if "failed to map" in str(error):
-            _end(memory.FULL)
-        if "undefined symbol" not in str(error):
-            raise
-        from yade.config import version as _version
-
-        raise ImportError(
-            f"this YADE ({_version}) does not fit the masonry plugin, which was built for another one: expected a "
-            "function or table, found none (bash scripts/setup.sh builds it for the YADE of this machine): "
-            + str(error)
-        ) from None
-    import yade.wrapper as _wrapper
-
-    globals().update({_name: getattr(_wrapper, _name) for _name in classes})
-    try:
-        memory.reserve()
-    except MemoryError as _error:
-        _end(_error)
-    from .assembly import given, ports, threads
-    from .scene import options
-    from .run.checkpoints import loadCheckpoint, readCheckpoint, saveCheckpoint
+    from . import bricks, limit, study
+    from ._masonry import classes, commit, criticalTimeStep
+    from .assembly import window
     from .assembly.blocks import addBlock
     from .assembly.connecting import connect, touchingPairs
     from .assembly.engines import advance, engine, engines
+    from .run.checkpoints import loadCheckpoint, readCheckpoint, saveCheckpoint
+    from .scene import fields, materials, options
     from .scene.ground import rayleigh
     from .scene.scene import Scene
     from .scene.stages import AT_REST, COLLAPSED, DONE, MOVING
+else:
+
+    def __getattr__(name):
+        if name.startswith("_") and name != "__all__":
+            raise AttributeError(f"module 'masonry' has no attribute {name!r}")
+        if name not in _WITHOUT_YADE:
+            _start()
+        if name == "__all__":
+            return sorted({*_MODULES, *_NAMES, *_OF_PLUGIN, *globals()["classes"]})
+        if name in _NAMES:
+            found = getattr(importlib.import_module(f"{__name__}.{_NAMES[name]}"), name)
+            return globals().setdefault(name, found)
+        if name in globals():
+            return globals()[name]
+        module = f"{__name__}.{_MODULES.get(name, name)}"
+        if name in _MODULES or importlib.util.find_spec(module):
+            return importlib.import_module(module)
+        raise AttributeError(f"module 'masonry' has no attribute {name!r}")
+
+
+def __dir__():
+    return sorted({*globals(), *_MODULES, *_NAMES})
+
+
+def _start():
+    """Start YADE, if it does not run in this process yet, and register the classes of the plugin. Raises ImportError."""
+    importlib.import_module("yade")
+    if _OF_PLUGIN[0] not in globals():
+        _register()
+
+
+def _register():
+    """Register the classes of the plugin in the YADE of this process. Raises ImportError."""
+    from . import memory
+    from .basics import say
+
+    def end(text):
+        say(text, sys.stderr)
+        raise SystemExit(1)
+
+    try:
+        from . import _masonry
+    except ImportError as error:
+        if not any(map(_hasPlugin, __path__)):
+            raise ImportError(
+                f"the masonry plugin is not built for {sys.executable}: bash scripts/setup.sh builds and installs it"
+            ) from None
+        if "failed to map" in str(error):
+            end(memory.FULL)
+        if "undefined symbol" not in str(error):
+            raise
+        from yade.config import version
+
+        raise ImportError(
+            f"this YADE ({version}) does not fit the masonry plugin, which was built for another one: expected a "
+            "function or table, found none (bash scripts/setup.sh builds it for the YADE of this machine): "
+            + str(error)
+        ) from None
+    import yade.wrapper
+
+    own = globals()
+    own.update({name: getattr(yade.wrapper, name) for name in _masonry.classes})
+    try:
+        memory.reserve()
+    except MemoryError as error:
+        end(error)
+    # joints and materials note what is given from here on
+    from .assembly import given, ports, threads  # noqa: F401
 
     ports.close()
     threads.limit()
+    own.update({name: getattr(_masonry, name) for name in _OF_PLUGIN})
+
+
+def _started():
+    """What is done when YADE was imported after this package. A plugin that does not fit leaves YADE as it is: the error
+    comes when the plugin is used."""
+    with contextlib.suppress(ImportError):
+        _register()
+
+
+if "yade" in sys.modules:
+    _register()
+else:
+    from . import host
+
+    host.install(_started)

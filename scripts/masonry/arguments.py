@@ -11,16 +11,30 @@ the word uses it, or raises ValueError with a sentence that goes on behind the n
 a word are in one error, and an argument that is not known is answered with the nearest name.
 """
 
+from __future__ import annotations
+
 import difflib
 import functools
 import inspect
 import math
 import os
 from numbers import Integral, Real
+from typing import Any, Callable, ParamSpec, Sequence, TypeVar, Union
 
 import numpy as np
 
 from .basics import Refused
+
+#: What a user gives, as type hints name it: some numbers, some axes, a file or a folder.
+Numbers = Union[Sequence[float], np.ndarray[Any, Any]]
+Axes = Union[str, Sequence[str]]
+FilePath = Union[str, os.PathLike[str]]
+#: A kind of argument, as this module describes it.
+Kind = Callable[..., Any]
+
+P = ParamSpec("P")
+R = TypeVar("R")
+C = TypeVar("C", bound=type)
 
 LONGEST_NAME, LONGEST_TEXT = 100, 1000  # characters of a name, and of a text
 SHORTEST, FARTHEST = 1e-100, 1e100  # lengths of a direction [-]
@@ -351,7 +365,7 @@ def misfits(word, kinds, values):
 # -- words ------------------------------------------------------------------------------------------------------------
 
 
-def takes(**kinds):
+def takes(**kinds: Kind) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Let a word check its arguments, each by the kind with its name.
 
     The word gets ``kinds``, and ``checked``, a function of its positional and its named arguments that gives both as the
@@ -360,7 +374,7 @@ def takes(**kinds):
     :raises Refused: from the word, with all problems
     """
 
-    def made(act):
+    def made(act: Callable[P, R]) -> Callable[P, R]:
         signature = inspect.signature(act)
 
         name = act.__qualname__.removesuffix(".__init__").rpartition(".")[2]
@@ -369,19 +383,19 @@ def takes(**kinds):
             return _checked(name, signature, kinds, args, settings)
 
         @functools.wraps(act)
-        def word(*args, **settings):
+        def word(*args: Any, **settings: Any) -> R:
             args, settings = checked(args, settings)
             return act(*args, **settings)
 
-        word.kinds, word.checked = kinds, checked
+        vars(word).update(kinds=kinds, checked=checked)
         return word
 
     return made
 
 
-def named(cls):
+def named(cls: C) -> C:
     """Let a class answer an argument that it does not know with the nearest name."""
-    cls.__init__ = takes()(cls.__init__)
+    setattr(cls, "__init__", takes()(vars(cls)["__init__"]))
     return cls
 
 

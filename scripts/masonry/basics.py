@@ -11,7 +11,7 @@ GRAVITY = 9.81  # [m/s²]
 for _stream in (sys.stdout, sys.stderr):
     with contextlib.suppress(AttributeError, ValueError, OSError):
         if _stream.errors in ("strict", "surrogateescape"):
-            _stream.reconfigure(errors="backslashreplace")
+            getattr(_stream, "reconfigure")(errors="backslashreplace")
 
 
 #: What a terminal obeys and does not show: control characters but for the ends of lines and tabs, and marks that turn the

@@ -5,6 +5,7 @@
 """
 
 import glob
+import json
 import os
 import re
 import sys
@@ -12,7 +13,7 @@ import sys
 import tree
 
 #: Files that a reader writes himself, or that a run makes.
-OF_THE_READER = {"my_scene.py", "window.py", "field.py", "own_brick.py", "script.py"}
+OF_THE_READER = {"my_scene.py", "scene.py", "script.py"}
 MADE = ("results/", "build/", "out/")
 MODULES = "scripts/masonry"
 FOLDERS = ("", "yade_plugin", "scripts", "scripts/masonry", "tests", "validation")
@@ -74,9 +75,19 @@ def _isModule(name, root):
     return False
 
 
+def sourceOf(path, root):
+    """The text of a document; of a notebook that of its cells of text, one below the other."""
+    source = tree.read(path, root)
+    if not path.endswith(".ipynb"):
+        return source
+    cells = json.loads(source)["cells"]
+    texts = ["".join(c["source"]) for c in cells if c["cell_type"] == "markdown"]
+    return "\n\n".join(texts)
+
+
 def problems(path, root=tree.ROOT):
     """What leads nowhere in a document, as text."""
-    source = tree.read(path, root)
+    source = sourceOf(path, root)
     plain = withoutBlocks(source)
     folder = os.path.dirname(path)
     found = []
@@ -120,7 +131,7 @@ def problems(path, root=tree.ROOT):
 
 
 def all():
-    return [line for path in tree.files((".md",)) for line in problems(path)]
+    return [line for path in tree.files((".md", ".ipynb")) for line in problems(path)]
 
 
 if __name__ == "__main__":

@@ -1,46 +1,320 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Scenes in plain Python, in a notebook, and with YADE's own importer."""
+"""Scenes in plain Python: YADE is found and started, and the run is that of the program yade."""
 
+import importlib.util
+import json
 import os
+import re
+import shutil
+import signal
 import subprocess
 import sys
+import time
 
+import pytest
 import yade
+from conftest import ROOT
 
 HOST = os.path.dirname(os.path.dirname(os.path.abspath(yade.__file__)))
+INSTALLED = os.path.dirname(importlib.util.find_spec("masonry").origin)
 SCENE = """
 from masonry import Scene, bricks, materials
 scene = Scene("plain", bricks.stack(2, (0.3, 0.3, 0.2)), materials.dry(friction=0.6))
 scene.platen("bottom"); scene.settle(); scene.finish()
 """
+FOUND = f"import sys; sys.path.insert(0, {HOST!r})\n"  # YADE is on sys.path
 
 
-def played(tmp_path, begin, *words, **more):
-    """Run a scene in plain Python after some lines, without the variable that says how many threads there are."""
-    env = {k: v for k, v in os.environ.items() if k != "OMP_NUM_THREADS"}
-    script = tmp_path / "plain.py"
-    script.write_text(begin + SCENE + more.pop("end", ""))
+def environment(**more):
+    """That of the tests, without the variable that says how many threads there are."""
+    return {**{k: v for k, v in os.environ.items() if k != "OMP_NUM_THREADS"}, **more}
+
+
+def python(*words, cwd=None, env=None):
     return subprocess.run(
-        [sys.executable, str(script), *words], capture_output=True, text=True, cwd=tmp_path, env=env
-    )  # fmt: skip
+        [sys.executable, *words],
+        capture_output=True,
+        text=True,
+        cwd=cwd,
+        env=env or environment(),
+        timeout=120,
+    )
 
 
-def test_plain_python_has_one_thread(tmp_path):
-    begin = f"import sys; sys.path.insert(0, {HOST!r}); import yade\n"
+def played(tmp_path, begin, *words, end=""):
+    """Run a scene in plain Python after some lines."""
+    script = tmp_path / "plain.py"
+    script.write_text(begin + SCENE + end)
+    return python(str(script), *words, cwd=tmp_path)
+
+
+def done(code, **more):
+    """Run lines of Python, and return what they print."""
+    run = python("-c", code, **more)
+    assert run.returncode == 0, run.stdout + run.stderr
+    return run.stdout
+
+
+# -- how YADE starts --------------------------------------------------------------------------------------------------
+
+
+def test_a_scene_finds_yade_and_starts_it_as_it_must(tmp_path):
+    begin = "import sys; before = list(sys.argv), list(sys.path)\n"
+    end = """
+import ctypes, gc, os, socketserver, threading
+assert sys.argv == before[0], sys.argv
+assert sys.path[:len(before[1])] == before[1], sys.path
+sockets = [f for f in os.listdir("/proc/self/fd") if os.path.exists(p := f"/proc/self/fd/{f}") and "socket" in os.readlink(p)]
+assert not sockets and threading.active_count() == 1, sockets
+assert not [o for o in gc.get_objects() if isinstance(o, socketserver.BaseServer)]
+assert "OMP_NUM_THREADS" not in os.environ
+threads = lambda: print("threads", ctypes.CDLL(None).omp_get_max_threads())
+threads()
+other = threading.Thread(target=threads)
+other.start()
+other.join()
+"""
+    run = played(tmp_path, begin, "--out", "elsewhere", end=end)
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.count("threads 1\n") == 2 and "plain: at rest" in run.stdout
+    assert "Using python version" not in run.stdout and not run.stderr
+    assert (tmp_path / "elsewhere" / "run.json").exists()
+
+
+def test_threads_are_those_that_are_asked_for(tmp_path):
+    code = "from masonry import Scene; from yade import O; print(O.numThreads)"
+    assert done(code, env=environment(OMP_NUM_THREADS="2")) == "2\n"
+    assert done(code) == "1\n"
+
+
+def test_a_yade_that_was_imported_before_has_one_thread(tmp_path):
     end = "import ctypes; print('threads', ctypes.CDLL(None).omp_get_max_threads())"
-    run = played(tmp_path, begin, end=end)
+    run = played(tmp_path, FOUND + "import yade\n", end=end)
     assert run.returncode == 0, run.stderr
     assert "threads 1" in run.stdout and "plain: at rest" in run.stdout
 
 
-def test_words_of_a_notebook_are_not_those_of_the_scene(tmp_path):
-    begin = f"import sys; sys.path.insert(0, {HOST!r}); sys.argv = ['ipykernel_launcher.py', '-f', 'x.json']; import yade\n"  # fmt: skip
-    run = played(tmp_path, begin)
-    assert run.returncode == 0, run.stderr
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import masonry, yade; from yade import O; yade.wrapper.MasonryMat",
+        "from masonry import *; MasonryMat, Scene, engines, window",
+        "import masonry.assembly.blocks, masonry; masonry.MasonryJoint.set",
+        "import masonry.assembly.given, masonry; masonry.MasonryJoint.set",
+        "from masonry import _masonry; import masonry; masonry.commit, masonry.Scene",
+        "from masonry.scene.materials import dry; dry(friction=0.6).joints['bed'].set(friction=0.5, residualFriction=0.5)",
+        "from masonry.run.checkpoints import readCheckpoint; import masonry; masonry.MasonryJoint.set",
+        "from masonry.assembly import columns; from masonry import Scene",
+        FOUND + "import yade, masonry; masonry.Scene, masonry.scene, masonry.MasonryJoint.set",
+        FOUND + "import masonry, yade; masonry.Scene, yade.wrapper.MasonryJoint.set",
+    ],
+)  # fmt: skip
+def test_whatever_is_imported_first(code):
+    done(code + "; import importlib, masonry; importlib.reload(masonry).Scene")
 
 
-def test_the_importer_of_yade_works(tmp_path):
+def test_what_reads_results_does_not_start_yade():
+    code = """
+import sys, masonry, masonry.read.measure, masonry.read.shown, masonry.study, masonry.run.batch
+from masonry import bricks, fields, read
+assert not hasattr(masonry, "__wrapped__") and "Scene" in dir(masonry)
+bricks.Wall(1.1, 0.81).joints()
+print([name for name in sys.modules if name.split(".")[0] == "yade"])
+"""
+    assert done(code) == "[]\n"
+    code = "import masonry\nmasonry.Scenes"
+    assert "module 'masonry' has no attribute 'Scenes'" in python("-c", code).stderr
+
+
+def test_the_importer_of_yade_works_before_and_after(tmp_path):
     (tmp_path / "yadeimport.py").symlink_to("/usr/bin/yade")
-    run = played(tmp_path, "import sys; sys.path.insert(0, '.'); import yadeimport\n")
+    first = "import sys; sys.path.insert(0, '.'); import yadeimport\n"
+    run = played(tmp_path, first)
     assert run.returncode == 0, run.stderr
     assert "plain: at rest" in run.stdout
+    after = "from yadeimport import *\nassert O.iter > 0 and utils.sphere and yade.wrapper.MasonryMat"
+    run = played(tmp_path, "import sys; sys.path.insert(0, '.')\n", end=after)
+    assert run.returncode == 0, run.stderr
+
+
+def test_words_of_a_notebook_are_not_those_of_the_scene(tmp_path):
+    begin = """
+import sys, types
+import IPython.core.getipython
+IPython.core.getipython.get_ipython = lambda: types.SimpleNamespace(kernel=True)
+sys.argv = ['ipykernel_launcher.py', '-f', 'x.json']
+"""
+    end = "assert sys.argv[1:] == ['-f', 'x.json']"
+    run = played(tmp_path, begin.lstrip(), end=end)
+    assert run.returncode == 0, run.stderr
+
+
+# -- where it cannot --------------------------------------------------------------------------------------------------
+
+ASK = """
+import masonry
+try:
+    masonry.Scene
+except ImportError as error:
+    print("REFUSED:", error)
+from masonry import bricks
+print(len(bricks.stack(2, (0.3, 0.3, 0.2))))
+"""
+
+
+def test_a_machine_without_yade_gives_a_sentence(tmp_path):
+    env = environment(PATH=str(tmp_path), YADE_PREFIX=str(tmp_path))
+    said = done(ASK, env=env)
+    assert "REFUSED: masonry runs in YADE, which is not installed" in said
+    assert "apt-get install yade" in said and said.endswith("2\n")
+    assert "Traceback" not in said
+
+
+def test_another_python_gives_the_one_that_yade_needs(tmp_path):
+    program = tmp_path / "yade"
+    text = open("/usr/bin/yade").read()
+    program.write_text(re.sub(r"^#!.*", "#!/usr/bin/python3.99", text, 1))
+    program.chmod(0o755)
+    said = done(ASK, env=environment(PATH=str(tmp_path)))
+    assert "REFUSED: the YADE of this machine is built for Python 3.99" in said
+    assert said.count("run the script with /usr/bin/python3.99") == 1
+
+
+def test_a_virtual_environment_without_what_yade_needs_gives_a_sentence(tmp_path):
+    (tmp_path / "masonry").symlink_to(INSTALLED)
+    env = environment(PYTHONPATH=str(tmp_path))
+    run = python("-S", "-c", ASK.split("from masonry import bricks")[0], env=env)
+    assert "REFUSED: YADE needs the Python module '" in run.stdout, run.stderr
+    assert "--system-site-packages" in run.stdout
+
+
+def test_a_source_tree_without_the_plugin_says_how_to_build_it(tmp_path):
+    shutil.copytree(os.path.join(ROOT, "scripts", "masonry"), tmp_path / "masonry")
+    env = environment(PYTHONPATH=str(tmp_path))
+    hide = "import sys; sys.path[1:] = [p for p in sys.path[1:] if not (p != %r and __import__('glob').glob(p + '/masonry/_masonry*.so'))]\n"
+    said = done(hide % str(tmp_path) + ASK, env=env)
+    assert "REFUSED: the masonry plugin is not built" in said and "setup.sh" in said
+
+
+def test_a_scene_beside_the_sources_uses_the_installed_package(tmp_path):
+    shutil.copytree(os.path.join(ROOT, "scripts", "masonry"), tmp_path / "masonry")
+    end = "import sys; print(sys.modules['masonry.scene'].__file__)"
+    run = played(tmp_path, "", end=end)
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.splitlines()[-1].startswith(INSTALLED)
+
+
+# -- the same as the program yade -------------------------------------------------------------------------------------
+
+BANNER = ("Welcome to Yade", "Using python version", "TCP python prompt", "XMLRPC info", "Running script")  # fmt: skip
+#: Times of the clock, and what is as fast as the machine.
+TIMES = re.compile(
+    r'"(seconds|setup|steps|rows|frames|wall_clock_s|microseconds_per_step|nanoseconds_per_subcontact_step|out)": .*'
+)
+
+
+def both(tmp_path, name, *words):
+    """A scene of scripts/ in YADE and in plain Python, in folders of the same name: pairs of process and folder."""
+    scene = os.path.join(ROOT, "scripts", name + ".py")
+    for how in (["yade", "-n", "-x"], [sys.executable]):
+        folder = tmp_path / how[0].rpartition("/")[2]
+        folder.mkdir(exist_ok=True)
+        run = subprocess.run(
+            [*how, scene, *words],
+            capture_output=True,
+            text=True,
+            cwd=folder,
+            env=environment(),
+            timeout=200,
+        )
+        yield run, folder / "out"
+
+
+def lines(run, folder):
+    """What a run prints, without progress and YADE's own lines."""
+    text = (run.stdout + run.stderr).replace(str(folder.parent), "")
+    kept = [n for n in text.splitlines() if not n.startswith(BANNER)]
+    kept = [re.sub(r"of \d+ µs, [\d.]+ s|^(yade|python3)\b", "", n) for n in kept]
+    return [n for n in kept if "steps/s" not in n]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["couplet", "arch", "wall_comp1"])
+def test_a_scene_is_the_same_in_plain_python(tmp_path, name):
+    (one, first), (two, second) = both(tmp_path, name, "--out", "out", "--quick")
+    assert one.returncode == two.returncode == 0, one.stderr + two.stderr
+    assert lines(one, first) == lines(two, second)
+    names = sorted(os.listdir(first))
+    assert sorted(os.listdir(second)) == names and "curve.csv" in names
+    for name in set(names) - {"run.json", "run.checkpoint"}:
+        assert (first / name).read_bytes() == (second / name).read_bytes(), name
+    records = [TIMES.sub("", (f / "run.json").read_text()) for f in (first, second)]
+    assert records[0] == records[1]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["--rate", "fast"],
+        ["--set", "bed.tensileStrength=-1"],
+        ["--no-such-option"],
+        ["--resume", "nowhere"],
+    ],
+)
+def test_what_is_refused_is_refused_alike(tmp_path, words):
+    (one, first), (two, second) = both(tmp_path, "couplet", *words)
+    assert one.returncode == two.returncode != 0
+    alike = [
+        [n for n in lines(*run) if "File " not in n and not n.startswith(("  ", "usage"))]
+        for run in ((one, first), (two, second))
+    ]  # fmt: skip
+    assert alike[0] == alike[1]
+
+
+@pytest.mark.slow
+def test_the_help_is_that_of_the_program_that_runs_the_scene(tmp_path):
+    (one, first), (two, second) = both(tmp_path, "couplet", "--help")
+    assert one.returncode == two.returncode == 0
+    assert "usage: yade couplet.py" in one.stdout
+    assert "usage: python3 couplet.py" in two.stdout
+    rest = [n.partition("options:")[2] for n in (one.stdout, two.stdout)]
+    assert rest[0] and rest[0] == rest[1]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_run_that_is_stopped_goes_on_to_the_same_bits(tmp_path, number):
+    scene = os.path.join(ROOT, "scripts", "wall_comp1.py")
+    words = [sys.executable, scene, "--until", "6", "--no-vtk"]
+    run = subprocess.Popen(
+        [*words, "--out", "out"],
+        cwd=tmp_path,
+        env=environment(),
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    for line in run.stdout:
+        if line.startswith("push "):
+            break
+    run.send_signal(number)
+    began = time.monotonic()
+    said = run.communicate(timeout=60)[0]
+    assert run.returncode == 130 and "--resume" in said
+    assert time.monotonic() - began < 10
+    assert json.loads((tmp_path / "out" / "run.json").read_text())["interrupted"]
+    assert python(scene, "--resume", "out", cwd=tmp_path).returncode == 0
+    assert python(*words[1:], "--out", "whole", cwd=tmp_path).returncode == 0
+    whole, stopped = (
+        (tmp_path / name / "curve.csv").read_bytes() for name in ("whole", "out")
+    )
+    assert whole == stopped
+
+
+def test_several_scenes_follow_each_other_in_one_process(tmp_path):
+    more = SCENE.replace('"plain"', '"second"').replace("stack(2", "stack(3")
+    run = played(tmp_path, "", end=more)
+    assert run.returncode == 0, run.stderr
+    assert "plain: at rest" in run.stdout and "second: at rest" in run.stdout
+    units = [json.loads((tmp_path / "results" / n / "run.json").read_text())["units"] for n in ("plain", "second")]  # fmt: skip
+    assert units == [2, 3]

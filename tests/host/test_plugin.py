@@ -174,7 +174,7 @@ def test_without_yade_the_package_still_reads_results():
         [
             sys.executable,
             "-c",
-            "import masonry.run.results, masonry; print(hasattr(masonry, 'MasonryMat'))",
+            "import masonry.run.results, sys; print('yade' in sys.modules)",
         ],
         capture_output=True,
         text=True,

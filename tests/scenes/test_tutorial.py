@@ -1,49 +1,82 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Every command and every snippet of the tutorial, in their order."""
+"""The tutorial: its three notebooks run from top to bottom, and so does every command that they name."""
 
+import base64
+import json
 import os
 import re
+import shutil
 import subprocess
+import sys
 
+import pytest
 from conftest import ROOT
 
-TUTORIAL = os.path.join(ROOT, "scripts", "TUTORIAL.md")
-NAMES = ["window.py", "stack.py", "field.py", "own_brick.py"]
+TUTORIAL = os.path.join(ROOT, "scripts", "docs", "tutorial")
+NOTEBOOKS = ["1_first_joint.ipynb", "2_wall.ipynb", "3_structures.ipynb"]
+LARGEST = 150_000  # bytes of what a cell shows
 
 
-def parts():
-    """Snippets and commands of the tutorial in turn, as pairs of which one is empty."""
-    with open(TUTORIAL) as f:
-        text = f.read()
-    return re.findall(r"```python\n(.*?)```|(?m:^    (\S[^\n]*)$)", text, re.S)
+def read(path):
+    with open(path, encoding="utf-8") as f:
+        return json.load(f)
 
 
-def test_every_command_and_snippet(tmp_path):
+def cells(name, kind):
+    found = read(os.path.join(TUTORIAL, name))["cells"]
+    return ["".join(c["source"]) for c in found if c["cell_type"] == kind]
+
+
+def test_the_tutorial_is_these_notebooks_without_outputs():
+    assert sorted(n for n in os.listdir(TUTORIAL) if n.endswith(".ipynb")) == NOTEBOOKS
+    for name in NOTEBOOKS:
+        notebook = read(os.path.join(TUTORIAL, name))
+        assert notebook["nbformat"] == 4
+        assert notebook["metadata"]["kernelspec"]["name"] == "python3"
+        for cell in notebook["cells"]:
+            assert not cell.get("outputs") and cell.get("execution_count") is None
+
+
+@pytest.mark.parametrize("name", NOTEBOOKS)
+def test_a_notebook_runs_from_top_to_bottom(tmp_path, name):
+    pytest.importorskip("nbconvert", reason="jupyter-nbconvert is not installed")
+    pytest.importorskip("ipykernel", reason="python3-ipykernel is not installed")
+    shutil.copy(os.path.join(TUTORIAL, name), tmp_path)
+    command = [sys.executable, "-m", "nbconvert", "--to", "notebook", "--execute", "--inplace", "--ExecutePreprocessor.kernel_name=python3", name]  # fmt: skip
+    run = subprocess.run(
+        command, cwd=tmp_path, capture_output=True, text=True, timeout=300
+    )
+    assert run.returncode == 0, run.stderr[-5000:]
+    count = pictures = 0
+    for cell in read(tmp_path / name)["cells"]:
+        for output in cell.get("outputs", []):
+            assert output["output_type"] != "error", output
+            assert len(json.dumps(output)) < LARGEST, cell["source"]
+            data = output.get("data", {})
+            page = "".join(data.get("text/html", ""))
+            found = re.findall(r'base64,([^"]+)"', page)
+            found += ["".join(data.get("image/png", ""))] * ("image/png" in data)
+            assert all(base64.b64decode(p).startswith(b"\x89PNG") for p in found)
+            pictures += len(found)
+            count += 1
+    assert count >= 10 and pictures >= 5
+    assert len(os.listdir(tmp_path / "results")) >= 3
+
+
+def test_every_command_of_the_tutorial(tmp_path):
     for name in ("scripts", "validation"):
         os.symlink(os.path.join(ROOT, name), tmp_path / name)
-    names = iter(NAMES)
-    ran = 0
-    for code, command in parts():
-        if code:
-            name = next(names)
-            (tmp_path / name).write_text(code)
-            command = f"yade -n -x {name}" if name == "stack.py" else None
-        if not command or not command.startswith(("yade", "/usr/bin", "bash", "for")):
-            continue
+    commands = [
+        line
+        for name in NOTEBOOKS
+        for text in cells(name, "markdown")
+        for line in re.findall(r"(?m)^    ((?:yade|/usr/bin/python3) \S.*)$", text)
+    ]
+    assert len(commands) == 5
+    for command in commands:
         if "view.py" in command:  # tests/scenes/test_view.py has ParaView
             continue
-        command = command.replace(
-            "bash scripts/run.sh couplet", "yade -n -x scripts/couplet.py"
-        )
-        if "loops" in command:
-            scene = (tmp_path / "window.py").read_text()
-            cycles = "scene.cycle(top, [1, 2, 4], repeats=2)"
-            assert cycles in open(TUTORIAL).read()
-            changed = re.sub(r"scene\.push\(top, 5\)", cycles, scene)
-            assert changed != scene
-            (tmp_path / "window.py").write_text(changed)
-            command += " --quick"
-        done = subprocess.run(
+        run = subprocess.run(
             command,
             shell=True,
             cwd=tmp_path,
@@ -51,10 +84,6 @@ def test_every_command_and_snippet(tmp_path):
             text=True,
             timeout=280,
         )
-        assert done.returncode == 0, command + done.stdout + done.stderr
-        assert "rror" not in done.stderr, command + done.stderr
-        ran += 1
-    assert ran >= 9
-    assert (tmp_path / "fan.png").exists() and (
-        tmp_path / "results" / "both.png"
-    ).exists()
+        assert run.returncode == 0, command + run.stdout + run.stderr
+        assert "rror" not in run.stderr, command + run.stderr
+    assert (tmp_path / "results" / "both.png").exists()

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Blocks of a scene: bodies of YADE. Bad input raises ValueError, with all problems at once."""
 
+from __future__ import annotations
+
 import math
+from typing import Any, Sequence
 
 from yade import Body, O, Vector3
 from yade.wrapper import MasonryBlock, MasonryMat
 
-from ..arguments import flag, misfits, shown, takes
+from ..arguments import Numbers, flag, misfits, shown, takes
 
 LONGEST = 200  # characters of a value that a message shows
 
@@ -14,7 +17,7 @@ LONGEST = 200  # characters of a value that a message shows
 THINNEST = 1e-6
 
 
-def properties(cls):
+def properties(cls) -> list[dict[str, Any]]:
     """The plugin's description of the properties of one of its classes: a list of dicts.
 
     Keys are ``name``, ``unit``, ``meaning``, ``source``, the bounds ``low`` and ``high``, and what is usual:
@@ -23,12 +26,12 @@ def properties(cls):
     return cls.properties()
 
 
-def units(cls):
+def units(cls) -> dict[str, str]:
     """Units of the properties of a class of the plugin: a dict of name -> unit, of those that have one."""
     return {p["name"]: p["unit"] for p in properties(cls) if p["unit"]}
 
 
-def printed(value):
+def printed(value: object) -> str:
     """A value as a message has it: as ``print`` shows it, not too long."""
     try:
         return str(value)[:LONGEST]
@@ -36,7 +39,7 @@ def printed(value):
         return shown(value)
 
 
-def refuse(problems, hint=None, most=10):
+def refuse(problems: list[str], hint: str | None = None, most: int = 10) -> None:
     """Raise ValueError with the first problems of a list, if there are any, and what helps against them."""
     if problems:
         more = [f"and {len(problems) - most} more"] if len(problems) > most else []
@@ -45,7 +48,7 @@ def refuse(problems, hint=None, most=10):
         )
 
 
-def vector(value, what, problems=None):
+def vector(value: Any, what: str, problems: list[str] | None = None) -> Any:
     """Three finite numbers as a Vector3.
 
     :param what: begins the sentence that refuses anything else
@@ -73,7 +76,12 @@ def _extent(points):
 
 
 @takes()
-def addBlock(vertices, material, inPlane=False, color=(0.75, 0.7, 0.65)):
+def addBlock(
+    vertices: Sequence[Numbers] | Numbers,
+    material: MasonryMat,
+    inPlane: bool = False,
+    color: Numbers = (0.75, 0.7, 0.65),
+) -> int:
     """Append a convex block to the scene. Returns its body id.
 
     :param vertices: corners [m], at least four, in global axes; every one a corner of the convex block

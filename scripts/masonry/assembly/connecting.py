@@ -2,6 +2,10 @@
 """The joints of a scene: made of all pairs of blocks that share a face. Bad input raises ValueError, with all problems at
 once."""
 
+from __future__ import annotations
+
+from typing import Any, Callable
+
 from yade import O, utils
 from yade.wrapper import (
     InteractionLoop,
@@ -26,13 +30,17 @@ TOLERANCE = number("", 0, 0.01, above=True)
 
 
 @takes(tolerance=TOLERANCE)
-def touchingPairs(tolerance=1e-4):
+def touchingPairs(tolerance: float = 1e-4) -> list[tuple[int, int]]:
     """Pairs of ids of the blocks that share a face, smaller id first. Parameters as of :func:`connect`."""
     return _masonry.touchingPairs(tolerance)
 
 
 @takes(rule=anything, tolerance=TOLERANCE, allowGaps=flag)
-def connect(rule=None, tolerance=1e-4, allowGaps=False):
+def connect(
+    rule: Callable[..., Any] | None = None,
+    tolerance: float = 1e-4,
+    allowGaps: bool = False,
+) -> list[Any]:
     """Make the joints between all blocks that share a face. The present state is the reference. Returns the interactions.
 
     Blocks that lie in each other are refused, and those that miss a shared face by less than a quarter of their

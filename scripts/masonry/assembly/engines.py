@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The engines of a masonry scene, and how it takes steps. Bad input raises ValueError, with all problems at once."""
 
+from __future__ import annotations
+
+from typing import Any, Sequence
+
 from yade import O, wrapper
 from yade.wrapper import (
     ForceResetter,
@@ -16,7 +20,7 @@ from yade.wrapper import (
     NewtonIntegrator,
 )
 
-from ..arguments import flag, isListed, items, misfits, shown, takes
+from ..arguments import Numbers, flag, isListed, items, misfits, shown, takes
 from .blocks import refuse
 
 MOST_STEPS = 10**15  # that no run has time for
@@ -29,7 +33,7 @@ LAWS = {law["name"]: law for law in MasonryJoint.laws()}
 
 #: What a NewtonIntegrator needs to turn bodies as MasonryIntegrator does. YADE 2025 has several algorithms of rotation
 #: and takes another one by default; YADE 2023 has this one only.
-ROTATION = {"exactAsphericalRot": True}
+ROTATION: dict[str, Any] = {"exactAsphericalRot": True}
 if hasattr(NewtonIntegrator, "rotAlgorithm"):
     ROTATION["rotAlgorithm"] = "Fincham1992"
 
@@ -40,17 +44,17 @@ OWN = {"inPlane": flag, "functors": flag}
 
 @takes()
 def engines(
-    joints,
-    damping=0.8,
-    gravity=(0, 0, -9.81),
-    subcontacts=None,
-    rows=None,
-    inPlane=False,
-    loads=(),
-    zones=None,
-    functors=False,
-    dampingKind=None,
-):
+    joints: Sequence[Any],
+    damping: float = 0.8,
+    gravity: Numbers = (0, 0, -9.81),
+    subcontacts: int | None = None,
+    rows: int | None = None,
+    inPlane: bool = False,
+    loads: Sequence[Any] = (),
+    zones: Any = None,
+    functors: bool = False,
+    dampingKind: str | None = None,
+) -> None:
     """Fill O.engines for a masonry scene: joints, loads, energy balance and integration. There is no collider.
 
     The engines have labels, by which ``masonry.engine(label)`` finds them: ``joints`` the MasonryJointLoop, ``energy``
@@ -85,8 +89,9 @@ def engines(
         the paper's eq. (3); it holds back what moves steadily, so a mechanism that turns slowly seems stronger than it is
     """
     problems = misfits("engines: ", OWN, {"inPlane": inPlane, "functors": functors})
+    down: Any = gravity
     if isListed(gravity) and items(gravity) is None:
-        gravity = shown(gravity)  # an array without dimensions, which no class answers
+        down = shown(gravity)  # an array without dimensions, which no class answers
     kinds = ("local",) if functors is True else ("combined", "local")
     if dampingKind is not None and not (isinstance(dampingKind, str) and dampingKind in kinds):  # fmt: skip
         problems.append(
@@ -123,7 +128,7 @@ def engines(
         lambda: MasonryIntegrator(
             damping=damping,
             dampingKind=dampingKind or kinds[0],
-            gravity=gravity,
+            gravity=down,
             label="integrator",
         )
     )
@@ -159,7 +164,7 @@ def engines(
 
 
 @takes()
-def engine(label):
+def engine(label: str) -> Any:
     """The engine of O.engines with this label. Raises ValueError, with the labels that there are."""
     found = {e.label: e for e in O.engines if e.label}
     if not isinstance(label, str) or label not in found:
@@ -169,7 +174,7 @@ def engine(label):
     return found[label]
 
 
-def advance(steps):
+def advance(steps: int) -> None:
     """Take time steps, in this thread, as fast as the engines go. Ctrl-C stops between two steps.
 
     YADE's ``O.run(steps, True)`` waits for another thread and looks every 40 ms whether it has finished, so short runs
@@ -186,7 +191,7 @@ def advance(steps):
         step()
 
 
-def functorLoop(geometry, physics):
+def functorLoop(geometry: Any, physics: Any) -> Any:
     """An InteractionLoop with functors that make joints of all pairs of blocks and follow their law."""
     laws = [joint.law for joint in physics.joints if not joint.elastic]
     law = LAWS[laws[0] if laws else next(iter(LAWS))]  # one functor takes all joints

@@ -9,8 +9,11 @@ The script must run in a YADE with its graphical interface (``yade my_scene.py``
 there is none, ``xvfb-run`` gives one that nobody sees, and :func:`picture` saves what it would show.
 """
 
+from __future__ import annotations
+
 import threading
 import time
+from typing import Any
 
 from yade import O, Vector3
 from yade.wrapper import (
@@ -20,13 +23,20 @@ from yade.wrapper import (
     PyRunner,
 )
 
+from ..arguments import FilePath
+
 #: Label of the engine that keeps the view alive.
 _LABEL = "masonryWindow"
 
 _drawingTime = 0.0
 
 
-def show(blocks="displacement", joints="damage", scale=1.0, edges=True):
+def show(
+    blocks: str = "displacement",
+    joints: str = "damage",
+    scale: float = 1.0,
+    edges: bool = True,
+) -> Any:
     """Open YADE's 3-D view with blocks, joints and a legend, and keep it alive while the script takes steps.
 
     Call it when the scene has its engines. What is drawn costs time, ten times a second at most; a run without the
@@ -82,7 +92,7 @@ def _look(view, scale):
         view.fitAABB(low, high)
 
 
-def refresh():
+def refresh() -> None:
     """Let the view draw and answer the mouse now. Does nothing beside a run in the background, which needs no help."""
     global _drawingTime
     if threading.current_thread() is threading.main_thread():
@@ -91,12 +101,12 @@ def refresh():
         _drawingTime += time.process_time() - start
 
 
-def drawingTime():
+def drawingTime() -> float:
     """Time of the processor that the view has taken so far in this thread [s]."""
     return _drawingTime
 
 
-def picture(path, wait=2.0):
+def picture(path: FilePath, wait: float = 2.0) -> None:
     """Save what the view shows as a picture. :func:`show` comes first.
 
     :param path: of the picture, with an ending that Qt knows, as ``.png``

@@ -1,15 +1,29 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Blocks as plain records, and collections of them. Nothing here needs YADE."""
 
+from __future__ import annotations
+
 import math
 from collections import Counter
 from dataclasses import dataclass, replace
 from numbers import Integral
+from typing import Any, Callable, Iterable, Iterator
 
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from ..arguments import anything, flag, isA, items, misfits, shown, takes, text
+from ..arguments import (
+    Kind,
+    Numbers,
+    anything,
+    flag,
+    isA,
+    items,
+    misfits,
+    shown,
+    takes,
+    text,
+)
 from . import checks
 from .geometry import COINCIDENT, Solids, cutCorners, measures
 
@@ -69,17 +83,17 @@ class Block:
         object.__setattr__(self, "corners", corners)
 
     @property
-    def low(self):
+    def low(self) -> tuple[float, ...]:
         """Lowest x, y and z [m]."""
         return tuple(map(min, zip(*self.corners)))
 
     @property
-    def high(self):
+    def high(self) -> tuple[float, ...]:
         """Highest x, y and z [m]."""
         return tuple(map(max, zip(*self.corners)))
 
     @property
-    def middle(self):
+    def middle(self) -> tuple[float, ...]:
         """Mean of the corners [m]."""
         return tuple(math.fsum(c) / len(self.corners) for c in zip(*self.corners))
 
@@ -94,7 +108,7 @@ class Bricks:
     """
 
     @takes()
-    def __init__(self, blocks=()):
+    def __init__(self, blocks: Iterable[Any] = ()) -> None:
         try:
             self._blocks = tuple(blocks)
         except TypeError:
@@ -111,13 +125,13 @@ class Bricks:
         )
         self._found = {}
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._blocks)
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[Block]:
         return iter(self._blocks)
 
-    def __getitem__(self, key):
+    def __getitem__(self, key: Any) -> Any:
         found = self._blocks[key]
         return Bricks(found) if isinstance(key, slice) else found
 
@@ -135,7 +149,7 @@ class Bricks:
         parts = ", ".join(dict.fromkeys(b.part for b in self._blocks))
         return f"Bricks: {len(self)} blocks of {bricks} bricks ({parts}), {size} m"
 
-    def __add__(self, other):
+    def __add__(self, other: Bricks) -> Bricks:
         if not isinstance(other, Bricks):
             return NotImplemented
         return Bricks(self._blocks + tuple(other._renumbered(self._nextBrick())))
@@ -156,27 +170,27 @@ class Bricks:
     # -- size -----------------------------------------------------------------------------------------------------
 
     @property
-    def low(self):
+    def low(self) -> tuple[float, ...]:
         """Lowest x, y and z of all blocks [m]."""
         return self._box()[0]
 
     @property
-    def high(self):
+    def high(self) -> tuple[float, ...]:
         """Highest x, y and z of all blocks [m]."""
         return self._box()[1]
 
     @property
-    def length(self):
+    def length(self) -> float:
         """Extent along x [m]."""
         return self.high[0] - self.low[0]
 
     @property
-    def height(self):
+    def height(self) -> float:
         """Extent along z [m]."""
         return self.high[2] - self.low[2]
 
     @property
-    def volume(self):
+    def volume(self) -> float:
         """[m³]"""
         return float(self._solids().volumes().sum())
 
@@ -198,13 +212,15 @@ class Bricks:
     # -- moving and naming ----------------------------------------------------------------------------------------
 
     @takes()
-    def moved(self, dx=0.0, dy=0.0, dz=0.0):
+    def moved(self, dx: float = 0.0, dy: float = 0.0, dz: float = 0.0) -> Bricks:
         """The blocks moved along the axes [m]."""
         by = _vector((dx, dy, dz), "moved: way [m]")
         return self._mapped(lambda c: tuple(x + d for x, d in zip(c, by)))
 
     @takes()
-    def turned(self, degrees, axis="z", about=(0, 0, 0)):
+    def turned(
+        self, degrees: float, axis: str = "z", about: Numbers = (0, 0, 0)
+    ) -> Bricks:
         """The blocks turned about an axis through a point, by the right-hand rule. Quarter turns are exact.
 
         :param degrees: angle [°]
@@ -219,6 +235,8 @@ class Bricks:
         refuse("turned", problems)
         about = _vector(about, "turned: about [m]")
         quarters = degrees / 90
+        cos: float
+        sin: float
         if quarters == round(quarters):
             cos, sin = [(1, 0), (0, 1), (-1, 0), (0, -1)][round(quarters) % 4]
         else:
@@ -235,12 +253,12 @@ class Bricks:
         return self._mapped(turn)
 
     @takes()
-    def named(self, part):
+    def named(self, part: str) -> Bricks:
         """The blocks as a part of this name."""
         return Bricks(replace(b, part=part) for b in self._blocks)
 
     @takes()
-    def ofKind(self, kind):
+    def ofKind(self, kind: str) -> Bricks:
         """The blocks as blocks of this kind."""
         return Bricks(replace(b, kind=kind) for b in self._blocks)
 
@@ -252,7 +270,7 @@ class Bricks:
     # -- choosing -------------------------------------------------------------------------------------------------
 
     @takes()
-    def where(self, function):
+    def where(self, function: Callable[[Block], bool]) -> Bricks:
         """The blocks for which a function of the :class:`Block` is true, with their numbers of bricks."""
         if not callable(function):
             raise ValueError(
@@ -261,7 +279,7 @@ class Bricks:
         return Bricks([b for b in self._blocks if function(b)])
 
     @takes()
-    def within(self, low, high):
+    def within(self, low: Numbers, high: Numbers) -> Bricks:
         """The blocks whose middle lies in a box, its sides included.
 
         :param low: opposite corners of the box [m]; ``math.inf`` is allowed
@@ -277,11 +295,11 @@ class Bricks:
             lambda b: all(p <= x <= q for p, x, q in zip(low, b.middle, high))
         )
 
-    def top(self):
+    def top(self) -> Bricks:
         """The blocks with a face in the highest horizontal plane."""
         return self._inPlane(self.high[2])
 
-    def bottom(self):
+    def bottom(self) -> Bricks:
         """The blocks with a face in the lowest horizontal plane."""
         return self._inPlane(self.low[2])
 
@@ -295,7 +313,7 @@ class Bricks:
     # -- cutting --------------------------------------------------------------------------------------------------
 
     @takes(point=anything, normal=anything, own=flag)
-    def cut(self, point, normal, own=False):
+    def cut(self, point: Numbers, normal: Numbers, own: bool = False) -> Bricks:
         """The blocks, with every one that a plane crosses cut in two. Order and numbers of bricks stay.
 
         :param point: a point of the plane [m]
@@ -338,7 +356,7 @@ class Bricks:
             for n, what in sorted(solids.problems.items())
         ]
 
-    def whole(self):
+    def whole(self) -> Bricks:
         """The blocks with the pieces of every brick joined, where the first of them stands.
 
         :raises ValueError: if the pieces of a brick do not make up a convex solid
@@ -380,7 +398,7 @@ class Bricks:
 
     # -- checking -------------------------------------------------------------------------------------------------
 
-    def joints(self):
+    def joints(self) -> list[checks.Joint]:
         """Joints of all blocks that share a face: a list of :class:`masonry.bricks.Joint`.
 
         Two faces coincide as they do for the plugin: within 1e-4 of the diagonal of the smaller block.
@@ -388,7 +406,9 @@ class Bricks:
         return list(self._pairs()[0])
 
     @takes()
-    def freeFaces(self, direction):
+    def freeFaces(
+        self, direction: Numbers
+    ) -> list[tuple[int, tuple[float, ...], float, tuple[float, ...]]]:
         """Faces that look in a direction, within 45 degrees, with what no joint covers of them.
 
         :param direction: three numbers, of any length
@@ -427,7 +447,7 @@ class Bricks:
             self._found["pairs"] = checks.findJoints(self._solids())
         return self._found["pairs"]
 
-    def problems(self):
+    def problems(self) -> list[str]:
         """What is wrong with the blocks: a list of sentences, empty if nothing is.
 
         Each names the blocks (their numbers in this collection), the bricks, and the place:
@@ -447,7 +467,7 @@ class Bricks:
 
 
 @takes(bricks=lambda value, first=None: isA(Bricks)(value))
-def summary(bricks):
+def summary(bricks: Bricks) -> dict[str, Any]:
     """Counts and sizes of a collection of blocks: a dict with units in its names."""
     count = lambda what: dict(Counter(getattr(b, what) for b in bricks))
     return dict(
@@ -465,7 +485,7 @@ def summary(bricks):
 # -- what the generators share ----------------------------------------------------------------------------------------
 
 
-def boxCorners(low, high):
+def boxCorners(low: Numbers, high: Numbers) -> tuple[tuple[float, float, float], ...]:
     """The eight corners of an axis-parallel box, x slowest and z fastest."""
     for corner, what in ((low, "low"), (high, "high")):
         if len(items(corner) or ()) != 3:
@@ -478,21 +498,23 @@ def boxCorners(low, high):
     )
 
 
-def refuse(what, problems, most=10):
+def refuse(what: str, problems: list[str], most: int = 10) -> None:
     """Raise ValueError with the first problems of a list, if there are any."""
     if problems:
         more = [f"and {len(problems) - most} more"] if len(problems) > most else []
         raise ValueError(f"{what}: " + "; ".join([*problems[:most], *more]))
 
 
-def fits(kind, value, name, problems):
+def fits(kind: Kind, value: object, name: str, problems: list[str]) -> bool:
     """Whether a value is of a kind of :mod:`masonry.arguments`; else a sentence is added to the problems."""
     found = misfits("", {name: kind}, {name: value})
     problems += found
     return not found
 
 
-def positive(value, name, problems, unit="m", zero=False):
+def positive(
+    value: Any, name: str, problems: list[str], unit: str = "m", zero: bool = False
+) -> bool:
     """Whether a value is a number above 0 (or 0, too) and not more than any length of masonry; else a sentence is added to the
     problems."""
     fine = _isNumber(value) and (value >= 0 if zero else value > 0) and value < math.inf
@@ -505,7 +527,9 @@ def positive(value, name, problems, unit="m", zero=False):
     return fine
 
 
-def wholeNumber(value, name, problems, least=1, most=10**9):
+def wholeNumber(
+    value: Any, name: str, problems: list[str], least: int = 1, most: int = 10**9
+) -> bool:
     """Whether a value is a whole number of at least `least`; else a sentence is added to the problems."""
     fine = isinstance(value, Integral) and not isinstance(value, bool)
     fine = fine and value >= least

@@ -5,6 +5,8 @@ PLY and binary STL are read by meshio. It loses the names of groups (OBJ) and of
 triangles (OFF) and knows no COMPAS, so these are read here.
 """
 
+from __future__ import annotations
+
 import json
 import math
 import os
@@ -12,7 +14,7 @@ from collections import namedtuple
 
 import numpy as np
 
-from ..arguments import path as pathOf
+from ..arguments import FilePath, path as pathOf
 from ..arguments import takes, text
 from ..packages import needed
 from .blocks import FARTHEST, Block, Bricks, fits, positive, refuse
@@ -32,7 +34,7 @@ _Surface = namedtuple("_Surface", "name points faces")
 
 
 @takes()
-def fromFile(path, scale=1.0, kind="block"):
+def fromFile(path: FilePath, scale: float = 1.0, kind: str = "block") -> Bricks:
     """Blocks from a file, one for each closed convex surface in it: a :class:`Bricks`, each block a brick of its own.
 
     Formats: ``.obj`` (each ``g`` or ``o`` is a group), ``.off``, ``.stl`` (as text, each ``solid`` is a group, or as

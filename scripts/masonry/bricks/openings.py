@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Bricks while a wall is laid, the openings that are cut out of it, and the blocks that come of it."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 
 from ..arguments import items, named, shown
@@ -40,7 +42,7 @@ class Opening:
     z: float
     width: float
     height: float
-    lintel: Lintel = None
+    lintel: Lintel | None = None
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,7 @@ class LaidBrick:
     high: tuple
     course: int
     part: str
-    split: tuple = None  # (axis, coordinate)
+    split: tuple | None = None  # (axis, coordinate)
     number: int = -1
     cut: bool = False  # whether an opening has cut it
 

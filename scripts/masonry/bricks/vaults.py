@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Arches, barrel vaults and domes from voussoirs with plane faces. Neighbours share whole faces, corner by corner."""
 
+from __future__ import annotations
+
 import math
 
 from ..arguments import flag, takes, text
@@ -12,15 +14,15 @@ MOST_STONES = 100_000
 
 @takes()
 def Arch(
-    thickness,
-    depth,
-    stones,
-    span=None,
-    radius=None,
-    angle=180.0,
-    skewback=None,
-    part="arch",
-):
+    thickness: float,
+    depth: float,
+    stones: int,
+    span: float | None = None,
+    radius: float | None = None,
+    angle: float = 180.0,
+    skewback: float | None = None,
+    part: str = "arch",
+) -> Bricks:
     """A circular arch from equal voussoirs: a :class:`Bricks` of kind "voussoir", numbered from left to right.
 
     ::
@@ -69,16 +71,16 @@ def Arch(
 
 @takes()
 def BarrelVault(
-    thickness,
-    length,
-    stones,
-    rows,
-    span=None,
-    radius=None,
-    angle=180.0,
-    staggered=True,
-    part="vault",
-):
+    thickness: float,
+    length: float,
+    stones: int,
+    rows: int,
+    span: float | None = None,
+    radius: float | None = None,
+    angle: float = 180.0,
+    staggered: bool = True,
+    part: str = "vault",
+) -> Bricks:
     """A barrel vault: a :func:`Arch` stretched along y, with courses that run along it.
 
     Courses are numbered from the left springing to the right one.
@@ -103,7 +105,7 @@ def BarrelVault(
     points = _ring(radius, thickness, stones, angle)
     blocks = []
     for course in range(stones):
-        halves = range(0, 2 * rows + 1, 2)
+        halves = list(range(0, 2 * rows + 1, 2))
         if staggered and course % 2:
             halves = [0, *range(1, 2 * rows, 2), 2 * rows]
         ends = [length * k / (2 * rows) for k in halves]
@@ -115,15 +117,15 @@ def BarrelVault(
 
 @takes()
 def Dome(
-    radius,
-    thickness,
-    courses,
-    stones,
-    oculus=None,
-    angle=180.0,
-    staggered=False,
-    part="dome",
-):
+    radius: float,
+    thickness: float,
+    courses: int,
+    stones: int,
+    oculus: float | None = None,
+    angle: float = 180.0,
+    staggered: bool = False,
+    part: str = "dome",
+) -> Bricks:
     """A dome whose horizontal courses are regular polygons: a :class:`Bricks` of kind "voussoir".
 
     Its axis is the z axis, and the lowest inner corners lie at z = 0. Corners lie on two spheres with a common centre.

@@ -5,14 +5,17 @@ A wall stands along x from the origin, its thickness along y, its height along z
 meet face to face. All positions along a wall are multiples of a quarter unit, except cuts at openings and junctions.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import replace
+from typing import Iterable
 
-from ..arguments import anything, flag, items, nearest, shown, takes, text
+from ..arguments import Numbers, anything, flag, items, nearest, shown, takes, text
 from .blocks import Block, Bricks, boxCorners, fits, positive, refuse, wholeNumber
 from .bonds import layout
 from .geometry import FLAT
-from .openings import WHOLE, LaidBrick, finished, numbered, opened
+from .openings import WHOLE, LaidBrick, Opening, finished, numbered, opened
 
 #: A calcium-silicate unit of the walls in the paper (yade_plugin/law/README.md): length, thickness and height [m].
 UNIT = (0.220, 0.102, 0.081)
@@ -25,18 +28,18 @@ BONDS = ("running", "stack", "header", "english", "flemish")
 
 @takes()
 def Wall(
-    length,
-    height=None,
-    unit=UNIT,
-    bond="running",
-    wythes=1,
-    openings=(),
-    courses=None,
-    halves=True,
-    collar=None,
-    part="wall",
-    joint=0.0,
-):
+    length: float,
+    height: float | None = None,
+    unit: Numbers = UNIT,
+    bond: str = "running",
+    wythes: int = 1,
+    openings: Iterable[Opening] = (),
+    courses: int | None = None,
+    halves: bool = True,
+    collar: float | None = None,
+    part: str = "wall",
+    joint: float = 0.0,
+) -> Bricks:
     """A straight wall, its lower left front corner at the origin: a :class:`Bricks`.
 
     ::
@@ -134,16 +137,16 @@ def Wall(
 
 @takes()
 def Corner(
-    length,
-    length2,
-    height=None,
-    unit=UNIT,
-    openings=(),
-    openings2=(),
-    courses=None,
-    halves=True,
-    joint=0.0,
-):
+    length: float,
+    length2: float,
+    height: float | None = None,
+    unit: Numbers = UNIT,
+    openings: Iterable[Opening] = (),
+    openings2: Iterable[Opening] = (),
+    courses: int | None = None,
+    halves: bool = True,
+    joint: float = 0.0,
+) -> Bricks:
     """Two walls of one wythe in running bond that meet at a right angle at the origin, with interlocking courses.
 
     The first, part "wall", runs along x; the second, part "return", along y. Even courses of the wall and odd ones of
@@ -176,17 +179,17 @@ def Corner(
 
 @takes()
 def Tee(
-    length,
-    length2,
-    at,
-    height=None,
-    unit=UNIT,
-    openings=(),
-    openings2=(),
-    courses=None,
-    halves=True,
-    joint=0.0,
-):
+    length: float,
+    length2: float,
+    at: float,
+    height: float | None = None,
+    unit: Numbers = UNIT,
+    openings: Iterable[Opening] = (),
+    openings2: Iterable[Opening] = (),
+    courses: int | None = None,
+    halves: bool = True,
+    joint: float = 0.0,
+) -> Bricks:
     """A wall of one wythe in running bond along x, part "wall", and another, part "stem", that meets it from behind.
 
     Odd courses of the stem go through the wall, even courses of the wall go through the stem.
@@ -237,18 +240,18 @@ def Tee(
 
 @takes()
 def Room(
-    length,
-    width,
-    height=None,
-    unit=UNIT,
-    front=(),
-    right=(),
-    back=(),
-    left=(),
-    courses=None,
-    halves=True,
-    joint=0.0,
-):
+    length: float,
+    width: float,
+    height: float | None = None,
+    unit: Numbers = UNIT,
+    front: Iterable[Opening] = (),
+    right: Iterable[Opening] = (),
+    back: Iterable[Opening] = (),
+    left: Iterable[Opening] = (),
+    courses: int | None = None,
+    halves: bool = True,
+    joint: float = 0.0,
+) -> Bricks:
     """Four walls of one wythe in running bond around a rectangle, with interlocking courses at its four corners.
 
     The parts "front" and "back" run along x, "left" and "right" along y. Even courses of front and back, and odd ones of
@@ -293,7 +296,7 @@ def Room(
 
 
 @takes()
-def stack(count, size, part="stack"):
+def stack(count: int, size: Numbers, part: str = "stack") -> Bricks:
     """Blocks on top of each other, the lowest one's lower left front corner at the origin: a :class:`Bricks`.
 
     :param count: number of blocks
@@ -319,7 +322,9 @@ def stack(count, size, part="stack"):
 
 
 @takes(low=anything, high=anything, part=text, kind=text)
-def block(low, high, part="block", kind="block"):
+def block(
+    low: Numbers, high: Numbers, part: str = "block", kind: str = "block"
+) -> Bricks:
     """One block, a box between two opposite corners [m]: a :class:`Bricks`. It can be a platen, a pier or a beam."""
     low, high = _triple(low, "low"), _triple(high, "high")
     found = Block(boxCorners(low, high), 0, part, -1, kind)

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Rigid blocks, their joints and loads, and the bounds of what they carry."""
 
+from __future__ import annotations
+
 import math
 import time
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
+from ..arguments import Numbers
 from ..basics import Refused
 from . import slipping
 from .bound import Bound
@@ -82,13 +86,15 @@ class Assembly:
 
     # -- loads ----------------------------------------------------------------------------------------------------
 
-    def weights(self, acceleration):
+    def weights(self, acceleration: Numbers) -> np.ndarray:
         """Mass times an acceleration (x, y, z) [m/s²] on every block that is free to follow it, as a load."""
         load = np.zeros((len(self.centres), 6))
         load[:, :3] = self.masses[:, None] * np.asarray(acceleration, float)
         return load
 
-    def force(self, block, vector, point=None):
+    def force(
+        self, block: int, vector: Numbers, point: Numbers | None = None
+    ) -> np.ndarray:
         """A force on a block, as a load.
 
         :param block: its number in the assembly
@@ -103,7 +109,7 @@ class Assembly:
 
     # -- the programme --------------------------------------------------------------------------------------------
 
-    def largest(self, live, dead):
+    def largest(self, live: np.ndarray, dead: np.ndarray) -> Bound:
         """The largest factor on a load that the structure carries beside others.
 
         :param live: load that grows
@@ -114,7 +120,7 @@ class Assembly:
         """
         return self._bound(live, dead, 1)
 
-    def smallest(self, live, dead):
+    def smallest(self, live: np.ndarray, dead: np.ndarray) -> Bound:
         """The smallest factor with which a load keeps the structure at rest, for example the least reaction of a support
         that settles. Its mechanism is that in which the structure follows the support. Parameters as of :meth:`largest`.
         """
@@ -138,7 +144,9 @@ class Assembly:
                 bound.weaker = other.factor
         return bound
 
-    def withoutDilatancy(self, live, dead, most=60, within=1e-3):
+    def withoutDilatancy(
+        self, live: np.ndarray, dead: np.ndarray, most: int = 60, within: float = 1e-3
+    ) -> Bound:
         """A collapse of joints that slip without opening, by repeated limit analysis.
 
         Friction is replaced, joint by joint, by a cohesion that is the friction under the normal force of the last round,
@@ -155,7 +163,9 @@ class Assembly:
         """
         return slipping.withoutDilatancy(self, live, dead, most, within)
 
-    def associated(self, live, dead, fixed=None, turns=TURNS):
+    def associated(
+        self, live: np.ndarray, dead: np.ndarray, fixed: Any = None, turns: int = TURNS
+    ) -> Bound:
         """The bound of associated flow alone, with the facets of friction turned.
 
         :param fixed: as of :meth:`_solve`

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What limit analysis found: the factor, forces, and the mechanism with its files."""
 
+from __future__ import annotations
+
 import os
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
+from ..arguments import FilePath
 from ..packages import needed
 from ..read.crack_figure import mechanism
 from .programme import FACETS
@@ -24,7 +28,7 @@ class Bound:
     Velocities are those with which the live load has a power of 1, so only their ratios mean something.
     """
 
-    assembly: object  #: :class:`Assembly`
+    assembly: Any  #: :class:`Assembly`
     #: factor that was maximised [-]; :attr:`factor` has its sign
     value: float
     velocities: np.ndarray  #: of blocks (n, 6): of the centroid, and of the rotation
@@ -38,7 +42,7 @@ class Bound:
     dilates: bool = True  #: whether joints that slip open as friction tells
     settled: bool = False  #: of :meth:`Assembly.withoutDilatancy`
     #: factor of a mechanism in which open joints slip, if that is lower, else None [-]
-    weaker: float = None
+    weaker: float | None = None
     factor: float = field(init=False)  #: on the live load [-]
 
     def __post_init__(self):
@@ -47,7 +51,7 @@ class Bound:
     # -- forces ---------------------------------------------------------------------------------------------------
 
     @property
-    def compressed(self):
+    def compressed(self) -> np.ndarray:
         """Normal forces by which friction is judged [N]: one a joint in the plane, one a contact in space."""
         a = self.assembly
         if a.plane:
@@ -55,13 +59,13 @@ class Bound:
         return self.normal
 
     @property
-    def directions(self):
+    def directions(self) -> np.ndarray:
         """Angle of the force along the joint on each contact, from the joint's first tangent [rad]."""
         one, two = self.assembly.tangents[self.assembly.contacts.joint].swapaxes(0, 1)
         return np.arctan2((self.along * two).sum(1), (self.along * one).sum(1))
 
     @property
-    def overstressed(self):
+    def overstressed(self) -> float:
         """How far forces along the joints are above friction and cohesion, as a share of all of them [-]."""
         a, c = self.assembly, self.assembly.contacts
         joint = c.joint
@@ -76,12 +80,12 @@ class Bound:
 
     # -- the mechanism --------------------------------------------------------------------------------------------
 
-    def motion(self, block, at):
+    def motion(self, block: np.ndarray, at: np.ndarray) -> np.ndarray:
         """Velocities of points of blocks. ``block`` are numbers, ``at`` their points (k, 3) [m]."""
         u = self.velocities[block]
         return u[:, :3] + np.cross(u[:, 3:], at - self.assembly.centres[block])
 
-    def jumps(self, joint, at):
+    def jumps(self, joint: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Opening (k) and slide (k, 3) of points (k, 3) of joints."""
         one, two = self.assembly.pairs[joint].T
         jump = self.motion(two, at) - self.motion(one, at)
@@ -89,12 +93,12 @@ class Bound:
         opening = (jump * normal).sum(axis=1)
         return opening, jump - opening[:, None] * normal
 
-    def fastest(self):
+    def fastest(self) -> int:
         """Number of the block with the fastest centroid."""
         return int(np.linalg.norm(self.velocities[:, :3], axis=1).argmax())
 
     @property
-    def powers(self):
+    def powers(self) -> dict[str, float]:
         """Power of the mechanism by what takes it, with the live load at its factor and the dead loads, as a dict:
         ``friction``, ``cohesion``, ``tension``, ``crushing``, and ``loads``, which is the sum of what the loads do, all counted
         positive.
@@ -123,25 +127,25 @@ class Bound:
         }
 
     @property
-    def slides(self):
+    def slides(self) -> bool:
         """Whether friction takes part in the mechanism."""
         powers = self.powers
         return powers["friction"] > SLIDES * powers["loads"]
 
     @property
-    def rigid(self):
+    def rigid(self) -> bool:
         """Whether no joint slides in the mechanism, and none has a strength there that it could lose."""
         powers = self.powers
         lost = sum(powers[kind] for kind in ("cohesion", "tension", "crushing"))
         return not self.slides and lost <= SLIDES * powers["loads"]
 
     @property
-    def exact(self):
+    def exact(self) -> bool:
         """Whether the factor is what rigid blocks with dry joints carry: no joint slides or loses strength in the mechanism,
         and no joints close a loop, so that none can slip while others keep it open."""
         return self.rigid and not self.assembly.bonded
 
-    def joints(self):
+    def joints(self) -> np.ndarray:
         """What joints do in the mechanism: an array of ``"rests"``, ``"opens"``, ``"slides"`` or ``"crushes"`` (m)."""
         a, c = self.assembly, self.assembly.contacts
         states = np.full(len(a.pairs), "rests", dtype="<U7")
@@ -158,7 +162,7 @@ class Bound:
             states[c.joint[over]] = kind
         return states
 
-    def sentence(self, load, unit, digits=4):
+    def sentence(self, load: str, unit: str, digits: int = 4) -> str:
         """What was found, as a sentence.
 
         :param load: name of the live load
@@ -198,7 +202,7 @@ class Bound:
             reasons.append("joints lose strength")
         return " and ".join(reasons) or "joints that are open may slip"
 
-    def describe(self):
+    def describe(self) -> dict[str, Any]:
         """The entries of run.json: a dict."""
         states = self.joints()
         return {
@@ -219,7 +223,7 @@ class Bound:
 
     # -- files ----------------------------------------------------------------------------------------------------
 
-    def frames(self):
+    def frames(self) -> tuple[dict[str, Any], dict[str, Any]]:
         """The mechanism as frames of blocks and joints, as :func:`masonry.read.frames.readFrame` gives those of a run.
 
         It is scaled so that the corner that moves most moves by :data:`SHOWN` of the structure's size.
@@ -264,7 +268,7 @@ class Bound:
         }
         return blocks, joints
 
-    def save(self, directory):
+    def save(self, directory: FilePath) -> None:
         """Write the mechanism for ParaView: ``mechanism_blocks.vtu`` and ``mechanism_joints.vtu``."""
         Mesh = needed("meshio").Mesh
         from scipy.spatial import ConvexHull
@@ -294,7 +298,13 @@ class Bound:
             cell_data={name: [joints[name][owner]] for name in names},
         ).write(os.path.join(directory, MECHANISM[1]))
 
-    def draw(self, path, title="", parts=None, views=None):
+    def draw(
+        self,
+        path: FilePath,
+        title: str = "",
+        parts: dict[str, Any] | None = None,
+        views: dict[str, Any] | None = None,
+    ) -> None:
         """Draw the mechanism in the style of the crack figure.
 
         :param path: of the picture

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The blocks and joints of the scene in YADE, as limit analysis takes them."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np
@@ -15,7 +17,7 @@ STOOD = 1e-3
 AXES = "xyzXYZ"  # as blockedDOFs names the freedoms of a body
 
 
-def read():
+def read() -> Assembly:
     """The blocks and joints of the scene in YADE, as they stand now: an :class:`Assembly`. Where no block has moved by more
     than :data:`STOOD`, they are taken as they stood when the joints were made.
 

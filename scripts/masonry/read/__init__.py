@@ -7,6 +7,8 @@
 - :mod:`masonry.read.measure`: all numbers of a run, as a program, too
 - :mod:`masonry.read.figures`: its figures, as a program, too; :mod:`masonry.read.curve_figure`,
   :mod:`masonry.read.crack_figure` and :mod:`masonry.read.views` draw them on :mod:`masonry.read.drawing`
+- :mod:`masonry.read.block_figure`: a picture of blocks before a run; :mod:`masonry.read.shown`: a run and its curve in a
+  notebook, and its columns as arrays
 - :mod:`masonry.read.comparison`: figures of several runs
 - :mod:`masonry.read.viewer`: its pictures and films by ParaView, which :mod:`masonry.read.viewer_scene` draws
 - :mod:`masonry.read.motion`: how its blocks move and what its joints do in all frames; :mod:`masonry.read.page`: a page that

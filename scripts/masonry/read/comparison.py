@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Curves of several runs and of measured CSV files over each other, in one picture. This module needs no YADE."""
 
+from __future__ import annotations
+
 import argparse
 import csv
 import math
 import os
 import sys
+from typing import Any, Sequence
 
 import numpy as np
 
+from ..arguments import FilePath
 from ..basics import Refused, say
 from . import drawing
 from .files import readCurve, readRun
@@ -18,7 +22,7 @@ COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#5
 DASHES = ["-", (0, (6, 2)), (0, (4, 1.5, 1, 1.5)), (0, (1.2, 1.2))]
 
 
-def readMeasured(text):
+def readMeasured(text: str) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """A measured curve of ``FILE:X:Y``: its two columns as arrays, and their names.
 
     The file has a line of column names and then numbers, with commas, semicolons or tabs between them. X and Y are names
@@ -67,7 +71,9 @@ def readMeasured(text):
     return x, y, [names[p] for p in places]
 
 
-def readRuns(directories, x=None, y=None):
+def readRuns(
+    directories: Sequence[FilePath], x: str | None = None, y: str | None = None
+) -> tuple[list[Any], list[str]]:
     """Curves of runs: a list of (x, y) arrays, and the labels of both axes.
 
     :param directories: folders of runs
@@ -108,7 +114,15 @@ def _label(column, run):
     return f"{' '.join(words[:-1])} [{words[-1]}]" if len(words) > 1 else column
 
 
-def compare(directories, measured=(), x=None, y=None, labels=(), out="plot.png", title=""):  # fmt: skip
+def compare(
+    directories: Sequence[FilePath],
+    measured: Sequence[str] = (),
+    x: str | None = None,
+    y: str | None = None,
+    labels: Sequence[str] = (),
+    out: FilePath = "plot.png",
+    title: str = "",
+) -> FilePath:
     """Draw curves over each other. Measured ones are black and behind, runs are in colours. Returns the path.
 
     :param directories: folders of runs
@@ -181,7 +195,7 @@ def _names(directories, measured):
     return names
 
 
-def main(words=None):
+def main(words: Sequence[str] | None = None) -> int:
     """The program ``scripts/plot.py``. Returns its exit status."""
     parser = argparse.ArgumentParser(
         description="Draw curves of runs and of measured CSV files over each other."

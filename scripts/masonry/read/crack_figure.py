@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """cracks.png: the deformed structure with its cracks, and the mechanism of limit analysis. This module needs no YADE."""
 
+from __future__ import annotations
+
 import os
 from collections import namedtuple
+from typing import Any
 
 import numpy as np
 
+from ..arguments import FilePath
 from ..basics import Refused
 from . import drawing
 from .cracks import CRACK, CRUSHED, crushed, widths
@@ -21,12 +25,16 @@ SEEN = 0.002, 0.6
 SHOWN = 0.06  # so large, if the usual magnification is not taken
 FACING = 0.87  # cosine from which a joint that faces the viewer is drawn as an area, not as a line: less than 30°
 
+BRICK = "#f3e3c8"  # the colour of a block
 COLOURS = {"open": "tab:red", "slid": "tab:blue"}
 
 #: A part in its view. ``faces`` and ``moved`` are outlines of its blocks, from the back to the front, at rest and moved,
 #: where displacements are magnified; ``lines`` are pairs of ends of the cracks by kind; ``areas`` are those that face the
-#: viewer; ``spots`` are crushed places (x, y, closure).
-Picture = namedtuple("Picture", "view faces moved lines areas spots")
+#: viewer; ``spots`` are crushed places (x, y, closure); ``shades`` are the colour of every block and its label in the legend,
+#: or None.
+Picture = namedtuple(
+    "Picture", "view faces moved lines areas spots shades", defaults=[()]
+)
 
 
 class _Part:
@@ -165,7 +173,7 @@ def merged(traces):
                 if not len(over):
                     continue
                 best = row[over[np.argmax(sizes[over])]]
-                start, end, kind, first, last = *best[2:4], *best[5:]
+                start, end, _, kind, first, last = best[2:]
                 shares = [np.clip((p - start) / (end - start), 0, 1) for p in (a, b)]
                 lines[kind].append(
                     [
@@ -204,17 +212,32 @@ def magnificationOf(size, moved):
     return max(1, int(nice))
 
 
-def cracks(directory, number=-1):
-    """Draw cracks.png: the deformed structure, magnified, over the undeformed one, each part in a panel of its own.
-
-    Cracks are red, joints that slid are blue, and crushed spots are black. Joints that face the viewer are areas, the
-    others lines. :func:`viewOf` says how a part is seen.
+def cracks(directory: FilePath, number: int = -1) -> None:
+    """Draw cracks.png of a frame that a run has left.
 
     :param number: of the frame, from 0; negative numbers count from the end
     """
     run = readRun(directory)
     blocks = readFrame(directory, "blocks", number)
     joints = readFrame(directory, "joints", number)
+    when = whenOf(run, directory, number)
+    with drawing.style():
+        figure = figureOf(run, blocks, joints, when, directory)
+        drawing.save(figure, os.path.join(directory, "cracks.png"), 90)
+
+
+def figureOf(run, blocks, joints, when, directory):
+    """The figure of cracks.png, to be drawn and saved in :func:`masonry.read.drawing.style`: the deformed structure, magnified,
+    over the undeformed one, each part in a panel of its own. Raises Refused.
+
+    Cracks are red, joints that slid are blue, and crushed spots are black. Joints that face the viewer are areas, the
+    others lines. :func:`viewOf` says how a part is seen.
+
+    :param run: entries of run.json: ``title``, ``parts``, ``views`` and ``reference_body``
+    :param blocks: frame of the blocks, and ``joints`` that of the joints
+    :param when: text that says when the frame was written
+    :param directory: folder, for messages
+    """
     still, wrong = np.zeros(3), set()
     bodies = set(map(int, blocks["body"]))
     groups = run.get("parts") or {"": sorted(bodies)}
@@ -242,15 +265,20 @@ def cracks(directory, number=-1):
     magnification = magnificationOf(max(sizes), np.concatenate(moved))
     pictures = {n: part.picture(magnification) for n, part in parts.items()}
     title = (
-        f"{run['title']}\n{whenOf(run, directory, number)}, displacements × {magnification}; "
+        f"{run['title']}\n{when}, displacements × {magnification}; "
         f"open or slid more than {1e3 * CRACK:g} mm, crushed more than {1e3 * CRUSHED:g} mm"
     )
-    with drawing.style():
-        figure = _page(pictures, title)
-        drawing.save(figure, os.path.join(directory, "cracks.png"), 90)
+    return page(pictures, title)
 
 
-def mechanism(path, blocks, joints, title, groups=None, sights=None):
+def mechanism(
+    path: FilePath,
+    blocks: dict[str, Any],
+    joints: dict[str, Any],
+    title: str,
+    groups: dict[str, Any] | None = None,
+    sights: dict[str, Any] | None = None,
+) -> None:
     """Draw a mechanism of :mod:`masonry.limit` as :func:`cracks` draws a frame.
 
     :param path: of the picture
@@ -267,10 +295,10 @@ def mechanism(path, blocks, joints, title, groups=None, sights=None):
         part.sizes()
         pictures[name] = part.picture(1)
     with drawing.style():
-        drawing.save(_page(pictures, title), path, 90)
+        drawing.save(page(pictures, title), path, 90)
 
 
-def _page(pictures, title):
+def page(pictures, title):
     """All parts on a page, in one scale."""
     boxes = {name: _box(picture) for name, picture in pictures.items()}
     if len(pictures) == 1:
@@ -343,12 +371,17 @@ def _panel(axes, picture, box, points):
 
     course = np.median([np.ptp(face, axis=0).min() for face in picture.faces]) * points
     thin, bold = np.clip(0.041 * course, 0.1, 0.35), np.clip(0.21 * course, 0.7, 1.8)
+    colours = [shade[1] if shade else BRICK for shade in picture.shades] or BRICK
     axes.add_collection(
         PolyCollection(picture.faces, facecolor="0.9", edgecolor="0.8", lw=0.85 * thin)
     )
     axes.add_collection(
-        PolyCollection(picture.moved, facecolor="#f3e3c8", edgecolor="0.45", lw=thin)
+        PolyCollection(picture.moved, facecolor=colours, edgecolor="0.45", lw=thin)
     )
+    for label, colour in sorted({shade for shade in picture.shades if shade}):
+        axes.add_collection(
+            PolyCollection([], facecolor=colour, edgecolor="0.45", label=label)
+        )
     for kind, polygons in picture.areas.items():
         if polygons:
             axes.add_collection(
@@ -360,7 +393,8 @@ def _panel(axes, picture, box, points):
                     label=kind + ", seen face-on",
                 )
             )
-    for kind, wide in (("slid", bold * 1.6 / 1.8), ("open", bold)):
+    wides = {"slid": bold * 1.6 / 1.8, "open": bold}
+    for kind, wide in wides.items() if picture.lines else ():
         axes.add_collection(
             LineCollection(
                 picture.lines[kind], color=COLOURS[kind], lw=wide, label=kind

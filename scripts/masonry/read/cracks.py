@@ -6,6 +6,10 @@ that stands in YADE (``MasonryVtkRecorder().joints()``). Figures and numbers hav
 needs no YADE.
 """
 
+from __future__ import annotations
+
+from typing import Any, Sequence
+
 import numpy as np
 
 CRACK = 0.05e-3  # [m] opening or slide from which a joint is cracked
@@ -15,7 +19,7 @@ NEAR = 3  # courses to either side of the diagonal: joints within them are near 
 OUTER = 2  # courses at base and top: joints there do not count for the diagonal, since they crack by rocking
 
 
-def widths(frame):
+def widths(frame: dict[str, Any]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """How far every subcontact is open or slid.
 
     :returns: three arrays: the larger of opening and slide [m]; whether it is open, that is, cracked more by opening than by
@@ -31,7 +35,7 @@ def widths(frame):
     )
 
 
-def widest(joints):
+def widest(joints: Any) -> tuple[float, Any, Any]:
     """The widest crack: the largest opening of a point of any joint, without its slide.
 
     :param joints: of each an identifier, the openings of its points [m], negative where it is closed, and the points [m]
@@ -45,12 +49,14 @@ def widest(joints):
     return found
 
 
-def crushed(frame):
+def crushed(frame: dict[str, Any]) -> np.ndarray:
     """Which subcontacts are crushed."""
     return frame["crushing"] > CRUSHED
 
 
-def layOut(frame, wall):
+def layOut(
+    frame: dict[str, Any], wall: dict[str, Any]
+) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     """Joints of a frame on the grid of the brickwork, without those to the support and to the loading block.
 
     :param frame: of the joints
@@ -93,7 +99,7 @@ def layOut(frame, wall):
     return bed, upright
 
 
-def diagonalReach(bed, upright):
+def diagonalReach(bed: np.ndarray, upright: np.ndarray) -> int:
     """Size of the largest diagonal crack that falls to the right through the brickwork [courses, half units].
 
     A crack goes from an upright joint of a course to those of the course below, straight down or to either side along
@@ -119,7 +125,7 @@ def diagonalReach(bed, upright):
     return reach
 
 
-def acrossDiagonal(shape, upright):
+def acrossDiagonal(shape: Sequence[int], upright: bool) -> np.ndarray:
     """Height of joints above the diagonal from corner to corner [courses]: an array, NaN in the outer courses."""
     rows, columns = np.indices(shape)
     level = rows + (0.5 if upright else 1.0)
@@ -129,7 +135,9 @@ def acrossDiagonal(shape, upright):
     return np.where(inner, level - courses * (1 - place / length), np.nan)
 
 
-def narrowestBand(positions, weights, share=0.5):
+def narrowestBand(
+    positions: np.ndarray, weights: np.ndarray, share: float = 0.5
+) -> float:
     """Width of the narrowest interval of ``positions`` that holds ``share`` of the sum of ``weights``.
 
     It is NaN if the weights sum to zero.
@@ -144,7 +152,9 @@ def narrowestBand(positions, weights, share=0.5):
     return float((positions[ends[starts]] - positions[starts]).min())
 
 
-def diagonal(bed, upright):
+def diagonal(
+    bed: dict[str, np.ndarray], upright: dict[str, np.ndarray]
+) -> dict[str, Any]:
     """Numbers of the diagonal crack; ``bed`` and ``upright`` as of :func:`layOut`.
 
     - diagonal_energy_share [-]: of the energy lost in shear by inner joints, what joints near the corner-to-corner
@@ -175,7 +185,7 @@ def diagonal(bed, upright):
     }
 
 
-def flexure(bed):
+def flexure(bed: dict[str, np.ndarray]) -> dict[str, Any]:
     """Numbers of the flexural cracks, in the lower half of the wall (base) and in the upper one (top).
 
     A flexural crack enters a wall at its side, so the bed joints at both ends of a course tell.
@@ -194,7 +204,7 @@ def flexure(bed):
     return numbers
 
 
-def crushing(bed):
+def crushing(bed: dict[str, np.ndarray]) -> dict[str, Any]:
     """Numbers of crushing in the bed joints.
 
     - crushed_volume_cm3: plastic closure integrated over the wall's bed joints
@@ -214,7 +224,7 @@ def crushing(bed):
     }
 
 
-def sliding(bed):
+def sliding(bed: dict[str, np.ndarray]) -> dict[str, Any]:
     """Numbers of the bed joint, from side to side of the wall, in which most energy was lost in shear.
 
     - sliding_course: courses between it and the base
@@ -232,13 +242,15 @@ def sliding(bed):
     }
 
 
-def patternNumbers(bed, upright):
+def patternNumbers(
+    bed: dict[str, np.ndarray], upright: dict[str, np.ndarray]
+) -> dict[str, Any]:
     """Numbers of the crack pattern of a wall; ``bed`` and ``upright`` as of :func:`layOut`."""
     found = {**diagonal(bed, upright), **flexure(bed), **crushing(bed), **sliding(bed)}
     return {name: np.asarray(value).item() for name, value in found.items()}
 
 
-def pattern(frame, wall):
+def pattern(frame: dict[str, Any], wall: dict[str, Any]) -> dict[str, Any]:
     """Numbers of the crack pattern of a wall; ``frame`` and ``wall`` as of :func:`layOut`."""
     return patternNumbers(*layOut(frame, wall))
 
@@ -247,7 +259,9 @@ def pattern(frame, wall):
 SLID = 0.9, 0.5
 
 
-def failureMode(numbers, wall, grows=False):
+def failureMode(
+    numbers: dict[str, Any], wall: dict[str, Any], grows: bool = False
+) -> str:
     """A plain name of how a wall gave way, from its crack pattern at the end. The first that applies is given:
 
     - ``none yet``: the force of the push still grows at its end
@@ -285,6 +299,6 @@ def failureMode(numbers, wall, grows=False):
     return "partial cracking" if cracked else "none"
 
 
-def mirrored(joints):
+def mirrored(joints: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The joints of :func:`layOut` of a wall that is seen from behind: what fell to the right falls to the left."""
     return {name: values[:, ::-1] for name, values in joints.items()}

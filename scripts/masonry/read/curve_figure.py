@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """curve.png: what the entry ``figure`` of run.json says, and the energies. This module needs no YADE."""
 
+from __future__ import annotations
+
 import os
 import re
+from typing import Any
 
 import numpy as np
 
+from ..arguments import FilePath
 from ..basics import Refused
 from . import drawing, loops
 from .files import readCurve, readRun
@@ -13,7 +17,9 @@ from .files import readCurve, readRun
 LINES = ["black", "tab:orange", "tab:green", "tab:purple", "tab:brown", "tab:cyan"]
 
 
-def plan(run, data, directory):
+def plan(
+    run: dict[str, Any], data: dict[str, Any], directory: FilePath
+) -> dict[str, Any]:
     """The entry ``figure`` of run.json, with all that may be left out. Raises Refused for one that cannot be drawn.
 
     :param run: what :func:`masonry.read.files.readRun` returns
@@ -42,7 +48,7 @@ def plan(run, data, directory):
     return spec
 
 
-def energies(data):
+def energies(data: dict[str, Any]) -> tuple[dict[str, Any], Any]:
     """Energies to draw, since the first row: a dict of name -> values [J], and the work done, or None if there is none.
 
     :param data: dict of column name -> array; what has an energy ends in ``_J``
@@ -64,48 +70,58 @@ def energies(data):
     return stack, sum(work) if work else None
 
 
-def curve(directory):
-    """Draw curve.png: what the entry ``figure`` of run.json says and, below it, the energies.
+def curve(directory: FilePath) -> None:
+    """Draw curve.png: what the entry ``figure`` of run.json says and, below it, the energies."""
+    run, data = readRun(directory), readCurve(directory)
+    with drawing.style():
+        figure = figureOf(run, data, directory)
+        drawing.save(figure, os.path.join(directory, "curve.png"), 110)
+
+
+def figureOf(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> Any:
+    """The figure of curve.png, to be drawn and saved in :func:`masonry.read.drawing.style`. Raises Refused.
 
     Loops have axes through zero and their envelope in bold, and their energies are drawn over the length of the way.
     Without columns of energies there is no panel of them.
+
+    :param run: entries of run.json: ``figure`` and ``title``, and ``wall`` of a wall
+    :param data: dict of column name -> numbers
+    :param directory: folder, for messages
     """
-    run = readRun(directory)
-    data = {name: np.array(values) for name, values in readCurve(directory).items()}
+    data = {name: np.array(values) for name, values in data.items()}
     spec = plan(run, data, directory)
     if "rows" in spec:
         data = {name: values[spec["rows"]] for name, values in data.items()}
     looped, x = spec["looped"], data[spec["x"]["column"]]
     used = {axis["column"] for axis in spec["y"]}
     stack, work = energies({k: v for k, v in data.items() if k not in used})
-    with drawing.style():
-        if stack:
-            figure = drawing.empty(7, 7)
-            top, bottom = figure.subplots(2, 1, sharex=not looped, height_ratios=[3, 2])
-        else:
-            figure = drawing.empty(7, 4.6)
-            top, bottom = figure.subplots(), None
-        _curves(top, spec, data, x)
-        top.set_title(run["title"])
-        label = spec["x"]["label"]
-        if bottom is None or looped:
-            top.set_xlabel(label)
-        if bottom:
-            over = np.append(0, np.cumsum(np.abs(np.diff(x)))) if looped else x
-            for name, values in stack.items():
-                bottom.plot(over, values, lw=1, label=name)
-            if work is not None:
-                bottom.plot(over, work, color="black", lw=1, ls="--", label="work done")
-            unit = unitOf(spec["x"])
-            bottom.set_xlabel(
-                f"length of the way there and back [{unit}]" if looped else label
-            )
-            first = "the push began" if "wall" in run else "the first row"
-            bottom.set_ylabel(f"energy since {first} [J]")
-            bottom.legend(fontsize=8)
-            bottom.grid(alpha=0.3)
-        figure.tight_layout()
-        drawing.save(figure, os.path.join(directory, "curve.png"), 110)
+    if stack:
+        figure = drawing.empty(7, 7)
+        top, bottom = figure.subplots(2, 1, sharex=not looped, height_ratios=[3, 2])
+    else:
+        figure = drawing.empty(7, 4.6)
+        top, bottom = figure.subplots(), None
+    _curves(top, spec, data, x)
+    top.set_title(run["title"])
+    label = spec["x"]["label"]
+    if bottom is None or looped:
+        top.set_xlabel(label)
+    if bottom:
+        over = np.append(0, np.cumsum(np.abs(np.diff(x)))) if looped else x
+        for name, values in stack.items():
+            bottom.plot(over, values, lw=1, label=name)
+        if work is not None:
+            bottom.plot(over, work, color="black", lw=1, ls="--", label="work done")
+        unit = unitOf(spec["x"])
+        bottom.set_xlabel(
+            f"length of the way there and back [{unit}]" if looped else label
+        )
+        first = "the push began" if "wall" in run else "the first row"
+        bottom.set_ylabel(f"energy since {first} [J]")
+        bottom.legend(fontsize=8)
+        bottom.grid(alpha=0.3)
+    figure.tight_layout()
+    return figure
 
 
 def _curves(axes, spec, data, x):
@@ -178,7 +194,7 @@ def _limits(spec, data):
     return low - 0.15 * reach, high + 0.15 * reach
 
 
-def unitOf(axis):
+def unitOf(axis: dict[str, Any]) -> str:
     """Unit of an axis: in the brackets of its label, else at the end of the name of its column."""
     found = re.search(r"\[([^\]]*)\]\s*$", axis["label"])
     return found[1] if found else axis["column"].rsplit("_", 1)[-1]

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Numbers of a curve of force over displacement. This module needs no YADE."""
 
-import math
+from __future__ import annotations
 
+import math
+from typing import Any, Callable
+
+from ..arguments import Numbers
 from . import loops
 
 #: Of the elastic energy: what joints dissipate up to it is no crack [-]. Where mortar bonds, nothing is dissipated before
@@ -10,7 +14,7 @@ from . import loops
 CRACKED = 1e-5
 
 
-def dynamicImbalance(top, base):
+def dynamicImbalance(top: Numbers, base: Numbers) -> float:
     """How much of the force of a push does not arrive at its base [-]: 0 if all does, 1 and more if none does.
 
     It is the root mean square of top less base shear over the largest of either, from half the peak at the base to that
@@ -29,7 +33,7 @@ def dynamicImbalance(top, base):
     return math.sqrt(sum(squares) / len(squares)) / largest
 
 
-def peakAtBothEnds(top, base):
+def peakAtBothEnds(top: Numbers, base: Numbers) -> float:
     """The largest force that top and base carried at once: in every row the smaller of both counts. It is 0 if there are no rows.
 
     When a crack tears at once, a wave runs through the wall, and for some hundredths of a millimetre one end feels a force
@@ -38,7 +42,7 @@ def peakAtBothEnds(top, base):
     return max(map(min, zip(top, base)), default=0.0)
 
 
-def stillGrows(displacement, force):
+def stillGrows(displacement: Numbers, force: Numbers) -> bool:
     """Whether the force of a push is largest at its end, and grows there with more than a twentieth of its initial stiffness:
     then nothing has given way yet. The end is the last tenth of the displacement."""
     if len(force) < 10 or max(force) > 1.001 * max(force[-3:]):
@@ -50,7 +54,7 @@ def stillGrows(displacement, force):
     return slope > 0.05 * initialStiffness(displacement, force)
 
 
-def initialStiffness(displacement, force):
+def initialStiffness(displacement: Numbers, force: Numbers) -> float:
     """Slope [force/displacement] of the line fitted between 5 % and 25 % of the peak, on the way to it.
 
     A push that begins under a force of more than a hundredth of the peak, as of a drive that held a weight before, counts
@@ -77,7 +81,9 @@ def initialStiffness(displacement, force):
     return products / spread if spread > 0 else 0.0
 
 
-def firstCrack(column, rows=slice(None)):
+def firstCrack(
+    column: Callable[[str], Numbers], rows: slice = slice(None)
+) -> int | None:
     """Number of the row at which the first crack of a push is seen, or None.
 
     It is the first row at which the joints have dissipated, in tension and shear since the first of these rows, more than
@@ -96,7 +102,9 @@ def firstCrack(column, rows=slice(None)):
     return None
 
 
-def cycleNumbers(column, threshold):
+def cycleNumbers(
+    column: Callable[[str], Numbers], threshold: float
+) -> list[dict[str, Any]]:
     """Numbers of every cycle of a wall that follows a history: a list of dicts, for run.json.
 
     They are those of :class:`masonry.read.loops.Cycle`, None in place of NaN, with the base shear as the force. In place of
@@ -138,7 +146,7 @@ def cycleNumbers(column, threshold):
     return found
 
 
-def dampedShare(column):
+def dampedShare(column: Callable[[str], Numbers]) -> float:
     """Of what joints and damping have taken since the first row, the share of damping [-]; 0 if nothing was taken."""
     grown = lambda name: column(name)[-1] - column(name)[0]
     damped = max(0.0, grown("damping_J"))

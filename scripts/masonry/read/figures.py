@@ -9,23 +9,26 @@ What curve.png shows is said by the entry ``figure`` of run.json, and what the p
 :mod:`masonry.run.results`.
 """
 
+from __future__ import annotations
+
 import glob
 import os
 import sys
 
 from .. import folders, memory
+from ..arguments import FilePath
 from .crack_figure import cracks
 from .curve_figure import curve
 from .files import filesOf, onFolder
 
 
-def draw(directory):
+def draw(directory: FilePath) -> None:
     """Draw all figures that the files of a run allow. Raises Refused if something is wrong with them, or with the folder."""
     memory.reserve()
     folders.check(directory)
     with filesOf(directory):
         curve(directory)
-        if glob.glob(os.path.join(glob.escape(directory), "joints_*.vtp")):
+        if glob.glob(os.path.join(glob.escape(os.fspath(directory)), "joints_*.vtp")):
             cracks(directory)
 
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """curve.csv and run.json of a run, read again; :mod:`masonry.run.results` lists what is in them. This module needs no YADE."""
 
+from __future__ import annotations
+
 import contextlib
 import csv
 import errno
@@ -8,13 +10,15 @@ import math
 import os
 import stat
 import sys
+from typing import Any, Callable, Iterator, Sequence
 
 from .. import memory
+from ..arguments import FilePath
 from ..basics import Refused, say
 from ..folders import fromJson
 
 
-def readWhole(path, sizeOf=None):
+def readWhole(path: FilePath, sizeOf: Callable[[bytes], int] | None = None) -> bytes:
     """The bytes of a file. Raises OSError for what is no file, too: a pipe never ends, and a device has no end.
 
     :param sizeOf: function of the first 64 bytes that gives how many the file should have; of a longer one, which may be
@@ -41,7 +45,7 @@ def _read(path):
         raise Refused(f"cannot read {path}: it is no text") from None
 
 
-def readCurve(directory):
+def readCurve(directory: FilePath) -> dict[str, list[float]]:
     """curve.csv of a run as a dict of column name -> list of numbers. Raises Refused if there is none."""
     path = os.path.join(directory, "curve.csv")
     lines = list(csv.reader(_read(path).splitlines()))
@@ -65,7 +69,7 @@ def readCurve(directory):
     return {c: [row[i] for row in rows] for i, c in enumerate(columns)}
 
 
-def readRun(directory):
+def readRun(directory: FilePath) -> dict[str, Any]:
     """run.json of a run as a dict; this module's docstring lists its keys. Raises Refused if there is none."""
     path = os.path.join(directory, "run.json")
     try:
@@ -80,7 +84,7 @@ def readRun(directory):
 
 
 @contextlib.contextmanager
-def filesOf(directory):
+def filesOf(directory: FilePath) -> Iterator[None]:
     """Use the files of a run. What they lack, since they are damaged or not of a finished run, becomes Refused."""
     try:
         yield
@@ -90,7 +94,7 @@ def filesOf(directory):
         ) from problem
 
 
-def onFolder(act, words):
+def onFolder(act: Callable[[str], object], words: Sequence[str]) -> int:
     """Main program of what reads a run: calls ``act`` with the folder that is the only word. Returns the exit status."""
     try:
         if len(words) != 1:

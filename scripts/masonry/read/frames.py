@@ -6,6 +6,8 @@ either can end a process in which YADE runs with a VTK of its own. MasonryVtkRec
 numbers appended in base64 and compressed by zlib, and that kind is read here.
 """
 
+from __future__ import annotations
+
 import base64
 import glob
 import os
@@ -13,16 +15,18 @@ import re
 import struct
 import zlib
 from xml.etree import ElementTree
+from typing import Any
 
 import numpy as np
 
+from ..arguments import FilePath
 from ..basics import Refused
 
 #: Types of numbers in the files.
 TYPES = {"Float64": "f8", "Float32": "f4", "Int64": "i8", "Int32": "i4", "UInt8": "u1"}
 
 
-def framePaths(directory, kind):
+def framePaths(directory: FilePath, kind: str) -> list[str]:
     """Paths of all frames of a run, in the order of time.
 
     :param kind: ``blocks`` or ``joints``
@@ -31,7 +35,9 @@ def framePaths(directory, kind):
     number = lambda path: int(re.search(r"_(\d+)\.vt[up]$", path)[1])
     paths = [
         path
-        for path in glob.glob(os.path.join(glob.escape(directory), kind + "_*.vt[up]"))
+        for path in glob.glob(
+            os.path.join(glob.escape(os.fspath(directory)), kind + "_*.vt[up]")
+        )
         if re.search(r"_\d+\.vt[up]$", path)
     ]
     if not paths:
@@ -39,7 +45,7 @@ def framePaths(directory, kind):
     return sorted(paths, key=number)
 
 
-def frameTimes(directory):
+def frameTimes(directory: FilePath) -> list[float]:
     """Times of all frames of a run in the order of time, as joints.pvd has them [s]."""
     path = os.path.join(directory, "joints.pvd")
     try:
@@ -51,7 +57,7 @@ def frameTimes(directory):
         raise Refused(f"cannot read {path}: {error}") from None
 
 
-def readFrame(directory, kind, number=-1):
+def readFrame(directory: FilePath, kind: str, number: int = -1) -> dict[str, Any]:
     """A frame of blocks or joints as a dict: ``points`` [m], ``cells`` (arrays of point numbers), and every data array.
 
     :param kind: ``blocks`` or ``joints``
@@ -61,7 +67,9 @@ def readFrame(directory, kind, number=-1):
     return _read(framePaths(directory, kind)[number], _frame)
 
 
-def readSurfaces(directory, number=0):
+def readSurfaces(
+    directory: FilePath, number: int = 0
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Triangles around the blocks of a frame, as :func:`readFrame` numbers points and cells.
 
     :returns: the corners of triangles, an array (n, 3) of point numbers; the cell of each of them; and whether cells are
@@ -83,9 +91,11 @@ def _read(path, parsed):
         ) from None
 
 
-def asFrame(found):
+def asFrame(found: Any) -> dict[str, Any]:
     """The same dict as :func:`readFrame` gives, of what ``MasonryVtkRecorder().joints()`` gives without a file."""
-    frame = {name: np.array(rows) for name, rows in found.items() if name != "cells"}
+    frame: dict[str, Any] = {
+        name: np.array(rows) for name, rows in found.items() if name != "cells"
+    }
     frame["cells"] = [np.array(cell) for cell in found["cells"]]
     return frame
 

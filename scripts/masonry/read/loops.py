@@ -12,10 +12,14 @@ cycles in a row, one to either side. A place in a curve is given as a row number
 the way from row 7 to row 8, with straight lines between rows.
 """
 
+from __future__ import annotations
+
 import math
 from collections import namedtuple
 
 import numpy as np
+
+from ..arguments import Numbers
 
 #: An excursion to one side. ``start`` and ``end`` are its places in the curve; ``extreme`` is the row of its largest
 #: displacement, the first of equal ones; ``side`` is 1 or -1; ``complete`` says whether it both begins and ends at zero.
@@ -68,7 +72,7 @@ def _noise(threshold):
         raise ValueError(f"threshold {threshold} mm must be at least 0 and finite")
 
 
-def turningPoints(displacement, threshold=0.0):
+def turningPoints(displacement: Numbers, threshold: float = 0.0) -> np.ndarray:
     """Rows at which a curve turns: an array, between whose rows the displacement changes by more than the threshold.
 
     A maximum counts once the displacement has fallen by more than the threshold below it, a minimum once it has risen by
@@ -102,7 +106,9 @@ def turningPoints(displacement, threshold=0.0):
     return np.array(rows)
 
 
-def halfCycles(displacement, threshold, zero=0.0):
+def halfCycles(
+    displacement: Numbers, threshold: float, zero: float = 0.0
+) -> list[HalfCycle]:
     """Excursions to either side that go beyond the threshold: a list of :class:`HalfCycle` that alternate in side.
 
     A half cycle ends at the last passage through zero before the displacement goes beyond the threshold on the other
@@ -149,7 +155,7 @@ def _lastPassage(moved):
     return at + float(moved[at] / (moved[at] - moved[at + 1]))
 
 
-def stretch(values, start, end):
+def stretch(values: Numbers, start: float, end: float) -> np.ndarray:
     """The part of a sequence between two places: the values at both, and those of the rows between."""
     values = np.asarray(values, float)
     rows = np.arange(len(values))
@@ -157,7 +163,9 @@ def stretch(values, start, end):
     return np.interp(np.concatenate([[start], between, [end]]), rows, values)
 
 
-def work(displacement, force, start=0.0, end=None):
+def work(
+    displacement: Numbers, force: Numbers, start: float = 0.0, end: float | None = None
+) -> float:
     """Integral of the force over the displacement between two places of a curve, from its first to its last row unless
     they are given [J]. Trapezoids between rows."""
     moved, force = _curve(displacement, force)
@@ -165,7 +173,9 @@ def work(displacement, force, start=0.0, end=None):
     return float(np.trapz(stretch(force, start, end), stretch(moved, start, end)))
 
 
-def secantStiffness(displacement, force, high, low):
+def secantStiffness(
+    displacement: Numbers, force: Numbers, high: int, low: int
+) -> float:
     """Slope of the line between two rows of a curve, the peak-to-peak stiffness if they are its extremes [kN/mm].
 
     It is NaN if both have the same displacement.
@@ -175,7 +185,7 @@ def secantStiffness(displacement, force, high, low):
     return float((force[high] - force[low]) / far) if far else math.nan
 
 
-def equivalentDamping(work, stiffness, amplitude):
+def equivalentDamping(work: float, stiffness: float, amplitude: float) -> float:
     """Ratio ξ of the viscous damping that takes as much work in a cycle, ξ = W / (4π·½·K·A²) [-].
 
     It is W over 4π times the elastic energy ½·K·A² at the amplitude, as Jacobsen defined it (1930). It is NaN if
@@ -190,7 +200,9 @@ def equivalentDamping(work, stiffness, amplitude):
     return work / (4 * math.pi * 0.5 * stiffness * amplitude**2)
 
 
-def residualDisplacement(displacement, force, extreme, end=None):
+def residualDisplacement(
+    displacement: Numbers, force: Numbers, extreme: int, end: int | None = None
+) -> float:
     """Displacement at which the force first vanishes after an extreme, on the way back, linear between rows [mm].
 
     It is NaN if the force at the extreme is zero already, or does not come to zero up to the end.
@@ -211,7 +223,9 @@ def residualDisplacement(displacement, force, extreme, end=None):
     return float(moved[at] + share * (moved[at + 1] - moved[at]))
 
 
-def cycles(displacement, force, threshold, zero=0.0):
+def cycles(
+    displacement: Numbers, force: Numbers, threshold: float, zero: float = 0.0
+) -> list[Cycle]:
     """The cycles of a curve with their numbers: a list of :class:`Cycle`.
 
     Complete half cycles are joined in pairs from the first one on. One that is left over at the end is no cycle.
@@ -257,7 +271,7 @@ def cycles(displacement, force, threshold, zero=0.0):
     return found
 
 
-def envelope(displacement, zero=0.0):
+def envelope(displacement: Numbers, zero: float = 0.0) -> tuple[np.ndarray, ...]:
     """Rows of the envelope: where the displacement is farther to its side than ever before.
 
     Drawn as lines over the displacement, they bridge what is within reach of earlier rows.

@@ -8,13 +8,17 @@ Of a wall that follows a history the numbers of cracks and crushing are those of
 This module needs no YADE.
 """
 
+from __future__ import annotations
+
 import glob
 import os
 import sys
 import xml.etree.ElementTree as ElementTree
+from typing import Any, Iterator
 
 import numpy as np
 
+from ..arguments import FilePath, Numbers
 from ..basics import say
 from . import loops
 from .cracks import (
@@ -32,7 +36,7 @@ from .frames import readFrame
 LOST = 0.05  # of the peak force: a larger loss is a drop, a smaller one may be the scatter by single bricks at the toe
 
 
-def force(displacement, shear):
+def force(displacement: Numbers, shear: Numbers) -> dict[str, float]:
     """Numbers of a force-displacement curve after its peak, from displacements [mm] and forces.
 
     - force_drop [-]: share of the peak that is lost at the end
@@ -46,19 +50,19 @@ def force(displacement, shear):
     }
 
 
-def pushNumbers(displacement, shear):
+def pushNumbers(displacement: Numbers, shear: Numbers) -> dict[str, float]:
     """Numbers of a push: its work, and those of :func:`force`. Parameters are displacements [mm] and forces [kN]."""
     work = float(np.trapz(shear, displacement))
     return {"push_work_J": work, **force(displacement, shear)}
 
 
-def frameAt(directory, time):
+def frameAt(directory: FilePath, time: float) -> int:
     """Number of the joints' frame nearest to a time [s]."""
     sets = ElementTree.parse(os.path.join(directory, "joints.pvd")).iter("DataSet")
     return int(np.argmin([abs(float(s.get("timestep")) - time) for s in sets]))
 
 
-def wallNumbers(directory):
+def wallNumbers(directory: FilePath) -> dict[str, Any]:
     """All numbers of a wall's run. Those of the crack pattern are left out if there are no ParaView files."""
     run, curve = readRun(directory), readCurve(directory)
     shear, moved = curve["base_shear_kN"], curve["displacement_mm"]
@@ -83,7 +87,9 @@ def wallNumbers(directory):
     return numbers
 
 
-def loopNumbers(run, displacement, shear):
+def loopNumbers(
+    run: dict[str, Any], displacement: Numbers, shear: Numbers
+) -> dict[str, Any]:
     """Numbers of loops, from run.json and from displacements [mm] and forces [kN].
 
     - cycle_count: whole cycles; cycle_work_J: work of all of them; loop_work_J: work of the whole curve
@@ -112,7 +118,7 @@ def loopNumbers(run, displacement, shear):
     return numbers
 
 
-def jointNumbers(directory, name):
+def jointNumbers(directory: FilePath, name: str) -> dict[str, Any]:
     """Areas under the curves of a joint whose means are recorded: its fracture energies, if it was torn, sheared or crushed.
 
     :param name: of the joint, which stands before the names of its columns and of these numbers; it may be empty
@@ -134,7 +140,7 @@ def jointNumbers(directory, name):
     return {prefix + end: value for end, value in found.items()}
 
 
-def measure(directory):
+def measure(directory: FilePath) -> dict[str, Any]:
     """Numbers of a run as a dict by name: those at the top level of run.json, and those measured here.
 
     ``balance_error`` is the ``energy_balance_error`` of run.json.
@@ -170,7 +176,7 @@ TABLE = (
 )
 
 
-def cycleTable(cycles):
+def cycleTable(cycles: list[dict[str, Any]]) -> Iterator[str]:
     """The cycles of run.json as lines of a table: displacement and base shear from and to, work at the base, secant
     stiffness, equivalent damping, residual displacements, and what joints and damping took.
     """
@@ -183,7 +189,7 @@ def cycleTable(cycles):
         yield f"{n:6}" + "".join(f"{text:>11}" for text in texts)
 
 
-def show(directory):
+def show(directory: FilePath) -> None:
     """Print all numbers of a run, and a table of its cycles if there are any."""
     numbers, wall = measure(directory), readRun(directory).get("wall")
     for name, value in numbers.items():

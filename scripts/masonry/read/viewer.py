@@ -5,6 +5,8 @@
 ``scripts/view.py`` is the program. ParaView's own Python works in a process of its own (:mod:`masonry.read.viewer_scene`).
 """
 
+from __future__ import annotations
+
 import argparse
 import contextlib
 import json
@@ -14,10 +16,12 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from typing import Any, Sequence
 
 import numpy as np
 
 from .. import folders, memory
+from ..arguments import FilePath
 from ..basics import Refused, say
 from . import gltf, page
 from .crack_figure import magnificationOf, whenOf
@@ -36,7 +40,7 @@ and, since the package python3-paraview would remove python3-vtk9 and with it wh
   cd /tmp && apt-get download python3-paraview && dpkg -x python3-paraview_*.deb {UNPACKED}"""
 
 
-def findPvpython():
+def findPvpython() -> tuple[str, str | None] | None:
     """Path of pvpython, and the folder of its Python modules if they are not where it looks itself, else None.
 
     :raises Refused: if there is none, with the packages to install
@@ -51,7 +55,7 @@ def findPvpython():
     raise Refused(MISSING)
 
 
-def frameNear(directory, at):
+def frameNear(directory: FilePath, at: Any) -> int:
     """Number of the frame next to a place in a run, from 0.
 
     :param at: text: a number with ``s``, a time, or a number with or without the unit of x of curve.png; None: the end
@@ -92,7 +96,13 @@ def _nice(value):
     return max(step * power for step in (1, 2, 5) if step * power <= value * 1.0001)
 
 
-def sceneOf(directory, at=None, magnification=None, shape=1.5, still=True):
+def sceneOf(
+    directory: FilePath,
+    at: Any = None,
+    magnification: float | None = None,
+    shape: float = 1.5,
+    still: bool = True,
+) -> dict[str, Any]:
     """What ParaView shall show of a run: a dict for :mod:`masonry.read.viewer_scene`.
 
     :param directory: folder of the run
@@ -237,7 +247,15 @@ def _fresh(path):
     return path
 
 
-def render(directories, picture=None, film=None, at=None, magnification=None, size=(1500, 1000), rate=10):  # fmt: skip
+def render(
+    directories: Sequence[FilePath],
+    picture: str | None = None,
+    film: str | None = None,
+    at: Any = None,
+    magnification: float | None = None,
+    size: Sequence[int] = (1500, 1000),
+    rate: int = 10,
+) -> None:
     """Draw runs, side by side, to a picture, a film or both.
 
     :param directories: folders of runs
@@ -253,7 +271,9 @@ def render(directories, picture=None, film=None, at=None, magnification=None, si
     for path, what in ((picture, "picture"), (film, "film")):
         if not path:
             continue
-        job = dict(picture=None, film=None, state=None, size=list(size), rate=rate)
+        job: dict[str, Any] = dict(
+            picture=None, film=None, state=None, size=list(size), rate=rate
+        )
         if what == "film" and not path.lower().endswith(FILMS):
             if os.path.splitext(path)[1]:
                 raise Refused(f"--film: {path} must end in {', '.join(FILMS)}, or be a folder")  # fmt: skip
@@ -276,7 +296,9 @@ def render(directories, picture=None, film=None, at=None, magnification=None, si
             raise Refused(f"ParaView wrote no {what} {path}")
 
 
-def show(directories, at=None, magnification=None):
+def show(
+    directories: Sequence[FilePath], at: Any = None, magnification: float | None = None
+) -> None:
     """Open ParaView's window on runs. The state is kept as view.pvsm in the folder of the first run."""
     if not shutil.which("paraview"):
         raise Refused(MISSING)
@@ -332,7 +354,7 @@ def _handOn(args):
         raise Refused(f"cannot write {path}: {problem.strerror}") from None
 
 
-def main(words=None):
+def main(words: Sequence[str] | None = None) -> int:
     """The program ``scripts/view.py``. Returns its exit status."""
     parser = argparse.ArgumentParser(
         description="Open runs in ParaView, draw them to a picture or a film without a display, or write them for a browser or as a 3-D model."

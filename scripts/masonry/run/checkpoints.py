@@ -5,12 +5,15 @@
 :mod:`masonry.run.place` is what such a checkpoint tells of the run.
 """
 
+from __future__ import annotations
+
 import contextlib
 import json
 import os
+from typing import Any
 
 from .._masonry import loadScene, saveScene, savedText
-from ..arguments import anything
+from ..arguments import FilePath, anything
 from ..arguments import path as pathOf
 from ..arguments import shown, takes
 from ..basics import plain
@@ -23,7 +26,7 @@ LONGEST = 500  # characters of a reason: it can quote a file that somebody has m
 
 
 @takes(path=pathOf, extra=anything)
-def saveCheckpoint(path, extra=None):
+def saveCheckpoint(path: FilePath, extra: Any = None) -> None:
     """Save the state of the scene in a file, so that :func:`loadCheckpoint` goes on from it bit for bit.
 
     Saved are the time, the bodies, the joints, and the engines of this plugin. Other engines, for example a PyRunner,
@@ -50,7 +53,7 @@ def saveCheckpoint(path, extra=None):
 
 
 @takes(path=pathOf)
-def loadCheckpoint(path):
+def loadCheckpoint(path: FilePath) -> Any:
     """Give the scene, built by the same script with the same parameters, the state of a checkpoint.
 
     :returns: the ``extra`` of :func:`saveCheckpoint`
@@ -65,12 +68,12 @@ def loadCheckpoint(path):
 
 
 @takes(path=pathOf)
-def readCheckpoint(path):
+def readCheckpoint(path: FilePath) -> Any:
     """The ``extra`` of a checkpoint alone, of a file that is whole. Raises what :func:`loadCheckpoint` raises."""
     return _extra(path, savedText, _bytesOf(path))
 
 
-def readState(directory):
+def readState(directory: FilePath) -> tuple[bytes, Any]:
     """The checkpoint of a run: its bytes, as ``loadScene`` takes them, and its ``extra``. Raises as
     :func:`readCheckpoint`."""
     path = os.path.join(directory, NAME)
@@ -109,7 +112,7 @@ def _size(head):
     return len(title + end) + 8 + int.from_bytes(number[:8], "little")
 
 
-def alike(value, example):
+def alike(value: Any, example: Any) -> bool:
     """Whether a value that JSON gave is of the kind of another one.
 
     An int is a counter, from 0 on; a float is any number up to LARGEST; a list or tuple has as many values, each of the kind of its

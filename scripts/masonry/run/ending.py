@@ -83,6 +83,7 @@ def _end(run, scene, error):
     kept = False
     try:
         kept = not over and run.checkpoint()
+        run.kept = kept and run.interrupted
     except Unwritable as unwritable:
         stopped.append(unwritable)
     try:

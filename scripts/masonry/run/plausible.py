@@ -13,8 +13,7 @@ from .place import otherVersion
 
 LONGEST = 200  # characters of a reason
 #: How data that somebody has made up show themselves.
-DAMAGES = (ValueError, TypeError, LookupError, AttributeError, ArithmeticError)
-DAMAGES += (MemoryError, RecursionError)
+DAMAGES = (ValueError, TypeError, LookupError, AttributeError, ArithmeticError, MemoryError, RecursionError)  # fmt: skip
 #: Answers of a stage that looks for the load that is held: both ends come together.
 ENDS = {"factor_held", "factor_not_held"}
 FARTHEST = 1e9  # [m], [m/s], [rad/s]

@@ -19,6 +19,7 @@ import yade.config
 from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
+from .. import notebook
 from .._masonry import commit, loadScene, version
 from ..assembly import threads
 from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
@@ -65,6 +66,7 @@ class Run:
         self.at, self._saved = Place(), None
         self.results = self.vtk = self.preset = None
         self.collapsed = self.interrupted = False
+        self.kept = False  # whether it was interrupted and left a checkpoint at its end
         self.progress = Progress()
         self.advanced = False  # whether this process has taken steps of it
         self.entered = 0  # number of the stage that was entered last
@@ -111,8 +113,7 @@ class Run:
                 )
             self.at = self._saved.place()
             plausible.check(self._saved, self.at)
-        for number in (signal.SIGINT, signal.SIGTERM):
-            self._handlers[number] = signal.signal(number, self._interrupt)
+        self._takeSignals()
         self.preset = presetOf(args, self.name)
         if self.preset:
             say(presetNote(self.preset, self.name))
@@ -443,6 +444,28 @@ class Run:
         finally:
             self._breaks = False
 
+    @contextlib.contextmanager
+    def listening(self):
+        """Obey Ctrl-C and SIGTERM in a block, in order. In a script the run obeys them from its beginning to its end; in a
+        notebook only while one of its words is carried out, and what else a cell does is interrupted as usual.
+        """
+        if self.results and not self._handlers and notebook.isHere():
+            self._takeSignals()
+        try:
+            yield
+        finally:
+            if notebook.isHere():
+                self._giveSignals()
+
+    def _takeSignals(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            self._handlers[number] = signal.signal(number, self._interrupt)
+
+    def _giveSignals(self):
+        for number, handler in self._handlers.items():
+            signal.signal(number, handler)
+        self._handlers = {}
+
     def _interrupt(self, number, frame):
         self.interrupted = True
         if self._breaks:
@@ -453,6 +476,4 @@ class Run:
         """Let other runs have the folder, and others the signals."""
         if self.results:
             self.results.release()
-        for number, handler in self._handlers.items():
-            signal.signal(number, handler)
-        self._handlers = {}
+        self._giveSignals()

@@ -14,15 +14,21 @@
   :mod:`masonry.scene.settings`: ``--set``; :mod:`masonry.scene.keywords`: options that the script gives to ``Scene``
 - :mod:`masonry.scene.bounds`: limit analysis beside a run
 - :mod:`masonry.scene.outcome`: what comes out; :mod:`masonry.scene.wall`: of a wall in running bond
+- :mod:`masonry.scene.showing`: a scene in a notebook, and its curve as arrays
 - :mod:`masonry.scene.words`: the words of a script, as data; :mod:`masonry.scene.resuming`: what a resumed run finds in place
   of the stages that were over
 - :mod:`masonry.scene.probing`: what a study must know of a scene
 """
 
 import importlib
+from typing import TYPE_CHECKING
 
 
-def __getattr__(name):
-    if name == "Scene":
-        return importlib.import_module(f"{__name__}.scene").Scene
-    raise AttributeError(f"module 'masonry.scene' has no attribute {name!r}")
+if TYPE_CHECKING:
+    from .scene import Scene
+else:
+
+    def __getattr__(name):
+        if name == "Scene":
+            return importlib.import_module(f"{__name__}.scene").Scene
+        raise AttributeError(f"module 'masonry.scene' has no attribute {name!r}")

@@ -129,6 +129,19 @@ class Description:
         self.targets[target.name] = target
         return target
 
+    def replace(self, one, other):
+        """Let a record that a script holds stand for one that was made by the same word again: a target, a recorded joint or a
+        section. Its values become those of the new one."""
+        if not hasattr(one, "__dict__"):
+            return
+        vars(other).clear()
+        vars(other).update(vars(one))
+        for name, target in self.targets.items():
+            if target is one:
+                self.targets[name] = other
+        for records in (self.joints, self.sections):
+            records[:] = [other if record is one else record for record in records]
+
     def columns(self, structure, looped):
         """The columns of curve.csv: those of the scene's choice, or all. Raises Refused.
 

@@ -9,8 +9,11 @@ A random field is the sum of :data:`WAVES` cosines with random directions, lengt
 distance d apart have the correlation exp(-(d/length)²), as they stand before the exponential of a lognormal field.
 """
 
+from __future__ import annotations
+
 import math
 import re
+from typing import Any, Callable
 
 import numpy as np
 
@@ -44,7 +47,9 @@ OF_FIELDS = dict(
 
 
 @takes(**OF_FIELDS)
-def lognormal(cov, length=0.0, seed=0):
+def lognormal(
+    cov: float, length: float = 0.0, seed: int = 0
+) -> Callable[[float, float, float], float]:
     """Factors that are lognormally distributed about the mean 1.
 
     :param cov: coefficient of variation, standard deviation over mean [-]
@@ -59,19 +64,21 @@ LEAST = 0.05  # factor below which a normal field does not go
 
 
 @takes(least=number("", 0, 1, above=True, below=True), **OF_FIELDS)
-def normal(cov, length=0.0, seed=0, least=LEAST):
+def normal(
+    cov: float, length: float = 0.0, seed: int = 0, least: float = LEAST
+) -> Callable[[float, float, float], float]:
     """Factors that are normally distributed about the mean 1, but not below ``least``. Other parameters: :func:`lognormal`."""
     field = _standard(length, seed)
     return lambda x, y, z: max(least, 1 + cov * field(x, y, z))
 
 
-KINDS = {"lognormal": lognormal, "normal": normal}
+KINDS: dict[str, Callable[..., Any]] = {"lognormal": lognormal, "normal": normal}
 _TEXT = re.compile(
     r"(?P<names>[^=]+)=(?P<kind>lognormal|normal)\(cov=(?P<cov>[^,]+),length=(?P<length>[^,]+),seed=(?P<seed>\d+)\)"
 )
 
 
-def parts(text):
+def parts(text: str) -> tuple[Any, ...]:
     """Names, kind, coefficient of variation, length [m] and seed of a field that is written as :func:`read` takes it."""
     found = _TEXT.fullmatch(text) if isinstance(text, str) else None
     names = found["names"].split("+") if found else []
@@ -86,7 +93,7 @@ def parts(text):
     return names, found["kind"], *numbers, int(found["seed"])
 
 
-def read(text):
+def read(text: str) -> tuple[list[str], Callable[[float, float, float], float]]:
     """The names of the properties and the function of a field that is written as the option ``--field`` takes it.
 
     :param text: for example ``bed.cohesion+bed.tensileStrength=lognormal(cov=0.3,length=0.5,seed=1)``
@@ -96,12 +103,12 @@ def read(text):
     return names, KINDS[kind](cov, length, seed)
 
 
-def written(kind, cov, length, seed):
+def written(kind: str, cov: float, length: float, seed: int) -> str:
     """The part of the text that :func:`read` reads behind the names."""
     return f"{kind}(cov={cov!r},length={length!r},seed={seed})"
 
 
-def ends(kind, cov, far):
+def ends(kind: str, cov: float, far: float) -> tuple[float, ...]:
     """The factors of a field where its normal is so many standard deviations below and above its mean [-]."""
     if kind == "lognormal":
         spread = math.sqrt(math.log1p(cov * cov))

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Ground motion: records of acceleration, and viscous damping for it. This module needs no YADE."""
 
+from __future__ import annotations
+
 import math
 import os
+from typing import Any
 
-from ..arguments import listOf, number, path, takes
+from ..arguments import FilePath, Numbers, listOf, number, path, takes
 from ..basics import Refused
 
 
@@ -12,7 +15,7 @@ HERTZ = number("Hz", 0, 1e6, above=True)  # the kind of a frequency
 
 
 @takes(ratio=number("", 0, 1, below=True), low=HERTZ, high=HERTZ)
-def rayleigh(ratio, low, high):
+def rayleigh(ratio: float, low: float, high: float) -> tuple[float, float]:
     """Viscous damping for :meth:`masonry.scene.scene.Scene.shake`: mass damping [1/s] and stiffness damping [s].
 
     :param ratio: share of critical damping at two frequencies [-]; between them it is less
@@ -31,14 +34,19 @@ LOWEST_PEAK, HIGHEST_PEAK = (
 )  # [m/s²] peaks beyond these may be in g, or in cm/s²
 
 
-def record(value, first=None):
+def record(value: Any, first: Any = None) -> Any:
     """The kind of a record: a list of accelerations, or the path of a file."""
     if isinstance(value, (str, os.PathLike)):
         return path(value)
     return listOf(number("m/s²", -1e6, 1e6), 2)(value)
 
 
-def readRecord(accelerations, every, scale=1.0, unit=None):
+def readRecord(
+    accelerations: Numbers | FilePath,
+    every: float | None,
+    scale: float = 1.0,
+    unit: str | None = None,
+) -> tuple[list[float], float]:
     """Samples and the time between them [s] of a record.
 
     :param scale: factor on the samples
@@ -48,7 +56,7 @@ def readRecord(accelerations, every, scale=1.0, unit=None):
     """
     if unit not in (None, *UNITS):
         raise Refused(f"shake: unit must be one of {', '.join(UNITS)}, got {unit!r}")
-    if isinstance(accelerations, str):
+    if isinstance(accelerations, (str, os.PathLike)):
         rows, named, line = [], accelerations, 1
         try:
             with open(named) as f:
@@ -77,14 +85,14 @@ def readRecord(accelerations, every, scale=1.0, unit=None):
                     f"shake: {named}: its times are {mean:g} s apart, not {every:g} s"
                 )
             every = mean
-    values = [float(a) for a in accelerations]
+    values: list[float] = [float(a) for a in accelerations]
     if len(values) < 2 or not all(map(math.isfinite, values)):
         raise Refused("shake: a record needs two finite accelerations at least")
     if not (isinstance(every, (int, float)) and 0 < every < math.inf):
         raise Refused(
             f"shake: every {every!r} s, the time between samples, must be above 0"
         )
-    peak = abs(scale) * max(map(abs, values))
+    peak = abs(scale) * max(abs(v) for v in values)
     if unit is None and peak > 0 and not LOWEST_PEAK <= peak <= HIGHEST_PEAK:
         other = "g" if peak < LOWEST_PEAK else "cm/s²"
         raise Refused(

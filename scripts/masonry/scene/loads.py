@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What loads a structure from its first stage on: words that describe a scene."""
 
-from ..arguments import direction, flag, number, orNone, takes
+from __future__ import annotations
+
+from typing import Any
+
+from ..arguments import Numbers, direction, flag, number, orNone, takes
 from ..arguments import vector as numbers
 from ..assembly.blocks import vector
 from ..basics import Refused, say
 from ..bricks import Bricks
-from .targets import LOADED, MOVING_PLATEN
+from .targets import LOADED, MOVING_PLATEN, Target
 from .targets import part as partName
 from .words import describes
 
@@ -18,13 +22,13 @@ FORCE = numbers("N", 1e15)
 PRESSURE = number("Pa", -1e9, 1e9)
 
 
-def doubtPress(stress, name):
+def doubtPress(stress: float, name: str) -> None:
     """Say that a stress looks as if it were in MPa."""
     if 0 < stress < 1e3:
         say(f"warning: {name}: {stress:g} Pa: is it in Pa, not MPa?")
 
 
-def checkedForce(description, force, name):
+def checkedForce(description: Any, force: Numbers, name: str) -> Any:
     """A force as a vector [N]. Raises ValueError."""
     force = vector(force, f"{name}: force [N]")
     if description.plane and force[1]:
@@ -34,7 +38,9 @@ def checkedForce(description, force, name):
     return force
 
 
-def windFaces(description, pressure, towards, part, name):
+def windFaces(
+    description: Any, pressure: float, towards: Any, part: str | None, name: str
+) -> list[Any]:
     """The faces that a wind loads: tuples of brick, normal, area [m²] and middle. Raises ValueError."""
     if not pressure:
         raise ValueError(f"{name}: pressure {pressure!r} Pa must be other than 0")
@@ -58,7 +64,7 @@ def windFaces(description, pressure, towards, part, name):
 
 @describes
 @takes(platen=MOVING_PLATEN, stress=STRESS, riding=flag)
-def press(description, platen, stress, riding=True):
+def press(description: Any, platen: Target, stress: float, riding: bool = True) -> None:
     """Press a platen on the bricks below it. The load grows in :meth:`settle`, and stays.
 
     :param stress: mean vertical stress that the bricks feel [Pa]; the weight of the platen is part of it
@@ -70,7 +76,7 @@ def press(description, platen, stress, riding=True):
 
 @describes
 @takes(target=LOADED, force=FORCE)
-def load(description, target, force):
+def load(description: Any, target: Target, force: Numbers) -> None:
     """A dead load on a target. It grows in :meth:`settle`, and stays; loads on one target add up.
 
     :param force: three numbers [N]
@@ -82,7 +88,9 @@ def load(description, target, force):
 
 @describes
 @takes(pressure=PRESSURE, towards=direction(level=True), part=orNone(partName))
-def wind(description, pressure, towards, part=None):
+def wind(
+    description: Any, pressure: float, towards: Numbers, part: str | None = None
+) -> float:
     """A pressure on the faces that look against a horizontal direction. It grows in :meth:`settle`, and stays.
 
     Loaded are the faces of rigid bricks within 45 degrees of the direction, each along its normal, on the part that no

@@ -5,6 +5,7 @@ import argparse
 import os
 import sys
 
+from .. import notebook
 from .._masonry import commit, version
 from ..arguments import shown
 from ..assembly.engines import LAWS
@@ -25,8 +26,9 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     :param rate: default loading rate [mm/s]
     :param loops: whether the scene has ``--history``; its value is None in all others
     """
+    program = "yade" if hasattr(sys, "yade_argv") else "python3"
     p = Parser(
-        prog="yade " + os.path.basename((sys.argv or ["SCENE"])[0]),
+        prog=f"{program} {os.path.basename((sys.argv or ['SCENE'])[0])}",
         description=description,
         epilog=f"masonry {version}, commit {commit}",
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
@@ -219,10 +221,8 @@ def ofScene(name, arguments, usual):
     :param usual: what the script says, which holds unless the command line gives the same option: :mod:`.keywords`
     :raises Refused: with all problems
     """
-    if arguments is None and (not sys.argv or "ipykernel" in sys.argv[0]):
-        arguments = (
-            []
-        )  # of a notebook, or of YADE's importer: these words are not the scene's
+    if arguments is None and (not sys.argv or notebook.isHere()):
+        arguments = []  # words of a kernel, or of YADE's importer, are not the scene's
     if isinstance(arguments, str):
         raise Refused(
             f"scene {name}: arguments must be a list of words, such as {arguments.split()!r}, got {arguments!r}"

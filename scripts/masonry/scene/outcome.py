@@ -238,6 +238,12 @@ class Outcome:
 
     # -- curve.png ------------------------------------------------------------------------------------------------
 
+    def figure(self):
+        """The entries of run.json by which curve.png is drawn."""
+        found = dict(title=self.description.title, figure=self._figure())
+        wall = wallOf(self.description, self.model.target) if self.pushed else None
+        return {**found, "wall": wall} if wall else found
+
     def _figure(self):
         """The entry ``figure`` of run.json."""
         loads = self._loads()

@@ -1,26 +1,33 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a scene records beside its targets, and how its figures look: words that describe a scene."""
 
-from ..arguments import direction as directionOf
+from __future__ import annotations
+
+from typing import Any, Callable
+
+from ..bricks import Block
+from ..arguments import Numbers, direction as directionOf
 from ..arguments import function, orNone, shown, takes, text
 from ..arguments import name as nameOf
 from ..assembly.blocks import vector
 from ..assembly.columns import Column
 from .sections import Section
 from .supports import COORDINATE
-from .targets import ANY, Drift, JointRecord, brick
+from .targets import ANY, Drift, JointRecord, Target, brick
 from .targets import part as partName
 from .words import describes
 
 
-def nameOrNothing(value, first=None):
+def nameOrNothing(value: Any, first: Any = None) -> Any:
     """The kind of a name, or of an empty text."""
     return value if isinstance(value, str) and not value else nameOf(value)
 
 
 @describes
 @takes(lower=ANY, upper=ANY, name=orNone(nameOf))
-def drift(description, lower, upper, name=None):
+def drift(
+    description: Any, lower: Target, upper: Target, name: str | None = None
+) -> None:
     """Record how far a target moves horizontally against a lower one, for example two floors.
 
     The columns of curve.csv are the difference [mm] and that over the height between both points [mrad].
@@ -39,7 +46,9 @@ def drift(description, lower, upper, name=None):
 
 @describes
 @takes(name=nameOf, meaning=text, value=function)
-def column(description, name, meaning, value):
+def column(
+    description: Any, name: str, meaning: str, value: Callable[[], float]
+) -> None:
     """Record something of one's own: a column of curve.csv.
 
     :param name: with its unit at the end, for example ``drift_mm``
@@ -59,7 +68,12 @@ def column(description, name, meaning, value):
 
 @describes
 @takes(one=brick, two=brick, name=orNone(nameOrNothing))
-def joint(description, one, two, name=None):
+def joint(
+    description: Any,
+    one: Numbers | int | Block,
+    two: Numbers | int | Block,
+    name: str | None = None,
+) -> JointRecord:
     """Record the means of a joint: opening, slide, normal and shear stress, as columns of curve.csv.
 
     :param one: a brick, as for :meth:`hold`; ``two``: the other one
@@ -76,7 +90,9 @@ def joint(description, one, two, name=None):
 
 @describes
 @takes(z=COORDINATE, part=orNone(partName), name=orNone(nameOf))
-def section(description, z, part=None, name=None):
+def section(
+    description: Any, z: float, part: str | None = None, name: str | None = None
+) -> Section:
     """Record what a horizontal section transmits: normal force, shear force and moment, as columns of curve.csv.
 
     They are the resultant of the joints between the blocks, platens too, whose centroid is above ``z`` when the scene is
@@ -122,7 +138,7 @@ def section(description, z, part=None, name=None):
 
 @describes
 @takes(direction=directionOf(), part=orNone(partName))
-def view(description, direction, part=None):
+def view(description: Any, direction: Numbers, part: str | None = None) -> None:
     """From where the crack figure sees the structure: the direction of sight, for example (1, 0, 0) for a panel that
     bows out of its plane.
 

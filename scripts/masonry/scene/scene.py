@@ -20,41 +20,101 @@ command line work, ``--help`` explains them: ``--preset``, ``--rate``, ``--set``
 ``--until`` or ``--history`` replace what the first push or cycle of the scene says.
 """
 
+from __future__ import annotations
+
 import atexit
+import contextlib
 import functools
 import math
+from typing import (
+    Any,
+    Callable,
+    Concatenate,
+    Iterable,
+    Iterator,
+    ParamSpec,
+    Protocol,
+    Sequence,
+    TypeVar,
+    overload,
+)
 
 from .._masonry import loadScene, saveScene
-from ..arguments import LONGEST_NAME
+from ..arguments import LONGEST_NAME, Numbers
 from ..arguments import direction as directionOf
 from ..arguments import name as nameOf
 from ..arguments import number, orNone, shown, takes, text
+from .. import notebook
 from ..assembly.blocks import vector
 from ..assembly.structure import Structure
 from ..basics import GRAVITY, Interrupted, Refused, say
 from ..bricks import Bricks
 from ..run.ending import end
 from ..run.presets import BOUND
+from ..run.results import Results
 from ..run.run import Run
-from . import loads, options, probing, records, supports
+from . import loads, options, probing, records, showing, stages, supports
 from .bounds import EVERY, SMALL, Bounds, nameOfLean, nameOfPush
 from .description import Description
-from .materials import linesOf, loadingBlock
+from .materials import Masonry, linesOf, loadingBlock
 from .outcome import Outcome
 from .resuming import State
-from .stages import AT_REST, LATER, STAGES, gravity, prepare
+from .stages import AT_REST, STAGES, gravity, prepare
 from .stages.stage import Answer
-from .targets import LOADED
-from .words import RESULT, Script
+from .targets import LOADED, Target
+from .words import RESULT, Call, Script
 
 
 OWN = "0"  # the stage of the results of the script, which all stages follow
 
 
-def finding(value, first=None):
+def finding(value: Any, first: Any = None) -> Any:
     """The kind of a number that was found, or None or what is not a number if it was not."""
     missing = value is None or isinstance(value, float) and math.isnan(value)
     return value if missing else number()(value)
+
+
+P = ParamSpec("P")
+Q = ParamSpec("Q")
+R = TypeVar("R", covariant=True)
+
+
+class _Either(Protocol[P, R, Q]):
+    """What a script can call that takes one list of arguments before the first stage, and another one after it."""
+
+    @overload
+    def __call__(  # type: ignore[misc]  # both may be called without arguments, as far as mypy knows
+        self, *args: P.args, **settings: P.kwargs
+    ) -> R:
+        ...
+
+    @overload
+    def __call__(self, *args: Q.args, **settings: Q.kwargs) -> str:
+        ...
+
+
+class _EitherWord(Protocol[P, R, Q]):
+    """The same, of the class of a scene."""
+
+    def __get__(self, scene: Any, cls: Any = None) -> _Either[P, R, Q]:
+        ...
+
+
+def _either(
+    describes: Callable[Concatenate[Any, P], R],
+    stage: Callable[Concatenate[Any, Q], str],
+) -> _EitherWord[P, R, Q]:
+    """A word that describes before the first stage, and is a stage after it."""
+
+    @functools.wraps(describes)
+    def either(scene: Any, *args: Any, **settings: Any) -> Any:
+        word: Any = stage if scene.model else describes
+        return word(scene, *args, **settings)
+
+    either.__doc__ = (
+        f"{describes.__doc__}\n\n    After the first stage: {stage.__doc__}"
+    )
+    return either
 
 
 class Scene:
@@ -82,23 +142,25 @@ class Scene:
         status 2
     """
 
-    present = None  # the scene that stands in YADE
+    present: Scene | None = None  # the scene that stands in YADE
 
     @takes()
     def __init__(
         self,
-        name,
-        bricks,
-        materials,
-        title=None,
-        plane=None,
-        gravity=GRAVITY,
-        columns=None,
-        functors=False,
-        arguments=None,
-        allowGaps=False,
-        **usual,
-    ):
+        name: str,
+        bricks: Iterable[Any],
+        materials: Masonry,
+        title: str | None = None,
+        plane: bool | None = None,
+        gravity: float = GRAVITY,
+        columns: Sequence[str] | None = None,
+        functors: bool = False,
+        arguments: Any = None,
+        allowGaps: bool = False,
+        **usual: Any,
+    ) -> None:
+        #: what it was made with, its name first, for :meth:`resume`
+        self._made = (name, bricks, materials, title, plane, gravity, columns, functors), allowGaps  # fmt: skip
         fine = isinstance(name, str) and name.strip(". ") and name.isprintable()
         if not fine or "/" in name or len(name.encode()) > LONGEST_NAME:
             raise Refused(
@@ -121,16 +183,21 @@ class Scene:
             self.description.bricks = list(Bricks(self.description.bricks).whole())
         self.description.deformable = arguments.blocks == "deformable"
         self.script = Script()
+        self.calls = []  # every word that was said
+        self.staging = False  # whether a stage is being carried out
         self.running = Run(name, arguments, self.script.words)
-        self.model = self.bounds = self.outcome = None  # when it is built
-        self.columns = []  # of curve.csv, when it is built
+        # when it is built
+        self.model: Any = None
+        self.bounds: Any = None
+        self.outcome: Any = None
+        self.columns: list[Any] = []  # of curve.csv
         self.finished = False
         #: of displacements, times and loads that grow [-]
         self.share = 0.1 if arguments.quick else 1.0
-        self.ended = None  # how the last stage ended
+        self.ended: str | None = None  # how the last stage ended
         #: what was not given of the materials, when the scene is built: an entry of run.json
-        self.assumed = []
-        self.pushed = None  # options of the last push
+        self.assumed: list[dict[str, Any]] = []
+        self.pushed: Any = None  # options of the last push
         self.loadUnit = "-"  # of the load that a stage put on or let grow last
         self.grown = False  # whether presses and dead loads have their whole
         #: whether there is no run, but limit analysis alone
@@ -139,38 +206,58 @@ class Scene:
 
     # -- what describes it ----------------------------------------------------------------------------------------
 
-    platen, hold = supports.platen, supports.hold
-    watch, handle = supports.watch, supports.handle
-    press, load, wind = loads.press, loads.load, loads.wind
+    platen, watch, handle = supports.platen, supports.watch, supports.handle
     drift, column = records.drift, records.column
     joint, section, view = records.joint, records.section, records.view
+    # Their names are those of stages, too, which are meant after the first stage.
+    hold = _either(supports.hold, stages.hold)
+    press = _either(loads.press, stages.press)
+    load = _either(loads.load, stages.load)
+    wind = _either(loads.wind, stages.wind)
 
     @property
-    def targets(self):
+    def targets(self) -> dict[str, Target]:
         """Platens and bricks that are held, loaded or watched, by their names."""
         return self.description.targets
 
     # -- how it goes ----------------------------------------------------------------------------------------------
 
+    settle, release, move = stages.settle, stages.release, stages.move
+    push, cycle, follow = stages.push, stages.cycle, stages.follow
+    drive, pressJoint = stages.drive, stages.pressJoint
+    tilt, accelerate, lean = stages.tilt, stages.accelerate, stages.lean
+    growLoad, growWind = stages.growLoad, stages.growWind
+    growPress, shake, run = stages.growPress, stages.shake, stages.run
     bracket = gravity.bracket
 
+    curve = showing.curve
+
+    def _repr_html_(self) -> str:
+        """The scene in a notebook: what is built before the first stage, else cracks, curve and results."""
+        return showing.asHtml(self)
+
     @property
-    def status(self):
+    def isGone(self) -> bool:
+        """Whether another scene was built in YADE since this one."""
+        return Scene.present is not self
+
+    @property
+    def status(self) -> int:
         """Exit status of the script, when the scene is finished."""
         return self.running.status
 
     @property
-    def collapsed(self):
+    def collapsed(self) -> bool:
         """Whether the structure has fallen."""
         return self.running.collapsed
 
     @property
-    def results(self):
+    def results(self) -> Results:
         """The folder of results: :class:`masonry.run.results.Results`, when the scene is built."""
         return self.running.results
 
     @property
-    def answers(self):
+    def answers(self) -> list[dict[str, Any]]:
         """What the stages were run for, in their order: a list of dicts, as of
         :class:`masonry.scene.stages.stage.Answer`, with the ``stage`` and its ``number``.
         """
@@ -179,7 +266,13 @@ class Scene:
         return [one for number in numbers for one in kept[number]]
 
     @takes(name=nameOf, value=finding, unit=text, how=text)
-    def result(self, name, value, unit="-", how="the script found it"):
+    def result(
+        self,
+        name: str,
+        value: float | None,
+        unit: str = "-",
+        how: str = "the script found it",
+    ) -> None:
         """Keep a number of one's own with the answers of the stages: in run.json, on the terminal and as a column of study.csv.
 
         :param name: letters, digits and underscores; another result of this name is replaced
@@ -190,6 +283,7 @@ class Scene:
         """
         if not self.model:
             raise ValueError(f"result {name}: it comes after the first stage")
+        self.calls.append(Call(Scene.result, (name, value, unit, how), {}))
         at, before = self.running.at, self.running.scriptBefore
         later = [word for word, _ in before[len(self.script.words) + 1 :]]
         if self._saidBefore(RESULT, name=name) and any(w != RESULT for w in later):
@@ -204,25 +298,25 @@ class Scene:
         at.answers = {**at.answers, OWN: [*kept, answer]}
 
     @property
-    def factor(self):
+    def factor(self) -> float:
         """The largest load factor under which the structure came to rest in the last stage that found one, for example the
         horizontal over the vertical acceleration of :meth:`accelerate` [-]; not a number if no stage has found one.
         """
         found = [a["value"] for a in self.answers if a["name"] == "factor_held"]
         return next((value for value in reversed(found) if value is not None), math.nan)
 
-    def checkOpen(self, name):
+    def checkOpen(self, name: str) -> None:
         """Refuse a stage of a scene that is finished, or gone because another one was built. Raises ValueError."""
         if self.finished:
             raise ValueError(f"{name}: the scene is finished")
-        if self.model and Scene.present is not self:
+        if self.model and self.isGone:
             raise ValueError(
                 f"{name}: scene {self.name} is gone, because another one was built since; finish one scene before "
                 "the next begins"
             )
 
     @functools.cached_property
-    def masonry(self):
+    def masonry(self) -> Masonry:
         """The materials for the options of this run: :class:`masonry.scene.materials.Masonry`. Raises Refused."""
         masonry = self.description.materials.variant(self.args)
         problems = self.description.problems(masonry)
@@ -230,7 +324,7 @@ class Scene:
         self.assumed = masonry.assumed()
         return masonry
 
-    def begin(self):
+    def begin(self) -> None:
         """Build the scene in YADE, if it does not stand there yet."""
         if self.model:
             return
@@ -252,6 +346,7 @@ class Scene:
         self._noteCourse()
         self.running.start(model, self.outcome.space(), State(self))
         Scene.present = self
+        atexit.unregister(self._remind)  # of a run that goes on
         atexit.register(self._remind)
 
     def _noteCourse(self):
@@ -283,20 +378,25 @@ class Scene:
             if begun:
                 prepare(self, word, said)
 
-    def probe(self, stage, traits, arguments):
+    def probe(self, stage: str, traits: Any, arguments: Any) -> Any:
         """Say what a study must know of the scene, and end; see :func:`masonry.scene.probing.probe`."""
         return probing.probe(self, stage, traits, arguments)
 
-    def keepState(self, ended):
+    def keepState(self, ended: str) -> str:
         """Keep the state of a structure that is at rest for :meth:`stepBack`. Returns how the stage ended."""
         if ended == AT_REST:
             self.model.atRest = saveScene("null")
             self.model.motion.restart()
         return ended
 
-    def stepBack(self):
+    def stepBack(self) -> None:
         """Take the scene back to its last state at rest, also after a collapse. The load that was held then acts again, also the
         one that a growth or a bracket has found. Rows of curve.csv stay."""
+        with self.noted(Scene.stepBack):
+            self._stepBack()
+
+    def _stepBack(self):
+        """As :meth:`stepBack`."""
         if self.only:
             return
         known = self.model is not None and self.model.atRest is not None
@@ -329,7 +429,12 @@ class Scene:
         direction=directionOf(),
         towards=orNone(directionOf(level=True)),
     )
-    def bound(self, target=None, direction=(1, 0, 0), towards=None):
+    def bound(
+        self,
+        target: Target | None = None,
+        direction: Numbers = (1, 0, 0),
+        towards: Numbers | None = None,
+    ) -> Any:
         """Limit analysis of the scene as it stands, with a collapse without dilatancy: see :mod:`masonry.limit`.
 
         Stages that push or lean find their bound by themselves, if there are at most 3000 joints; this is for other
@@ -343,7 +448,8 @@ class Scene:
         if (target is None) == (towards is None):
             raise ValueError("bound: give either target or towards")
         try:
-            return self._bound(target, direction, towards)
+            with self.noted(Scene.bound, target, direction, towards), self.running.listening():  # fmt: skip
+                return self._bound(target, direction, towards)
         except Interrupted as error:
             return self.failed(error)
 
@@ -372,7 +478,7 @@ class Scene:
         with self.running.breakable():
             return getattr(self.bounds, kind)(*load, lowerUpTo=lowerUpTo)
 
-    def findBound(self, kind, *load):
+    def findBound(self, kind: str, *load: Any) -> None:
         """Find the bound of a stage, which pushes or leans, as :meth:`_find`."""
         resumed = self.running.redoes and self.running.takesUp
         if self.args.lean and not self.only or resumed:
@@ -381,29 +487,75 @@ class Scene:
 
     # -- the end --------------------------------------------------------------------------------------------------
 
-    def finish(self):
+    def finish(self) -> None:
         """End the run: the last frame, run.json, the figures. A run that was not in order exits with its status."""
         if probing.asked() and self.model:
             probing.probe(self, "finish", None, {})
         if not (self.finished or self._entered):
             self.__exit__(None, None, None)
 
-    def __enter__(self):
+    def __enter__(self) -> Scene:
         self._entered = True
         return self
 
-    def __exit__(self, kind, error, trace):
+    def __exit__(self, kind: Any, error: Any, trace: Any) -> bool:
         if self.finished:
             return False
         self.finished = True
         if not error and not self.model:
             return False
-        done = end(self.running, self, error)
+        with self.running.listening():
+            done = end(self.running, self, error)
         if self.status and (done or not error):
+            if notebook.isHere():
+                folder = self.results.directory if self.running.kept else None
+                raise notebook.ended(self.name, self.status, folder, error) from None
             raise SystemExit(self.status)
         return done
 
-    def failed(self, error):
+    @contextlib.contextmanager
+    def noted(
+        self, word: Callable[..., Any], *args: Any, **settings: Any
+    ) -> Iterator[None]:
+        """Note a word that is carried out in a block, for :meth:`resume`: also one that is refused, but ends no run."""
+        call = Call(word, args, settings)
+        self.calls.append(call)
+        try:
+            yield
+        except ValueError:
+            call.refused = not self.finished
+            raise
+
+    def resume(self) -> str:
+        """Go on with a run that was interrupted, as from a following cell of a notebook: the stage that was interrupted is carried
+        out to its end, from the checkpoint that the interruption left.
+
+        Every word of the scene is said again, as ``--resume`` of a script does it, so the result is the same to the last bit.
+        Of a search that the script makes by itself or by :meth:`bracket`, this is the step that was interrupted.
+
+        :returns: how that stage ended
+        :raises ValueError: if the scene was not interrupted, or left no checkpoint
+        """
+        if not (self.finished and self.running.kept):
+            raise ValueError(
+                f"resume: scene {self.name} has no run that was interrupted and left a checkpoint"
+            )
+        folder, calls, given = self.results.directory, self.calls, self.args
+        (name, *made), allowGaps = self._made
+        arguments = given.parser.parse_args(["--resume", folder])
+        vars(self).clear()
+        self.__init__(name, *made, arguments, allowGaps)  # type: ignore[misc]
+        ended = None
+        for call in calls:
+            with contextlib.suppress(*[ValueError] * call.refused):
+                ended = call.word(self, *call.args, **call.settings)
+            if (
+                call.found is not None
+            ):  # the script knows the record that it gave before
+                self.description.replace(ended, call.found)
+        return ended
+
+    def failed(self, error: BaseException) -> Any:
         """End in order after an error of a stage. In a ``with`` block that does it."""
         if isinstance(error, Interrupted):
             self.ended = "interrupted"
@@ -422,21 +574,3 @@ class Scene:
 def _isBonded(joint):
     """Whether a joint can crack in tension."""
     return not joint.elastic and joint.tensileStrength > 0
-
-
-def _either(describes, stage):
-    """A word that describes before the first stage, and is a stage after it."""
-
-    @functools.wraps(describes)
-    def word(scene, *args, **settings):
-        return (stage if scene.model else describes)(scene, *args, **settings)
-
-    word.__doc__ = f"{describes.__doc__}\n\n    After the first stage: {stage.__doc__}"
-    return word
-
-
-for _stage in STAGES:
-    setattr(Scene, _stage.__name__, _stage)
-for _stage in LATER:
-    _name = _stage.__name__
-    setattr(Scene, _name, _either(getattr(Scene, _name), _stage))

@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What holds a structure, and what of it is watched: words that describe a scene."""
 
-from ..arguments import axes, number, oneOf, orNone, takes
+from __future__ import annotations
+
+from typing import Any
+
+from ..bricks import Block
+from ..arguments import Axes, Numbers, axes, number, oneOf, orNone, takes
 from ..arguments import name as nameOf
 from ..arguments import vector as numbers
 from ..assembly.blocks import vector
@@ -30,18 +35,18 @@ COORDINATE, POINT = number("m", -1e6, 1e6), numbers("m", 1e6)
     drive=axes("xyz", none=True),
 )
 def platen(
-    description,
-    where,
-    rotation=None,
-    height=PLATEN,
-    name=None,
-    point=None,
-    guided="",
-    part=None,
-    upTo=None,
-    recorded=None,
-    drive="",
-):
+    description: Any,
+    where: str,
+    rotation: str | None = None,
+    height: float = PLATEN,
+    name: str | None = None,
+    point: Numbers | None = None,
+    guided: Axes = "",
+    part: str | None = None,
+    upTo: float | None = None,
+    recorded: float | None = None,
+    drive: Axes = "",
+) -> Target:
     """A stiff block over the whole lower or upper side of the structure.
 
     The one at the bottom is fixed. The one at the top moves; loads act on it, and ``rotation`` says whether it can
@@ -122,14 +127,19 @@ def platen(
             box=box,
             freedom=freedom,
             loaded=not bottom,
-            drives=drive,
+            drives="".join(drive),
         )
     )
 
 
 @describes
 @takes(where=brick, name=orNone(nameOf), axes=axes("xyzXYZ"))
-def hold(description, where, name=None, axes="xyzXYZ"):
+def hold(
+    description: Any,
+    where: Numbers | int | Block,
+    name: str | None = None,
+    axes: Axes = "xyzXYZ",
+) -> Target:
     """Hold a brick, so that it neither moves nor turns but by :meth:`move`.
 
     :param where: a point [m] in it or near it, its index in the bricks, or the block itself
@@ -150,14 +160,18 @@ def hold(description, where, name=None, axes="xyzXYZ"):
 
 @describes
 @takes(where=brick, name=orNone(nameOf))
-def watch(description, where, name=None):
+def watch(
+    description: Any, where: Numbers | int | Block, name: str | None = None
+) -> Target:
     """Record the motion of a brick. Parameters as of :meth:`hold`; a point is the one that is recorded."""
     return _brick(description, where, name, fixed=False, loaded=False)
 
 
 @describes
 @takes(where=brick, name=orNone(nameOf))
-def handle(description, where, name=None):
+def handle(
+    description: Any, where: Numbers | int | Block, name: str | None = None
+) -> Target:
     """A brick that loads act on, at its centre or at the point that is given. Parameters as of :meth:`hold`."""
     return _brick(description, where, name, fixed=False)
 

@@ -2,7 +2,10 @@
 """What a scene records: platens and bricks that are held, loaded or watched, and joints. Plain records with their columns,
 and the kinds of arguments that name them."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import Any, Iterator
 
 from ..arguments import oneOf, shown
 from ..assembly.columns import Column
@@ -18,19 +21,19 @@ class Target:
 
     name: str
     fixed: bool = False
-    point: tuple = None  # [m] on which loads act
-    recorded: tuple = None  # [m] whose motion is recorded
-    brick: int = None  # index of a brick, None for a platen
-    box: tuple = None  # opposite corners of a platen
+    point: tuple | None = None  # [m] on which loads act
+    recorded: tuple | None = None  # [m] whose motion is recorded
+    brick: int | None = None  # index of a brick, None for a platen
+    box: tuple | None = None  # opposite corners of a platen
     freedom: str = ""  # YADE's blockedDOFs
     loaded: bool = True
     drives: str = ""  # axes along which a drive holds it from the beginning
-    body: int = None  # YADE's id, when the scene is built
-    force: tuple = None  # [N] dead load
-    pressed: float = None  # [Pa] on the bricks below
+    body: int | None = None  # YADE's id, when the scene is built
+    force: tuple | None = None  # [N] dead load
+    pressed: float | None = None  # [Pa] on the bricks below
     riding: bool = True  # whether the load moves with the platen
 
-    def columns(self, plane):
+    def columns(self, plane: bool) -> Iterator[Column]:
         """What is recorded of it: displacements, forces where it is held, and its rotation.
 
         :param plane: whether the scene moves in the x-z plane only
@@ -85,7 +88,7 @@ class Drift:
     lower: Target
     upper: Target
 
-    def columns(self, plane):
+    def columns(self, plane: bool) -> Iterator[Column]:
         """The difference of the displacements, and that over the height between both points."""
         height = self.upper.recorded[2] - self.lower.recorded[2]
         away = lambda r, i: r.moved(self.upper)[0][i] - r.moved(self.lower)[0][i]
@@ -108,15 +111,15 @@ class JointRecord:
 
     name: str
     bricks: tuple  # indices of the two bricks
-    interaction: object = None  # YADE's, when the scene is built
+    interaction: Any = None  # YADE's, when the scene is built
 
     @property
-    def area(self):
+    def area(self) -> float:
         """[m²]"""
         return sum(self.interaction.geom.areas)
 
     @property
-    def normalStiffness(self):
+    def normalStiffness(self) -> float:
         """[Pa/m]"""
         return self.interaction.phys.normalStiffness
 
@@ -124,27 +127,27 @@ class JointRecord:
         areas = self.interaction.geom.areas
         return sum(a * v for a, v in zip(areas, values)) / sum(areas)
 
-    def opening(self):
+    def opening(self) -> float:
         """Mean over the joint [m], negative if it closes."""
         return self._mean(self.interaction.phys.opening)
 
-    def slide(self):
+    def slide(self) -> float:
         """Mean over the joint along its first direction [m]."""
         return self._mean(jump[1] for jump in self.interaction.geom.jumps)
 
-    def normalStress(self):
+    def normalStress(self) -> float:
         """Mean over the joint [Pa], positive in tension."""
         return self._mean(stress[0] for stress in self.interaction.phys.stress)
 
-    def shearStress(self):
+    def shearStress(self) -> float:
         """Mean over the joint along the slide [Pa]."""
         return self._mean(stress[1] for stress in self.interaction.phys.stress)
 
-    def prefixed(self, name):
+    def prefixed(self, name: str) -> str:
         """A name of a column or of an entry of run.json, with that of the joint before it if it has one."""
         return f"{self.name}_{name}" if self.name else name
 
-    def columns(self):
+    def columns(self) -> Iterator[Column]:
         """What is recorded of it."""
         between = "the joint between bricks {} and {}".format(*self.bricks)
         for name, unit, meaning, factor, mean in OF_JOINTS:
@@ -203,20 +206,20 @@ HELD = _target(
 )
 
 
-def recordedJoint(value, first):
+def recordedJoint(value: Any, first: Any) -> Any:
     """The kind of a joint of the scene, as :meth:`masonry.scene.scene.Scene.joint` gave it."""
     if not any(value is one for one in _descriptionOf(first).joints):
         raise ValueError(f"{shown(value)} must be a joint of this scene, as joint() gave it")  # fmt: skip
     return value
 
 
-def part(value, first):
+def part(value: Any, first: Any) -> Any:
     """The kind of the name of a part of the bricks."""
     parts = {block.part for block in _descriptionOf(first).bricks}
     return oneOf(*sorted(parts))(value)
 
 
-def brick(value, first):
+def brick(value: Any, first: Any) -> Any:
     """The kind of a brick: its index, a point in it or near it [m], or the block itself."""
     _descriptionOf(first).find(value)
     return value

@@ -1,17 +1,42 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The words of a script, noted as data: a run that is resumed can be compared with the script that began it."""
 
+from __future__ import annotations
+
 import functools
 import inspect
 import math
+from dataclasses import dataclass
+from typing import Any, Callable, Concatenate, ParamSpec, TypeVar
 
 from ..basics import Refused
+
+P = ParamSpec("P")
+R = TypeVar("R")
 
 RESULT = "result"  # the word that keeps a number of the script's own
 PUSHES = "push", "cycle", "follow"  # to the first of them --until and --history apply
 
 
-def describes(act):
+@dataclass
+class Call:
+    """A word as the script said it, for a run that goes on in the same process.
+
+    :param word: function of the scene and of what the script says
+    :param found: what it returned, if it describes
+    :param refused: whether it was refused, and the script went on
+    """
+
+    word: Callable
+    args: tuple
+    settings: dict
+    found: Any = None
+    refused: bool = False
+
+
+def describes(
+    act: Callable[Concatenate[Any, P], R]
+) -> Callable[Concatenate[Any, P], R]:
     """A word that describes a scene: it comes before the first stage, and is noted.
 
     :param act: function of a :class:`masonry.scene.description.Description` and what the user says. As a method of the scene
@@ -19,12 +44,13 @@ def describes(act):
     """
 
     @functools.wraps(act)
-    def word(scene, *args, **settings):
+    def word(scene: Any, *args: P.args, **settings: P.kwargs) -> R:
         if scene.model:
             raise ValueError(
                 f"{act.__name__}() must come before the first stage: the scene is built already"
             )
         found = act(scene.description, *args, **settings)
+        scene.calls.append(Call(word, args, settings, found))
         scene.script.note(act, scene, args, settings)
         return found
 

@@ -19,6 +19,7 @@ python3-openturns); a grid of numbers and choices needs no more than Python.
 """
 
 import importlib
+from typing import TYPE_CHECKING
 
 #: Public names by the module that has them. They are loaded when they are used first, because a row needs none of them.
 _NAMES = {
@@ -36,11 +37,24 @@ _NAMES = {
 __all__ = [name for names in _NAMES.values() for name in names]
 
 
-def __getattr__(name):
-    for module, names in _NAMES.items():
-        if name in names:
-            return getattr(importlib.import_module(f"{__name__}.{module}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+if TYPE_CHECKING:
+    from .plan import Study
+    from .variables import (
+        Distribution,
+        Field,
+        choice,
+        field,
+        lognormal,
+        normal,
+        uniform,
+    )
+else:
+
+    def __getattr__(name):
+        for module, names in _NAMES.items():
+            if name in names:
+                return getattr(importlib.import_module(f"{__name__}.{module}"), name)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__():

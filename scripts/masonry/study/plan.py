@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The description of a study, and the table of its rows."""
 
+from __future__ import annotations
+
 import hashlib
 import os
 import re
+from typing import Any
 
 import numpy as np
 
+from ..arguments import FilePath
 from ..run import batch
 from ..basics import Refused
 from . import designs
@@ -35,14 +39,14 @@ class Study:
 
     def __init__(
         self,
-        scene,
-        options=None,
-        runs=None,
-        seed=0,
-        vary=None,
-        design="random",
-        correlation=None,
-    ):
+        scene: FilePath,
+        options: dict[str, Any] | None = None,
+        runs: int | None = None,
+        seed: int = 0,
+        vary: dict[Any, Any] | None = None,
+        design: str = "random",
+        correlation: dict[tuple[str, str], float] | None = None,
+    ) -> None:
         problems = []
         self.scene, self.seed, self.design = str(scene), seed, design
         self.options, self.runs = dict(options or {}), runs
@@ -168,7 +172,7 @@ class Study:
 
     # -- what follows -------------------------------------------------------------------------------------------------
 
-    def describe(self):
+    def describe(self) -> dict[str, Any]:
         """The study as JSON has it: two studies with the same description have the same rows."""
         return {
             "scene": self.scene,
@@ -180,7 +184,7 @@ class Study:
             "correlation": [[*pair, v] for pair, v in self.correlation.items()],
         }
 
-    def rows(self):
+    def rows(self) -> list[dict[str, Any]]:
         """The values of every row: a list of dicts, with the options that all have. Raises Refused."""
         drawn = {n: w for n, w in self.vary.items() if not isinstance(w, Field)}
         fields = {n: w for n, w in self.vary.items() if isinstance(w, Field)}
@@ -205,7 +209,7 @@ class Study:
         """The seed of a field in a row."""
         return int(np.random.SeedSequence([self.seed, field, row]).generate_state(1)[0])
 
-    def table(self):
+    def table(self) -> str:
         """The table of the rows, as text: see :mod:`masonry.run.batch`."""
         rows = self.rows()
         heads = ["description", *rows[0]]
@@ -214,7 +218,7 @@ class Study:
             lines.append(" ".join([batch.named(number), *map(repr, row.values())]))
         return "\n".join(lines) + "\n"
 
-    def script(self, near):
+    def script(self, near: FilePath) -> tuple[str, str]:
         """Path of the scene's file, and the fingerprint of its contents. Raises Refused.
 
         :param near: folder of the study's file

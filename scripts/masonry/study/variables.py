@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What varies in a study: distributions, choices, and random fields over the joints."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import Any, Sequence
 
 from ..arguments import plainly, isNumber, listOf, misfits, number, shown, takes, text
 from ..scene import fields
@@ -15,7 +18,7 @@ LEAST_COV = 1e-6  # coefficient of variation below which nothing varies [-]
 NEVER = 1e-9
 
 
-def openturns():
+def openturns() -> Any:
     """The module. Raises :class:`masonry.packages.Missing` where it is missing."""
     return needed("openturns")
 
@@ -37,7 +40,7 @@ class Distribution:
     kind: str
     parameters: tuple
 
-    def law(self):
+    def law(self) -> Any:
         """The distribution of OpenTURNS."""
         ot, p = openturns(), dict(self.parameters)
         if self.kind == "uniform":
@@ -60,7 +63,7 @@ class Distribution:
         )
         return ot.TruncatedDistribution(made, ends)
 
-    def beyond(self, low, high):
+    def beyond(self, low: float | None, high: float | None) -> float:
         """Probability of a value below ``low`` or above ``high``; None is no bound [-]."""
         law, found = self.law(), 0.0
         if low is not None:
@@ -69,7 +72,7 @@ class Distribution:
             found += law.computeComplementaryCDF(high)
         return found
 
-    def describe(self):
+    def describe(self) -> dict[str, Any]:
         return {"kind": self.kind, **dict(self.parameters)}
 
     def __str__(self):
@@ -121,7 +124,9 @@ def _between(kind, mean, cov, low, high):
 
 
 @takes(mean=plainly, cov=plainly, low=plainly, high=plainly)
-def lognormal(mean, cov, low=None, high=None):
+def lognormal(
+    mean: float, cov: float, low: float | None = None, high: float | None = None
+) -> Distribution:
     """A lognormal distribution.
 
     :param mean: in the unit of what varies
@@ -133,13 +138,15 @@ def lognormal(mean, cov, low=None, high=None):
 
 
 @takes(mean=plainly, cov=plainly, low=plainly, high=plainly)
-def normal(mean, cov, low=None, high=None):
+def normal(
+    mean: float, cov: float, low: float | None = None, high: float | None = None
+) -> Distribution:
     """A normal distribution. Parameters are those of :func:`lognormal`. Most properties need a ``low`` end."""
     return _aboutMean("normal", mean, cov, low, high)
 
 
 @takes(low=plainly, high=plainly)
-def uniform(low, high):
+def uniform(low: float, high: float) -> Distribution:
     """All values between two ends alike."""
     _finite(low=low, high=high)
     if not low < high:
@@ -154,7 +161,7 @@ class Choice:
     values: tuple
     weights: tuple
 
-    def of(self, u):
+    def of(self, u: float) -> Any:
         """The value at a probability from 0 to 1."""
         reached = 0.0
         for value, weight in zip(self.values, self.weights):
@@ -163,7 +170,7 @@ class Choice:
                 return value
         return self.values[-1]
 
-    def describe(self):
+    def describe(self) -> dict[str, Any]:
         return {
             "kind": "choice",
             "values": list(self.values),
@@ -184,7 +191,7 @@ def _chosen(value, first=None):
 
 
 @takes()
-def choice(*values, weights=None):
+def choice(*values: Any, weights: Sequence[float] | None = None) -> Choice:
     """One of some values, for example ``choice("softening", "brittle")``. A list in ``vary`` means the same.
 
     :param weights: how often each comes, relative to the others; None: all alike. A grid leaves them alone
@@ -215,7 +222,7 @@ class Field:
     cov: float
     length: float
 
-    def describe(self):
+    def describe(self) -> dict[str, Any]:
         return {
             "kind": "field",
             "of": self.kind,
@@ -224,13 +231,17 @@ class Field:
             "length": self.length,
         }
 
-    def written(self, seed):
+    def written(self, seed: int) -> str:
         """As a table has it."""
         return fields.written(self.kind, self.cov, self.length, seed)
 
 
 @takes(distribution=plainly, length=plainly, cov=plainly)
-def field(distribution=None, length=0.0, cov=None):
+def field(
+    distribution: Distribution | None = None,
+    length: float = 0.0,
+    cov: float | None = None,
+) -> Field:
     """A property that varies from joint to joint, with another field in every row.
 
     :param distribution: :func:`lognormal` or :func:`normal` of the values; None: lognormal about the value that the scene

@@ -33,7 +33,7 @@ def watch(caller):
 pause = time.sleep
 
 if __name__ == "__main__":
-    http.server.HTTPServer = Closed
+    setattr(http.server, "HTTPServer", Closed)
     time.sleep = lambda seconds: pause(min(seconds, LOOK_EVERY))
     threading.Thread(target=watch, args=[os.getppid()], daemon=True).start()
     sys.argv = sys.argv[1:]

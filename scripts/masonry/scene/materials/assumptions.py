@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What of a masonry was assumed because it was not given, and what cannot be assumed."""
 
+from __future__ import annotations
+
+from typing import Any
+
 from yade.wrapper import MasonryJoint
 
 from ...arguments import flag, isA, listOf, takes
@@ -40,7 +44,7 @@ OF_STRENGTH = {
 TABLES = {"modeIFractureEnergy": "tensionTable", "modeIIFractureEnergy": "shearTable"}
 
 
-def acts(joint, name):
+def acts(joint: Any, name: str) -> bool:
     """Whether a number among the properties of a joint has an effect on it."""
     if name in ("normalStiffness", "shearStiffness"):
         return True
@@ -61,7 +65,7 @@ def _things(masonry):
     yield from masonry.units.items()
 
 
-def entriesOf(masonry):
+def entriesOf(masonry: Any) -> list[dict[str, Any]]:
     """The entry ``assumed`` of run.json: a list of dicts with ``name``, as ``bed.residualFriction``, ``value``, ``unit`` and
     ``source``. Properties without an effect are left out."""
     found = []
@@ -82,7 +86,7 @@ def entriesOf(masonry):
     return found
 
 
-def missing(masonry):
+def missing(masonry: Any) -> list[str]:
     """Sentences on properties that must be given, and are not."""
     problems = []
     for name, thing in _things(masonry):
@@ -103,7 +107,7 @@ def missing(masonry):
 
 
 @takes(entries=listOf(isA(dict), 0), brief=flag)
-def linesOf(entries, brief):
+def linesOf(entries: list[dict[str, Any]], brief: bool) -> list[str]:
     """What a scene prints of its entries ``assumed``: lines of text.
 
     :param brief: whether their number is enough

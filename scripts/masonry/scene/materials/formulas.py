@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Masonry of one's own from what a data sheet and tests say of it: joints by stated formulas."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field
 
 from yade.wrapper import MasonryJoint, MasonryMat
 
-from ...arguments import plainly, isNumber, number, plain, shown, takes
+from ...arguments import Numbers, isNumber, number, plain, plainly, shown, takes
 from ...assembly.given import DEFAULTS, state
 from ...basics import Refused, say
 from .kinds import Masonry
@@ -61,7 +63,7 @@ REQUIRED = ["E", "unit_E", "fm", "fv0", "friction", "unit", "joint", "density"]
 
 
 @takes(fm=number("Pa", *RANGES["fm"][:2]))
-def compressiveFractureEnergy(fm):
+def compressiveFractureEnergy(fm: float) -> tuple[float, str]:
     """Compressive fracture energy of masonry [J/m²], and where it is from.
 
     Gc = 15 + 0.43 fm - 0.0036 fm² with fm in MPa and Gc in N/mm, for fm from 12 to 80 MPa, after Model Code 90; below and
@@ -86,7 +88,7 @@ def compressiveFractureEnergy(fm):
     stiffness=number("Pa/m", 0, above=True),
     lumped=number("m/Pa", 0),
 )
-def leastEnergy(strength, stiffness, lumped=0.0):
+def leastEnergy(strength: float, stiffness: float, lumped: float = 0.0) -> float:
     """The least fracture energy [J/m²] with which the law softens as it is asked to.
 
     Below strength²/stiffness, twice the elastic energy at the peak, the law takes another energy; below half of that no
@@ -153,33 +155,33 @@ class _Kind:
 @takes(**dict.fromkeys([*RANGES, "unit"], plainly))
 def masonry(
     *,
-    E=None,
-    unit_E=None,
-    fm=None,
-    fv0=None,
-    friction=None,
-    unit=None,
-    joint=None,
-    density=None,
-    ft=None,
-    bond_wrench=None,
-    bond_ratio=None,
-    G=None,
-    head_E=None,
-    poisson=None,
-    GfI=None,
-    GfII=None,
-    Gc=None,
-    peak_strain=None,
-    residual_friction=None,
-    dilatancy=None,
-    head_share=None,
-    unit_ft=None,
-    unit_GfI=None,
-    unit_fv0=None,
-    unit_friction=None,
-    unit_GfII=None,
-):
+    E: float | None = None,
+    unit_E: float | None = None,
+    fm: float | None = None,
+    fv0: float | None = None,
+    friction: float | None = None,
+    unit: Numbers | None = None,
+    joint: float | None = None,
+    density: float | None = None,
+    ft: float | None = None,
+    bond_wrench: float | None = None,
+    bond_ratio: float | None = None,
+    G: float | None = None,
+    head_E: float | None = None,
+    poisson: float | None = None,
+    GfI: float | None = None,
+    GfII: float | None = None,
+    Gc: float | None = None,
+    peak_strain: float | None = None,
+    residual_friction: float | None = None,
+    dilatancy: float | None = None,
+    head_share: float | None = None,
+    unit_ft: float | None = None,
+    unit_GfI: float | None = None,
+    unit_fv0: float | None = None,
+    unit_friction: float | None = None,
+    unit_GfII: float | None = None,
+) -> Masonry:
     """Masonry of one's own, from what a data sheet and tests of the masonry say. Returns a :class:`Masonry`.
 
     ::

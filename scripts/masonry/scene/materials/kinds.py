@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Bricks and joints of a structure, and which joint a pair of blocks gets."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field
+from typing import Any, Callable, Iterable, Sequence
 
 from yade.wrapper import MasonryJoint, MasonryMat
 
@@ -42,7 +45,7 @@ def _slides(value, first=None):
 
 
 @takes(names=names, joints=dictOf(_slides))
-def withResidual(names, joints):
+def withResidual(names: Iterable[str], joints: dict[str, MasonryJoint]) -> list[str]:
     """Names of properties that change alike, and with them the residual friction of joints that have one value of friction.
 
     :param names: as ``"bed.friction"``
@@ -113,13 +116,13 @@ class Masonry:
     unit: MasonryMat
     joints: dict
     units: dict = field(default_factory=dict)
-    softer: object = None
-    choose: object = None
+    softer: Callable[[], Masonry] | None = None
+    choose: Callable[..., str | None] | None = None
     #: What :meth:`vary` was given: joint, property, function and step.
     varied: list = field(default_factory=list)
     brief: bool = False
     #: Height of a course for which the stiffness of the joints was made [m]; None: for any.
-    course: float = None
+    course: float | None = None
 
     def __post_init__(self):
         problems = misfits("Masonry: ", KINDS, vars(self))
@@ -143,7 +146,7 @@ class Masonry:
             support.updateAttrs(values)
             state(support, **sources)
 
-    def apply(self, settings):
+    def apply(self, settings: Iterable[tuple[str, str, str]]) -> None:
         """Give joints the values of ``--set``. Raises Refused with all problems at once.
 
         :param settings: list of (joint, property, text of the value)
@@ -154,16 +157,21 @@ class Masonry:
         except ValueError as error:
             raise Refused(str(error)) from None
 
-    def assumed(self):
+    def assumed(self) -> list[dict[str, Any]]:
         """What was not given: a list of dicts, as of ``assumed`` of :mod:`masonry.run.results`."""
         return entriesOf(self)
 
-    def missing(self):
+    def missing(self) -> list[str]:
         """Sentences on what must be given, and is not."""
         return missing(self)
 
     @takes(name=names, value=function, step=number("", 1e-6, 1, below=True))
-    def vary(self, name, value, step=0.01):
+    def vary(
+        self,
+        name: str | Sequence[str],
+        value: Callable[[float, float, float], float],
+        step: float = 0.01,
+    ) -> Masonry:
         """Let a property change from place to place. Returns the same masonry.
 
         Values are rounded to steps of a share, so that many joints are of one kind and cost no more than uniform ones.
@@ -197,7 +205,7 @@ class Masonry:
         return [n for n, v in values.items() if isNumber(v)]
 
     @takes(args=_options)
-    def variant(self, args):
+    def variant(self, args: Any) -> Masonry:
         """A copy for the options ``--joints`` and ``--joint-stiffness``; this one stays as it is."""
         source = self
         if args.joint_stiffness != "joint":
@@ -236,7 +244,7 @@ class Masonry:
                 raise Refused(f"--field {text}: {error}") from None
         return own
 
-    def rule(self, blocks):
+    def rule(self, blocks: dict[int, Any]) -> Callable[..., MasonryJoint | None]:
         """The rule of :func:`masonry.assembly.connecting.connect`.
 
         :param blocks: records of the bricks by body id
@@ -299,7 +307,7 @@ class Masonry:
     _made = property(lambda self: self.__dict__.setdefault("_kept", {}))
 
 
-def byName(joints, brittle):
+def byName(joints: Iterable[MasonryJoint], brittle: bool) -> dict[str, MasonryJoint]:
     """Joints as a dict by name. If ``brittle``, those that are not elastic become brittle Coulomb slip joints."""
     if brittle:
         joints = [

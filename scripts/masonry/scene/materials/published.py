@@ -4,6 +4,10 @@
 The paper: see yade_plugin/law/README.md.
 """
 
+from __future__ import annotations
+
+from typing import Any
+
 from yade import Vector3
 from yade.wrapper import MasonryJoint, MasonryMat
 
@@ -16,7 +20,7 @@ STIFFNESS = oneOf("joint", "masonry")  # the kind of an argument
 
 
 @takes(stiffness=STIFFNESS)
-def calciumSilicate(stiffness="joint"):
+def calciumSilicate(stiffness: str = "joint") -> Masonry:
     """Calcium-silicate masonry of the TUD-COMP walls, for :class:`masonry.scene.scene.Scene`.
 
     :param stiffness: as of :func:`calciumSilicateJoints`
@@ -33,7 +37,7 @@ def calciumSilicate(stiffness="joint"):
 DRY_GRANITE_MASONRY = {100: 3.287e9, 175: 4.068e9, 250: 4.722e9}
 
 
-def tested(value, first=None):
+def tested(value: Any, first: Any = None) -> Any:
     """The kind of a vertical load of the tests [kN]."""
     if not isNumber(value) or value not in DRY_GRANITE_MASONRY:
         levels = ", ".join(map(str, DRY_GRANITE_MASONRY))
@@ -45,7 +49,7 @@ OF_GRANITE = dict(level=tested, height=number("m", 1e-3, 10))
 
 
 @takes(**OF_GRANITE)
-def dryGranite(level, height):
+def dryGranite(level: int, height: float) -> Masonry:
     """Granite blocks with dry joints, for :class:`masonry.scene.scene.Scene`. Parameters as of :func:`dryGraniteJoints`."""
     return Masonry(graniteUnit(), dryGraniteJoints(level, height), brief=True)
 
@@ -71,13 +75,13 @@ DRY = {
     poisson=orNone(number("", -1, 0.5, above=True, below=True)),
 )
 def dry(
-    friction=None,
-    normalStiffness=None,
-    shearStiffness=None,
-    density=None,
-    young=None,
-    poisson=None,
-):
+    friction: float | None = None,
+    normalStiffness: float | None = None,
+    shearStiffness: float | None = None,
+    density: float | None = None,
+    young: float | None = None,
+    poisson: float | None = None,
+) -> Masonry:
     """Stones with dry joints that do not crush: no tension, no cohesion, Coulomb friction without dilatancy.
 
     What is not given is assumed, and a scene says so.
@@ -128,7 +132,7 @@ def dry(
 BED_DIRECTION, HEAD_DIRECTION = Vector3(0, 0, 1), Vector3(1, 0, 0)
 
 
-def calciumSilicateUnit():
+def calciumSilicateUnit() -> MasonryMat:
     """Calcium-silicate brick of the TUD-COMP walls: the paper's table 2."""
     unit = MasonryMat(
         label="calcium silicate",
@@ -177,7 +181,9 @@ CRACK_ASSUMED = [
 
 
 @takes(brittle=flag, stiffness=STIFFNESS)
-def calciumSilicateJoints(brittle=False, stiffness="joint"):
+def calciumSilicateJoints(
+    brittle: bool = False, stiffness: str = "joint"
+) -> dict[str, MasonryJoint]:
     """Support, bed, head and crack joints of the calcium-silicate walls, as a dict by name.
 
     Pairs of units get the first of support, bed and head that fits. The crack joint is for the halves of one brick, and
@@ -257,7 +263,7 @@ def _softenTo(joint, masonry, spacing):
     )
 
 
-def graniteUnit():
+def graniteUnit() -> MasonryMat:
     """Sawn granite block of the dry-joint walls of Vasconcelos and Lourenço (2009).
 
     Young's modulus is that of the data of Vanin et al. (2017), doi 10.1007/s10518-017-0188-5. Poisson's ratio 0.2 and
@@ -271,7 +277,9 @@ def graniteUnit():
 
 
 @takes(brittle=flag, **OF_GRANITE)
-def dryGraniteJoints(level, height, brittle=False):
+def dryGraniteJoints(
+    level: int, height: float, brittle: bool = False
+) -> dict[str, MasonryJoint]:
     """Support, bed and head joints of the dry-joint granite walls, as a dict by name.
 
     The joints have no tensile strength and no cohesion. Their normal stiffness kn is what is missing between block and
@@ -306,7 +314,7 @@ def dryGraniteJoints(level, height, brittle=False):
     return byName([support, bed, head], brittle)
 
 
-def loadingBlock():
+def loadingBlock() -> MasonryMat:
     """A block that supports or loads a wall, section 4.1 of the paper: so stiff that only its joint gives way."""
     block = MasonryMat(
         label="loading block", young=1e16, poisson=0.0, density=1800, jointSet="support"

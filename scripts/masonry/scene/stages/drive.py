@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Drives along an axis without a run-up: ``drive`` and ``pressJoint``."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import Any, Callable
 
 from yade import O
 
 from ...arguments import number, orFunction, takes
 from ...basics import Refused
-from ..targets import ANY, recordedJoint
+from ..targets import ANY, JointRecord, Target, recordedJoint
 from .stage import DONE, Answer, stage
 from .supports import MILLIMETRES, letGo
 
@@ -42,7 +45,13 @@ def stresses(scene, rows):
 
 @stage(options=("rate",), answers=stresses)
 @takes(target=ANY, x=DISTANCE, y=DISTANCE, z=DISTANCE)
-def drive(scene, target, x=0.0, y=0.0, z=0.0):
+def drive(
+    scene: Any,
+    target: Target,
+    x: float | Callable[[], float] = 0.0,
+    y: float | Callable[[], float] = 0.0,
+    z: float | Callable[[], float] = 0.0,
+) -> str:
     """Drive a target along an axis at ``--rate`` from the first step on, for example two bricks and their joint.
 
     The rows of curve.csv are closer together at the beginning, where the peaks are. The drives of other axes hold
@@ -86,7 +95,7 @@ def checkStress(scene, target, joint, stress):
 
 @stage(options=("rate",), check=checkStress, answers=stresses)
 @takes(target=ANY, joint=recordedJoint, stress=number("Pa", -1e12, 1e12))
-def pressJoint(scene, target, joint, stress):
+def pressJoint(scene: Any, target: Target, joint: JointRecord, stress: float) -> str:
     """Bring a bed joint to a mean normal stress by a drive along z, then hold that by its force: nothing swings.
 
     :param target: a platen with a drive along z, above bricks on one column

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Horizontal acceleration and a tilting ground: ``tilt``, ``accelerate`` and ``lean``, and the search with ``bracket``."""
 
-import math
+from __future__ import annotations
 
-from ...arguments import direction, function, number, orNone, takes
+import math
+from typing import Any, Callable
+
+from ...arguments import Numbers, direction, function, number, orNone, takes
 from ...assembly.blocks import vector
 from ..bounds import nameOfLean
 from .acting import Acceleration, Tilting
@@ -48,7 +51,13 @@ ACCELERATION = number("g", 0, 1e3, above=True)
     rate=number("degrees/s", 1e-6, 1e6),
     within=WIDTH,
 )
-def tilt(scene, degrees, towards=(1, 0, 0), rate=1.0, within=WITHIN):
+def tilt(
+    scene: Any,
+    degrees: float,
+    towards: Numbers = (1, 0, 0),
+    rate: float = 1.0,
+    within: float = WITHIN,
+) -> str:
     """Tilt the ground, and with it gravity, until the structure falls or the angle is reached; then search for the tilt that
     it holds.
 
@@ -68,7 +77,13 @@ def tilt(scene, degrees, towards=(1, 0, 0), rate=1.0, within=WITHIN):
 
 @stage(bounded=True, answers=found)
 @takes(most=ACCELERATION, towards=LEVEL, rate=number("g/s", 1e-6, 1e6), within=WIDTH)
-def accelerate(scene, most, towards=(1, 0, 0), rate=0.5, within=WITHIN):
+def accelerate(
+    scene: Any,
+    most: float,
+    towards: Numbers = (1, 0, 0),
+    rate: float = 0.5,
+    within: float = WITHIN,
+) -> str:
     """Let a horizontal acceleration grow evenly, until the structure falls or ``most`` is reached; then search for the one
     that it holds.
 
@@ -87,7 +102,12 @@ def accelerate(scene, most, towards=(1, 0, 0), rate=0.5, within=WITHIN):
 
 @stage(bounded=True, answers=putOnAnswers)
 @takes(factor=number("g", 0, 1e3), towards=LEVEL, longest=orNone(DURATION))
-def lean(scene, factor, towards=(1, 0, 0), longest=None):
+def lean(
+    scene: Any,
+    factor: float,
+    towards: Numbers = (1, 0, 0),
+    longest: float | None = None,
+) -> str:
     """Put a horizontal acceleration on the structure, and wait until it is at rest or falls.
 
     :param factor: [g]
@@ -143,7 +163,13 @@ def putOn(scene, name, load, towards, longest, over=0.0):
 @takes(
     carries=function, low=number("", 0), high=number("", 0, above=True), within=WIDTH
 )
-def bracket(scene, carries, low, high, within=0.01):
+def bracket(
+    scene: Any,
+    carries: Callable[[float], bool],
+    low: float,
+    high: float,
+    within: float = 0.01,
+) -> tuple[float, float]:
     """Find the largest load that the structure carries, by halving: each trial starts from the last state at rest.
 
     :param carries: function of a load factor that sets loads and stages, and returns whether the structure is at

@@ -9,9 +9,12 @@ under the first. At the end the load that was not held is tried once more from t
 not matter how fast the load grew.
 """
 
+from __future__ import annotations
+
 import base64
 import statistics
 from dataclasses import dataclass
+from typing import Any, Sequence
 
 from yade import O
 
@@ -39,10 +42,10 @@ SETTING_OFF = 3.0  # the structure has left rest where its speed is so many time
 class Growing(Timed):
     """What a stage remembers in which a load grows. A trial is a pair: the factor, and 1 if it was held, else 0."""
 
-    begun: list = None  # the load when the stage began
+    begun: list | None = None  # the load when the stage began
     #: Of every row so far: time [s], load factor [-], and how fast the fastest block was over one that has fallen [-].
-    rows: list = ()
-    kept: list = ()  # pairs of load factor and state, as text
+    rows: Sequence[Any] = ()
+    kept: Sequence[Any] = ()  # pairs of load factor and state, as text
     spacing: int = 1  # rows from one kept state to the next
     fell: str = ""  # how the structure fell
     last: float = -1.0  # factor at the end of the growth, or below 0 before that [-]
@@ -50,10 +53,12 @@ class Growing(Timed):
     steps: int = 0  # that the growth took
     # -- of the search
     over: int = 0  # 1 when it has ended, and only the last state at rest is kept
-    trials: list = ()
-    held: list = None  # factor and displacement [mm] of the largest load that was held
+    trials: Sequence[Any] = ()
+    held: list | None = (
+        None  # factor and displacement [mm] of the largest load that was held
+    )
     #: Of the smallest that was not, 1 if that trial began at rest, else 0, and how it ended: a number of WHY.
-    lost: list = None
+    lost: list | None = None
     #: Trials above a load that was not held when it grew, but is held from rest.
     climbs: int = 0
     heldState: str = ""  # at rest under the load that was held
@@ -64,7 +69,7 @@ class Growing(Timed):
     taken: int = 0  # steps so far
     quiet: int = 0  # looks that found the structure at rest, one after the other
     ended: int = 0  # how the last one ended that was not held: a number of WHY
-    marks: list = ()  # velocities after 1, 2, 4, ... looks [-]
+    marks: Sequence[Any] = ()  # velocities after 1, 2, 4, ... looks [-]
 
 
 def grow(scene, name, load, duration, towards, within=WITHIN):

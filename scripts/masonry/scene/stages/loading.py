@@ -6,18 +6,21 @@ The first three give a load its new value, whatever it was before, and wait for 
 largest that is held. The others add to what is there until the structure falls, and search by themselves.
 """
 
+from __future__ import annotations
+
 import math
 import re
+from typing import Any
 
 from yade import O, Vector3
 
-from ...arguments import axes as axesOf
+from ...arguments import Axes, Numbers, axes as axesOf
 from ...arguments import orNone, takes
 from ...assembly.blocks import vector
 from ...basics import Refused
 from ..bounds import nameOf
 from ..loads import FORCE, PRESSURE, STRESS, checkedForce, doubtPress, windFaces
-from ..targets import ANY, LOADED, MOVING_PLATEN
+from ..targets import ANY, LOADED, MOVING_PLATEN, Target
 from ..targets import part as partName
 from .acting import Forces
 from .gravity import LEVEL, WIDTH, boundAlone, putOn, putOnAnswers
@@ -47,7 +50,9 @@ def _forceOn(scene, target, force, name):
 
 @stage(bounded=True, answers=putOnAnswers)
 @takes(target=LOADED, force=FORCE, longest=orNone(DURATION))
-def load(scene, target, force, longest=None):
+def load(
+    scene: Any, target: Target, force: Numbers, longest: float | None = None
+) -> str:
     """Give a target another dead load, and wait until the structure is at rest or falls.
 
     Before the first stage :meth:`load` describes a load that grows in :meth:`settle`. After it the force replaces the dead load
@@ -64,7 +69,13 @@ def load(scene, target, force, longest=None):
 
 @stage(bounded=True, answers=found)
 @takes(target=LOADED, force=FORCE, over=DURATION, within=WIDTH)
-def growLoad(scene, target, force, over=GROWS, within=WITHIN):
+def growLoad(
+    scene: Any,
+    target: Target,
+    force: Numbers,
+    over: float = GROWS,
+    within: float = WITHIN,
+) -> str:
     """Let a dead load grow evenly beside what is there, until the structure falls or the force is reached; then search for the
     load that is held.
 
@@ -104,7 +115,13 @@ def windLabel(towards, part):
 @takes(
     pressure=PRESSURE, towards=LEVEL, part=orNone(partName), longest=orNone(DURATION)
 )
-def wind(scene, pressure, towards, part=None, longest=None):
+def wind(
+    scene: Any,
+    pressure: float,
+    towards: Numbers,
+    part: str | None = None,
+    longest: float | None = None,
+) -> str:
     """Give the faces that look against a horizontal direction another pressure, and wait until the structure is at rest or
     falls.
 
@@ -127,7 +144,14 @@ def wind(scene, pressure, towards, part=None, longest=None):
     over=DURATION,
     within=WIDTH,
 )
-def growWind(scene, pressure, towards, part=None, over=GROWS, within=WITHIN):
+def growWind(
+    scene: Any,
+    pressure: float,
+    towards: Numbers,
+    part: str | None = None,
+    over: float = GROWS,
+    within: float = WITHIN,
+) -> str:
     """Let a wind grow evenly until the structure falls or the pressure is reached; then search for the one that is held.
 
     :param pressure: at the end [Pa]; ``towards`` and ``part``: as of :meth:`wind`
@@ -155,7 +179,9 @@ def _pressOn(scene, platen, stress, name):
 
 @stage(bounded=True, answers=putOnAnswers)
 @takes(platen=MOVING_PLATEN, stress=STRESS, longest=orNone(DURATION))
-def press(scene, platen, stress, longest=None):
+def press(
+    scene: Any, platen: Target, stress: float, longest: float | None = None
+) -> str:
     """Press a platen with another mean stress on the bricks below it, and wait until the structure is at rest or falls.
 
     Before the first stage :meth:`press` describes a press that grows in :meth:`settle`. After it the stress replaces that.
@@ -171,7 +197,13 @@ def press(scene, platen, stress, longest=None):
 
 @stage(bounded=True, answers=found)
 @takes(platen=MOVING_PLATEN, stress=STRESS, over=DURATION, within=WIDTH)
-def growPress(scene, platen, stress, over=GROWS, within=WITHIN):
+def growPress(
+    scene: Any,
+    platen: Target,
+    stress: float,
+    over: float = GROWS,
+    within: float = WITHIN,
+) -> str:
     """Let a press grow evenly beside what presses already, until the structure falls or the stress is reached; then search for
     the one that is held.
 
@@ -208,7 +240,7 @@ def _grow(scene, name, made, towards, over, within):
 
 @stage()
 @takes(target=ANY, axes=axesOf("xyzXYZ"))
-def hold(scene, target, axes="xyzXYZ"):
+def hold(scene: Any, target: Target, axes: Axes = "xyzXYZ") -> str:
     """Hold a target where it is now. What follows is the next stage's.
 
     Before the first stage :meth:`hold` describes a brick that is held from the beginning.

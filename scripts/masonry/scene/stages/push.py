@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Slow pushes of a target, as the drive of a testing machine makes them: ``push``, ``cycle`` and ``follow``."""
 
-from types import SimpleNamespace
+from __future__ import annotations
 
-from ...arguments import direction as directionOf
+from types import SimpleNamespace
+from typing import Any
+
+from ...arguments import FilePath, Numbers, direction as directionOf
 from ...arguments import flag, listOf, number, orNone, takes, whole
 from ...arguments import path as pathOf
 from ...assembly.blocks import vector
@@ -12,7 +15,7 @@ from ...read.curves import dynamicImbalance, peakAtBothEnds
 from .. import history
 from ..bounds import nameOfPush
 from ..parsing import RATE
-from ..targets import LOADED
+from ..targets import LOADED, Target
 from ..words import PUSHES
 from .pushing import SHORT, drivePush
 from .stage import DONE, Answer, stage
@@ -56,7 +59,14 @@ PUSHED = dict(
 
 @stage(bounded=True, farther=("until",), options=OPTIONS, answers=peaks)
 @takes(until=orNone(number("mm", 0, history.MOST, above=True)), **PUSHED)
-def push(scene, target, until=None, direction=(1, 0, 0), rate=None, continued=False):
+def push(
+    scene: Any,
+    target: Target,
+    until: float | None = None,
+    direction: Numbers = (1, 0, 0),
+    rate: float | None = None,
+    continued: bool = False,
+) -> str:
     """Push a target at a constant velocity, as the drive of a testing machine does.
 
     :param target: a platen that moves, or a :meth:`handle`
@@ -79,14 +89,14 @@ def push(scene, target, until=None, direction=(1, 0, 0), rate=None, continued=Fa
     **PUSHED,
 )
 def cycle(
-    scene,
-    target,
-    amplitudes,
-    repeats=1,
-    direction=(1, 0, 0),
-    rate=None,
-    continued=False,
-):
+    scene: Any,
+    target: Target,
+    amplitudes: Numbers,
+    repeats: int = 1,
+    direction: Numbers = (1, 0, 0),
+    rate: float | None = None,
+    continued: bool = False,
+) -> str:
     """Push a target to and fro: each amplitude A is a cycle from 0 to +A, to -A and back to 0.
 
     :param amplitudes: [mm], a list
@@ -100,7 +110,14 @@ def cycle(
 
 @stage(bounded=True, farther=("path",), options=OPTIONS, answers=peaks)
 @takes(path=pathOf, **PUSHED)
-def follow(scene, target, path, direction=(1, 0, 0), rate=None, continued=False):
+def follow(
+    scene: Any,
+    target: Target,
+    path: FilePath,
+    direction: Numbers = (1, 0, 0),
+    rate: float | None = None,
+    continued: bool = False,
+) -> str:
     """Push a target through the displacements of a CSV file, which has a column ``displacement_mm``.
 
     :param continued: as of :meth:`push`

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How the drive of a push goes, row by row."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import Sequence
 
 from yade import O
 
@@ -23,7 +26,7 @@ DAMPED = 0.1  # of what loops lose: a larger share of damping is a warning, beca
 class Pushing:
     """What a push remembers. Pairs are of the negative and of the positive side, and positive outwards."""
 
-    origin: list = None  # displacement of the loading block when the push began, along it and up [m]
+    origin: list | None = None  # displacement of the loading block when the push began, along it and up [m]
     now: float = 0.0  # time of the last row [s]
     moved: float = 0.0  # displacement there [mm]
     passed: int = 0  # points of the history that lie behind
@@ -34,9 +37,9 @@ class Pushing:
     since: float = 0.0  # time from which the velocity grows [s]
     #: velocity then, in the present direction, over the full one [-]
     growth: float = 0.0
-    peaks: list = (0.0, 0.0)  # largest base shear so far [kN]
-    peaksAt: list = (0.0, 0.0)  # displacement there [mm]
-    reach: list = (0.0, 0.0)  # farthest turning point so far [mm]
+    peaks: Sequence[float] = (0.0, 0.0)  # largest base shear so far [kN]
+    peaksAt: Sequence[float] = (0.0, 0.0)  # displacement there [mm]
+    reach: Sequence[float] = (0.0, 0.0)  # farthest turning point so far [mm]
     nextFrame: float = 0.0  # length of the path up to the next ParaView frame [mm]
 
     def travelled(self, direction):

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Waiting for rest: the stage ``settle``, and what ``lean`` shares with it."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import Any
 
 from yade import O
 
@@ -21,7 +24,7 @@ SHORTER = 1, 2, 5, 10, 20, 50, EVERY
 SETTLING = 0.5  # most local damping of deformable units in settle(): with more they creep to rest
 
 
-def rampTime(args):
+def rampTime(args: Any) -> float:
     """Time in which loads and velocities grow [s]: waves in heavier blocks are slower."""
     return RAMP * args.density_scaling**0.5
 
@@ -33,7 +36,7 @@ class Resting:
     done: int = 0  # steps so far
     quiet: int = 0  # looks that found it at rest, one after the other
     load: float = 0.0  # share of the load that has grown [-]
-    begun: list = None  # the load when it began to be put on
+    begun: list | None = None  # the load when it began to be put on
     goal: float = 0.0  # factor of the load that is put on [-]
 
 
@@ -43,7 +46,12 @@ class Resting:
     damping=orNone(oneOf("local", "combined")),
     record=flag,
 )
-def settle(scene, longest=None, damping=None, record=True):
+def settle(
+    scene: Any,
+    longest: float | None = None,
+    damping: str | None = None,
+    record: bool = True,
+) -> str:
     """Let gravity, presses and dead loads act until the structure is at rest.
 
     At rest the supports carry what is above them but for half a per cent, and hardly anything moves. Presses and dead

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Real time: ``shake`` and ``run``."""
 
+from __future__ import annotations
+
 import itertools
 from dataclasses import dataclass
+from typing import Any
 
 from yade import O, Vector3
 
-from ...arguments import number, oneOf, orNone, takes
+from ...arguments import FilePath, Numbers, number, oneOf, orNone, takes
 from ...basics import Refused
 from ..ground import UNITS, readRecord, record
 from ..parsing import DAMPING
@@ -67,17 +70,17 @@ class Damped(Timed):
     stiffnessDamping=number("s", 0, 1),
 )
 def shake(
-    scene,
-    accelerations,
-    every=None,
-    direction=(1, 0, 0),
-    scale=1.0,
-    unit=None,
-    after=0.0,
-    damping=0.0,
-    massDamping=0.0,
-    stiffnessDamping=0.0,
-):
+    scene: Any,
+    accelerations: Numbers | FilePath,
+    every: float | None = None,
+    direction: Numbers = (1, 0, 0),
+    scale: float = 1.0,
+    unit: str | None = None,
+    after: float = 0.0,
+    damping: float = 0.0,
+    massDamping: float = 0.0,
+    stiffnessDamping: float = 0.0,
+) -> str:
     """Shake the ground by a record.
 
     The scene moves with the ground: every block feels the negative ground acceleration, and all displacements are
@@ -128,7 +131,7 @@ def shake(
 
 @stage(farther=("seconds",), answers=displacements)
 @takes(seconds=DURATION, damping=orNone(DAMPING))
-def run(scene, seconds, damping=None):
+def run(scene: Any, seconds: float, damping: float | None = None) -> str:
     """Let time pass.
 
     :param seconds: time in the scene [s]

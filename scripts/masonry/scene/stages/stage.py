@@ -1,18 +1,25 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What all stages of a scene share: how they begin and end, their traits, and what they answer."""
 
+from __future__ import annotations
+
 import functools
 import itertools
 import os
 from dataclasses import dataclass
-from typing import Callable
+from typing import Any, Callable, Concatenate, ParamSpec
 
 from yade import O
 
+from ... import notebook
 from ...basics import Collapsed, say
 from ...run import batch
 from ..resuming import enter
 from ..words import argumentsOf
+
+P = ParamSpec("P")
+#: A stage: a function of the scene and what the user says, which returns how it ended.
+Stage = Callable[Concatenate[Any, P], str]
 
 #: How a stage ends.
 AT_REST, MOVING, DONE, COLLAPSED = "at rest", "moving", "done", "collapsed"
@@ -32,9 +39,9 @@ class Answer:
 
     name: str
     unit: str
-    value: float
+    value: float | None
     how: str
-    uncertainty: float = None
+    uncertainty: float | None = None
 
 
 def answerText(answer):
@@ -119,26 +126,45 @@ class Traits:
     farther: tuple = ()
     options: tuple = ()
     grows: bool = False
-    check: Callable = None
+    check: Callable | None = None
     answers: Callable = nothing
 
 
-def stage(**traits):
+def stage(**traits: Any) -> Callable[[Stage[P]], Stage[P]]:
     """Make a stage of a function of the scene and what the user says, which has its kinds of arguments from
     :func:`masonry.arguments.takes`; the keywords are those of :class:`Traits`.
 
     The stage builds the scene if it is the first, is left out after a collapse, and ends the run in order on errors.
     """
 
-    def made(act):
+    def made(act: Stage[P]) -> Stage[P]:
         @functools.wraps(act)
-        def staged(scene, *args, **settings):
-            return _carryOut(scene, act, staged.traits, args, settings)
+        def staged(scene: Any, *args: P.args, **settings: P.kwargs) -> str:
+            if scene.staging:  # it is a part of another stage
+                return _carryOut(scene, act, known, args, settings)
+            if notebook.isHere() and not scene.finished:
+                # a word that is wrong can be corrected in the cell: it is no end of the run
+                _check(scene, act, known, args, settings)
+            scene.staging = True
+            try:
+                with scene.noted(staged, *args, **settings), scene.running.listening():
+                    return _carryOut(scene, act, known, args, settings)
+            finally:
+                scene.staging = False
 
-        staged.traits = Traits(**traits)
+        known = Traits(**traits)
+        vars(staged).update(traits=known)
         return staged
 
     return made
+
+
+def _check(scene, act, traits, args, settings):
+    """What the user says to a stage, as its kinds return it. Raises Refused."""
+    (_, *args), settings = act.checked((scene, *args), settings)
+    if traits.check:
+        traits.check(scene, *args, **settings)
+    return args, settings
 
 
 def _carryOut(scene, act, traits, args, settings):
@@ -151,9 +177,7 @@ def _carryOut(scene, act, traits, args, settings):
         )
     running, before = scene.running, None
     try:
-        (_, *args), settings = act.checked((scene, *args), settings)
-        if traits.check:
-            traits.check(scene, *args, **settings)
+        args, settings = _check(scene, act, traits, args, settings)
         scene.begin()
         if batch.PROBE in os.environ:
             return scene.probe(name, traits, argumentsOf(act, scene, args, settings))

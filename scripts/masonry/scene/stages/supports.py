@@ -1,17 +1,20 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Supports that are taken away or that move: ``release`` and ``move``."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import Any
 
 from yade import O, Vector3
 
-from ...arguments import axes as axesOf
+from ...arguments import Axes, Numbers, axes as axesOf
 from ...arguments import number, orNone, takes
 from ...assembly.blocks import vector
 from ..history import MOST
 from ..loads import FORCE
 from ..parsing import RATE
-from ..targets import ANY, HELD
+from ..targets import ANY, HELD, Target
 from .rest import rampTime
 from .stage import DONE, Answer, stage
 from .timed import Timed, timed
@@ -22,7 +25,9 @@ MILLIMETRES = number("mm", -MOST, MOST)
 
 @stage()
 @takes(target=ANY, axes=axesOf("xyzXYZ"), force=orNone(FORCE))
-def release(scene, target, axes, force=None):
+def release(
+    scene: Any, target: Target, axes: Axes, force: Numbers | None = None
+) -> str:
     """Take a support away, or let the drive of a platen go. What follows is the next stage's, for example ``settle``.
 
     :param target: a brick or platen that is held, a platen with a drive, or what a push has left under its drive
@@ -90,7 +95,14 @@ def displacement(scene, rows):
 
 @stage(farther=("x", "y", "z"), options=("rate",), answers=displacement)
 @takes(target=HELD, x=MILLIMETRES, y=MILLIMETRES, z=MILLIMETRES, rate=orNone(RATE))
-def move(scene, target, x=0.0, y=0.0, z=0.0, rate=None):
+def move(
+    scene: Any,
+    target: Target,
+    x: float = 0.0,
+    y: float = 0.0,
+    z: float = 0.0,
+    rate: float | None = None,
+) -> str:
     """Move a fixed target by a displacement [mm], in a straight line: settlement or spreading of a support.
 
     It starts and stops smoothly.

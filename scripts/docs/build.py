@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Makes the site and its PDF; ``scripts/docs.sh`` calls this.
+
+    /usr/bin/python3 scripts/docs/build.py [--out build/docs] [--no-pdf]
+
+Needs Debian's python3-sphinx, python3-myst-parser, furo and libjs-mathjax, for the PDF chromium, and the plugin, which is
+imported. Nothing is fetched from a network.
+"""
+
+import argparse
+import glob
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(os.path.dirname(HERE))
+sys.path[:0] = [
+    HERE,
+    os.path.join(ROOT, "tests", "gates"),
+]  # the gates list the files of the repository
+YADE = "/usr/lib/x86_64-linux-gnu/yade-double/py"
+JAVASCRIPT = "/usr/share/javascript"  # of Debian
+MATHJAX = os.path.join(JAVASCRIPT, "mathjax")
+#: What equations as SVG need of MathJax, which has thirty times as much.
+PARTS = ["MathJax.js", "config/TeX-AMS_SVG-full.js", "extensions", "jax/element", "jax/input/TeX", "jax/output/SVG/config.js", "jax/output/SVG/jax.js", "jax/output/SVG/autoload", "jax/output/SVG/fonts/TeX", "localization/en"]  # fmt: skip
+
+#: The pages of the site by their sections. What stands in a folder of ``validation`` comes below its README.
+FIRST = "First steps"
+OPTIONAL = {"scripts/TUTORIAL"}  # where it is not, notebooks are all of the tutorial
+SECTIONS = {
+    FIRST: ["scripts/TUTORIAL", "gallery"],
+    "Manual": ["scripts/README", "words", "options", "scripts/STUDIES"],
+    "Laws": ["yade_plugin/law/README", "yade_plugin/law/cyclic_softening/README"],
+    "Validation": ["validation/README"],
+    "Reference": ["api/masonry", "classes"],
+    "Project": ["yade_plugin/README", "yade_plugin/host/README", "CONTRIBUTING", "CHANGELOG", "cite"],  # fmt: skip
+}
+
+
+def toctree(pages, caption=""):
+    """A table of contents, in Markdown, which the page itself does not show."""
+    head = f":caption: {caption}\n" if caption else ""
+    return f"\n```{{toctree}}\n:hidden:\n{head}\n" + "\n".join(pages) + "\n```\n"
+
+
+def tutorial(made, out, runs):
+    """Bring the notebooks of the tutorial in. Returns their pages.
+
+    :param runs: whether they are run, and shown with what comes out
+    """
+    import masonry
+    import notebooks
+
+    pages = []
+    for path in sorted(glob.glob(os.path.join(HERE, "tutorial", "*.ipynb"))):
+        name = os.path.splitext(os.path.basename(path))[0]
+        found = notebooks.load(path)
+        if runs:
+            version = f"{masonry.__version__} {masonry.commit}"
+            found = notebooks.run(path, os.path.join(out, "notebooks"), version)
+        target = os.path.relpath(os.path.dirname(path), ROOT)
+
+        def write(file, data):
+            made.write(f"{target}/{file}", data)
+
+        text = notebooks.markdown(found, name, write)
+        made.document(f"{target}/{name}.md", text)
+        pages.append(f"{target}/{name}")
+    return pages
+
+
+def contents(documents, first=()):
+    """The tables of contents of the documents that have one: dict from a document to Markdown.
+
+    :param documents: those of the repository. Each must be in some table
+    :param first: pages that come first of all
+    """
+    named = {page for pages in SECTIONS.values() for page in pages}
+    rest = [d.removesuffix(".md") for d in documents if d != "README.md"]
+    rest = [d for d in rest if d not in named]
+    cases = [d for d in rest if d.startswith("validation/")]
+    if set(rest) - set(cases):
+        raise ValueError(f"no section of build.py has {', '.join(sorted(set(rest) - set(cases)))}")  # fmt: skip
+    sections = {t: [*first, *p] if t == FIRST else p for t, p in SECTIONS.items()}
+    sections = {t: [p for p in pages if p + ".md" in documents or p not in OPTIONAL] for t, pages in sections.items()}  # fmt: skip
+    return {
+        "README.md": "".join(toctree(p, title) for title, p in sections.items()),
+        "validation/README.md": toctree([c.removeprefix("validation/") for c in cases]),
+    }
+
+
+def stage(folder, out, runs):
+    """Write all pages of the site to a folder; other parameters as of :func:`tutorial`."""
+    import generated
+    import staging
+    from tree import read
+
+    made = staging.Stage(folder)
+    documents = made.documents()
+    lessons = tutorial(made, out, runs)
+    for path, table in contents(documents, lessons).items():
+        made.document(path, read(path) + table)
+    made.sources()
+    for name, _ in staging.galleryRows():
+        made.copy(f"scripts/gallery/{name}.png")
+    made.write("gallery.md", staging.gallery())
+    made.write("words.rst", generated.words())
+    made.write("options.rst", generated.optionsOfScenes())
+    made.write("classes.rst", generated.classes())
+    made.write("cite.md", generated.cite())
+    for path, text in generated.api():
+        made.write(path, text)
+
+
+def mathjax(folder):
+    """Copy what the pages need of Debian's MathJax."""
+    for part in PARTS:
+        source, target = os.path.join(MATHJAX, part), os.path.join(folder, "mathjax", part)  # fmt: skip
+        if os.path.isdir(source):
+            shutil.copytree(source, target, dirs_exist_ok=True)
+        else:
+            os.makedirs(os.path.dirname(target), exist_ok=True)
+            shutil.copyfile(source, target)
+
+
+def sphinx(out, builder, target, *more):
+    """Run Sphinx on the staged pages; warnings are errors."""
+    from sphinx.cmd.build import main
+
+    words = ["-b", builder, "-c", HERE, "-d", os.path.join(out, "doctrees-" + builder), "-W", "--keep-going", "-q", *more]  # fmt: skip
+    failed = main([*words, os.path.join(out, "source"), target])
+    if failed:
+        raise SystemExit(f"Sphinx failed ({builder}): see above")
+
+
+def bundle(static):
+    """Make one script and one style sheet of those of the theme, which Debian leaves in parts that a web server would put
+    together: browsers load neither modules nor ``/javascript`` from files.
+    """
+    sheet = os.path.join(static, "styles", "furo.css")
+    with open(sheet, encoding="utf-8") as file:
+        rules = file.read()
+    part = re.match(r"@import url\(/javascript/([\w./-]+)\);", rules)
+    if part:
+        with open(os.path.join(JAVASCRIPT, part[1]), encoding="utf-8") as file:
+            rules = file.read() + rules[part.end() :]
+        with open(sheet, "w", encoding="utf-8") as file:
+            file.write(rules)
+    scripts = os.path.join(static, "scripts")
+    with open(os.path.join(scripts, "furo.js"), encoding="utf-8") as file:
+        first, _, rest = file.read().partition("\n")
+    part = re.fullmatch(r'import Gumshoe from "\./([\w-]+\.js)";', first)
+    if part:
+        with open(os.path.join(scripts, part[1]), encoding="utf-8") as file:
+            rest = file.read() + rest
+        with open(os.path.join(scripts, "furo.js"), "w", encoding="utf-8") as file:
+            file.write(rest)
+
+
+def pdf(page, target):
+    """Print a page to a PDF with chromium, without a display and without a network."""
+    subprocess.run(
+        [
+            "chromium",
+            "--headless=new",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--disable-background-networking",
+            "--host-resolver-rules=MAP * ~NOTFOUND",
+            "--virtual-time-budget=300000",
+            "--generate-pdf-document-outline",
+            "--no-pdf-header-footer",
+            f"--print-to-pdf={target}",
+            "file://" + os.path.abspath(page),
+        ],
+        check=True,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        timeout=600,
+    )
+
+
+def main(words=None):
+    parser = argparse.ArgumentParser(description="Make the site of the documentation and its PDF.")  # fmt: skip
+    parser.add_argument("--out", metavar="DIR", default=os.path.join(ROOT, "build", "docs"), help="where it goes")  # fmt: skip
+    parser.add_argument("--no-pdf", action="store_true", help="the site alone")
+    parser.add_argument("--no-run", action="store_true", help="show the notebooks without what comes out of them")  # fmt: skip
+    args = parser.parse_args(words)
+    out = os.path.abspath(args.out)
+    began = time.monotonic()
+    if os.path.isdir(YADE):
+        sys.path.insert(1, YADE)
+    import yade.config  # noqa: F401, before masonry, so that it registers its classes
+
+    stage(os.path.join(out, "source"), out, not args.no_run)
+    static = os.path.join(out, "static")
+    mathjax(static)
+    os.environ["MASONRY_DOCS_STATIC"] = static
+    sphinx(out, "html", os.path.join(out, "html"))
+    bundle(os.path.join(out, "html", "_static"))
+    print(
+        f"{os.path.join(out, 'html', 'index.html')}: {time.monotonic() - began:.0f} s"
+    )
+    if not args.no_pdf:
+        sphinx(out, "singlehtml", os.path.join(out, "paper"), "-t", "paper")
+        pdf(os.path.join(out, "paper", "index.html"), os.path.join(out, "masonry.pdf"))
+        print(f"{os.path.join(out, 'masonry.pdf')}: {time.monotonic() - began:.0f} s")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

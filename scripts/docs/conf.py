@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How Sphinx makes the site and the PDF; ``build.py`` calls it."""
+
+import inspect
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+import kinds
+import masonry
+from masonry.scene.stages import LATER
+
+#: How what a word is after the first stage begins in its docstring.
+AFTER = "After the first stage:"
+
+project = "Masonry for YADE"
+author = "The maintainers of Masonry for YADE"
+copyright = "the maintainers of Masonry for YADE, GPL-2.0-or-later"
+version = release = masonry.__version__
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.mathjax",
+]
+myst_enable_extensions = ["dollarmath", "html_image", "colon_fence"]
+myst_heading_anchors = 4
+root_doc = "index"
+suppress_warnings = ["myst.header"]  # a page may be included below another one
+highlight_language = "default"
+nitpicky = False
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "description"
+autodoc_typehints_description_target = "documented_params"
+autodoc_typehints_format = "short"
+
+# MathJax of Debian draws equations as SVG: it needs no font and no request, not even where a browser opens files.
+mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_SVG-full"
+mathjax2_config = {
+    "showMathMenu": False,
+    "messageStyle": "none",
+    "tex2jax": {"processClass": "math"},
+}
+myst_update_mathjax = False
+
+html_static_path = [os.path.join(os.path.dirname(os.path.abspath(__file__)), "static"), os.environ["MASONRY_DOCS_STATIC"]]  # fmt: skip
+html_title = f"Masonry for YADE {release}"
+html_show_sourcelink = False
+html_copy_source = False
+if tags.has("paper"):  # noqa: F821, Sphinx knows it
+    html_theme = "basic"
+    html_css_files = ["print.css"]
+    html_sidebars = {}
+else:
+    html_theme = "furo"
+    html_css_files = ["site.css"]
+
+
+def _kindsOf(word):
+    """The kinds of the arguments of a word, also under its decorators."""
+    while word is not None:
+        if hasattr(word, "kinds"):
+            return word.kinds
+        word = getattr(word, "__wrapped__", None)
+    return {}
+
+
+def _withTypes(lines, checks):
+    """A docstring with the type, unit and bounds of each argument, as its check has them."""
+    text, types, more = "\n".join(lines), [], []
+    for one, kind in checks.items():
+        said = kinds.meaning(kind)
+        if f":param {one}:" not in text:
+            more.append(f":param {one}: {said}")
+        elif said:
+            types.append(f":type {one}: {said}")
+    first = next((n for n, line in enumerate(lines) if line.startswith(":")), None)
+    if first is None:
+        return [*lines, "", *more, ""]
+    last = next((n for n, line in enumerate(lines) if line.startswith((":return", ":raise"))), first)  # fmt: skip
+    return [*lines[:first], *types, *lines[first:last], *more, *lines[last:]]
+
+
+def typesFromChecks(app, what, name, thing, options, lines):
+    """Give each argument of a word the type, unit and bounds that its check has."""
+    if what not in ("class", "function", "method"):
+        return
+    function = thing.__init__ if inspect.isclass(thing) else thing
+    at = next((n for n, line in enumerate(lines) if line.startswith(AFTER)), len(lines))
+    later = {stage.__name__: stage for stage in LATER}.get(name.rpartition(".")[2])
+    found = _withTypes(lines[:at], _kindsOf(function))
+    if at < len(lines):
+        found += ["", *_withTypes(lines[at:], _kindsOf(later))]
+    lines[:] = found
+
+
+def setup(app):
+    app.connect("autodoc-process-docstring", typesFromChecks)

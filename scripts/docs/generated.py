@@ -1,0 +1,259 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pages of the site that are made from the code: the words of a scene, the options, the plugin's classes, all modules."""
+
+import argparse
+import contextlib
+import functools
+import importlib
+import inspect
+import os
+import pkgutil
+import re
+import subprocess
+import sys
+
+import masonry
+import yaml
+from masonry.scene import loads, options, records, supports
+from masonry.scene.scene import Scene
+from masonry.scene.stages import LATER, STAGES
+
+from tree import ROOT, read
+
+#: Programs with options of their own: how they are called, and what Python runs then. Others take a folder alone.
+PROGRAMS = (
+    ("python3 scripts/plot.py", ["scripts/plot.py"]),
+    ("python3 scripts/view.py", ["scripts/view.py"]),
+    ("python3 -m masonry.study", ["-m", "masonry.study"]),
+    ("python3 -m masonry.study.report", ["-m", "masonry.study.report"]),
+)
+
+
+def heading(text, line="="):
+    """A heading of reStructuredText."""
+    return f"{text}\n{line * len(text)}\n\n"
+
+
+def table(rows, widths):
+    """A table of reStructuredText, whose first row is its head; cells are reStructuredText of one paragraph."""
+    text = f".. list-table::\n   :header-rows: 1\n   :widths: {widths}\n\n"
+    for row in rows:
+        first, *others = (" ".join(cell.split()) or "\\ " for cell in row)
+        text += f"   * - {first}\n" + "".join(f"     - {cell}\n" for cell in others)
+    return text + "\n"
+
+
+def escaped(text):
+    """A plain text as reStructuredText shows it."""
+    return re.sub(r"([*`|_\\<>])", r"\\\1", text)
+
+
+def summary(thing):
+    """The first sentence of a docstring."""
+    about = " ".join((inspect.getdoc(thing) or "").split("\n\n")[0].split())
+    return re.split(r"(?<=[.:])\s(?=[A-Z])", about)[0].rstrip(":").removesuffix(".")
+
+
+# -- words of a scene -------------------------------------------------------------------------------------------------
+
+
+#: Methods of a scene that its stages call, and no script.
+FOR_STAGES = {"begin", "checkOpen", "failed", "findBound", "keepState", "masonry", "probe"}  # fmt: skip
+
+
+def _words():
+    """The words of a scene by what they are for: dict of a title to their names."""
+    described = {}
+    for module, title in ((supports, "What holds it"), (loads, "What loads it"), (records, "What is recorded")):  # fmt: skip
+        described[title] = [n for n, f in vars(Scene).items() if _madeIn(f, module)]
+    stages = {}
+    for stage in (*STAGES, *LATER):
+        family = sys.modules[_inner(stage).__module__]
+        stages.setdefault(summary(family).partition(":")[0], []).append(stage.__name__)
+    own = [
+        name
+        for name, thing in vars(Scene).items()
+        if not name.startswith("_") and name not in FOR_STAGES
+        if _madeIn(thing, sys.modules[Scene.__module__]) or name == "bracket"
+    ]
+    return described, stages, own
+
+
+def _inner(thing):
+    """The function or property that a decorator has wrapped."""
+    thing = getattr(thing, "fget", None) or getattr(thing, "func", thing)
+    return inspect.unwrap(thing) if callable(thing) else thing
+
+
+def _madeIn(thing, module):
+    return getattr(_inner(thing), "__module__", None) == module.__name__ and inspect.getdoc(_inner(thing))  # fmt: skip
+
+
+def words():
+    """The page of the words of a scene."""
+    described, stages, own = _words()
+    text = ".. currentmodule:: masonry\n\n" + heading("Words of a scene")
+    text += (
+        "A scene is described, then it goes through its stages, then it is finished. Every word checks all that it is given "
+        "before it does anything; what it takes, with unit and bounds, is what the check has.\n\n"
+        ".. autoclass:: masonry.Scene\n   :no-members:\n\n"
+    )
+    once = set()
+
+    def methods(names, title):
+        names = [n for n in names if not (n in once or once.add(n))]
+        if not names:
+            return ""
+        found = heading(title, "-")
+        for name in names:
+            of = "property" if isinstance(inspect.getattr_static(Scene, name), (property, functools.cached_property)) else "method"  # fmt: skip
+            found += f".. auto{of}:: masonry.Scene.{name}\n\n"
+        return found
+
+    for title, names in (*described.items(), *stages.items()):
+        text += methods(names, title)
+    return text + methods(own, "How it goes, and what it says")
+
+
+# -- options ----------------------------------------------------------------------------------------------------------
+
+
+def _usage(action):
+    value = "" if action.nargs == 0 else " " + (action.metavar or "|".join(map(str, action.choices or ())) or action.dest.upper())  # fmt: skip
+    return ", ".join(f"``{name}{value}``" for name in action.option_strings)
+
+
+def optionsOfScenes():
+    """The page of the options that all scenes share, and those of the other programs."""
+    parser = options.parser("", None)
+    rows = [["option", "default", "meaning"]]
+    for action in parser._actions:
+        if action.help == argparse.SUPPRESS or not action.option_strings:
+            continue
+        usual = action.default if action.default not in (None, False, [], argparse.SUPPRESS) else ""  # fmt: skip
+        text = (action.help or "").replace("%%", "%")
+        rows.append([_usage(action), escaped(str(usual)), escaped(text)])
+    text = heading("Options of the command line")
+    text += (
+        "``yade -n -x SCENE.py --help`` explains these options, which all scenes share, and those of the scene.\n\n"
+        + table(rows, "30 12 58")
+    )
+    text += heading("Programs", "-")
+    for name, command in PROGRAMS:
+        run = subprocess.run(
+            ["/usr/bin/python3", *command, "--help"],
+            capture_output=True,
+            text=True,
+            cwd=ROOT,
+            env={**os.environ, "COLUMNS": "100"},
+        )
+        if run.returncode:
+            raise RuntimeError(f"{name} --help: {run.stdout}{run.stderr}")
+        shown = "\n".join("   " + line for line in run.stdout.rstrip().splitlines())
+        text += heading(f"``{name}``", "~") + f".. code-block:: text\n\n{shown}\n\n"
+    return text
+
+
+# -- the plugin's classes ---------------------------------------------------------------------------------------------
+
+_PROPERTY = re.compile(r"^(?P<meaning>.*?)(?: Default: (?P<usual>.*?)\.?)?$", re.S)
+
+
+def _attributes(cls):
+    """The attributes of a registered class, as rows of name, default and meaning."""
+    for name, thing in vars(cls).items():
+        if name.startswith("_") or not isinstance(thing, property):
+            continue
+        about = _PROPERTY.match(" ".join((thing.__doc__ or "").split()))
+        usual = about["usual"] or ""
+        with contextlib.suppress(ValueError):
+            usual = f"{float(usual):g}".replace("e+", "e")
+        yield f"``{name}``", escaped(usual), escaped(about["meaning"])
+
+
+def classes():
+    """The page of the classes that the plugin registers in YADE."""
+    text = heading("Classes of the plugin")
+    text += (
+        "The classes that the plugin registers in YADE, as ``help(masonry.MasonryJoint)`` has them. Values are in SI units. "
+        "Attributes of YADE's own classes from which they derive are left out.\n\n"
+    )
+    for name in masonry.classes:
+        cls = getattr(masonry, name)
+        text += f".. py:class:: masonry.{name}\n\n   {escaped(' '.join((cls.__doc__ or '').split()))}\n\n"  # fmt: skip
+        rows = list(_attributes(cls))
+        if rows:
+            shown = table([["attribute", "default", "meaning"], *rows], "26 16 58")
+            text += "".join(f"   {line}\n" if line else "\n" for line in shown.split("\n"))  # fmt: skip
+    text += heading("Functions of the plugin", "-")
+    text += (
+        ".. py:function:: masonry.criticalTimeStep() -> tuple\n\n   "
+        + escaped(" ".join(masonry.criticalTimeStep.__doc__.split("C++ signature")[0].split()[3:]))  # fmt: skip
+        + "\n"
+    )
+    return text
+
+
+# -- modules ----------------------------------------------------------------------------------------------------------
+
+#: Packages with a page of their own beside those directly in ``masonry``: their modules are many.
+LARGE = ("masonry.scene.materials", "masonry.scene.stages")
+
+
+def modules():
+    """The names of all modules of the package, packages before what is in them."""
+    found = ["masonry"]
+    for one in pkgutil.walk_packages(masonry.__path__, "masonry."):
+        if not one.name.rpartition(".")[2].startswith("_"):
+            found.append(one.name)
+    return found
+
+
+def pageOf(module):
+    """The name of the page on which a module is documented: a package and its modules share one."""
+    for large in LARGE:
+        if module == large or module.startswith(large + "."):
+            return large
+    return ".".join(module.split(".")[:2])
+
+
+def api():
+    """Pages of all modules: pairs of a path and a text."""
+    pages = {}
+    for name in modules():
+        pages.setdefault(pageOf(name), []).append(name)
+    for page, names in pages.items():
+        text = heading(f"``{page}``")
+        public = getattr(importlib.import_module(page), "__all__", ())
+        for name in names:
+            if name != page:
+                text += heading(f"``{name}``", "-")
+            text += f".. automodule:: {name}\n"
+            if name != "masonry":
+                text += "   :members:\n"
+            if name != page and public:  # they stand at the top of the page
+                text += f"   :exclude-members: {', '.join(public)}\n"
+            if name == Scene.__module__:  # it is the page of the words
+                text += "   :exclude-members: Scene\n"
+            text += "\n"
+        if page == "masonry":
+            text += ".. toctree::\n   :maxdepth: 1\n\n" + "".join(f"   {n}\n" for n in pages if n != page)  # fmt: skip
+        yield f"api/{page}.rst", text
+
+
+# -- how to cite ------------------------------------------------------------------------------------------------------
+
+
+def cite():
+    """The page on how to cite the software and its papers, from CITATION.cff."""
+    known = yaml.safe_load(read("CITATION.cff"))
+    text = f"# How to cite\n\n{known['message']}\n\n"
+    people = ", ".join(one.get("name") or f"{one['given-names']} {one['family-names']}" for one in known["authors"])  # fmt: skip
+    text += f"> {people}: *{known['title']}*, version {known['version']}. {known['license']}.\n\n"
+    for paper in known.get("references", []):
+        people = ", ".join(f"{a['given-names']} {a['family-names']}" for a in paper["authors"])  # fmt: skip
+        text += f"{paper['scope']}:\n\n> {people}: *{paper['title']}*"
+        text += f", {paper['notes']}" if "notes" in paper else ""
+        text += f", doi [{paper['doi']}](https://doi.org/{paper['doi']})" if "doi" in paper else ""  # fmt: skip
+        text += ".\n\n"
+    return text + "The file CITATION.cff, which reference managers read:\n\n```yaml\n" + read("CITATION.cff") + "```\n"  # fmt: skip

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What is different in a notebook: lines that are kept up to date, pictures and tables, and how a run that ends is shown.
+
+This module needs no YADE, and loads nothing of Jupyter: it uses what the kernel of a notebook has loaded.
+"""
+
+import base64
+import html
+import io
+import sys
+
+COLOURS = 64  # of a picture
+
+
+def isHere():
+    """Whether this process is the kernel of a notebook."""
+    shells = sys.modules.get("IPython.core.getipython")
+    shell = shells.get_ipython() if shells else None
+    return getattr(shell, "kernel", None) is not None
+
+
+class Line:
+    """A line in the output of a cell that can be written anew."""
+
+    def __init__(self):
+        self._handle = None
+
+    def show(self, text, fraction):
+        """Write the line.
+
+        :param fraction: how much is done, 0 to 1 [-], for the bar before the text
+        """
+        from IPython.display import display
+
+        data = {"text/plain": text, "text/html": _bar(text, fraction)}
+        if self._handle:
+            self._handle.update(data, raw=True)
+        else:
+            self._handle = display(data, raw=True, display_id=True)
+
+
+def _bar(text, fraction):
+    done = min(max(fraction, 0.0), 1.0)
+    return (
+        f'<div style="font-family:monospace;white-space:pre"><progress max="1" value="{done:.3f}"></progress> '
+        f"{html.escape(text)}</div>"
+    )
+
+
+class Stopped(KeyboardInterrupt):
+    """The kernel was interrupted, and a run ended in order. The cells that follow do not run."""
+
+    def _render_traceback_(self):
+        return [str(self)]
+
+
+class Failed(Exception):
+    """A run ended before its time, as was said above the error. The cells that follow do not run."""
+
+    def _render_traceback_(self):
+        return [str(self)]
+
+
+def ended(name, status, folder, error):
+    """The error with which a run that was not in order ends a cell.
+
+    :param name: of the scene
+    :param status: exit status that a script would have
+    :param folder: of its results, or None
+    :param error: what ended it, or None
+    """
+    if status == 130:
+        kept = f"; scene.resume() goes on, and its results so far are in {folder}" if folder else ""  # fmt: skip
+        return Stopped(f"{name}: interrupted{kept}")
+    why = f": {error}" if error else ", as was said above"
+    return Failed(f"{name}: the run ended before its time{why}")
+
+
+# -- pieces of HTML ---------------------------------------------------------------------------------------------------
+
+
+def picture(figure, dpi):
+    """A figure of matplotlib as an image that stands in the HTML itself. It has a palette of :data:`COLOURS` colours, which
+    makes it a third as large."""
+    from PIL import Image
+
+    drawn, small = io.BytesIO(), io.BytesIO()
+    figure.savefig(drawn, dpi=dpi, format="png")
+    Image.open(drawn).convert("RGB").quantize(COLOURS).save(small, "png", optimize=True)
+    data = base64.b64encode(small.getvalue()).decode()
+    return f'<img src="data:image/png;base64,{data}"/>'
+
+
+def table(rows, heads=()):
+    """Rows of texts as a table; the first of each row is its head."""
+    cell = lambda text, kind="td": f'<{kind} style="text-align:left">{html.escape(str(text))}</{kind}>'  # fmt: skip
+    lines = []
+    if heads:
+        lines.append("".join(cell(head, "th") for head in heads))
+    for first, *others in rows:
+        lines.append(cell(first, "th") + "".join(map(cell, others)))
+    return f"<table>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
+
+
+def folded(title, inside):
+    """What is seen after a click on its title."""
+    return f"<details><summary>{html.escape(title)}</summary>{inside}</details>"
+
+
+def titled(title, *parts):
+    """Parts below a title."""
+    return f"<div><b>{html.escape(title)}</b>{''.join(parts)}</div>"

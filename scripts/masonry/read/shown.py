@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The curve and the folder of a run as objects that show themselves in a notebook. This module needs no YADE.
+
+    from masonry.read.shown import RunFolder
+
+    run = RunFolder("results/wall_comp4")
+    run                                      # picture, curve and table of results
+    run.numbers["peak_base_shear_kN"]        # entries of run.json
+    curve = run.curve()                      # columns of curve.csv
+    curve["base_shear_kN"].max(), curve.units["base_shear_kN"]
+    curve.to_pandas()                        # where pandas is installed
+
+``scene.curve()`` gives the same of a scene between its stages, or after its end.
+"""
+
+import math
+import os
+import re
+
+import numpy as np
+
+from .. import notebook
+from ..arguments import nearest, path, takes
+from ..basics import Refused
+from . import crack_figure, curve_figure, drawing
+from .files import filesOf, readCurve, readRun
+from .frames import framePaths, readFrame
+
+DPI = 72  # of pictures in a notebook, for 10 to 50 kB each
+
+
+def unitOf(head, meaning):
+    """The unit of a column: in the brackets at the end of its meaning, else at the end of its name, else ``"-"``.
+
+    :param head: its name in curve.csv; ``meaning``: its line in the entry ``columns`` of run.json
+    """
+    found = re.search(r"\[([^\[\]]+)\]$", meaning)
+    if found:
+        return found[1]
+    last = head.rpartition("_")[2]
+    return last if last in UNITS else "-"
+
+
+#: Units at the end of names of columns that a script adds, whose meaning need not have them.
+UNITS = {"mm", "m", "s", "kN", "N", "MPa", "kPa", "Pa", "J", "g", "mrad", "rad", "kg"}
+
+
+class Curve:
+    """Columns of curve.csv: ``curve["base_shear_kN"]`` is an array of numpy.
+
+    ``units`` and ``meanings`` are dicts by the names of the columns; iterating gives the names, as with a dict.
+
+    :param columns: dict of name -> numbers; ``meanings``: dict of name -> what it means, with its unit in brackets
+    :param draws: function without arguments that gives a figure of matplotlib, or None
+    """
+
+    def __init__(self, columns, meanings, draws=None):
+        self._columns = {n: np.array(v, float) for n, v in columns.items()}
+        self.meanings = {name: meanings.get(name, "") for name in columns}
+        self.units = {name: unitOf(name, self.meanings[name]) for name in columns}
+        self._draws = draws
+
+    def __getitem__(self, name):
+        if name not in self._columns:
+            close = nearest(name, self._columns)
+            raise KeyError(
+                f"no column {name!r}{close or '; there are ' + ', '.join(self._columns)}"
+            )
+        return self._columns[name]
+
+    def __iter__(self):
+        return iter(self._columns)
+
+    def __contains__(self, name):
+        return name in self._columns
+
+    def __len__(self):
+        """How many rows there are."""
+        return max(map(len, self._columns.values()), default=0)
+
+    def keys(self):
+        """The names of the columns."""
+        return self._columns.keys()
+
+    def to_pandas(self):
+        """The columns as a ``pandas.DataFrame``, whose ``attrs`` has ``units`` and ``meanings``.
+
+        :raises ImportError: if pandas is not installed
+        """
+        try:
+            import pandas
+        except ModuleNotFoundError as error:
+            raise ImportError(
+                "to_pandas needs pandas, which is not installed (on Debian, apt-get install python3-pandas): the columns "
+                "are arrays of numpy without it, as curve['time_s']",
+                name=error.name,
+            ) from None
+        frame = pandas.DataFrame(self._columns)
+        frame.attrs.update(units=self.units, meanings=self.meanings)
+        return frame
+
+    def __repr__(self):
+        return f"curve of {len(self)} rows: {', '.join(self._columns)}"
+
+    def _repr_html_(self):
+        title = f"{len(self)} rows, {len(self._columns)} columns"
+        rows = [(n, self.units[n], *self._ends(n), self._about(n)) for n in self]
+        heads = "column", "unit", "first", "last", "smallest", "largest", "meaning"
+        table = notebook.table(rows, heads)
+        return notebook.titled(title, self.picture(), notebook.folded("columns", table))  # fmt: skip
+
+    def picture(self):
+        """What curve.png shows as HTML; nothing where there are less than two rows, or no figure."""
+        return _drawn(self._draws) if len(self) > 1 else ""
+
+    def _ends(self, name):
+        values = self._columns[name]
+        if not len(values):
+            return [""] * 4
+        return [f"{v:.4g}" for v in (values[0], values[-1], values.min(), values.max())]
+
+    def _about(self, name):
+        return re.sub(r" *\[[^\[\]]+\]$", "", self.meanings[name])
+
+
+def _drawn(draws):
+    """A picture of a figure as HTML, or nothing if there is none."""
+    if not draws:
+        return ""
+    with drawing.style():
+        figure = draws()
+        return notebook.picture(figure, DPI) if figure else ""
+
+
+def curveOf(columns, run, directory):
+    """A :class:`Curve` of a run that draws itself as curve.png.
+
+    :param columns: dict of name -> numbers
+    :param run: entries of run.json: ``columns``, and ``figure`` and ``title`` if it is to be drawn
+    :param directory: folder, for messages
+    """
+    draws = None
+    if "figure" in run:
+        draws = lambda: curve_figure.figureOf(run, columns, directory)
+    return Curve(columns, run.get("columns", {}), draws)
+
+
+def cracksOf(run, blocks, joints, when, directory):
+    """The picture of cracks.png as HTML; parameters as of :func:`masonry.read.crack_figure.figureOf`."""
+    return _drawn(lambda: crack_figure.figureOf(run, blocks, joints, when, directory))
+
+
+class RunFolder:
+    """A folder of results, which shows itself in a notebook: cracks, curve and a table of results.
+
+    :param directory: folder of a run that has ended
+    :raises Refused: if there are no files of a run
+    """
+
+    @takes(directory=path)
+    def __init__(self, directory):
+        self.directory = os.fspath(directory)
+        #: entries of run.json, as :mod:`masonry.run.results` lists them
+        self.numbers = readRun(self.directory)
+
+    def curve(self):
+        """The columns of curve.csv: a :class:`Curve`. Raises Refused."""
+        return curveOf(readCurve(self.directory), self.numbers, self.directory)
+
+    def _cracks(self):
+        try:
+            last = len(framePaths(self.directory, "joints")) - 1
+        except Refused:  # there are none with --no-vtk
+            return ""
+        blocks, joints = (readFrame(self.directory, kind, last) for kind in ("blocks", "joints"))  # fmt: skip
+        when = crack_figure.whenOf(self.numbers, self.directory, last)
+        return cracksOf(self.numbers, blocks, joints, when, self.directory)
+
+    def __repr__(self):
+        return f"{self.numbers.get('scene')}: results in {self.directory}"
+
+    def _repr_html_(self):
+        run = self.numbers
+        with filesOf(self.directory):
+            title = f"{run['title']}: {run.get('ended') or 'no rows'}"
+            results = notebook.table(resultsOf(run))
+            try:
+                curve = self.curve().picture()
+            except Refused:  # a bound alone has no rows
+                curve = ""
+            return notebook.titled(title, self._cracks(), curve, results)
+
+
+#: Entries of run.json for the table of results: the key, what it is, its unit, and how the number is written.
+RESULTS = (
+    ("peak_base_shear_kN", "peak of the force at the supports, along the push", "kN", ".4g"),
+    ("displacement_at_peak_mm", "displacement there", "mm", ".4g"),
+    ("base_shear_end_kN", "force at the end", "kN", ".4g"),
+    ("displacement_end_mm", "displacement at the end", "mm", ".4g"),
+    ("initial_stiffness_kN_per_mm", "initial stiffness", "kN/mm", ".4g"),
+    ("displacement_at_first_crack_mm", "displacement at the first crack", "mm", ".4g"),
+    ("bound_base_shear_kN", "limit analysis of the push", "kN", ".4g"),
+    ("bound_acceleration", "limit analysis of the acceleration", "g", ".4g"),
+    ("largest_crack_mm", "widest crack at the end", "mm", ".3g"),
+    ("dynamic_imbalance", "dynamic imbalance of the push", "-", ".2g"),
+    ("energy_balance_error", "largest error of the energy balance", "-", ".2g"),
+    ("steps", "time steps", "-", "d"),
+    ("microseconds_per_step", "time of a step", "µs", ".3g"),
+    ("wall_clock_s", "time of the run", "s", ".3g"),
+)  # fmt: skip
+
+
+def resultsOf(run):
+    """Rows of the table of results, from the entries of run.json: what it is, its value and its unit."""
+    rows = []
+    if run.get("collapse"):
+        rows.append(("collapsed", run["collapse"], ""))
+    if run.get("error"):
+        rows.append(("ended by", run["error"], ""))
+    for one in run.get("answers", []):
+        if one["name"].startswith("displacement_"):
+            continue
+        value = "not found" if one["value"] is None else f"{one['value']:.4g}"
+        if one["uncertainty"] is not None:
+            value += f" ± {one['uncertainty']:.2g}"
+        what = f"{one['stage']}: {one['name'].replace('_', ' ')}"
+        rows.append((what, value, "" if one["unit"] == "-" else one["unit"]))
+    for key, what, unit, kind in RESULTS:
+        value = run.get(key)
+        if value is not None and math.isfinite(value):
+            rows.append((what, format(value, kind), "" if unit == "-" else unit))
+    return rows

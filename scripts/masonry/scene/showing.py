@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How a scene shows itself in a notebook: what is built before its first stage, and what has come out of it after that."""
+
+import collections
+import tempfile
+
+from yade.wrapper import MasonryVtkRecorder
+
+from .. import notebook
+from ..arguments import takes
+from ..assembly import columns
+from ..assembly.blocks import units
+from ..basics import Refused
+from ..bricks import Bricks, boxCorners, summary
+from ..read import block_figure, drawing
+from ..read.frames import readFrame
+from ..read.shown import DPI, RunFolder, Curve, cracksOf, curveOf, resultsOf
+
+MOST_SIZES = 4  # of blocks that the table lists
+MOST_COUNTED = 20_000  # blocks whose joints are counted before the scene is built
+#: Properties of joints and units that the table shows.
+OF_JOINTS = "normalStiffness", "shearStiffness", "tensileStrength", "cohesion", "friction", "compressiveStrength"  # fmt: skip
+OF_UNITS = "density", "young", "poisson"
+
+
+@takes()
+def curve(scene):
+    """The columns of curve.csv so far: a :class:`masonry.read.shown.Curve`, arrays of numpy by name with their units.
+
+    :raises ValueError: before the first stage, since there is no row yet
+    """
+    if not scene.model:
+        raise ValueError(
+            f"curve: scene {scene.name} has no rows before its first stage"
+        )
+    results = scene.results
+    if scene.finished:
+        run = results.run
+    else:
+        scene.running.flush()
+        run = {"columns": columns.meanings(scene.columns), **_figure(scene)}
+    values = {head: results.column(head) for head in results.columns}
+    if not results.rows or "figure" not in run:
+        return Curve(values, run["columns"])
+    return curveOf(values, run, results.directory)
+
+
+def _figure(scene):
+    """Entries of run.json that say what curve.png shows of a scene between its stages."""
+    return scene.outcome.figure() if scene.results.rows else {}
+
+
+def asHtml(scene):
+    """A scene as HTML: what is built, or what has come out of it."""
+    if not scene.model:
+        return _built(scene)
+    if scene.finished and scene.results.begun and not scene.running.interrupted:
+        return RunFolder(scene.results.directory)._repr_html_()
+    if scene.finished or scene.isGone:
+        title = f"{scene.description.title}: {_state(scene)}"
+        parts = [curve(scene)._repr_html_()] if scene.results.rows else []
+        return notebook.titled(title, *parts)
+    return _standing(scene)
+
+
+def _state(scene):
+    if scene.running.interrupted and scene.finished:
+        return f"interrupted; its results so far are in {scene.results.directory}"
+    return scene.ended or "no stage has ended"
+
+
+def _standing(scene):
+    """A scene between its stages, as it stands in YADE."""
+    title, run = scene.description.title, {"parts": scene.model.parts, "views": scene.description.views}  # fmt: skip
+    run = {**run, "title": title, "answers": scene.answers}
+    with tempfile.TemporaryDirectory() as folder:
+        MasonryVtkRecorder(directory=folder)()
+        blocks, joints = (readFrame(folder, kind) for kind in ("blocks", "joints"))
+    when = f"after {scene.running.at.stage}" if scene.running.at.stage else "as built"
+    rows = resultsOf(run) + [("so far", _state(scene), "")]
+    return notebook.titled(
+        f"{title}: {_state(scene)}",
+        cracksOf(run, blocks, joints, when, scene.name),
+        curve(scene).picture(),
+        notebook.table(rows),
+    )
+
+
+# -- before the first stage -------------------------------------------------------------------------------------------
+
+
+def _built(scene):
+    description = scene.description
+    with drawing.style():
+        figure = block_figure.figureOf(_parts(description), description.title, description.views)  # fmt: skip
+        drawn = notebook.picture(figure, DPI)
+    materials = notebook.folded("materials", _materials(scene))
+    return notebook.titled(
+        f"{description.title}: before its first stage",
+        drawn,
+        notebook.table([*_sizes(description), *_held(description)]),
+        materials,
+    )
+
+
+def _parts(description):
+    """Whole bricks of every part, and blocks that are held, loaded or watched with their shades, as of
+    :mod:`masonry.read.block_figure`; a platen is drawn with the parts that it touches.
+    """
+    targets, bricks = description.targets.values(), Bricks(description.bricks)
+    parts = {}
+    for block in bricks.whole() if description.halves else bricks:
+        parts.setdefault(block.part, []).append((block.corners, None))
+    for target in targets:
+        if target.brick is not None:
+            block = bricks[target.brick]
+            parts[block.part].append((block.corners, _shade(target)))
+    for target in targets:
+        if target.box:
+            for blocks in parts.values():
+                if _touches(target.box, blocks):
+                    blocks.append((list(boxCorners(*target.box)), _shade(target)))
+    return parts
+
+
+def _shade(target):
+    return "held" if target.fixed else "loaded" if target.loaded else "watched"
+
+
+def _touches(box, blocks):
+    """Whether a box touches the box around some blocks."""
+    points = [p for corners, _ in blocks for p in corners]
+    near = 1e-6 * (1 + max(abs(v) for corner in box for v in corner))
+    return all(
+        min(p[i] for p in points) - near <= box[1][i]
+        and box[0][i] <= max(p[i] for p in points) + near
+        for i in range(3)
+    )
+
+
+def _sizes(description):
+    """Rows of the table: what is built."""
+    bricks = Bricks(description.bricks)
+    found = summary(bricks)
+    kinds = ", ".join(f"{count} {kind}" for kind, count in found["kinds"].items())
+    size = " × ".join(f"{b - a:.4g}" for a, b in zip(found["low_m"], found["high_m"]))
+    blocks = collections.Counter(_size(block) for block in description.bricks)
+    most = blocks.most_common(MOST_SIZES)
+    sizes = "; ".join(f"{count} of {text} mm" for text, count in most)
+    sizes += "; and others" * (len(blocks) > len(most))
+    yield "blocks", f"{found['blocks']:,} in {found['bricks']:,} bricks ({kinds})"
+    if len(found["parts"]) > 1:
+        parts = found["parts"].items()
+        yield "parts", ", ".join(f"{name}: {count:,} blocks" for name, count in parts)
+    if found["courses"]:
+        yield "courses", f"{found['courses']}"
+    yield "size", f"{size} m (x × y × z), {found['volume_m3']:.4g} m³"
+    yield "sizes of blocks", sizes
+    if found["blocks"] <= MOST_COUNTED:
+        platens = "platens are not counted" if any(t.box for t in description.targets.values()) else ""  # fmt: skip
+        count = f"{len(bricks.joints()):,} between blocks"
+        yield "joints", f"{count}; {platens}" if platens else count
+    yield "moves", "in the x-z plane" if description.plane else "in space"
+    model = "deformable" if description.deformable else "rigid"
+    yield "block model", model
+
+
+def _size(block):
+    return " × ".join(f"{1e3 * (b - a):.4g}" for a, b in zip(block.low, block.high))
+
+
+def _held(description):
+    """Rows of the table: what is held, loaded and watched."""
+    for target in description.targets.values():
+        where = "platen" if target.box else f"brick {target.brick}"
+        what = [f"{where}, {_freedom(target)}"]
+        if target.pressed:
+            what.append(f"pressed by {target.pressed:.4g} Pa")
+        if target.force:
+            what.append("dead load ({:.4g}, {:.4g}, {:.4g}) N".format(*target.force))
+        if target.drives:
+            what.append(f"a drive holds it along {', '.join(target.drives)}")
+        yield target.name, "; ".join(what)
+    if description.winds:
+        force = [sum(w[1][i] for w in description.winds) for i in range(3)]
+        yield "wind", "({:.4g}, {:.4g}, {:.4g}) N in all".format(*force)
+    recorded = [thing.name for thing in (*description.joints, *description.drifts, *description.sections)]  # fmt: skip
+    if recorded:
+        yield "recorded, too", ", ".join(recorded)
+
+
+def _freedom(target):
+    """What a target can do, in words."""
+    freedom = target.freedom or ""
+    along = [axis for axis in "xyz" if axis in freedom]
+    about = [axis.lower() for axis in "XYZ" if axis in freedom]
+    if len(along + about) == 6:
+        return "held"
+    held = [f"along {', '.join(along)}"] * bool(along)
+    held += [f"about {', '.join(about)}"] * bool(about)
+    return f"held {' and '.join(held)}" if held else "free"
+
+
+def _materials(scene):
+    """Tables of the joints and units, with the options of this run."""
+    masonry = scene.description.materials.variant(scene.args)
+    try:
+        masonry.apply(scene.args.set)
+    except Refused as refused:
+        return notebook.table([("refused", str(refused))])
+    joints, blocks = masonry.joints, {"brick": masonry.unit, **masonry.units}
+    return _properties("joint", joints, OF_JOINTS) + _properties("unit", blocks, OF_UNITS)  # fmt: skip
+
+
+def _properties(what, things, names):
+    """A table of properties: a row each, with its unit, and a column for every thing."""
+    known = {"density": "kg/m³", **units(type(next(iter(things.values()))))}
+    rows = [
+        (name, known.get(name, "-"), *(f"{getattr(t, name):.4g}" for t in things.values()))
+        for name in names
+    ]  # fmt: skip
+    return notebook.table(rows, (what, "unit", *things))

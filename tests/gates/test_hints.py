@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Type hints of what users call: they are there, mypy finds no error in them, and finds those of a user."""
+
+import ast
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+import tree
+
+PACKAGE = os.path.join(tree.ROOT, "scripts", "masonry")
+#: What users call: all public functions, methods and classes of these modules.
+PUBLIC = """
+    assembly.blocks assembly.connecting assembly.engines assembly.window
+    bricks.blocks bricks.files bricks.vaults bricks.walls
+    limit.assembly limit.bound limit.reading
+    read.comparison read.cracks read.curve_figure read.curves read.figures read.files read.frames read.loops read.measure
+    read.viewer
+    run.checkpoints
+    scene.fields scene.ground scene.loads scene.records scene.scene scene.supports scene.targets
+    scene.materials.assumptions scene.materials.formulas scene.materials.kinds scene.materials.published
+    study.plan study.variables
+""".split()
+#: Stages are words of a scene, in modules that hold more.
+STAGES = "rest push drive supports gravity loading shake".split()
+MYPY = [sys.executable, "-m", "mypy", "--config-file", os.path.join(tree.ROOT, "pyproject.toml")]  # fmt: skip
+needsMypy = pytest.mark.skipif(
+    subprocess.run([*MYPY[:3], "--version"], capture_output=True).returncode != 0,
+    reason="mypy is not installed",
+)
+
+
+def functions(path):
+    """The public functions and methods of a source: pairs of a name and a node."""
+    with open(path, encoding="utf-8") as file:
+        parsed = ast.parse(file.read())
+    for node in parsed.body:
+        if isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
+            yield node.name, node
+        elif isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+            for inner in node.body:
+                if isinstance(inner, ast.FunctionDef):
+                    if not inner.name.startswith("_") or inner.name == "__init__":
+                        yield f"{node.name}.{inner.name}", inner
+
+
+def withoutHint(node):
+    """What of a function has no hint: names of its arguments, and ``return``."""
+    of = node.args
+    every = [*of.posonlyargs, *of.args, *of.kwonlyargs, of.vararg, of.kwarg]
+    missing = [a.arg for a in every if a and a.annotation is None]
+    missing = [name for name in missing if name not in ("self", "cls")]
+    return missing + ["return"] * (node.returns is None)
+
+
+def source(module):
+    return os.path.join(PACKAGE, *module.split(".")) + ".py"
+
+
+def test_a_missing_hint_is_found():
+    node = ast.parse("def f(a, b: int, *c, d=1): pass").body[0]
+    assert withoutHint(node) == ["a", "d", "c", "return"]
+
+
+@pytest.mark.parametrize("module", PUBLIC)
+def test_what_users_call_has_hints(module):
+    found = {name: withoutHint(node) for name, node in functions(source(module))}  # fmt: skip
+    assert found
+    assert {name: missing for name, missing in found.items() if missing} == {}
+
+
+@pytest.mark.parametrize("module", STAGES)
+def test_stages_have_hints(module):
+    found = {
+        name: withoutHint(node)
+        for name, node in functions(source(f"scene.stages.{module}"))
+        if any("takes" in ast.unparse(d) for d in node.decorator_list)
+    }
+    assert found
+    assert {name: missing for name, missing in found.items() if missing} == {}
+
+
+def mypy(tmp_path_factory, *words):
+    """Run mypy; returns what it says."""
+    cache = tmp_path_factory.getbasetemp() / "mypy"  # shared by the tests of this run
+    run = subprocess.run(
+        [*MYPY, "--cache-dir", str(cache), *words],
+        capture_output=True,
+        text=True,
+        cwd=os.path.join(tree.ROOT, "scripts"),
+        timeout=300,
+    )
+    return run.stdout + run.stderr
+
+
+@needsMypy
+@pytest.mark.slow
+def test_mypy_finds_no_error_in_the_package(tmp_path_factory):
+    said = mypy(tmp_path_factory, "-p", "masonry")
+    assert "Success: no issues found" in said, said
+
+
+@needsMypy
+@pytest.mark.slow
+def test_mypy_finds_no_error_in_a_scene_or_a_snippet(tmp_path_factory, tmp_path):
+    paths = [os.path.join(tree.ROOT, p) for p in tree.files((".py",)) if re.fullmatch(r"scripts/\w+\.py", p)]  # fmt: skip
+    for document in tree.files((".md",)):
+        for n, code in enumerate(re.findall(r"^```python\n(.*?)^```", tree.read(document), re.M | re.S)):  # fmt: skip
+            name = tmp_path / f"{re.sub(r'[^a-zA-Z]', '_', document)}{n}.py"
+            name.write_text(code)
+            paths.append(str(name))
+    assert len(paths) > 20
+    said = mypy(tmp_path_factory, "--scripts-are-modules", *paths)
+    assert "Success: no issues found" in said, said
+
+
+BEGIN = """
+from masonry import Scene, bricks, materials
+
+scene = Scene("wall", bricks.Wall(length=2.2, height=2.106), materials.calciumSilicate(), rate=50)
+base, top = scene.platen("bottom"), scene.platen("top", rotation="held")
+"""
+#: Lines of a script, and what mypy must say to them.
+WRONG = {
+    'scene.push(top, "5")': 'has incompatible type "str"',
+    "scene.push(5.0)": 'has incompatible type "float"; expected "Target"',
+    "scene.press(top)": "No overload variant",
+    'scene.press(top, 0.3e6, riding="x")': "No overload variant",
+    'scene.platen("top", hight=0.2)': 'did you mean "height"?',
+    "scene.pusch(top)": 'maybe "push"?',
+    "ended: int = scene.settle()": "Incompatible types in assignment",
+    "bricks.Wall(lenght=2.2)": 'did you mean "length"?',
+    'bricks.stack("4", (0.4, 0.3, 0.3))': 'has incompatible type "str"; expected "int"',
+    'materials.dry(friction="0.6")': 'has incompatible type "str"',
+    "materials.masonry(4e9)": "Too many positional arguments",
+    "scene.watch((0.2, 0.15, 1.2)).fixd": 'has no attribute "fixd"',
+    "from masonry import Arch": 'has no attribute "Arch"',
+    'from masonry import study; study.Study("s", runs="200")': 'has incompatible type "str"',
+    "from masonry import limit; limit.read().largest()": "Missing positional arguments",
+    "from masonry import addBlock; addBlock()": "Missing positional arguments",
+}
+RIGHT = """
+scene.press(top, 0.3e6, riding=False)
+scene.settle()
+scene.press(top, 0.4e6, longest=3.0)
+scene.hold(3)
+scene.hold(top, axes="x")
+scene.cycle(top, [1, 2, 4], repeats=2)
+factor: float = scene.factor
+"""
+
+
+@needsMypy
+@pytest.mark.slow
+def test_mypy_finds_what_a_user_does_wrong_and_nothing_else(tmp_path_factory, tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(BEGIN + RIGHT + "\n".join(WRONG) + "\n")
+    said = mypy(tmp_path_factory, str(script))
+    first = (BEGIN + RIGHT).count("\n") + 1
+    for number, (line, expected) in enumerate(WRONG.items(), start=first):
+        found = [one for one in said.splitlines() if f"script.py:{number}: error:" in one]  # fmt: skip
+        assert len(found) == 1 and expected in found[0], (line, found)
+    assert said.count(": error:") == len(WRONG), said
+
+
+def test_the_package_says_that_it_has_hints():
+    assert os.path.isfile(os.path.join(PACKAGE, "py.typed"))
+    assert 'PATTERN "py.typed"' in tree.read("CMakeLists.txt")
+    assert "-name py.typed" in tree.read("scripts/package.sh")

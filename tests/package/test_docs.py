@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The site of the documentation: it is made without a warning, needs no network, and has what it promises."""
+
+import glob
+import html.parser
+import importlib.util
+import os
+import re
+import subprocess
+import sys
+import urllib.parse
+
+import pytest
+from conftest import ROOT
+
+DOCS = os.path.join(ROOT, "scripts", "docs")
+sys.path[:0] = [DOCS, os.path.join(ROOT, "tests", "gates")]
+
+import kinds
+import notebooks
+import staging
+import tree
+from masonry import arguments
+
+NEEDS = {
+    "sphinx": "python3-sphinx",
+    "myst_parser": "python3-myst-parser",
+    "furo": "furo",
+    "yaml": "python3-yaml",
+}
+MISSING = [p for m, p in NEEDS.items() if importlib.util.find_spec(m) is None]
+if not os.path.isdir("/usr/share/javascript/mathjax"):
+    MISSING.append("libjs-mathjax")
+needsSphinx = pytest.mark.skipif(
+    bool(MISSING), reason=f"not installed: {', '.join(MISSING)}"
+)
+
+#: Attributes by which a page loads something when it is opened. A link that a reader follows is none.
+LOADED = {"script": "src", "link": "href", "img": "src", "iframe": "src", "source": "src", "object": "data", "embed": "src"}  # fmt: skip
+
+
+class Page(html.parser.HTMLParser):
+    """A page of the site: what it loads, where its links lead, its anchors and its text."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.loads, self.links, self.anchors, self.text = [], [], set(), ""
+        with open(path, encoding="utf-8") as file:
+            self.feed(file.read())
+
+    def handle_starttag(self, tag, attributes):
+        known = dict(attributes)
+        self.anchors |= {known[a] for a in ("id", "name") if known.get(a)}
+        if tag == "a" and "href" in known:
+            self.links.append(known["href"])
+        if known.get(LOADED.get(tag)):
+            self.loads.append(known[LOADED[tag]])
+
+    def handle_data(self, data):
+        self.text += data
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """The folder of the site, made with warnings as errors; notebooks are shown as they are stored."""
+    out = tmp_path_factory.mktemp("docs")
+    run = subprocess.run(
+        ["/usr/bin/python3", os.path.join(DOCS, "build.py"), "--out", str(out), "--no-pdf", "--no-run"],
+        capture_output=True,
+        text=True,
+        timeout=600,
+    )  # fmt: skip
+    assert run.returncode == 0, run.stdout + run.stderr
+    assert "WARNING" not in run.stdout + run.stderr
+    return out / "html"
+
+
+@pytest.fixture(scope="module")
+def pages(site):
+    """All pages by their paths."""
+    found = glob.glob(str(site / "**" / "*.html"), recursive=True)
+    return {os.path.relpath(path, site): Page(path) for path in found}
+
+
+@needsSphinx
+@pytest.mark.slow
+def test_every_document_is_a_page(site, pages):
+    for path in tree.files((".md",)):
+        if not path.startswith("scripts/docs/"):
+            page = staging.page(path).removesuffix(".md") + ".html"
+            heading = re.search("^# (.+)$", tree.read(path), re.M)
+            assert page in pages, path
+            if heading and not re.search(r"[`*\[]", heading[1]):
+                assert heading[1] in pages[page].text, path
+    for path in glob.glob(os.path.join(DOCS, "tutorial", "*.ipynb")):
+        assert os.path.relpath(path, ROOT).removesuffix(".ipynb") + ".html" in pages
+    assert {"gallery.html", "words.html", "options.html", "classes.html", "cite.html"} < set(pages)  # fmt: skip
+
+
+@needsSphinx
+@pytest.mark.slow
+def test_a_page_loads_nothing_from_a_network(site, pages):
+    count = 0
+    for name, page in pages.items():
+        for target in page.loads:
+            count += 1
+            assert not re.match(r"(?:[a-z]+:)?//", target), (name, target)
+            path = urllib.parse.unquote(target.partition("?")[0].partition("#")[0])
+            if not path.startswith("data:"):
+                assert (site / name).parent.joinpath(path).exists(), (name, target)
+    assert count > 500
+    for path in glob.glob(str(site / "_static" / "**" / "*.css"), recursive=True):
+        with open(path, encoding="utf-8") as file:
+            assert not re.search(r"url\(['\"]?(?:https?:)?/|@import", file.read()), path  # fmt: skip
+
+
+@needsSphinx
+@pytest.mark.slow
+def test_every_link_within_the_site_leads_somewhere(site, pages):
+    lost, count = [], 0
+    for name, page in pages.items():
+        for link in page.links:
+            if re.match(r"[a-z]+:", link):
+                continue
+            path, _, anchor = urllib.parse.unquote(link).partition("#")
+            there = os.path.normpath(os.path.join(os.path.dirname(name), path)) if path else name  # fmt: skip
+            count += 1
+            if there in pages:
+                if anchor and anchor not in pages[there].anchors:
+                    lost.append((name, link))
+            elif not (site / there).exists():
+                lost.append((name, link))
+    assert count > 3000 and lost == []
+
+
+@needsSphinx
+@pytest.mark.slow
+def test_the_page_of_words_has_every_word_with_unit_and_bounds(pages):
+    from masonry.scene.stages import LATER, STAGES
+
+    page = pages["words.html"]
+    for stage in (*STAGES, *LATER):
+        assert f"masonry.Scene.{stage.__name__}" in page.anchors
+    for (
+        word
+    ) in "platen hold watch handle press load wind drift column joint section view bracket stepBack".split():
+        assert f"masonry.Scene.{word}" in page.anchors
+    text = " ".join(page.text.split())
+    assert "stress (a number at least 0 and at most 1e+12 Pa)" in text
+    assert "degrees (float) – a number above 0 and below 90 degrees" in text
+
+
+@needsSphinx
+@pytest.mark.slow
+def test_classes_options_and_gallery_are_those_of_the_code(pages):
+    import masonry
+    from masonry.scene import options
+
+    for name in masonry.classes:
+        assert f"masonry.{name}" in pages["classes.html"].anchors
+    assert "Tensile strength ft" in pages["classes.html"].text
+    for action in options.parser("", None)._actions:
+        for option in action.option_strings:
+            assert option in pages["options.html"].text
+    rows = dict(staging.galleryRows())
+    assert set(rows) == {os.path.splitext(n)[0] for n in os.listdir(os.path.join(ROOT, "scripts", "gallery"))}  # fmt: skip
+    for name in rows:
+        assert f"scripts/{name}.py.html" in pages["gallery.html"].links
+        assert "import" in pages[f"scripts/{name}.py.html"].text
+
+
+@needsSphinx
+@pytest.mark.slow
+def test_laws_have_their_equations_as_mathematics(pages):
+    paper = pages["yade_plugin/law/README.html"]
+    assert paper.text.count(r"\[") >= 14 and r"F_2 = |\tau|" in paper.text
+    assert any("MathJax.js" in one for one in paper.loads)
+    cyclic = pages["yade_plugin/law/cyclic_softening/README.html"]
+    assert cyclic.text.count(r"\[") >= 6
+
+
+# -- without Sphinx ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("kind", "text"),
+    [
+        (arguments.number("Pa", 0), "a number at least 0 Pa"),
+        (
+            arguments.orNone(arguments.number("s", 0, 9, above=True)),
+            "a number above 0 and at most 9 s, or None",
+        ),
+        (arguments.oneOf("held", "free"), "one of held, free"),
+        (arguments.vector("m"), "three finite numbers"),
+        (arguments.whole(1, 10), "a whole number from 1 to 10"),
+        (arguments.flag, "True or False"),
+        (
+            arguments.listOf(arguments.number("mm", 1)),
+            "a list with at least 1 value; each is a number at least 1 mm",
+        ),
+        (arguments.orFunction(arguments.flag), "True or False, or a function"),
+        (arguments.anything, ""),
+    ],
+)
+def test_what_a_word_takes_is_what_its_check_says(kind, text):
+    assert kinds.meaning(kind) == text
+
+
+def test_links_lead_to_pages(tmp_path):
+    stage = staging.Stage(str(tmp_path / "source"))
+    text = (
+        "[a](scripts/README.md#gallery) [b](https://yade-dem.org) [c](validation/) [d](scripts/masonry/limit/__init__.py) "
+        "[`e`](scripts/masonry/study/estimate.py) [f](scripts/arch.py) [g](#start) `[h](scripts/README.md)`\n\n"
+        "```math\nx\n```\n\n    [i](scripts/README.md)\n"
+    )
+    stage.document("README.md", "# Title\n\n" + text)
+    written = (tmp_path / "source" / "index.md").read_text()
+    assert "[a](scripts/README.md#gallery) [b](https://yade-dem.org) [c](validation/README.md)" in written  # fmt: skip
+    assert "{py:mod}`d <masonry.limit>` {py:mod}`e <masonry.study.estimate>`" in written
+    assert "[f](scripts/arch.py.md) [g](#start) `[h](scripts/README.md)`" in written
+    assert "```{math}\nx\n```" in written and "    [i](scripts/README.md)\n" in written
+    assert stage.shown == {"scripts/arch.py"}
+    stage.document("CONTRIBUTING.md", "# Title\n\n[up](README.md)\n")
+    assert "[up](index.md)" in (tmp_path / "source" / "CONTRIBUTING.md").read_text()
+
+
+def test_a_notebook_becomes_a_page():
+    notebook = {
+        "cells": [
+            {"cell_type": "markdown", "source": ["# Title\n", "text"]},
+            {
+                "cell_type": "code",
+                "source": ["print(1)"],
+                "outputs": [
+                    {"output_type": "stream", "name": "stdout", "text": ["10 %\r20 %\n", "\x1b[1mdone\x1b[0m\n"]},
+                    {"output_type": "display_data", "data": {"image/png": "AAAA", "text/plain": ["x"]}},
+                    {"output_type": "execute_result", "data": {"text/html": ["<b>```</b>"], "text/plain": ["x"]}},
+                ],
+            },
+        ]
+    }  # fmt: skip
+    kept = {}
+    text = notebooks.markdown(notebook, "one", kept.__setitem__)
+    assert notebooks.title(notebook) == "Title"
+    assert "```python\nprint(1)\n```" in text and "```text\n20 %\ndone\n```" in text
+    assert "![](one_1.png)" in text and kept == {"one_1.png": b"\0\0\0"}
+    assert "````{raw} html\n<b>```</b>\n````" in text
+    notebook["cells"][1]["outputs"] = [{"output_type": "error", "ename": "ValueError", "evalue": "bad"}]  # fmt: skip
+    with pytest.raises(ValueError, match="one: ValueError: bad"):
+        notebooks.markdown(notebook, "one", kept.__setitem__)

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Curves as arrays with units, and pictures of blocks before a run."""
+
+import numpy as np
+import pytest
+from masonry import bricks
+from masonry.basics import Refused
+from masonry.read import block_figure
+from masonry.read.crack_figure import BRICK
+from masonry.read.shown import Curve, RunFolder, resultsOf, unitOf
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import to_rgba
+
+
+@pytest.mark.parametrize(
+    "head, meaning, unit",
+    [
+        ("base_shear_kN", "force on what is held [kN]", "kN"),
+        ("load_factor", "factor of the load [-]", "-"),
+        ("acceleration_x_g", "horizontal acceleration [g]", "g"),
+        ("drift_mm", "of the script, without a unit", "mm"),
+        ("my_own", "of the script, without a unit", "-"),
+        ("slope", "rise [m] over run [m/m]", "m/m"),
+    ],
+)
+def test_a_column_has_the_unit_of_its_meaning_or_of_its_name(head, meaning, unit):
+    assert unitOf(head, meaning) == unit
+
+
+def test_a_curve_is_arrays_by_name():
+    curve = Curve({"time_s": [0, 0.5, 1], "top_mm": [0, 1, -2]}, {"time_s": "time [s]"})
+    assert list(curve) == ["time_s", "top_mm"] and len(curve) == 3 and "top_mm" in curve
+    assert curve["top_mm"].dtype == float and np.abs(curve["top_mm"]).max() == 2
+    assert curve.units == {"time_s": "s", "top_mm": "mm"}
+    with pytest.raises(KeyError, match="no column 'top', did you mean 'top_mm'"):
+        curve["top"]
+    page = curve._repr_html_()
+    for text in ("3 rows, 2 columns", "<th", ">time_s<", ">-2<", ">0.5<"):
+        assert (text in page) == (text != ">0.5<"), text
+
+
+def test_a_folder_without_a_run_is_refused(tmp_path):
+    with pytest.raises(Refused, match="cannot read .*run.json"):
+        RunFolder(tmp_path)
+
+
+def test_results_that_were_not_found_are_not_shown():
+    answers = [
+        dict(stage="tilt", name="factor_held", unit="-", value=None, uncertainty=None),
+        dict(stage="push", name="peak", unit="kN", value=12.345, uncertainty=0.5),
+        dict(stage="tilt", name="displacement_held", unit="mm", value=1.0, uncertainty=None),
+    ]  # fmt: skip
+    run = dict(answers=answers, steps=7, largest_crack_mm=None, bound_acceleration=float("nan"))  # fmt: skip
+    assert resultsOf(run) == [
+        ("tilt: factor held", "not found", ""),
+        ("push: peak", "12.35 ± 0.5", "kN"),
+        ("time steps", "7", ""),
+    ]
+
+
+def test_what_is_nearer_to_the_viewer_is_drawn_later():
+    """A dome is seen from above, and the platen below it lies behind all stones."""
+    dome = bricks.Dome(radius=2.0, thickness=0.25, courses=4, stones=12, oculus=0.4)
+    platen = bricks.boxCorners((-2.2, -2.2, -0.2), (2.2, 2.2, 0.0))
+    blocks = [(block.corners, None) for block in dome] + [(list(platen), "held")]
+    blocks.append((dome[0].corners, "watched"))
+    figure = block_figure.figureOf({"dome": blocks}, "a dome")
+    (axes,) = figure.axes
+    assert "from above" in axes.get_title()
+    _, moved, *_ = [c for c in axes.collections if isinstance(c, PolyCollection)]
+    colours = [tuple(colour) for colour in moved.get_facecolor()]
+    assert len(colours) == len(dome) + 2
+    assert colours[0] == to_rgba(block_figure.SHADES["held"])
+    assert colours.count(to_rgba(BRICK)) == len(dome)
+    labels = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert labels == ["held", "watched"]

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Every command and every piece of Python in the documents is run, or has a reason here why it is not.
+
+Commands run in the order of the documents, in one folder, as a reader types them but for what REPLACED says: scenes take a
+tenth of their way, and names such as FILE get a meaning. Those of the tutorial are run by test_tutorial.py.
+"""
+
+import os
+import re
+import subprocess
+import sys
+import time
+
+import pytest
+from conftest import ROOT
+
+sys.path.insert(1, os.path.join(ROOT, "tests", "gates"))
+
+import tree
+
+TUTORIAL = ("scripts/TUTORIAL.md", "scripts/docs/")
+PROGRAMS = ("yade", "bash", "/usr/bin/python3", "python3", "jupyter", "for", "cd", "seq", "squeue", "apt-get", "unshare")  # fmt: skip
+
+#: Commands that are not run here, and why: who runs them, or what they need.
+REASONS = {
+    r"bash scripts/(setup|test|package|docs|try_release|container)\.sh": "installs packages, or runs the tests themselves",
+    r"bash scripts/run\.sh \w+$": "installs packages; the scene itself is run by tests/scenes/test_walls.py",
+    r".*(view\.py|view_html)": "needs ParaView: tests/scenes/test_view.py",
+    r".*apt-get": "installs packages",
+    r".*--slurm|squeue|seq ": "needs a cluster: tests/studies/test_run.py has one of Slurm",
+    r".*ACCURATE --cheap FAST": "needs two studies of many runs: tests/studies/test_estimate.py",
+    r".*tests/references/references\.py": "tests/host/test_references.py",
+    r".*validation/\w+/?\w*\.py": "minutes or hours; tests/scenes/test_validation.py and its like run parts of them",
+    r".*(masonry\.study|masonry\.study\.report) (validation|results/validation)/": "minutes or hours: a study of validation/",
+    r".*vtable\.py FOLDER": "needs an unpacked YADE of another release",
+    r"jupyter": "opens a browser",
+}  # fmt: skip
+#: What is replaced in a command before it is run.
+REPLACED = (
+    (r"bash scripts/run\.sh (\w+)", r"yade -n -x scripts/\1.py"),
+    (r"^((?:yade -n -x|/usr/bin/python3) (?:scripts/\w+|my_scene)\.py\b(?!.*--(?:resume|preset bound|help)).*)", r"\1 --quick"),
+    (r"(/usr/bin/python3 scripts/plot\.py.*) --quick", r"\1"),
+    (r"(.*--preset bound)", r"\1 --out results/bound"),
+    (r"(.*scripts/wall_\w+\.py (?:--history|--joint).*)", r"\1 --lean --out results/other"),
+    (r"\bFILE\b", "study.py"),
+    (r"\bDIR\b", "study"),
+)  # fmt: skip
+#: Documents with Python, and what becomes of it: a file that commands name, or a program of its own.
+BLOCKS = {
+    "README.md": "my_scene.py",
+    "scripts/README.md": "checkpoint.py",
+    "scripts/STUDIES.md": "study.py",
+}
+SCENE = """
+from masonry import Scene, bricks, materials
+scene = Scene("panel", bricks.stack(2, (0.3, 0.3, 0.2)), materials.dry(friction=0.6))
+scene.platen("bottom")
+scene.settle()
+"""
+
+
+def documents():
+    return [d for d in tree.files((".md",)) if not d.startswith(TUTORIAL)]
+
+
+def commands(text):
+    """The commands of a document: lines of its indented blocks, without comments, those that go on joined."""
+    fenced = re.compile(r"^```(?!bash|sh).*?^```", re.M | re.S)
+    lines = fenced.sub("", text).replace("\\\n", " ").splitlines()
+    inside = False
+    for line in lines:
+        inside = not inside if line.startswith("```") else inside
+        if line.startswith("    ") or inside:
+            words = re.sub(r"\s+# .*$", "", line).split()
+            if words and words[0] in PROGRAMS:
+                yield " ".join(words)
+
+
+ALL = {d: list(commands(tree.read(d))) for d in documents()}
+PYTHON = {d: re.findall(r"^```python\n(.*?)^```", tree.read(d), re.M | re.S) for d in documents()}  # fmt: skip
+
+
+def reasonOf(command):
+    return next((why for pattern, why in REASONS.items() if re.match(pattern, command)), None)  # fmt: skip
+
+
+def test_commands_are_found():
+    text = "    yade -n -x a.py \\\n        --quick   # why\n\n```python\nfor x in y:\n    yade\n```\n\n```bash\nbash b.sh\n```\n"
+    assert list(commands(text)) == ["yade -n -x a.py --quick", "bash b.sh"]
+    assert sum(map(len, ALL.values())) > 50
+
+
+def test_every_reason_is_for_a_command_and_names_tests_that_are_there():
+    every = [c for found in ALL.values() for c in found]
+    may = {"jupyter", r".*vtable\.py FOLDER"}
+    for pattern, why in REASONS.items():
+        assert pattern in may or any(re.match(pattern, c) for c in every), pattern
+        for path in re.findall(r"tests/[\w/]+\.py", why):
+            assert os.path.isfile(os.path.join(ROOT, path)), path
+
+
+def test_every_piece_of_python_is_run():
+    assert {d for d, found in PYTHON.items() if found} == set(BLOCKS)
+    assert all(len(PYTHON[d]) == 1 for d in BLOCKS)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """The folder of a reader, with what the documents take for granted there."""
+    path = tmp_path_factory.mktemp("reader")
+    for name in ("scripts", "validation", "yade_plugin", "tests"):
+        os.symlink(os.path.join(ROOT, name), path / name)
+    (path / "my_scene.py").write_text(PYTHON["README.md"][0])
+    study = PYTHON["scripts/STUDIES.md"][0]
+    small = study.replace("runs=200", "runs=3").replace('"until": 6', '"until": 0.2')
+    assert small.count("runs=3") == 1 and small.count('"until": 0.2') == 1
+    (path / "study.py").write_text(small)
+    (path / "measured.csv").write_text("displacement_mm\n0.1\n-0.1\n0\n")
+    (path / "test.csv").write_text("d,F\n0,0\n1,50\n2,60\n")
+    (path / "checkpoint.py").write_text(
+        SCENE + PYTHON["scripts/README.md"][0] + "assert pushed == 1000\nscene.finish()\n"
+    )  # fmt: skip
+    return path
+
+
+def typed(folder, command):
+    """Run a command as a reader types it."""
+    began = time.monotonic()
+    run = subprocess.run(
+        command, shell=True, cwd=folder, capture_output=True, text=True, timeout=280
+    )
+    print(f"{time.monotonic() - began:5.1f} s  {command}")
+    assert run.returncode == 0, f"{command}\n{run.stdout}{run.stderr}"
+    assert "rror" not in run.stderr, f"{command}\n{run.stderr}"
+
+
+def test_every_command_that_has_no_reason_runs(folder):
+    ran = 0
+    typed(folder, "yade -n -x checkpoint.py")
+    for document in sorted(
+        ALL
+    ):  # README.md at the top, then scripts/, which goes on with its results
+        for command in ALL[document]:
+            if reasonOf(command):
+                continue
+            for pattern, text in REPLACED:
+                command = re.sub(pattern, text, command)
+            typed(folder, command)
+            ran += 1
+    assert ran >= 10
+    assert (folder / "results" / "wall_comp4" / "curve.png").exists()
+    assert (folder / "study" / "study.csv").exists()
