@@ -25,6 +25,7 @@ A scene of one's own is bricks, materials and stages::
 - :mod:`masonry.memory`: what numerical libraries take of the memory
 - :mod:`masonry.packages`: libraries that come when they are first needed, and the Debian packages that have them
 - :mod:`masonry.host`: how YADE is found and started in plain Python
+- :mod:`masonry.packages`: what is said where a package of the system is missing
 - :mod:`masonry.notebook`: what is different in a notebook
 - :mod:`masonry.arguments`: how every word checks what it is given
 - :mod:`masonry.basics`: gravity, how a run can end before its time, what is said on the terminal
