@@ -98,8 +98,8 @@ build=(cmake --build build --parallel "$(nproc)" --target "$target")
 # `make -n` names every compilation that is to come; without any there is nothing to wait for.
 count=$(make -C build -n "$target" 2>/dev/null | grep -c 'Building C' || true)
 if ((count > 2)); then
-    seconds=70
-    [[ $tests == OFF ]] || seconds=160
+    seconds=90
+    [[ $tests == OFF ]] || seconds=150
     "${build[@]}" 2>&1 | tee -a "$logs/build" | progress "compiling the plugin on $(nproc) cores" "$seconds s on two cores" || failed
 else
     "${build[@]}" >>"$logs/build" 2>&1 || failed
