@@ -25,7 +25,7 @@ import sys
 import time
 
 from masonry import Scene, addBlock, bricks, connect, engines, materials
-from masonry.assembly import columns
+from masonry.assembly import columns, threads
 from masonry.read.files import readCurve, readRun
 from yade import O, Vector3, timing, utils
 from yade.wrapper import *
@@ -226,7 +226,7 @@ def compare():
             "engines_us": engines,
         }
     base = results["rigid units"]
-    print(f"\n{O.numThreads} threads; ratios to the first")
+    print(f"\n{threads.allowed()} threads; ratios to the first")
     print(
         f"{'':42}{'µs a step':>12}{'ratio':>8}{'contacts':>10}{'ns each':>10}{'ratio':>8}"
     )
@@ -239,14 +239,14 @@ def compare():
             print(f"    {engine:38}{us:12.1f}")
     os.makedirs(OUT, exist_ok=True)
     with open(os.path.join(OUT, "benchmark.json"), "w") as f:
-        json.dump({"threads": O.numThreads, "cases": results}, f, indent=1)
+        json.dump({"threads": threads.allowed(), "cases": results}, f, indent=1)
 
 
 def wholePush(name, *words):
     """Run a scene, and print the cost of a step of its push and of a row, from its own clocks."""
     out = os.path.join(OUT, name)
     quiet = ["--no-vtk", "--checkpoint-every", "0"]
-    studies.run(name, [*quiet, *words], out, O.numThreads, quiet=True)
+    studies.run(name, [*quiet, *words], out, threads.allowed(), quiet=True)
     run, rows = readRun(out), len(readCurve(out)["time_s"])
     stages = [s for s in run["stages"] if s["stage"] != "settle"]
     steps = sum(stage["steps"] for stage in stages)

@@ -15,7 +15,11 @@ constexpr double worst = 0.03;  // share of a run's time that trials of a slower
 constexpr double rest = 0.2;    // shortest time between two trials [s]
 constexpr double longest = 2;   // longest time between two trials [s]
 constexpr double gain = 0.97;   // of the time of the best number, below which another one takes its place [-]
-constexpr double alarm = 1.25;  // of the time that the best number took before, above which fewer threads are tried [-]
+constexpr double newest = 0.25; // weight of the last window in the mean of the last windows [-]
+// Steps that take less than this [s] are timed one in so many, because the clock takes some hundredths of them.
+constexpr double quick = 5e-5;
+constexpr int timedOfQuick = 8;
+constexpr double alarm = 1.25; // of the time that the best number took before, above which fewer threads are tried [-]
 
 } // namespace
 
@@ -36,13 +40,13 @@ void ThreadChoice::forget() {
     time_ = pause_ = 0;
 }
 
-void ThreadChoice::stepTook(Seconds time) {
+void ThreadChoice::stepTook(Seconds time, int steps) {
     auto& record = records_[present_];
-    ++record.steps;
-    record.time += time;
+    record.steps += steps;
+    record.time += steps * time;
     if (counts_.size() == 1) return;
-    ++steps_;
-    time_ += time;
+    steps_ += steps;
+    time_ += steps * time;
     if (time_ >= window) endWindow();
 }
 
@@ -56,11 +60,13 @@ void ThreadChoice::endWindow() {
     auto& record = records_[present_];
     const double mean = time_ / double(steps_), before = record.recent;
     const double took = time_, count = double(steps_);
-    record.recent = before > 0 && present_ == best_ ? 0.5 * (before + mean) : mean;
+    record.recent = before > 0 && present_ == best_ ? before + newest * (mean - before) : mean;
     if (present_ == best_) {
         pause_ -= took;
-        // On more threads than one a step suddenly takes longer: other programs may need the cores now.
-        const bool slower = best_ > 0 && before > 0 && mean > alarm * before;
+        // On more threads than one a step takes longer than before, or than on fewer: other programs may need the
+        // cores now.
+        const double fewer = best_ > 0 ? records_[best_ - 1].recent : 0;
+        const bool slower = best_ > 0 && before > 0 && (mean > alarm * before || (fewer > 0 && mean > fewer));
         if (pause_ > 0 && !slower) return go(best_);
         if (slower) next_ = -1;
         int place = best_ + next_;
@@ -99,26 +105,31 @@ void Parallel::allow(int threads, bool always) {
     allowed_ = std::clamp(threads, 1, Crew::most);
     always_ = always;
     choice_ = ThreadChoice(allowed_);
-    counted_ = false;
+    timed_ = false;
+    until_ = 1;
     if (allowed_ > 1 && !crew_) crew_ = new Crew;
 }
 
 void Parallel::stepBegins() {
-    if (allowed_ == 1) return;
-    if (counted_ && !always_) choice_.stepTook(std::chrono::duration<double>(spent_).count());
-    counted_ = true;
-    spent_ = {};
+    if (allowed_ == 1 || always_) return;
+    if (timed_) {
+        const double time = std::chrono::duration<double>(spent_).count();
+        const int each = time < quick ? timedOfQuick : 1;
+        choice_.stepTook(time, each);
+        spent_ = {};
+        until_ = each;
+    }
+    timed_ = --until_ <= 0;
 }
 
 void Parallel::run(const Span& all) {
     const int threads = always_ ? allowed_ : choice_.threads();
-    if (allowed_ == 1) return all.call(all.body, 0, all.count);
-    const auto began = std::chrono::steady_clock::now();
+    const auto began = timed_ ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
     if (threads == 1 || all.count <= all.piece)
         all.call(all.body, 0, all.count);
     else
         runOnThreads(all, threads);
-    spent_ += std::chrono::steady_clock::now() - began;
+    if (timed_) spent_ += std::chrono::steady_clock::now() - began;
 }
 
 void Parallel::runOnThreads(const Span& all, int threads) {

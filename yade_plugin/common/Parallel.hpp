@@ -21,8 +21,8 @@ public:
 
     // The number of threads for the next step.
     int threads() const { return counts_[present_]; }
-    // Takes notice of how long a step took with that number. Returns whether another number is chosen for the next one.
-    void stepTook(Seconds time);
+    // Takes notice of how long so many steps took each with that number.
+    void stepTook(Seconds time, int steps = 1);
     // The scene has changed, so what was measured is no longer true.
     void forget();
 
@@ -30,7 +30,7 @@ public:
         int threads;
         long steps = 0;
         Seconds time = 0;   // of all these steps
-        Seconds recent = 0; // mean time of a step in the last windows, 0 if there was none
+        Seconds recent = 0; // mean time of a step in the last windows, 0 before the first
     };
     const std::vector<Record>& records() const { return records_; }
 
@@ -88,8 +88,9 @@ private:
     int allowed_ = 1;
     bool always_ = false;
     ThreadChoice choice_;
-    std::chrono::steady_clock::duration spent_{}; // in the loops of the present step
-    bool counted_ = false;                        // whether a step has begun
+    bool timed_ = false;                          // whether the present step is timed
+    int until_ = 1;                               // how many steps from now the next one is timed
+    std::chrono::steady_clock::duration spent_{}; // in the loops of the present step, if it is timed
 };
 
 } // namespace masonry
