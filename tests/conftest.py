@@ -30,7 +30,13 @@ WITHOUT_YADE = ["common", "law", "motion", "blocks", "files", "gates"] + [
     for name in "bricks bricks_checks bricks_files bricks_vaults compare_loops cycles imports loops measure "
     "measured_loops plain_wall".split()
 ]
-TOGETHER = ["programs", "targets", "squat", "whole"]  # fixtures that many tests share
+TOGETHER = [
+    "programs",
+    "targets",
+    "squat",
+    "whole",
+    "site",
+]  # fixtures that many tests share
 
 #: On a busy machine examples take longer than hypothesis expects, and some are large.
 settings.register_profile(

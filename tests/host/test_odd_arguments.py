@@ -158,7 +158,7 @@ WORDS = {
     "hold, a stage": (holding, dict(target=Of("grip"), axes="xz")),
 }  # fmt: skip
 #: Methods of a scene that scripts do not call with arguments of their own: other parts of the package do.
-INTERNAL = {"checkOpen", "failed", "findBound", "keepState", "probe"}
+INTERNAL = {"checkOpen", "failed", "findBound", "keepState", "noted", "probe"}
 
 CUBE = bricks.boxCorners((0, 0, 0), (1, 1, 1))
 COURSES = dict(height=0.243, unit=UNIT, courses=None, halves=True, joint=0.0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The 3-D page of real runs in a real browser, as its user sees it. What a page holds, tests/package/test_motion.py compares."""
+"""The 3-D page of real runs in a real browser, as its user sees it. What a page holds, tests/package/test_rigid_motions.py compares."""
 
 import os
 import re

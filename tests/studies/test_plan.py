@@ -173,7 +173,9 @@ def test_wrong_variables_are_refused(make, message):
 
 
 def test_without_openturns_one_sentence_names_the_package(tmp_path):
-    (tmp_path / "openturns.py").write_text("raise ImportError('none')")
+    (tmp_path / "openturns.py").write_text(
+        "raise ModuleNotFoundError('none', name='openturns')"
+    )
     code = "from masonry.study import *; Study('any', runs=2, vary={'rate': uniform(1, 2)}).rows()"
     paths = os.pathsep.join([str(tmp_path), *filter(None, sys.path)])
     done = subprocess.run(

@@ -64,7 +64,7 @@ int Crew::take(int share, std::uint64_t turn) {
     for (;;) {
         const int first = int(seen >> 8 & 255), beyond = int(seen & 255);
         if (seen >> 16 != turn || first >= beyond) return -1;
-        if (next.compare_exchange_weak(seen, seen + 256, std::memory_order_acq_rel)) return first;
+        if (next.compare_exchange_strong(seen, seen + 256, std::memory_order_acq_rel)) return first;
     }
 }
 
