@@ -9,17 +9,18 @@ namespace masonry {
 namespace {
 
 // Where many programs share the cores, each runs for some milliseconds at a time. A window holds several of these
-// turns.
-constexpr double window = 0.02; // time in which steps are compared [s]
-constexpr double worst = 0.03;  // share of a run's time that trials of a slower number of threads may cost [-]
-constexpr double rest = 0.2;    // shortest time between two trials [s]
-constexpr double longest = 2;   // longest time between two trials [s]
-constexpr double gain = 0.97;   // of the time of the best number, below which another one takes its place [-]
-constexpr double newest = 0.25; // weight of the last window in the mean of the last windows [-]
+// turns, and what a single window says is still off by a third.
+constexpr double window = 0.02;  // time in which steps are looked at together [s]
+constexpr double trial = 0.1;    // time for which another number of threads is tried before it is taken [s]
+constexpr double hopeless = 1.1; // of the time of the best number, above which a trial ends after a window [-]
+constexpr double gain = 0.97;    // of the time of the best number, below which more threads take its place [-]
+constexpr double worst = 0.03;   // share of a run's time that trials of a slower number may cost [-]
+constexpr double rest = 0.2;     // shortest time between two trials [s]
+constexpr double longest = 2;    // longest time between two trials [s]
+constexpr double newest = 0.25;  // weight of the last window in the mean of the last windows [-]
 // Steps that take less than this [s] are timed one in so many, because the clock takes some hundredths of them.
 constexpr double quick = 5e-5;
 constexpr int timedOfQuick = 8;
-constexpr double alarm = 1.25; // of the time that the best number took before, above which fewer threads are tried [-]
 
 } // namespace
 
@@ -29,15 +30,16 @@ ThreadChoice::ThreadChoice(int most) {
     counts_.push_back(std::max(1, most));
     for (int n : counts_)
         records_.push_back({n});
+    go(0);
 }
 
 void ThreadChoice::forget() {
     for (auto& record : records_)
         record.recent = 0;
-    present_ = best_ = 0;
+    best_ = confirmed_ = 0;
     next_ = 1;
-    steps_ = confirmed_ = 0;
-    time_ = pause_ = 0;
+    pause_ = 0;
+    go(best_);
 }
 
 void ThreadChoice::stepTook(Seconds time, int steps) {
@@ -47,44 +49,51 @@ void ThreadChoice::stepTook(Seconds time, int steps) {
     if (counts_.size() == 1) return;
     steps_ += steps;
     time_ += steps * time;
-    if (time_ >= window) endWindow();
+    if (time_ < due_) return;
+    present_ == best_ ? endWindow() : judge();
 }
 
 void ThreadChoice::go(int place) {
     present_ = place;
     steps_ = 0;
     time_ = 0;
+    due_ = window;
 }
 
+// The best number was used for a window.
 void ThreadChoice::endWindow() {
-    auto& record = records_[present_];
-    const double mean = time_ / double(steps_), before = record.recent;
-    const double took = time_, count = double(steps_);
-    record.recent = before > 0 && present_ == best_ ? before + newest * (mean - before) : mean;
-    if (present_ == best_) {
-        pause_ -= took;
-        // On more threads than one a step takes longer than before, or than on fewer: other programs may need the
-        // cores now.
-        const double fewer = best_ > 0 ? records_[best_ - 1].recent : 0;
-        const bool slower = best_ > 0 && before > 0 && (mean > alarm * before || (fewer > 0 && mean > fewer));
-        if (pause_ > 0 && !slower) return go(best_);
-        if (slower) next_ = -1;
-        int place = best_ + next_;
-        if (place < 0 || place >= int(counts_.size())) place = best_ - next_;
-        return go(place);
+    auto& recent = records_[best_].recent;
+    const double mean = time_ / double(steps_);
+    recent = recent > 0 ? recent + newest * (mean - recent) : mean;
+    pause_ -= time_;
+    // More threads than one have become slower than fewer were: other programs may need the cores now.
+    const bool slower = best_ > 0 && recent > records_[best_ - 1].recent;
+    if (slower) next_ = -1;
+    if (pause_ > 0 && !slower) return go(best_);
+    const int place = best_ + next_;
+    go(place >= 0 && place < int(counts_.size()) ? place : best_ - next_);
+}
+
+// Another number is tried.
+void ThreadChoice::judge() {
+    const double mean = time_ / double(steps_), best = records_[best_].recent;
+    if (mean <= hopeless * best && time_ < trial) {
+        due_ = time_ + window;
+        return;
     }
-    const double best = records_[best_].recent;
-    if (mean < gain * best) { // it may pay to go further in this direction
-        next_ = present_ > best_ ? 1 : -1;
+    records_[present_].recent = mean;
+    const bool more = present_ > best_;
+    if (mean < (more ? gain : 1.0) * best) {
+        next_ = more ? 1 : -1; // it may pay to go further in this direction
         best_ = present_;
         confirmed_ = 0;
-        pause_ = 0;
         const int further = best_ + next_;
+        pause_ = 0;
         if (further < 0 || further >= int(counts_.size())) settleFor(0);
     } else {
         next_ = -next_;
         ++confirmed_;
-        settleFor((took - count * best) / worst);
+        settleFor((time_ - double(steps_) * best) / worst);
     }
     go(best_);
 }

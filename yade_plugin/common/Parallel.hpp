@@ -36,6 +36,7 @@ public:
 
 private:
     void endWindow();
+    void judge();
     void settleFor(Seconds pause);
     void go(int place);
 
@@ -44,8 +45,9 @@ private:
     int present_ = 0; // place in counts_ of the number that is used now
     int best_ = 0;    // place of the number that is used when nothing is tried
     int next_ = 1;    // how far from the best the next trial is: 1 upwards, -1 downwards
-    long steps_ = 0;  // of the present window
+    long steps_ = 0;  // of the present window, or trial
     Seconds time_ = 0;
+    Seconds due_ = 0;   // the time at which it is looked at
     Seconds pause_ = 0; // until the next trial
     int confirmed_ = 0; // how many trials have found no better number since the last change
 };
