@@ -33,8 +33,8 @@ case "${1:-}" in
     *) sed -n '6,9s/^# *//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac
 
-# Says what is done and how long it takes on two cores of 2.5 GHz (Debian's packages at 60 MB/s), then how far it is: on a
-# terminal in place, else nothing but the end. Reads the lines of apt-get's status and of make from the standard input.
+# Says what is done and how long it took where it was measured, on two cores of a server, then how far it is: on a terminal
+# in place, else nothing but the end. Reads the lines of apt-get's status and of make from the standard input.
 progress() {
     local what=$1 usual=$2 line part started=$SECONDS
     echo "$what (usually about $usual)"
