@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 # Sets up what is missing and runs tests, fastest ring first.
 #
-#   bash scripts/test.sh                   all tests but those with sanitizers, on all cores side by side
+#   bash scripts/test.sh                   the tests but those with sanitizers and the longest, on all cores side by side
+#   bash scripts/test.sh all               the longest, too, among them the site of the documentation: five minutes more
 #   bash scripts/test.sh quick             C++ of each layer, the gates, and the fast part of the host: under a minute
 #   bash scripts/test.sh tests/law ...     these tests alone, one after the other; all arguments go to pytest
 #   bash scripts/test.sh tests/sanitizers  memory, arithmetic, and races between threads, for which the plugin is built twice
@@ -24,8 +25,12 @@ else
     bash scripts/setup.sh --tests python3-pytest-xdist clang-format black python3-pyflakes mypy clang libclang-rt-dev \
         python3-sphinx python3-myst-parser furo libjs-mathjax python3-yaml slurm-wlm munge xvfb xauth libjs-three \
         jupyter-nbconvert python3-ipykernel python3-pandas
-    (($#)) && tests=("$@") || tests=(tests --ignore tests/sanitizers)
-    workers=$(($# ? 0 : $(nproc)))
+    workers=$(nproc)
+    case "${1:-}" in
+        "") tests=(tests --ignore tests/sanitizers -m "not long") ;;
+        all) tests=(tests --ignore tests/sanitizers) ;;
+        *) tests=("$@") workers=0 ;;
+    esac
 fi
 export OMP_NUM_THREADS=1 # so that workers do not take each other's cores; a test that needs threads asks for them
 exec /usr/bin/python3 -m pytest -q -p no:cacheprovider -W ignore::DeprecationWarning \

@@ -38,6 +38,20 @@ TOGETHER = [
     "site",
 ]  # fixtures that many tests share
 
+#: Tests that take ten seconds to a minute each, and of which others try a part: ``scripts/test.sh`` leaves them out, and
+#: ``scripts/test.sh all`` runs them.
+LONG = [
+    "test_every_command_that_has_no_reason_runs",
+    "test_a_wall_killed_six_times_leaves_the_curve_of_a_whole_run",
+    "test_a_limit_on_the_size_of_files_fails_rows_in_order",
+    "test_ctrl_c_leaves_checkpoints_and_the_study_goes_on",
+    "test_kills_at_random_moments_change_no_number",
+    "test_walls_at_the_extremes_are_stable_or_stopped_with_a_reason",
+    "test_a_push_that_is_too_fast_says_so_and_what_would_do",
+    "test_a_search_and_loads_of_later_stages_resume_bit_for_bit",
+    "test_mypy_finds_what_a_user_does_wrong_and_nothing_else",
+]
+
 #: On a busy machine examples take longer than hypothesis expects, and some are large.
 settings.register_profile(
     "busy",
@@ -127,6 +141,9 @@ def pytest_configure(config):
             with contextlib.suppress(ModuleNotFoundError):
                 importlib.import_module("yade.config")
     config.addinivalue_line("markers", "slow: takes seconds; not in the quick ring")
+    config.addinivalue_line(
+        "markers", "long: takes ten seconds and more; only in all tests"
+    )
     config.addinivalue_line("markers", "xdist_group: one worker for all of a name")
 
 
@@ -138,6 +155,8 @@ def pytest_collection_modifyitems(items):
     for item in items:
         if ring(item) in SLOW:
             item.add_marker(pytest.mark.slow)
+        if getattr(item, "originalname", None) in LONG or "site" in getattr(item, "fixturenames", []):  # fmt: skip
+            item.add_marker(pytest.mark.long)
         for name in set(TOGETHER) & set(getattr(item, "fixturenames", [])):
             item.add_marker(pytest.mark.xdist_group(name))
     items.sort(
