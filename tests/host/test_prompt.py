@@ -119,7 +119,7 @@ def end(beside=None):
     assert O.iter == STEPS, (O.iter, STEPS)
     return bits(interactions)
 """
-STEPS = {"rigid": 3000, "deformable": 1500}
+STEPS = {"rigid": 9000, "deformable": 1500}
 KINDS = pytest.mark.parametrize("blocks", STEPS)
 THREADS = pytest.mark.parametrize("threads", [1, 2])
 
