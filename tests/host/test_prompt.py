@@ -226,6 +226,21 @@ assert O.iter > 10 and 0 < refused < 0.3 * {count}, (O.iter, refused)
 
 
 @THREADS
+@KINDS
+def test_a_step_right_after_a_pause_ends(blocks, threads):
+    """O.pause() does not wait for the end of the step that is under way, so two threads make steps for a moment."""
+    code = f"""
+panel(False, {blocks!r}, size=8, damping=0.3)
+for n in range(60):
+    O.run()
+    time.sleep(0.002)
+    O.pause()
+    O.step()
+"""
+    inYade(READER.split("def end")[0].format(steps=0) + code, threads, timeout=60)
+
+
+@THREADS
 @pytest.mark.parametrize("beside", [False, True])
 def test_a_forked_process_goes_on(threads, beside):
     """It has none of the other threads, neither of a run in the background nor those of the loops."""

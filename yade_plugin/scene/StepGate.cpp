@@ -52,7 +52,11 @@ template <class Ready> void StepGate::wait(std::unique_lock<std::mutex>& held, R
 void StepGate::enter() {
     std::unique_lock<std::mutex> held(mutex_);
     const auto me = std::this_thread::get_id();
-    wait(held, [&] { return (depth_ == 0 || reader_ == me) && (inStep_ || waiting_ == 0); });
+    wait(held, [&] {
+        if (acting_ && stepper_ != me)
+            return false; // O.pause() does not wait for the end of a step, and O.step() may follow
+        return (depth_ == 0 || reader_ == me) && (inStep_ || waiting_ == 0);
+    });
     stepper_ = me;
     acting_ = inStep_ = true;
 }

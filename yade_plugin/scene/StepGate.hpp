@@ -13,8 +13,8 @@ class StepGate {
 public:
     static StepGate& instance();
 
-    // To be called at the beginning and at the end of an engine's action. `stepDone`: the last of this plugin's engines
-    // in the step has ended, or the step has failed.
+    // To be called at the beginning and at the end of an engine's action; no two threads act at once. `stepDone`: the
+    // last of this plugin's engines in the step has ended, or the step has failed.
     void enter();
     void exit(bool stepDone);
 
