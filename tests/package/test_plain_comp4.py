@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The plain program of COMP-4, written without the plugin, finds what the plugin finds."""
+
+import os
+import sys
+
+import pytest
+from conftest import ROOT
+
+sys.path.insert(0, os.path.join(ROOT, "validation", "benchmark"))
+import plain  # noqa: E402
+
+UNTIL, RATE = 1, 20  # [mm], [mm/s]
+
+
+def test_the_plugin_pushes_comp4_as_the_plain_program_does():
+    """Until 1 mm joints open and slip, and the force is three quarters of the peak. The force is that on the loading block,
+    whose mass and ramp the programs do not have in common."""
+    _, _, peak, work = plain.plain(plain.build(), UNTIL, RATE, plane=False)
+    words = ["--crack-surfaces", "on"]
+    _, _, ownPeak, ownWork = plain.plugin(UNTIL, RATE, words)
+    assert peak > 85, "the wall has hardly been pushed"
+    assert ownPeak == pytest.approx(peak, rel=0.01)
+    assert ownWork == pytest.approx(work, rel=0.02)
