@@ -36,7 +36,7 @@ FILMS = (".avi", ".ogv")  # what ParaView of Debian 12 writes; it has no .mp4
 
 MISSING = f"""ParaView's Python (pvpython) is not there. As root:
   apt-get install --no-install-recommends paraview xvfb
-and, since the package python3-paraview would remove python3-vtk9 and with it what builds this plugin, as yourself:
+and, since the package python3-paraview would remove python3-vtk9, on which other programs may depend, as yourself:
   cd /tmp && apt-get download python3-paraview && dpkg -x python3-paraview_*.deb {UNPACKED}"""
 
 
