@@ -10,7 +10,7 @@ from yade.wrapper import MasonryVtkRecorder
 
 from ..assembly import columns
 from ..assembly.blocks import units
-from ..basics import Unwritable, say
+from ..basics import Unwritable, say, withoutCollector
 from ..memory import FULL
 from ..packages import Missing, needed
 from ..read import cracks, measure
@@ -221,6 +221,7 @@ class Outcome:
             }
             yield from ((joint.prefixed(end), value) for end, value in found.items())
 
+    @withoutCollector()
     def _measured(self, moved, shear):
         """The numbers that masonry.read.measure finds of a wall, and its failure mode: what leaves no frames has them at
         once."""
@@ -230,7 +231,8 @@ class Outcome:
             if not math.isfinite(found["drop_at_mm"]):
                 found["drop_at_mm"] = None
         if wall:
-            found.update(cracks.pattern(asFrame(MasonryVtkRecorder().joints()), wall))
+            joints = asFrame(MasonryVtkRecorder().joints(), cracks.NEEDED)
+            found.update(cracks.pattern(joints, wall))
             found["failure_mode"] = cracks.failureMode(
                 found, wall, not self.pushed.history and stillGrows(moved, shear)
             )

@@ -47,7 +47,7 @@ from ..arguments import number, orNone, shown, takes, text
 from .. import notebook
 from ..assembly.blocks import vector
 from ..assembly.structure import Structure
-from ..basics import GRAVITY, Interrupted, Refused, say
+from ..basics import GRAVITY, Interrupted, Refused, say, withoutCollector
 from ..bricks import Bricks
 from ..run.ending import end
 from ..run.presets import BOUND
@@ -339,7 +339,7 @@ class Scene:
         if not args.lean:
             self.bounds.prepare()
         self.outcome = Outcome(self)
-        with self.running.clock("setup"), self.running.breakable():
+        with self.running.clock("setup"), self.running.breakable(), withoutCollector():
             model.build(loadingBlock())
             self._prepare()
         self._noteRows()
