@@ -44,3 +44,12 @@ def test_what_makes_bricks_loads_no_library_that_looks_at_hulls(tmp_path):
     )
     done = subprocess.run(["/usr/bin/python3", "-c", script], cwd=tmp_path, capture_output=True, text=True)  # fmt: skip
     assert done.stdout.splitlines() == ["100 False", f"{1.1 * 0.81 * 0.102:.9g} True"], done.stderr  # fmt: skip
+
+
+def test_yade_starts_in_plain_python_without_the_shell_of_which_it_wants_the_version(tmp_path):  # fmt: skip
+    script = (
+        "import sys, masonry; masonry.classes; import yade.runtime; print('IPython' in sys.modules); "
+        "import IPython; print(yade.runtime.ipython_version == 100 * IPython.version_info[0] + IPython.version_info[1])"
+    )
+    done = subprocess.run(["/usr/bin/python3", "-c", script], cwd=tmp_path, capture_output=True, text=True)  # fmt: skip
+    assert done.stdout.split() == ["False", "True"], done.stderr
