@@ -2,8 +2,10 @@
 """What every part of the package shares: gravity, how a run can end before its time, and what is said on the terminal."""
 
 import contextlib
+import gc
 import re
 import sys
+from typing import Iterator
 
 GRAVITY = 9.81  # [m/s²]
 
@@ -30,6 +32,22 @@ def say(text, stream=None):
     """Print a text, as :func:`plain` writes it. A terminal that is gone or a log that is full is no reason to stop a run."""
     with contextlib.suppress(OSError):
         print(plain(text), file=stream, flush=True)
+
+
+@contextlib.contextmanager
+def withoutCollector() -> Iterator[None]:
+    """Let Python look for unused circles of objects only when a block is over. It may decorate a function, too.
+
+    Each look goes through all objects of YADE and numpy. A block that makes many thousands of records starts dozens of
+    looks, which find nothing and take half of its time.
+    """
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
 
 
 # How a run can end before its time. Each of these ends it in order, and what was computed is kept.

@@ -13,17 +13,20 @@ import contextlib
 import glob
 import importlib
 import importlib.machinery
+import importlib.metadata
 import io
 import os
 import re
 import shutil
 import sys
 import sysconfig
+import types
 import warnings
 
 from .basics import say
 
 YADE = "yade"
+SHELL = "IPython"
 #: The plugin, which is linked to YADE, and the room whose modules registering it needs.
 PLUGIN, ASSEMBLY = f"{__package__}._masonry", f"{__package__}.assembly."
 THREADS = "OMP_NUM_THREADS"
@@ -81,7 +84,9 @@ class Loader:
         try:
             if asked is None:
                 os.environ[THREADS] = "1"  # OpenMP reads it when it is loaded
-            with warnings.catch_warnings(), contextlib.redirect_stdout(printed):
+            with warnings.catch_warnings(), contextlib.redirect_stdout(
+                printed
+            ), _withoutShell():
                 warnings.simplefilter("ignore", DeprecationWarning)
                 self._loader.exec_module(module)
         except ModuleNotFoundError as error:
@@ -96,6 +101,27 @@ class Loader:
                 say(found)
         _putLast(os.path.dirname(module.__file__))
         self._started()
+
+
+@contextlib.contextmanager
+def _withoutShell():
+    """Let YADE find the version of IPython without importing it, which is all that it does with it in plain Python, and takes a
+    third of its start."""
+    if SHELL in sys.modules:
+        yield
+        return
+    try:
+        version = importlib.metadata.version(SHELL)
+    except importlib.metadata.PackageNotFoundError:
+        yield  # YADE says what it misses
+        return
+    sys.modules[SHELL] = standIn = types.ModuleType(SHELL)
+    standIn.__version__ = version
+    try:
+        yield
+    finally:
+        if sys.modules.get(SHELL) is standIn:
+            del sys.modules[SHELL]
 
 
 class Imported:

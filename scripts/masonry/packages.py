@@ -5,6 +5,8 @@
 """
 
 import importlib
+import importlib.util
+import sys
 
 from .basics import Refused
 
@@ -36,8 +38,27 @@ def needed(name):
     except ModuleNotFoundError as error:
         if error.name != name:
             raise
+    raise _missing(name)
+
+
+def promised(name):
+    """Make sure that :func:`needed` will find a module, without the time that its import takes.
+
+    :param name: one of :data:`NEEDED_FOR`
+    :raises Missing: if it is not installed
+    """
+    try:
+        found = name in sys.modules or importlib.util.find_spec(name)
+    except ModuleNotFoundError:  # of a finder that forbids it
+        found = None
+    if not found:
+        raise _missing(name) from None
+
+
+def _missing(name):
+    """The error that says how a module is installed."""
     package, what = NEEDED_FOR[name]
-    raise Missing(
+    return Missing(
         f"{what} the Python module {name}, which is not installed: "
         f"apt-get install --no-install-recommends {package}"
     )

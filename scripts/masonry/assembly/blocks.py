@@ -13,6 +13,8 @@ from ..arguments import Numbers, flag, misfits, shown, takes
 
 LONGEST = 200  # characters of a value that a message shows
 
+#: The colour of a block in YADE's 3-D view: red, green and blue [-].
+PALE = (0.75, 0.7, 0.65)
 #: A body that is thinner than this share of its length is no block.
 THINNEST = 1e-6
 
@@ -80,7 +82,7 @@ def addBlock(
     vertices: Sequence[Numbers] | Numbers,
     material: MasonryMat,
     inPlane: bool = False,
-    color: Numbers = (0.75, 0.7, 0.65),
+    color: Numbers = PALE,
 ) -> int:
     """Append a convex block to the scene. Returns its body id.
 
@@ -89,6 +91,15 @@ def addBlock(
     :param inPlane: only x, z and the rotation about y stay free: a wall in the x-z plane
     """
     problems = misfits("block: ", {"inPlane": flag}, {"inPlane": inPlane})
+    return placeBlock(vertices, material, inPlane, color, problems)
+
+
+def placeBlock(vertices, material, inPlane, color=PALE, problems=()):
+    """As :func:`addBlock`, for those who know that the arguments have these names. It checks them otherwise.
+
+    :param problems: what has been found before, to be named with the others
+    """
+    problems = [*problems]
     if not isinstance(material, MasonryMat):
         problems.append(
             f"block: material must be a MasonryMat, got {printed(material)}"

@@ -10,7 +10,7 @@ from .._masonry import criticalTimeStep, loadScene, saveScene
 from ..basics import GRAVITY, Refused
 from ..bricks import boxCorners
 from . import threads
-from .blocks import addBlock
+from .blocks import placeBlock
 from .connecting import connect
 from .engines import engine, engines
 from .columns import Reading
@@ -101,7 +101,7 @@ class Structure:
                 self._addPlaten(target, loadingBlock)
         for block in description.bricks:
             material = self.units[block.kind]
-            body = addBlock(block.corners, material, inPlane=description.plane)
+            body = placeBlock(block.corners, material, description.plane)
             self.ids.append(body)
             self.bricks[body] = block.brick
             self.parts.setdefault(block.part, []).append(body)
@@ -119,7 +119,7 @@ class Structure:
 
     def _addPlaten(self, target, material):
         corners = boxCorners(*target.box)
-        target.body = addBlock(corners, material, inPlane=self.description.plane)
+        target.body = placeBlock(corners, material, self.description.plane)
         O.bodies[target.body].state.blockedDOFs = target.freedom
 
     def _addEngines(self):

@@ -23,9 +23,11 @@ Lengths are in m and angles in degrees. Every length of a unit contains its join
 with ``joint``, the thickness of the mortar, ``unit`` is the brick without it.
 """
 
-from ..packages import needed
+from ..packages import promised
 
-needed("scipy")  # before a module imports a part of it
+promised(
+    "scipy"
+)  # which is imported when convex solids that are no boxes are looked at
 
 from .blocks import Block, Bricks, boxCorners, summary
 from .checks import Joint

@@ -10,7 +10,6 @@ from numbers import Integral
 from typing import Any, Callable, Iterable, Iterator
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from ..arguments import (
     Kind,
@@ -390,6 +389,8 @@ class Bricks:
         size = math.prod(b - a for a, b in zip(low, high))
         if abs(size - volume) < COINCIDENT * size:
             return box
+        from scipy.spatial import ConvexHull  # a run of a wall of boxes needs none
+
         points = list(dict.fromkeys(c for b in blocks for c in b.corners))
         hull = ConvexHull(points)
         if abs(hull.volume - volume) < COINCIDENT * volume:

@@ -7,7 +7,6 @@ Solids whose corners stand in the same order have the same faces, so the faces a
 from math import dist
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
 #: Largest gap or overlap of two faces that still share a joint, as a share of the diagonal of the smaller block. It is
 #: the plugin's own bound (coincidentFaces in yade_plugin/blocks/FaceContact.hpp).
@@ -43,6 +42,11 @@ def hull(corners):
     for n, corner in enumerate(centred):
         if n and np.abs(centred[:n] - corner).max(axis=1).min() < 1e-9:
             raise ValueError(f"corner {n} at {_place(corners[n])} m is given twice")
+    from scipy.spatial import (
+        ConvexHull,
+        QhullError,
+    )  # a run of a wall of boxes needs none
+
     try:
         found = ConvexHull(centred)
     except QhullError:

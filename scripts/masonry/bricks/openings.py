@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from ..arguments import items, named, shown
+from ..basics import withoutCollector
 from .blocks import Block, Bricks, boxCorners, positive, refuse
 from .checks import components, where
 
@@ -274,6 +275,7 @@ def _blocks(bricks):
             yield Block(boxCorners(low, high), number, brick.part, brick.course, kind)
 
 
+@withoutCollector()
 def finished(bricks):
     """A collection of blocks whose bricks are numbered in their order, from 0."""
     return Bricks(Bricks(_blocks(bricks))._renumbered(0))

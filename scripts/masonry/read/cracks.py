@@ -54,6 +54,10 @@ def crushed(frame: dict[str, Any]) -> np.ndarray:
     return frame["crushing"] > CRUSHED
 
 
+#: The arrays of a frame from which a pattern is found, beside its cells.
+NEEDED = ["area", "bodies", "crushing", "damage_compression", "joint_dissipated", "normal", "opening", "points", "slide"]  # fmt: skip
+
+
 def layOut(
     frame: dict[str, Any], wall: dict[str, Any]
 ) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
@@ -79,7 +83,7 @@ def layOut(
     )
     area = frame["area"]
     total = lambda values: np.bincount(joint, area * values)
-    centres = np.array([frame["points"][cell].mean(axis=0) for cell in frame["cells"]])
+    centres = _centres(frame["points"], frame["cells"])
     whole = total(1)
     x, z = total(centres[:, 0]) / whole / half, total(centres[:, 2]) / whole / height
     values = {
@@ -97,6 +101,18 @@ def layOut(
         bed[name][row[inner], column[inner]] = values[name][inner]
         upright[name][row[~flat], column[~flat]] = values[name][~flat]
     return bed, upright
+
+
+def _centres(points, cells):
+    """Means of the corners of every cell, an array (cells, 3) [m]; cells with as many corners are looked at together."""
+    counts = np.fromiter(map(len, cells), int, len(cells))
+    corners, starts = np.concatenate(cells), np.cumsum(counts) - counts
+    centres = np.empty((len(cells), 3))
+    for count in np.unique(counts):
+        alike = counts == count
+        members = corners[starts[alike, None] + np.arange(count)]
+        centres[alike] = points[members].mean(axis=1)
+    return centres
 
 
 def diagonalReach(bed: np.ndarray, upright: np.ndarray) -> int:
@@ -251,7 +267,8 @@ def patternNumbers(
 
 
 def pattern(frame: dict[str, Any], wall: dict[str, Any]) -> dict[str, Any]:
-    """Numbers of the crack pattern of a wall; ``frame`` and ``wall`` as of :func:`layOut`."""
+    """Numbers of the crack pattern of a wall; ``frame``, of which the arrays NEEDED are enough, and ``wall`` as of
+    :func:`layOut`."""
     return patternNumbers(*layOut(frame, wall))
 
 

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Presets of options that trade accuracy for time, and what each promises. This module needs no YADE."""
+"""Presets of options that trade accuracy for time, and what each promises; and the fidelities from which ``--accuracy`` chooses.
+This module needs no YADE."""
+
+from dataclasses import dataclass
 
 #: The options that a preset chooses, as they are without one. A scene may have another rate.
 USUAL = {
@@ -68,6 +71,7 @@ PROMISES = {
 #: Options that leave a preset's promise alone.
 HARMLESS = {
     "preset",
+    "accuracy",
     "until",
     "out",
     "vtk_every",
@@ -75,6 +79,119 @@ HARMLESS = {
     "checkpoint_every",
     "lean",
 }
+
+# -- fidelities: what --accuracy chooses from ---------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Source:
+    """A source of error of a fidelity, and the runs that show how large it is.
+
+    :param name: of the source
+    :param runs: names in :data:`COMPANIONS`, from the coarsest to the finest, or :data:`MAIN`, the run itself. The difference
+        of the last two counts. Of three, each with half the step of the one before, it counts less if their differences
+        shrink as those of a method of an order do (Richardson)
+    :param share: what counts of the difference of two [-]
+    :param chance: whether the runs differ in nothing that matters, so that their spread is chance
+    """
+
+    name: str
+    runs: tuple
+    share: float = 1.0
+    chance: bool = False
+
+
+@dataclass(frozen=True)
+class Fidelity:
+    """Options of a run, and what is known of their error.
+
+    :param name: as the terminal says it
+    :param options: option -> value; those of :data:`CHOSEN` that are not named are as without options
+    :param cost: wall-clock time of a run over that of the first fidelity, about [-]
+    :param error: by quantity, the error against a fine and slow run that no companion shows [-]; validation/trade has the
+        runs from which it was taken, and validation/accuracy measures what it is worth
+    :param sources: what companions show, a tuple of :class:`Source`
+    """
+
+    name: str
+    options: dict
+    cost: float
+    error: dict
+    sources: tuple
+
+
+#: The run itself among those of a :class:`Source`. Before it has been made, the source counts as in the fidelity before.
+MAIN = "this run"
+
+_ONE, _TWO = ({"blocks": "deformable", "divisions": n} for n in (1, 2))
+
+#: Runs beside a run, by name: options that replace those without options. They are cheap beside the run that they judge.
+COMPANIONS = {
+    "rigid, 200 mm/s": {"rate": 200.0},
+    "rigid, 100 mm/s": {"rate": 100.0},
+    "rigid, 50 mm/s": {"rate": 50.0},
+    "rigid, 100 mm/s, time step 0.78": {"rate": 100.0, "dt_fraction": 0.78},
+    "rigid, 100 mm/s, time step 0.76": {"rate": 100.0, "dt_fraction": 0.76},
+    "rigid, 100 mm/s, 6 points": {"rate": 100.0, "subcontacts": 6},
+    "one cell, 100 mm/s": {**_ONE, "rate": 100.0},
+    "one cell, 50 mm/s": {**_ONE, "rate": 50.0},
+}
+
+#: A wall that softens is chaotic: runs whose time steps hardly differ give other peaks and works.
+_CHANCE = Source(
+    "chance",
+    ("rigid, 100 mm/s", "rigid, 100 mm/s, time step 0.78", "rigid, 100 mm/s, time step 0.76"),
+    chance=True,
+)  # fmt: skip
+
+#: What ``--accuracy`` chooses from, the cheapest first.
+FIDELITIES = (
+    Fidelity(
+        "rigid units, 50 mm/s",
+        {"rate": 50.0},
+        1,
+        {"peak": 0.015, "work": 0.02},
+        (
+            _CHANCE,
+            Source("rate", ("rigid, 200 mm/s", "rigid, 100 mm/s", "rigid, 50 mm/s")),
+            Source("points", ("rigid, 100 mm/s", "rigid, 100 mm/s, 6 points"), 0.5),
+        ),
+    ),
+    Fidelity(
+        "deformable units of one cell, 50 mm/s",
+        {**_ONE, "rate": 50.0},
+        10,
+        {"peak": 0.006, "work": 0.006},
+        (
+            _CHANCE,
+            Source("rate", ("one cell, 100 mm/s", MAIN)),
+            # rigid units are too soft and one cell is too stiff, so the result lies between them
+            Source("block model", ("rigid, 50 mm/s", "one cell, 100 mm/s"), 0.5),
+        ),
+    ),
+    Fidelity(
+        "deformable units of two by two cells, 50 mm/s",
+        {**_TWO, "rate": 50.0},
+        35,
+        {"peak": 0.005, "work": 0.005},
+        (
+            _CHANCE,
+            Source("rate", ("one cell, 100 mm/s", "one cell, 50 mm/s")),
+            Source("mesh", ("one cell, 50 mm/s", MAIN), 0.5),
+        ),
+    ),
+)
+
+#: Options that --accuracy chooses, as they are without any.
+CHOSEN = USUAL
+
+
+def fidelityOf(args):
+    """The :class:`Fidelity` that options are those of, or None."""
+    for fidelity in FIDELITIES:
+        if all(getattr(args, n) == v for n, v in {**CHOSEN, **fidelity.options}.items()):  # fmt: skip
+            return fidelity
+    return None
 
 
 def asOption(name):

@@ -15,6 +15,8 @@ from . import keywords
 from .parsing import DAMPINGS, RATES, Parser, count, field, folder, number, pathOf
 from .settings import setting
 
+#: The largest half-width that --accuracy takes [%]: what is less certain is no number.
+MOST_PERCENT = 50
 #: Fewest rows of points that give a joint its stiffness against bending: two give three times that, one none.
 FEWEST = 3
 
@@ -39,6 +41,15 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         choices=[BOUND, *PRESETS],
         help="blocks, divisions, subcontacts, rate and damping with a promise of error and time; "
         "an option given beside it wins, and drops the promise; bound is limit analysis alone, without a run",
+    )
+    p.add_argument(
+        "--accuracy",
+        metavar="PERCENT",
+        type=lambda text: number(text, 0, MOST_PERCENT, above=True),
+        default=None,
+        help="of a push: peak and work within this half-width [%%], by the cheapest block model, mesh and rate that reach it; "
+        "cheaper runs beside it, on all cores, show the error, which the results have. It says nothing of the crack pattern, "
+        "of the end of the curve, and of materials and real walls",
     )
     end = p.add_mutually_exclusive_group()
     end.add_argument(

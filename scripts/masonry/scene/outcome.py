@@ -10,7 +10,7 @@ from yade.wrapper import MasonryVtkRecorder
 
 from ..assembly import columns
 from ..assembly.blocks import units
-from ..basics import Unwritable, say
+from ..basics import Unwritable, say, withoutCollector
 from ..memory import FULL
 from ..packages import Missing, needed
 from ..read import cracks, measure
@@ -24,6 +24,7 @@ from ..read.curves import (
     stillGrows,
 )
 from ..read.frames import asFrame
+from ..run import accuracy
 from . import history
 from .parsing import UNITS
 from .stages import pushing
@@ -134,7 +135,6 @@ class Outcome:
         """Entries of run.json that follow from the rows."""
         scene, column = self.scene, self.results.column
         found = dict(collapse=self.results.run.get("collapse"), ended=scene.ended)
-        found["answers"] = scene.answers
         found.update(self._ofJoints(column))
         if math.isfinite(scene.factor):
             found["factor"] = scene.factor
@@ -142,7 +142,27 @@ class Outcome:
             rows = self._pushRows()
             found.update(self._ofPush(lambda head: [column(head)[n] for n in rows]))
             found.update(self._ofCracks(column))
+            if scene.accuracy:
+                found.update(self._ofAccuracy(found, column))
+        found["answers"] = scene.answers
         return found
+
+    def _ofAccuracy(self, found, column):
+        """Entries for --accuracy, whose half-widths the answers of the last push get, too."""
+        at, rows = self.scene.running.at, self._pushRows()
+        shear, moved = ([column(head)[n] for n in rows] for head in ("base_shear_kN", "displacement_mm"))  # fmt: skip
+        work = measure.pushNumbers(moved, shear)["push_work_J"]
+        asked = self.scene.accuracy
+        entries = {"push_work_J": work, **asked.report({**found, "push_work_J": work})}
+        number = str([n for n, load in self._loads() if load[0] == "push"][-1])
+        own = accuracy.answers(entries["accuracy"])
+        names = {one["name"] for one in own}
+        stage = {"stage": "push", "number": int(number)}
+        others = [a for a in at.answers.get(number, []) if a["name"] not in names]
+        at.answers = {**at.answers, number: [*({**stage, **one} for one in own), *others]}  # fmt: skip
+        if not self.scene.running.interrupted:
+            asked.companions.over()
+        return entries
 
     def _ofCracks(self, column):
         """Entries for the cracks of the last push, and of those before along its line, and for its collapse."""
@@ -221,6 +241,7 @@ class Outcome:
             }
             yield from ((joint.prefixed(end), value) for end, value in found.items())
 
+    @withoutCollector()
     def _measured(self, moved, shear):
         """The numbers that masonry.read.measure finds of a wall, and its failure mode: what leaves no frames has them at
         once."""
@@ -230,7 +251,8 @@ class Outcome:
             if not math.isfinite(found["drop_at_mm"]):
                 found["drop_at_mm"] = None
         if wall:
-            found.update(cracks.pattern(asFrame(MasonryVtkRecorder().joints()), wall))
+            joints = asFrame(MasonryVtkRecorder().joints(), cracks.NEEDED)
+            found.update(cracks.pattern(joints, wall))
             found["failure_mode"] = cracks.failureMode(
                 found, wall, not self.pushed.history and stillGrows(moved, shear)
             )
@@ -437,6 +459,8 @@ class Outcome:
         if run.get("damped_share", 0) > pushing.DAMPED:
             yield pushing.tooDamped(self.pushed, run["damped_share"])
         at = lambda force, moved: f"{run[force]:.1f} kN at {run[moved]:.2f} mm"
+        if "accuracy" in run:
+            yield from accuracy.lines(run["accuracy"])
         peak = at("peak_base_shear_kN", "displacement_at_peak_mm")
         end = at("base_shear_end_kN", "displacement_end_mm")
         if "negative_peak_base_shear_kN" not in run:

@@ -20,6 +20,7 @@ UNITS = {
     "rate": "mm/s",
     "vtk_every": "mm",
     "checkpoint_every": "min",
+    "accuracy": "%",
 }
 
 #: Kinds of arguments with the bounds of the options ``--rate`` and ``--damping``, as of :mod:`masonry.arguments`.

@@ -26,6 +26,8 @@ import atexit
 import contextlib
 import functools
 import math
+import os
+import sys
 from typing import (
     Any,
     Callable,
@@ -47,8 +49,9 @@ from ..arguments import number, orNone, shown, takes, text
 from .. import notebook
 from ..assembly.blocks import vector
 from ..assembly.structure import Structure
-from ..basics import GRAVITY, Interrupted, Refused, say
+from ..basics import GRAVITY, Interrupted, Refused, say, withoutCollector
 from ..bricks import Bricks
+from ..run import accuracy
 from ..run.ending import end
 from ..run.presets import BOUND
 from ..run.results import Results
@@ -58,6 +61,7 @@ from .bounds import EVERY, SMALL, Bounds, nameOfLean, nameOfPush
 from .description import Description
 from .materials import Masonry, linesOf, loadingBlock
 from .outcome import Outcome
+from .parsing import Parser
 from .resuming import State
 from .stages import AT_REST, STAGES, gravity, prepare
 from .stages.stage import Answer
@@ -179,6 +183,8 @@ class Scene:
         )
         arguments = options.ofScene(name, arguments, usual)
         self.name, self.args = name, arguments
+        #: what --accuracy found, :class:`masonry.run.accuracy.Asked`, or None
+        self.accuracy = self._askAccuracy()
         if arguments.crack_surfaces == "off":
             self.description.bricks = list(Bricks(self.description.bricks).whole())
         self.description.deformable = arguments.blocks == "deformable"
@@ -203,6 +209,24 @@ class Scene:
         #: whether there is no run, but limit analysis alone
         self.only = arguments.preset == BOUND
         self._entered = False  # whether a ``with`` block ends it
+
+    def _askAccuracy(self):
+        """As :func:`masonry.run.accuracy.ask`. Ends the script in order where there is no answer."""
+        accuracy.endWithParent()
+        parser, found = Parser.last
+        fromLine = found is self.args and sys.argv and os.path.isfile(sys.argv[0])
+        try:
+            return accuracy.ask(
+                self.name, self.args, sys.argv[0] if fromLine else None, sys.argv[1:]
+            )
+        except Refused as refused:
+            if notebook.isHere():
+                raise
+            say(refused, sys.stderr)
+            raise SystemExit(2) from None
+        except Interrupted:
+            say("interrupted: the runs that are over are kept, and the same command goes on")  # fmt: skip
+            raise SystemExit(130) from None
 
     # -- what describes it ----------------------------------------------------------------------------------------
 
@@ -339,7 +363,7 @@ class Scene:
         if not args.lean:
             self.bounds.prepare()
         self.outcome = Outcome(self)
-        with self.running.clock("setup"), self.running.breakable():
+        with self.running.clock("setup"), self.running.breakable(), withoutCollector():
             model.build(loadingBlock())
             self._prepare()
         self._noteRows()

@@ -12,8 +12,9 @@ from typing import Any, Callable, Concatenate, ParamSpec
 from yade import O
 
 from ... import notebook
-from ...basics import Collapsed, say
+from ...basics import Collapsed, Refused, say
 from ...run import batch
+from ...run.accuracy import STAGES
 from ..resuming import enter
 from ..words import argumentsOf
 
@@ -162,6 +163,11 @@ def stage(**traits: Any) -> Callable[[Stage[P]], Stage[P]]:
 def _check(scene, act, traits, args, settings):
     """What the user says to a stage, as its kinds return it. Raises Refused."""
     (_, *args), settings = act.checked((scene, *args), settings)
+    if scene.args.accuracy and act.__name__ not in STAGES:
+        raise Refused(
+            f"--accuracy: it is about peak and work of a push, and this scene has the stage {act.__name__}; scenes with it "
+            f"have the stages {', '.join(STAGES)} alone"
+        )
     if traits.check:
         traits.check(scene, *args, **settings)
     return args, settings

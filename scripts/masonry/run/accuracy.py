@@ -1,0 +1,416 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""``--accuracy P``: a push whose peak and work are known within P percent, by the cheapest runs that show it.
+
+The error of a run is not known from the run. But cheaper runs of the same scene show how much its numbers depend on rate,
+mesh, points, block model and chance, and they cost little. So the scene is run several times, in processes of their own,
+side by side on all cores: the companions of the cheapest fidelity of :data:`masonry.run.presets.FIDELITIES`. What they
+differ by, and what validation/accuracy has measured of that fidelity, add up to a half-width. If it is too large, the next
+fidelity follows. The scene then goes on with the options of the one that was chosen, as any run.
+
+Companions are in the folder ``accuracy`` of the results, one a folder. A run that was interrupted and is started again
+with the same words takes those that are over.
+
+This module needs no YADE.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import hashlib
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from typing import Any
+
+from ..basics import Interrupted, Refused, say
+from ..folders import replaced
+from ..read.files import readRun
+from . import batch
+from .presets import CHOSEN, COMPANIONS, FIDELITIES, MAIN, asOption, fidelityOf
+
+FOLDER = "accuracy"  # of the companions, in that of the results
+PLAN = "plan.json"  # there: what was run, while it goes on
+#: Name in the environment of a companion. Its scene looks at no other runs.
+COMPANION = "MASONRY_COMPANION"
+LOOK_EVERY = 0.05  # [s]
+DIES_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux
+#: Half the width of a 95 % interval over the range of three runs, for the difference from another run: Student's t with two
+#: degrees of freedom, 4.30, times sqrt(1 + 1/3), over 1.69, the mean range of three in standard deviations.
+BY_CHANCE = 2.9
+#: Ratio of two differences, each at half the step of the one before, that speaks for an order of 0.6 to 2.6.
+BEHAVES = 1.5, 6.0
+
+#: The quantities: their name, the entry of run.json, and its unit.
+QUANTITIES = (
+    ("peak", "peak_base_shear_kN", "kN"),
+    ("work", "push_work_J", "J"),
+)
+#: What an interval does not say, in every report.
+NOT_COVERED = (
+    "the crack pattern, the force at the end of the curve, the material's own uncertainty, and how far this model of a wall is "
+    "from real walls"
+)
+#: Stages that a scene with --accuracy may have.
+STAGES = ("settle", "push", "hold", "release", "move")
+
+
+# -- what runs say ----------------------------------------------------------------------------------------------------
+
+
+def shown(source: Any, values: dict[str, float], scale: float) -> float | None:
+    """What a source of error changes, over a scale [-]; None if a run of it is missing.
+
+    :param source: :class:`masonry.run.presets.Source`
+    :param values: of the runs that are there, by name
+    :param scale: the value of the run that is judged
+    """
+    if any(name not in values for name in source.runs):
+        return None
+    found = [values[name] / scale for name in source.runs]
+    if source.chance:
+        return BY_CHANCE * (max(found) - min(found))
+    last = abs(found[-1] - found[-2])
+    if len(found) > 2:
+        before = abs(found[-2] - found[-3])
+        same = (found[-1] - found[-2]) * (found[-2] - found[-3]) > 0
+        if same and BEHAVES[0] < before / last < BEHAVES[1]:
+            return last / (before / last - 1)
+    return source.share * last
+
+
+def halfWidth(
+    number: int, quantity: str, values: dict[str, float], scale: float
+) -> tuple[float, dict[str, float]]:
+    """Half the width of the interval of a quantity, over a scale [-], and its parts by their names.
+
+    :param number: of the fidelity in :data:`masonry.run.presets.FIDELITIES`
+    :param values: of the runs that are there by name; the run itself is :data:`masonry.run.presets.MAIN`
+    :param scale: of the values
+    """
+    fidelity = FIDELITIES[number]
+    parts = {"not shown by companions": fidelity.error[quantity]}
+    for source in fidelity.sources:
+        part = shown(source, values, scale)
+        if part is None and number:
+            earlier = [s for s in FIDELITIES[number - 1].sources if s.name == source.name]  # fmt: skip
+            part = shown(earlier[0], values, scale) if earlier else None
+        if part is not None:
+            parts[source.name] = part
+    return sum(parts.values()), parts
+
+
+def needed(number: int) -> list[str]:
+    """Names of the companions of a fidelity, by its number, without those of the ones before."""
+    of = lambda fidelity: [n for s in fidelity.sources for n in s.runs if n != MAIN]
+    before = {name for fidelity in FIDELITIES[:number] for name in of(fidelity)}
+    return [n for n in dict.fromkeys(of(FIDELITIES[number])) if n not in before]
+
+
+# -- companions -------------------------------------------------------------------------------------------------------
+
+
+def isCompanion() -> bool:
+    """Whether this process is a companion of another run."""
+    return COMPANION in os.environ
+
+
+def endWithParent() -> None:
+    """Let a companion end in order when the run beside which it was started is gone, also if that was killed."""
+    if isCompanion() and sys.platform == "linux":
+        with contextlib.suppress(AttributeError, OSError):
+            ctypes.CDLL(None).prctl(DIES_WITH_PARENT, signal.SIGTERM, 0, 0, 0)
+        if os.getppid() != int(os.environ[COMPANION]):
+            os.kill(os.getpid(), signal.SIGTERM)
+
+
+class Companions:
+    """Runs of a scene beside the run itself, in the folder ``accuracy`` of its results.
+
+    :param folder: of the results of the run
+    :param command: words that run the scene with the options of the user
+    """
+
+    def __init__(self, folder: str, command: list[str]) -> None:
+        self.folder = os.path.join(folder, FOLDER)
+        self.command = command
+        self.numbers: dict[str, dict[str, Any]] = {}  # of the runs that are over
+
+    def folderOf(self, name: str) -> str:
+        """The folder of results of a companion."""
+        plain = "".join(c if c.isalnum() or c == "." else "_" for c in name)
+        return os.path.join(self.folder, plain.replace("__", "_"))
+
+    def begin(self, key: str) -> None:
+        """Make the folder, or take up what an interrupted run with this key left there."""
+        path = os.path.join(self.folder, PLAN)
+        with contextlib.suppress(OSError, ValueError):
+            with open(path) as file:
+                if json.load(file).get("key") == key:
+                    self.read()
+        if self.numbers:
+            say(f"note: --accuracy: {len(self.numbers)} runs of an interrupted start are taken from {self.folder}")  # fmt: skip
+            return
+        if os.path.exists(path) or not os.path.exists(self.folder):
+            shutil.rmtree(self.folder, ignore_errors=True)
+        try:
+            os.makedirs(self.folder, exist_ok=True)
+            for name in COMPANIONS:
+                shutil.rmtree(self.folderOf(name), ignore_errors=True)
+            with replaced(path) as file:
+                json.dump({"key": key}, file)
+        except OSError as error:
+            raise Refused(f"--out: cannot write to {self.folder}: {error.strerror}") from None  # fmt: skip
+
+    def over(self) -> None:
+        """The run itself has come to its end: the next one makes its companions anew."""
+        with contextlib.suppress(OSError):
+            os.remove(os.path.join(self.folder, PLAN))
+
+    def read(self) -> None:
+        """Read the numbers of all companions that are over."""
+        for name in COMPANIONS:
+            self._take(name)
+
+    def _take(self, name):
+        """Read the numbers of a companion. Returns whether it is over."""
+        try:
+            run = readRun(self.folderOf(name))
+        except Refused:
+            return False
+        if run.get("interrupted") or "error" in run:
+            return False
+        missing = [key for _, key, _ in QUANTITIES if not run.get(key)]
+        if missing:
+            raise Refused(
+                "--accuracy: it is about the peak and the work of a push, and this scene has no push that takes force"
+            )
+        found = {what: run[key] for what, key, _ in QUANTITIES}
+        found.update(seconds=run["wall_clock_s"], collapsed=run["collapsed"])
+        self.numbers[name] = found
+        return True
+
+    def run(self, names: list[str]) -> None:
+        """Run companions that are not over yet, as many at a time as there are cores.
+
+        :raises Refused: with what a companion said, if it could not be run
+        :raises Interrupted: after Ctrl-C and SIGTERM, when all of them have ended
+        """
+        due = [name for name in names if name not in self.numbers]
+        stopped: list[int] = []
+        handlers = {
+            n: signal.signal(n, lambda number, frame: stopped.append(number))
+            for n in (signal.SIGINT, signal.SIGTERM)
+        }
+        running: dict[str, subprocess.Popen[bytes]] = {}
+        cores = len(os.sched_getaffinity(0))
+        try:
+            while (due or running) and not stopped:
+                while due and len(running) < cores:
+                    name = due.pop(0)
+                    running[name] = self._start(name)
+                time.sleep(LOOK_EVERY)
+                for name, process in list(running.items()):
+                    if process.poll() is not None:
+                        del running[name]
+                        self._ended(name, process.returncode)
+            if stopped:
+                raise Interrupted()
+        finally:
+            for process in running.values():
+                with contextlib.suppress(ProcessLookupError):
+                    process.terminate()
+            for process in running.values():
+                process.wait()
+            for number, handler in handlers.items():
+                signal.signal(number, handler)
+
+    def _start(self, name):
+        options = {**CHOSEN, **COMPANIONS[name]}
+        words = [f"{asOption(option)}={value}" for option, value in options.items()]
+        folder = self.folderOf(name)
+        command = [*self.command, *words, "--lean", "--checkpoint-every=0", f"--out={folder}"]  # fmt: skip
+        env = {**os.environ, "OMP_NUM_THREADS": "1", COMPANION: str(os.getpid())}
+        for other in (batch.VARIABLE, batch.SCENE, batch.PROBE):
+            env.pop(other, None)
+        try:
+            with open(folder + ".log", "wb") as log:
+                # in a session of its own: Ctrl-C is for this process, which ends it in order
+                return subprocess.Popen(command, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True)  # fmt: skip
+        except OSError as error:
+            raise Refused(f"--accuracy: cannot run {command[0]}: {error.strerror}") from None  # fmt: skip
+
+    def _ended(self, name, status):
+        log = self.folderOf(name) + ".log"
+        if status not in (0, 1) or not self._take(name):
+            with contextlib.suppress(OSError):
+                with open(log, errors="replace") as file:
+                    lines = [line.strip() for line in file if line.strip()]
+                refused = [line for line in lines if "--accuracy: " in line]
+                if refused:
+                    raise Refused("--accuracy: " + refused[-1].partition("--accuracy: ")[2])  # fmt: skip
+                raise Refused(
+                    f"--accuracy: the run {name} did not come to its end: {lines[-1] if lines else f'exit status {status}'}; see {log}"
+                )
+            raise Refused(f"--accuracy: the run {name} ended with status {status}")
+        found = self.numbers[name]
+        fell = ", collapsed" if found["collapsed"] else ""
+        say(f"accuracy: {name}: peak {found['peak']:.4g} kN, work {found['work']:.4g} J, {found['seconds']:.0f} s{fell}")  # fmt: skip
+
+
+# -- what is chosen and reported --------------------------------------------------------------------------------------
+
+
+def choose(companions: Companions, percent: float) -> Any:
+    """Run companions until a fidelity is good enough, or until there is no better one. Returns the :class:`Fidelity`.
+
+    :param percent: the half-width that is wanted [%]
+    """
+    for number, fidelity in enumerate(FIDELITIES):
+        companions.run(needed(number))
+        widths = []
+        for quantity, _, _ in QUANTITIES:
+            values = {name: n[quantity] for name, n in companions.numbers.items()}
+            scale = max(map(abs, values.values()))
+            widths.append(100 * halfWidth(number, quantity, values, scale)[0])
+        enough = max(widths) <= percent
+        about = ", ".join(f"{q[0]} ± {w:.2g} %" for q, w in zip(QUANTITIES, widths))
+        last = number == len(FIDELITIES) - 1
+        verdict = "chosen" if enough else "the finest there is" if last else "not enough"  # fmt: skip
+        say(f"accuracy: {fidelity.name}: {about} expected: {verdict}")
+        if enough or last:
+            return fidelity
+    raise AssertionError
+
+
+class Asked:
+    """What ``--accuracy`` found for a run: its fidelity and the companions beside it.
+
+    :param percent: that was asked for [%]
+    :param fidelity: :class:`masonry.run.presets.Fidelity`
+    :param companions: :class:`Companions`, which have run
+    """
+
+    def __init__(self, percent: float, fidelity: Any, companions: Companions) -> None:
+        self.percent, self.fidelity, self.companions = percent, fidelity, companions
+
+    def report(self, run: dict[str, Any]) -> dict[str, Any]:
+        """The entries of run.json for the numbers of a run: ``accuracy`` and the half-widths beside the values.
+
+        :param run: entries of run.json, with those of :data:`QUANTITIES`
+        """
+        number = FIDELITIES.index(self.fidelity)
+        found, entries = [], {}
+        for quantity, key, unit in QUANTITIES:
+            value = run[key]
+            values = {name: n[quantity] for name, n in self.companions.numbers.items()}
+            scale = abs(value) or 1.0
+            share, parts = halfWidth(number, quantity, {**values, MAIN: value}, scale)
+            how = ", ".join(f"{name} {100 * part:.2g} %" for name, part in parts.items())  # fmt: skip
+            found.append(
+                {
+                    "name": quantity,
+                    "unit": unit,
+                    "value": value,
+                    "half_width": share * abs(value),
+                    "half_width_percent": 100 * share,
+                    "parts_percent": {n: 100 * part for n, part in parts.items()},
+                    "how": f"the sum of what companions of this run differ by and of what they do not show: {how}",
+                }
+            )
+            entries[f"{quantity}_half_width_{unit}"] = share * abs(value)
+        entries["accuracy"] = {
+            "asked_percent": self.percent,
+            "reached": max(f["half_width_percent"] for f in found) <= self.percent,
+            "fidelity": self.fidelity.name,
+            "quantities": found,
+            "not_covered": NOT_COVERED,
+            "companions": [
+                {"name": n, "options": COMPANIONS[n], **numbers, "folder": self.companions.folderOf(n)}
+                for n, numbers in self.companions.numbers.items()
+            ],
+        }  # fmt: skip
+        return entries
+
+
+def answers(entry: dict[str, Any]) -> list[dict[str, Any]]:
+    """The entry ``accuracy`` of run.json as answers of the push: dicts with ``name``, ``unit``, ``value``, ``uncertainty``, ``how``."""
+    return [
+        {
+            "name": q["name"],
+            "unit": q["unit"],
+            "value": q["value"],
+            "how": f"{q['how']}. It does not cover {entry['not_covered']}",
+            "uncertainty": q["half_width"],
+        }
+        for q in entry["quantities"]
+    ]
+
+
+def lines(entry: dict[str, Any]) -> list[str]:
+    """The entry ``accuracy`` of run.json as lines to read."""
+    values = ", ".join(
+        f"{q['name']} {q['value']:.4g} ± {q['half_width']:.2g} {q['unit']} ({q['half_width_percent']:.2g} %)"
+        for q in entry["quantities"]
+    )
+    said = [f"accuracy: {values}, by {entry['fidelity']} and {len(entry['companions'])} runs beside it"]  # fmt: skip
+    fell = [one["name"] for one in entry["companions"] if one["collapsed"]]
+    if fell:
+        said.append(
+            f"accuracy: collapsed: {'; '.join(fell)}; the work of a run that collapses ends there"
+        )
+    if not entry["reached"]:
+        said.append(
+            f"accuracy: {entry['asked_percent']:g} % is not reached by the fidelity that was chosen: the ± is what was found"
+            if entry["fidelity"] != FIDELITIES[-1].name
+            else f"accuracy: {entry['asked_percent']:g} % is not reached by the finest fidelity there is: the ± is what was found"
+        )
+    said.append(f"accuracy: the ± does not cover {entry['not_covered']}")
+    return said
+
+
+def ask(name: str, args: Any, script: str | None, words: list[str]) -> Asked | None:
+    """Carry out ``--accuracy``: run companions, and give the options the values of the fidelity that was chosen.
+
+    :param name: of the scene
+    :param args: the options of the run, which are changed
+    :param script: path of the script of the scene, if it takes its options from the command line; else None
+    :param words: of the command line
+    :returns: None for a companion, a probe, and runs without ``--accuracy``
+    :raises Refused: if it means nothing here
+    :raises Interrupted: after Ctrl-C and SIGTERM
+    """
+    if not args.accuracy or isCompanion() or batch.PROBE in os.environ:
+        return None
+    given = getattr(args, "given", None) or {}
+    chosen = [n for n in CHOSEN if n in given]
+    if args.preset or chosen:
+        said = " and ".join(["--preset"] * bool(args.preset) + [*map(asOption, chosen)])
+        raise Refused(f"--accuracy: it chooses block model, mesh, rate, points, damping and time step itself: leave {said} away")  # fmt: skip
+    if args.history:
+        raise Refused("--accuracy: it is about a push in one direction, not about the loops of --history")  # fmt: skip
+    folder = args.out or os.path.join("results", name)
+    if args.resume:
+        companions, fidelity = Companions(args.resume, []), fidelityOf(args)
+        companions.read()
+        missing = [n for k in range(len(FIDELITIES)) for n in needed(k) if n not in companions.numbers]  # fmt: skip
+        if not fidelity or set(missing) & set(needed(0)):
+            raise Refused(f"--resume: {companions.folder} does not have the runs beside this one any more")  # fmt: skip
+        return Asked(args.accuracy, fidelity, companions)
+    if script is None:
+        raise Refused(
+            f"--accuracy: scene {name} must be a script that takes its options from the command line, since it is run several times"
+        )
+    program = ["yade", "-n", "-x"] if hasattr(sys, "yade_argv") else [sys.executable]
+    companions = Companions(folder, [*program, script, *words])
+    with open(script, "rb") as file:
+        text = file.read()
+    said = json.dumps([os.path.abspath(script), words, sorted(COMPANIONS)])
+    companions.begin(hashlib.sha256(text + said.encode()).hexdigest())
+    fidelity = choose(companions, args.accuracy)
+    vars(args).update({**CHOSEN, **fidelity.options})
+    return Asked(args.accuracy, fidelity, companions)
