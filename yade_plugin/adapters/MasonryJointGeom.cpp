@@ -101,6 +101,10 @@ std::vector<double> MasonryJointGeom::record() {
     int count = group->points;
     n(count);
     exchange(n, group->joints[index]);
+    double fields[JointShapes::numbersOfFields];
+    group->readFields(index, fields);
+    for (double& number : fields)
+        n(number);
     for (int p = 0; p < count; ++p) {
         Vector3r offsetOfPoint = offset(p), jumpOfPoint = jump(p), viscous = group->viscousAt(p, index);
         double areaOfPoint = area(p);
@@ -121,6 +125,10 @@ void MasonryJointGeom::setRecord(const std::vector<double>& flat) {
     const shared_ptr<JointShapes> made(new JointShapes(1, count));
     if (group) made->joints[0].attached = reference().attached;
     exchange(n, made->joints[0]);
+    double fields[JointShapes::numbersOfFields];
+    for (double& number : fields)
+        n(number);
+    made->writeFields(0, fields);
     for (int p = 0; p < count; ++p) {
         Vector3r offsetOfPoint = Vector3r::Zero(), jumpOfPoint = Vector3r::Zero(), viscous = Vector3r::Zero();
         double areaOfPoint = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryJointLoop.hpp"
 #include "scene/EngineTurn.hpp"
+#include <algorithm>
 
 template class masonry::Adapter<masonry::MasonryJointLoop, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJointLoop)
@@ -17,6 +18,17 @@ int MasonryJointLoop::groups() const {
     auto& store = SceneStore::present();
     store.update();
     return int(store.kinds.size());
+}
+
+int MasonryJointLoop::intactJoints() const {
+    const BetweenSteps still;
+    auto& store = SceneStore::present();
+    store.update();
+    int count = 0;
+    for (const auto& kind : store.kinds)
+        count += int(
+            std::count(kind.shapes->byPoints.begin(), kind.shapes->byPoints.begin() + kind.shapes->joints.size(), 0));
+    return count;
 }
 
 } // namespace masonry

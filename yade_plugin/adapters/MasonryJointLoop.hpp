@@ -41,6 +41,9 @@ public:
                          "Number of groups of joints that a step takes together: their properties have equal values, "
                          "whether in one MasonryJoint or in many, and they share stiffness and number of subcontacts. "
                          "A step of many small groups takes longer than one of a few large ones.");
+        cls.add_property("intactJoints", &MasonryJointLoop::intactJoints,
+                         "Number of joints whose points need not be advanced, because they are between rigid blocks "
+                         "and have always been elastic. It is known from the first step on.");
     }
 
     bool isActivated() override { return standsAlone(*this); }
@@ -48,6 +51,7 @@ public:
 
 private:
     int groups() const;
+    int intactJoints() const;
 
     JointPlan plan_; // holds no state: all that it keeps from step to step follows from the scene
 };

@@ -153,6 +153,110 @@ MASONRY_VECTORISED void finishRigid(int n, const JointFrames& f, double* __restr
     }
 }
 
+// ---- intact joints ----------------------------------------------------------------------------------------------
+
+MASONRY_VECTORISED void spreadIntact(int n, const IntactFaces& faces, JointFrames& __restrict out) {
+    const double *m0 = faces.middle[0], *m1 = faces.middle[1], *m2 = faces.middle[2];
+#pragma GCC ivdep
+    for (int i = 0; i < n; ++i) {
+        const double twist = 4 * out.w[i];
+        const double t0 = twist * out.v[0][i], t1 = twist * out.v[1][i], t2 = twist * out.v[2][i];
+        out.turn[0][i] = t0;
+        out.turn[1][i] = t1;
+        out.turn[2][i] = t2;
+        out.middle[0][i] = out.common[0][i] + (t1 * m2[i] - t2 * m1[i]);
+        out.middle[1][i] = out.common[1][i] + (t2 * m0[i] - t0 * m2[i]);
+        out.middle[2][i] = out.common[2][i] + (t0 * m1[i] - t1 * m0[i]);
+    }
+}
+
+MASONRY_VECTORISED void jumpIntact(int n, const IntactFaces& faces, const double* a1, const double* a2,
+                                   JointFrames& __restrict out) {
+    const double *m1 = faces.middle[1], *m2 = faces.middle[2];
+#pragma GCC ivdep
+    for (int i = 0; i < n; ++i) {
+        const double b1 = a1[i] - m1[i], b2 = a2[i] - m2[i], t0 = out.turn[0][i];
+        out.step[0][i] = out.middle[0][i] + (out.turn[1][i] * b2 - out.turn[2][i] * b1);
+        out.step[1][i] = out.middle[1][i] - t0 * b2;
+        out.step[2][i] = out.middle[2][i] + t0 * b1;
+    }
+}
+
+MASONRY_VECTORISED void openIntact(int n, const IntactFaces& faces, const double* a1, const double* a2,
+                                   JointFrames& __restrict out) {
+    const double *m1 = faces.middle[1], *m2 = faces.middle[2];
+#pragma GCC ivdep
+    for (int i = 0; i < n; ++i)
+        out.step[0][i] = out.middle[0][i] + (out.turn[1][i] * (a2[i] - m2[i]) - out.turn[2][i] * (a1[i] - m1[i]));
+}
+
+namespace {
+
+// Integral over a face of a product of two fields, each component times its stiffness [J].
+[[gnu::always_inline]] inline double productOver(const IntactFaces& faces, int i, const double* a, const double* b) {
+    const double I11 = faces.inertia[0][i], I22 = faces.inertia[1][i], I12 = faces.inertia[2][i];
+    const double normal =
+        faces.area[i] * a[0] * b[0] + a[4] * b[4] * I22 - (a[4] * b[5] + a[5] * b[4]) * I12 + a[5] * b[5] * I11;
+    const double shear = faces.area[i] * (a[1] * b[1] + a[2] * b[2]) + a[3] * b[3] * (I11 + I22);
+    return faces.normal * normal + faces.shear * shear;
+}
+
+} // namespace
+
+double dampIntact(int n, const IntactFaces& faces, double times, const unsigned char* byPoints,
+                  const double* const* old, double* const* damped, JointFrames& out) {
+    double taken = 0;
+    for (int i = 0; i < n; ++i) {
+        if (byPoints[i]) continue;
+        double change[6], both[6];
+        for (int d = 0; d < 6; ++d) {
+            double& field = d < 3 ? out.middle[d][i] : out.turn[d - 3][i];
+            change[d] = field - old[d][i];
+            const double now = times * change[d];
+            both[d] = now + damped[d][i];
+            damped[d][i] = now;
+            field += now;
+        }
+        taken += 0.5 * productOver(faces, i, both, change);
+    }
+    return taken;
+}
+
+// With b from the middle of the face, its arm is half^T (middle + b) + jump / 2 (see jumpRigid), and the stress is the
+// stiffness times the field. The first moments of b are zero.
+MASONRY_VECTORISED void pullIntact(int n, const IntactFaces& faces, const unsigned char* byPoints,
+                                   JointFrames& __restrict out) {
+    const double *m0 = faces.middle[0], *m1 = faces.middle[1], *m2 = faces.middle[2], *area = faces.area;
+    const double *i11 = faces.inertia[0], *i22 = faces.inertia[1], *i12 = faces.inertia[2];
+    const double kn = faces.normal, ks = faces.shear;
+#pragma GCC ivdep
+    for (int i = 0; i < n; ++i) {
+        const double x = kn * area[i] * out.middle[0][i], y = ks * area[i] * out.middle[1][i],
+                     z = ks * area[i] * out.middle[2][i];
+        const double t0 = out.turn[0][i], t1 = out.turn[1][i], t2 = out.turn[2][i];
+        const double v0 = out.v[0][i], v1 = out.v[1][i], v2 = out.v[2][i];
+        const double a0 = m0[i], a1 = m1[i], a2 = m2[i];
+        const double shrink = 1 - 2 * (v0 * v0 + v1 * v1 + v2 * v2), along = 2 * (v0 * a0 + v1 * a1 + v2 * a2);
+        const double r0 = shrink * a0 + along * v0 + 0.5 * out.common[0][i];
+        const double r1 = shrink * a1 + along * v1 + 0.5 * out.common[1][i];
+        const double r2 = shrink * a2 + along * v2 + 0.5 * out.common[2][i];
+        // integrals of b × stress, and of (v · b) stress
+        const double bend1 = kn * (t1 * i22[i] - t2 * i12[i]), bend2 = kn * (t2 * i11[i] - t1 * i12[i]);
+        const double twist = ks * t0 * (i11[i] + i22[i]);
+        const double h0 = v2 * bend1 - v1 * bend2;
+        const double h1 = -ks * t0 * (v1 * i12[i] + v2 * i22[i]), h2 = ks * t0 * (v1 * i11[i] + v2 * i12[i]);
+        const bool intact = byPoints[i] == 0;
+        const double f0 = out.force[0][i], f1 = out.force[1][i], f2 = out.force[2][i];
+        const double g0 = out.torque[0][i], g1 = out.torque[1][i], g2 = out.torque[2][i];
+        out.force[0][i] = intact ? x : f0;
+        out.force[1][i] = intact ? y : f1;
+        out.force[2][i] = intact ? z : f2;
+        out.torque[0][i] = intact ? r1 * z - r2 * y + shrink * twist + 2 * (v1 * h2 - v2 * h1) : g0;
+        out.torque[1][i] = intact ? r2 * x - r0 * z + shrink * bend1 + 2 * (v2 * h0 - v0 * h2) : g1;
+        out.torque[2][i] = intact ? r0 * y - r1 * x + shrink * bend2 + 2 * (v0 * h1 - v1 * h0) : g2;
+    }
+}
+
 MASONRY_VECTORISED void jumpNodal(int n, const int* place1, const int* place2, const double* u, double* __restrict jx,
                                   double* __restrict jy, double* __restrict jz, JointFrames& __restrict out) {
 #pragma GCC ivdep
@@ -305,6 +409,43 @@ MASONRY_VECTORISED void finishRigidInPlane(int n, const JointFrames& f, double* 
         out[1] = fz;
         out[2] = t;
         out[3] = f.between[0][i] * fx - f.between[1][i] * fz - t;
+    }
+}
+
+MASONRY_VECTORISED void spreadIntactInPlane(int n, const IntactFaces& faces, JointFrames& __restrict out) {
+    const double *m0 = faces.middle[0], *m1 = faces.middle[1];
+#pragma GCC ivdep
+    for (int i = 0; i < n; ++i) {
+        const double twist = 4 * out.w[i] * out.v[2][i];
+        out.turn[0][i] = out.turn[1][i] = out.middle[2][i] = 0;
+        out.turn[2][i] = twist;
+        out.middle[0][i] = out.common[0][i] - twist * m1[i];
+        out.middle[1][i] = out.common[1][i] + twist * m0[i];
+    }
+}
+
+MASONRY_VECTORISED void jumpIntactInPlane(int n, const IntactFaces& faces, const double* a1,
+                                          JointFrames& __restrict out) {
+    const double* m1 = faces.middle[1];
+#pragma GCC ivdep
+    for (int i = 0; i < n; ++i) {
+        out.step[0][i] = out.middle[0][i] - out.turn[2][i] * (a1[i] - m1[i]);
+        out.step[1][i] = out.middle[1][i];
+    }
+}
+
+MASONRY_VECTORISED void pullIntactInPlane(int n, const IntactFaces& faces, const unsigned char* byPoints,
+                                          JointFrames& __restrict out) {
+    const double *m0 = faces.middle[0], *m1 = faces.middle[1], *area = faces.area, *i11 = faces.inertia[0];
+    const double kn = faces.normal, ks = faces.shear;
+#pragma GCC ivdep
+    for (int i = 0; i < n; ++i) {
+        const double x = kn * area[i] * out.middle[0][i], y = ks * area[i] * out.middle[1][i];
+        const bool intact = byPoints[i] == 0;
+        const double f0 = out.force[0][i], f1 = out.force[1][i], t = out.torque[2][i];
+        out.force[0][i] = intact ? x : f0;
+        out.force[1][i] = intact ? y : f1;
+        out.torque[2][i] = intact ? m0[i] * y - m1[i] * x + kn * out.turn[2][i] * i11[i] : t;
     }
 }
 

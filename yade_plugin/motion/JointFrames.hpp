@@ -24,6 +24,8 @@ struct JointFrames {
     double w[most];                 // its scalar part
     double between[3][most];        // from centre to centre, global axes [m]
     double common[3][most];         // part of the jump that is the same at all subcontacts [m]
+    double middle[3][most];         // of intact joints the jump at the middle of the face [m],
+    double turn[3][most];           // and its change over the face [-]: the cross product with the way from the middle
     double step[3][most];           // change of the present subcontact's jump in this step, for the law [m]
     double normalStress[most];      // at the present subcontact, from the law [Pa]
     double arm[3][most];            // of the present subcontact's force, from the centre of block 1 [m]
@@ -52,6 +54,28 @@ void pullRigid(int n, const double* area, const double* normal, const double* sh
                JointFrames&);
 void finishRigid(int n, const JointFrames&, double* onJoints);
 
+// Intact joints between rigid blocks, whose stresses are the stiffness times the jumps (see JointPlan). The functions
+// are called in the order align, spreadIntact, then for some subcontacts jumpIntact or openIntact, then dampIntact and
+// pullIntact, then finish.
+struct IntactFaces {          // columns that begin at the first joint
+    const double* middle[3];  // of a face, from the centre of block 1 in the reference state [m]
+    const double* area;       // [m²]
+    const double* inertia[3]; // second moments about the middle: along the first tangent, the second, and mixed [m⁴]
+    double normal, shear;     // stiffnesses [Pa/m]
+};
+// Fills `middle` and `turn`.
+void spreadIntact(int n, const IntactFaces&, JointFrames&);
+// The jumps at a subcontact with the offsets a1 and a2, and the opening alone; in `step`.
+void jumpIntact(int n, const IntactFaces&, const double* a1, const double* a2, JointFrames&);
+void openIntact(int n, const IntactFaces&, const double* a1, const double* a2, JointFrames&);
+// Adds `times` the change of the jumps in this step to `middle` and `turn`, so that the stresses of damping come to
+// those of the law. `old` are the columns of middle and turn of the step before [m], `damped` those of what was added
+// then, which are replaced. Returns the energy taken [J]. Joints that are marked in `byPoints` are left alone.
+double dampIntact(int n, const IntactFaces&, double times, const unsigned char* byPoints, const double* const* old,
+                  double* const* damped, JointFrames&);
+// Sets force and torque on block 1 of the joints that are not marked in `byPoints`.
+void pullIntact(int n, const IntactFaces&, const unsigned char* byPoints, JointFrames&);
+
 // Joints with a deformable side, whose subcontacts move by displacements `u` [m]. `place1` and `place2` say where in
 // `u` the two sides of the present subcontact stand; the three components are `lanes` numbers apart. `onPoints`
 // receives three numbers for each joint: the force on side 1 of the present subcontact, global axes [N]. Of `onJoints`
@@ -76,6 +100,9 @@ void jumpRigidInPlane(int n, const double* a0, const double* a1, double* j0, dou
 void pullRigidInPlane(int n, const double* area, const double* normal, const double* shear, const double* a0,
                       const double* a1, JointFrames&);
 void finishRigidInPlane(int n, const JointFrames&, double* onJoints);
+void spreadIntactInPlane(int n, const IntactFaces&, JointFrames&);
+void jumpIntactInPlane(int n, const IntactFaces&, const double* a1, JointFrames&);
+void pullIntactInPlane(int n, const IntactFaces&, const unsigned char* byPoints, JointFrames&);
 void alignNodalInPlane(int n, const int* body1, const int* body2, const double* const* turn, const double* const* f1,
                        const double* const* f2, JointFrames&);
 void jumpNodalInPlane(int n, const int* place1, const int* place2, const double* u, double* j0, double* j1,

@@ -68,7 +68,9 @@ BodyStep stepOf(const State& s, const BodyForces& on, const Vector3r& gravity, d
     // components of the torque about the global axes. The torque that stops a rotation depends on the body's own axes;
     // the smallest inertia gives a torque that never reverses it.
     const bool restrained = rotationRestrained(s);
-    const Vector3r gained = restrained || damping.host ? Vector3r::Zero() : Vector3r(inverseInertia(s) * on.torque);
+    const Matrix3r inverse = restrained ? Matrix3r::Zero() : inverseInertia(s);
+    const bool damped = !restrained && !damping.host && alpha > 0;
+    const Vector3r gained = damped ? Vector3r(inverse * on.torque) : Vector3r::Zero();
     const double least = s.inertia.minCoeff();
     Vector3r taken = Vector3r::Zero();
     for (int i = 0; i < 3; ++i) {
@@ -93,7 +95,7 @@ BodyStep stepOf(const State& s, const BodyForces& on, const Vector3r& gravity, d
             }
     } else {
         const Matrix3r axes = s.ori.toRotationMatrix();
-        step.angVel += dt * (inverseInertia(s) * step.torque);
+        step.angVel += dt * (inverse * step.torque);
         e.kinetic += 0.5 * (axes.transpose() * s.angVel).dot(s.inertia.cwiseProduct(axes.transpose() * step.angVel));
     }
     e.damped += 0.5 * dt * taken.dot(s.angVel);

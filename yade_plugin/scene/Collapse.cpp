@@ -95,6 +95,7 @@ Collapse CollapseWatch::look(const yade::Scene& scene, const BodyColumns& column
                                 columns.orientation[2].data(), columns.orientation[3].data()};
     for (const auto& kind : kinds) {
         const auto& shapes = *kind.shapes;
+        shapes.bringPoints();
         const double each = 1.0 / shapes.points;
         for (int j = 0; j < int(shapes.joints.size()); ++j, ++n) {
             const auto& joint = joints_[n];

@@ -36,6 +36,7 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
         throw std::invalid_argument("MasonryIntegrator remembers forces of " + std::to_string(last_[0].size()) +
                                     " bodies, the scene has " + std::to_string(count));
     const auto on = scene.forces().sums(count);
+    combines_ = combined();
     for (auto& column : last_)
         if (combined()) column.resize(count, 0);
     for (auto* load : loads) { // a script may have changed its body since the load acted
@@ -93,11 +94,11 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
     }
     findWeights(bodies, first, count, all);
     if (axes != 0) {
-        const RigidMotion::Around around{scene.dt, {gravity[0], gravity[1], gravity[2]}, combined()};
+        const RigidMotion::Around around{scene.dt, {gravity[0], gravity[1], gravity[2]}, combines_};
         double unused[RigidMotion::most] = {}; // local damping does not use earlier forces
         double* last[6];
         for (int d = 0; d < 6; ++d) {
-            last[d] = combined() ? &last_[d][first] : unused;
+            last[d] = combines_ ? &last_[d][first] : unused;
             if (!(axes >> d & 1)) continue;
             const double* on = (d < 3 ? forces : torques)[first].data() + d % 3;
             for (int i = 0; i < count; ++i) {
@@ -151,13 +152,13 @@ EnergyLedger Integrator::turnFreely(double dt, BodyColumns& bodies, const Vector
                                     int body) {
     auto& s = bodies.state(body);
     BodyForces before{Vector3r::Zero(), Vector3r::Zero()};
-    for (int d = 0; combined() && d < 3; ++d) {
+    for (int d = 0; combines_ && d < 3; ++d) {
         before.force[d] = last_[d][body];
         before.torque[d] = last_[3 + d][body];
     }
     const auto step =
-        stepOf(s, {force, torque}, gravity, dt, {damping, false, combined() ? &before : nullptr, massDamping});
-    for (int d = 0; combined() && d < 3; ++d) {
+        stepOf(s, {force, torque}, gravity, dt, {damping, false, combines_ ? &before : nullptr, massDamping});
+    for (int d = 0; combines_ && d < 3; ++d) {
         last_[d][body] = before.force[d];
         last_[3 + d][body] = before.torque[d];
     }

@@ -34,6 +34,7 @@ private:
         EnergyLedger energies;              // `fallen` is the sum of m g·u
         Vector3r moment = Vector3r::Zero(); // sum of m u [kg m]; see GravityWork
     };
+    bool combines_ = false; // scratch of a step: combined(), whose comparison of texts takes too long for every body
     // Makes a step of bodies `first` up to, but without, `beyond`.
     Sums advancePiece(const yade::Scene&, BodyColumns&, const Vector3r* forces, const Vector3r* torques, int first,
                       int beyond);

@@ -91,6 +91,21 @@ struct JointReference {
     bool rigid(int side) const { return !attached || attached->sides[side].empty(); }
 };
 
+// A vector field that is linear over the faces of joints, in columns: the value at the middle of a face, and the vector
+// whose cross product with the way from there is the change.
+struct LinearField {
+    std::vector<double> middle[3], turn[3];
+
+    bool empty() const { return middle[0].empty(); }
+    void resize(std::size_t count);
+    Vector3r at(int joint, double b1, double b2) const { // at the way (0, b1, b2) from the middle
+        const double t0 = turn[0][joint], t1 = turn[1][joint], t2 = turn[2][joint];
+        return {middle[0][joint] + (t1 * b2 - t2 * b1), middle[1][joint] - t0 * b2, middle[2][joint] + t0 * b1};
+    }
+    void take(int joint, const LinearField& from, int other);
+    void clear();
+};
+
 // Geometry and jumps of joints that have the same number of subcontacts. The columns hold first the values of
 // subcontact 0 of all joints, then those of subcontact 1, and so on. Vectors are in the joints' axes.
 struct JointShapes : JointGroup {
@@ -106,16 +121,47 @@ struct JointShapes : JointGroup {
     std::vector<double> area;      // of a subcontact [m²]
     std::vector<double> offset[3]; // from the centre of body 1 to the subcontact in the reference state [m]
 
+    // Intact joints (see JointPlan): a joint between rigid blocks that has always been elastic. Its jump is linear over
+    // its face and its stress is the stiffness times that, so a step only brings `linear` up to date. What stands in
+    // the columns of jumps, stresses of damping, openings and stresses of the law is then of an earlier step, until
+    // somebody reads them: bringPoints() is called before that. All else that the law remembers of the points is always
+    // up to date.
+    std::vector<unsigned char> byPoints; // of every joint, whether it is not intact; never becomes so again
+    LinearField linear;                  // jumps of intact joints [m]
+    LinearField damped; // of the stress of JointDamping, what is to be multiplied by the stiffnesses [m]; empty like
+                        // `viscous`
+    mutable bool behind = false;           // whether the columns of intact joints are of an earlier step
+    std::shared_ptr<LawColumns> law;       // of the same joints; null before they belong to a scene
+    std::vector<double> middle[3];         // middle of the face, as `offset` [m]; empty before findMiddles()
+    std::vector<double> whole, inertia[3]; // area [m²] and its second moments about the middle, along the first
+                                           // tangent, along the second, and mixed [m⁴]
+    std::vector<int> rim;                  // numbers of the points that are corners of their hull in one of the joints
+
+    // Writes what intact joints have in their linear fields to their points, if that is of an earlier step.
+    void bringPoints() const {
+        if (behind) const_cast<JointShapes*>(this)->writePoints();
+    }
+    void bringPointsOf(int joint); // the same for one joint, always
+    void findMiddles();            // fills `middle` to `rim` from areas and offsets
+    // Place of a joint in the columns `middle` to `inertia`.
+    std::size_t face(int joint) const { return alike ? std::size_t(joint % JointFrames::most) : std::size_t(joint); }
+    // Whether what stands at the points of a joint is that of an intact one with these linear fields.
+    bool isIntact(int joint) const;
+
     // Place of a subcontact in the columns of jumps.
     std::size_t at(int point, int joint) const { return std::size_t(point) * stride + joint; }
     // Place of a subcontact in the columns of areas and offsets.
     std::size_t shape(int point, int joint) const {
         return alike ? std::size_t(point) * JointFrames::most : at(point, joint);
     }
-    Vector3r jumpAt(int point, int joint) const { return vectorAt(jump, at(point, joint)); }
+    Vector3r jumpAt(int point, int joint) const {
+        bringPoints();
+        return vectorAt(jump, at(point, joint));
+    }
     Vector3r offsetAt(int point, int joint) const { return vectorAt(offset, shape(point, joint)); }
     double areaAt(int point, int joint) const { return area[shape(point, joint)]; }
     Vector3r viscousAt(int point, int joint) const {
+        bringPoints();
         return viscous[0].empty() ? Vector3r(Vector3r::Zero()) : vectorAt(viscous, at(point, joint));
     }
     void setViscous(int point, int joint, const Vector3r& value) {
@@ -126,12 +172,21 @@ struct JointShapes : JointGroup {
     void dropViscous() {
         for (auto& column : viscous)
             column.clear();
+        damped.clear();
     }
     void makeViscous() {
         for (auto& column : viscous)
             column.resize(jump[0].size(), 0);
+        damped.resize(byPoints.size());
     }
-    void setJump(int point, int joint, const Vector3r& value) { setVector(jump, at(point, joint), value); }
+    void setJump(int point, int joint, const Vector3r& value) {
+        bringPoints();
+        setVector(jump, at(point, joint), value);
+    }
+    // The numbers of a joint that its points do not hold: whether it is intact, and its linear fields.
+    static constexpr int numbersOfFields = 13;
+    void readFields(int joint, double* numbers) const;
+    void writeFields(int joint, const double* numbers);
     // Sets area and offset of a subcontact. Only for groups whose joints do not share them.
     void setShape(int point, int joint, const Vector3r& offsetOfPoint, double areaOfPoint) {
         setVector(offset, at(point, joint), offsetOfPoint);
@@ -145,6 +200,7 @@ struct JointShapes : JointGroup {
     void shareShapes();
 
 private:
+    void writePoints();
     static Vector3r vectorAt(const std::vector<double>* columns, std::size_t i) {
         return {columns[0][i], columns[1][i], columns[2][i]};
     }
@@ -161,18 +217,40 @@ inline bool sameButRoundOff(double a, double b, double scale) { return std::abs(
 // State of the law in joints whose properties have equal values, and which share stiffness.
 struct JointStates : JointGroup {
     JointStates(const shared_ptr<PropertySet>& kind, const ElasticStiffness& k, int count, int points)
-        : joints(count, kind), columns(kind->ownLaw()->columns(k, count, points)) {}
+        : joints(count, kind), columns(*this, kind->ownLaw()->columns(k, count, points)) {}
+
+    // The columns of the law. Whoever reads them finds those of intact joints up to date.
+    class Current {
+    public:
+        Current(const JointStates& of, std::unique_ptr<LawColumns> all) : of_(of), all_(std::move(all)) {}
+        LawColumns* operator->() const { return &**this; }
+        LawColumns& operator*() const {
+            if (of_.shapes) of_.shapes->bringPoints();
+            return *all_;
+        }
+        // As they stand, for what does not depend on the present state.
+        const std::shared_ptr<LawColumns>& asTheyStand() const { return all_; }
+
+    private:
+        const JointStates& of_;
+        std::shared_ptr<LawColumns> all_;
+    };
 
     std::vector<shared_ptr<PropertySet>> joints; // the property set of each; different objects have equal values
-    std::unique_ptr<LawColumns> columns;
+    Current columns;
     shared_ptr<JointShapes> shapes; // of the same joints in the same order; null before they belong to a scene
 
     // Copies joint number `other` of another group into place `number` of this one.
     void take(int number, const JointStates& from, int other) {
         joints[number] = from.joints[other];
-        for (int p = 0; p < columns->points(); ++p)
-            columns->take(p, number, *from.columns, other);
+        auto& own = *columns;
+        const auto& others = *from.columns;
+        for (int p = 0; p < own.points(); ++p)
+            own.take(p, number, others, other);
     }
+
+    JointStates(const JointStates&) = delete;
+    JointStates& operator=(const JointStates&) = delete;
 };
 
 // Joints whose properties have equal values, and which share stiffness and number of subcontacts.

@@ -94,6 +94,8 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
     }
     for (int b = 0; b < store.bodies.size(); ++b)
         if (store.bodies.has(b)) store.bodies.noticeAll(b);
+    for (const auto& kind : store.kinds)
+        kind.shapes->bringPoints();
     plane_ = mayBePlane && liesInPlane(store);
     if (plane_) dropStressOutOfPlane(store);
     onBodies_.clear();
@@ -116,6 +118,7 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
             batches_.push_back({int(k), from});
         buildKind(store, kind, kinds_[k], atBodies);
         if (kind.attached) buildPlaces(kind, kinds_[k], atPlaces, known);
+        findIntact(kind, kinds_[k]);
     }
     referenceY_.assign(count, 0);
     momentPlace_.assign(count, -1);
@@ -137,6 +140,32 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
     store_ = &store;
     revision_ = store.revision();
     Parallel::instance().sceneChanged();
+}
+
+// Decides which joints are intact: those whose points say so, and that were never advanced by their points.
+void JointPlan::findIntact(const JointKind& kind, Kind& made) {
+    auto& shapes = *kind.shapes;
+    const int count = int(shapes.joints.size());
+    if (kind.attached || !shapes.law->knowsIntact()) {
+        std::fill_n(shapes.byPoints.begin(), count, 1);
+        return;
+    }
+    if (plane_) // nothing yields the plane; there may be round-off of a run in space
+        for (auto* field : {&shapes.linear, &shapes.damped})
+            for (auto* column : {&field->middle[2], &field->turn[0], &field->turn[1]})
+                std::fill(column->begin(), column->end(), 0.0);
+    shapes.findMiddles();
+    for (int j = 0; j < count; ++j) {
+        if (!shapes.byPoints[j] && !shapes.isIntact(j)) shapes.byPoints[j] = 1;
+        made.intact = made.intact || !shapes.byPoints[j];
+    }
+    shapes.behind = made.intact;
+}
+
+// From now on the joints of a kind are advanced by their points.
+void JointPlan::endIntact(const JointKind& kind) {
+    kind.shapes->bringPoints();
+    std::fill_n(kind.shapes->byPoints.begin(), kind.shapes->joints.size(), 1);
 }
 
 // Bodies are numbered course by course as a rule. A thread that takes the joints of the bodies that it moves itself
@@ -312,13 +341,76 @@ bool JointPlan::noticeBodies(SceneStore& store) {
     return fits;
 }
 
+// Joints side by side in the columns of a kind. Numbers that belong to them begin at the first of them.
+struct JointPlan::Run {
+    const JointKind& kind;
+    const Kind& plan;
+    const BodyColumns& bodies;
+    int from, n;         // number of the first joint within its kind, and of joints
+    bool intact, points; // whether some are intact, and whether some are advanced by their points
+    double dt, stiffnessDamping;
+    JointFrames frames;
+    IntactFaces faces;
+
+    Run(const JointKind& kind, const Kind& plan, const SceneStore& store, double stiffnessDamping)
+        : kind(kind), plan(plan), bodies(store.bodies), dt(store.scene().dt), stiffnessDamping(stiffnessDamping) {}
+
+    JointShapes& shapes() const { return *kind.shapes; }
+    LawColumns& states() const { return *kind.states->columns.asTheyStand(); } // the step brings them up to date
+    unsigned char* byPoints() const { return &shapes().byPoints[from]; }
+};
+
+// Joints are advanced in runs of whole lanes, in which either all are intact or some are not.
 double JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const Kind& plan, int from, int n,
                                double stiffnessDamping) {
-    auto& shapes = *kind.shapes;
-    auto& states = *kind.states->columns;
-    const auto& bodies = store.bodies;
-    JointFrames frames;
-    const int own = plan.alike ? 0 : from;
+    Run run(kind, plan, store, stiffnessDamping);
+    const unsigned char* byPoints = &kind.shapes->byPoints[from];
+    const auto count = [&](int first) { // how many joints of up to eight are advanced by their points
+        int many = 0;
+        for (int i = first; i < std::min(first + lanes, n); ++i)
+            many += byPoints[i];
+        return many;
+    };
+    double taken = 0;
+    for (int first = 0; first < n;) {
+        int beyond = first, advanced = 0;
+        bool points = false;
+        for (; beyond < n; beyond += lanes) {
+            const int many = plan.intact ? count(beyond) : lanes;
+            if (beyond == first)
+                points = many > 0;
+            else if (points != (many > 0))
+                break;
+            advanced += many;
+        }
+        run.from = from + first;
+        run.n = std::min(beyond, n) - first;
+        run.points = points;
+        run.intact = plan.intact && advanced < run.n;
+        taken += advanceRun(run);
+        first = beyond;
+    }
+    return taken;
+}
+
+double JointPlan::advanceRun(Run& run) {
+    double taken = 0;
+    align(run);
+    if (run.intact) watchIntact(run);
+    if (run.points) taken += advancePoints(run);
+    if (run.intact) taken += pullIntactOf(run);
+    double* onJoints = &onJoints_[std::size_t(plane_ ? 4 : 9) * (run.plan.first + run.from)];
+    if (run.kind.attached)
+        (plane_ ? finishNodalInPlane : finishNodal)(run.n, run.frames, onJoints);
+    else
+        (plane_ ? finishRigidInPlane : finishRigid)(run.n, run.frames, onJoints);
+    return taken;
+}
+
+void JointPlan::align(Run& run) const {
+    const auto& bodies = run.bodies;
+    const auto& plan = run.plan;
+    const int own = plan.alike ? 0 : run.from;
     // In a planar run the complex number z + ix stands for a place (see JointFrames.hpp).
     const double* const position[3] = {bodies.position[plane_ ? 2 : 0].data(), bodies.position[plane_ ? 0 : 1].data(),
                                        bodies.position[plane_ ? 1 : 2].data()};
@@ -330,15 +422,104 @@ double JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const K
     }
     for (int d = 0; d < 3; ++d)
         span[d] = &plan.span[d][own];
-    const int *body1 = &plan.body1[from], *body2 = &plan.body2[from];
-    if (kind.attached)
-        (plane_ ? alignNodalInPlane : alignNodal)(n, body1, body2, turn, frame1, frame2, frames);
+    const int *body1 = &plan.body1[run.from], *body2 = &plan.body2[run.from];
+    if (run.kind.attached)
+        (plane_ ? alignNodalInPlane : alignNodal)(run.n, body1, body2, turn, frame1, frame2, run.frames);
     else
-        (plane_ ? alignRigidInPlane : alignRigid)(n, body1, body2, position, turn, frame1, frame2, span, frames);
+        (plane_ ? alignRigidInPlane : alignRigid)(run.n, body1, body2, position, turn, frame1, frame2, span,
+                                                  run.frames);
+}
+
+// Finds the jumps of intact joints. Those that are about to yield are advanced by their points from now on; the others
+// take down what their points remember.
+void JointPlan::watchIntact(Run& run) const {
+    auto& shapes = run.shapes();
+    auto& states = run.states();
+    auto& frames = run.frames;
+    const int n = run.n;
+    const std::size_t face = shapes.alike ? 0 : run.from;
+    run.faces = {{&shapes.middle[0][face], &shapes.middle[1][face], &shapes.middle[2][face]},
+                 &shapes.whole[face],
+                 {&shapes.inertia[0][face], &shapes.inertia[1][face], &shapes.inertia[2][face]},
+                 states.stiffness().normal,
+                 states.stiffness().shear};
+    (plane_ ? spreadIntactInPlane : spreadIntact)(n, run.faces, frames);
+    const auto offset = [&](int d, int p) {
+        return &shapes.offset[d][shapes.alike ? shapes.shape(p, 0) : shapes.at(p, run.from)];
+    };
+    Mask yielding[most] = {}, staying[most];
+    const auto look = [&](int p) {
+        plane_ ? jumpIntactInPlane(n, run.faces, offset(1, p), frames)
+               : jumpIntact(n, run.faces, offset(1, p), offset(2, p), frames);
+        states.findYielding(n, frames.step[0], frames.step[1], plane_ ? nullptr : frames.step[2], yielding);
+    };
+    if (states.isConvex())
+        for (int p : shapes.rim)
+            look(p);
+    else
+        for (int p = 0; p < shapes.points; ++p)
+            look(p);
+    unsigned char* byPoints = run.byPoints();
+    Mask yields = 0, stays = 0;
+    for (int i = 0; i < n; ++i) {
+        staying[i] = (yielding[i] | byPoints[i]) == 0;
+        stays |= staying[i];
+        yields |= yielding[i] != 0 && byPoints[i] == 0;
+    }
+    if (yields) {
+        for (int i = 0; i < n; ++i)
+            if (yielding[i] != 0 && byPoints[i] == 0) {
+                shapes.bringPointsOf(run.from + i);
+                byPoints[i] = 1;
+            }
+        run.points = true;
+        run.intact = stays != 0;
+    }
+    for (int p = 0; stays && p < shapes.points; ++p) {
+        plane_ ? jumpIntactInPlane(n, run.faces, offset(1, p), frames)
+               : openIntact(n, run.faces, offset(1, p), offset(2, p), frames);
+        states.remember(p, run.from, n, frames.step[0], staying);
+    }
+}
+
+// Keeps the jumps of intact joints and sets their forces. Returns the energy that damping takes [J].
+double JointPlan::pullIntactOf(Run& run) const {
+    auto& shapes = run.shapes();
+    auto& frames = run.frames;
+    const unsigned char* byPoints = run.byPoints();
+    double *old[6], *damped[6], taken = 0, now[6][most];
+    for (int d = 0; d < 3; ++d) {
+        old[d] = &shapes.linear.middle[d][run.from];
+        old[3 + d] = &shapes.linear.turn[d][run.from];
+        std::copy_n(frames.middle[d], run.n, now[d]);
+        std::copy_n(frames.turn[d], run.n, now[3 + d]);
+    }
+    if (!shapes.damped.empty()) {
+        for (int d = 0; d < 3; ++d) {
+            damped[d] = &shapes.damped.middle[d][run.from];
+            damped[3 + d] = &shapes.damped.turn[d][run.from];
+        }
+        taken = dampIntact(run.n, run.faces, run.stiffnessDamping / run.dt, byPoints, old, damped, frames);
+    }
+    for (int d = 0; d < 6; ++d)
+        if (!plane_ || d == 0 || d == 1 || d == 5) std::copy_n(now[d], run.n, old[d]);
+    (plane_ ? pullIntactInPlane : pullIntact)(run.n, run.faces, byPoints, frames);
+    return taken;
+}
+
+// Advances joints by their points. Intact ones among them are held still: their points keep what they remember.
+double JointPlan::advancePoints(Run& run) {
+    const auto& kind = run.kind;
+    const auto& plan = run.plan;
+    auto& shapes = run.shapes();
+    auto& states = run.states();
+    auto& frames = run.frames;
+    const int from = run.from, n = run.n;
+    const unsigned char* byPoints = run.byPoints();
     const int stride = int(plan.body1.size());
     const auto& k = states.stiffness();
     const auto& properties = states.law().properties();
-    const double times = stiffnessDamping / store.scene().dt;
+    const double times = run.stiffnessDamping / run.dt;
     const bool bonded = properties.tensileStrength > 0 && states.tensionDamage(0, from);
     const JointDamping damping{times * k.normal, times * k.shear, properties.elastic, bonded, properties.friction};
     constexpr double none[most] = {};
@@ -356,6 +537,10 @@ double JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const K
                    : jumpNodal(n, place1, place2, u, j0, j1, j2, frames);
         } else
             plane_ ? jumpRigidInPlane(n, a0, a1, j0, j1, frames) : jumpRigid(n, a0, a1, a2, j0, j1, j2, frames);
+        if (run.intact)
+            for (int d = 0; d < (plane_ ? 2 : 3); ++d)
+                for (int l = 0; l < n; ++l)
+                    frames.step[d][l] = byPoints[l] ? frames.step[d][l] : 0;
         states.advance(p, from, n, frames.step[0], frames.step[1], plane_ ? nullptr : frames.step[2],
                        frames.normalStress);
         const double *normal = frames.normalStress, *a = states.shearStressA(p, from),
@@ -377,11 +562,6 @@ double JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const K
         } else
             plane_ ? pullRigidInPlane(n, area, normal, a, a0, a1, frames) : pullRigid(n, area, normal, a, b, frames);
     }
-    double* onJoints = &onJoints_[std::size_t(plane_ ? 4 : 9) * (plan.first + from)];
-    if (kind.attached)
-        (plane_ ? finishNodalInPlane : finishNodal)(n, frames, onJoints);
-    else
-        (plane_ ? finishRigidInPlane : finishRigid)(n, frames, onJoints);
     return taken;
 }
 
@@ -514,8 +694,15 @@ double JointPlan::advance(SceneStore& store, double stiffnessDamping) {
     }
     if (zones_) moveDependentPoints(store);
     if (stiffnessDamping > 0)
-        for (auto& kind : store.kinds)
+        for (std::size_t k = 0; k < kinds_.size(); ++k) {
+            const auto& kind = store.kinds[k];
             kind.shapes->makeViscous();
+            const auto& properties = kind.shapes->law->law().properties();
+            const bool bonded = properties.tensileStrength > 0 && kind.shapes->law->tensionDamage(0, 0);
+            if (!kinds_[k].intact || properties.elastic || bonded) continue;
+            endIntact(kind); // without a bond the stress of damping is cut point by point
+            kinds_[k].intact = false;
+        }
     const int count = int(batches_.size());
     taken_.resize(count);
     Parallel::instance().overPieces(count, 1, [&](int first, int beyond) {
@@ -527,6 +714,8 @@ double JointPlan::advance(SceneStore& store, double stiffnessDamping) {
                 advanceBatch(store, kind, kinds_[batches_[n].kind], from, std::min(most, left), stiffnessDamping);
         }
     });
+    for (std::size_t k = 0; k < kinds_.size(); ++k)
+        if (kinds_[k].intact) store.kinds[k].shapes->behind = true;
     // The step that follows damping has taken half of its work; after that there is nothing left of it.
     if (stiffnessDamping == 0)
         for (auto& kind : store.kinds)

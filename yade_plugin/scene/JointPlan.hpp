@@ -2,6 +2,13 @@
 // A step of all joints of a scene: it finds the jumps from the places of blocks and nodes, calls the law, and brings
 // the forces to blocks and nodes. The state is in the columns of SceneStore. What a plan keeps itself follows from the
 // scene, and is made anew when the scene has changed. See JointFrames for the arithmetic.
+//
+// Intact joints. The stresses of a joint between rigid blocks that has always been elastic are linear over its face.
+// Its force and moment then follow from the jump at the middle of the face and the moments of area, and whether it is
+// about to yield shows at the outermost points. So its points are not advanced. Just before it yields, the points take
+// the jumps of the step before with the elastic stresses that belong to them, and are advanced by the law from then on.
+// JointShapes::byPoints says which joints are advanced by points. That is part of the state of a joint, so that a run
+// that was saved goes on in the same bits.
 #pragma once
 #include "SceneStore.hpp"
 #include <array>
@@ -25,6 +32,7 @@ private:
                                          // half the angle
         std::vector<double> frame2[4];   // the same in body 2
         std::vector<double> span[3];     // from centre to centre in the reference state, in the joint's axes [m]
+        bool intact = false;             // whether some joints were intact when the plan was made
         std::vector<int> place1, place2; // of both sides of subcontacts with deformable sides, in Zones' rows
     };
     // Side of subcontacts that has no node of its own. It moves with a rigid body, or with the surface between nodes.
@@ -69,7 +77,15 @@ private:
     void buildPlaces(const JointKind&, Kind&, std::vector<std::vector<Receivers::Item>>& atPlaces,
                      std::map<std::array<double, 6>, int>& known);
     bool noticeBodies(SceneStore&);
+    void findIntact(const JointKind&, Kind&);
+    void endIntact(const JointKind&);
+    struct Run; // joints of a batch that are advanced together
     double advanceBatch(SceneStore&, const JointKind&, const Kind&, int from, int count, double stiffnessDamping);
+    double advanceRun(Run&);
+    void align(Run&) const;
+    void watchIntact(Run&) const;
+    double pullIntactOf(Run&) const;
+    double advancePoints(Run&);
     void shareOut();
     void orderBatches(const SceneStore&);
     void moveDependentPoints(const SceneStore&);

@@ -61,9 +61,9 @@ public:
     }
 
     bool made() const { return group != nullptr; }
-    int points() const { return group ? group->columns->points() : 0; }
-    const Law& law() const { return group->columns->law(); }
-    const ElasticStiffness& stiffness() const { return group->columns->stiffness(); }
+    int points() const { return group ? group->columns.asTheyStand()->points() : 0; }
+    const Law& law() const { return group->columns.asTheyStand()->law(); }
+    const ElasticStiffness& stiffness() const { return group->columns.asTheyStand()->stiffness(); }
     // What every law knows of a subcontact; `shown` gives what files show of it beside that, zero if its law does not.
     JointState state(int point) const { return group->columns->state(point, index); }
     double shown(int point, const JointField& field) const { return group->columns->shown(point, index, field); }

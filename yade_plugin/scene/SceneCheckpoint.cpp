@@ -79,12 +79,16 @@ void transferBodies(yade::Scene& scene, Transfer& to) {
     forces.sync();
 }
 
-// A record of a subcontact holds its jump [m], the stress of damping in the last step [Pa], the energies dissipated in
-// tension, shear and compression [J/m²], and the numbers of its law.
+// Before the records of its subcontacts stand the numbers of a joint itself: see JointShapes::readFields(). A record of
+// a subcontact holds its jump [m], the stress of damping in the last step [Pa], the energies dissipated in tension,
+// shear and compression [J/m²], and the numbers of its law.
 void transferJoints(const SceneStore& store, Transfer& to) {
     std::vector<double> records;
     const auto add = [&](double x, double y, double z) { records.insert(records.end(), {x, y, z}); };
-    for (const auto& joint : store.joints)
+    double fields[JointShapes::numbersOfFields];
+    for (const auto& joint : store.joints) {
+        joint.geom->group->readFields(joint.geom->index, fields);
+        records.insert(records.end(), std::begin(fields), std::end(fields));
         for (int p = 0; p < joint.geom->points(); ++p) {
             const Vector3r jump = joint.geom->jump(p);
             const Vector3r viscous = joint.geom->group->viscousAt(p, joint.geom->index);
@@ -95,10 +99,13 @@ void transferJoints(const SceneStore& store, Transfer& to) {
             joint.phys->group->columns->read(p, joint.phys->index,
                                              [&](const char*, double number) { records.push_back(number); });
         }
+    }
     to.several("joints", records.data(), records.size());
     if (!to.back) return;
     const double* next = records.data();
-    for (const auto& joint : store.joints)
+    for (const auto& joint : store.joints) {
+        joint.geom->group->writeFields(joint.geom->index, next);
+        next += JointShapes::numbersOfFields;
         for (int p = 0; p < joint.geom->points(); ++p) {
             auto& columns = *joint.phys->group->columns;
             joint.geom->group->setJump(p, joint.geom->index, {next[0], next[1], next[2]});
@@ -108,6 +115,7 @@ void transferJoints(const SceneStore& store, Transfer& to) {
             columns.write(p, joint.phys->index, [&](const char*, double& number) { number = *next++; });
             columns.setDissipated(p, joint.phys->index, lost);
         }
+    }
 }
 
 void transfer(yade::Scene& scene, Checkpoint& file, bool back) {

@@ -215,6 +215,7 @@ void SceneStore::readJoints() {
                        shared_ptr<JointStates>(new JointStates(first.phys->propertySet(), group.k, count, points)),
                        first.geom->reference().attached != nullptr};
         kind.states->shapes = kind.shapes;
+        kind.shapes->law = kind.states->columns.asTheyStand();
         for (JointGroup* group :
              {static_cast<JointGroup*>(kind.shapes.get()), static_cast<JointGroup*>(kind.states.get())}) {
             group->scene = life_;

@@ -87,6 +87,11 @@ public:
             normalStress[n] = advanceOne(point, from + n, {opening[n], {slideA[n], slideB ? slideB[n] : 0}});
     }
 
+    // A joint without strength is always intact, whatever its law.
+    bool knowsIntact() const override { return elastic_; }
+    bool isIntact(int, int) const override { return elastic_; }
+    bool isConvex() const override { return elastic_; }
+
 protected:
     // advanceOne() of columns whose class is known, so that the compiler sees which get() and set() it calls.
     template <class Self> static double stepOf(Self& self, int point, int joint, const Jump& jump) {

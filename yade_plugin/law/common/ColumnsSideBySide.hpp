@@ -12,6 +12,9 @@
 //   keep(consequences, columns, i)         writes that
 //   neverYielded(e, state)                 whether a state is one of a subcontact that has always been elastic
 //   stayElastic, advanceSideBySide, addEnergies   steps and energies of several subcontacts
+//   isLinear(e), hasConvexDomain(e)        whether stresses are the stiffness times the jumps before anything yields,
+//                                          and whether the elastic domain is convex
+//   markYielding, rememberElastic          what LawColumns asks of intact joints
 #pragma once
 #include "ColumnsOf.hpp"
 #include <algorithm>
@@ -74,6 +77,23 @@ public:
     }
     void advance(int point, int from, int count, const double* opening, const double* slideA, const double* slideB,
                  double* normalStress) override;
+
+    bool knowsIntact() const override { return elastic_ || isLinear(equations_); }
+    bool isIntact(int point, int joint) const override {
+        if (elastic_) return true;
+        const State s = get(point, joint);
+        const Energies lost = Base::dissipated(point, joint);
+        return s.regime == Regime::Elastic && neverYielded(equations_, s) && lost.tension == 0 && lost.shear == 0 &&
+               lost.compression == 0;
+    }
+    bool isConvex() const override { return elastic_ || hasConvexDomain(equations_); }
+    void findYielding(int count, const double* opening, const double* slideA, const double* slideB,
+                      Mask* yielding) const override {
+        if (!elastic_) markYielding(equations_, neverYielded_, count, opening, slideA, slideB, yielding);
+    }
+    void remember(int point, int from, int count, const double* opening, const Mask* staying) override {
+        if (!elastic_) rememberElastic(equations_, columns_, at(point, from), count, opening, staying);
+    }
 
 protected:
     void sumEnergies(int point, int from, int count, const double* area, LaneSums& sums) const override {

@@ -69,6 +69,32 @@ public:
     virtual void advance(int point, int from, int count, const double* opening, const double* slideA,
                          const double* slideB, double* normalStress) = 0;
 
+    // Intact joints. As long as a joint is elastic and has never yielded, its stresses are the stiffness times its
+    // jumps, which are linear over its face, and a program need not advance its points. A law for which that holds says
+    // so here, and then answers the four questions that follow; one that does not is never asked.
+    virtual bool knowsIntact() const { return false; }
+    // Whether nothing has yielded at a subcontact, so that its stress is the stiffness times its jump, or differs from
+    // that by a stress that was given to it.
+    virtual bool isIntact(int /*point*/, int /*joint*/) const { return false; }
+    // Whether a joint whose outermost points are elastic is elastic at all of its points, because the law's elastic
+    // domain is convex.
+    virtual bool isConvex() const { return false; }
+    // Adds 1 to `yielding` where a subcontact of an intact joint would not be well within the elastic domain under a
+    // jump; a number that is not finite is not. Without slideB all is in the plane.
+    virtual void findYielding(int /*count*/, const double* /*opening*/, const double* /*slideA*/,
+                              const double* /*slideB*/, Mask* /*yielding*/) const {}
+    // Takes down what a subcontact that stays elastic remembers of an opening, such as the largest so far, for the
+    // joints from..from+count that are marked in `staying`.
+    virtual void remember(int /*point*/, int /*from*/, int /*count*/, const double* /*opening*/,
+                          const Mask* /*staying*/) {}
+    // Gives a subcontact of an intact joint its jump, and the stress that belongs to it.
+    void setElastic(int point, int joint, double opening, double slideA, double slideB) {
+        const std::size_t i = at(point, joint);
+        columns_[SharedColumn::Opening][i] = opening;
+        columns_[SharedColumn::ShearStressA][i] = k_.shear * slideA;
+        columns_[SharedColumn::ShearStressB][i] = k_.shear * slideB;
+    }
+
     // Area-weighted sums over all joints [J], in an order that does not depend on threads. `area` holds [point][stride]
     // numbers, or [point][most] numbers repeated for all blocks of `most` joints if `alike`.
     struct Sums {

@@ -30,7 +30,6 @@ MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicCon
     const double* closingStiffness = columns[Column::ClosingStiffness] + at;
     const double* squaredHardening = columns[Column::SquaredHardening] + at;
     const double sameCap = same.strength * same.strength;
-    const double onCap = 1 / (e.kn * e.kn);
     Mask waiting = 0;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
@@ -51,15 +50,10 @@ MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicCon
         const double a = oldA + shearing * jumps.slideA[i];
         const double b = spatial ? oldB + shearing * jumps.slideB[i] : 0;
         const double tauSquared = a * a + b * b;
-        const double strength = e.slipStrength(bond, sigma, moved.elastic);
-        const double pressed = smaller(sigma, 0.0);
-        const double crushing = e.capStress(pressed, tauSquared);
-        const double closed = curved ? pressed / e.kn : smaller(moved.elastic, 0.0);
-        const double displaced = sigma < 0 ? closed * closed + e.shearWeight * onCap * tauSquared : 0;
         // a subcontact that opens with one stiffness and closes with another loses energy
         const bool keeps = !yielded | ((closing - tensileSecant) * moved.before * moved.elastic >= 0);
-        const bool elastic = (moved.elastic <= within) & (tauSquared <= strength * strength) &
-                             (crushing <= squaredCap) & (displaced <= hardening) & keeps;
+        const bool elastic =
+            e.isElastic<curved>({within, bond, squaredCap, hardening}, moved.elastic, sigma, tauSquared) & keeps;
         normalStress[i] = sigma;
         opening[i] = elastic ? moved.total : oldOpening;
         shearStressA[i] = elastic ? a : oldA;
@@ -91,6 +85,46 @@ Mask stayElastic(const CyclicEquations& e, const CyclicConsequences* neverYielde
                        : stayElasticOn<false, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
     return yielded ? stayElasticOn<true, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
                    : stayElasticOn<true, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
+}
+
+// ---- intact joints --------------------------------------------------------------------------------------------------
+
+namespace {
+
+template <bool spatial>
+MASONRY_INLINED void markYieldingAs(const CyclicEquations& given, const CyclicConsequences& ofAll, int count,
+                                    const double* opening, const double* slideA, const double* slideB, Mask* yielding) {
+    const CyclicEquations e = given;
+    const double less = 1 - marginOfIntact, more = 1 + marginOfIntact;
+    const CyclicEquations::Domain domain{less * ofAll.reach, ofAll.intact, less * ofAll.strength * ofAll.strength,
+                                         less * ofAll.squaredHardening};
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        const double a = e.ks * slideA[i];
+        const double b = spatial ? e.ks * slideB[i] : 0;
+        const bool elastic = e.isElastic<false>(domain, opening[i], e.kn * opening[i], more * (a * a + b * b));
+        yielding[i] += elastic ? 0 : 1;
+    }
+}
+
+} // namespace
+
+MASONRY_VECTORISED
+void markYielding(const CyclicEquations& e, const CyclicConsequences& neverYielded, int count, const double* opening,
+                  const double* slideA, const double* slideB, Mask* yielding) {
+    slideB ? markYieldingAs<true>(e, neverYielded, count, opening, slideA, slideB, yielding)
+           : markYieldingAs<false>(e, neverYielded, count, opening, slideA, slideB, yielding);
+}
+
+MASONRY_VECTORISED
+void rememberElastic(const CyclicEquations&, const Columns& columns, std::size_t at, int count, const double* opening,
+                     const Mask* staying) {
+    double* largestOpening = columns[Column::LargestOpening] + at;
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        const double farthest = largestOpening[i];
+        largestOpening[i] = (staying[i] != 0) & (opening[i] > farthest) ? opening[i] : farthest;
+    }
 }
 
 // ---- subcontacts that need the whole law ----------------------------------------------------------------------------

@@ -4,6 +4,7 @@
 #include "CyclicEquations.hpp"
 #include "CyclicState.hpp"
 #include "law/common/SofteningTable.hpp"
+#include "law/piecewise_softening/PiecewiseSideBySide.hpp"
 
 namespace masonry {
 
@@ -50,7 +51,12 @@ inline bool neverYielded(const CyclicEquations& e, const CyclicState& s) {
     return whole && s.largestOpening <= e.reach(1.0, 0.0) && s.largestClosure == 0;
 }
 
-// See piecewise_softening/PiecewiseSideBySide.hpp.
+// See piecewise_softening/PiecewiseSideBySide.hpp. A joint that closes on a curve is not linear.
+inline bool isLinear(const CyclicEquations& e) { return !e.curved; }
+void markYielding(const CyclicEquations& equations, const CyclicConsequences& neverYielded, int count,
+                  const double* opening, const double* slideA, const double* slideB, Mask* yielding);
+void rememberElastic(const CyclicEquations& equations, const Columns& columns, std::size_t at, int count,
+                     const double* opening, const Mask* staying);
 Mask stayElastic(const CyclicEquations& equations, const CyclicConsequences* neverYielded, const Columns& columns,
                  std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending);
 void advanceSideBySide(const CyclicEquations& equations, const SofteningTable& tension, const SofteningTable& shear,

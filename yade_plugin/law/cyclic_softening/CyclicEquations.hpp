@@ -99,6 +99,23 @@ struct CyclicEquations : PiecewiseEquations {
         return most * most * (1 - 1e-14);
     }
 
+    struct Domain {       // of a subcontact
+        double reach;     // [m] see reach()
+        double intact;    // [-] what the bond has left
+        double cap;       // [Pa²] square of the cap's strength
+        double hardening; // [m²] see squaredHardening()
+    };
+    // Whether no strength is passed and the cap does not harden. `curve` is `curved`, known to the compiler.
+    template <bool curve>
+    MASONRY_INLINED bool isElastic(const Domain& d, double w, double sigma, double tauSquared) const {
+        const double strength = slipStrength(d.intact, sigma, w);
+        const double pressed = smaller(sigma, 0.0);
+        const double crushing = capStress(pressed, tauSquared);
+        const double closed = curve ? pressed / kn : smaller(w, 0.0);
+        const double displaced = sigma < 0 ? closed * closed + shearWeight * (1 / (kn * kn)) * tauSquared : 0;
+        return (w <= d.reach) & (tauSquared <= strength * strength) & (crushing <= d.cap) & (displaced <= d.hardening);
+    }
+
     // Peak strength of slip that the shear table is read with; never so small that every slip would soften at once.
     template <class T> MASONRY_INLINED T peakStrength(const T& sigma) const {
         return larger<T>(cp - sigma * tanPhiP, all<T>(cp > 0 ? 1e-3 * cp : 1e-300));

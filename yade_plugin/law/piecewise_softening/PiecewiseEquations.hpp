@@ -181,6 +181,26 @@ struct PiecewiseEquations {                      // with the numbers of a kind o
         return {crushes, crushes ? scale : 1, crushes ? left : sigma, crushes ? closure : 0, crushes ? slip : 0};
     }
 
+    // ---- elastic domain ------------------------------------------------------------------------------------------
+
+    struct Domain {        // of a subcontact
+        double reach;      // [m] see reach()
+        double intact;     // [-] what the bond has left
+        double capSquared; // [Pa²] square of the cap's strength
+        double hardening;  // [m] closure from which the cap hardens
+    };
+    // Whether no strength is passed: the three conditions of eq. (8), and no hardening. `rest` is the residual
+    // cohesion.
+    MASONRY_INLINED bool isElastic(const Domain& d, double elasticOpening, double sigma, double tauSquared,
+                                   double closure, double rest) const {
+        const double strength = slipStrengthWith(rest, d.intact, sigma);
+        const double crushing = capStress(sigma, tauSquared);
+        return (elasticOpening <= d.reach) & (tauSquared <= strength * strength) & (crushing <= d.capSquared) &
+               (closure <= d.hardening);
+    }
+    // Closure that counts for the cap, at an opening.
+    MASONRY_INLINED double closure(double opening, double sigma) const { return cap & (sigma < 0) ? -opening : 0; }
+
     // ---- energy --------------------------------------------------------------------------------------------------
 
     // Elastic energy [J/m²] of a normal stress at an elastic opening, and of a shear stress.

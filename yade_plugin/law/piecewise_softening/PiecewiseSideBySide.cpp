@@ -24,7 +24,6 @@ MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const Piecew
     const PiecewiseEquations e = given;
     const PiecewiseConsequences same = ofAll;
     const double limit = e.curve.limit(e.stretch);
-    const double closing = e.cap ? -1 : 0; // how closure counts
     double* opening = columns[Column::Opening] + at;
     double* shearStressA = columns[Column::ShearStressA] + at;
     double* shearStressB = columns[Column::ShearStressB] + at;
@@ -54,14 +53,12 @@ MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const Piecew
         const double b = spatial ? oldB + e.ks * jumps.slideB[i] : 0;
         const double tauSquared = a * a + b * b;
         const double rest = residual ? e.residualCohesion(moved.elastic) : 0; // most joints have none
-        const double strength = e.slipStrengthWith(rest, bond, sigma);
-        const double crushing = e.capStress(sigma, tauSquared);
-        const double closure = sigma < 0 ? closing * moved.total : 0;
+        const double closure = e.closure(moved.total, sigma);
         const double hardens = closest > limit ? closest : limit;
         // a subcontact that opens with one stiffness and closes with another loses energy
         const bool keeps = !yielded | ((e.kn - tensileSecant) * moved.before * moved.elastic >= 0);
-        const bool elastic = (moved.elastic <= within) & (tauSquared <= strength * strength) &
-                             (crushing <= squaredCap) & (closure <= hardens) & keeps;
+        const bool elastic =
+            e.isElastic({within, bond, squaredCap, hardens}, moved.elastic, sigma, tauSquared, closure, rest) & keeps;
         normalStress[i] = sigma;
         opening[i] = elastic ? moved.total : oldOpening;
         shearStressA[i] = elastic ? a : oldA;
@@ -95,6 +92,52 @@ Mask stayElastic(const PiecewiseEquations& e, const PiecewiseConsequences* never
                        : stayElasticAs<false, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
     return yielded ? stayElasticAs<true, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
                    : stayElasticAs<true, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
+}
+
+// ---- intact joints --------------------------------------------------------------------------------------------------
+
+namespace {
+
+template <bool spatial>
+MASONRY_INLINED void markYieldingAs(const PiecewiseEquations& given, const PiecewiseConsequences& ofAll, int count,
+                                    const double* opening, const double* slideA, const double* slideB, Mask* yielding) {
+    const PiecewiseEquations e = given;
+    const double less = 1 - marginOfIntact, more = 1 + marginOfIntact;
+    const PiecewiseEquations::Domain domain{less * ofAll.reach, ofAll.intact, less * ofAll.capSquared,
+                                            less * e.curve.limit(e.stretch)};
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        const double sigma = e.kn * opening[i];
+        const double a = e.ks * slideA[i];
+        const double b = spatial ? e.ks * slideB[i] : 0;
+        const bool elastic = e.isElastic(domain, opening[i], sigma, more * (a * a + b * b),
+                                         e.closure(opening[i], sigma), e.residualCohesion(opening[i]));
+        yielding[i] += elastic ? 0 : 1;
+    }
+}
+
+} // namespace
+
+MASONRY_VECTORISED
+void markYielding(const PiecewiseEquations& e, const PiecewiseConsequences& neverYielded, int count,
+                  const double* opening, const double* slideA, const double* slideB, Mask* yielding) {
+    slideB ? markYieldingAs<true>(e, neverYielded, count, opening, slideA, slideB, yielding)
+           : markYieldingAs<false>(e, neverYielded, count, opening, slideA, slideB, yielding);
+}
+
+MASONRY_VECTORISED
+void rememberElastic(const PiecewiseEquations& given, const Columns& columns, std::size_t at, int count,
+                     const double* opening, const Mask* staying) {
+    const PiecewiseEquations e = given;
+    double* largestOpening = columns[Column::LargestOpening] + at;
+    double* largestClosure = columns[Column::LargestClosure] + at;
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        const double farthest = largestOpening[i], closest = largestClosure[i];
+        const double closure = e.closure(opening[i], opening[i]); // the stress has the sign of the opening
+        largestOpening[i] = (staying[i] != 0) & (opening[i] > farthest) ? opening[i] : farthest;
+        largestClosure[i] = (staying[i] != 0) & (closure > closest) ? closure : closest;
+    }
 }
 
 // ---- subcontacts that may yield ------------------------------------------------------------------------------------

@@ -48,6 +48,20 @@ inline bool neverYielded(const PiecewiseEquations& e, const PiecewiseState& s) {
     return whole && s.largestOpening <= e.reach(1.0, 0.0) && s.largestClosure <= limit;
 }
 
+// Of subcontacts that never yielded. With a linear term of the cap above zero, a tensile stress takes more of the cap
+// than a small pressure does, and the domain is not convex.
+inline bool isLinear(const PiecewiseEquations&) { return true; }
+inline bool hasConvexDomain(const PiecewiseEquations& e) { return !e.cap || e.Cn <= 0; }
+
+// Joints cease to be intact so little before they yield [-]. Rounding then cannot let one yield before.
+constexpr double marginOfIntact = 1e-9;
+
+// See LawColumns::findYielding() and LawColumns::remember().
+void markYielding(const PiecewiseEquations& equations, const PiecewiseConsequences& neverYielded, int count,
+                  const double* opening, const double* slideA, const double* slideB, Mask* yielding);
+void rememberElastic(const PiecewiseEquations& equations, const Columns& columns, std::size_t at, int count,
+                     const double* opening, const Mask* staying);
+
 // One step of the subcontacts that stay elastic in it. The others stay as they were and are marked in `pending`; gives
 // how many they are. If none of all has ever yielded, `neverYielded` is what holds for all of them, and their columns
 // from Crushing on are not read; else it is null.
