@@ -136,9 +136,11 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     )
     p.add_argument(
         "--crack-surfaces",
-        choices=["on", "off"],
+        choices=["on", "whole", "off"],
         default="on",
-        help="whether bricks can crack in half",
+        help="whether bricks can crack in half. on: each is two blocks with a crack surface between them; whole: it is one "
+        "block until the stress in the plane of its crack surface reaches the surface's strength, and two from then on; "
+        "off: it is one block",
     )
     p.add_argument(
         "--joints",
