@@ -4,6 +4,7 @@
 #include "blocks/BlockElasticity.hpp"
 #include "blocks/BlockLanes.cpp" // the source, because its loops for each instruction set are local to it
 #include "blocks/JointPoints.hpp"
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <doctest/doctest.h>
@@ -683,6 +684,266 @@ TEST_CASE("damping takes energy in every step of every node, whatever the force"
         for (int lane = 0; lane < lanes; ++lane)
             CHECK(sums.damping.lane[lane] + sums.pending.lane[lane] > 0);
     }
+}
+
+// ---- plane units ---------------------------------------------------------------------------------------------------
+
+namespace {
+
+BlockElasticity planeUnit(const ConvexBlock& block, std::array<int, 3> divisions, int across = 1) {
+    auto mesh = divideInPlane(block, divisions, across);
+    REQUIRE(mesh.has_value());
+    return BlockElasticity(std::move(*mesh), 4.8e9, 0.16, 1800, across);
+}
+
+ConvexBlock wedge() { return prism(); } // a right prism along z over a triangle
+
+// A trapezium: a right prism along y over a quadrilateral that is no rectangle.
+ConvexBlock voussoir() {
+    auto b = box(Point::Zero(), brick);
+    for (auto& v : b.vertices)
+        if (v.z() > 0.01) v.x() = 0.03 + 0.7 * v.x();
+    return b;
+}
+
+} // namespace
+
+TEST_CASE("a plane unit has nodes in its middle plane alone, and the mass and the rim of its block") {
+    for (const auto& [block, across, volume, nodes, triangles, edges] :
+         {std::tuple(box({0.3, 0.1, 0.2}, brick), 1, brick.prod(), 13, 16, 8),
+          std::tuple(voussoir(), 1, 0.85 * brick.prod(), 13, 16, 8), std::tuple(wedge(), 2, 0.001, 4, 3, 3),
+          std::tuple(box({0.3, 0.1, 0.2}, brick), 0, brick.prod(), 13, 16, 8)}) {
+        const auto e = planeUnit(block, {2, 2, 2}, across);
+        const auto& mesh = e.mesh();
+        CHECK(mesh.nodes.size() == std::size_t(nodes));
+        CHECK(mesh.triangles.size() == std::size_t(triangles));
+        CHECK(mesh.rim.size() == std::size_t(edges));
+        CHECK(mesh.zones.empty());
+        double mass = 0, low = HUGE_VAL, high = -HUGE_VAL;
+        for (double m : e.masses())
+            mass += m;
+        CHECK(mass == within(1800 * volume, 1e-9));
+        CHECK(e.mass() == within(mass, 1e-12));
+        for (const auto& v : block.vertices)
+            low = std::min(low, v[across]), high = std::max(high, v[across]);
+        CHECK(mesh.thickness == within(high - low, 1e-12));
+        for (const auto& node : mesh.nodes)
+            CHECK(node[across] == within(0.5 * (low + high), 1e-12));
+        Point centre = Point::Zero(), outward = Point::Zero();
+        for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+            centre += e.masses()[n] / mass * mesh.nodes[n];
+        for (const auto& [from, to] : mesh.rim)
+            outward += (mesh.nodes[to] - mesh.nodes[from]).cross(Point::Unit(across));
+        CHECK(outward.norm() < 1e-12); // the rim closes
+        if (across == 0) CHECK((centre - Point(0.3, 0.1, 0.2) - 0.5 * brick).norm() < 1e-12);
+    }
+    CHECK(!divideInPlane(prism(), {1, 1, 1}, 1).has_value()); // a prism along z alone
+    auto leaning = box(Point::Zero(), brick);
+    for (auto& v : leaning.vertices)
+        v.x() += 0.05 * v.y();
+    CHECK(!divideInPlane(leaning, {1, 1, 1}, 1).has_value()); // no right prism
+}
+
+TEST_CASE("patch test of plane units: a linear displacement is a uniform plane stress with its forces on the rim") {
+    std::mt19937 dice(31);
+    std::uniform_real_distribution<> u01(-1, 1);
+    const double E = 4.8e9, nu = 0.16;
+    for (const auto& [block, across] :
+         {std::pair(box(Point::Zero(), brick), 1), std::pair(voussoir(), 1), std::pair(wedge(), 2)}) {
+        const int a = (across + 1) % 3, b = (across + 2) % 3;
+        Matrix3 g = Matrix3::Zero();
+        for (int i : {a, b})
+            for (int j : {a, b})
+                g(i, j) = 1e-7 * u01(dice);
+        const Matrix3 strain = 0.5 * (g + g.transpose());
+        Matrix3 exact = Matrix3::Zero();
+        exact(a, a) = E / (1 - nu * nu) * (strain(a, a) + nu * strain(b, b));
+        exact(b, b) = E / (1 - nu * nu) * (strain(b, b) + nu * strain(a, a));
+        exact(a, b) = exact(b, a) = E / (1 + nu) * strain(a, b);
+        const auto e = planeUnit(block, {3, 2, 2}, across);
+        const auto& mesh = e.mesh();
+        std::vector<Point> u, expected(mesh.nodes.size(), Point::Zero());
+        for (const auto& x : mesh.nodes)
+            u.push_back(g * x);
+        const Matrix3 r = e.rotation(u.data());
+        for (std::size_t z = 0; z < mesh.triangles.size(); ++z)
+            CHECK((e.stress(int(z), u.data(), r) - exact).norm() < 1e-5 * exact.norm());
+        for (const auto& [from, to] : mesh.rim) {
+            const Point outward = (mesh.nodes[to] - mesh.nodes[from]).cross(Point::Unit(across)) * mesh.thickness;
+            for (int node : {from, to})
+                expected[node] -= 0.5 * exact * outward; // the unit pulls its nodes back
+        }
+        const auto f = forcesOf(e, u).forces;
+        for (std::size_t n = 0; n < f.size(); ++n)
+            CHECK((f[n] - expected[n]).norm() < 1e-5 * exact.norm() * mesh.thickness * 0.1);
+        double energy = 0.5 * (exact.cwiseProduct(strain)).sum() * e.mass() / 1800;
+        CHECK(forcesOf(e, u).energy == within(energy, 1e-4));
+    }
+}
+
+TEST_CASE("forces of plane units are the gradient of the energy, keep momentum, and do the work of moments") {
+    std::mt19937 dice(32);
+    std::uniform_real_distribution<> u01(-1, 1);
+    for (int across : {0, 1, 2}) {
+        const auto e = planeUnit(box(Point::Zero(), brick), {2, 1, 2}, across);
+        const auto n = e.mesh().nodes.size();
+        const int a = (across + 1) % 3, b = (across + 2) % 3;
+        const Point axis = Point::Unit(across);
+        const auto inPlane = [&](double size) {
+            return Point(size * (u01(dice) * Point::Unit(a) + u01(dice) * Point::Unit(b)));
+        };
+        Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
+        turn.rotate(Eigen::AngleAxisd(0.3, axis));
+        std::vector<Point> u(n), rigid(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            rigid[i] = turn * e.mesh().nodes[i] - e.mesh().nodes[i] + Point::Unit(a);
+            u[i] = rigid[i] + inPlane(1e-6);
+        }
+        for (const auto& force : forcesOf(e, rigid).forces)
+            CHECK(force.norm() < 1e-3); // N, of a block whose zones carry 1e8 N at unit strain
+        CHECK((forcesOf(e, rigid).rotation - turn.rotation()).norm() < 1e-12);
+        CHECK((forcesOf(e, u).rotation - e.rotation(u.data())).norm() < 1e-11);
+        const auto f = forcesOf(e, u).forces;
+        Point sum = Point::Zero(), about = Point::Zero();
+        double size = 0;
+        for (std::size_t i = 0; i < n; ++i)
+            sum += f[i], about += (e.mesh().nodes[i] + u[i]).cross(f[i]), size += f[i].norm();
+        CHECK(sum.norm() < 1e-9 * size);
+        CHECK(about.norm() < 1e-5 * size);
+        for (std::size_t i = 0; i < n; ++i)
+            for (int d : {a, b}) {
+                auto plus = u, minus = u;
+                plus[i][d] += 1e-8, minus[i][d] -= 1e-8;
+                CHECK(-(forcesOf(e, plus).energy - forcesOf(e, minus).energy) / 2e-8 ==
+                      doctest::Approx(f[i][d]).epsilon(1e-4).scale(size));
+            }
+        // a moment: forces without resultant that do its work on the rotation
+        const auto withMoment = forcesOf(e, u, 7 * axis).forces;
+        auto plus = u, minus = u;
+        double work = 0;
+        Point total = Point::Zero();
+        for (std::size_t i = 0; i < n; ++i) {
+            const Point du = inPlane(1e-6);
+            work += (withMoment[i] - f[i]).dot(du);
+            total += withMoment[i] - f[i];
+            plus[i] += 0.5 * du, minus[i] -= 0.5 * du;
+        }
+        const Eigen::AngleAxisd turned(Matrix3(e.rotation(plus.data()) * e.rotation(minus.data()).transpose()));
+        CHECK(work == within(7 * turned.angle() * turned.axis().dot(axis), 1e-3));
+        CHECK(total.norm() < 1e-9);
+    }
+}
+
+TEST_CASE("a free plane brick has three modes without stiffness, and the frequencies of the brick in space") {
+    // Frequencies of motions that are the same all through the thickness: nodes behind each other move as one. In space
+    // there are modes besides in which the faces of the brick move against each other, which a plane scene cannot
+    // excite.
+    const auto frequencies = [](const BlockElasticity& e) {
+        const auto m = e.matrix();
+        std::map<std::pair<long, long>, int> places;
+        std::vector<int> place;
+        for (int n = 0; n < m.nodeCount; ++n) {
+            const auto key = std::pair(std::lround(1e6 * m.nodes[3 * n]), std::lround(1e6 * m.nodes[3 * n + 2]));
+            place.push_back(places.emplace(key, int(places.size())).first->second);
+        }
+        const auto degree = [&](int d) { return 2 * place[d / 3] + (d % 3 == 2); };
+        Eigen::VectorXd mass = Eigen::VectorXd::Zero(2 * places.size());
+        Eigen::MatrixXd k = Eigen::MatrixXd::Zero(mass.size(), mass.size());
+        for (int r = 0; r < m.rowCount; ++r) {
+            mass[degree(m.rows[r].degree)] += m.masses[m.rows[r].degree / 3];
+            for (int i = m.rows[r].first; i < m.rows[r].beyond; ++i)
+                k(degree(m.rows[r].degree), degree(m.columns[i])) += m.values[i];
+        }
+        const Eigen::VectorXd scale = mass.cwiseSqrt().cwiseInverse();
+        const Eigen::MatrixXd scaled = scale.asDiagonal() * k * scale.asDiagonal();
+        std::vector<double> all;
+        const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled).eigenvalues();
+        for (double value : values)
+            all.push_back(std::sqrt(std::max(value, 0.0)) / (2 * M_PI));
+        return all;
+    };
+    const Point half(0.11, 0.102, 0.081);
+    const auto elasticAt = [&](std::array<int, 3> cells) {
+        return frequencies(BlockElasticity(divide(box(Point::Zero(), half), cells), 4.8e9, 0.16, 1800, 1));
+    };
+    const auto plane = frequencies(planeUnit(box(Point::Zero(), half), {2, 1, 2}));
+    const auto space = elasticAt({2, 1, 2});
+    const auto fine = frequencies(planeUnit(box(Point::Zero(), half), {12, 1, 12}));
+    CHECK(plane[2] < 1e-3 * plane[3]); // two translations and a rotation
+    CHECK(plane[3] > 1000);
+    for (int mode = 3; mode < 6; ++mode) {
+        CHECK(plane[mode] == within(space[mode], 0.1));
+        CHECK(plane[mode] == within(fine[mode], 0.15));
+    }
+}
+
+TEST_CASE("a beam of plane units bends as the theory of beams says, and less stiffly with finer cells") {
+    // A beam of 8:1 under opposite moments at its ends: pairs of forces along it, linear over the height.
+    const double length = 0.8, height = 0.1, thickness = 0.1, E = 4.8e9;
+    const auto stiffness = [&](int cells) {
+        const auto e = planeUnit(box(Point::Zero(), {length, thickness, height}), {8 * cells, 1, cells});
+        const auto m = e.matrix();
+        const int n = 3 * m.nodeCount;
+        Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n, n);
+        for (int r = 0; r < m.rowCount; ++r)
+            for (int i = m.rows[r].first; i < m.rows[r].beyond; ++i)
+                k(m.rows[r].degree, m.columns[i]) = m.values[i];
+        // bending strains that the theory gives, as displacements: their energy is at least that of the theory
+        Eigen::VectorXd u = Eigen::VectorXd::Zero(n);
+        for (int i = 0; i < m.nodeCount; ++i) {
+            const double x = m.nodes[3 * i] - length / 2, z = m.nodes[3 * i + 2] - height / 2;
+            u[3 * i] = x * z;
+            u[3 * i + 2] = -0.5 * x * x - 0.5 * 0.16 * z * z;
+        }
+        const double exact = E * thickness * std::pow(height, 3) / 12 * length; // u K u under unit curvature
+        return u.dot(k * u) / exact;
+    };
+    const double coarse = stiffness(2), fine = stiffness(4);
+    CHECK(coarse > 1);
+    CHECK(fine > 1);
+    CHECK((coarse - 1) / (fine - 1) == within(4, 0.1)); // second order
+    CHECK(fine < 1.1);
+}
+
+TEST_CASE("every instruction set moves plane units to the same bits") {
+    std::mt19937 dice(33);
+    std::uniform_real_distribution<> u01(-1, 1);
+    const auto e = planeUnit(box(Point::Zero(), brick), {2, 1, 2});
+    const auto matrix = e.matrix();
+    const std::size_t rows = 3 * e.mesh().nodes.size();
+    std::vector<Row> start(3 * rows);
+    for (std::size_t i = 0; i < start.size(); ++i)
+        for (double& value : start[i].lane)
+            value = i % 3 == 1 ? 0 : u01(dice) * (i < rows ? 1e-5 : i < 2 * rows ? 1e-3 : 10);
+    const auto run = [&](auto addForces, auto move) {
+        auto u = std::vector<Row>(start.begin(), start.begin() + rows);
+        auto v = std::vector<Row>(start.begin() + rows, start.begin() + 2 * rows);
+        auto last = std::vector<Row>(start.begin() + 2 * rows, start.end());
+        std::vector<Row> f(rows, Row{}), scratch(2 * rows);
+        Row moments[3]{}, rotation[9], energy, present;
+        std::fill_n(present.lane, lanes, 1.0);
+        NodeSums sums;
+        const NodeMotion motion{1e-6, 0.8, {0, 0, -9.81}, true, {false, true, false}};
+        for (int step = 0; step < 20; ++step) {
+            moments[1].lane[2] = step;
+            addForces(matrix, u.data(), moments, f.data(), rotation, &energy, scratch.data());
+            move(matrix, motion, present, u.data(), v.data(), f.data(), last.data(), sums);
+        }
+        std::vector<double> all;
+        for (const auto* part : {&u, &v, &last})
+            for (const auto& row : *part)
+                all.insert(all.end(), row.lane, row.lane + lanes);
+        for (const Row& row : {energy, sums.kinetic, sums.gravityWork, sums.damping, sums.pending, sums.moved[2]})
+            all.insert(all.end(), row.lane, row.lane + lanes);
+        return all;
+    };
+    const auto reference = run(plain::addForces, plain::move);
+    CHECK(std::abs(reference[5] - start[0].lane[5]) > 1e-9); // it moved
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx2")) CHECK(run(avx2::addForces, avx2::move) == reference);
+    if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
+        CHECK(run(avx512::addForces, avx512::move) == reference);
+#endif
 }
 
 TEST_CASE("a surface point is found with weights that return it") {

@@ -87,6 +87,9 @@ void exchange(Numbers& n, JointReference& r) {
         n(side.position);
         n(side.orientation);
     }
+    int split = r.split;
+    n(split);
+    r.split = split != 0;
     std::vector<Attachment> none;
     for (int side = 0; side < 2; ++side)
         n.list(r.attached ? r.attached->sides[side] : none);

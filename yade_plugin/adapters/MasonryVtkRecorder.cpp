@@ -11,6 +11,7 @@
 #include <cstring>
 #include <fstream>
 #include <set>
+#include <tuple>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
@@ -163,6 +164,21 @@ std::string frame(const std::string& name, std::size_t number, const std::string
 
 } // namespace
 
+namespace {
+
+// The three tetrahedra of a prism over a triangle, whose upper corners have numbers larger by `up`, in an order that
+// makes their volumes positive. The diagonals of its sides start at the corner with the smaller number, so that
+// neighbours have the same ones.
+std::vector<std::array<int, 4>> prism(const std::array<int, 3>& t, int up) {
+    auto [a, b, c] = t;
+    for (int i = 0; i < 2; ++i) // begin with the smallest number, and keep the order around
+        if (a > b || a > c) std::tie(a, b, c) = std::make_tuple(b, c, a);
+    if (b < c) return {{a, b, c, c + up}, {a, b, c + up, b + up}, {a, b + up, c + up, a + up}};
+    return {{a, b, c, b + up}, {a, b + up, c, c + up}, {a, b + up, c + up, a + up}};
+}
+
+} // namespace
+
 std::vector<std::string> MasonryVtkRecorder::problems() const {
     std::vector<std::string> wrong;
     if (directory.empty()) wrong.push_back("directory must not be empty");
@@ -220,24 +236,35 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
             deformable.insert(unit.body);
             const auto& mesh = unit.elasticity->mesh();
             const auto first = points->GetNumberOfPoints();
+            const int nodes = int(mesh.nodes.size()), across = mesh.across;
             std::vector<Vector3r> u;
-            for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
-                u.push_back(zones->displacementOf(unit.firstNode + int(n)));
-                points->InsertNextPoint(Vector3r(unit.centre + mesh.nodes[n]).data());
-                displacement->InsertNextTuple(u.back().data());
-                velocity->InsertNextTuple(zones->velocityOf(unit.firstNode + int(n)).data());
-            }
+            for (int n = 0; n < nodes; ++n)
+                u.push_back(zones->displacementOf(unit.firstNode + n));
+            // A plane unit is drawn as thick as it is: every node stands for a point on either of its faces.
+            for (int face = 0; face < (across < 0 ? 1 : 2); ++face)
+                for (int n = 0; n < nodes; ++n) {
+                    Vector3r place = unit.centre + mesh.nodes[n];
+                    if (across >= 0) place[across] += (face - 0.5) * mesh.thickness;
+                    points->InsertNextPoint(place.data());
+                    displacement->InsertNextTuple(u[n].data());
+                    velocity->InsertNextTuple(zones->velocityOf(unit.firstNode + n).data());
+                }
             const Matrix3 rotation = unit.elasticity->rotation(u.data());
-            for (std::size_t z = 0; z < mesh.zones.size(); ++z) {
-                vtkIdType corners[4];
-                for (int i = 0; i < 4; ++i)
-                    corners[i] = first + mesh.zones[z][i];
-                grid->InsertNextCell(VTK_TETRA, 4, corners);
-                ids->InsertNextValue(unit.body);
-                const Matrix3 s = unit.elasticity->stress(int(z), u.data(), rotation);
+            const int all = int(across < 0 ? mesh.zones.size() : mesh.triangles.size());
+            for (int z = 0; z < all; ++z) {
+                const Matrix3 s = unit.elasticity->stress(z, u.data(), rotation);
                 const double six[6] = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)};
-                stress->InsertNextTuple(six);
-                principal->InsertNextTuple(Eigen::SelfAdjointEigenSolver<Matrix3>(s).eigenvalues().eval().data());
+                const Vector3r three = Eigen::SelfAdjointEigenSolver<Matrix3>(s).eigenvalues();
+                for (const auto& zone :
+                     across < 0 ? std::vector<std::array<int, 4>>{mesh.zones[z]} : prism(mesh.triangles[z], nodes)) {
+                    vtkIdType corners[4];
+                    for (int i = 0; i < 4; ++i)
+                        corners[i] = first + zone[i];
+                    grid->InsertNextCell(VTK_TETRA, 4, corners);
+                    ids->InsertNextValue(unit.body);
+                    stress->InsertNextTuple(six);
+                    principal->InsertNextTuple(three.data());
+                }
             }
         }
     }

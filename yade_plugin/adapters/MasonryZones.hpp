@@ -14,7 +14,13 @@ public:
         "Deformable units: blocks divided into tetrahedral zones of linear elastic material, with their masses at the "
         "nodes (paper §2, eqs. (1)-(7)). Their joints act at points of the faces of cells, between which displacements "
         "are those of the faces' triangles: three along every face where the unit is held across the joint, else the "
-        "corners and the centroid of each triangle. A unit remains one body with the shape of its block; its position "
+        "corners and the centroid of each triangle. A unit whose nodes are held in one direction, and which is a right "
+        "prism along it, as a brick in a wall in its plane, is a plane unit: its nodes stand in its middle plane "
+        "alone, "
+        "its zones are triangles in plane stress as thick as the unit, four to a cell, and points of joints stand in "
+        "the "
+        "middle plane. Other units that are held so keep their tetrahedra; both can meet in a joint. A unit remains "
+        "one body with the shape of its block; its position "
         "and "
         "orientation follow the centre of mass and the mean rotation. Strains are taken as small in axes that turn "
         "with "
@@ -26,10 +32,15 @@ public:
         using Z = MasonryZones;
         visit("bodies", &Z::bodies, described("Ids of the deformable units; their material is MasonryMat"), Given);
         visit("divisions", &Z::divisions,
-              number("-", "Cells of a hexahedral unit in the directions nearest to x, y and z, each of twelve zones; "
+              number("-", "Cells of a hexahedral unit in the directions nearest to x, y and z, each of twelve zones, "
+                          "or four in a plane unit; "
                           "default 1, 1, 1")
                   .atLeast(1)
                   .atMost(100),
+              Given);
+        visit("plane", &Z::plane,
+              described("Whether units whose nodes are held in one direction, and which are right prisms along it, are "
+                        "plane units, with nodes in their middle plane alone"),
               Given);
         visit("damping", &Z::damping,
               number("-", "Damping constant alpha").atLeast(0).atMost(0.99).source("paper eq. (3): 0.8"));
@@ -55,7 +66,8 @@ public:
         visit("pendingDamping", &Z::pendingDamped, number("J", "Damping of the last step"), Hidden);
         GravityWork::describe<Z>(visit);
         visit("moved", &Z::moved, number("kg m", "Sum of mass times displacement of all nodes"), Hidden);
-        visit("laidOut", &Z::laidOut, described("Divisions and bodies for which the nodes were numbered"), Hidden);
+        visit("laidOut", &Z::laidOut, described("Divisions, plane and bodies for which the nodes were numbered"),
+              Hidden);
     }
 
     template <class PyClass> static void extras(PyClass& cls) {

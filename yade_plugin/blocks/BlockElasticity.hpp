@@ -14,7 +14,8 @@ class BlockElasticity {
 public:
     // Throws std::invalid_argument, which says what is wrong, unless E > 0, -1 < nu < 0.5 and density > 0.
     // `held` is the direction (0, 1 or 2) in which no node can move, or -1 if there is none. Normal stress in this
-    // direction is zero (plane stress), although the nodes are held, and the block turns about it only.
+    // direction is zero (plane stress), although the nodes are held, and the block turns about it only. A mesh of a
+    // plane unit needs the direction across its plane here. Its zones are its triangles, as thick as the unit.
     BlockElasticity(BlockMesh mesh, double youngModulus, double poissonRatio, double density, int held = -1);
 
     const BlockMesh& mesh() const { return mesh_; }
@@ -29,7 +30,7 @@ public:
     Matrix3 stress(int zone, const Point* displacements, const Matrix3& rotation) const;
 
     // Stiffness matrix of a zone in a block that has not turned [N/m]; row and column 3 i + j belong to node i of the
-    // zone and direction j.
+    // zone and direction j. A triangle has three nodes: what belongs to the fourth is zero.
     Eigen::Matrix<double, 12, 12> stiffness(int zone) const;
 
     // The stiffness matrix, masses and gradients of the block for the functions of BlockLanes.hpp. It points into this
@@ -37,8 +38,10 @@ public:
     BlockMatrix matrix() const;
 
 private:
+    void addZone(const std::array<int, 4>& nodes, int corners, const std::array<Point, 4>& gradients, double volume,
+                 double density);
     struct Zone {
-        std::array<int, 4> nodes;
+        std::array<int, 4> nodes;       // of a triangle the fourth is the first again, with a gradient of zero
         std::array<Point, 4> gradients; // of the shape functions of its nodes [1/m]
         double volume;                  // [m³]
     };
@@ -50,9 +53,11 @@ private:
     Matrix3 stressOf(const Matrix3& gradient) const { // Hooke's law, paper §2
         return lambda_ * gradient.trace() * Matrix3::Identity() + shear_ * (gradient + gradient.transpose());
     }
-    void assemble(int held);
+    void assemble();
+    void pair();
 
     BlockMesh mesh_;
+    int held_; // direction in which no node can move, or -1
     std::vector<Zone> zones_;
     std::vector<double> masses_;
     std::vector<Point> meanGradients_; // of the shape function of each node, averaged over the block [1/m]
@@ -61,6 +66,9 @@ private:
     std::vector<BlockMatrix::Entries> rows_; // of the stiffness matrix, without those of held directions
     std::vector<int> columns_;               // of the entries of the stiffness matrix that are not zero, row by row
     std::vector<double> values_;             // of these entries [N/m]
+    // Of plane units: the same matrix in blocks of four for every pair of nodes, see BlockMatrix.
+    std::vector<int> pairStart_, pairNode_;
+    std::vector<double> pairValues_;
 };
 
 } // namespace masonry

@@ -7,7 +7,11 @@
 
 namespace masonry {
 
-// What congruent blocks have in common, as plain arrays: the stiffness matrix and the properties of the nodes.
+// What congruent blocks have in common, as plain arrays: the stiffness matrix and the properties of the nodes. Nodes of
+// plane units move in two directions only, `across` + 1 and `across` + 2 (modulo 3). Their rows of the third direction
+// are neither read nor written, and their matrix stands in a second form, too: for every node i its neighbours j,
+// itself included, with four numbers, the force at i in both directions under a displacement of j in the first of them,
+// and so on: ff, fs, sf, ss with the first letter for the force.
 struct BlockMatrix {
     // A row of the stiffness matrix: its degree of freedom, which is 3 n + d, and where its entries begin and end.
     struct Entries {
@@ -20,6 +24,10 @@ struct BlockMatrix {
     const Entries* rows;
     const int* columns; // degree of freedom of the column of each entry
     int nodeCount, rowCount;
+    int across = -1;                // the direction in which nodes of plane units are held; -1 of blocks in space
+    const int* pairStart = nullptr; // where the neighbours of each node begin; one more entry ends the last list
+    const int* pairNode = nullptr;
+    const double* pairValues = nullptr; // four for each neighbour [N/m]
 };
 
 // What the motion of all nodes depends on in a step.

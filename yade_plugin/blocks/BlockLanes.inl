@@ -30,8 +30,77 @@ inline void polar(Lanes (&f)[9]) {
     }
 }
 
+// In memory, where the compiler sees a loop for the vector units.
+inline Lanes rootOf(Lanes x) {
+    alignas(64) double y[WIDTH];
+    for (int i = 0; i < WIDTH; ++i)
+        y[i] = x[i];
+    for (int i = 0; i < WIDTH; ++i)
+        y[i] = __builtin_sqrt(y[i]);
+    Lanes z;
+    for (int i = 0; i < WIDTH; ++i)
+        z[i] = y[i];
+    return z;
+}
+
+// As addForces, of plane units. `a` and `b` are the directions of the plane.
+void addForcesInPlane(const BlockMatrix& m, const Row* displacements, const Row* moments, Row* forces, Row* rotation,
+                      Row* energy, Row* scratch) {
+    const int count = m.nodeCount, across = m.across, a = (across + 1) % 3, b = (across + 2) % 3;
+    for (int part = 0; part < parts; ++part) {
+        const Lanes* ua = at(displacements + a, part);
+        const Lanes* ub = at(displacements + b, part);
+        Lanes* fa = at(forces + a, part);
+        Lanes* fb = at(forces + b, part);
+        Lanes* d = at(scratch, 0); // displacements relative to the turned block, in axes that turn with it, two a node
+        const Lanes zero = {}, one = zero + 1;
+        // The rotation in the polar decomposition of a plane gradient is that of (Faa + Fbb, Fba - Fab).
+        Lanes along = zero + 2, aside = zero;
+        for (int n = 0; n < count; ++n) {
+            const Lanes x = ua[3 * n * parts], y = ub[3 * n * parts];
+            const double ga = m.gradients[3 * n + a], gb = m.gradients[3 * n + b];
+            along += x * ga + y * gb;
+            aside += y * ga - x * gb;
+        }
+        const Lanes size = 1 / rootOf(along * along + aside * aside);
+        const Lanes c = along * size, s = aside * size; // cosine and sine of the rotation about the direction across
+        // The first node serves as origin, because a translation of the block causes no forces.
+        const double oa = m.nodes[a], ob = m.nodes[b];
+        for (int n = 0; n < count; ++n) {
+            const double pa = m.nodes[3 * n + a] - oa, pb = m.nodes[3 * n + b] - ob;
+            const Lanes x = pa + (ua[3 * n * parts] - ua[0]), y = pb + (ub[3 * n * parts] - ub[0]);
+            d[2 * n] = c * x + s * y - pa;
+            d[2 * n + 1] = c * y - s * x - pb;
+        }
+        // A moment does the same work as nodal forces, see addForces.
+        const Lanes half = 0.5 * *at(moments + across, part);
+        const Lanes mc = half * c, ms = half * s;
+        Lanes stored = zero;
+        for (int n = 0; n < count; ++n) {
+            Lanes x = zero, y = zero;
+            for (int e = m.pairStart[n]; e < m.pairStart[n + 1]; ++e) {
+                const double* k = m.pairValues + 4 * e;
+                const Lanes p = d[2 * m.pairNode[e]], q = d[2 * m.pairNode[e] + 1];
+                x += k[0] * p + k[1] * q;
+                y += k[2] * p + k[3] * q;
+            }
+            stored += x * d[2 * n] + y * d[2 * n + 1];
+            const double ga = m.gradients[3 * n + a], gb = m.gradients[3 * n + b];
+            fa[3 * n * parts] -= (ms * ga + mc * gb) + (c * x - s * y);
+            fb[3 * n * parts] += (mc * ga - ms * gb) - (s * x + c * y);
+        }
+        for (int i = 0; i < 9; ++i)
+            *at(rotation + i, part) = i % 4 == 0 ? one : zero;
+        *at(rotation + 4 * a, part) = *at(rotation + 4 * b, part) = c;
+        *at(rotation + 3 * a + b, part) = -s;
+        *at(rotation + 3 * b + a, part) = s;
+        *at(energy, part) = 0.5 * stored;
+    }
+}
+
 void addForces(const BlockMatrix& m, const Row* displacements, const Row* moments, Row* forces, Row* rotation,
                Row* energy, Row* scratch) {
+    if (m.across >= 0) return addForcesInPlane(m, displacements, moments, forces, rotation, energy, scratch);
     const int count = m.nodeCount;
     for (int part = 0; part < parts; ++part) {
         const Lanes* u = at(displacements, part);
@@ -105,6 +174,7 @@ void move(const BlockMatrix& matrix, const NodeMotion& m, const Row& present, Ro
             const double mass = matrix.masses[n];
             const double perMass = m.dt / mass;
             for (int direction = 0; direction < 3; ++direction) {
+                if (direction == matrix.across) continue;
                 const int i = (3 * n + direction) * parts;
                 const Lanes weight = mass * m.gravity[direction] * inUse;
                 const Lanes force = fs[i] + weight;

@@ -66,9 +66,107 @@ std::vector<Point> hexahedron(const ConvexBlock& block) {
 
 double volume(const std::array<Point, 4>& c) { return (c[1] - c[0]).cross(c[2] - c[0]).dot(c[3] - c[0]) / 6; }
 
-BlockMesh divide(const ConvexBlock& block, const std::array<int, 3>& divisions, double sliver) {
+namespace {
+
+void checkDivisions(const std::array<int, 3>& divisions) {
     for (int n : divisions)
         if (n < 1 || n > 100) throw std::invalid_argument("divisions " + std::to_string(n) + " must be 1 to 100");
+}
+
+// The corners of the middle plane of a right prism along the direction `across`, in the order of its base, counter-
+// clockwise about this direction. Empty if the block is no such prism.
+std::vector<Point> middleOfPrism(const ConvexBlock& block, int across, double& thickness) {
+    const double close = 1e-6 * block.size();
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const auto& v : block.vertices) {
+        low = std::min(low, v[across]);
+        high = std::max(high, v[across]);
+    }
+    thickness = high - low;
+    if (!(thickness > 1e-3 * block.size())) return {};
+    for (const auto& v : block.vertices) { // every corner has a partner at the other end
+        const double other = std::abs(v[across] - low) < close ? high : low;
+        if (std::min(std::abs(v[across] - low), std::abs(v[across] - high)) > close) return {};
+        const bool found = std::any_of(block.vertices.begin(), block.vertices.end(), [&](Point w) {
+            if (std::abs(w[across] - other) > close) return false;
+            w[across] = v[across];
+            return (w - v).norm() < close;
+        });
+        if (!found) return {};
+    }
+    std::vector<Point> base; // the face at the upper end, whose outward normal is the direction
+    for (const auto& face : block.faces())
+        if (std::all_of(face.begin(), face.end(), [&](const Point& v) { return high - v[across] < close; }))
+            base = face;
+    for (auto& v : base)
+        v[across] = 0.5 * (low + high);
+    return base;
+}
+
+} // namespace
+
+std::optional<BlockMesh> divideInPlane(const ConvexBlock& block, const std::array<int, 3>& divisions, int across,
+                                       double sliver) {
+    checkDivisions(divisions);
+    BlockMesh mesh;
+    mesh.across = across;
+    const auto base = middleOfPrism(block, across, mesh.thickness);
+    if (base.size() < 3) return std::nullopt;
+    const int a = (across + 1) % 3, b = (across + 2) % 3; // the two directions of the plane
+    const auto cube = hexahedron(block);
+    if (cube.empty()) {
+        mesh.nodes = base;
+        Point centre = Point::Zero();
+        for (const auto& v : base)
+            centre += v / base.size();
+        mesh.nodes.push_back(centre);
+        const int corners = int(base.size());
+        for (int i = 0; i < corners; ++i) {
+            mesh.triangles.push_back({i, (i + 1) % corners, corners});
+            mesh.rim.push_back({i, (i + 1) % corners});
+        }
+    } else {
+        const int na = divisions[a], nb = divisions[b];
+        // The point of the middle plane with these coordinates, each from 0 to 1 along the edges.
+        const auto at = [&](double x, double y) {
+            Point p = Point::Zero();
+            for (int c = 0; c < 8; ++c)
+                p += 0.5 * (c >> a & 1 ? x : 1 - x) * (c >> b & 1 ? y : 1 - y) * cube[c];
+            return p;
+        };
+        const auto node = [&](int i, int j) { return j * (na + 1) + i; };
+        for (int j = 0; j <= nb; ++j)
+            for (int i = 0; i <= na; ++i)
+                mesh.nodes.push_back(at(double(i) / na, double(j) / nb));
+        for (int j = 0; j < nb; ++j)
+            for (int i = 0; i < na; ++i) {
+                const int centre = int(mesh.nodes.size());
+                mesh.nodes.push_back(at((i + 0.5) / na, (j + 0.5) / nb));
+                const int around[4] = {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)};
+                const bool onRim[4] = {j == 0, i == na - 1, j == nb - 1, i == 0};
+                for (int side = 0; side < 4; ++side) {
+                    mesh.triangles.push_back({around[side], around[(side + 1) % 4], centre});
+                    if (onRim[side]) mesh.rim.push_back({around[side], around[(side + 1) % 4]});
+                }
+            }
+    }
+    for (const auto& t : mesh.triangles) {
+        double longest = 0; // edge [m]
+        for (int i = 0; i < 3; ++i)
+            longest = std::max(longest, (mesh.nodes[t[(i + 1) % 3]] - mesh.nodes[t[i]]).norm());
+        const double twice =
+            (mesh.nodes[t[1]] - mesh.nodes[t[0]]).cross(mesh.nodes[t[2]] - mesh.nodes[t[0]])[across]; // area [m²]
+        if (!(twice > 0)) throw std::invalid_argument("block has an inverted zone: not convex, or without volume");
+        if (twice / longest < sliver * longest)
+            throw std::invalid_argument("block has a sliver zone, height " + std::to_string(twice / longest) +
+                                        " m beside an edge of " + std::to_string(longest) +
+                                        " m: choose other divisions");
+    }
+    return mesh;
+}
+
+BlockMesh divide(const ConvexBlock& block, const std::array<int, 3>& divisions, double sliver) {
+    checkDivisions(divisions);
     BlockMesh mesh;
     const auto addZone = [&](int apex, const std::array<int, 3>& base) {
         mesh.zones.push_back({base[0], base[1], base[2], apex});

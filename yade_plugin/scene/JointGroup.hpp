@@ -60,6 +60,8 @@ struct JointReference {
     // Corners of the shared face [m]. Copies of a joint have them in common.
     std::shared_ptr<const Polygon> corners = noCorners();
     Side sides[2]; // bodies 1 and 2 of the interaction
+    // Whether a monolithic joint (JointProperties::monolithic) has yielded, so that its blocks are two from then on.
+    bool split = false;
     // How the subcontacts of a joint with a deformable side move with the nodes.
     struct Attached {
         shared_ptr<Zones> zones;

@@ -23,7 +23,7 @@ std::vector<std::string> Zones::problems() const {
     if (const auto twin = std::adjacent_find(sorted.begin(), sorted.end()); twin != sorted.end())
         wrong.push_back("body " + std::to_string(*twin) + " stands twice in bodies");
     if (!laidOut.empty() && laidOut != layout())
-        wrong.push_back("bodies and divisions cannot change once joints or a run know their nodes");
+        wrong.push_back("bodies, divisions and plane cannot change once joints or a run know their nodes");
     return wrong;
 }
 
@@ -131,10 +131,13 @@ void Zones::mesh() {
         });
         if (kind == kinds.end()) {
             try {
+                const std::array<int, 3> cells{divisions[0], divisions[1], divisions[2]};
+                std::optional<BlockMesh> made;
+                if (plane && held >= 0) made = divideInPlane(block, cells, held);
+                if (!made) made = divide(block, cells);
                 kinds.push_back({block.vertices, mat,
-                                 std::make_shared<const BlockElasticity>(
-                                     divide(block, {divisions[0], divisions[1], divisions[2]}), mat->young,
-                                     mat->poisson, all[id]->material->density, held)});
+                                 std::make_shared<const BlockElasticity>(std::move(*made), mat->young, mat->poisson,
+                                                                         all[id]->material->density, held)});
             } catch (const std::invalid_argument& e) {
                 fail(std::string("cannot be divided: ") + e.what());
                 continue;
@@ -272,16 +275,30 @@ std::optional<Zones::Covered> Zones::cover(const Unit& unit, const std::vector<V
         else
             at->area += point.area;
     };
-    for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
+    const auto name = [&](int node) {
+        const int number = unit.firstNode + node;
+        if (std::find(found.nodes.begin(), found.nodes.end(), number) == found.nodes.end())
+            found.nodes.push_back(number);
+    };
+    for (const auto& edge : mesh.rim) {
+        const Vector3r a = place(edge[0]), b = place(edge[1]);
+        if (!held || !inside(a) || !inside(b)) continue;
+        const double part = (b - a).norm() * mesh.thickness;
+        sum += part;
+        name(edge[0]);
+        name(edge[1]);
+        add({a, part / 6});
+        add({0.5 * (a + b), part / 1.5});
+        add({b, part / 6});
+    }
+    for (std::size_t n = 0; n < mesh.triangles.size() && mesh.across < 0; ++n) {
         const auto& t = mesh.triangles[n];
         if (!std::all_of(t.begin(), t.end(), [&](int node) { return inside(place(node)); })) continue;
         const Vector3r a = place(t[0]), b = place(t[1]), c = place(t[2]);
         const double part = 0.5 * (b - a).cross(c - a).norm();
         sum += part;
         for (int node : t)
-            if (const int number = unit.firstNode + node;
-                std::find(found.nodes.begin(), found.nodes.end(), number) == found.nodes.end())
-                found.nodes.push_back(number);
+            name(node);
         if (held && !mesh.cellFaces.empty()) {
             if (n % 2 != 0) continue; // the first half of a face stands for both
             const auto& face = mesh.cellFaces[n / 2];

@@ -17,10 +17,11 @@ class Zones : public EnergyLedger, public GravityWork {
 public:
     std::vector<int> bodies; // ids of the deformable units
     std::vector<int> divisions{1, 1, 1};
-    std::vector<int> laidOut;             // the divisions and bodies for which the nodes were numbered; set by mesh()
-    double damping = 0.8;                 // damping constant alpha [-]
-    std::string dampingKind = "combined"; // or "local"
-    std::string blocked;                  // directions in which the nodes are held: some of x, y and z
+    bool plane = true;                        // whether units held in one direction are plane units, where they can be
+    std::vector<int> laidOut;                 // what decided how the nodes were numbered; set by mesh()
+    double damping = 0.8;                     // damping constant alpha [-]
+    std::string dampingKind = "combined";     // or "local"
+    std::string blocked;                      // directions in which the nodes are held: some of x, y and z
     Vector3r gravity = Vector3r(0, 0, -9.81); // [m/s²]
     Vector3r moved = Vector3r::Zero();        // sum of mass times displacement of all nodes after the last step [kg m]
 
@@ -55,6 +56,10 @@ public:
     // - Where the nodes are held across the joint, as in a wall loaded in its plane: on every face of a cell the two
     //   ends of the diagonal between its triangles, with 1/6 of its area each, and the middles of its two edges along
     //   the joint, with 1/3 each. Along the joint these are the points of gaussLobatto(3).
+    // - Where the unit is a plane unit, which is held in the same way: on every edge of a cell its two ends, with 1/6
+    // of
+    //   the area that belongs to it each, and its middle, with 4/6. The points lie in the middle plane. A joint across
+    //   the plane has no such points.
     // - Elsewhere: the corners of every triangle, with 1/12 of its area each, and its centroid, with 3/4.
     // Displacements are linear on a triangle, so both rules give a joint its true elastic rotational stiffness, and
     // under a uniform stress every node gets a third of each of its triangles, as the zones need it. Points at the
@@ -98,9 +103,10 @@ public:
     void checkAlive() const;
 
 private:
-    // All that decides how the nodes are numbered: divisions, then bodies.
+    // All that decides how the nodes are numbered: divisions, whether units are plane, then bodies.
     std::vector<int> layout() const {
         std::vector<int> all = divisions;
+        all.push_back(plane);
         all.insert(all.end(), bodies.begin(), bodies.end());
         return all;
     }

@@ -241,7 +241,13 @@ def _warn(pairs, joints, sizes, engines):
                 )
         if isinstance(engine, MasonryZones):
             count = {i: len(range(*engine.nodesOf(i))) for i in engine.bodies}
-            stars = [i for i in count if count[i] == len(bodies[i].shape.v) + 1]
+            corners = {i: len(bodies[i].shape.v) for i in count}
+            # of a plane unit that is no hexahedron the nodes are the corners of its base and one in the middle
+            stars = [
+                i
+                for i, n in corners.items()
+                if count[i] == n + 1 or n != 8 and count[i] == n // 2 + 1
+            ]
             if not count:
                 hints.append("MasonryZones has no bodies")
             if stars and engine.divisions != [1, 1, 1]:

@@ -140,6 +140,7 @@ class Structure:
                 damping=args.damping,
                 dampingKind=kind,
                 blocked="y" if description.plane else "",
+                plane=args.units == "plane",
                 label="zones",
             )
         engines(

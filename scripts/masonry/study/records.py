@@ -153,7 +153,7 @@ def paired(expensive, cheap, measure, other=None):
 
 
 #: Options that decide how accurate and how dear a run is; studies of one wall may differ in them.
-FIDELITY = {"preset", "density_scaling", *presets.USUAL}
+FIDELITY = {"preset", "density_scaling", "units", *presets.USUAL}
 
 
 def _unlike(one, two):

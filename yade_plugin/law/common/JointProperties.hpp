@@ -18,6 +18,7 @@ struct JointProperties {
 
     std::string law = "softening";
     bool elastic = false;
+    bool monolithic = false;
     double tensileStrength = 0.10e6;
     double modeIFractureEnergy = 16;
     std::vector<TableRow> tensionTable;
@@ -78,6 +79,10 @@ template <class Visit> void JointProperties::describe(Visit&& visit) {
               .source("law/README.md"));
     visit("elastic", &P::elastic,
           described("Whether the joint is linear elastic: no strength is ever reached").source("paper section 4.1"));
+    visit("monolithic", &P::monolithic,
+          described("Whether the joint is the crack surface of a brick whose two blocks move as one until the surface "
+                    "first yields. A block can belong to one such joint only")
+              .source("yade_plugin/README.md, Whole bricks"));
     visit("tensileStrength", &P::tensileStrength,
           number("Pa", "Tensile strength ft, at most the apex of the Coulomb cone cohesion/friction")
               .atLeast(0)

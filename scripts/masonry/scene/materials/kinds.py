@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any, Callable, Iterable, Sequence
 
@@ -206,7 +207,7 @@ class Masonry:
 
     @takes(args=_options)
     def variant(self, args: Any) -> Masonry:
-        """A copy for the options ``--joints`` and ``--joint-stiffness``; this one stays as it is."""
+        """A copy for the options ``--joints``, ``--joint-stiffness`` and ``--crack-surfaces``; this one stays as it is."""
         source = self
         if args.joint_stiffness != "joint":
             if not self.softer:
@@ -223,6 +224,8 @@ class Masonry:
         elif args.joints != next(iter(LAWS)):
             for joint in copies.values():
                 joint.law = args.joints
+        if args.crack_surfaces == "whole" and "crack" in copies:
+            copies["crack"].monolithic = True
         units = {kind: copied(mat) for kind, mat in source.units.items()}
         own = Masonry(
             copied(source.unit),
@@ -247,8 +250,11 @@ class Masonry:
     def rule(self, blocks: dict[int, Any]) -> Callable[..., MasonryJoint | None]:
         """The rule of :func:`masonry.assembly.connecting.connect`.
 
+        A monolithic joint joins the two blocks of one brick. Others get the same joint that is not monolithic.
+
         :param blocks: records of the bricks by body id
         """
+        pieces = Counter(block.brick for block in blocks.values())
 
         def rule(one, two, geom):
             first, second = blocks.get(one.id), blocks.get(two.id)
@@ -259,9 +265,22 @@ class Masonry:
                 )
             name = name or self._kind(first, second, geom.normal)
             joint = self.joints[name]
-            return self._at(name, joint, geom) if self.varied else joint
+            if self.varied:
+                joint = self._at(name, joint, geom)
+            halves = first and second and first.brick == second.brick and pieces[first.brick] == 2  # fmt: skip
+            if joint.monolithic and not halves:
+                joint = self._inPieces(joint)
+            return joint
 
         return rule
+
+    def _inPieces(self, joint):
+        """The same joint that is not monolithic."""
+        if id(joint) not in self._made:
+            own = copied(joint)
+            own.monolithic = False
+            self._made[id(joint)] = own
+        return self._made[id(joint)]
 
     def _kind(self, first, second, normal):
         if first is None or second is None:
