@@ -307,7 +307,7 @@ def test_a_row_waits_for_a_fifth_of_a_second_at_most(scene, tmp_path, at):
         time.sleep(0.15)
         at(1, look)
 
-    at(40, slow)
+    at(30, slow)
     assert run(tmp_path, *PUSH, "--no-vtk", "--until", "0.1") == 0
     assert len(seen) > 3
     assert all(written == read for read, written in seen)
@@ -350,7 +350,7 @@ def test_rows_that_wait_are_kept(scene, tmp_path, at, end):
 @pytest.fixture
 def broken(scene, tmp_path, at):
     out = tmp_path / "broken"
-    at(70, interrupt)
+    at(50, interrupt)
     assert run(out, *PUSH, "--set", "bed.cohesion=2e5") == 130
     return out
 

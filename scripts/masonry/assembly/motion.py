@@ -42,6 +42,28 @@ class Motion:
             raise ValueError("has places of other blocks")
         self._places = [Vector3(*values[n : n + 3]) for n in range(0, len(values), 3)]
 
+    def positions(self):
+        """Where every block is, or the mean of its nodes: three numbers each, in one list [m]."""
+        return [value for state in self._states for value in state.pos]
+
+    def baseWeight(self, before, direction, moved):
+        """The weight of the base in the shear force of a push, as of :func:`masonry.read.curves.quasiStatic` [-].
+
+        :param before: :meth:`positions` when the push began
+        :param direction: of the push, a unit vector
+        :param moved: displacement of the driven point along it since then [m]
+        :returns: None if the blocks have not moved with the push, so that there is none from above 0 to 1
+        """
+        along = squares = 0.0
+        for n, state in enumerate(self._states):
+            u = state.pos - Vector3(*before[3 * n : 3 * n + 3])
+            along += state.mass * u.dot(direction)
+            squares += state.mass * u.squaredNorm()
+        if not along * moved > 0:
+            return None
+        weight = squares / (along * moved)
+        return weight if 0 < weight <= 1 else None
+
     def _speeds(self):
         """Velocity of every block [m/s]: of its centre, or, of deformable ones, the mean of their nodes."""
         speeds = [state.vel.norm() for state in self._states]

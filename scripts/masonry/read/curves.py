@@ -12,6 +12,8 @@ from . import loops
 #: Of the elastic energy: what joints dissipate up to it is no crack [-]. Where mortar bonds, nothing is dissipated before
 #: the first crack, and this share finds it a row or two late; dry joints slip a little from the first row on.
 CRACKED = 1e-5
+#: Of :func:`quasiStatic`: the weight of the base of a bar in shear [-].
+SHEAR = 2 / 3
 
 
 def dynamicImbalance(top: Numbers, base: Numbers) -> float:
@@ -31,6 +33,44 @@ def dynamicImbalance(top: Numbers, base: Numbers) -> float:
         rows = slice(start, forces.index(peak) + 1)
     squares = [(t - b) ** 2 for t, b in zip(top[rows], base[rows])]
     return math.sqrt(sum(squares) / len(squares)) / largest
+
+
+def quasiStatic(top: Numbers, base: Numbers, weight: float = SHEAR) -> list[float]:
+    """The shear force V_s of a push without the first-order inertia of the structure's own mass, in every row.
+
+    A structure with the masses m that follows the accelerated displacement u of its driven point by its static shape φ, which
+    is 1 there, holds back Σ m φ² ü at the driven point, and Σ m φ ü in all. So top less V_s is Σ m φ² ü, top less base is
+    Σ m φ ü, and V_s = (1 - w) top + w base with w = Σ m φ² / Σ m φ.
+
+    :param weight: w [-]. That of a bar in shear is 2/3, which gives (top + 2 base)/3; of a bar that bends 0.63 if it is free to
+        turn at its driven end, and 0.74 if it is not
+    """
+    return [(1 - weight) * t + weight * b for t, b in zip(top, base)]
+
+
+def stiffness(displacement: Numbers, force: Numbers, ramp: int = 0) -> float:
+    """Initial stiffness of a push [force/displacement], from the work of its first part: 2 W/u².
+
+    This is the stiffness of a spring that takes the same work W over the same displacement u. The first part ends where the
+    force is a quarter of its peak, but not before the velocity of the drive has grown: in between a wave passes through
+    the structure, and its work is that of the static forces only when a whole first period is over.
+
+    :param force: that of :func:`quasiStatic`. What it is in the first row does not count if it is more than a hundredth of
+        the peak, as of a drive that held a weight before
+    :param ramp: number of the row at which the velocity of the drive has grown
+    """
+    if not force:
+        return 0.0
+    start = force[0] if abs(force[0]) > 0.01 * max(force) else 0.0
+    peak = max(force) - start
+    end = next((n for n, f in enumerate(force) if f - start > 0.25 * peak), 0)
+    end = min(max(end, ramp, 1), len(force) - 1)
+    pairs = list(zip(displacement, force))[: end + 1]
+    work = sum(
+        0.5 * (f + g - 2 * start) * (b - a) for (a, f), (b, g) in zip(pairs, pairs[1:])
+    )
+    path = pairs[-1][0] - pairs[0][0]
+    return 2 * work / path**2 if path else 0.0
 
 
 def peakAtBothEnds(top: Numbers, base: Numbers) -> float:

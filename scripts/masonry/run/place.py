@@ -31,6 +31,9 @@ class Place:
     seconds: dict = field(default_factory=lambda: dict.fromkeys(PARTS, 0.0))
     frames: list = field(default_factory=list)  # times of the ParaView frames [s]
     origins: dict = field(default_factory=dict)  # where pushes began, by their name
+    #: Of the pushes, by the numbers of their stages: the first period when it began [s], the weight of the base in its shear
+    #: force [-], and the time at which its velocity had grown [s]; 0 where that was not found.
+    swings: dict = field(default_factory=dict)
     bounds: dict = field(default_factory=dict)  # what limit analysis found, by the load
     #: Load factors under which the structure came to rest, by the names of their bounds.
     held: dict = field(default_factory=dict)
@@ -121,6 +124,7 @@ class Saved:
             and all(alike(stage, ["", 0, 0.0, 0]) for stage in at.stages)
             and all(map(_isAnswers, at.answers.items()))
             and alike(list(at.held.values()), None)
+            and all(alike(swing, [0.0] * 3) for swing in at.swings.values())
             and all(alike(ended, ["", 0]) for ended in at.ended.values())
             and at.rows <= len(self.rows)
             and at.frameCount <= len(at.frames)

@@ -37,6 +37,11 @@ def check(saved, at):
         "the frames": all(t >= 0 for t in at.frames),
         "where pushes began": all(alike(o, [0.0, 0.0]) for o in at.origins.values()),
         "the bounds": all(map(_isBound, at.bounds.values())),
+        "the swings": all(map(_isNumber, at.swings))
+        and all(
+            0 <= value < FARTHEST for swing in at.swings.values() for value in swing
+        )
+        and 0 <= at.memory.get("period", 0.0) < FARTHEST,
         "the loads": all(map(_isNumber, at.loads)),
         "how stages ended": all(map(_isNumber, at.ended)),
         "the answers": all(map(_isAnswer, at.answers.items())),
@@ -92,7 +97,13 @@ def _isAnswer(entry):
 
 
 #: What the lists of a memory have in each place, as of :class:`masonry.scene.stages.growing.Growing`.
-IN_LISTS = {"kept": [0.0, ""], "rows": [0.0] * 3, "trials": [0.0] * 2, "marks": 0.0}
+IN_LISTS = {
+    "kept": [0.0, ""],
+    "rows": [0.0] * 3,
+    "trials": [0.0] * 2,
+    "marks": 0.0,
+    "places": 0.0,
+}
 #: How long other lists are, if they are not empty.
 LONG = {"held": 2, "lost": 4, "origin": 2}
 

@@ -78,7 +78,11 @@ A run with a push has these, too:
 - ``peak_at_both_ends_kN``: the largest force that the loaded point and the supports carried at once
   (:func:`masonry.read.curves.peakAtBothEnds`)
 - ``base_shear_end_kN``, ``displacement_end_mm``: the last row
-- ``initial_stiffness_kN_per_mm``: as :func:`masonry.read.curves.initialStiffness` fits it
+- ``first_period_s``: the first period along the push, measured as it began (:mod:`masonry.assembly.period`); None if
+  none was found
+- ``base_weight``: w of the shear force V_s = (1 - w) top + w base, which leaves out the inertia of the structure's own mass
+  (:func:`masonry.read.curves.quasiStatic`); from the shape in which the structure moved as the push began, else 2/3 [-]
+- ``initial_stiffness_kN_per_mm``: of V_s, as of :func:`masonry.read.curves.stiffness`
 - ``displacement_at_first_crack_mm``: where the first crack of the push is seen: the first row at which the joints have
   dissipated, in tension and shear since the push began, more than 1e-5 of the elastic energy
   (:func:`masonry.read.curves.firstCrack`); None if there is none. Of dry joints it is where slip begins to count

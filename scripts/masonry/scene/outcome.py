@@ -19,8 +19,10 @@ from ..read.curves import (
     dampedShare,
     dynamicImbalance,
     firstCrack,
-    initialStiffness,
+    SHEAR,
     peakAtBothEnds,
+    quasiStatic,
+    stiffness,
     stillGrows,
 )
 from ..read.frames import asFrame
@@ -74,6 +76,17 @@ class Outcome:
             if number > max(others, default=0)
             for row in range(stages[number - 1][3], ends[number - 1])
         ]
+
+    def _swing(self):
+        """Of the push whose rows come first: its first period, the weight of the base in its shear force, and when its velocity
+        had grown, as of :class:`masonry.run.place.Place`."""
+        rows, stages = self._pushRows(), self.scene.running.at.stages
+        swings = self.scene.running.at.swings
+        for number in sorted(map(int, swings)):
+            if rows and stages[number - 1][3] >= rows[0]:
+                period, weight, end = swings[str(number)]
+                return period, weight or SHEAR, end
+        return 0.0, SHEAR, 0.0
 
     def space(self):
         """Bytes that a run writes at least, and those that it will probably write."""
@@ -199,13 +212,19 @@ class Outcome:
         top = column("top_shear_kN")
         at = max(range(len(shear)), key=shear.__getitem__)
         imbalance = dynamicImbalance(top, shear)
+        period, weight, end = self._swing()
+        times = column("time_s")
+        ramp = next((n for n, time in enumerate(times) if time >= end), 0)
+        still = quasiStatic(top, shear, weight)
         found = dict(
             peak_base_shear_kN=shear[at],
             displacement_at_peak_mm=moved[at],
             peak_at_both_ends_kN=peakAtBothEnds(top, shear),
             base_shear_end_kN=shear[-1],
             displacement_end_mm=moved[-1],
-            initial_stiffness_kN_per_mm=initialStiffness(moved, shear),
+            first_period_s=period or None,
+            base_weight=weight,
+            initial_stiffness_kN_per_mm=stiffness(moved, still, ramp),
             dynamic_imbalance=imbalance,
             too_fast=imbalance > pushing.IMBALANCE,
         )

@@ -4,18 +4,23 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Sequence
 
 from yade import O
 
-from ...basics import Collapsed, Refused
+from ...assembly.period import firstPeriod
+from ...basics import Collapsed, Refused, say
 from ..history import aim, pathLength, turns
 from .rest import rampTime
 
 ROW_EVERY = 0.01  # [mm] of a push between rows of curve.csv
 SHORT = 0.05  # [mm]: a shorter push has rows that are closer together
 ARRIVED = 2e-3  # [mm] from a turning point of a history at which the drive turns: what remains of the path takes it there
+STAIRS = 20  # rows at least while the velocity of the drive grows, in each of which it is constant
+LONGEST = 5  # the longest first period that is looked for, over rampTime() [-]
+#: Likewise, over the time that the path takes at full speed: a shorter push is no slow one [-].
+SHARE = 1.0
 #: Frames for ParaView along a history, beside those at its turning points and zeros.
 FRAMES = 200
 IMBALANCE = 0.1  # a push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more
@@ -34,6 +39,11 @@ class Pushing:
     #: displacement when it began, if it counts from an earlier push [mm]
     start: float = 0.0
     path: float = 0.0  # length of the path to there [mm]
+    period: float = 0.0  # the first one when the push began [s]; 0 if none was found
+    places: list = field(
+        default_factory=list
+    )  # of the blocks then, while the velocity grows [m]
+    turned: bool = False  # whether the drive has turned since the push began
     since: float = 0.0  # time from which the velocity grows [s]
     #: velocity then, in the present direction, over the full one [-]
     growth: float = 0.0
@@ -81,7 +91,7 @@ class Pushing:
             if goals[self.passed].direction != goal.direction:
                 side, out = goal.direction > 0, goal.direction * goal.displacement
                 self.reach = _exchanged(self.reach, side, max(self.reach[side], out))
-                self.growth, turned = -self.growth, True
+                self.growth, turned, self.turned = -self.growth, True, True
 
 
 def _exchanged(pair, side, value):
@@ -92,8 +102,10 @@ def _exchanged(pair, side, value):
 def drivePush(scene, name, args, began, continued=False):
     """Drive the pushed target to ``--until`` or along ``--history``, with rows and frames.
 
-    The drive moves at ``--rate``. When it begins and where the history turns, its velocity changes evenly in time, from
-    rest to ``--rate`` within :func:`rampTime`. It brakes by the displacement that curve.csv has, so the wall turns within
+    The drive moves at ``--rate``. When it begins, its velocity grows evenly in time, from rest to ``--rate`` within one
+    first period of the structure, which is measured then, and without damping: a motion that begins so leaves no swing of that
+    period. Numerical damping would act as more mass. Where the history turns it takes whole periods, of :func:`rampTime` together at least, because joints that are open make them
+    longer. Where no period is found it takes :func:`rampTime`. It brakes by the displacement that curve.csv has, so the wall turns within
     0.01 mm of the history's turning points. Points at which the history does not turn are passed at full speed, and so
     is the end, unless it is that of a file.
 
@@ -127,7 +139,7 @@ def drivePush(scene, name, args, began, continued=False):
     whole, spacing = pathOf(args, at.start), frameSpacing(args)
     if at.passed >= len(goals):
         raise Refused(f"--resume: its history has {at.passed} points and more")
-    load, growing = model.loads["push"], rampTime(args)
+    load = model.loads["push"]
     every = max(1, int(rowSpacing(args) / (args.rate * O.dt)))
     model.goal = at.passed + 1, goals[at.passed].displacement
     if first:
@@ -137,6 +149,9 @@ def drivePush(scene, name, args, began, continued=False):
         at.moved = 1e3 * run.record().along
         run.frame()
         at.nextFrame = spacing
+        at.period = _measuredPeriod(scene, name, args, whole)
+        at.places = model.motion.positions() if at.period else []
+        run.at.swings = {**run.at.swings, str(run.entered): [at.period, 0.0, 0.0]}
     model.origin = at.origin
 
     def detail():
@@ -146,11 +161,15 @@ def drivePush(scene, name, args, began, continued=False):
             f"{travelled:.1f} of {whole:g} mm, at {at.moved:6.2f} mm  {shear:7.2f} kN"
         )
 
-    velocity, moves = None, True
+    velocity, moves, undamped = None, True, None
     while moves:
         goal = goals[at.passed]
         model.goal = at.passed + 1, goal.displacement
-        growth, steps = _pace(at, goal, args.rate, growing, every)
+        growth, steps = _pace(at, goal, args, every)
+        free = bool(at.period) and not at.turned and growth < 1
+        if free != undamped:
+            undamped = free
+            model.damp(0.0, "local") if free else model.dampByOptions()
         if velocity != goal.direction * args.rate * 1e-3 * growth:
             velocity = load.velocity = goal.direction * args.rate * 1e-3 * growth
         model.keepLoadLine()
@@ -158,6 +177,8 @@ def drivePush(scene, name, args, began, continued=False):
         reading = run.record()
         before = at.moved
         at.now, at.moved = reading.time, 1e3 * reading.along
+        if at.places and not undamped:
+            _noteSwing(run, model, at)
         shear, travelled = 1e-3 * reading.baseShear, at.travelled(goal.direction)
         at.note(shear)
         how = None
@@ -182,24 +203,75 @@ def drivePush(scene, name, args, began, continued=False):
         raise Collapsed(f"at {at.moved:.2f} mm {how}")
 
 
-def _pace(at, goal, rate, growing, every):
+def _measuredPeriod(scene, name, args, path):
+    """The first period along a push that begins [s], or 0 with a note if none is found.
+
+    :param path: length of the whole path [mm]
+    """
+    run, model = scene.running, scene.model
+    longest = min(LONGEST * rampTime(args), SHARE * path / args.rate)
+    with run.clock("setup"), run.breakable():
+        period = firstPeriod(model, model.direction, longest)
+    if not period:
+        say(
+            f"note: {name}: no first period up to {1e3 * longest:.3g} ms was found; the drive gets to its rate within "
+            f"{1e3 * rampTime(args):.3g} ms"
+        )
+        return 0.0
+    say(f"{name}: first period along it {1e3 * period:.3g} ms")
+    return period
+
+
+def _noteSwing(run, model, at):
+    """Keep the period of a push whose velocity has grown, the weight of the base in its shear force, and the time."""
+    moved = model.alongNow() - 1e-3 * at.start
+    weight = model.motion.baseWeight(at.places, model.direction, moved)
+    swing = [at.period, weight or 0.0, at.now]
+    run.at.swings = {**run.at.swings, str(run.entered): swing}
+    at.places = []
+
+
+def _rampOf(at, args, every, turns):
+    """Time in which the velocity of the drive grows from 0 to the full one [s], and how many steps each row has then.
+
+    :param at: what the push remembers
+    :param every: how many steps are between rows at full speed
+    :param turns: whether the drive turns, and does not begin
+    """
+    least = rampTime(args)
+    if not at.period:
+        return least, every
+    ramp = at.period * (math.ceil(least / at.period) if turns else 1)
+    every = max(1, min(every, int(ramp / (STAIRS * O.dt))))
+    row = every * O.dt
+    return row * max(1, round(ramp / row)), every
+
+
+def _pace(at, goal, args, every):
     """Velocity of the drive over the full one, and for how many steps it holds, from what a push remembers.
 
     The velocity grows evenly to the full one, but is not more than what can be braked before the next turn: √(2·a·s) at
     the distance s with the deceleration a.
 
-    :param rate: full velocity [mm/s]
-    :param growing: time in which the velocity grows from 0 to the full one [s]
+    :param args: the options of the run, with the ``rate`` of this push
     :param every: how many steps are between rows at full speed
     """
-    growth = min(1.0, at.growth + (at.now - at.since + every * O.dt) / growing)
+    rate = args.rate
+    growing, closer = _rampOf(at, args, every, at.turned)
+    braking, _ = _rampOf(at, args, every, True)
+    row = every if at.growth == 1.0 else closer
+    growth = min(1.0, at.growth + (at.now - at.since + row * O.dt) / growing)
+    if growth > 1 - 1e-9:  # the sum of equal parts
+        growth = 1.0
+    if growth == 1.0:
+        row = every
     if goal.brake is None:
-        return growth, every
+        return growth, row
     distance = max(0.0, goal.direction * (goal.brake - at.moved))
-    growth = min(growth, math.sqrt(2 * distance / (rate * growing)))
+    growth = min(growth, math.sqrt(2 * distance / (rate * braking)))
     if growth <= 0:
-        return growth, every
-    return growth, max(1, min(every, int(distance / (rate * growth * O.dt))))
+        return growth, row
+    return growth, max(1, min(row, int(distance / (rate * growth * O.dt))))
 
 
 def pathOf(args, start=0.0):

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The first period of a structure along a direction, measured on its present state.
+
+A uniform acceleration that begins at once and stays sets an elastic structure swinging about the place to which it moves.
+Of its modes n, with the angular frequencies ω_n and the shares c_n of the mass, the momentum is then proportional to
+Σ c_n/ω_n sin(ω_n t). The first mode has nearly all of that, and in a bar in shear between two ends that are held the
+others pass through zero at the same moment. So half a period is over when the momentum is first back at zero. It is
+the integral over time of all forces on what can move: weights, loads, supports and drives. This needs nothing but
+these forces, so it is the same for rigid and deformable blocks, walls with openings and arches.
+
+A structure that is said to be at rest still moves a little. So it is done to both sides, and the difference counts.
+"""
+
+import math
+
+from yade import O
+
+from .._masonry import loadScene, saveScene
+from ..basics import GRAVITY
+
+SHARE = 0.05  # of gravity: the acceleration that acts in the measurement
+SAMPLE = 2e-5  # [s] between two readings of the forces, at true masses
+FEWEST = 5  # readings in half a period, else it is too short to be found
+BEYOND = (
+    1.1,
+    2.0,
+)  # how far the first side goes beyond its own half period, for the difference to both sides [-]
+
+
+def firstPeriod(structure, direction, longest):
+    """The first period of a structure at rest along a direction [s], or None if none is found.
+
+    What drives hold stays where it is, and nothing is damped. Afterwards the scene is as before, to the last bit. It takes the
+    steps of a period or some more.
+
+    :param structure: :class:`masonry.assembly.structure.Structure`
+    :param direction: unit vector
+    :param longest: the longest period that is looked for [s]
+    """
+    before = saveScene("null")
+    every = max(1, int(SAMPLE * structure.args.density_scaling**0.5 / O.dt))
+    most = int(0.5 * longest / (every * O.dt))
+    push = SHARE * GRAVITY / structure.args.density_scaling * direction
+    try:
+        for beyond in BEYOND:
+            there, back, end = [], [], beyond * most
+            for momentum in _momenta(structure, direction, push, every):
+                there.append(momentum)
+                if momentum <= 0:
+                    end = min(end, beyond * len(there))
+                if not math.isfinite(momentum) or len(there) >= end:
+                    break
+            loadScene(before)
+            for momentum in _momenta(structure, direction, -push, every):
+                back.append(there[len(back)] - momentum)
+                if not back[-1] > 0 or len(back) == min(most, len(there)):
+                    break
+            loadScene(before)
+            if back[-1] <= 0 or len(back) >= most:
+                break
+    except RuntimeError:  # it falls
+        return None
+    finally:
+        loadScene(before)
+    n = len(back) - 1
+    if not back[n] <= 0 or n < FEWEST:
+        return None
+    return 2 * every * O.dt * (n + back[n - 1] / (back[n - 1] - back[n]))
+
+
+def _momenta(structure, direction, acceleration, every):
+    """The momentum of a structure along a direction [N·s] after each ``every`` steps under an acceleration [m/s²]."""
+    structure.damp(0.0, "local")
+    force = lambda: (structure.applied() + structure.carried()).dot(direction)
+    rest, now = force(), structure.now
+    structure.setGravity(now + acceleration)
+    O.step()
+    before, momentum = force() - rest, 0.0
+    while True:
+        for _ in range(every):
+            O.step()
+        after = force() - rest
+        momentum += 0.5 * (before + after) * every * O.dt
+        before = after
+        yield momentum
