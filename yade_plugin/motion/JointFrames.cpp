@@ -203,15 +203,23 @@ namespace {
 
 } // namespace
 
-double dampIntact(int n, const IntactFaces& faces, double times, const unsigned char* byPoints,
-                  const double* const* old, double* const* damped, JointFrames& out) {
+MASONRY_VECTORISED void keepIntact(int n, const JointFrames& frames, double* const* jumps) {
+    for (int d = 0; d < 3; ++d)
+        for (int i = 0; i < n; ++i) {
+            jumps[d][i] = frames.middle[d][i];
+            jumps[3 + d][i] = frames.turn[d][i];
+        }
+}
+
+double dampIntact(int n, const IntactFaces& faces, double times, double* const* jumps, double* const* damped,
+                  JointFrames& out) {
     double taken = 0;
     for (int i = 0; i < n; ++i) {
-        if (byPoints[i]) continue;
         double change[6], both[6];
         for (int d = 0; d < 6; ++d) {
             double& field = d < 3 ? out.middle[d][i] : out.turn[d - 3][i];
-            change[d] = field - old[d][i];
+            change[d] = field - jumps[d][i];
+            jumps[d][i] = field;
             const double now = times * change[d];
             both[d] = now + damped[d][i];
             damped[d][i] = now;
@@ -224,8 +232,7 @@ double dampIntact(int n, const IntactFaces& faces, double times, const unsigned 
 
 // With b from the middle of the face, its arm is half^T (middle + b) + jump / 2 (see jumpRigid), and the stress is the
 // stiffness times the field. The first moments of b are zero.
-MASONRY_VECTORISED void pullIntact(int n, const IntactFaces& faces, const unsigned char* byPoints,
-                                   JointFrames& __restrict out) {
+MASONRY_VECTORISED void pullIntact(int n, const IntactFaces& faces, JointFrames& __restrict out) {
     const double *m0 = faces.middle[0], *m1 = faces.middle[1], *m2 = faces.middle[2], *area = faces.area;
     const double *i11 = faces.inertia[0], *i22 = faces.inertia[1], *i12 = faces.inertia[2];
     const double kn = faces.normal, ks = faces.shear;
@@ -245,15 +252,12 @@ MASONRY_VECTORISED void pullIntact(int n, const IntactFaces& faces, const unsign
         const double twist = ks * t0 * (i11[i] + i22[i]);
         const double h0 = v2 * bend1 - v1 * bend2;
         const double h1 = -ks * t0 * (v1 * i12[i] + v2 * i22[i]), h2 = ks * t0 * (v1 * i11[i] + v2 * i12[i]);
-        const bool intact = byPoints[i] == 0;
-        const double f0 = out.force[0][i], f1 = out.force[1][i], f2 = out.force[2][i];
-        const double g0 = out.torque[0][i], g1 = out.torque[1][i], g2 = out.torque[2][i];
-        out.force[0][i] = intact ? x : f0;
-        out.force[1][i] = intact ? y : f1;
-        out.force[2][i] = intact ? z : f2;
-        out.torque[0][i] = intact ? r1 * z - r2 * y + shrink * twist + 2 * (v1 * h2 - v2 * h1) : g0;
-        out.torque[1][i] = intact ? r2 * x - r0 * z + shrink * bend1 + 2 * (v2 * h0 - v0 * h2) : g1;
-        out.torque[2][i] = intact ? r0 * y - r1 * x + shrink * bend2 + 2 * (v0 * h1 - v1 * h0) : g2;
+        out.force[0][i] = x;
+        out.force[1][i] = y;
+        out.force[2][i] = z;
+        out.torque[0][i] = r1 * z - r2 * y + shrink * twist + 2 * (v1 * h2 - v2 * h1);
+        out.torque[1][i] = r2 * x - r0 * z + shrink * bend1 + 2 * (v2 * h0 - v0 * h2);
+        out.torque[2][i] = r0 * y - r1 * x + shrink * bend2 + 2 * (v0 * h1 - v1 * h0);
     }
 }
 
@@ -434,18 +438,15 @@ MASONRY_VECTORISED void jumpIntactInPlane(int n, const IntactFaces& faces, const
     }
 }
 
-MASONRY_VECTORISED void pullIntactInPlane(int n, const IntactFaces& faces, const unsigned char* byPoints,
-                                          JointFrames& __restrict out) {
+MASONRY_VECTORISED void pullIntactInPlane(int n, const IntactFaces& faces, JointFrames& __restrict out) {
     const double *m0 = faces.middle[0], *m1 = faces.middle[1], *area = faces.area, *i11 = faces.inertia[0];
     const double kn = faces.normal, ks = faces.shear;
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
         const double x = kn * area[i] * out.middle[0][i], y = ks * area[i] * out.middle[1][i];
-        const bool intact = byPoints[i] == 0;
-        const double f0 = out.force[0][i], f1 = out.force[1][i], t = out.torque[2][i];
-        out.force[0][i] = intact ? x : f0;
-        out.force[1][i] = intact ? y : f1;
-        out.torque[2][i] = intact ? m0[i] * y - m1[i] * x + kn * out.turn[2][i] * i11[i] : t;
+        out.force[0][i] = x;
+        out.force[1][i] = y;
+        out.torque[2][i] = m0[i] * y - m1[i] * x + kn * out.turn[2][i] * i11[i];
     }
 }
 

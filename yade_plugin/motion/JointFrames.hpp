@@ -68,13 +68,14 @@ void spreadIntact(int n, const IntactFaces&, JointFrames&);
 // The jumps at a subcontact with the offsets a1 and a2, and the opening alone; in `step`.
 void jumpIntact(int n, const IntactFaces&, const double* a1, const double* a2, JointFrames&);
 void openIntact(int n, const IntactFaces&, const double* a1, const double* a2, JointFrames&);
-// Adds `times` the change of the jumps in this step to `middle` and `turn`, so that the stresses of damping come to
-// those of the law. `old` are the columns of middle and turn of the step before [m], `damped` those of what was added
-// then, which are replaced. Returns the energy taken [J]. Joints that are marked in `byPoints` are left alone.
-double dampIntact(int n, const IntactFaces&, double times, const unsigned char* byPoints, const double* const* old,
-                  double* const* damped, JointFrames&);
-// Sets force and torque on block 1 of the joints that are not marked in `byPoints`.
-void pullIntact(int n, const IntactFaces&, const unsigned char* byPoints, JointFrames&);
+// Keeps `middle` and `turn` in six columns.
+void keepIntact(int n, const JointFrames&, double* const* jumps);
+// The same, and adds `times` the change of the jumps in this step to `middle` and `turn`, so that the stresses of
+// damping come to those of the law. `damped` are the columns of what was added in the step before, which is replaced.
+// Returns the energy taken [J].
+double dampIntact(int n, const IntactFaces&, double times, double* const* jumps, double* const* damped, JointFrames&);
+// Sets force and torque on block 1.
+void pullIntact(int n, const IntactFaces&, JointFrames&);
 
 // Joints with a deformable side, whose subcontacts move by displacements `u` [m]. `place1` and `place2` say where in
 // `u` the two sides of the present subcontact stand; the three components are `lanes` numbers apart. `onPoints`
@@ -102,7 +103,7 @@ void pullRigidInPlane(int n, const double* area, const double* normal, const dou
 void finishRigidInPlane(int n, const JointFrames&, double* onJoints);
 void spreadIntactInPlane(int n, const IntactFaces&, JointFrames&);
 void jumpIntactInPlane(int n, const IntactFaces&, const double* a1, JointFrames&);
-void pullIntactInPlane(int n, const IntactFaces&, const unsigned char* byPoints, JointFrames&);
+void pullIntactInPlane(int n, const IntactFaces&, JointFrames&);
 void alignNodalInPlane(int n, const int* body1, const int* body2, const double* const* turn, const double* const* f1,
                        const double* const* f2, JointFrames&);
 void jumpNodalInPlane(int n, const int* place1, const int* place2, const double* u, double* j0, double* j1,

@@ -144,7 +144,11 @@ struct JointShapes : JointGroup {
         if (behind) const_cast<JointShapes*>(this)->writePoints();
     }
     void bringPointsOf(int joint); // the same for one joint, always
-    void findMiddles();            // fills `middle` to `rim` from areas and offsets
+    void endIntact(int joint) {    // from now on an intact joint is advanced by its points
+        bringPointsOf(joint);
+        byPoints[joint] = 1;
+    }
+    void findMiddles(); // fills `middle` to `rim` from areas and offsets
     // Place of a joint in the columns `middle` to `inertia`.
     std::size_t face(int joint) const { return alike ? std::size_t(joint % JointFrames::most) : std::size_t(joint); }
     // Whether what stands at the points of a joint is that of an intact one with these linear fields.

@@ -155,17 +155,23 @@ void JointPlan::findIntact(const JointKind& kind, Kind& made) {
             for (auto* column : {&field->middle[2], &field->turn[0], &field->turn[1]})
                 std::fill(column->begin(), column->end(), 0.0);
     shapes.findMiddles();
-    for (int j = 0; j < count; ++j) {
+    for (int j = 0; j < count; ++j)
         if (!shapes.byPoints[j] && !shapes.isIntact(j)) shapes.byPoints[j] = 1;
-        made.intact = made.intact || !shapes.byPoints[j];
+    shapes.bringPoints();
+    for (int first = 0; first < count; first += lanes) {
+        const auto from = shapes.byPoints.begin() + first, beyond = from + std::min(lanes, count - first);
+        if (std::find(from, beyond, 1) != beyond) // joints side by side are intact together
+            std::fill(from, beyond, 1);
+        else
+            made.intact = true;
     }
     shapes.behind = made.intact;
 }
 
 // From now on the joints of a kind are advanced by their points.
 void JointPlan::endIntact(const JointKind& kind) {
-    kind.shapes->bringPoints();
-    std::fill_n(kind.shapes->byPoints.begin(), kind.shapes->joints.size(), 1);
+    for (int j = 0; j < int(kind.shapes->joints.size()); ++j)
+        if (!kind.shapes->byPoints[j]) kind.shapes->endIntact(j);
 }
 
 // Bodies are numbered course by course as a rule. A thread that takes the joints of the bodies that it moves itself
@@ -346,64 +352,39 @@ struct JointPlan::Run {
     const JointKind& kind;
     const Kind& plan;
     const BodyColumns& bodies;
-    int from, n;         // number of the first joint within its kind, and of joints
-    bool intact, points; // whether some are intact, and whether some are advanced by their points
+    int from, n; // number of the first joint within its kind, and of joints
     double dt, stiffnessDamping;
     JointFrames frames;
-    IntactFaces faces;
 
     Run(const JointKind& kind, const Kind& plan, const SceneStore& store, double stiffnessDamping)
         : kind(kind), plan(plan), bodies(store.bodies), dt(store.scene().dt), stiffnessDamping(stiffnessDamping) {}
 
     JointShapes& shapes() const { return *kind.shapes; }
     LawColumns& states() const { return *kind.states->columns.asTheyStand(); } // the step brings them up to date
-    unsigned char* byPoints() const { return &shapes().byPoints[from]; }
+    const double* offset(int d, int p) const {
+        return &shapes().offset[d][shapes().alike ? shapes().shape(p, 0) : shapes().at(p, from)];
+    }
 };
 
-// Joints are advanced in runs of whole lanes, in which either all are intact or some are not.
+// Joints are advanced in runs of whole lanes, which are either all intact or all not.
 double JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const Kind& plan, int from, int n,
                                double stiffnessDamping) {
     Run run(kind, plan, store, stiffnessDamping);
     const unsigned char* byPoints = &kind.shapes->byPoints[from];
-    const auto count = [&](int first) { // how many joints of up to eight are advanced by their points
-        int many = 0;
-        for (int i = first; i < std::min(first + lanes, n); ++i)
-            many += byPoints[i];
-        return many;
-    };
     double taken = 0;
     for (int first = 0; first < n;) {
-        int beyond = first, advanced = 0;
-        bool points = false;
-        for (; beyond < n; beyond += lanes) {
-            const int many = plan.intact ? count(beyond) : lanes;
-            if (beyond == first)
-                points = many > 0;
-            else if (points != (many > 0))
-                break;
-            advanced += many;
-        }
+        int beyond = first + lanes;
+        while (beyond < n && byPoints[beyond] == byPoints[first])
+            beyond += lanes;
         run.from = from + first;
         run.n = std::min(beyond, n) - first;
-        run.points = points;
-        run.intact = plan.intact && advanced < run.n;
-        taken += advanceRun(run);
+        align(run);
+        if (byPoints[first])
+            taken += advancePoints(run);
+        else if (!advanceIntact(run, taken))
+            continue; // again, because some joints of the run are not intact any more
         first = beyond;
     }
-    return taken;
-}
-
-double JointPlan::advanceRun(Run& run) {
-    double taken = 0;
-    align(run);
-    if (run.intact) watchIntact(run);
-    if (run.points) taken += advancePoints(run);
-    if (run.intact) taken += pullIntactOf(run);
-    double* onJoints = &onJoints_[std::size_t(plane_ ? 4 : 9) * (run.plan.first + run.from)];
-    if (run.kind.attached)
-        (plane_ ? finishNodalInPlane : finishNodal)(run.n, run.frames, onJoints);
-    else
-        (plane_ ? finishRigidInPlane : finishRigid)(run.n, run.frames, onJoints);
     return taken;
 }
 
@@ -430,84 +411,75 @@ void JointPlan::align(Run& run) const {
                                                   run.frames);
 }
 
-// Finds the jumps of intact joints. Those that are about to yield are advanced by their points from now on; the others
-// take down what their points remember.
-void JointPlan::watchIntact(Run& run) const {
+// Advances intact joints. If one of them is about to yield, it and those in the same lanes are no longer intact; then
+// nothing else happens and the answer is false. Adds the energy that damping takes [J] to `taken`.
+bool JointPlan::advanceIntact(Run& run, double& taken) {
     auto& shapes = run.shapes();
     auto& states = run.states();
     auto& frames = run.frames;
     const int n = run.n;
     const std::size_t face = shapes.alike ? 0 : run.from;
-    run.faces = {{&shapes.middle[0][face], &shapes.middle[1][face], &shapes.middle[2][face]},
-                 &shapes.whole[face],
-                 {&shapes.inertia[0][face], &shapes.inertia[1][face], &shapes.inertia[2][face]},
-                 states.stiffness().normal,
-                 states.stiffness().shear};
-    (plane_ ? spreadIntactInPlane : spreadIntact)(n, run.faces, frames);
-    const auto offset = [&](int d, int p) {
-        return &shapes.offset[d][shapes.alike ? shapes.shape(p, 0) : shapes.at(p, run.from)];
+    const IntactFaces faces{{&shapes.middle[0][face], &shapes.middle[1][face], &shapes.middle[2][face]},
+                            &shapes.whole[face],
+                            {&shapes.inertia[0][face], &shapes.inertia[1][face], &shapes.inertia[2][face]},
+                            states.stiffness().normal,
+                            states.stiffness().shear};
+    (plane_ ? spreadIntactInPlane : spreadIntact)(n, faces, frames);
+    if (endsIntact(run, faces)) return false;
+    for (int p = 0; p < shapes.points; ++p) {
+        openIntact(n, faces, run.offset(1, p), run.offset(2, p), frames);
+        states.remember(p, run.from, n, frames.step[0]);
+    }
+    const auto columns = [&](LinearField& field) {
+        return std::array<double*, 6>{&field.middle[0][run.from], &field.middle[1][run.from],
+                                      &field.middle[2][run.from], &field.turn[0][run.from],
+                                      &field.turn[1][run.from],   &field.turn[2][run.from]};
     };
-    Mask yielding[most] = {}, staying[most];
-    const auto look = [&](int p) {
-        plane_ ? jumpIntactInPlane(n, run.faces, offset(1, p), frames)
-               : jumpIntact(n, run.faces, offset(1, p), offset(2, p), frames);
-        states.findYielding(n, frames.step[0], frames.step[1], plane_ ? nullptr : frames.step[2], yielding);
-    };
-    if (states.isConvex())
-        for (int p : shapes.rim)
-            look(p);
+    const auto jumps = columns(shapes.linear);
+    if (shapes.damped.empty())
+        keepIntact(n, frames, jumps.data());
     else
-        for (int p = 0; p < shapes.points; ++p)
-            look(p);
-    unsigned char* byPoints = run.byPoints();
-    Mask yields = 0, stays = 0;
-    for (int i = 0; i < n; ++i) {
-        staying[i] = (yielding[i] | byPoints[i]) == 0;
-        stays |= staying[i];
-        yields |= yielding[i] != 0 && byPoints[i] == 0;
-    }
-    if (yields) {
-        for (int i = 0; i < n; ++i)
-            if (yielding[i] != 0 && byPoints[i] == 0) {
-                shapes.bringPointsOf(run.from + i);
-                byPoints[i] = 1;
-            }
-        run.points = true;
-        run.intact = stays != 0;
-    }
-    for (int p = 0; stays && p < shapes.points; ++p) {
-        plane_ ? jumpIntactInPlane(n, run.faces, offset(1, p), frames)
-               : openIntact(n, run.faces, offset(1, p), offset(2, p), frames);
-        states.remember(p, run.from, n, frames.step[0], staying);
-    }
+        taken +=
+            dampIntact(n, faces, run.stiffnessDamping / run.dt, jumps.data(), columns(shapes.damped).data(), frames);
+    (plane_ ? pullIntactInPlane : pullIntact)(n, faces, frames);
+    finish(run);
+    return true;
 }
 
-// Keeps the jumps of intact joints and sets their forces. Returns the energy that damping takes [J].
-double JointPlan::pullIntactOf(Run& run) const {
+// Looks whether intact joints are about to yield, and ends their being intact.
+bool JointPlan::endsIntact(Run& run, const IntactFaces& faces) const {
     auto& shapes = run.shapes();
     auto& frames = run.frames;
-    const unsigned char* byPoints = run.byPoints();
-    double *old[6], *damped[6], taken = 0, now[6][most];
-    for (int d = 0; d < 3; ++d) {
-        old[d] = &shapes.linear.middle[d][run.from];
-        old[3 + d] = &shapes.linear.turn[d][run.from];
-        std::copy_n(frames.middle[d], run.n, now[d]);
-        std::copy_n(frames.turn[d], run.n, now[3 + d]);
+    Mask yielding[most] = {};
+    const auto look = [&](int p) {
+        plane_ ? jumpIntactInPlane(run.n, faces, run.offset(1, p), frames)
+               : jumpIntact(run.n, faces, run.offset(1, p), run.offset(2, p), frames);
+        run.states().findYielding(run.n, frames.step[0], frames.step[1], plane_ ? nullptr : frames.step[2], yielding);
+    };
+    const bool convex = run.states().isConvex();
+    for (int p = 0; p < (convex ? int(shapes.rim.size()) : shapes.points); ++p)
+        look(convex ? shapes.rim[p] : p);
+    Mask any = 0;
+    for (int i = 0; i < run.n; ++i)
+        any |= yielding[i];
+    for (int first = 0; any && first < run.n; first += lanes) {
+        const int beyond = std::min(first + lanes, run.n);
+        const bool ends = std::any_of(yielding + first, yielding + beyond, [](Mask m) { return m != 0; });
+        for (int i = run.from + first; ends && i < run.from + beyond; ++i)
+            shapes.endIntact(i);
     }
-    if (!shapes.damped.empty()) {
-        for (int d = 0; d < 3; ++d) {
-            damped[d] = &shapes.damped.middle[d][run.from];
-            damped[3 + d] = &shapes.damped.turn[d][run.from];
-        }
-        taken = dampIntact(run.n, run.faces, run.stiffnessDamping / run.dt, byPoints, old, damped, frames);
-    }
-    for (int d = 0; d < 6; ++d)
-        if (!plane_ || d == 0 || d == 1 || d == 5) std::copy_n(now[d], run.n, old[d]);
-    (plane_ ? pullIntactInPlane : pullIntact)(run.n, run.faces, byPoints, frames);
-    return taken;
+    return any != 0;
 }
 
-// Advances joints by their points. Intact ones among them are held still: their points keep what they remember.
+void JointPlan::finish(Run& run) {
+    double* onJoints = &onJoints_[std::size_t(plane_ ? 4 : 9) * (run.plan.first + run.from)];
+    if (run.kind.attached)
+        (plane_ ? finishNodalInPlane : finishNodal)(run.n, run.frames, onJoints);
+    else
+        (plane_ ? finishRigidInPlane : finishRigid)(run.n, run.frames, onJoints);
+}
+
+// Advances joints by their points. Returns the energy that damping takes [J].
 double JointPlan::advancePoints(Run& run) {
     const auto& kind = run.kind;
     const auto& plan = run.plan;
@@ -515,7 +487,6 @@ double JointPlan::advancePoints(Run& run) {
     auto& states = run.states();
     auto& frames = run.frames;
     const int from = run.from, n = run.n;
-    const unsigned char* byPoints = run.byPoints();
     const int stride = int(plan.body1.size());
     const auto& k = states.stiffness();
     const auto& properties = states.law().properties();
@@ -537,10 +508,6 @@ double JointPlan::advancePoints(Run& run) {
                    : jumpNodal(n, place1, place2, u, j0, j1, j2, frames);
         } else
             plane_ ? jumpRigidInPlane(n, a0, a1, j0, j1, frames) : jumpRigid(n, a0, a1, a2, j0, j1, j2, frames);
-        if (run.intact)
-            for (int d = 0; d < (plane_ ? 2 : 3); ++d)
-                for (int l = 0; l < n; ++l)
-                    frames.step[d][l] = byPoints[l] ? frames.step[d][l] : 0;
         states.advance(p, from, n, frames.step[0], frames.step[1], plane_ ? nullptr : frames.step[2],
                        frames.normalStress);
         const double *normal = frames.normalStress, *a = states.shearStressA(p, from),
@@ -562,6 +529,7 @@ double JointPlan::advancePoints(Run& run) {
         } else
             plane_ ? pullRigidInPlane(n, area, normal, a, a0, a1, frames) : pullRigid(n, area, normal, a, b, frames);
     }
+    finish(run);
     return taken;
 }
 

@@ -81,11 +81,11 @@ private:
     void endIntact(const JointKind&);
     struct Run; // joints of a batch that are advanced together
     double advanceBatch(SceneStore&, const JointKind&, const Kind&, int from, int count, double stiffnessDamping);
-    double advanceRun(Run&);
     void align(Run&) const;
-    void watchIntact(Run&) const;
-    double pullIntactOf(Run&) const;
+    bool advanceIntact(Run&, double& taken);
+    bool endsIntact(Run&, const IntactFaces&) const;
     double advancePoints(Run&);
+    void finish(Run&);
     void shareOut();
     void orderBatches(const SceneStore&);
     void moveDependentPoints(const SceneStore&);

@@ -79,16 +79,18 @@ void transferBodies(yade::Scene& scene, Transfer& to) {
     forces.sync();
 }
 
-// Before the records of its subcontacts stand the numbers of a joint itself: see JointShapes::readFields(). A record of
-// a subcontact holds its jump [m], the stress of damping in the last step [Pa], the energies dissipated in tension,
-// shear and compression [J/m²], and the numbers of its law.
+// A record of a joint holds the numbers of JointShapes::readFields(). A record of a subcontact holds its jump [m], the
+// stress of damping in the last step [Pa], the energies dissipated in tension, shear and compression [J/m²], and the
+// numbers of its law.
 void transferJoints(const SceneStore& store, Transfer& to) {
     std::vector<double> records;
     const auto add = [&](double x, double y, double z) { records.insert(records.end(), {x, y, z}); };
-    double fields[JointShapes::numbersOfFields];
+    constexpr std::size_t width = JointShapes::numbersOfFields;
+    std::vector<double> fields(width * store.joints.size());
+    double* field = fields.data();
     for (const auto& joint : store.joints) {
-        joint.geom->group->readFields(joint.geom->index, fields);
-        records.insert(records.end(), std::begin(fields), std::end(fields));
+        joint.geom->group->readFields(joint.geom->index, field);
+        field += width;
         for (int p = 0; p < joint.geom->points(); ++p) {
             const Vector3r jump = joint.geom->jump(p);
             const Vector3r viscous = joint.geom->group->viscousAt(p, joint.geom->index);
@@ -101,11 +103,13 @@ void transferJoints(const SceneStore& store, Transfer& to) {
         }
     }
     to.several("joints", records.data(), records.size());
+    to.several("jointFields", fields.data(), fields.size());
     if (!to.back) return;
     const double* next = records.data();
+    field = fields.data();
     for (const auto& joint : store.joints) {
-        joint.geom->group->writeFields(joint.geom->index, next);
-        next += JointShapes::numbersOfFields;
+        joint.geom->group->writeFields(joint.geom->index, field);
+        field += width;
         for (int p = 0; p < joint.geom->points(); ++p) {
             auto& columns = *joint.phys->group->columns;
             joint.geom->group->setJump(p, joint.geom->index, {next[0], next[1], next[2]});

@@ -91,8 +91,8 @@ public:
                       Mask* yielding) const override {
         if (!elastic_) markYielding(equations_, neverYielded_, count, opening, slideA, slideB, yielding);
     }
-    void remember(int point, int from, int count, const double* opening, const Mask* staying) override {
-        if (!elastic_) rememberElastic(equations_, columns_, at(point, from), count, opening, staying);
+    void remember(int point, int from, int count, const double* opening) override {
+        if (!elastic_) rememberElastic(equations_, columns_, at(point, from), count, opening);
     }
 
 protected:

@@ -84,9 +84,8 @@ public:
     virtual void findYielding(int /*count*/, const double* /*opening*/, const double* /*slideA*/,
                               const double* /*slideB*/, Mask* /*yielding*/) const {}
     // Takes down what a subcontact that stays elastic remembers of an opening, such as the largest so far, for the
-    // joints from..from+count that are marked in `staying`.
-    virtual void remember(int /*point*/, int /*from*/, int /*count*/, const double* /*opening*/,
-                          const Mask* /*staying*/) {}
+    // joints from..from+count.
+    virtual void remember(int /*point*/, int /*from*/, int /*count*/, const double* /*opening*/) {}
     // Gives a subcontact of an intact joint its jump, and the stress that belongs to it.
     void setElastic(int point, int joint, double opening, double slideA, double slideB) {
         const std::size_t i = at(point, joint);

@@ -117,13 +117,12 @@ void markYielding(const CyclicEquations& e, const CyclicConsequences& neverYield
 }
 
 MASONRY_VECTORISED
-void rememberElastic(const CyclicEquations&, const Columns& columns, std::size_t at, int count, const double* opening,
-                     const Mask* staying) {
+void rememberElastic(const CyclicEquations&, const Columns& columns, std::size_t at, int count, const double* opening) {
     double* largestOpening = columns[Column::LargestOpening] + at;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
         const double farthest = largestOpening[i];
-        largestOpening[i] = (staying[i] != 0) & (opening[i] > farthest) ? opening[i] : farthest;
+        largestOpening[i] = opening[i] > farthest ? opening[i] : farthest;
     }
 }
 

@@ -56,7 +56,7 @@ inline bool isLinear(const CyclicEquations& e) { return !e.curved; }
 void markYielding(const CyclicEquations& equations, const CyclicConsequences& neverYielded, int count,
                   const double* opening, const double* slideA, const double* slideB, Mask* yielding);
 void rememberElastic(const CyclicEquations& equations, const Columns& columns, std::size_t at, int count,
-                     const double* opening, const Mask* staying);
+                     const double* opening);
 Mask stayElastic(const CyclicEquations& equations, const CyclicConsequences* neverYielded, const Columns& columns,
                  std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending);
 void advanceSideBySide(const CyclicEquations& equations, const SofteningTable& tension, const SofteningTable& shear,

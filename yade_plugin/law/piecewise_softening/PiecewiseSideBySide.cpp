@@ -127,7 +127,7 @@ void markYielding(const PiecewiseEquations& e, const PiecewiseConsequences& neve
 
 MASONRY_VECTORISED
 void rememberElastic(const PiecewiseEquations& given, const Columns& columns, std::size_t at, int count,
-                     const double* opening, const Mask* staying) {
+                     const double* opening) {
     const PiecewiseEquations e = given;
     double* largestOpening = columns[Column::LargestOpening] + at;
     double* largestClosure = columns[Column::LargestClosure] + at;
@@ -135,8 +135,8 @@ void rememberElastic(const PiecewiseEquations& given, const Columns& columns, st
     for (int i = 0; i < count; ++i) {
         const double farthest = largestOpening[i], closest = largestClosure[i];
         const double closure = e.closure(opening[i], opening[i]); // the stress has the sign of the opening
-        largestOpening[i] = (staying[i] != 0) & (opening[i] > farthest) ? opening[i] : farthest;
-        largestClosure[i] = (staying[i] != 0) & (closure > closest) ? closure : closest;
+        largestOpening[i] = opening[i] > farthest ? opening[i] : farthest;
+        largestClosure[i] = closure > closest ? closure : closest;
     }
 }
 

@@ -60,7 +60,7 @@ constexpr double marginOfIntact = 1e-9;
 void markYielding(const PiecewiseEquations& equations, const PiecewiseConsequences& neverYielded, int count,
                   const double* opening, const double* slideA, const double* slideB, Mask* yielding);
 void rememberElastic(const PiecewiseEquations& equations, const Columns& columns, std::size_t at, int count,
-                     const double* opening, const Mask* staying);
+                     const double* opening);
 
 // One step of the subcontacts that stay elastic in it. The others stay as they were and are marked in `pending`; gives
 // how many they are. If none of all has ever yielded, `neverYielded` is what holds for all of them, and their columns

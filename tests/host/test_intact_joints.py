@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Joints that have always been elastic are advanced without their points, and nobody sees a difference."""
+
+import numpy as np
+import pytest
+from masonry import loadCheckpoint, saveCheckpoint
+from yade import O, Quaternion, Vector3
+from yade.wrapper import *
+
+from test_checkpoint import bits
+from test_joint_loop import panel, state
+
+IN_SPACE = Quaternion(Vector3(1, 2, 0.5).normalized(), 0.7)
+STRONG = dict(
+    cap=False,
+    tensileStrength=5e7,
+    cohesion=1e8,
+    modeIFractureEnergy=1e6,
+    modeIIFractureEnergy=1e7,
+)
+CASES = {
+    "plane": {},
+    "space": dict(turn=IN_SPACE),
+    "cyclic": dict(law="cyclic"),
+    "cyclic in space": dict(law="cyclic", turn=IN_SPACE),
+}
+
+
+def loop():
+    return next(e for e in O.engines if isinstance(e, MasonryJointLoop))
+
+
+def run(steps):
+    for _ in range(steps):
+        O.step()
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_before_anything_yields_all_is_as_point_by_point(case):
+    runs = []
+    for functors in (True, False):
+        interactions = panel(functors, **STRONG, **CASES[case])
+        run(300)
+        runs.append(state(interactions))
+        runs[-1]["largest"] = np.array(
+            [pair for i in interactions for pair in i.phys.largest]
+        )
+    assert loop().intactJoints == len(interactions)
+    one, other = runs
+    assert np.abs(one["stress"]).max() > 1e5  # [Pa]
+    for name in one:
+        size = np.abs(one[name]).max()
+        assert np.abs(one[name] - other[name]).max() <= 1e-9 * size, name
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_joint_that_yields_is_advanced_by_its_points_from_then_on(case):
+    interactions = panel(False, **CASES[case])
+    run(1)
+    counts = [loop().intactJoints]
+    for _ in range(20):
+        run(20)
+        counts.append(loop().intactJoints)
+        # A joint at which anything has yielded is no longer intact.
+        yielded = sum(
+            any(max(list(d)) > 0 for d in i.phys.damage) or max(i.phys.slip) > 0
+            for i in interactions
+        )
+        assert counts[-1] <= len(interactions) - yielded
+    assert counts == sorted(counts, reverse=True)
+    assert counts[0] > counts[-1]
+
+
+def test_elastic_joints_stay_intact():
+    interactions = panel(False, elastic=True)
+    run(400)
+    assert loop().intactJoints == len(interactions)
+
+
+def test_joints_of_deformable_units_are_advanced_by_their_points():
+    panel(False, blocks="deformable")
+    run(2)
+    assert loop().intactJoints == 0
+
+
+def test_a_dry_joint_that_closes_on_a_curve_is_advanced_by_its_points():
+    interactions = panel(
+        False,
+        law="cyclic",
+        tensileStrength=0,
+        initialClosingStiffness=1e9,
+        closureLimit=1e-3,
+        compressionStiffnessLoss=0,
+    )
+    run(2)
+    plates = sum(i.phys.joint.elastic for i in interactions)
+    assert loop().intactJoints == plates
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("damped", [False, True])
+def test_a_run_that_was_saved_among_intact_joints_goes_on_in_the_same_bits(
+    case, damped, tmp_path
+):
+    path = str(tmp_path / "c")
+
+    def build():
+        interactions = panel(False, **CASES[case])
+        if damped:
+            loop().stiffnessDamping = 1e-6
+            O.dt *= 0.5
+        return interactions
+
+    def end(interactions):
+        return bits(interactions), loop().dampingWork, loop().intactJoints
+
+    interactions = build()
+    run(200)
+    whole = end(interactions)
+    for at in (1, 60, 130):
+        interactions = build()
+        run(at)
+        saveCheckpoint(path)
+        interactions = build()
+        loadCheckpoint(path)
+        run(200 - at)
+        assert end(interactions) == whole, at
+    assert 0 < whole[2] < len(interactions)
+
+
+def test_reading_points_in_every_step_changes_nothing():
+    interactions = panel(False)
+    run(200)
+    whole = bits(interactions)
+    interactions = panel(False)
+    for _ in range(200):
+        O.step()
+        state(interactions)
+    assert bits(interactions) == whole
+
+
+def test_damping_of_intact_joints_takes_the_energy_that_points_would_give():
+    # The balance closes only if what damping takes is the work of its stresses.
+    panel(False, **STRONG)
+    loop().stiffnessDamping = 2e-6
+    O.dt *= 0.5
+    run(400)
+    energy = next(e for e in O.engines if isinstance(e, MasonryEnergy))
+    balance = energy.balance()
+    assert loop().dampingWork > 1e-3 * abs(balance["external"])
+    assert abs(balance["error"]) < 1e-6
