@@ -105,6 +105,9 @@ struct JointShapes : JointGroup {
     std::vector<double> jump[3]; // displacement jump since the reference state: opening and the two slides [m]
     // Stress of JointDamping in the last step [Pa], normal and the two shears; empty while there was no such damping.
     std::vector<double> viscous[3];
+    // Of every joint, whether it is the crack surface of a brick that is still whole (WholeBricks), so that it has no
+    // forces. Empty if there is none.
+    std::vector<unsigned char> whole;
     std::vector<double> area;      // of a subcontact [m²]
     std::vector<double> offset[3]; // from the centre of body 1 to the subcontact in the reference state [m]
 
