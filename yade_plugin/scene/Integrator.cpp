@@ -50,15 +50,18 @@ void Integrator::advance(SceneStore& store) {
     // The pieces over which energies are summed up do not depend on the number of threads, so neither do the sums.
     constexpr int piece = RigidMotion::most;
     const int pieces = (count + piece - 1) / piece;
-    std::vector<Sums> found(pieces + bricks.pieces());
-    Parallel::instance().overPieces(int(found.size()), 1, [&](int first, int beyond) {
+    const int ofBricks = bricks.pieces();
+    std::vector<Sums> found(pieces + ofBricks);
+    Parallel::instance().overPieces(pieces, 1, [&](int first, int beyond) {
         for (int n = first; n < beyond; ++n)
-            if (n >= pieces)
-                found[n].energies = bricks.advancePiece(store, around, n - pieces);
-            else
-                found[n] =
-                    advancePiece(scene, bodies, on.forces, on.torques, n * piece, std::min(count, (n + 1) * piece));
+            found[n] = advancePiece(scene, bodies, on.forces, on.torques, n * piece, std::min(count, (n + 1) * piece));
     });
+    // Not before: RigidMotion has written to the columns of their halves.
+    if (ofBricks > 0)
+        Parallel::instance().overPieces(ofBricks, 1, [&](int first, int beyond) {
+            for (int n = first; n < beyond; ++n)
+                found[pieces + n].energies = bricks.advancePiece(store, around, n);
+        });
     bricks.splitYielded(store, around);
     const double before = fallen;
     Vector3r moment = Vector3r::Zero();

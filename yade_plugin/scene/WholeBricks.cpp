@@ -201,6 +201,7 @@ void WholeBricks::update(SceneStore& store) {
             brickOf_[brick.body[side]] = n;
             bodies.isHalf[brick.body[side]] = true;
             brick.takes[side] = bodies.takes(brick.body[side]);
+            brick.momentum[side] = bodies.state(brick.body[side]).angMom;
         }
     }
     revision_ = store.revision();
@@ -374,6 +375,8 @@ bool WholeBricks::asPlaced(const SceneStore& store, int n) const {
             !((s.vel - velocity - spin.cross(arm)).norm() <= step + round * speed) ||
             !((s.angVel - spin).norm() <= round * spin.norm()))
             return false;
+        const Vector3r momentum = tensorOf(s.inertia, s.ori) * s.angVel;
+        if (brick.spins && !((s.angMom - momentum).norm() <= round * momentum.norm())) return false;
         mass += s.mass;
     }
     return mass == own_.mass[n] && bodies.state(brick.body[0]).mass == mass1_[n];
@@ -394,6 +397,8 @@ void WholeBricks::notice(SceneStore& store, const Around& around) {
             const int body = brick.body[side];
             thoroughly ? bodies.noticeAll(body) : bodies.notice(body);
             same = same && brick.takes[side] == bodies.takes(body);
+            same = same && (!brick.spins || brick.momentum[side] == bodies.state(body).angMom);
+            brick.momentum[side] = bodies.state(body).angMom;
             brick.takes[side] = bodies.takes(body);
         }
         if (same) continue;
@@ -556,6 +561,9 @@ EnergyLedger WholeBricks::advancePiece(SceneStore& store, const Around& around, 
             for (int d = 0; d < 6; ++d)
                 bodies.velocity[d][body] = placed[side][7 + d][i];
             bodies.give(body, allAxes);
+            if (moves[i] != 2) continue;
+            auto& s = bodies.state(body);
+            s.angMom = bricks_[n].momentum[side] = tensorOf(s.inertia, s.ori) * s.angVel;
         }
         if (moves[i] != 2) continue;
         for (auto& column : own_.velocity)

@@ -64,9 +64,12 @@ private:
         int body[2];
         int kind, joint; // place of the joint in SceneStore::kinds
         bool whole = false;
-        bool spins = false;                 // whether it turns freely in space
-        unsigned blocked = 0;               // axes in which both halves are held, as in State.blockedDOFs
-        unsigned takes[2] = {0, 0};         // BodyColumns::takes() of the halves when they were last looked at
+        bool spins = false;         // whether it turns freely in space
+        unsigned blocked = 0;       // axes in which both halves are held, as in State.blockedDOFs
+        unsigned takes[2] = {0, 0}; // BodyColumns::takes() of the halves when they were last looked at
+        yade::Vector3r momentum[2] = {
+            yade::Vector3r::Zero(),
+            yade::Vector3r::Zero()};        // State.angMom of the halves of a brick that turns freely, as it was set
         std::unique_ptr<yade::State> state; // of a brick that turns freely
     };
     void resize(int count);
