@@ -18,7 +18,9 @@
 #include "common/Parallel.hpp"
 #include "common/Text.hpp"
 #include "host/SelfCheck.hpp"
+#include "scene/Changes.hpp"
 #include "scene/CriticalTimeStep.hpp"
+#include "scene/Lumping.hpp"
 #include "scene/Neighbours.hpp"
 #include "scene/Resultant.hpp"
 #include "scene/SceneCheckpoint.hpp"
@@ -114,6 +116,14 @@ void gather() {
     SceneStore::present().update();
 }
 
+void lumpBricks() {
+    const BetweenSteps still;
+    auto& store = SceneStore::present();
+    store.update();
+    lumpWholeBricks(store);
+    ++changes; // the joints are of other kinds now
+}
+
 void connected() {
     const BetweenSteps still;
     auto& store = SceneStore::present();
@@ -182,6 +192,9 @@ static void registerAll() {
         "the pair of bodies whose joint sets it (twice the same for a deformable unit). Ask again after changing "
         "joints, masses, blocked motions or damping.");
     py::def("gather", &gather, "Move the joints that are there into their columns. For connect().");
+    py::def("lumpBricks", &lumpBricks,
+            "Give the joints of bricks that are whole until they crack the stiffness of joints between whole bricks. "
+            "For connect().");
     py::def(
         "connected", &connected,
         "Tell the plugin that all blocks have their joints. A block that is added later and has no joint is then an "

@@ -2,6 +2,7 @@
 #include "Ip2_MasonryMat_MasonryMat_MasonryJointPhys.hpp"
 #include "MasonryJointGeom.hpp"
 #include "scene/BodyCheck.hpp"
+#include "scene/Lumping.hpp"
 
 template class masonry::Adapter<masonry::Ip2_MasonryMat_MasonryMat_MasonryJointPhys, yade::IPhysFunctor>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Ip2_MasonryMat_MasonryMat_MasonryJointPhys)
@@ -28,12 +29,7 @@ void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::assign(const MasonryMat& mat1, 
     const auto& r = geom.reference();
     // The elasticity of a rigid unit is added to its joints. Zones of a deformable unit deform themselves.
     const double d1 = r.rigid(0) ? r.distance(0) : 0, d2 = r.rigid(1) ? r.distance(1) : 0;
-    const auto k = inSeriesWithUnits(*joint, d1 / mat1.young + d2 / mat2.young,
-                                     d1 / mat1.shearModulus() + d2 / mat2.shearModulus());
-    const auto problems = joint->ownLaw()->snapsBack(k, d1 + d2);
-    if (!problems.empty())
-        throw std::invalid_argument("joint \"" + joint->name +
-                                    "\": " + joined(problems, ("\njoint \"" + joint->name + "\": ").c_str()));
+    const auto k = lumpedStiffness(*joint, mat1, mat2, d1, d2);
     const shared_ptr<MasonryJointPhys> phys(new MasonryJointPhys);
     phys->define(joint, k, geom.points());
     interaction.phys = phys;

@@ -17,7 +17,8 @@ namespace masonry {
 using yade::State;
 
 MasonryEnergy::Inventory MasonryEnergy::inventory(const SceneStore& store) const {
-    Inventory all{external, fallen, kinetic, damped, 0};
+    Inventory all{external, fallen, kinetic, damped, 0, 0};
+    if (store.integrator) all.given = store.integrator->bricks.energy;
     for (const auto* load : store.allLoads)
         all.work += load->work;
     if (store.loop) all.drag += store.loop->dampingWork;
@@ -99,6 +100,7 @@ void MasonryEnergy::lookAtBalance(const SceneStore& store) {
     if (stepThen >= 0 && scene->iter == stepThen + 1) {
         auto all = inventory(store);
         all.drag += dampingThen - damping;
+        all.given = splittingThen; // the bricks split after the joints were looked at
         warnOfBalance(std::abs(balanceOf(all, storedThen, lostThen).error));
     }
     if (scene->iter % 1000 != 0 || scene->iter == 0) return;
@@ -106,6 +108,7 @@ void MasonryEnergy::lookAtBalance(const SceneStore& store) {
     storedThen = now.stored;
     lostThen = now.lost;
     dampingThen = damping;
+    splittingThen = store.integrator ? store.integrator->bricks.energy : 0;
     stepThen = int(scene->iter);
 }
 
@@ -209,8 +212,8 @@ MasonryEnergy::Balance MasonryEnergy::presentBalance(const SceneStore& store) co
 }
 
 MasonryEnergy::Balance MasonryEnergy::balanceOf(const Inventory& all, const Vector3r& stored, const Vector3r& lost) {
-    const auto [work, falls, moving, drag, inUnits] = all;
-    const double in = work + falls;
+    const auto [work, falls, moving, drag, inUnits, given] = all;
+    const double in = work + falls + given;
     const double out = moving + drag + inUnits + stored[0] + stored[1] + stored[2] + lost.sum();
     const double size = std::max(std::abs(work) + std::abs(falls), std::abs(out));
     return {all, stored, lost, size, size > 0 ? (in - out) / size : 0};
@@ -221,7 +224,7 @@ py::dict MasonryEnergy::balance() {
     auto& store = SceneStore::present();
     store.update(SceneStore::Look::AtJoints); // a full look would take too long: every row of curve.csv calls this
     const auto [inventory, stored, lost, size, error] = presentBalance(store);
-    const auto [work, falls, moving, drag, inUnits] = inventory;
+    const auto [work, falls, moving, drag, inUnits, given] = inventory;
     // Dissipated energies should never fall. They can: where a joint opens or closes within a step, the trapezoidal
     // rule takes the mean of the tractions before and after, and the error is counted as dissipated, also where it is
     // negative. A long undamped series of such steps makes energy. Damping or shorter steps prevent that.
@@ -231,6 +234,7 @@ py::dict MasonryEnergy::balance() {
     py::dict all;
     all["external"] = work;
     all["gravity"] = falls;
+    all["splitting"] = given;
     all["kinetic"] = moving;
     all["damping"] = drag;
     all["elastic_units"] = inUnits;

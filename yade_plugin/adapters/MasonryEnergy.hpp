@@ -43,6 +43,7 @@ public:
     Vector3r storedThen = Vector3r::Zero();
     Vector3r lostThen = Vector3r::Zero();
     double dampingThen = 0;
+    double splittingThen = 0;
     int stepThen = -1;
     bool begun = false;
     double largestError = 0;
@@ -95,6 +96,8 @@ public:
         visit("lostThen", &E::lostThen,
               number("J", "Energies dissipated in the joints at the last look at the balance, by mode"), Hidden);
         visit("dampingThen", &E::dampingThen, number("J", "Work of the damping of joints at that look"), Hidden);
+        visit("splittingThen", &E::splittingThen,
+              number("J", "Energy that crack surfaces had when their bricks split, at that look"), Hidden);
         visit("stepThen", &E::stepThen, number("", "Step of the last look at the balance; -1: there was none"), Hidden);
         visit("largestError", &E::largestError,
               number("-", "Largest error of the balance seen by balance(), relative to the work done"), ReadOnly);
@@ -127,6 +130,7 @@ private:
         double moving = 0;  // kinetic energy
         double drag = 0;    // taken by damping
         double inUnits = 0; // elastic energy of deformable units
+        double given = 0;   // elastic energy that crack surfaces had when their bricks split
     };
     Inventory inventory(const SceneStore&) const;
     struct Balance {

@@ -9,8 +9,17 @@ namespace masonry {
 
 void MasonryIntegrator::action() {
     const EngineTurn turn(*scene, *this);
-    advance(*scene, turn->bodies, turn->loads);
+    advance(turn.store());
     turn.end();
+}
+
+py::list MasonryIntegrator::sectionsOfBricks() {
+    const BetweenSteps still;
+    SceneStore::present().update();
+    py::list all;
+    for (const auto& section : bricks.sections())
+        all.append(py::make_tuple(section.body1, section.body2, section.force, section.moment));
+    return all;
 }
 
 } // namespace masonry

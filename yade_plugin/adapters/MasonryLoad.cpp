@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryLoad.hpp"
 #include "scene/EngineTurn.hpp"
+#include "scene/Integrator.hpp"
 #include "scene/Zones.hpp"
 
 template class masonry::Adapter<masonry::MasonryLoad, yade::GlobalEngine>;
@@ -13,7 +14,7 @@ void MasonryLoad::action() {
     if (turn->zones && turn->zones->unitOf(body))
         throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) +
                                     " is a deformable unit; load a rigid block joined to it");
-    act(*scene, turn->gravity());
+    act(*scene, turn->gravity(), turn->integrator ? &turn->integrator->bricks : nullptr);
     turn.end();
 }
 

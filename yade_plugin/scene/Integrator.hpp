@@ -4,6 +4,7 @@
 #pragma once
 #include "BodyColumns.hpp"
 #include "GravityWork.hpp"
+#include "WholeBricks.hpp"
 #include "motion/EnergyLedger.hpp"
 
 namespace masonry {
@@ -21,12 +22,23 @@ public:
     std::vector<std::string> problems() const;
 
     // Makes a step of all rigid bodies, and counts its energies and the work of the loads.
-    void advance(yade::Scene&, BodyColumns&, const std::vector<Load*>&);
+    void advance(SceneStore&);
 
     // In saved files and checkpoints: two vectors for each body, force per mass [m/s²] and torque per inertia [1/s²] in
     // the last step.
     std::vector<Vector3r> lastForces();
     void setLastForces(const std::vector<Vector3r>&);
+
+    // The bricks of two blocks that move as one until they crack.
+    WholeBricks bricks;
+
+    // For attributes: those of the bricks.
+    double splitting() { return bricks.energy; }
+    void setSplitting(const double& energy) { bricks.energy = energy; }
+    int splits() { return bricks.splits; }
+    void setSplits(const int& count) { bricks.splits = count; }
+    std::vector<double> wholeBricks() { return bricks.numbers(); }
+    void setWholeBricks(const std::vector<double>& numbers) { bricks.setNumbers(numbers); }
 
 private:
     bool combined() const { return dampingKind == "combined"; }

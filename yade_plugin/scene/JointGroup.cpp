@@ -117,7 +117,7 @@ bool JointShapes::isIntact(int j) const {
     double size = 0;
     for (int p = 0; p < points; ++p)
         size = std::max(size, vectorAt(jump, at(p, j)).cwiseAbs().maxCoeff());
-    const double close = 1e-9 * size + 1e-12 * std::sqrt(whole[f]); // round-off of stresses, and of places of blocks
+    const double close = 1e-9 * size + 1e-12 * std::sqrt(faceArea[f]); // round-off of stresses, and of places of blocks
     for (int p = 0; p < points; ++p) {
         const std::size_t i = at(p, j), s = alike ? shape(p, 0) : i;
         const Vector3r now = vectorAt(jump, i);
@@ -153,17 +153,17 @@ void markCorners(const std::vector<std::array<double, 2>>& points, std::vector<b
 
 void JointShapes::findMiddles() {
     const int count = alike ? JointFrames::most : int(byPoints.size());
-    for (auto* column : {&middle[0], &middle[1], &middle[2], &whole, &inertia[0], &inertia[1], &inertia[2]})
+    for (auto* column : {&middle[0], &middle[1], &middle[2], &faceArea, &inertia[0], &inertia[1], &inertia[2]})
         column->assign(count, 0);
     std::vector<bool> corner(points, false);
     for (int f = 0; f < count; ++f) {
         const int j = alike ? 0 : std::min(f, int(joints.size()) - 1); // padding has the numbers of the last joint
         Vector3r first = Vector3r::Zero();
         for (int p = 0; p < points; ++p) {
-            whole[f] += areaAt(p, j);
+            faceArea[f] += areaAt(p, j);
             first += areaAt(p, j) * offsetAt(p, j);
         }
-        const Vector3r centre = first / whole[f];
+        const Vector3r centre = first / faceArea[f];
         for (int d = 0; d < 3; ++d)
             middle[d][f] = centre[d];
         std::vector<std::array<double, 2>> places;

@@ -120,6 +120,9 @@ struct JointShapes : JointGroup {
     std::vector<double> jump[3]; // displacement jump since the reference state: opening and the two slides [m]
     // Stress of JointDamping in the last step [Pa], normal and the two shears; empty while there was no such damping.
     std::vector<double> viscous[3];
+    // Of every joint, whether it is the crack surface of a brick that is still whole (WholeBricks), so that it has no
+    // forces. Empty if there is none.
+    std::vector<unsigned char> whole;
     std::vector<double> area;      // of a subcontact [m²]
     std::vector<double> offset[3]; // from the centre of body 1 to the subcontact in the reference state [m]
 
@@ -132,12 +135,12 @@ struct JointShapes : JointGroup {
     LinearField linear;                  // jumps of intact joints [m]
     LinearField damped; // of the stress of JointDamping, what is to be multiplied by the stiffnesses [m]; empty like
                         // `viscous`
-    mutable bool behind = false;           // whether the columns of intact joints are of an earlier step
-    std::shared_ptr<LawColumns> law;       // of the same joints; null before they belong to a scene
-    std::vector<double> middle[3];         // middle of the face, as `offset` [m]; empty before findMiddles()
-    std::vector<double> whole, inertia[3]; // area [m²] and its second moments about the middle, along the first
-                                           // tangent, along the second, and mixed [m⁴]
-    std::vector<int> rim;                  // numbers of the points that are corners of their hull in one of the joints
+    mutable bool behind = false;              // whether the columns of intact joints are of an earlier step
+    std::shared_ptr<LawColumns> law;          // of the same joints; null before they belong to a scene
+    std::vector<double> middle[3];            // middle of the face, as `offset` [m]; empty before findMiddles()
+    std::vector<double> faceArea, inertia[3]; // area [m²] and its second moments about the middle, along the first
+                                              // tangent, along the second, and mixed [m⁴]
+    std::vector<int> rim; // numbers of the points that are corners of their hull in one of the joints
 
     // Writes what intact joints have in their linear fields to their points, if that is of an earlier step.
     void bringPoints() const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "JointPlan.hpp"
+#include "Integrator.hpp"
 #include "Zones.hpp"
 #include "common/Memory.hpp"
 #include "common/Parallel.hpp"
@@ -36,6 +37,12 @@ bool aboutY(const Quaternionr& q, double& cosine, double& sine) {
 Quaternionr fromPlane(const yade::State& s, const Quaternionr& frame) {
     return s.refOri * frame * Quaternionr(0.5, 0.5, 0.5, 0.5);
 }
+
+// Whether joints of this kind begin as crack surfaces of whole bricks.
+bool isMonolithic(const JointKind& kind) { return kind.states->columns->law().properties().monolithic; }
+
+// How many joints a batch has. Bricks crack one by one, so their batches are small.
+int batchSize(const JointKind& kind) { return isMonolithic(kind) ? lanes : most; }
 
 } // namespace
 
@@ -101,6 +108,8 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
     onBodies_.clear();
     betweenNodes_.clear();
     batches_.clear();
+    firstBatch_.clear();
+    store.splits.clear();
     kinds_.assign(store.kinds.size(), Kind());
 
     const int count = store.bodies.size();
@@ -114,8 +123,14 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
         kinds_[k].firstPoint = points;
         joints += stride;
         if (kind.attached) points += stride * kind.shapes->points;
-        for (int from = 0; from < int(kind.shapes->joints.size()); from += most)
-            batches_.push_back({int(k), from});
+        firstBatch_.push_back(int(batches_.size()));
+        const int all = int(kind.shapes->joints.size()), each = batchSize(kind);
+        for (int from = 0; from < all; from += each) {
+            Batch batch{int(k), from, std::min(each, all - from)};
+            for (int j = from; !kind.shapes->whole.empty() && j < from + batch.count; ++j)
+                batch.whole += kind.shapes->whole[j];
+            batches_.push_back(batch);
+        }
         buildKind(store, kind, kinds_[k], atBodies);
         if (kind.attached) buildPlaces(kind, kinds_[k], atPlaces, known);
         findIntact(kind, kinds_[k]);
@@ -136,17 +151,18 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
     toBodies_.fill(atBodies);
     toNodes_.fill(atPlaces);
     shareOut();
-    orderBatches(store);
+    orderBatches();
     store_ = &store;
     revision_ = store.revision();
     Parallel::instance().sceneChanged();
 }
 
-// Decides which joints are intact: those whose points say so, and that were never advanced by their points.
+// Decides which joints are intact: those whose points say so, and that were never advanced by their points. A crack
+// surface is advanced by its points from its split on, and not at all before.
 void JointPlan::findIntact(const JointKind& kind, Kind& made) {
     auto& shapes = *kind.shapes;
     const int count = int(shapes.joints.size());
-    if (kind.attached || !shapes.law->knowsIntact()) {
+    if (kind.attached || isMonolithic(kind) || !shapes.law->knowsIntact()) {
         std::fill_n(shapes.byPoints.begin(), count, 1);
         return;
     }
@@ -176,11 +192,11 @@ void JointPlan::endIntact(const JointKind& kind) {
 
 // Bodies are numbered course by course as a rule. A thread that takes the joints of the bodies that it moves itself
 // finds them in its own cache.
-void JointPlan::orderBatches(const SceneStore& store) {
+void JointPlan::orderBatches() {
     std::vector<double> middle; // mean number of the bodies of a batch
     for (const auto& batch : batches_) {
         const auto& plan = kinds_[batch.kind];
-        const int count = std::min(most, int(store.kinds[batch.kind].shapes->joints.size()) - batch.from);
+        const int count = batch.count;
         double sum = 0;
         for (int j = batch.from; j < batch.from + count; ++j)
             sum += plan.body1[j] + plan.body2[j];
@@ -189,6 +205,46 @@ void JointPlan::orderBatches(const SceneStore& store) {
     order_.resize(batches_.size());
     std::iota(order_.begin(), order_.end(), 0);
     std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) { return middle[a] < middle[b]; });
+    findActive();
+}
+
+void JointPlan::findActive() {
+    active_.clear();
+    for (int n : order_)
+        if (batches_[n].whole < batches_[n].count) active_.push_back(n);
+}
+
+// The bricks that have split since the last step: the references of their joints have moved, and have forces now.
+void JointPlan::followSplits(SceneStore& store) {
+    bool more = false;
+    for (const auto& split : store.splits) {
+        const auto& kind = store.kinds[split.kind];
+        putReference(store, kind.shapes->joints[split.joint], kinds_[split.kind], split.joint);
+        auto& batch = batches_[firstBatch_[split.kind] + split.joint / batchSize(kind)];
+        more = more || batch.whole == batch.count;
+        --batch.whole;
+    }
+    store.splits.clear();
+    if (more) findActive();
+}
+
+// Sets frames and span of a joint.
+void JointPlan::putReference(const SceneStore& store, const JointReference& r, Kind& made, int j) const {
+    const auto put = [&](std::vector<double>* columns, int side) {
+        const Quaternionr q = r.frame(side);
+        if (plane_) {
+            aboutY(fromPlane(store.bodies.state(r.sides[side].body), q), columns[0][j], columns[1][j]);
+            return;
+        }
+        columns[0][j] = q.w();
+        for (int d = 0; d < 3; ++d)
+            columns[1 + d][j] = q.vec()[d];
+    };
+    put(made.frame1, 0);
+    put(made.frame2, 1);
+    const Vector3r span = r.span();
+    for (int d = 0; d < 3; ++d)
+        made.span[d][j] = span[d];
 }
 
 void JointPlan::buildKind(SceneStore& store, const JointKind& kind, Kind& made,
@@ -206,21 +262,7 @@ void JointPlan::buildKind(SceneStore& store, const JointKind& kind, Kind& made,
         const auto& r = kind.shapes->joints[std::min(j, count - 1)];
         made.body1[j] = r.sides[0].body;
         made.body2[j] = r.sides[1].body;
-        const auto put = [&](std::vector<double>* columns, int side) {
-            const Quaternionr q = r.frame(side);
-            if (plane_) {
-                aboutY(fromPlane(store.bodies.state(r.sides[side].body), q), columns[0][j], columns[1][j]);
-                return;
-            }
-            columns[0][j] = q.w();
-            for (int d = 0; d < 3; ++d)
-                columns[1 + d][j] = q.vec()[d];
-        };
-        put(made.frame1, 0);
-        put(made.frame2, 1);
-        const Vector3r span = r.span();
-        for (int d = 0; d < 3; ++d)
-            made.span[d][j] = span[d];
+        putReference(store, r, made, j);
         if (j >= count) continue;
         atBodies[made.body1[j]].push_back({made.first + j, false});
         atBodies[made.body2[j]].push_back({made.first + j, true});
@@ -237,7 +279,7 @@ void JointPlan::buildKind(SceneStore& store, const JointKind& kind, Kind& made,
         shared.insert(shared.end(), {{&made.frame1[d], 1}, {&made.frame2[d], 1}});
     for (auto& column : made.span)
         shared.push_back({&column, length});
-    bool alike = stride >= most;
+    bool alike = stride >= most && !isMonolithic(kind); // those of bricks that split change one by one
     for (const auto& s : shared)
         for (int j = 0; alike && j < count; ++j)
             alike = sameButRoundOff((*s.column)[j], (*s.column)[0], s.scale);
@@ -420,7 +462,7 @@ bool JointPlan::advanceIntact(Run& run, double& taken) {
     const int n = run.n;
     const std::size_t face = shapes.alike ? 0 : run.from;
     const IntactFaces faces{{&shapes.middle[0][face], &shapes.middle[1][face], &shapes.middle[2][face]},
-                            &shapes.whole[face],
+                            &shapes.faceArea[face],
                             {&shapes.inertia[0][face], &shapes.inertia[1][face], &shapes.inertia[2][face]},
                             states.stiffness().normal,
                             states.stiffness().shear};
@@ -508,6 +550,9 @@ double JointPlan::advancePoints(Run& run) {
                    : jumpNodal(n, place1, place2, u, j0, j1, j2, frames);
         } else
             plane_ ? jumpRigidInPlane(n, a0, a1, j0, j1, frames) : jumpRigid(n, a0, a1, a2, j0, j1, j2, frames);
+        for (int j = 0; j < n && !shapes.whole.empty(); ++j)
+            if (shapes.whole[from + j]) // a brick that is whole has a jump of round-off
+                frames.step[0][j] = frames.step[1][j] = frames.step[2][j] = j0[j] = j1[j] = j2[j] = 0;
         states.advance(p, from, n, frames.step[0], frames.step[1], plane_ ? nullptr : frames.step[2],
                        frames.normalStress);
         const double *normal = frames.normalStress, *a = states.shearStressA(p, from),
@@ -652,6 +697,7 @@ void JointPlan::bringToNodes(SceneStore& store) {
 }
 
 double JointPlan::advance(SceneStore& store, double stiffnessDamping) {
+    if (store.integrator) store.integrator->bricks.update(store);
     if (store_ != &store || revision_ != store.revision()) {
         build(store, true);
         giveMemoryBack();
@@ -660,6 +706,7 @@ double JointPlan::advance(SceneStore& store, double stiffnessDamping) {
         build(store, false);
         noticeBodies(store);
     }
+    followSplits(store);
     if (zones_) moveDependentPoints(store);
     if (stiffnessDamping > 0)
         for (std::size_t k = 0; k < kinds_.size(); ++k) {
@@ -671,15 +718,14 @@ double JointPlan::advance(SceneStore& store, double stiffnessDamping) {
             endIntact(kind); // without a bond the stress of damping is cut point by point
             kinds_[k].intact = false;
         }
-    const int count = int(batches_.size());
-    taken_.resize(count);
+    const int count = int(active_.size());
+    taken_.assign(batches_.size(), 0);
     Parallel::instance().overPieces(count, 1, [&](int first, int beyond) {
         for (int place = first; place < beyond; ++place) {
-            const int n = order_[place], from = batches_[n].from;
-            const auto& kind = store.kinds[batches_[n].kind];
-            const int left = int(kind.shapes->joints.size()) - from;
-            taken_[n] =
-                advanceBatch(store, kind, kinds_[batches_[n].kind], from, std::min(most, left), stiffnessDamping);
+            const int n = active_[place];
+            const auto& batch = batches_[n];
+            taken_[n] = advanceBatch(store, store.kinds[batch.kind], kinds_[batch.kind], batch.from, batch.count,
+                                     stiffnessDamping);
         }
     });
     for (std::size_t k = 0; k < kinds_.size(); ++k)

@@ -90,6 +90,7 @@ class Reading:
 ENERGIES = {
     "external": "work of the loads",
     "gravity": "work of gravity",
+    "splitting": "elastic energy that crack surfaces had when their bricks, rigid before, split",
     "kinetic": "energy of motion",
     "damping": "energy taken by damping",
     "elastic_units": "elastic energy in deformable units",

@@ -80,6 +80,15 @@ public:
         return elastic_ ? Yield{} : law_->yielding(k_, get(point, joint));
     }
 
+    Yield yieldingUnder(double normalStress, const Shear& shearStress) const override {
+        if (elastic_) return {};
+        State s;
+        s.opening = normalStress / k_.normal;
+        s.normalStress = normalStress;
+        s.shearStress = shearStress;
+        return law_->yielding(k_, s);
+    }
+
     double advanceOne(int point, int joint, const Jump& jump) override { return stepOf(*this, point, joint, jump); }
     void advance(int point, int from, int count, const double* opening, const double* slideA, const double* slideB,
                  double* normalStress) override {

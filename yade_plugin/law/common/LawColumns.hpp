@@ -59,6 +59,8 @@ public:
     virtual void show(int point, int joint, const ShowField&) const = 0;
     double shown(int point, int joint, const JointField&) const; // one of these; zero if the law does not show it
     virtual Yield yielding(int point, int joint) const = 0;
+    // The yield functions of a subcontact that has never yielded, under these stresses [Pa].
+    virtual Yield yieldingUnder(double normalStress, const Shear& shearStress) const = 0;
 
     // One step of one subcontact with the law for one, losses included. Gives its normal stress.
     virtual double advanceOne(int point, int joint, const Jump&) = 0;
