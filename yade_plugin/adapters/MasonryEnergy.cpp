@@ -140,6 +140,7 @@ double motionOf(SceneStore& store) {
         }
     }
     if (!zones) return 0.5 * twice;
+    if (zones->massScaling > 0) return 0.5 * twice + zones->kineticEnergy(zones->massScaling);
     for (const auto& unit : zones->units()) {
         const auto& masses = unit.elasticity->masses();
         for (std::size_t n = 0; n < masses.size(); ++n)

@@ -16,6 +16,7 @@ void MasonryZones::postLoad() {
 void MasonryZones::action() {
     const EngineTurn turn(*scene, *this);
     if (!turn->loop) gatherFromFunctors(turn->joints, *this);
+    followMasses(turn.store());
     advance(*scene, turn->bodies, turn->gravity(), turn->massDamping());
     turn.end();
 }

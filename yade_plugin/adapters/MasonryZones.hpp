@@ -42,6 +42,13 @@ public:
               described("Whether units whose nodes are held in one direction, and which are right prisms along it, are "
                         "plane units, with nodes in their middle plane alone"),
               Given);
+        visit("massScaling", &Z::massScaling,
+              number("-",
+                     "Selective mass scaling for states of rest: 1 + massScaling is the factor on the masses in all "
+                     "motions of a unit but rigid ones, which keep their true inertia, so that deformation is "
+                     "slower and the time step longer. The two units of a brick with a monolithic crack surface "
+                     "count as one until the surface yields. 0: true masses")
+                  .atLeast(0));
         visit("damping", &Z::damping,
               number("-", "Damping constant alpha").atLeast(0).atMost(0.99).source("paper eq. (3): 0.8"));
         visit("dampingKind", &Z::dampingKind,
@@ -56,7 +63,10 @@ public:
         visit("kinetic", &Z::kinetic, number("J", "Kinetic energy of the nodes"), ReadOnly);
         visit("elastic", &Z::elastic, number("J", "Elastic energy of the zones"), ReadOnly);
         visit("gravityWork", &Z::fallen, number("J", "Work of gravity since the first step"), ReadOnly);
-        visit("dampingWork", &Z::damped, number("J", "Energy taken by damping so far"), ReadOnly);
+        visit("dampingWork", &Z::damped,
+              number("J", "Energy taken by damping so far, and what kinetic energy has fallen by when scaled masses "
+                          "changed: when massScaling was set, and when a brick cracked"),
+              ReadOnly);
         visit("displacements", computed(&Z::displacements, &Z::setDisplacements),
               number("m", "Displacements of all nodes since the reference state"), ReadOnly);
         visit("velocities", computed(&Z::velocities, &Z::setVelocities), number("m/s", "Velocities of all nodes"),
@@ -66,6 +76,10 @@ public:
         visit("pendingDamping", &Z::pendingDamped, number("J", "Damping of the last step"), Hidden);
         GravityWork::describe<Z>(visit);
         visit("moved", &Z::moved, number("kg m", "Sum of mass times displacement of all nodes"), Hidden);
+        visit("scaledBy", &Z::scaledBy, number("-", "massScaling in the last step"), Hidden);
+        visit("splitBricks", &Z::splitBricks,
+              described("First bodies of bricks whose monolithic crack surface has yielded while masses were scaled"),
+              Hidden);
         visit("laidOut", &Z::laidOut, described("Divisions, plane and bodies for which the nodes were numbered"),
               Hidden);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "BlockLanes.hpp"
 #include "motion/Damping.hpp"
+#include <cstddef>
 
 // The functions use vectors of a fixed width. The compiler keeps these in registers only if it knows the instruction
 // set when it compiles them, so BlockLanes.inl is included once for each instruction set.
@@ -57,6 +58,12 @@ void moveBlocks(const BlockMatrix& m, const NodeMotion& motion, const Row& prese
                 Row* forces, Row* lastForces, NodeSums& sums) {
     static const auto best = choose(plain::move, avx2::move, avx512::move);
     best(m, motion, present, displacements, velocities, forces, lastForces, sums);
+}
+
+void moveScaled(const NodeMotion& motion, double scaling, ScaledUnits* units, int count, const Row& whole,
+                Row* scratch) {
+    static const auto best = choose(plain::moveScaledUnits, avx2::moveScaledUnits, avx512::moveScaledUnits);
+    best(motion, scaling, units, count, whole, scratch);
 }
 
 } // namespace masonry

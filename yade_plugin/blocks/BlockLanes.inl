@@ -208,3 +208,301 @@ void move(const BlockMatrix& matrix, const NodeMotion& m, const Row& present, Ro
             *at(sums.moved + direction, part) = moved[direction];
     }
 }
+
+// Sums over the nodes of a block, of which its rigid motion follows. In the plane a vector has two components, those of
+// the plane, and a spin has one.
+template <bool plane> struct RigidSums {
+    static constexpr int directions = plane ? 2 : 3, axes = plane ? 1 : 3;
+    Lanes mass;                  // [kg]
+    Lanes first[directions];     // sum of m x [kg m]
+    Lanes second[plane ? 1 : 6]; // sum of m x·x; in space of m x x^T: xx, yy, zz, yz, zx, xy [kg m²]
+    struct Vector {
+        Lanes sum[directions]; // of m v [kg m/s]
+        Lanes about[axes];     // of x × m v [kg m²/s]
+    };
+    Vector velocity, half, opposed; // of the velocities, and of the changes of velocity that are called so in moveIn()
+};
+
+template <bool plane> inline void addCross(const Lanes* x, const Lanes* v, Lanes* out) {
+    if constexpr (plane)
+        out[0] += x[0] * v[1] - x[1] * v[0];
+    else
+        for (int k = 0; k < 3; ++k)
+            out[k] += x[(k + 1) % 3] * v[(k + 2) % 3] - x[(k + 2) % 3] * v[(k + 1) % 3];
+}
+
+// What turns momentum and spin of a block into its rigid motion.
+template <bool plane> struct RigidBlock {
+    static constexpr int directions = plane ? 2 : 3, axes = plane ? 1 : 3;
+    Lanes mass, centre[directions];
+    Lanes inverse[plane ? 1 : 9]; // of the inertia about the centre; zero for axes about which nodes cannot turn
+
+    RigidBlock(const RigidSums<plane>& s, const bool* turns) : mass(s.mass) {
+        const Lanes zero = {}, one = zero + 1;
+        for (int d = 0; d < directions; ++d)
+            centre[d] = s.first[d] / mass;
+        if constexpr (plane) {
+            inverse[0] = turns[0] ? 1 / (s.second[0] - mass * (centre[0] * centre[0] + centre[1] * centre[1])) : zero;
+        } else {
+            Lanes m[9];
+            for (int i = 0; i < 3; ++i)
+                for (int j = 0; j < 3; ++j) {
+                    const Lanes product = s.second[i == j ? i : 6 - i - j] - mass * centre[i] * centre[j];
+                    if (!turns[i] || !turns[j])
+                        m[3 * i + j] = i == j ? one : zero;
+                    else
+                        m[3 * i + j] = -product;
+                }
+            for (int i = 0; i < 3; ++i) {
+                const int j = (i + 1) % 3, k = (i + 2) % 3;
+                if (turns[i])
+                    m[4 * i] =
+                        (s.second[j] - mass * centre[j] * centre[j]) + (s.second[k] - mass * centre[k] * centre[k]);
+            }
+            for (int i = 0; i < 3; ++i)
+                for (int j = 0; j < 3; ++j) {
+                    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+                    inverse[3 * i + j] = m[3 * i1 + j1] * m[3 * i2 + j2] - m[3 * i1 + j2] * m[3 * i2 + j1];
+                }
+            const Lanes determinant = m[0] * inverse[0] + m[1] * inverse[1] + m[2] * inverse[2];
+            for (int i = 0; i < 3; ++i)
+                for (int j = 0; j < 3; ++j)
+                    inverse[3 * i + j] = turns[i] && turns[j] ? inverse[3 * i + j] / determinant : zero;
+        }
+    }
+    struct Motion {
+        Lanes drift[directions]; // of a point of the block at the origin
+        Lanes spin[axes];
+    };
+    Motion motion(const typename RigidSums<plane>::Vector& v) const {
+        Motion m;
+        Lanes turn[axes] = {}; // of the momenta about the centre
+        addCross<plane>(centre, v.sum, turn);
+        for (int k = 0; k < axes; ++k)
+            turn[k] = v.about[k] - turn[k];
+        for (int k = 0; k < axes; ++k) {
+            m.spin[k] = inverse[axes * k] * turn[0];
+            if constexpr (!plane) m.spin[k] += inverse[axes * k + 1] * turn[1] + inverse[axes * k + 2] * turn[2];
+        }
+        for (int d = 0; d < directions; ++d)
+            m.drift[d] = v.sum[d] / mass - spun(m, centre, d);
+        return m;
+    }
+    // The part in a direction of the velocity that the spin gives a point x.
+    static Lanes spun(const Motion& m, const Lanes* x, int d) {
+        if constexpr (plane) return d == 0 ? -m.spin[0] * x[1] : m.spin[0] * x[0];
+        const int i = (d + 1) % 3, j = (d + 2) % 3;
+        return m.spin[i % axes] * x[j % directions] - m.spin[j % axes] * x[i % directions];
+    }
+    // The part of a direction of a motion at a point x.
+    static Lanes at(const Motion& m, const Lanes* x, int d) { return m.drift[d] + spun(m, x, d); }
+    // The sum of the products of momenta with the velocities of a motion [J].
+    static Lanes product(const typename RigidSums<plane>::Vector& v, const Motion& m) {
+        Lanes sum = {};
+        for (int d = 0; d < directions; ++d)
+            sum += v.sum[d] * m.drift[d];
+        for (int k = 0; k < axes; ++k)
+            sum += v.about[k] * m.spin[k];
+        return sum;
+    }
+};
+
+// The sum of two vectors of lanes, each with a factor.
+template <class Vectors> inline Vectors weighted(Lanes a, const Vectors& one, Lanes b, const Vectors& two) {
+    Vectors sum = one;
+    Lanes* to = reinterpret_cast<Lanes*>(&sum);
+    const Lanes* from = reinterpret_cast<const Lanes*>(&two);
+    for (std::size_t i = 0; i < sizeof sum / sizeof(Lanes); ++i)
+        to[i] = a * to[i] + b * from[i];
+    return sum;
+}
+
+template <bool plane>
+void moveIn(const NodeMotion& m, double scaling, ScaledUnits* units, int count, const Row& whole, Row* scratch) {
+    using Sums = RigidSums<plane>;
+    using Block = RigidBlock<plane>;
+    constexpr int directions = Sums::directions;
+    const int across = plane ? units[0].matrix.across : 2;
+    const int direction[3] = {(across + 1) % 3, (across + 2) % 3, across};
+    bool free[3], turns[3];
+    for (int d = 0; d < 3; ++d)
+        free[d] = !m.held[direction[d]];
+    for (int k = 0; k < 3; ++k)
+        turns[k] = plane ? free[0] && free[1] : free[(k + 1) % 3] && free[(k + 2) % 3];
+    const double alpha = dampingShare(m.combined) * m.damping, share = 1 / (1 + scaling),
+                 apart = 1 / (1 + sharedScaling * scaling);
+    const double steady = 0.5 * m.dt * meanOverStep(m.massDamping, m.dt);
+    const Lanes zero = {}, one = zero + 1;
+    for (int part = 0; part < parts; ++part) {
+        const Lanes together = *at(&whole, part);
+        Lanes* kept = at(scratch, 0); // for every node and direction the velocity without damping, and the damping
+        const auto place = [&](const ScaledUnits& unit, int n, Lanes* x) {
+            for (int d = 0; d < directions; ++d) {
+                const int row = direction[d];
+                x[d] = (unit.matrix.nodes[3 * n + row] + *at(unit.offset + row, part)) +
+                       (*at(unit.displacements + 3 * n + row, part) - *at(units[0].displacements + row, part));
+            }
+        };
+        Sums sums[2] = {};
+        for (int k = 0; k < count; ++k) {
+            const auto& unit = units[k];
+            auto& s = sums[k];
+            for (int n = 0; n < unit.matrix.nodeCount; ++n) {
+                const double mass = unit.matrix.masses[n];
+                Lanes x[directions], momentum[directions], impulse[directions];
+                place(unit, n, x);
+                for (int d = 0; d < directions; ++d) {
+                    const int row = 3 * n + direction[d];
+                    momentum[d] = free[d] ? mass * *at(unit.velocities + row, part) : zero;
+                    const Lanes weight = mass * m.gravity[direction[d]] * *at(&unit.present, part);
+                    impulse[d] = free[d] ? 0.5 * m.dt * (*at(unit.forces + row, part) + weight) : zero;
+                    s.first[d] += mass * x[d];
+                    s.velocity.sum[d] += momentum[d];
+                    s.half.sum[d] += impulse[d];
+                }
+                s.mass += mass;
+                if constexpr (plane)
+                    s.second[0] += mass * (x[0] * x[0] + x[1] * x[1]);
+                else
+                    for (int i = 0; i < 3; ++i) {
+                        s.second[i] += mass * x[i] * x[i];
+                        s.second[3 + i] += mass * x[(i + 1) % 3] * x[(i + 2) % 3];
+                    }
+                addCross<plane>(x, momentum, s.velocity.about);
+                addCross<plane>(x, impulse, s.half.about);
+            }
+        }
+        // The rigid motions of the units, and of both together. Of a vector a the scaled masses leave
+        // (1 - between) W + (between - share) H + share a, with its rigid parts W of the whole and H of the unit.
+        const Lanes between = together * share + (one - together) * apart;
+        const Sums all = count == 1 ? sums[0] : weighted(one, sums[0], one, sums[1]);
+        const Block own[2] = {{sums[0], turns}, {sums[count - 1], turns}}, both{all, turns};
+        const auto motionsOf = [&](typename Sums::Vector Sums::*which, typename Block::Motion* motions) {
+            const auto ofWhole =
+                both.motion(count == 1 ? sums[0].*which : weighted(one, sums[0].*which, one, sums[1].*which));
+            for (int k = 0; k < count; ++k)
+                motions[k] = weighted(one - between, ofWhole, between - share, own[k].motion(sums[k].*which));
+        };
+        typename Block::Motion half[2], opposed[2];
+        motionsOf(&Sums::half, half);
+        Lanes* keep = kept;
+        for (int k = 0; k < count; ++k) {
+            const auto& unit = units[k];
+            auto& s = sums[k];
+            for (int n = 0; n < unit.matrix.nodeCount; ++n, keep += 2 * directions) {
+                const double mass = unit.matrix.masses[n];
+                Lanes x[directions], taken[directions];
+                place(unit, n, x);
+                for (int d = 0; d < directions; ++d) {
+                    taken[d] = zero;
+                    if (!free[d]) continue;
+                    const int row = 3 * n + direction[d];
+                    const Lanes weight = mass * m.gravity[direction[d]] * *at(&unit.present, part);
+                    const Lanes force = *at(unit.forces + row, part) + weight;
+                    const Lanes change = 0.5 * (m.dt / mass) * force; // change of velocity in half a step with M
+                    const Lanes undamped =
+                        *at(unit.velocities + row, part) + (Block::at(half[k], x, d) + share * change);
+                    const Lanes reach = alpha * (change < zero ? -change : change);
+                    Lanes* last = at(unit.lastForces + row, part);
+                    const Lanes trend = m.combined ? sign(force - *last) : zero;
+                    const Lanes opposing = dampingTaken(Lanes(0.5 * undamped), reach, trend);
+                    *last = force;
+                    keep[2 * d] = undamped;
+                    keep[2 * d + 1] = opposing;
+                    taken[d] = mass * opposing;
+                    s.opposed.sum[d] += taken[d];
+                }
+                addCross<plane>(x, taken, s.opposed.about);
+            }
+        }
+        motionsOf(&Sums::opposed, opposed);
+        typename Sums::Vector means[2] = {}, nows[2] = {}; // momenta of the mean velocities and of those after the step
+        Lanes kinetics[2], befores[2], afters[2], dampings[2], pendings[2];
+        keep = kept;
+        for (int k = 0; k < count; ++k) {
+            auto& unit = units[k];
+            Lanes kinetic = zero, gravityWork = zero, damping = zero, pending = zero, before = zero, after = zero;
+            Lanes moved[3] = {zero, zero, zero};
+            for (int n = 0; n < unit.matrix.nodeCount; ++n, keep += 2 * directions) {
+                const double mass = unit.matrix.masses[n];
+                Lanes x[directions], momentum[directions], afterwards[directions];
+                place(unit, n, x);
+                for (int d = 0; d < directions; ++d) {
+                    momentum[d] = afterwards[d] = zero;
+                    const int row = 3 * n + direction[d];
+                    *at(unit.forces + row, part) = zero;
+                    if (!free[d]) continue;
+                    const Lanes previous = *at(unit.velocities + row, part);
+                    Lanes& u = *at(unit.displacements + row, part);
+                    const Lanes opposing = keep[2 * d + 1];
+                    // Mean velocity of the step without viscous damping, and the velocity after the step.
+                    const Lanes mean = keep[2 * d] - (Block::at(opposed[k], x, d) + share * opposing);
+                    const Lanes now = 2 * (mean - steady * mean) - previous;
+                    gravityWork += mass * m.gravity[direction[d]] * *at(&unit.present, part) * u;
+                    damping += mass * opposing * previous;
+                    pending += mass * opposing * now;
+                    before += mass * mean * previous;
+                    after += mass * mean * now;
+                    kinetic += mass * previous * now;
+                    keep[2 * d] = now;
+                    momentum[d] = mass * mean;
+                    afterwards[d] = mass * now;
+                    means[k].sum[d] += momentum[d];
+                    nows[k].sum[d] += afterwards[d];
+                }
+                addCross<plane>(x, momentum, means[k].about);
+                addCross<plane>(x, afterwards, nows[k].about);
+            }
+            kinetics[k] = kinetic;
+            befores[k] = before;
+            afters[k] = after;
+            dampings[k] = damping;
+            pendings[k] = pending;
+            *at(&unit.sums.gravityWork, part) = gravityWork;
+            keep -= 2 * directions * unit.matrix.nodeCount;
+            for (int n = 0; n < unit.matrix.nodeCount; ++n, keep += 2 * directions)
+                for (int d = 0; d < directions; ++d) {
+                    if (!free[d]) continue;
+                    const int row = 3 * n + direction[d];
+                    Lanes& u = *at(unit.displacements + row, part);
+                    *at(unit.velocities + row, part) = keep[2 * d];
+                    // x of the next unit counts from the first node, which must not have moved yet
+                    if (k > 0 || n > 0) u += m.dt * keep[2 * d];
+                    moved[direction[d]] += unit.matrix.masses[n] * (k > 0 || n > 0 ? u : u + m.dt * keep[2 * d]);
+                }
+            for (int d = 0; d < 3; ++d)
+                *at(unit.sums.moved + d, part) = moved[d];
+        }
+        // Energies with the scaled masses: the product of velocities a and b is (1 + s) a M b - (s - t) a M H b - t a M
+        // W b, with the factor 1 + t on the motion of the two units of a block against each other. That of W stands
+        // with the first unit.
+        const Lanes against = together * scaling + (one - together) * (scaling * sharedScaling);
+        const auto scaled = [&](const Lanes& plain, int k, const typename Sums::Vector* a,
+                                const typename Sums::Vector* b) {
+            Lanes sum = (1 + scaling) * plain - (scaling - against) * Block::product(a[k], own[k].motion(b[k]));
+            if (k > 0) return sum;
+            const bool single = count == 1;
+            return Lanes(sum - against * Block::product(single ? a[0] : weighted(one, a[0], one, a[1]),
+                                                        both.motion(single ? b[0] : weighted(one, b[0], one, b[1]))));
+        };
+        typename Sums::Vector olds[2] = {sums[0].velocity, sums[count - 1].velocity};
+        for (int k = 0; k < count; ++k) {
+            auto& result = units[k].sums;
+            *at(&result.kinetic, part) = 0.5 * scaled(kinetics[k], k, olds, nows);
+            *at(&result.damping, part) = dampings[k];
+            *at(&result.pending, part) = pendings[k];
+            if (steady == 0) continue;
+            *at(&result.damping, part) += steady * scaled(befores[k], k, olds, means);
+            *at(&result.pending, part) += steady * scaled(afters[k], k, nows, means);
+        }
+        for (int d = 0; d < directions; ++d)
+            if (free[d])
+                *at(units[0].displacements + direction[d], part) +=
+                    m.dt * *at(units[0].velocities + direction[d], part);
+    }
+}
+
+void moveScaledUnits(const NodeMotion& m, double scaling, ScaledUnits* units, int count, const Row& whole,
+                     Row* scratch) {
+    (units[0].matrix.across >= 0 ? moveIn<true> : moveIn<false>)(m, scaling, units, count, whole, scratch);
+}

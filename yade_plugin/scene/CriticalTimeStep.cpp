@@ -5,6 +5,7 @@
 #include "SceneStore.hpp"
 #include "Zones.hpp"
 #include "motion/LargestEigenvalue.hpp"
+#include <algorithm>
 #include <map>
 
 namespace masonry {
@@ -14,13 +15,20 @@ using yade::State;
 
 namespace {
 
-// Stiffness over mass of a scene: the operator S K S with S = sqrt((1 + alpha) / M), as a sum over joints and
-// deformable units. The degrees of freedom are three of every node and six of every rigid body that has a joint; those
-// that are blocked are left out.
+// Stiffness over mass of a scene: the operator S^T K S with S = sqrt((1 + alpha) / M), as a sum over joints and
+// deformable units. Where masses of deformable units are scaled, S = sqrt((1 + alpha) / M) (Q + (I - Q) / sqrt(1 + s)),
+// in which Q projects on the rigid motions of the blocks, and a further part for those of cracked bricks: then
+// S S^T / (1 + alpha) is the inverse of the scaled masses (blocks/BlockLanes.hpp). The degrees of freedom are three of
+// every node and six of every rigid body that has a joint; those that are blocked are left out.
 class Dynamics {
 public:
-    explicit Dynamics(SceneStore&);
+    // With `allSplit` the two parts of every brick that could crack move against each other (blocks/BlockLanes.hpp).
+    Dynamics(SceneStore&, bool allSplit);
 
+    // Whether there are bricks with scaled masses whose parts move as one, but need not for ever.
+    bool mayCrack() const {
+        return std::any_of(blocks_.begin(), blocks_.end(), [](const Scaled& b) { return b.mayCrack; });
+    }
     std::vector<bool> moves; // whether a degree of freedom can move, that is, is not blocked
     void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
     // The bodies of the joint that has most of a mode's elastic energy, or twice the body of the unit that has.
@@ -32,7 +40,16 @@ private:
         Eigen::MatrixXd stiffness;
         int body1, body2;
     };
-    struct Unit { // a deformable unit
+    struct Scaled { // a block whose masses are scaled
+        std::vector<int> degrees;
+        // Rigid motions of the block, and of its parts if they move against each other, times the roots of the masses:
+        // orthonormal columns.
+        Eigen::MatrixXd whole, parts;
+        bool mayCrack;
+    };
+    void slow(Eigen::VectorXd& x) const;                    // multiplies by what stands beside sqrt((1 + alpha) / M)
+    Eigen::VectorXd scaled(const Eigen::VectorXd& x) const; // S x
+    struct Unit {                                           // a deformable unit
         BlockMatrix matrix;
         int first; // its first degree of freedom
         int body;
@@ -50,9 +67,11 @@ private:
     std::map<int, int> firstOfBody_; // first degree of freedom of a rigid body
     std::vector<Joint> joints_;
     std::vector<Unit> units_;
+    std::vector<Scaled> blocks_;
+    double slowness_ = 1, slownessOfParts_ = 1; // 1 / sqrt(1 + s), also of parts of a brick against each other
 };
 
-Dynamics::Dynamics(SceneStore& store) {
+Dynamics::Dynamics(SceneStore& store, bool allSplit) {
     if (store.zones)
         for (const auto& unit : store.zones->units()) {
             units_.push_back({unit.elasticity->matrix(), 3 * unit.firstNode, unit.body});
@@ -60,6 +79,25 @@ Dynamics::Dynamics(SceneStore& store) {
                 for (int d = 0; d < 3; ++d)
                     addDegree(mass, store.zones->damping, store.zones->holds(d));
         }
+    if (store.zones && store.zones->massScaling > 0) {
+        slowness_ = 1 / std::sqrt(1 + store.zones->massScaling);
+        slownessOfParts_ = 1 / std::sqrt(1 + sharedScaling * store.zones->massScaling);
+        for (const auto& block : store.zones->blocks()) {
+            const bool apart = block.units.size() > 1 && (allSplit || block.split);
+            Scaled made{{}, store.zones->rigidMotions(block.units), {}, block.units.size() > 1 && !apart};
+            if (apart) made.parts = store.zones->motionsOfParts(block);
+            for (const auto* unit : block.units)
+                for (std::size_t n = 0; n < unit->elasticity->masses().size(); ++n)
+                    for (int d = 0; d < 3; ++d) {
+                        const auto row = Eigen::Index(made.degrees.size());
+                        const double root = std::sqrt(unit->elasticity->masses()[n]);
+                        made.whole.row(row) *= root;
+                        if (apart) made.parts.row(row) *= root;
+                        made.degrees.push_back(3 * (unit->firstNode + int(n)) + d);
+                    }
+            blocks_.push_back(std::move(made));
+        }
+    }
     for (const auto& joint : store.joints)
         addJoint(store, joint);
 }
@@ -132,16 +170,37 @@ template <class F> void Dynamics::eachForce(const Eigen::VectorXd& motion, F&& v
         }
 }
 
+void Dynamics::slow(Eigen::VectorXd& x) const {
+    Eigen::VectorXd own;
+    for (const auto& block : blocks_) {
+        own.resize(Eigen::Index(block.degrees.size()));
+        for (std::size_t i = 0; i < block.degrees.size(); ++i)
+            own[i] = x[block.degrees[i]];
+        Eigen::VectorXd rigid = block.whole * (block.whole.transpose() * own);
+        Eigen::VectorXd slowed = rigid + slowness_ * (own - rigid);
+        if (block.parts.size() > 0)
+            slowed += (slownessOfParts_ - slowness_) * (block.parts * (block.parts.transpose() * own) - rigid);
+        for (std::size_t i = 0; i < block.degrees.size(); ++i)
+            x[block.degrees[i]] = slowed[Eigen::Index(i)];
+    }
+}
+
+Eigen::VectorXd Dynamics::scaled(const Eigen::VectorXd& x) const {
+    Eigen::VectorXd slowed = x;
+    slow(slowed);
+    return Eigen::Map<const Eigen::VectorXd>(scale_.data(), Eigen::Index(scale_.size())).cwiseProduct(slowed);
+}
+
 void Dynamics::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
     const Eigen::Map<const Eigen::VectorXd> scale(scale_.data(), Eigen::Index(scale_.size()));
     y.setZero();
-    eachForce(scale.cwiseProduct(x), [&](int, int, int degree, double force) { y[degree] += force; });
+    eachForce(scaled(x), [&](int, int, int degree, double force) { y[degree] += force; });
     y.array() *= scale.array();
+    slow(y);
 }
 
 std::pair<int, int> Dynamics::stiffest(const Eigen::VectorXd& mode) const {
-    const Eigen::VectorXd motion =
-        Eigen::Map<const Eigen::VectorXd>(scale_.data(), Eigen::Index(scale_.size())).cwiseProduct(mode);
+    const Eigen::VectorXd motion = scaled(mode);
     std::map<std::pair<int, int>, double> energies;
     eachForce(motion, [&](int body1, int body2, int degree, double force) {
         energies[{body1, body2}] += motion[degree] * force;
@@ -155,10 +214,10 @@ std::pair<int, int> Dynamics::stiffest(const Eigen::VectorXd& mode) const {
 struct Known {
     const SceneStore* store = nullptr;
     long revision = -1;
-    double damping = 0, zoneDamping = 0, stiffnessDamping = 0;
+    double damping = 0, zoneDamping = 0, stiffnessDamping = 0, massScaling = 0;
     bool operator==(const Known& o) const {
         return store == o.store && revision == o.revision && damping == o.damping && zoneDamping == o.zoneDamping &&
-               stiffnessDamping == o.stiffnessDamping;
+               stiffnessDamping == o.stiffnessDamping && massScaling == o.massScaling;
     }
 };
 
@@ -167,16 +226,27 @@ struct Known {
 TimeStepLimit timeStepLimit(SceneStore& store, bool anew) {
     static Known known;
     static TimeStepLimit last;
-    const Known now{&store, store.revision(), store.damping(), store.zones ? store.zones->damping : 0,
-                    store.stiffnessDamping()};
+    const Known now{&store,
+                    store.revision(),
+                    store.damping(),
+                    store.zones ? store.zones->damping : 0,
+                    store.stiffnessDamping(),
+                    store.zones ? store.zones->massScaling : 0};
     if (!anew && now == known) return last;
-    const Dynamics dynamics(store);
-    const auto highest = largestEigenvalue(
-        dynamics.moves, [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) { dynamics.multiply(x, y); });
-    last.dt = highest.bound > 0 ? 2 / std::sqrt(highest.bound) : HUGE_VAL;
-    const double ratio = now.stiffnessDamping / last.dt; // of the damping of the highest mode to the critical one
-    last.dt *= std::sqrt(1 + ratio * ratio) - ratio;
-    std::tie(last.id1, last.id2) = dynamics.stiffest(highest.mode);
+    last = {HUGE_VAL, -1, -1};
+    const auto lower = [&](const Dynamics& dynamics) {
+        const auto highest = largestEigenvalue(
+            dynamics.moves, [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) { dynamics.multiply(x, y); });
+        double dt = highest.bound > 0 ? 2 / std::sqrt(highest.bound) : HUGE_VAL;
+        const double ratio = now.stiffnessDamping / dt; // of the damping of the highest mode to the critical one
+        dt *= std::sqrt(1 + ratio * ratio) - ratio;
+        if (!(dt < last.dt)) return;
+        last.dt = dt;
+        std::tie(last.id1, last.id2) = dynamics.stiffest(highest.mode);
+    };
+    const Dynamics present(store, false);
+    lower(present);
+    if (present.mayCrack()) lower(Dynamics(store, true)); // bricks crack during the run, whose time step stays
     known = now;
     return last;
 }

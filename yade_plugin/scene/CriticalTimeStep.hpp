@@ -27,6 +27,11 @@ class SceneStore;
 // of size 1 where (w dt/2)² + 2 d (w dt/2) = 1. The highest mode gives the least of these limits. It is taken as if all
 // of its stiffness were that of joints, which is on the safe side for deformable units.
 //
+// Where masses of deformable units are scaled (MasonryZones.massScaling), M stands for the scaled masses. Damping takes
+// no more from a component of w than with the true masses, which are at most the scaled ones, so E falls there, too.
+// The limit is the smaller of two: with the bricks as they are, and with all bricks cracked that can crack, because
+// they do so during a run whose time step stays.
+//
 // All this holds for elastic joints and small rotations; joints that yield, open or crush are softer. The host's own
 // damping may bring w beyond zero. That such runs are calm below the limit is measured, not proved
 // (validation/stability).

@@ -4,6 +4,7 @@
 #include "Changes.hpp"
 #include "Integrator.hpp"
 #include "Load.hpp"
+#include "MonolithicPairs.hpp"
 #include "Zones.hpp"
 #include <algorithm>
 #include <map>
@@ -152,6 +153,12 @@ void SceneStore::update(Look look) {
     if (zones)
         for (int id : zones->bodies)
             if (id >= 0 && id < bodies.size()) bodies.isUnit[id] = true;
+    if (zones) {
+        std::vector<Zones::Brick> bricks;
+        for (const auto& pair : monolithicPairs(*this))
+            bricks.push_back({pair.body1, pair.body2, false});
+        zones->takeBricks(std::move(bricks));
+    }
     static long readings = 0;
     revision_ = ++readings;
     seenChanges_ = changes;

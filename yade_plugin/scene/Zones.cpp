@@ -2,9 +2,11 @@
 #include "Zones.hpp"
 #include "Blocks.hpp"
 #include "Changes.hpp"
+#include "SceneStore.hpp"
 #include "UnitMaterial.hpp"
 #include "common/Parallel.hpp"
 #include <algorithm>
+#include <map>
 
 namespace masonry {
 
@@ -15,6 +17,8 @@ std::vector<std::string> Zones::problems() const {
         if (n < 1 || n > 100) wrong.push_back("divisions " + std::to_string(n) + " must be 1 to 100");
     if (dampingKind != "combined" && dampingKind != "local")
         wrong.push_back("dampingKind '" + dampingKind + "' must be 'combined' or 'local'");
+    if (!(massScaling >= 0) || !std::isfinite(massScaling))
+        wrong.push_back("massScaling " + text(massScaling) + " must be a finite number of at least 0");
     if (blocked.find_first_not_of("xyz") != std::string::npos)
         wrong.push_back("blocked '" + blocked + "' must be made of x, y and z");
     auto sorted = bodies;
@@ -31,6 +35,7 @@ void Zones::divideAnew() {
     if (!units_.empty()) loaded_ = {displacements(), velocities(), lastForces()};
     units_.clear();
     batches_.clear();
+    teams_.clear();
     places_.clear();
     ++changes;
 }
@@ -174,30 +179,65 @@ void Zones::mesh() {
         list->resize(next, Vector3r::Zero());
 }
 
+// Puts a unit into the next lane of a batch.
+void Zones::addUnit(int number, int n) {
+    auto& batch = batches_[n];
+    auto& unit = units_[number];
+    const int nodes = int(unit.elasticity->masses().size()), lane = int(batch.units.size());
+    for (int node = 0; node < nodes; ++node)
+        places_[unit.firstNode + node] = lanes * (batch.firstRow + 3 * node) + lane;
+    unit.momentPlace = lanes * 3 * n + lane;
+    batch.units.push_back(number);
+}
+
+// Gives both units of every brick the same lane in two batches that are moved together.
+void Zones::pairUp() {
+    std::map<std::pair<const BlockElasticity*, const BlockElasticity*>, int> open; // the last team of two kinds
+    for (std::size_t b = 0; b < bricks_.size(); ++b) {
+        const auto *one = unitOf(bricks_[b].body1), *two = unitOf(bricks_[b].body2);
+        if (!one || !two || one->elasticity->mesh().across != two->elasticity->mesh().across) continue;
+        const auto [at, fresh] = open.emplace(std::pair(one->elasticity.get(), two->elasticity.get()), -1);
+        if (fresh || teams_[at->second].bricks.size() == lanes) {
+            at->second = int(teams_.size());
+            teams_.push_back({int(batches_.size()), int(batches_.size()) + 1, {}});
+            for (const auto* unit : {one, two}) {
+                batches_.push_back({unit->elasticity.get(), rows_, {}});
+                rows_ += 3 * int(unit->elasticity->masses().size());
+            }
+        }
+        auto& team = teams_[at->second];
+        team.bricks.push_back(int(b));
+        addUnit(unitOfBody_[bricks_[b].body1], team.first);
+        addUnit(unitOfBody_[bricks_[b].body2], team.second);
+    }
+}
+
 // Gives every node its place in the rows. Congruent units stand side by side, one in each lane.
 void Zones::layOut() {
     batches_.clear();
-    places_.assign(loaded_.displacements.size(), 0);
+    teams_.clear();
+    rows_ = 0;
+    places_.assign(loaded_.displacements.size(), -1);
+    if (massScaling > 0) pairUp();
+    const std::size_t paired = batches_.size();
     std::vector<const BlockElasticity*> kinds; // in the order in which they were met
     for (const auto& unit : units_)
         if (std::find(kinds.begin(), kinds.end(), unit.elasticity.get()) == kinds.end())
             kinds.push_back(unit.elasticity.get());
-    int rows = 0;
     for (const auto* kind : kinds) {
         const int nodes = int(kind->masses().size());
         for (std::size_t u = 0; u < units_.size(); ++u) {
-            if (units_[u].elasticity.get() != kind) continue;
-            if (batches_.empty() || batches_.back().elasticity != kind || batches_.back().units.size() == lanes) {
-                batches_.push_back({kind, rows, {}});
-                rows += 3 * nodes;
+            if (units_[u].elasticity.get() != kind || places_[units_[u].firstNode] >= 0) continue;
+            if (batches_.size() == paired || batches_.back().elasticity != kind ||
+                batches_.back().units.size() == lanes) {
+                teams_.push_back({int(batches_.size()), -1, {}});
+                batches_.push_back({kind, rows_, {}});
+                rows_ += 3 * nodes;
             }
-            auto& batch = batches_.back();
-            for (int n = 0; n < nodes; ++n)
-                places_[units_[u].firstNode + n] = lanes * (batch.firstRow + 3 * n) + int(batch.units.size());
-            units_[u].momentPlace = lanes * 3 * (int(batches_.size()) - 1) + int(batch.units.size());
-            batch.units.push_back(int(u));
+            addUnit(int(u), int(batches_.size()) - 1);
         }
     }
+    const int rows = rows_;
     for (auto* all : {&displacements_, &velocities_, &forces_, &lastForces_})
         all->assign(rows, Row{});
     moments_.assign(3 * batches_.size(), Row{});
@@ -344,6 +384,216 @@ void Zones::followGravity(const Vector3r& ofIntegrator) {
     gravity = ofIntegrator;
 }
 
+// Forces and motion of one batch, or of the two of a team.
+void Zones::advanceTeam(const Team& team, const NodeMotion& motion, BodyColumns& columns, std::vector<NodeSums>& sums,
+                        std::vector<Row>& energies) {
+    thread_local std::vector<Row> scratch;
+    const int members[2] = {team.first, team.second}, count = team.second < 0 ? 1 : 2;
+    std::size_t nodes = 0;
+    for (int k = 0; k < count; ++k)
+        nodes += batches_[members[k]].elasticity->masses().size();
+    if (scratch.size() < 6 * nodes) scratch.resize(6 * nodes);
+    ScaledUnits scaled[2];
+    Row turned[2][9];
+    for (int k = 0; k < count; ++k) {
+        const int b = members[k];
+        const auto& batch = batches_[b];
+        const int row = batch.firstRow;
+        auto& s = scaled[k];
+        s = {batch.elasticity->matrix(),
+             {},
+             &displacements_[row],
+             &velocities_[row],
+             &forces_[row],
+             &lastForces_[row],
+             {},
+             {}};
+        std::fill_n(s.present.lane, batch.units.size(), 1.0);
+        addBlockForces(s.matrix, s.displacements, &moments_[3 * b], s.forces, turned[k], &energies[b], scratch.data());
+        if (massScaling == 0)
+            moveBlocks(s.matrix, motion, s.present, s.displacements, s.velocities, s.forces, s.lastForces, sums[b]);
+    }
+    if (massScaling > 0) {
+        Row whole{};
+        for (std::size_t lane = 0; lane < team.bricks.size(); ++lane) {
+            whole.lane[lane] = bricks_[team.bricks[lane]].split ? 0 : 1;
+            const auto &one = units_[batches_[team.first].units[lane]],
+                       &two = units_[batches_[team.second].units[lane]];
+            for (int d = 0; d < 3; ++d)
+                scaled[1].offset[d].lane[lane] = two.centre[d] - one.centre[d];
+        }
+        moveScaled(motion, massScaling, scaled, count, whole, scratch.data());
+        for (int k = 0; k < count; ++k)
+            sums[members[k]] = scaled[k].sums;
+    }
+    for (int k = 0; k < count; ++k) {
+        const auto& batch = batches_[members[k]];
+        for (std::size_t lane = 0; lane < batch.units.size(); ++lane) {
+            const auto& unit = units_[batch.units[lane]];
+            Matrix3 rotation;
+            for (int i = 0; i < 9; ++i)
+                rotation(i / 3, i % 3) = turned[k][i].lane[lane];
+            Vector3r place;
+            for (int d = 0; d < 3; ++d)
+                place[d] = unit.centre[d] + sums[members[k]].moved[d].lane[lane] / batch.elasticity->mass();
+            columns.setPlace(unit.body, place, Quaternionr(rotation) * unit.orientation);
+        }
+    }
+}
+
+// ---- masses that are scaled -------------------------------------------------------------------------------------
+
+void Zones::takeBricks(std::vector<Brick> bricks) {
+    const bool same =
+        std::equal(bricks.begin(), bricks.end(), bricks_.begin(), bricks_.end(),
+                   [](const Brick& a, const Brick& b) { return a.body1 == b.body1 && a.body2 == b.body2; });
+    bricks_ = std::move(bricks);
+    int most = -1;
+    for (const auto& brick : bricks_)
+        most = std::max(most, brick.body1);
+    brickOfBody_.assign(most + 1, -1);
+    for (std::size_t b = 0; b < bricks_.size(); ++b)
+        brickOfBody_[bricks_[b].body1] = int(b);
+    for (int body : splitBricks)
+        if (body < int(brickOfBody_.size()) && body >= 0 && brickOfBody_[body] >= 0)
+            bricks_[brickOfBody_[body]].split = true;
+    if (!same && massScaling > 0) divideAnew();
+}
+
+// First bodies of bricks that have not split, and whose crack surface yields in this step; with `everything`, those
+// whose crack surface has ever lost energy, too.
+std::vector<int> Zones::crackedNow(const SceneStore& store, bool everything) const {
+    std::vector<int> found;
+    for (const auto& kind : store.kinds) {
+        const auto& states = *kind.states->columns;
+        if (!kind.attached || !states.law().properties().monolithic) continue;
+        const int count = int(kind.shapes->joints.size());
+        for (int p = 0; p < kind.shapes->points; ++p) {
+            const Regime* regime = states.regime(p, 0);
+            for (int j = 0; j < count; ++j) {
+                bool yields = regime[j] != Regime::Elastic;
+                if (everything) {
+                    const auto lost = states.dissipated(p, j);
+                    yields = yields || lost.tension != 0 || lost.shear != 0 || lost.compression != 0;
+                }
+                if (!yields) continue;
+                const int body = kind.shapes->joints[j].sides[0].body;
+                const int brick = body < int(brickOfBody_.size()) ? brickOfBody_[body] : -1;
+                if (brick >= 0 && !bricks_[brick].split && std::find(found.begin(), found.end(), body) == found.end())
+                    found.push_back(body);
+            }
+        }
+    }
+    return found;
+}
+
+void Zones::followMasses(const SceneStore& store) {
+    if (massScaling == 0 && scaledBy == 0) return;
+    const bool changed = massScaling != scaledBy;
+    const auto cracked = crackedNow(store, changed);
+    if (cracked.empty() && !changed) return;
+    const double before = kineticEnergy(scaledBy);
+    for (int body : cracked) {
+        bricks_[brickOfBody_[body]].split = true;
+        splitBricks.push_back(body);
+    }
+    if (falling) damped += before - kineticEnergy(massScaling);
+    scaledBy = massScaling;
+}
+
+std::vector<Zones::Block> Zones::blocks() {
+    std::vector<Block> all;
+    for (const auto& team : teams_)
+        for (std::size_t lane = 0; lane < batches_[team.first].units.size(); ++lane) {
+            all.push_back({{&units_[batches_[team.first].units[lane]]}, false});
+            if (team.second < 0) continue;
+            all.back().units.push_back(&units_[batches_[team.second].units[lane]]);
+            all.back().split = bricks_[team.bricks[lane]].split;
+        }
+    return all;
+}
+
+Eigen::MatrixXd Zones::motionsOfParts(const Block& block) const {
+    Eigen::MatrixXd all;
+    for (const auto* unit : block.units) {
+        const auto own = rigidMotions({unit});
+        const Eigen::Index rows = all.rows(), columns = all.cols();
+        all.conservativeResizeLike(Eigen::MatrixXd::Zero(rows + own.rows(), columns + own.cols()));
+        all.bottomRightCorner(own.rows(), own.cols()) = own;
+    }
+    return all;
+}
+
+Eigen::MatrixXd Zones::rigidMotions(const std::vector<const Unit*>& group) const {
+    std::vector<Vector3r> places;
+    std::vector<double> masses;
+    Vector3r centre = Vector3r::Zero();
+    double mass = 0;
+    for (const auto* unit : group)
+        for (std::size_t n = 0; n < unit->elasticity->masses().size(); ++n) {
+            const int node = unit->firstNode + int(n);
+            places.push_back(reference(*unit, node) + displacementOf(node));
+            masses.push_back(unit->elasticity->masses()[n]);
+            centre += masses.back() * places.back();
+            mass += masses.back();
+        }
+    centre /= mass;
+    const int count = int(places.size());
+    std::vector<Eigen::VectorXd> found;
+    const auto product = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+        double sum = 0;
+        for (int i = 0; i < 3 * count; ++i)
+            sum += masses[i / 3] * a[i] * b[i];
+        return sum;
+    };
+    for (int motion = 0; motion < 6; ++motion) {
+        const int d = motion % 3;
+        if (motion < 3 ? holds(d) : holds((d + 1) % 3) || holds((d + 2) % 3)) continue;
+        Eigen::VectorXd column(3 * count);
+        for (int n = 0; n < count; ++n)
+            column.segment<3>(3 * n) =
+                motion < 3 ? Vector3r(Vector3r::Unit(d)) : Vector3r(Vector3r::Unit(d).cross(places[n] - centre));
+        for (int twice = 0; twice < 2; ++twice)
+            for (const auto& other : found)
+                column -= product(other, column) * other;
+        found.push_back(column / std::sqrt(product(column, column)));
+    }
+    Eigen::MatrixXd all(3 * count, found.size());
+    for (std::size_t i = 0; i < found.size(); ++i)
+        all.col(i) = found[i];
+    return all;
+}
+
+double Zones::kineticEnergy(double scaling) {
+    units();
+    double twice = 0;
+    for (const auto& block : blocks()) {
+        std::vector<double> momenta;
+        double own = 0;
+        for (const auto* unit : block.units)
+            for (std::size_t n = 0; n < unit->elasticity->masses().size(); ++n) {
+                const Vector3r velocity = velocityOf(unit->firstNode + int(n));
+                const double mass = unit->elasticity->masses()[n];
+                for (int d = 0; d < 3; ++d) {
+                    momenta.push_back(holds(d) ? 0 : mass * velocity[d]);
+                    own += momenta.back() * velocity[d];
+                }
+            }
+        twice += own;
+        if (scaling == 0) continue;
+        const Eigen::Map<const Eigen::VectorXd> p(momenta.data(), Eigen::Index(momenta.size()));
+        const double whole = (rigidMotions(block.units).transpose() * p).squaredNorm();
+        if (block.split) {
+            const double parts = (motionsOfParts(block).transpose() * p).squaredNorm();
+            twice += scaling * (own - parts + sharedScaling * (parts - whole));
+        } else
+            twice += scaling * (own - whole);
+    }
+    return 0.5 * twice;
+}
+
+// ---- a step of all units ----------------------------------------------------------------------------------------
+
 void Zones::advance(yade::Scene& scene, BodyColumns& columns, const Vector3r& ofIntegrator, double massDamping) {
     followGravity(ofIntegrator);
     units();
@@ -358,33 +608,9 @@ void Zones::advance(yade::Scene& scene, BodyColumns& columns, const Vector3r& of
     const int count = int(batches_.size());
     std::vector<NodeSums> sums(count);
     std::vector<Row> energies(count);
-    std::size_t most = 0; // largest number of nodes of a unit
-    for (const auto& batch : batches_)
-        most = std::max(most, batch.elasticity->masses().size());
-    Parallel::instance().overPieces(count, 1, [&](int first, int beyond) {
-        thread_local std::vector<Row> scratch;
-        if (scratch.size() < 6 * most) scratch.resize(6 * most);
-        for (int b = first; b < beyond; ++b) {
-            const auto& batch = batches_[b];
-            const auto matrix = batch.elasticity->matrix();
-            const int row = batch.firstRow;
-            Row present{}, turned[9];
-            std::fill_n(present.lane, batch.units.size(), 1.0);
-            addBlockForces(matrix, &displacements_[row], &moments_[3 * b], &forces_[row], turned, &energies[b],
-                           scratch.data());
-            moveBlocks(matrix, motion, present, &displacements_[row], &velocities_[row], &forces_[row],
-                       &lastForces_[row], sums[b]);
-            for (std::size_t lane = 0; lane < batch.units.size(); ++lane) {
-                const auto& unit = units_[batch.units[lane]];
-                Matrix3 rotation;
-                for (int i = 0; i < 9; ++i)
-                    rotation(i / 3, i % 3) = turned[i].lane[lane];
-                Vector3r place;
-                for (int d = 0; d < 3; ++d)
-                    place[d] = unit.centre[d] + sums[b].moved[d].lane[lane] / batch.elasticity->mass();
-                columns.setPlace(unit.body, place, Quaternionr(rotation) * unit.orientation);
-            }
-        }
+    Parallel::instance().overPieces(int(teams_.size()), 1, [&](int first, int beyond) {
+        for (int t = first; t < beyond; ++t)
+            advanceTeam(teams_[t], motion, columns, sums, energies);
     });
     const double before = fallen;
     const Vector3r moment = moved; // the work is counted up to the beginning of this step

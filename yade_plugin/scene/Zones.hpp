@@ -8,20 +8,26 @@
 #include "blocks/BlockElasticity.hpp"
 #include "blocks/JointPoints.hpp"
 #include "motion/EnergyLedger.hpp"
+#include <Eigen/Core>
 #include <memory>
 #include <optional>
 
 namespace masonry {
 
+class SceneStore;
+
 class Zones : public EnergyLedger, public GravityWork {
 public:
     std::vector<int> bodies; // ids of the deformable units
     std::vector<int> divisions{1, 1, 1};
-    bool plane = true;                        // whether units held in one direction are plane units, where they can be
-    std::vector<int> laidOut;                 // what decided how the nodes were numbered; set by mesh()
-    double damping = 0.8;                     // damping constant alpha [-]
-    std::string dampingKind = "combined";     // or "local"
-    std::string blocked;                      // directions in which the nodes are held: some of x, y and z
+    bool plane = true;                    // whether units held in one direction are plane units, where they can be
+    double massScaling = 0;               // of the masses in all but rigid motions of a block, see moveScaled() [-]
+    double scaledBy = 0;                  // massScaling in the last step [-]
+    std::vector<int> splitBricks;         // first bodies of bricks in two units that have split, in the order of that
+    std::vector<int> laidOut;             // what decided how the nodes were numbered; set by mesh()
+    double damping = 0.8;                 // damping constant alpha [-]
+    std::string dampingKind = "combined"; // or "local"
+    std::string blocked;                  // directions in which the nodes are held: some of x, y and z
     Vector3r gravity = Vector3r(0, 0, -9.81); // [m/s²]
     Vector3r moved = Vector3r::Zero();        // sum of mass times displacement of all nodes after the last step [kg m]
 
@@ -43,6 +49,30 @@ public:
         Vector3r centre;                                   // of the body in the reference state [m]
         Quaternionr orientation;                           // of the body in the reference state
     };
+    // Bricks in two units that move as one, as far as masses are scaled, until their crack surface yields.
+    struct Brick {
+        int body1, body2;
+        bool split;
+    };
+    // Takes over the bricks in two units, all of them with split = false. To be called when joints have changed.
+    void takeBricks(std::vector<Brick>);
+    // Finds the bricks whose crack surface has yielded, and books the kinetic energy that a change of the scaled masses
+    // makes or takes. To be called in every step before advance(), when the joints have been advanced.
+    void followMasses(const SceneStore&);
+    // Kinetic energy of the present velocities with the masses of this scaling [J].
+    double kineticEnergy(double scaling);
+    // A unit, or the two units of a brick, whose masses are scaled together.
+    struct Block {
+        std::vector<const Unit*> units;
+        bool split;
+    };
+    std::vector<Block> blocks();
+    // Rigid motions about the present centre of mass of some units together, in directions in which nodes are not held:
+    // columns of displacements of their nodes, three rows a node, that are orthonormal under the masses.
+    Eigen::MatrixXd rigidMotions(const std::vector<const Unit*>&) const;
+    // The same of the units of a block each for itself: columns that are zero at the nodes of the other.
+    Eigen::MatrixXd motionsOfParts(const Block&) const;
+
     const std::vector<Unit>& units(); // divides the bodies into zones when first called
     const Unit* unitOf(int body);     // null for a rigid body
     // Whether the nodes are held in direction 0, 1 or 2.
@@ -115,6 +145,15 @@ private:
         int firstRow;
         std::vector<int> units; // at most as many as there are lanes
     };
+    // Batches that are moved together: one, or two with the units of the same bricks in the same lanes.
+    struct Team {
+        int first, second;       // numbers of batches; the second is -1 if there is none
+        std::vector<int> bricks; // number of the brick in every lane
+    };
+    void addUnit(int unit, int batch);
+    void pairUp();
+    void advanceTeam(const Team&, const NodeMotion&, BodyColumns&, std::vector<NodeSums>&, std::vector<Row>& energies);
+    std::vector<int> crackedNow(const SceneStore&, bool everything) const;
     static Vector3r at(const std::vector<Row>& rows, int place) {
         const double* v = rows[0].lane + place;
         return {v[0], v[lanes], v[2 * lanes]};
@@ -139,6 +178,10 @@ private:
     std::vector<int> unitOfBody_; // by the id of the body; -1 if it is rigid
     std::vector<int> places_;     // of all nodes in the rows
     std::vector<Batch> batches_;
+    std::vector<Team> teams_;
+    int rows_ = 0; // how many rows the nodes take
+    std::vector<Brick> bricks_;
+    std::vector<int> brickOfBody_; // number of the brick by its first body; -1 for all others
     std::vector<Row> displacements_, velocities_, forces_, lastForces_, moments_;
     boost::weak_ptr<yade::Factorable> divided_; // the scene whose bodies were divided
     boost::weak_ptr<yade::Factorable> scene_;   // the scene in which the units were last moved

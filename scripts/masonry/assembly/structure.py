@@ -7,7 +7,7 @@ from yade import O, Vector3
 from yade.wrapper import MasonryJoint, MasonryLoad, MasonryZones
 
 from .._masonry import criticalTimeStep, loadScene, saveScene
-from ..basics import GRAVITY, Refused
+from ..basics import GRAVITY, Refused, say
 from ..bricks import boxCorners
 from . import threads
 from .blocks import placeBlock
@@ -16,6 +16,7 @@ from .engines import engine, engines
 from .columns import Reading
 from .motion import Motion
 
+MOST_SCALED = 50.0  # largest massScaling that is chosen by itself: more gained nothing in any wall
 FILLED = 1e-9  # of a platen's side: what may be free of bricks if it is said to be full
 
 
@@ -134,6 +135,9 @@ class Structure:
                     self.bricks.pop(target.body, None)
             # cells of a half brick along its length; a whole one has twice as many
             n = args.divisions
+            if args.mass_scaling and "crack" in self.joints:
+                # the halves of a brick move as one, as far as masses are scaled, until their crack surface yields
+                self.joints["crack"].monolithic = True
             self.zones = MasonryZones(
                 bodies=list(self.bricks),
                 divisions=[n if description.halves else 2 * n, 1, n],
@@ -162,6 +166,8 @@ class Structure:
         self.interactions = connect(
             self.masonry.rule(blocks), allowGaps=description.allowGaps
         )
+        self.massScaling = self._massScaling()
+        self.scaleMasses(self.massScaling)
         self._usualLimit = self.chooseTimeStep()
         self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)
 
@@ -337,10 +343,45 @@ class Structure:
         self.integrator.massDamping = massDamping
         engine("joints").stiffnessDamping = stiffnessDamping
 
+    def _massScaling(self):
+        """The scaling of masses that the options say, for this structure [-].
+
+        ``auto`` finds two limits of the time step: with true masses, and with deformation so slow that only the rigid motions
+        of bricks are left. Waves through a brick get slower by the root of 1 + massScaling, so the least that brings their
+        limit to the second one is known.
+        """
+        if self.args.mass_scaling != "auto":
+            return self.args.mass_scaling
+        limits = []
+        for scaling in (0.0, 1e8):
+            self.scaleMasses(scaling)
+            limits.append(criticalTimeStep()[0])
+        return min(MOST_SCALED, max(0.0, round((limits[1] / limits[0]) ** 2 - 1, 1)))
+
+    def scaleMasses(self, scaling):
+        """Choose the selective scaling of the masses of deformable units from now on [-]; :meth:`chooseTimeStep` follows it."""
+        if self.zones and self.zones.massScaling != scaling:
+            self.zones.massScaling = scaling
+
+    def trueMasses(self, stage):
+        """Have true masses from now on, because a stage runs in real time, and say so if the options say otherwise. Returns
+        whether they have changed; :meth:`chooseTimeStep` is then to follow.
+
+        :param stage: its name
+        """
+        if not (self.zones and self.massScaling):
+            return False
+        say(
+            f"note: {stage} runs in real time with true masses, without --mass-scaling {self.massScaling:g}"
+        )
+        self.scaleMasses(0.0)
+        return True
+
     def dampByOptions(self):
-        """Choose the damping that the options say, for a stage that says nothing else, and its time step if a stage has chosen
-        another one. A time step that the script sets stays."""
+        """Choose the damping and the masses that the options say, for a stage that says nothing else, and its time step if a
+        stage has chosen another one. A time step that the script sets stays."""
         self.damp(self.args.damping, self.args.damping_kind)
+        self.scaleMasses(self.massScaling)
         if self.limit != self._usualLimit:
             self.chooseTimeStep(self._usualLimit)
 

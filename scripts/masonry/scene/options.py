@@ -12,7 +12,17 @@ from ..assembly.engines import LAWS
 from ..basics import Refused
 from ..run.presets import BOUND, PRESETS, USUAL
 from . import keywords
-from .parsing import DAMPINGS, RATES, Parser, count, field, folder, number, pathOf
+from .parsing import (
+    DAMPINGS,
+    RATES,
+    Parser,
+    count,
+    field,
+    folder,
+    massScaling,
+    number,
+    pathOf,
+)
 from .settings import setting
 
 #: The largest half-width that --accuracy takes [%]: what is less certain is no number.
@@ -146,6 +156,15 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         "sqrt(F) as long",
     )
     p.add_argument(
+        "--mass-scaling",
+        metavar="BETA",
+        type=massScaling,
+        default=0.0,
+        help="selective mass scaling of deformable units in all stages but shake and run: 1 + BETA is the factor on the masses "
+        "in every motion of a brick but rigid ones, which keep their inertia, so that the time step is longer [-]; auto: as "
+        "much as the time step that the joints allow between rigid bricks can use",
+    )
+    p.add_argument(
         "--crack-surfaces",
         choices=["on", "whole", "off"],
         default="on",
@@ -273,6 +292,8 @@ def check(args, masonry, more=(), plane=False):
     problems = list(more)
     if args.blocks == "rigid" and args.divisions > 1:
         problems.append("--divisions: rigid units are not divided")
+    if args.mass_scaling and args.blocks == "rigid":
+        problems.append("--mass-scaling: rigid units have no deformation to slow")
     if args.rows and plane:
         problems.append(
             f"--rows {args.rows}: this scene is in the x-z plane, where joints do not bend across their thickness and have "

@@ -64,6 +64,12 @@ def count(text, high, low=1):
     return int(text)
 
 
+def massScaling(text):
+    """The selective mass scaling that a text stands for: a number of at least 0, or ``auto``. Raises
+    argparse.ArgumentTypeError."""
+    return text if text == "auto" else number(text, 0, 1e6)
+
+
 def field(text):
     """The text of ``--field``, if it can be read. Raises argparse.ArgumentTypeError."""
     try:

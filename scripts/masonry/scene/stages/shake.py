@@ -109,6 +109,7 @@ def shake(
         raise Refused("--density-scaling: a scene that is shaken runs in real time")
     at = scene.running.stage("shake", Damped())
     model = scene.model
+    model.trueMasses("shake")
     model.damp(damping, scene.args.damping_kind, massDamping, stiffnessDamping)
     at.limit = model.chooseTimeStep(at.limit)
     down = -scene.description.gravity * Vector3.UnitZ
@@ -138,8 +139,10 @@ def run(scene: Any, seconds: float, damping: float | None = None) -> str:
     :param damping: damping constant during it [-]; None: that of the options
     """
     at = scene.running.stage("run", Damped())
+    changed = scene.model.trueMasses("run")
     if damping is not None:
         scene.model.damp(damping, scene.args.damping_kind)
+    if damping is not None or changed:
         at.limit = scene.model.chooseTimeStep(at.limit)
     timed(scene, at, scene.share * seconds, lambda done, beyond: None)
     return DONE
