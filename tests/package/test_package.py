@@ -293,6 +293,28 @@ def test_initial_stiffness_is_that_between_a_twentieth_and_a_quarter_of_the_peak
     assert curves.initialStiffness(moved + moved, force + after) == pytest.approx(2, rel=1e-9)  # fmt: skip
 
 
+@pytest.mark.parametrize("period, slope", [(0.004, 100.0), (0.013, 5.0)])
+def test_the_stiffness_of_a_bar_in_shear_is_found_while_its_drive_grows(period, slope):
+    """The waves of a bar that is driven at one end, in closed form: their speed crosses it in half a period."""
+    step, rate = period / 4000, 100.0
+    times = [n * step for n in range(4 * 4000)]
+    moved = lambda t: rate * (t**2 / 2 / period if t < period else t - period / 2)
+    speed = lambda t: rate * min(max(t / period, 0.0), 1.0)
+    wave = slope * period / 2  # force of a wave over its velocity
+    sum_ = lambda t, first: sum(2 * speed(t - n * period) for n in range(first, 5))
+    top = [wave * (speed(t) + sum_(t, 1)) for t in times]
+    base = [wave * sum_(t + period / 2, 1) for t in times]
+    x = [moved(t) for t in times]
+    still = curves.quasiStatic(top, base)
+    for peak in (1.0, 1.5, 2.5):  # displacement at the end, over that of the ramp
+        end = next(n for n, v in enumerate(x) if v >= peak * moved(period))
+        found = curves.stiffness(x[: end + 1], still[: end + 1], 4000)
+        assert found == pytest.approx(slope, rel=1e-3)
+    assert curves.stiffness([], []) == 0
+    assert curves.stiffness([1.0], [3.0]) == 0
+    assert curves.stiffness([0.0, 1.0, 2.0], [10.0, 13.0, 16.0]) == pytest.approx(3)
+
+
 def test_the_damped_share_is_that_of_damping_in_what_was_taken_since_the_first_row():
     rows = {
         "damping_J": [5.0, 6.0, 8.0],

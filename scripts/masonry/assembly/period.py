@@ -20,7 +20,7 @@ from ..basics import GRAVITY
 
 SHARE = 0.05  # of gravity: the acceleration that acts in the measurement
 SAMPLE = 2e-5  # [s] between two readings of the forces, at true masses
-FEWEST = 5  # readings in half a period, else it is too short to be found
+FEWEST = 10  # readings in half a period, else it is too short to be found within half a per cent
 BEYOND = (
     1.1,
     2.0,
@@ -65,7 +65,9 @@ def firstPeriod(structure, direction, longest):
     n = len(back) - 1
     if not back[n] <= 0 or n < FEWEST:
         return None
-    return 2 * every * O.dt * (n + back[n - 1] / (back[n - 1] - back[n]))
+    # The first velocity is that after a whole step, as if the acceleration had begun half a step before, and the sum of the
+    # forces begins at the first of them, half a step after that velocity would have been zero.
+    return 2 * O.dt * (1 + every * (n + back[n - 1] / (back[n - 1] - back[n])))
 
 
 def _momenta(structure, direction, acceleration, every):

@@ -11,6 +11,7 @@ What curve.png shows is said by the entry ``figure`` of run.json, and what the p
 
 from __future__ import annotations
 
+import contextlib
 import glob
 import os
 import sys
@@ -32,5 +33,21 @@ def draw(directory: FilePath) -> None:
             cracks(directory)
 
 
+#: In place of a folder: load what drawing needs, and then read the folder from the standard input. A run starts this early.
+WAIT = "--folder-from-input"
+
+
+def _waitForFolder() -> list[str]:
+    """The folder that a run names when its files are there; the program ends if it names none."""
+    with contextlib.suppress(ImportError):  # it is said when something is drawn
+        import matplotlib.backends.backend_agg  # noqa: F401
+        import matplotlib.style  # noqa: F401
+    folder = sys.stdin.buffer.read()
+    if not folder:
+        sys.exit(0)
+    return [os.fsdecode(folder)]
+
+
 if __name__ == "__main__":
-    sys.exit(onFolder(draw, sys.argv[1:]))
+    words = sys.argv[1:]
+    sys.exit(onFolder(draw, _waitForFolder() if words == [WAIT] else words))

@@ -37,6 +37,9 @@ def end(run, scene, error):
     try:
         return _end(run, scene, error)
     finally:
+        if scene.outcome:
+            scene.outcome.end()
+            scene.bounds.drop()
         run.release()
 
 
@@ -158,8 +161,9 @@ def _finish(run, scene):
     """Write the last frame and run.json, which is written even if there is no room for the frame, and report."""
     try:
         try:
+            run.takeFound(True)
             if run.results.rows:
-                run.frame()
+                run.frame(final=True)
         finally:
             _describe(run, scene)
             run.results.close()

@@ -24,6 +24,7 @@ from .._masonry import commit, loadScene, version
 from ..assembly import threads
 from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
 from . import batch, plausible
+from .beside import Failed, Job
 from .checkpoints import NAME, saveCheckpoint
 from .place import Place, Saved, otherVersion, restored
 from .plotting import live
@@ -35,6 +36,8 @@ COLLAPSE = "collapsed:"  # how MasonryEnergy begins its message when a block has
 FLUSH_EVERY = 0.2  # [s] of wall-clock time: rows are on the disk after it
 SHOW_EVERY = 0.05  # [s] of wall-clock time: what is shown on the terminal is not older
 LOOK_EVERY = 0.5  # [s] of wall-clock time: within slow steps a checkpoint that is due is made no later
+#: A frame that takes longer is written beside the run [s]; the copy of the process that does it takes some milliseconds.
+SLOW_FRAME = 0.02
 #: Options that say where results are, and are no part of what was run.
 ASIDE = ("resume", "out", "saved")
 
@@ -75,6 +78,10 @@ class Run:
         #: whether the present stage lets the dead loads grow, and is no test yet
         self.loading = False
         self._memory = SimpleNamespace()  # of that stage
+        self._frame = None  # the job that writes a frame beside the run
+        self._frameTook = 0.0  # the last one, if the run has written it itself [s]
+        #: function that takes what is found beside the run: with True it waits for that
+        self.takeFound = lambda wait: None
         self._live = None  # adds a row to yade.plot
         self._readings = []  # rows that are not in curve.csv yet
         self._safe = None  # what a checkpoint keeps, None while steps are taken
@@ -352,21 +359,49 @@ class Run:
         self.results.append(rows)
         for row in rows if self._live else []:
             self._live(row)
+        self.takeFound(False)
         self._flushed = time.perf_counter()
         self.at.seconds["rows"] += self._flushed - began
 
-    def frame(self):
-        """Write a frame for ParaView, if the user wants any."""
+    def frame(self, final=False):
+        """Write a frame for ParaView, if the user wants any: beside the run if the last one was slow.
+
+        :param final: whether it is the last one, which is whole when this returns
+        """
         if self.vtk:
             self.flush()
             self.results.begin()
             began = time.perf_counter()
-            try:
-                self.vtk()
-            except RuntimeError as error:
-                raise Unwritable(str(error)) from None
+            self.awaitFrame()
+            if self._frameTook > SLOW_FRAME and not final:
+                self._frame = Job(self._frameBeside)
+                self.vtk.times = [*self.vtk.times, O.time]
+            else:
+                now = time.perf_counter()
+                try:
+                    self.vtk()
+                except RuntimeError as error:
+                    raise Unwritable(str(error)) from None
+                self._frameTook = time.perf_counter() - now
             self.at.seconds["frames"] += time.perf_counter() - began
             self.at.frames = list(self.vtk.times)
+
+    def _frameBeside(self):
+        """Write a frame in a copy of the process."""
+        try:
+            self.vtk()
+        except RuntimeError as error:
+            raise Unwritable(str(error)) from None
+        yield True
+
+    def awaitFrame(self):
+        """Wait until the frame is whole that is written beside the run. Raises Unwritable if it could not be written."""
+        job, self._frame = self._frame, None
+        try:
+            if job:
+                job.result()
+        except Failed as failed:
+            raise Unwritable(f"a frame is not written: {failed}") from None
 
     def show(self, fraction, detail, final=False):
         """Show on the terminal how far the present stage has come, if it is time to.
@@ -388,6 +423,8 @@ class Run:
         if not (self.args.checkpoint_every and self._safe):
             return False
         self.flush()
+        self.takeFound(True)
+        self.awaitFrame()
         if len(self.results.rows) < self._safe["rows"] or self.results.earlier:
             return False
         self.results.begin()
@@ -474,6 +511,8 @@ class Run:
 
     def release(self):
         """Let other runs have the folder, and others the signals."""
+        if self._frame:
+            self._frame.end()
         if self.results:
             self.results.release()
         self._giveSignals()

@@ -9,6 +9,7 @@ import contextlib
 import math
 import os
 import sys
+import tempfile
 import time
 
 import numpy as np
@@ -20,6 +21,8 @@ from ..limit.assembly import Endless
 from ..limit.worker import worker
 from ..memory import FULL
 from ..packages import Missing
+from ..folders import replaced
+from ..run.beside import Failed, Job
 
 #: Up to so many joints a collapse without dilatancy, which takes many rounds, is looked for with --preset bound.
 SMALL = 500
@@ -34,6 +37,7 @@ TOLERANCE = 0.02
 #: tilts at which it ends, and the largest tilt [rad].
 TILTS, SAME_TILT, STEEPEST = 20, 1e-6, math.radians(89.9)
 FIGURE = "mechanism.png"
+SILENT = 0.3  # so long something beside the run is waited for without a word [s]
 
 
 class Bounds:
@@ -45,7 +49,13 @@ class Bounds:
 
     def __init__(self, model, place):
         self.model, self.place = model, place
-        self.last = None  # what was found last: limit.Bound and its entry
+        self.last = (
+            None  # what was found last, in this process: limit.Bound and its entry
+        )
+        self._job = (
+            None  # finds a bound beside the run, and then the files of its mechanism
+        )
+        self._looksFor = ""  # name of the load whose bound it has not found yet
         self.endless = set()  # names of loads under which nothing gives way
 
     def prepare(self):
@@ -118,10 +128,12 @@ class Bounds:
     def _find(
         self, what, unit, load, lowerUpTo, tilts=False, pushed=None, gravity=None
     ):
+        beside = not lowerUpTo
+        self.take(True)
         known, model = self.entries.get(what), self.model
-        beside = self._acting(gravity or model.now)
-        same = self.place.beside.get(what, beside) == beside
-        self.place.beside = {**self.place.beside, what: beside}
+        acting = self._acting(gravity or model.now)
+        same = self.place.beside.get(what, acting) == acting
+        self.place.beside = {**self.place.beside, what: acting}
         if known and same and not lowerUpTo:
             return known
         if not same:  # what was held before was held beside other loads
@@ -141,11 +153,29 @@ class Bounds:
                 f"note: {entry['note']}; scene.bound() and --preset bound take their time"
             )
             return entry
+        seconds = ASKED if lowerUpTo else UNASKED
+        work = lambda: self._found(what, unit, load, tilts, pushed, gravity, lowerUpTo, seconds)  # fmt: skip
+        if beside:
+            self.drop()  # of two mechanisms the last one is kept
+            self._job = Job(lambda: self._withFiles(what, work), parts=2)
+            self._looksFor = what
+            return entry
+        try:
+            self._note(what, *work())
+        except Interrupted:
+            del self.entries[what]
+            if known:
+                self.entries[what] = known
+            raise
+        return entry
+
+    def _found(self, what, unit, load, tilts, pushed, gravity, lowerUpTo, seconds):
+        """Find a bound. Returns what its entry gets, lines to say, whether nothing gives way, and the :class:`limit.Bound`."""
+        entry, lines = {}, []
         try:
             assembly = limit.read()
-            seconds = ASKED if lowerUpTo else UNASKED
             assembly.deadline = time.monotonic() + seconds
-            down = assembly.weights(gravity or model.now)
+            down = assembly.weights(gravity or self.model.now)
             forces = self._forces(assembly, pushed)
             live = load(assembly)
 
@@ -155,27 +185,78 @@ class Bounds:
 
             bound = found(assembly.largest, 0.0)
             entry.update(bound.describe())
-            say(bound.sentence(what, unit))
-            if not bound.exact and count <= lowerUpTo:
+            lines.append(bound.sentence(what, unit))
+            if not bound.exact and len(self.model.interactions) <= lowerUpTo:
                 least = found(assembly.withoutDilatancy, math.atan(bound.factor))
                 entry["without_dilatancy"] = least.factor
                 entry["without_dilatancy_settled"] = least.settled
-                say(least.sentence(what, unit))
-            self.last = bound, entry
+                lines.append(least.sentence(what, unit))
+            return entry, lines, False, bound
         except Refused as refused:
-            entry["note"] = str(refused)
-            if isinstance(refused, Endless):
-                self.endless.add(what)
-            say(f"note: {refused}")
+            note, endless = str(refused), isinstance(refused, Endless)
         except (MemoryError, ImportError):  # a library cannot be loaded either
-            entry["note"] = f"limit analysis: {FULL}"
-            say(f"note: {entry['note']}")
-        except Interrupted:
-            del self.entries[what]
-            if known:
-                self.entries[what] = known
-            raise
-        return entry
+            note, endless = f"limit analysis: {FULL}", False
+        return {**entry, "note": note}, [*lines, f"note: {note}"], endless, None
+
+    def _note(self, what, found, lines, endless, bound):
+        """Keep what :meth:`_found` returned."""
+        self.entries[what].update(found)
+        for line in lines:
+            say(line)
+        if endless:
+            self.endless.add(what)
+        if bound:
+            self.last = bound, self.entries[what]
+
+    # -- beside the run -------------------------------------------------------------------------------------------
+
+    def _withFiles(self, what, work):
+        """In a copy of the process: what was found without the mechanism, then the files of the mechanism by their names."""
+        *found, bound = work()
+        yield (*found, None)
+        worker.end()
+        files, model = {}, self.model
+        self._note(what, found[0], [], False, bound)
+        with tempfile.TemporaryDirectory() as folder:
+            views = model.description.views
+            try:
+                self.write(folder, model.description.title, model.parts, views)
+            except Missing as missing:
+                say(f"{FIGURE} is left out: {missing}", sys.stderr)
+            for name in os.listdir(folder):
+                with open(os.path.join(folder, name), "rb") as file:
+                    files[name] = file.read()
+        yield files
+
+    def take(self, wait, most=math.inf):
+        """Take the bound that is found beside the run, if it is there.
+
+        :param wait: whether to wait for it
+        :param most: how long at most [s]; it is given up then
+        """
+        job, what = self._job, self._looksFor
+        if not what or not (wait or job.ready()):
+            return
+        if not job.ready(0, min(most, SILENT)):
+            say("waiting for limit analysis")
+        try:
+            if not job.ready(0, most):
+                job.end()
+            self._note(what, *job.result())
+        except Failed as failed:
+            note = f"limit analysis: {failed}"
+            self._note(what, {"note": note}, [f"note: {note}"], False, None)
+        self._looksFor = ""
+        if "factor" in self.entries[what]:
+            self.last = None
+        else:
+            self.drop()
+
+    def drop(self):
+        """Leave what is done beside the run."""
+        job, self._job, self._looksFor = self._job, None, ""
+        if job:
+            job.end()
 
     def _acting(self, gravity):
         """What acts beside a load and what holds the structure now: data that can be compared."""
@@ -276,7 +357,9 @@ class Bounds:
 
     def write(self, directory, title, parts, views, draws=True):
         """Write the mechanism that was found last: two files for ParaView and, if it is to be drawn, mechanism.png."""
-        if self.last:
+        if self._job:
+            self._writeFound(directory, draws)
+        elif self.last:
             bound, entry = self.last
             heading = f"{title}\nlimit analysis, {entry['load']}: {entry['factor']:.4g} {entry['unit']}".rstrip()
             try:
@@ -285,6 +368,23 @@ class Bounds:
                 say(f"the mechanism for ParaView is left out: {missing}", sys.stderr)
             if draws:
                 bound.draw(os.path.join(directory, FIGURE), heading, parts, views)
+
+    def _writeFound(self, directory, draws):
+        """Write the files that were made beside the run; if they are not to be drawn, those that are there."""
+        if not draws and not self._job.ready(1):
+            self.drop()
+            return
+        if not self._job.ready(1, SILENT):
+            say("waiting for the mechanism")
+        try:
+            files = self._job.result(1)
+        except Failed as failed:
+            say(f"the mechanism is left out: {failed}", sys.stderr)
+            return
+        for name, data in files.items():
+            if draws or name != FIGURE:
+                with replaced(os.path.join(directory, name), "wb") as file:
+                    file.write(data)
 
 
 def _tilted(find, first):

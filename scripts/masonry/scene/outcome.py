@@ -2,8 +2,10 @@
 """What comes out of a scene: entries of run.json, what curve.png shows, and the lines at the end on the terminal."""
 
 import math
+import os
 import subprocess
 import sys
+from importlib.util import find_spec
 
 from yade import O
 from yade.wrapper import MasonryVtkRecorder
@@ -25,6 +27,7 @@ from ..read.curves import (
     stiffness,
     stillGrows,
 )
+from ..read.figures import WAIT
 from ..read.frames import asFrame
 from ..run import accuracy
 from . import history
@@ -46,6 +49,7 @@ class Outcome:
         self.scene, self.model = scene, scene.model
         self.description, self.args = scene.description, scene.args
         self.results = scene.running.results
+        self._drawing = None  # the program that draws the figures
 
     @property
     def pushed(self):
@@ -428,20 +432,42 @@ class Outcome:
     def draw(self, directory):
         """Draw the figures of a run that has ended, in a program of its own. Raises Unwritable if that fails. Without matplotlib
         a note says that they are left out."""
+        if not find_spec("matplotlib"):
+            try:
+                needed("matplotlib")
+            except Missing as missing:
+                say(f"the figures are left out: {missing}", sys.stderr)
+                return
         try:
-            needed("matplotlib")
-        except Missing as missing:
-            say(f"the figures are left out: {missing}", sys.stderr)
-            return
-        # -P: nothing of the present folder is run
-        command = [sys.executable, "-P", "-m", "masonry.read.figures", directory]
-        try:
-            # in a session of its own: Ctrl-C is for the run
-            done = subprocess.run(command, start_new_session=True)
+            self.prepare()
+            self._drawing.communicate(os.fsencode(directory))
         except OSError as error:
             raise Unwritable(f"the figures are not drawn: {error.strerror}") from None
-        if done.returncode:
+        finally:
+            status = self.end()
+        if status:
             raise Unwritable("the figures are not drawn")
+
+    def prepare(self):
+        """Start the program that draws the figures, which loads its libraries while the run goes on, and then waits. Raises
+        OSError if there is no process."""
+        if not self._drawing:
+            # -P: nothing of the present folder is run; in a session of its own, since Ctrl-C is for the run
+            command = [sys.executable, "-P", "-m", "masonry.read.figures", WAIT]
+            self._drawing = subprocess.Popen(
+                command, stdin=subprocess.PIPE, start_new_session=True
+            )
+
+    def end(self):
+        """End that program. Returns its exit status, or None if it was not started."""
+        program, self._drawing = self._drawing, None
+        if not program:
+            return None
+        if program.poll() is None:
+            program.kill()
+        status = program.wait()
+        program.stdin.close()
+        return status
 
     def write(self, directory, draws=True):
         """Write what the scene has beside rows and frames: the mechanism of limit analysis, with its picture if it is to be

@@ -69,6 +69,7 @@ from .targets import LOADED, Target
 from .words import RESULT, Call, Script
 
 
+SOON = 1.0  # [s] in which a run that is interrupted waits for its bound
 OWN = "0"  # the stage of the results of the script, which all stages follow
 
 
@@ -360,8 +361,9 @@ class Scene:
         self.model = model
         self.running.open(self.columns)
         self.bounds = Bounds(model, self.running.at)
-        if not args.lean:
+        if self.only:
             self.bounds.prepare()
+        self.running.takeFound = self._takeFound
         self.outcome = Outcome(self)
         with self.running.clock("setup"), self.running.breakable(), withoutCollector():
             model.build(loadingBlock())
@@ -480,6 +482,7 @@ class Scene:
     def _bound(self, target, direction, towards):
         """As :meth:`bound`."""
         self.begin()
+        self.bounds.take(True)
         if self.collapsed:
             raise ValueError(
                 "bound: the structure has fallen; stepBack() goes back to its last state at rest"
@@ -501,6 +504,16 @@ class Scene:
         """Find a bound, which Ctrl-C and SIGTERM end at once: a method of :class:`masonry.scene.bounds.Bounds`."""
         with self.running.breakable():
             return getattr(self.bounds, kind)(*load, lowerUpTo=lowerUpTo)
+
+    def _takeFound(self, wait):
+        """Take the bound that is found beside the run; a run that is interrupted does not wait long for it."""
+        interrupted = self.running.interrupted
+        self.bounds.take(wait, SOON if interrupted else math.inf)
+        if not (interrupted or self.args.lean):
+            with contextlib.suppress(
+                OSError
+            ):  # it is said when there is something to draw
+                self.outcome.prepare()
 
     def findBound(self, kind: str, *load: Any) -> None:
         """Find the bound of a stage, which pushes or leans, as :meth:`_find`."""

@@ -97,6 +97,7 @@ def grow(scene, name, load, duration, towards, within=WITHIN):
     search = _Search(scene, at, load, within)
     search.run(name)
     if at.held:
+        scene.bounds.take(True)
         scene.bounds.hold(load.name, at.held[0])
         _compare(scene, name, load, at)
     if at.lost and at.held:

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Work that a copy of the process does beside a run."""
+
+import os
+import signal
+import time
+
+import pytest
+from masonry.basics import Unwritable
+from masonry.run import beside
+from masonry.run.beside import Failed, Job
+
+
+def children():
+    """Processes of this one, also those that have ended and were not waited for."""
+    with open(f"/proc/self/task/{os.getpid()}/children") as file:
+        return file.read().split()
+
+
+def test_results_come_one_after_the_other_and_no_process_stays():
+    before, files = children(), os.listdir("/proc/self/fd")
+    large = bytes(3 << 20)
+
+    def work():
+        yield os.getpid()
+        yield large
+
+    job = Job(work, parts=2)
+    assert job.result(1) == large
+    assert job.result(0) not in (0, os.getpid())
+    assert children() == before and len(os.listdir("/proc/self/fd")) == len(files)
+
+
+def test_it_goes_on_meanwhile():
+    def work():
+        time.sleep(0.5)
+        yield 1
+
+    began = time.monotonic()
+    job = Job(work)
+    assert time.monotonic() - began < 0.3 and not job.ready()
+    assert job.ready(0, 10) and job.result() == 1
+
+
+def test_what_it_raises_is_raised_here():
+    def work():
+        raise Unwritable("cannot write x: No space left on device")
+        yield
+
+    with pytest.raises(Unwritable, match="cannot write x: No space"):
+        Job(work).result()
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+def test_one_that_is_killed_is_one_clear_sentence(number):
+    before = children()
+
+    def work():
+        yield os.getpid()
+        time.sleep(60)
+
+    job = Job(work, parts=2)
+    os.kill(job.result(), number)
+    with pytest.raises(Failed, match="its process has ended before its time"):
+        job.result(1)
+    assert children() == before
+
+
+def test_one_that_is_dropped_ends():
+    before = children()
+
+    def work():
+        time.sleep(60)
+        yield
+
+    job = Job(work)
+    job.end()
+    assert children() == before
+    job.end()
+
+
+def test_without_a_process_the_work_is_done_at_once(monkeypatch):
+    def refused():
+        raise BlockingIOError("no process")
+
+    monkeypatch.setattr(beside.os, "fork", refused)
+    job = Job(lambda: iter([os.getpid(), 2]), parts=2)
+    assert job.ready(1) and job.result(0) == os.getpid() and job.result(1) == 2

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The first period along a push, and what begins with it."""
+
+import math
+
+import pytest
+from masonry import Scene, bricks, materials
+from masonry._masonry import saveScene
+from masonry.assembly.period import firstPeriod
+from masonry.read.files import readRun
+from small import SMALL, carryOut, parsed
+from yade import Vector3
+
+LEAN = ["--lean", "--checkpoint-every", "0"]
+
+
+@pytest.mark.parametrize("scaling", [1, 25])
+def test_the_period_of_a_brick_between_two_joints_is_its_closed_form(tmp_path, scaling):
+    """The joints above and below it turn it by opposite moments, so it only slides."""
+    words = [*LEAN, "--out", str(tmp_path), "--density-scaling", str(scaling)]
+    args, size = parsed(*words), (0.5, 0.1, 0.5)  # [m]
+    scene = Scene("brick", bricks.stack(1, size), materials.calciumSilicate(), arguments=args)  # fmt: skip
+    scene.platen("bottom")
+    top = scene.platen("top", rotation="held", drive="x")
+    scene.press(top, 0.5e6)
+    scene.settle()
+    model = scene.model
+    springs = sum(i.phys.shearStiffness * sum(i.geom.areas) for i in model.interactions)
+    mass = size[0] * size[1] * size[2] * model.unit.density
+    expected = 2 * math.pi * math.sqrt(mass / springs)
+    model.chooseTimeStep(0.2 * model.limit)
+    before = saveScene("null")
+    found = firstPeriod(model, Vector3.UnitX, 0.05)
+    assert found == pytest.approx(expected, rel=0.003)
+    assert saveScene("null") == before
+    assert firstPeriod(model, Vector3.UnitX, 0.5 * expected) is None
+    scene.finish()
+
+
+@pytest.mark.parametrize("turns, within", [(False, 0.03), (True, 0.05)])
+def test_the_initial_stiffness_hardly_depends_on_the_rate(tmp_path, turns, within):
+    found = {}
+    wall = type(SMALL)(courses=12, length=1.32, loadHeight=1.1 if turns else None)
+    for rate in (20, 100):
+        out = tmp_path / str(rate)
+        carryOut(
+            wall,
+            parsed(*LEAN, "--out", str(out), "--rate", str(rate), "--until", "1"),
+        )
+        found[rate] = readRun(out)
+    slow, fast = found[20], found[100]
+    stiffness = "initial_stiffness_kN_per_mm"
+    assert fast[stiffness] == pytest.approx(slow[stiffness], rel=within)
+    assert fast["first_period_s"] == slow["first_period_s"] > 0
+    assert 0.6 < fast["base_weight"] < 0.8
+
+
+def test_a_push_without_a_period_says_so(tmp_path, capsys):
+    carryOut(
+        SMALL, parsed(*LEAN, "--out", str(tmp_path), "--rate", "100", "--until", "0.02")
+    )
+    assert "no first period up to 0.2 ms was found" in capsys.readouterr().out
+    assert readRun(tmp_path)["first_period_s"] is None
