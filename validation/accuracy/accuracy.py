@@ -26,10 +26,10 @@ import studies
 #: What is held against what, written down before any comparison was made.
 PERCENT = 2.0  # asked of --accuracy
 REFERENCE = ["--blocks", "deformable", "--divisions", "3", "--rate", "20"]
-COVERED, WIDTH = (
-    38,
-    2.5,
-)  # aims: intervals of forty that contain the reference, and the mean half-width [%]
+#: Aims: share of the intervals that contain the reference [-], and their mean half-width [%].
+COVERED, WIDTH = 0.95, 2.5
+#: Walls that were compared before the parameters were fixed; they do not count.
+KNOWN = {"short-clamped_silicate", "short-cantilever_granite", "slender-clamped_weak"}
 
 RESULTS = os.path.join(studies.RESULTS, "accuracy")
 #: As of walls.py, which needs YADE.
