@@ -30,7 +30,7 @@ import shutil
 import subprocess
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace  # noqa: F401
 
 import studies
 from masonry.run.presets import PRESETS, USUAL
