@@ -285,8 +285,10 @@ def choose(companions: Companions, percent: float) -> Any:
         companions.run(needed(number))
         widths = []
         for quantity, _, _ in QUANTITIES:
-            values = {name: n[quantity] for name, n in companions.numbers.items()}
-            scale = max(map(abs, values.values()))
+            values: dict[str, float] = {}
+            for name, found in companions.numbers.items():
+                values[name] = found[quantity]
+            scale = max(abs(value) for value in values.values())
             widths.append(100 * halfWidth(number, quantity, values, scale)[0])
         enough = max(widths) <= percent
         about = ", ".join(f"{q[0]} ± {w:.2g} %" for q, w in zip(QUANTITIES, widths))

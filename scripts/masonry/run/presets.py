@@ -3,6 +3,7 @@
 This module needs no YADE."""
 
 from dataclasses import dataclass
+from typing import Any
 
 #: The options that a preset chooses, as they are without one. A scene may have another rate.
 USUAL = {
@@ -16,7 +17,7 @@ USUAL = {
 }
 
 #: Options by preset, the same for all walls. A scene of one's own may take them from here.
-PRESETS = {
+PRESETS: dict[str, dict[str, Any]] = {
     "fast": {
         "blocks": "rigid",
         "divisions": 1,
@@ -123,10 +124,13 @@ class Fidelity:
 #: The run itself among those of a :class:`Source`. Before it has been made, the source counts as in the fidelity before.
 MAIN = "this run"
 
+_ONE: dict[str, Any]
+_TWO: dict[str, Any]
+_THREE: dict[str, Any]
 _ONE, _TWO, _THREE = ({"blocks": "deformable", "divisions": n} for n in (1, 2, 3))
 
 #: Runs beside a run, by name: options that replace those without options. They are cheap beside the run that they judge.
-COMPANIONS = {
+COMPANIONS: dict[str, dict[str, Any]] = {
     "rigid, 200 mm/s": {"rate": 200.0},
     "rigid, 100 mm/s": {"rate": 100.0},
     "rigid, 50 mm/s": {"rate": 50.0},
