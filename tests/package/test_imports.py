@@ -23,6 +23,7 @@ WITHOUT_YADE = [
     "bricks",
     "read",
     "study",
+    "run.accuracy",
     "run.batch",
     "run.presets",
 ]

@@ -151,7 +151,7 @@ def test_options_of_a_parser_serve_several_scenes():
 
 def test_an_option_of_the_scene_itself_can_be_a_keyword():
     assert made("own", [], level=5).level == 5
-    with pytest.raises(Refused, match="no option level; there are blocks, "):
+    with pytest.raises(Refused, match="no option level; there are accuracy, blocks, "):
         made("list", [], level=5)
 
 

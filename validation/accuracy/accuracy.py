@@ -26,10 +26,10 @@ import studies
 #: What is held against what, written down before any comparison was made.
 PERCENT = 2.0  # asked of --accuracy
 REFERENCE = ["--blocks", "deformable", "--divisions", "3", "--rate", "20"]
-COVERED, WIDTH = (
-    38,
-    2.5,
-)  # aims: intervals of forty that contain the reference, and the mean half-width [%]
+#: Aims: share of the intervals that contain the reference [-], and their mean half-width [%].
+COVERED, WIDTH = 0.95, 2.5
+#: Walls that were compared before the parameters were fixed; they do not count.
+KNOWN = {"short-clamped_silicate", "short-cantilever_granite", "slender-clamped_weak"}
 
 RESULTS = os.path.join(studies.RESULTS, "accuracy")
 #: As of walls.py, which needs YADE.
@@ -86,7 +86,7 @@ def runAll(walls, jobs):
 def compared(wall):
     """A row for each quantity of a wall: what the run said and what the reference has."""
     run, reference = readRun(folder(wall, "asked")), readRun(folder(wall, "reference"))
-    keys = {"peak": "peak_base_shear_kN", "work": "push_work_J"}
+    keys = {"peak": "peak_at_both_ends_kN", "work": "push_work_J"}
     for one in run["accuracy"]["quantities"]:
         aim = reference[keys[one["name"]]]
         off = aim - one["value"]
@@ -112,17 +112,17 @@ def report(rows):
     """The text of table.md."""
     parts = []
     for quantity in ("peak", "work"):
-        mine = [r for r in rows if r["quantity"] == quantity]
+        mine = [r for r in rows if r["quantity"] == quantity and r["wall"] not in KNOWN]
         covered = sum(r["covered"] for r in mine)
         mean = sum(r["half_width_percent"] for r in mine) / max(1, len(mine))
         parts.append(
             f"- {quantity}: {covered} of {len(mine)} intervals contain the reference; mean half-width {mean:.2f} %"
         )
-    parts.append(f"- aims: {COVERED} of {len(WALLS)}, and below {WIDTH:g} %\n")
+    parts.append(f"- aims: {100 * COVERED:g} % of them, and below {WIDTH:g} %\n")
     heads = ["wall", "quantity", "value ± %", "reference off %", "covered", "fidelity", "s", "reference s"]  # fmt: skip
     cells = [
         [
-            r["wall"],
+            r["wall"] + " (known)" * (r["wall"] in KNOWN),
             r["quantity"],
             f"{r['value']:.4g} ± {r['half_width_percent']:.1f}",
             f"{r['off_percent']:+.1f}",

@@ -94,12 +94,18 @@ def addBlock(
     return placeBlock(vertices, material, inPlane, color, problems)
 
 
-def placeBlock(vertices, material, inPlane, color=PALE, problems=()):
+def placeBlock(
+    vertices: Any,
+    material: Any,
+    inPlane: bool,
+    color: Any = PALE,
+    problems: Sequence[str] = (),
+) -> int:
     """As :func:`addBlock`, for those who know that the arguments have these names. It checks them otherwise.
 
     :param problems: what has been found before, to be named with the others
     """
-    problems = [*problems]
+    problems = list(problems)
     if not isinstance(material, MasonryMat):
         problems.append(
             f"block: material must be a MasonryMat, got {printed(material)}"

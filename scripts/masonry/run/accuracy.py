@@ -45,9 +45,10 @@ BY_CHANCE = 2.9
 #: Ratio of two differences, each at half the step of the one before, that speaks for an order of 0.6 to 2.6.
 BEHAVES = 1.5, 6.0
 
-#: The quantities: their name, the entry of run.json, and its unit.
+#: The quantities: their name, the entry of run.json, and its unit. The peak is that of supports and loaded point at once: a
+#: pulse that the supports alone feel when a crack tears is no strength, and it grows with the rate.
 QUANTITIES = (
-    ("peak", "peak_base_shear_kN", "kN"),
+    ("peak", "peak_at_both_ends_kN", "kN"),
     ("work", "push_work_J", "J"),
 )
 #: What an interval does not say, in every report.
@@ -139,6 +140,7 @@ class Companions:
         self.folder = os.path.join(folder, FOLDER)
         self.command = command
         self.numbers: dict[str, dict[str, Any]] = {}  # of the runs that are over
+        self.failed = False  # whether a run was not refused, but failed
 
     def folderOf(self, name: str) -> str:
         """The folder of results of a companion."""
@@ -165,6 +167,14 @@ class Companions:
                 json.dump({"key": key}, file)
         except OSError as error:
             raise Refused(f"--out: cannot write to {self.folder}: {error.strerror}") from None  # fmt: skip
+
+    def clear(self) -> None:
+        """Remove the folder of a scene of which nothing can be said, but not the log of a run that failed."""
+        if self.numbers or self.failed:
+            return
+        shutil.rmtree(self.folder, ignore_errors=True)
+        with contextlib.suppress(OSError):
+            os.rmdir(os.path.dirname(self.folder))
 
     def over(self) -> None:
         """The run itself has come to its end: the next one makes its companions anew."""
@@ -253,6 +263,7 @@ class Companions:
                 refused = [line for line in lines if "--accuracy: " in line]
                 if refused:
                     raise Refused("--accuracy: " + refused[-1].partition("--accuracy: ")[2])  # fmt: skip
+                self.failed = True
                 raise Refused(
                     f"--accuracy: the run {name} did not come to its end: {lines[-1] if lines else f'exit status {status}'}; see {log}"
                 )
@@ -274,8 +285,10 @@ def choose(companions: Companions, percent: float) -> Any:
         companions.run(needed(number))
         widths = []
         for quantity, _, _ in QUANTITIES:
-            values = {name: n[quantity] for name, n in companions.numbers.items()}
-            scale = max(map(abs, values.values()))
+            values: dict[str, float] = {}
+            for name, found in companions.numbers.items():
+                values[name] = found[quantity]
+            scale = max(abs(value) for value in values.values())
             widths.append(100 * halfWidth(number, quantity, values, scale)[0])
         enough = max(widths) <= percent
         about = ", ".join(f"{q[0]} ± {w:.2g} %" for q, w in zip(QUANTITIES, widths))
@@ -395,12 +408,7 @@ def ask(name: str, args: Any, script: str | None, words: list[str]) -> Asked | N
         raise Refused("--accuracy: it is about a push in one direction, not about the loops of --history")  # fmt: skip
     folder = args.out or os.path.join("results", name)
     if args.resume:
-        companions, fidelity = Companions(args.resume, []), fidelityOf(args)
-        companions.read()
-        missing = [n for k in range(len(FIDELITIES)) for n in needed(k) if n not in companions.numbers]  # fmt: skip
-        if not fidelity or set(missing) & set(needed(0)):
-            raise Refused(f"--resume: {companions.folder} does not have the runs beside this one any more")  # fmt: skip
-        return Asked(args.accuracy, fidelity, companions)
+        return _resumed(args)
     if script is None:
         raise Refused(
             f"--accuracy: scene {name} must be a script that takes its options from the command line, since it is run several times"
@@ -411,6 +419,25 @@ def ask(name: str, args: Any, script: str | None, words: list[str]) -> Asked | N
         text = file.read()
     said = json.dumps([os.path.abspath(script), words, sorted(COMPANIONS)])
     companions.begin(hashlib.sha256(text + said.encode()).hexdigest())
-    fidelity = choose(companions, args.accuracy)
+    try:
+        fidelity = choose(companions, args.accuracy)
+    except Refused:
+        companions.clear()
+        raise
     vars(args).update({**CHOSEN, **fidelity.options})
+    return Asked(args.accuracy, fidelity, companions)
+
+
+def _resumed(args):
+    """As :func:`ask`, of a run that is resumed: its companions are those of its beginning."""
+    companions, fidelity = Companions(args.resume, []), fidelityOf(args)
+    companions.read()
+    number = FIDELITIES.index(fidelity) if fidelity else 0
+    due = [name for k in range(number + 1) for name in needed(k)]
+    if not fidelity or set(due) - set(companions.numbers):
+        say(f"note: --accuracy: {companions.folder} does not have the runs beside this one any more: there will be no ±")  # fmt: skip
+        return None
+    if any(readRun(companions.folderOf(n))["options"]["until"] != args.until for n in due):  # fmt: skip
+        say("note: --accuracy: the run goes on to a longer push than its companions: there will be no ±")  # fmt: skip
+        return None
     return Asked(args.accuracy, fidelity, companions)

@@ -3,6 +3,7 @@
 This module needs no YADE."""
 
 from dataclasses import dataclass
+from typing import Any
 
 #: The options that a preset chooses, as they are without one. A scene may have another rate.
 USUAL = {
@@ -16,7 +17,7 @@ USUAL = {
 }
 
 #: Options by preset, the same for all walls. A scene of one's own may take them from here.
-PRESETS = {
+PRESETS: dict[str, dict[str, Any]] = {
     "fast": {
         "blocks": "rigid",
         "divisions": 1,
@@ -123,10 +124,13 @@ class Fidelity:
 #: The run itself among those of a :class:`Source`. Before it has been made, the source counts as in the fidelity before.
 MAIN = "this run"
 
-_ONE, _TWO = ({"blocks": "deformable", "divisions": n} for n in (1, 2))
+_ONE: dict[str, Any]
+_TWO: dict[str, Any]
+_THREE: dict[str, Any]
+_ONE, _TWO, _THREE = ({"blocks": "deformable", "divisions": n} for n in (1, 2, 3))
 
 #: Runs beside a run, by name: options that replace those without options. They are cheap beside the run that they judge.
-COMPANIONS = {
+COMPANIONS: dict[str, dict[str, Any]] = {
     "rigid, 200 mm/s": {"rate": 200.0},
     "rigid, 100 mm/s": {"rate": 100.0},
     "rigid, 50 mm/s": {"rate": 50.0},
@@ -134,15 +138,18 @@ COMPANIONS = {
     "rigid, 100 mm/s, time step 0.76": {"rate": 100.0, "dt_fraction": 0.76},
     "rigid, 100 mm/s, 6 points": {"rate": 100.0, "subcontacts": 6},
     "one cell, 100 mm/s": {**_ONE, "rate": 100.0},
+    "one cell, 100 mm/s, time step 0.78": {**_ONE, "rate": 100.0, "dt_fraction": 0.78},
+    "one cell, 100 mm/s, time step 0.76": {**_ONE, "rate": 100.0, "dt_fraction": 0.76},
     "one cell, 50 mm/s": {**_ONE, "rate": 50.0},
+    "two cells, 100 mm/s": {**_TWO, "rate": 100.0},
 }
 
 #: A wall that softens is chaotic: runs whose time steps hardly differ give other peaks and works.
-_CHANCE = Source(
-    "chance",
-    ("rigid, 100 mm/s", "rigid, 100 mm/s, time step 0.78", "rigid, 100 mm/s, time step 0.76"),
-    chance=True,
-)  # fmt: skip
+_CHANCE = [
+    Source("chance", (one, one + ", time step 0.78", one + ", time step 0.76"), chance=True)
+    for one in ("rigid, 100 mm/s", "one cell, 100 mm/s")
+]  # fmt: skip
+_RATE = Source("rate", ("one cell, 100 mm/s", "one cell, 50 mm/s"))
 
 #: What ``--accuracy`` chooses from, the cheapest first.
 FIDELITIES = (
@@ -150,21 +157,22 @@ FIDELITIES = (
         "rigid units, 50 mm/s",
         {"rate": 50.0},
         1,
-        {"peak": 0.015, "work": 0.02},
+        {"peak": 0.005, "work": 0.005},
         (
-            _CHANCE,
+            _CHANCE[0],
             Source("rate", ("rigid, 200 mm/s", "rigid, 100 mm/s", "rigid, 50 mm/s")),
             Source("points", ("rigid, 100 mm/s", "rigid, 100 mm/s, 6 points"), 0.5),
+            Source("block model", ("one cell, 100 mm/s", "rigid, 50 mm/s")),
         ),
     ),
     Fidelity(
         "deformable units of one cell, 50 mm/s",
         {**_ONE, "rate": 50.0},
-        10,
+        20,
         {"peak": 0.006, "work": 0.006},
         (
-            _CHANCE,
-            Source("rate", ("one cell, 100 mm/s", MAIN)),
+            _CHANCE[1],
+            _RATE,
             # rigid units are too soft and one cell is too stiff, so the result lies between them
             Source("block model", ("rigid, 50 mm/s", "one cell, 100 mm/s"), 0.5),
         ),
@@ -172,13 +180,20 @@ FIDELITIES = (
     Fidelity(
         "deformable units of two by two cells, 50 mm/s",
         {**_TWO, "rate": 50.0},
-        35,
+        70,
         {"peak": 0.005, "work": 0.005},
         (
-            _CHANCE,
-            Source("rate", ("one cell, 100 mm/s", "one cell, 50 mm/s")),
-            Source("mesh", ("one cell, 50 mm/s", MAIN), 0.5),
+            _CHANCE[1],
+            _RATE,
+            Source("mesh", ("one cell, 100 mm/s", "two cells, 100 mm/s"), 0.5),
         ),
+    ),
+    Fidelity(
+        "deformable units of three by three cells, 50 mm/s",
+        {**_THREE, "rate": 50.0},
+        160,
+        {"peak": 0.004, "work": 0.004},
+        (_CHANCE[1], _RATE, Source("mesh", ("two cells, 100 mm/s", MAIN), 0.5)),
     ),
 )
 

@@ -95,6 +95,11 @@ A run with a push has these, too:
   joint; None if none is open
 - with --lean, which leaves no frames to measure: the numbers of :func:`masonry.read.measure.pushNumbers`, and of a wall in running
   bond those of :func:`masonry.read.cracks.patternNumbers` and its ``failure_mode`` (:func:`masonry.read.cracks.failureMode`)
+- with --accuracy: ``push_work_J``, the area under the curve of the push; ``peak_half_width_kN`` and ``work_half_width_J``, half the
+  widths of the intervals of ``peak_at_both_ends_kN`` and of that work; and ``accuracy``: ``asked_percent``; ``reached``, whether
+  both are within it; ``fidelity``, what was chosen; ``quantities``, a list with ``name``, ``unit``, ``value``, ``half_width``,
+  ``half_width_percent``, ``parts_percent`` by the source of the error, and ``how`` it was found; ``not_covered``; and
+  ``companions``, the runs beside this one: ``name``, ``options``, ``peak`` [kN], ``work`` [J], ``seconds``, ``collapsed``, ``folder``
 - ``dynamic_imbalance``: as of :func:`masonry.read.curves.dynamicImbalance` [-]; ``too_fast``: whether it is more than a push
   may have
 - ``wall``, of a whole wall in running bond in the x-z plane that a platen pushes: ``length_m``, ``height_m``,

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""validation/remake.py knows what makes every result of validation/, in which order, and which of them are stale."""
+
+import fnmatch
+import json
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+from conftest import ROOT
+
+sys.path.insert(0, os.path.join(ROOT, "validation"))
+import remake  # noqa: E402
+
+EVERY = remake.everything()
+
+
+def committed():
+    """Files of validation/ that git knows, by their paths there."""
+    done = subprocess.run(["git", "-C", remake.HERE, "ls-files"], capture_output=True, text=True)  # fmt: skip
+    return done.stdout.splitlines()
+
+
+def test_every_figure_and_table_is_made_by_one_result():
+    made = [f for f in committed() if f.endswith((".png", "table.md", "walls.md", ".json")) or "/loops_" in f]  # fmt: skip
+    given = {"case.json", "blind.json", "made.json"}  # written by hand, or by remake.py
+    made = [f for f in made if os.path.basename(f) not in given and "/reference/" not in f]  # fmt: skip
+    assert len(made) > 50
+    for path in made:
+        makers = [r.name for r in EVERY.values() if any(fnmatch.fnmatch(path, p) for p in r.makes)]  # fmt: skip
+        assert len(makers) == 1, (path, makers)
+
+
+def test_every_program_is_run_by_a_result_or_imported_by_one():
+    programs = [f for f in committed() if f.endswith(".py")]
+    words = {w for r in EVERY.values() for c in r.commands for w in c}
+    texts = {p: open(os.path.join(remake.HERE, p)).read() for p in programs}
+    for path in programs:
+        name = os.path.basename(path)[:-3]
+        imported = any(re.search(rf"\b(import|from) [\w, ]*\b{name}\b", t) for p, t in texts.items() if p != path)  # fmt: skip
+        named = any(w == f"validation/{path}" for w in words)
+        started = any(f'"{name}.py"' in t for p, t in texts.items() if p != path)
+        assert named or imported or started or path == "remake.py", path
+
+
+def test_commands_sources_and_needs_are_there():
+    for result in EVERY.values():
+        for command in result.commands:
+            for word in command:
+                if word.startswith("validation/"):
+                    assert os.path.exists(os.path.join(ROOT, word)), (result.name, word)
+        for pattern in result.sources:
+            assert remake.glob.glob(os.path.join(ROOT, pattern)) or pattern.endswith("case.json"), (result.name, pattern)  # fmt: skip
+        for folder in result.results:  # nothing outside of a folder of results
+            assert ".." not in folder and not os.path.isabs(folder) and folder.strip("*/")  # fmt: skip
+
+
+def test_results_come_after_those_that_they_need():
+    order = list(EVERY)
+    for result in EVERY.values():
+        for name in result.needs:
+            assert order.index(name) < order.index(result.name)
+    assert "wall_comp4/rigid" in EVERY["wall_comp6/rigid"].needs
+
+
+@pytest.fixture
+def tree(tmp_path, monkeypatch):
+    """A place with one result of which everything is known."""
+    for folder in ("validation/one", "tests/references", "results/one", "results/other"):  # fmt: skip
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "validation/one/run.py").write_text("open('results/one/new', 'w')\n")
+    (tmp_path / "tests/references/rigid.json").write_text('{"made by": "a", "x": 1}')
+    result = remake.Result(
+        "one",
+        ((sys.executable, "validation/one/run.py"),),
+        sources=("validation/one/*.py", "tests/references/rigid*.json"),
+        results=("one",),
+    )
+    for name, value in (
+        ("ROOT", tmp_path),
+        ("HERE", tmp_path / "validation"),
+        ("RESULTS", tmp_path / "results"),
+        ("MADE", tmp_path / "validation/made.json"),
+        ("README", tmp_path / "validation/README.md"),
+    ):
+        monkeypatch.setattr(remake, name, str(value))
+    monkeypatch.setattr(remake, "everything", lambda: {"one": result})
+    (tmp_path / "validation/README.md").write_text("\n".join(["a", *remake.MARKS, "b"]))
+    return tmp_path, result
+
+
+def state(result):
+    return remake.stateOf(result, remake.readMade(), {"one": result})[0]
+
+
+def test_a_result_is_stale_when_what_decides_its_numbers_has_changed_and_only_then(tree):  # fmt: skip
+    path, result = tree
+    assert state(result) == "unrecorded"
+    remake.record(result, remake.fingerprint(result), 60, "abc")
+    assert state(result) == "fresh"
+    program, reference = path / "validation/one/run.py", path / "tests/references/rigid.json"  # fmt: skip
+    program.write_text('"""What it is."""\n# why\n' + program.read_text())
+    reference.write_text('{"made by": "b", "x": 1}')
+    assert state(result) == "fresh"  # a comment, and the name of a build
+    reference.write_text('{"made by": "b", "x": 2}')
+    assert state(result) == "stale"
+    remake.record(result, remake.fingerprint(result), 60, "abc")
+    program.write_text(program.read_text() + "print(1)\n")
+    assert state(result) == "stale"
+
+
+def test_what_is_stale_is_made_recorded_and_in_the_table(tree, capfd):
+    path, result = tree
+    folder = path / "results/one"
+    program = "import os; os.makedirs('results/one', exist_ok=True); open('results/one/new', 'w'); "
+    (path / "validation/one/run.py").write_text(
+        program + "assert os.path.exists('fine')"
+    )
+    (folder / "old").write_text("of an older state")
+    assert remake.main(["--built", "abc"]) == 1
+    assert os.listdir(folder) == ["new"]  # what was older is gone
+    assert os.path.exists(path / "results/other")
+    (folder / "kept").write_text("of the attempt that was stopped")
+    (path / "fine").write_text("")
+    assert remake.main(["--built", "abc"]) == 0
+    assert sorted(os.listdir(folder)) == ["kept", "new"]
+    made = json.loads((path / "validation/made.json").read_text())
+    assert made["one"]["commit"] == "abc"
+    assert "| fresh | abc |" in (path / "validation/README.md").read_text()
+    capfd.readouterr()
+    assert remake.main(["--built", "abc"]) == 0
+    assert capfd.readouterr().out == ""  # nothing is stale
+    assert remake.main(["--built", "abc", "--force", "one"]) == 0
+    assert os.listdir(folder) == ["new"]
+
+
+def test_a_missed_limit_is_a_result_and_another_error_is_not(tree):
+    path, result = tree
+    (path / "validation/one/run.py").write_text("raise SystemExit(1)")
+    assert not remake.make(result, "f")
+    assert remake.make(remake.replace(result, limits=True), "f")
+    (path / "validation/one/run.py").write_text("raise SystemExit(2)")
+    assert not remake.make(remake.replace(result, limits=True), "f")
+
+
+def test_a_plugin_of_other_sources_is_refused(monkeypatch):
+    found = {"rev-parse": "abc", "diff": "scripts/masonry/basics.py"}
+    monkeypatch.setattr(remake, "git", lambda word, *words: found[word])
+    with pytest.raises(SystemExit, match="have changed since: bash scripts/setup.sh"):
+        remake.builtFrom()
+    found["diff"] = ""
+    assert remake.builtFrom()
+    found["rev-parse"] = ""
+    with pytest.raises(SystemExit, match="which is not known here"):
+        remake.builtFrom()
+
+
+def test_the_table_of_the_readme_has_its_place():
+    text = open(remake.README).read()
+    assert all(text.count(mark) == 1 for mark in remake.MARKS)

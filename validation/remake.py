@@ -1,0 +1,373 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Keeps all results of this folder of one age: knows what makes each, finds what is stale, and makes it anew.
+
+/usr/bin/python3 validation/remake.py --list                 # what there is, how old it is, how long it takes
+/usr/bin/python3 validation/remake.py [NAME ...]             # makes what is stale, of these, or of all
+/usr/bin/python3 validation/remake.py --minutes 10           # of what is stale, what takes no longer than this
+/usr/bin/python3 validation/remake.py --force NAME           # makes it although it is not stale
+/usr/bin/python3 validation/remake.py --table                # writes the table of validation/README.md alone
+
+NAME may be a folder, as trade, or one of its results, as wall_comp4/rigid.
+
+A result is stale if what decides its numbers has changed since it was made: the numbers of tests/references, which a change of
+the law, the scheme or a default changes and a change of the structure does not; the usual options; the materials; or its own
+program, scene and case, without their comments. made.json records this fingerprint, the commit, the date and the time of each. A result that was
+made before made.json has the date and the commit of its files and counts as stale.
+
+What is stopped goes on with the same command. Runs that an older state of the code has left in results/ are removed before a
+result is made, since studies take what is there. Text that quotes numbers is not changed: read it when its result is new.
+"""
+
+import argparse
+import ast
+import fnmatch
+import glob
+import hashlib
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, replace  # noqa: F401
+
+import studies
+from masonry.run.presets import PRESETS, USUAL
+from studies import HERE, RESULTS, ROOT
+
+MADE = os.path.join(HERE, "made.json")
+README = os.path.join(HERE, "README.md")
+MARKS = "<!-- remake.py: begin -->", "<!-- remake.py: end -->"
+PYTHON = sys.executable
+YADE = ["yade", "-n", "-x"]
+
+#: What decides the numbers of every result, beside its own sources and the usual options; patterns below the root of the
+#: repository.
+COMMON = ["scripts/masonry/scene/materials/published.py"]
+#: Families of stored references: a result depends on some of them.
+RIGID = ["tests/references/rigid*.json", "tests/references/couplets*.json", "tests/references/collapse*.json"]  # fmt: skip
+DEFORMABLE = ["tests/references/deformable*.json"]
+CYCLIC = ["tests/references/cyclic*.json"]
+FLYING = ["tests/references/flying*.json"]
+ALL = RIGID + DEFORMABLE + CYCLIC + FLYING
+
+
+@dataclass(frozen=True)
+class Result:
+    """Numbers, a table or figures of this folder.
+
+    :param name: folder, or folder/part
+    :param commands: lists of words, run from the root of the repository, one after another
+    :param makes: files that are committed, as patterns below validation/; none if its numbers stand in the README alone
+    :param sources: patterns below the root of what decides its numbers, beside COMMON
+    :param minutes: on one core, about
+    :param results: folders below results/ that it uses, and that are of no use when it is stale
+    :param needs: names of results that are made before it
+    :param limits: whether an exit status of 1 says that a limit is missed, which is a result, too
+    """
+
+    name: str
+    commands: tuple
+    makes: tuple = ()
+    sources: tuple = ()
+    minutes: float = 1
+    results: tuple = ()
+    needs: tuple = ()
+    limits: bool = False
+
+
+#: Minutes of the runs of cases, those of other names a third of a minute.
+CASE_MINUTES = {"wall_comp0a/deformable*": 4, "wall_comp1/deformable*": 3, "wall_comp4/deformable*": 5, "wall_comp6/deformable*": 10, "dry_joint_walls/deformable*": 4, "dry_joint_walls/subcontacts-32": 2}  # fmt: skip
+#: Cases whose runs are made by programs of their own.
+OWN = {"cyclic", "trade", "convergence"}
+
+
+def ofCases():
+    """A result for every run of a case, and one for its figures."""
+    cases = sorted(os.path.basename(os.path.dirname(p)) for p in glob.glob(os.path.join(HERE, "*", "case.json")))  # fmt: skip
+    for case in [case for case in cases if case not in OWN]:
+        names = []
+        for run, chosen in studies.readCase(case).items():
+            if run == "quick":
+                continue
+            name = f"{case}/{run}"
+            names.append(name)
+            soft = "deformable" in chosen["options"]
+            needs = sorted({f"{b}/{run}" for pair in chosen["limits"].values() for b in pair if isinstance(b, str)})  # fmt: skip
+            yield Result(
+                name,
+                ((PYTHON, "validation/validate.py", case, run),),
+                sources=(f"validation/{case}/case.json", f"scripts/{chosen['scene']}", *(DEFORMABLE if soft else RIGID)),
+                minutes=next((m for p, m in CASE_MINUTES.items() if fnmatch.fnmatch(name, p)), 0.3),
+                results=(f"validation/{case}/{run}",),
+                needs=tuple(needs),
+                limits=True,
+            )  # fmt: skip
+        if case == "dry_joint_walls":
+            yield Result(f"{case}/envelopes", ((PYTHON, f"validation/{case}/compare.py"),), (f"{case}/envelopes.png",), ("validation/dry_joint_walls/compare.py",), 0.2, needs=tuple(names))  # fmt: skip
+        figures = (f"{case}/curve*.png", f"{case}/cracks*.png")
+        yield Result(f"{case}/figures", ((PYTHON, "validation/figures.py", case),), figures, ("validation/figures.py",), 0.3, needs=tuple(names))  # fmt: skip
+
+
+def ofStudies():
+    """The results of the studies, each with a program of its own."""
+    program = lambda path, *words: (PYTHON, f"validation/{path}", *words)
+    inYade = lambda path, *words: (*YADE, f"validation/{path}", *words)
+    own = lambda folder: (f"validation/{folder}/*.py", f"validation/{folder}/case.json")
+    walls = ("scripts/wall_comp*.py",)
+    study = lambda path: (
+        (PYTHON, "-m", "masonry.study", f"validation/{path}.py", "--out", f"results/validation/{path}"),
+        (PYTHON, "-m", "masonry.study.report", f"results/validation/{path}"),
+    )  # fmt: skip
+    loops = [(law, "softening" if law == "softening" else "cyclic") for law in ("cyclic", "softening")]  # fmt: skip
+    return [
+        Result("closed_forms", (inYade("closed_forms/closed_forms.py"),), (), (*own("closed_forms"), *ALL), 3),
+        Result("closed_forms/convergence", (inYade("closed_forms/convergence.py"),), (), (*own("closed_forms"), *RIGID), 3),
+        Result("statics", (inYade("statics/statics.py"),), (), (*own("statics"), *ALL), 40),
+        Result("held_loads", (inYade("held_loads/held_loads.py"),), (), (*own("held_loads"), *RIGID), 6),
+        Result("stability/map", (inYade("stability/stability.py"),), ("stability/map.png",), ("validation/stability/stability.py", *ALL), 9),
+        Result("stability/onset", (inYade("stability/onset.py"),), (), ("validation/stability/onset.py", *ALL), 2),
+        Result("stability/invariance", (inYade("stability/invariance.py"),), (), ("validation/stability/invariance.py", *RIGID), 0.5),
+        Result("stability/extremes", (inYade("stability/extremes.py"), inYade("stability/extremes.py", "--falls", "40")), (), ("validation/stability/extremes.py", *ALL), 8),
+        Result("stability/soak", (inYade("stability/soak.py"),), (), ("validation/stability/soak.py", *RIGID), 5),
+        *(
+            Result(f"dry_joint_walls/loops_{law}", (program("dry_joint_walls/compare_loops.py", "--joints", joints),), (f"dry_joint_walls/loops_{law}*",),
+                   ("validation/dry_joint_walls/compare_loops.py", "validation/dry_joint_walls/blind.json", "scripts/wall_dry.py", *RIGID, *CYCLIC), 20, (f"validation/dry_joint_walls/loops_{law}*",))
+            for law, joints in loops
+        ),
+        Result("dry_joint_walls/plain_wall", (program("dry_joint_walls/plain_wall.py"),), (), ("validation/dry_joint_walls/plain_wall.*",), 5),
+        Result("cyclic/joint", (inYade("cyclic/joint.py"), program("cyclic/figures.py")), ("cyclic/joint.png",), (*own("cyclic"), *CYCLIC), 0.5, ("validation/cyclic/joint",)),
+        Result("cyclic/walls", (program("cyclic/walls.py"),), ("cyclic/walls.md", "cyclic/loops_*.png", "cyclic/degradation.png"), (*own("cyclic"), *walls, *RIGID, *CYCLIC), 15, ("validation/cyclic/comp*",)),
+        Result("convergence", (program("convergence/converge.py"),), ("convergence/curves.png",), (*own("convergence"), *walls, *DEFORMABLE), 60, ("validation/convergence",)),
+        Result("trade", (program("trade/trade.py"),), ("trade/*.png", "trade/table.md", "trade/trade.json"), (*own("trade"), *walls, *RIGID, *DEFORMABLE), 300, ("trade",)),
+        Result("accuracy", (program("accuracy/accuracy.py"),), ("accuracy/table.md", "accuracy/accuracy.json"), (*own("accuracy"), "scripts/masonry/run/accuracy.py", *RIGID, *DEFORMABLE), 120, ("accuracy",), ("trade",)),
+        Result("sensitivity/tornado", (program("sensitivity/tornado.py"),), ("sensitivity/tornado.png",), ("validation/sensitivity/tornado.py", "validation/sensitivity/ranges.py", *walls, *RIGID), 45, ("validation/sensitivity/wall*",)),
+        Result("sensitivity/comp4", study("sensitivity/comp4"), ("sensitivity/comp4_*.png",), ("validation/sensitivity/comp4.py", "validation/sensitivity/ranges.py", *RIGID), 24, ("validation/sensitivity/comp4",)),
+        Result("sensitivity/comp1", study("sensitivity/comp1"), ("sensitivity/comp1_*.png",), ("validation/sensitivity/comp1.py", "validation/sensitivity/ranges.py", *RIGID), 16, ("validation/sensitivity/comp1",)),
+        Result("random_fields/one_metre", study("random_fields/one_metre"), ("random_fields/*_one_metre.png",), ("validation/random_fields/*.py", *RIGID), 60, ("validation/random_fields/one_metre",)),
+        Result("random_fields/one_brick", study("random_fields/one_brick"), ("random_fields/*_one_brick.png",), ("validation/random_fields/*.py", *RIGID), 60, ("validation/random_fields/one_brick",)),
+        Result("multifidelity", (program("multifidelity/multifidelity.py", "--jobs", "2"),), ("multifidelity/multifidelity.png",), (*own("multifidelity"), *RIGID, *DEFORMABLE), 120, ("validation/multifidelity",)),
+        Result("benchmark", (inYade("benchmark/benchmark.py"), program("benchmark/threads.py")), (), ("validation/benchmark/*.py", *ALL), 15, ("benchmark",)),
+    ]  # fmt: skip
+
+
+def everything():
+    """All results by their names, each after those that it needs; what needs nothing stands in the order of its time."""
+    found = {r.name: r for r in [*ofCases(), *ofStudies()]}
+    ordered = {}
+
+    def add(result, above=()):
+        if result.name in above:
+            raise ValueError(f"{result.name} needs itself")
+        for name in result.needs:
+            add(found[name], (*above, result.name))
+        ordered[result.name] = result
+
+    for result in sorted(found.values(), key=lambda r: r.minutes):
+        add(result)
+    return ordered
+
+
+# -- how old a result is ----------------------------------------------------------------------------------------------
+
+
+def fingerprint(result, every=None):
+    """What decides the numbers of a result, as a text: of its sources, and of the results that it needs."""
+    digest = hashlib.sha256(json.dumps([USUAL, PRESETS], sort_keys=True).encode())
+    for pattern in dict.fromkeys([*COMMON, *result.sources]):
+        for path in sorted(glob.glob(os.path.join(ROOT, pattern))):
+            digest.update(os.path.relpath(path, ROOT).encode())
+            digest.update(_numbers(path))
+    for name in result.needs:
+        digest.update(fingerprint((every or everything())[name], every).encode())
+    return digest.hexdigest()[:16]
+
+
+def _numbers(path):
+    """What a file says: of a program without comments and docstrings, of a stored reference without who made it."""
+    with open(path, "rb") as file:
+        text = file.read()
+    if os.sep + "references" + os.sep in path:
+        content = json.loads(text)
+        content.pop("made by", None)
+        text = json.dumps(content, sort_keys=True).encode()
+    elif path.endswith(".py"):
+        tree = ast.parse(text)
+        for node in ast.walk(tree):
+            body = getattr(node, "body", None)
+            if isinstance(body, list):
+                node.body = [one for one in body if not _isText(one)]
+        text = ast.dump(tree).encode()
+    return text
+
+
+def _isText(statement):
+    """Whether a statement is a text alone, as a docstring."""
+    return isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
+
+
+def readMade():
+    """made.json: a dict by the names of results; empty if there is none."""
+    if not os.path.exists(MADE):
+        return {}
+    with open(MADE) as file:
+        return json.load(file)
+
+
+def git(*words):
+    """What git says, without the end of its line; empty where it says nothing."""
+    done = subprocess.run(["git", "-C", ROOT, *words], capture_output=True, text=True)
+    return done.stdout.strip()
+
+
+def commitOf(result):
+    """Commit and date of the files of a result, as git has them, or of its README."""
+    paths = [f"validation/{p}" for p in result.makes] or [f"validation/{result.name.split('/')[0]}/README.md"]  # fmt: skip
+    return git("log", "-1", "--format=%h %cs", "--", *paths).split() or ["-", "-"]
+
+
+def stateOf(result, made, every):
+    """How old a result is: ``fresh``, ``stale`` or ``unrecorded``, with the commit and the date of its making."""
+    known = made.get(result.name)
+    if not known:
+        return ("unrecorded", *commitOf(result))
+    same = known["fingerprint"] == fingerprint(result, every)
+    return "fresh" if same else "stale", known["commit"], known["date"]
+
+
+# -- making -----------------------------------------------------------------------------------------------------------
+
+
+def make(result, now):
+    """Run the commands of a result. Returns whether they came to their end.
+
+    Runs of an older fingerprint are removed before; those of this one, of an attempt that was stopped, are taken.
+    """
+    under = os.path.join(RESULTS, "remake", result.name.replace("/", "_") + ".txt")
+    os.makedirs(os.path.dirname(under), exist_ok=True)
+    before = open(under).read() if os.path.exists(under) else None
+    if before != now:
+        for pattern in result.results:
+            for path in glob.glob(os.path.join(RESULTS, pattern)):
+                shutil.rmtree(path, ignore_errors=True)
+        with open(under, "w") as file:
+            file.write(now)
+    for command in result.commands:
+        print("$", " ".join(command), flush=True)
+        status = subprocess.run(command, cwd=ROOT).returncode
+        if status not in ((0, 1) if result.limits else (0,)):
+            print(f"{result.name}: exit status {status}; the same command goes on", flush=True)  # fmt: skip
+            return False
+        if status:
+            print(f"{result.name}: a limit is missed", flush=True)
+    os.remove(under)
+    return True
+
+
+def builtFrom():
+    """The commit of the plugin that runs use. Raises SystemExit if that is none of the state of the sources here."""
+    done = subprocess.run([PYTHON, "-c", "import masonry; print(masonry.commit)"], capture_output=True, text=True)  # fmt: skip
+    built = done.stdout.strip()
+    commit = built.split("-")[0].rstrip("+")
+    known = commit and git("rev-parse", "--verify", "--quiet", commit + "^{commit}")
+    if not known:
+        raise SystemExit(f"the plugin that is installed is of commit {built or '-'}, which is not known here: bash scripts/setup.sh")  # fmt: skip
+    changed = git("diff", "--name-only", commit, "--", "yade_plugin", "scripts/masonry")
+    if changed:
+        some = ", ".join(changed.splitlines()[:3])
+        raise SystemExit(f"the plugin that is installed is of commit {built}, and {some} have changed since: bash scripts/setup.sh")  # fmt: skip
+    return built
+
+
+def record(result, now, seconds, built):
+    """Write down in made.json that a result was made, by the plugin of a commit."""
+    entry = {
+        "commit": built,
+        "date": time.strftime("%Y-%m-%d"),
+        "fingerprint": now,
+        "minutes": round(seconds / 60, 1),
+    }
+    made = {**readMade(), result.name: entry}
+    with open(MADE + ".new", "w") as file:
+        json.dump(made, file, indent=1, sort_keys=True)
+        file.write("\n")
+    os.replace(MADE + ".new", MADE)
+
+
+def table(every):
+    """The table of validation/README.md: results of a folder in one line if they are of one state, commit and date."""
+    made, rows = readMade(), {}
+    for result in every.values():
+        state, commit, date = stateOf(result, made, every)
+        folder, _, part = result.name.partition("/")
+        key = folder, state, commit, date
+        parts, minutes = rows.get(key, ([], 0))
+        taken = made.get(result.name, {}).get("minutes", result.minutes)
+        rows[key] = [*parts, part or "all"], minutes + taken
+    cells = [
+        [f"[{folder}]({folder}/README.md)", ", ".join(sorted(parts)), state, commit, date, f"{minutes:.0f}" if minutes >= 1 else "< 1"]
+        for (folder, state, commit, date), (parts, minutes) in sorted(rows.items())
+    ]  # fmt: skip
+    return studies.table(["folder", "results", "state", "commit", "date", "minutes of a core"], cells)  # fmt: skip
+
+
+def writeTable(every):
+    """Write the table into validation/README.md."""
+    with open(README) as file:
+        text = file.read()
+    begin, end = map(re.escape, MARKS)
+    new, count = re.subn(f"(?<={begin}\n).*?(?={end})", lambda _: table(every) + "\n", text, flags=re.DOTALL)  # fmt: skip
+    if count != 1:
+        raise SystemExit(f"{README}: the marks {' and '.join(MARKS)} must be there once")  # fmt: skip
+    if new != text:
+        with open(README, "w") as file:
+            file.write(new)
+
+
+def main(words=None):
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("names", nargs="*", metavar="NAME", help="results or folders (default: all)")  # fmt: skip
+    parser.add_argument("--list", action="store_true", help="only say what there is")
+    parser.add_argument("--table", action="store_true", help="only write the table of README.md")  # fmt: skip
+    parser.add_argument("--force", action="store_true", help="make also what is not stale")  # fmt: skip
+    parser.add_argument("--minutes", type=float, default=float("inf"), help="leave out what takes longer")  # fmt: skip
+    parser.add_argument("--built", metavar="COMMIT", help="commit of the plugin that is used, if it cannot be found out")  # fmt: skip
+    args = parser.parse_args(words)
+    every, made = everything(), readMade()
+    unknown = [n for n in args.names if not any(r == n or r.startswith(n + "/") for r in every)]  # fmt: skip
+    if unknown:
+        parser.error(f"no result {', '.join(unknown)}; there are {', '.join(every)}")
+    wanted = [r for r in every.values() if not args.names or any(r.name == n or r.name.startswith(n + "/") for n in args.names)]  # fmt: skip
+    if args.table:
+        writeTable(every)
+        return 0
+    if args.list:
+        for result in wanted:
+            state, commit, date = stateOf(result, made, every)
+            minutes = made.get(result.name, {}).get("minutes", result.minutes)
+            print(f"{result.name:32} {state:10} {commit:10} {date:10} {minutes:6.1f} min  {' && '.join(' '.join(c) for c in result.commands)}")  # fmt: skip
+        return 0
+    failed, built = [], args.built or builtFrom()
+    for result in wanted:
+        fresh = stateOf(result, made, every)[0] == "fresh"
+        if fresh and not args.force or result.minutes > args.minutes:
+            continue
+        print(f"-- {result.name}: some {result.minutes:g} min", flush=True)
+        now, began = fingerprint(result, every), time.perf_counter()
+        if make(result, now):
+            record(result, now, time.perf_counter() - began, built)
+            writeTable(every)
+        else:
+            failed.append(result.name)
+    if failed:
+        print("not made:", ", ".join(failed))
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        print("\ninterrupted: the same command goes on")
+        sys.exit(130)
