@@ -149,3 +149,17 @@ def test_damping_of_intact_joints_takes_the_energy_that_points_would_give():
     balance = energy.balance()
     assert loop().dampingWork > 1e-3 * abs(balance["external"])
     assert abs(balance["error"]) < 1e-6
+
+
+def test_all_points_are_looked_at_where_the_elastic_domain_is_not_convex():
+    # With a linear term of the cap above zero, a point between the corners of a joint may yield first.
+    runs = []
+    for functors in (True, False):
+        interactions = panel(functors, capLinear=5e5)
+        run(150)
+        runs.append(state(interactions))
+    one, other = runs
+    assert one["damage"].max() > 0.01
+    for name in one:
+        size = np.abs(one[name]).max()
+        assert np.abs(one[name] - other[name]).max() <= 1e-8 * size, name
