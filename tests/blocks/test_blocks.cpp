@@ -6,6 +6,7 @@
 #include "blocks/JointPoints.hpp"
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <doctest/doctest.h>
 #include <map>
@@ -944,6 +945,219 @@ TEST_CASE("every instruction set moves plane units to the same bits") {
     if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
         CHECK(run(avx512::addForces, avx512::move) == reference);
 #endif
+}
+
+// ---- masses that are scaled selectively -----------------------------------------------------------------------------
+
+namespace {
+
+// One or two units side by side in every lane, with random states, and their scaled mass matrix in lane `mine`.
+struct Scaling {
+    static constexpr int mine = 5;
+    double scaling;
+    std::vector<const BlockElasticity*> units;
+    bool whole, plane;
+    Point apart = Point(0.12, 0, 0.01); // from unit to unit [m]
+    std::vector<std::vector<Row>> u, v, f, last;
+    std::vector<Row> scratch;
+    std::vector<ScaledUnits> members;
+
+    Scaling(double s, std::vector<const BlockElasticity*> all, bool isWhole, std::mt19937& dice)
+        : scaling(s), units(all), whole(isWhole), plane(all[0]->mesh().across >= 0) {
+        std::uniform_real_distribution<> u01(-1, 1);
+        for (const auto* unit : units) {
+            const std::size_t rows = 3 * unit->mesh().nodes.size();
+            std::vector<Row> made[4];
+            for (int i = 0; i < 4; ++i) {
+                made[i].resize(rows);
+                const double size = i == 0 ? 1e-4 : i == 1 ? 1e-3 : 10;
+                for (std::size_t row = 0; row < rows; ++row)
+                    for (double& value : made[i][row].lane)
+                        value = plane && row % 3 == 1 ? 0 : size * u01(dice);
+            }
+            u.push_back(made[0]), v.push_back(made[1]), f.push_back(made[2]), last.push_back(made[3]);
+            scratch.resize(scratch.size() + 3 * rows);
+        }
+    }
+    int degrees() const {
+        int count = 0;
+        for (const auto* unit : units)
+            count += int(3 * unit->mesh().nodes.size());
+        return count;
+    }
+    Eigen::VectorXd listed(const std::vector<std::vector<Row>>& rows, int lane = mine) const {
+        Eigen::VectorXd all(degrees());
+        int i = 0;
+        for (const auto& part : rows)
+            for (const auto& row : part)
+                all[i++] = row.lane[lane];
+        return all;
+    }
+    Eigen::VectorXd masses() const {
+        Eigen::VectorXd all(degrees());
+        int i = 0;
+        for (const auto* unit : units)
+            for (double m : unit->masses())
+                for (int d = 0; d < 3; ++d)
+                    all[i++] = m;
+        return all;
+    }
+    Eigen::VectorXd places() const {
+        Eigen::VectorXd all = listed(u);
+        int i = 0;
+        for (std::size_t k = 0; k < units.size(); ++k)
+            for (const auto& node : units[k]->mesh().nodes)
+                for (int d = 0; d < 3; ++d)
+                    all[i++] += node[d] + double(k) * apart[d];
+        return all;
+    }
+    // Rigid motions in the columns, of all units together or each for itself.
+    Eigen::MatrixXd rigid(bool together) const {
+        const auto x = places();
+        const int parts = together ? 1 : int(units.size());
+        Eigen::MatrixXd all = Eigen::MatrixXd::Zero(degrees(), 6 * parts);
+        int row = 0;
+        for (std::size_t k = 0; k < units.size(); ++k)
+            for (std::size_t n = 0; n < units[k]->mesh().nodes.size(); ++n, row += 3)
+                for (int motion = 0; motion < 6; ++motion) {
+                    const Point p = x.segment<3>(row), axis = Point::Unit(motion % 3);
+                    Point moved = motion < 3 ? axis : Point(axis.cross(p));
+                    if (plane && (motion < 3 ? motion == 1 : motion != 4)) moved.setZero();
+                    all.block<3, 1>(row, 6 * (together ? 0 : int(k)) + motion) = moved;
+                }
+        Eigen::MatrixXd kept(degrees(), plane ? 3 * parts : 6 * parts);
+        int column = 0;
+        for (int c = 0; c < all.cols(); ++c)
+            if (all.col(c).norm() > 0) kept.col(column++) = all.col(c);
+        return kept;
+    }
+    Eigen::MatrixXd massMatrix() const {
+        const Eigen::MatrixXd m = masses().asDiagonal();
+        const auto projected = [&](const Eigen::MatrixXd& r) {
+            const Eigen::MatrixXd p = m * r;
+            return Eigen::MatrixXd(p * (r.transpose() * p).inverse() * p.transpose());
+        };
+        const Eigen::MatrixXd w = projected(rigid(true));
+        if (whole || units.size() == 1) return m + scaling * (m - w);
+        const Eigen::MatrixXd h = projected(rigid(false));
+        return m + scaling * (m - h) + sharedScaling * scaling * (h - w);
+    }
+    template <class Move> void step(Move&& move, const NodeMotion& motion) {
+        members.clear();
+        for (std::size_t k = 0; k < units.size(); ++k) {
+            members.push_back({units[k]->matrix(), {}, u[k].data(), v[k].data(), f[k].data(), last[k].data(), {}, {}});
+            for (int lane = 0; lane < lanes; ++lane) {
+                members[k].present.lane[lane] = 1;
+                for (int d = 0; d < 3; ++d)
+                    members[k].offset[d].lane[lane] = double(k) * apart[d];
+            }
+        }
+        Row isWhole{};
+        isWhole.lane[mine] = whole;
+        move(motion, scaling, members.data(), int(units.size()), isWhole, scratch.data());
+    }
+    double sum(Row NodeSums::*which) const {
+        double all = 0;
+        for (const auto& member : members)
+            all += (member.sums.*which).lane[mine];
+        return all;
+    }
+};
+
+// What every case of scaled masses is made of: units in the plane or in space, one or two, whole or split.
+template <class F> void eachScaling(std::mt19937& dice, F&& visit) {
+    const auto plane = planeUnit(box(Point::Zero(), {0.11, 0.102, 0.081}), {2, 1, 2});
+    const auto small = planeUnit(box(Point::Zero(), {0.08, 0.102, 0.081}), {1, 1, 1});
+    const BlockElasticity space(divide(box(Point::Zero(), {0.11, 0.102, 0.081}), {1, 1, 1}), 4.8e9, 0.16, 1800);
+    for (double scaling : {1.0, 20.0}) {
+        visit(Scaling(scaling, {&plane}, false, dice));
+        visit(Scaling(scaling, {&space}, false, dice));
+        for (bool whole : {true, false}) {
+            visit(Scaling(scaling, {&plane, &small}, whole, dice));
+            visit(Scaling(scaling, {&space, &space}, whole, dice));
+        }
+    }
+}
+
+} // namespace
+
+TEST_CASE("scaled masses are those of the matrix, and leave momentum and spin of every block as they are") {
+    std::mt19937 dice(41);
+    eachScaling(dice, [&](Scaling s) {
+        const bool held = s.plane;
+        const Eigen::VectorXd force = s.listed(s.f), before = s.listed(s.v);
+        const Eigen::MatrixXd m = s.massMatrix(), w = s.rigid(true), h = s.rigid(false);
+        const double dt = 1e-5;
+        s.step(moveScaled, {dt, 0, {0, 0, 0}, true, {false, held, false}});
+        const Eigen::VectorXd after = s.listed(s.v), change = (after - before) / dt;
+        CHECK((m * change - force).norm() < 1e-10 * force.norm());
+        const Eigen::VectorXd impulse = s.masses().cwiseProduct(change);
+        CHECK((w.transpose() * (impulse - force)).norm() < 1e-12 * force.norm());
+        if (!s.whole && s.units.size() == 1) CHECK((h.transpose() * (impulse - force)).norm() < 1e-12 * force.norm());
+        CHECK(s.sum(&NodeSums::kinetic) == within(0.5 * before.dot(m * after), 1e-9));
+        CHECK(s.sum(&NodeSums::damping) == 0);
+    });
+}
+
+TEST_CASE("a block falls as it would with true masses") {
+    std::mt19937 dice(42);
+    eachScaling(dice, [&](Scaling s) {
+        for (auto* rows : {&s.v, &s.f})
+            for (auto& part : *rows)
+                part.assign(part.size(), Row{});
+        s.step(moveScaled, {1e-5, 0, {0, 0, -9.81}, true, {false, s.plane, false}});
+        const auto v = s.listed(s.v);
+        for (int i = 0; i < v.size(); ++i)
+            CHECK(std::abs(v[i] - (i % 3 == 2 ? -9.81e-5 : 0)) < 1e-15);
+    });
+}
+
+TEST_CASE("damping of scaled masses takes what the energies say, and never gives any") {
+    std::mt19937 dice(43);
+    for (int trial = 0; trial < 20; ++trial)
+        eachScaling(dice, [&](Scaling s) {
+            const double viscous = trial % 3 == 0 ? 500 : 0;
+            const Eigen::VectorXd force = s.listed(s.f), before = s.listed(s.v);
+            const Eigen::MatrixXd m = s.massMatrix();
+            const double dt = trial % 2 ? 1e-5 : 1e-7;
+            s.step(moveScaled, {dt, 0.8, {0, 0, 0}, trial % 4 < 2, {false, s.plane, false}, viscous});
+            const Eigen::VectorXd after = s.listed(s.v), lost = force - m * (after - before) / dt;
+            const double damping = s.sum(&NodeSums::damping), pending = s.sum(&NodeSums::pending);
+            CHECK(damping + pending >= 0);
+            const double size = 1e-9 * force.norm() * before.norm() * dt;
+            CHECK(std::abs(damping - 0.5 * dt * lost.dot(before)) < size);
+            CHECK(std::abs(pending - 0.5 * dt * lost.dot(after)) < 10 * size);
+            CHECK(s.sum(&NodeSums::kinetic) == doctest::Approx(0.5 * before.dot(m * after)).epsilon(1e-8).scale(1e-9));
+        });
+}
+
+TEST_CASE("every instruction set moves scaled masses to the same bits") {
+    std::mt19937 dice(44);
+    eachScaling(dice, [&](const Scaling& start) {
+        const auto run = [&](auto move) {
+            Scaling s = start;
+            for (int step = 0; step < 5; ++step) {
+                s.step(move, {1e-6, 0.8, {0, 0, -9.81}, true, {false, s.plane, false}, 3});
+                s.f = start.f;
+            }
+            std::vector<double> all;
+            for (int lane = 0; lane < lanes; ++lane)
+                for (const auto* rows : {&s.u, &s.v, &s.last}) {
+                    const auto one = s.listed(*rows, lane);
+                    all.insert(all.end(), one.data(), one.data() + one.size());
+                }
+            for (auto which : {&NodeSums::kinetic, &NodeSums::damping, &NodeSums::pending, &NodeSums::gravityWork})
+                all.push_back(s.sum(which));
+            return all;
+        };
+        const auto reference = run(plain::moveScaledUnits);
+#if defined(__x86_64__)
+        if (__builtin_cpu_supports("avx2")) CHECK(run(avx2::moveScaledUnits) == reference);
+        if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
+            CHECK(run(avx512::moveScaledUnits) == reference);
+#endif
+        CHECK(reference[0] != start.u[0][0].lane[0]);
+    });
 }
 
 TEST_CASE("a surface point is found with weights that return it") {

@@ -91,10 +91,13 @@ struct ScaledUnits {
 // own. Otherwise the springs between the parts of a cracked brick, which are stiffer than mortar, would set the time
 // step.
 //
-// Damping acts on the forces, with the sign of the velocity that M* gives, and takes no more than with M: since M* is
-// at least M in every direction, it never reverses a motion and takes energy in every step. Viscous damping is in
-// proportion to M*. The kinetic energy is that of M*. That of two units which are whole stands in the sums of the
-// first. `scratch` is working memory of six rows a node of all units.
+// Damping acts on the rigid motion of blocks and on the rest of the motion, each for itself: as moveBlocks() would on
+// masses M under the rigid part of the forces, and on masses (1 + s) M under the rest. What it takes at a node is then
+// projected on its part. The parts are orthogonal under both masses, and a projection makes nothing larger, so damping
+// takes energy in every step and reverses no part of the motion. If it acted on the forces of the nodes as they are, the
+// slow vibration of blocks would be a friction on their rigid motion. Viscous damping is in proportion to M*. The
+// kinetic energy is that of M*; what belongs to two units stands in the sums of the first. `scratch` is working memory of
+// nine rows a node of all units.
 void moveScaled(const NodeMotion&, double scaling, ScaledUnits* units, int count, const Row& whole, Row* scratch);
 
 } // namespace masonry

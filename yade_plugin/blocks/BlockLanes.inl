@@ -220,7 +220,8 @@ template <bool plane> struct RigidSums {
         Lanes sum[directions]; // of m v [kg m/s]
         Lanes about[axes];     // of x × m v [kg m²/s]
     };
-    Vector velocity, half, opposed; // of the velocities, and of the changes of velocity that are called so in moveIn()
+    // Of the velocities, and of the changes of velocity that are called so in moveIn().
+    Vector velocity, half, trend;
 };
 
 template <bool plane> inline void addCross(const Lanes* x, const Lanes* v, Lanes* out) {
@@ -335,7 +336,7 @@ void moveIn(const NodeMotion& m, double scaling, ScaledUnits* units, int count, 
     const Lanes zero = {}, one = zero + 1;
     for (int part = 0; part < parts; ++part) {
         const Lanes together = *at(&whole, part);
-        Lanes* kept = at(scratch, 0); // for every node and direction the velocity without damping, and the damping
+        Lanes* kept = at(scratch, 0); // three numbers for every node and direction
         const auto place = [&](const ScaledUnits& unit, int n, Lanes* x) {
             for (int d = 0; d < directions; ++d) {
                 const int row = direction[d];
@@ -349,16 +350,19 @@ void moveIn(const NodeMotion& m, double scaling, ScaledUnits* units, int count, 
             auto& s = sums[k];
             for (int n = 0; n < unit.matrix.nodeCount; ++n) {
                 const double mass = unit.matrix.masses[n];
-                Lanes x[directions], momentum[directions], impulse[directions];
+                Lanes x[directions], momentum[directions], impulse[directions], grown[directions];
                 place(unit, n, x);
                 for (int d = 0; d < directions; ++d) {
                     const int row = 3 * n + direction[d];
                     momentum[d] = free[d] ? mass * *at(unit.velocities + row, part) : zero;
                     const Lanes weight = mass * m.gravity[direction[d]] * *at(&unit.present, part);
-                    impulse[d] = free[d] ? 0.5 * m.dt * (*at(unit.forces + row, part) + weight) : zero;
+                    const Lanes force = *at(unit.forces + row, part) + weight;
+                    impulse[d] = free[d] ? 0.5 * m.dt * force : zero;
+                    grown[d] = free[d] ? force - *at(unit.lastForces + row, part) : zero;
                     s.first[d] += mass * x[d];
                     s.velocity.sum[d] += momentum[d];
                     s.half.sum[d] += impulse[d];
+                    s.trend.sum[d] += grown[d];
                 }
                 s.mass += mass;
                 if constexpr (plane)
@@ -370,60 +374,84 @@ void moveIn(const NodeMotion& m, double scaling, ScaledUnits* units, int count, 
                     }
                 addCross<plane>(x, momentum, s.velocity.about);
                 addCross<plane>(x, impulse, s.half.about);
+                addCross<plane>(x, grown, s.trend.about);
             }
         }
-        // The rigid motions of the units, and of both together. Of a vector a the scaled masses leave
-        // (1 - between) W + (between - share) H + share a, with its rigid parts W of the whole and H of the unit.
-        const Lanes between = together * share + (one - together) * apart;
+        // A motion has a rigid part: of both units together where they are whole, W, else of each for itself, H. Of the
+        // rigid part of a vector the scaled masses leave W where units are whole, else (1 - apart) W + apart H, and of
+        // the rest `share`.
+        const Lanes split = one - together;
         const Sums all = count == 1 ? sums[0] : weighted(one, sums[0], one, sums[1]);
         const Block own[2] = {{sums[0], turns}, {sums[count - 1], turns}}, both{all, turns};
-        const auto motionsOf = [&](typename Sums::Vector Sums::*which, typename Block::Motion* motions) {
-            const auto ofWhole =
-                both.motion(count == 1 ? sums[0].*which : weighted(one, sums[0].*which, one, sums[1].*which));
+        const auto rigidPart = [&](const typename Sums::Vector* v, Lanes ofWhole, Lanes ofOwn,
+                                   typename Block::Motion* motions) {
+            if (count == 1) {
+                motions[0] = own[0].motion(v[0]);
+                return;
+            }
+            const auto whole = both.motion(weighted(one, v[0], one, v[1]));
             for (int k = 0; k < count; ++k)
-                motions[k] = weighted(one - between, ofWhole, between - share, own[k].motion(sums[k].*which));
+                motions[k] = weighted(ofWhole, whole, ofOwn, own[k].motion(v[k]));
         };
-        typename Block::Motion half[2], opposed[2];
-        motionsOf(&Sums::half, half);
+        typename Sums::Vector olds[2] = {sums[0].velocity, sums[1].velocity}, halves[2] = {sums[0].half, sums[1].half};
+        typename Sums::Vector trends[2] = {sums[0].trend, sums[1].trend}, ofRigid[2] = {}, ofRest[2] = {};
+        typename Block::Motion old[2], half[2], halfScaled[2], trend[2], damped[2], rest[2], now[2];
+        const Lanes left = together + split * (1 - apart);
+        rigidPart(olds, together, split, old);
+        rigidPart(halves, together, split, half);
+        rigidPart(halves, left, split * apart, halfScaled);
+        rigidPart(trends, together, split, trend);
         Lanes* keep = kept;
         for (int k = 0; k < count; ++k) {
             const auto& unit = units[k];
-            auto& s = sums[k];
-            for (int n = 0; n < unit.matrix.nodeCount; ++n, keep += 2 * directions) {
+            for (int n = 0; n < unit.matrix.nodeCount; ++n, keep += 3 * directions) {
                 const double mass = unit.matrix.masses[n];
-                Lanes x[directions], taken[directions];
+                Lanes x[directions], takenRigid[directions], takenRest[directions];
                 place(unit, n, x);
                 for (int d = 0; d < directions; ++d) {
-                    taken[d] = zero;
+                    takenRigid[d] = takenRest[d] = zero;
                     if (!free[d]) continue;
                     const int row = 3 * n + direction[d];
                     const Lanes weight = mass * m.gravity[direction[d]] * *at(&unit.present, part);
                     const Lanes force = *at(unit.forces + row, part) + weight;
-                    const Lanes change = 0.5 * (m.dt / mass) * force; // change of velocity in half a step with M
-                    const Lanes undamped =
-                        *at(unit.velocities + row, part) + (Block::at(half[k], x, d) + share * change);
-                    const Lanes reach = alpha * (change < zero ? -change : change);
                     Lanes* last = at(unit.lastForces + row, part);
-                    const Lanes trend = m.combined ? sign(force - *last) : zero;
-                    const Lanes opposing = dampingTaken(Lanes(0.5 * undamped), reach, trend);
+                    const Lanes grown = Block::at(trend[k], x, d);
+                    const Lanes signs[2] = {m.combined ? sign(grown) : zero,
+                                            m.combined ? sign((force - *last) / mass - grown) : zero};
                     *last = force;
-                    keep[2 * d] = undamped;
-                    keep[2 * d + 1] = opposing;
-                    taken[d] = mass * opposing;
-                    s.opposed.sum[d] += taken[d];
+                    // Changes of velocity in half a step, and velocities without damping: of the rigid part and the
+                    // rest.
+                    const Lanes changes[2] = {Block::at(halfScaled[k], x, d),
+                                              share * (0.5 * (m.dt / mass) * force - Block::at(half[k], x, d))};
+                    const Lanes before = Block::at(old[k], x, d);
+                    const Lanes undamped[2] = {before + changes[0],
+                                               *at(unit.velocities + row, part) - before + changes[1]};
+                    const auto taken = [&](int i) {
+                        const Lanes reach = alpha * (changes[i] < zero ? -changes[i] : changes[i]);
+                        return dampingTaken(Lanes(0.5 * undamped[i]), reach, signs[i]);
+                    };
+                    const Lanes first = taken(0), second = taken(1);
+                    keep[3 * d] = undamped[0] + undamped[1];
+                    keep[3 * d + 1] = second;
+                    takenRigid[d] = mass * first;
+                    takenRest[d] = mass * second;
+                    ofRigid[k].sum[d] += takenRigid[d];
+                    ofRest[k].sum[d] += takenRest[d];
                 }
-                addCross<plane>(x, taken, s.opposed.about);
+                addCross<plane>(x, takenRigid, ofRigid[k].about);
+                addCross<plane>(x, takenRest, ofRest[k].about);
             }
         }
-        motionsOf(&Sums::opposed, opposed);
+        rigidPart(ofRigid, left, split * apart, damped);
+        rigidPart(ofRest, together, split, rest);
         typename Sums::Vector means[2] = {}, nows[2] = {}; // momenta of the mean velocities and of those after the step
-        Lanes kinetics[2], befores[2], afters[2], dampings[2], pendings[2];
+        Lanes kinetics[2], befores[2], afters[2], withOld[2], withNow[2];
         keep = kept;
         for (int k = 0; k < count; ++k) {
             auto& unit = units[k];
             Lanes kinetic = zero, gravityWork = zero, damping = zero, pending = zero, before = zero, after = zero;
             Lanes moved[3] = {zero, zero, zero};
-            for (int n = 0; n < unit.matrix.nodeCount; ++n, keep += 2 * directions) {
+            for (int n = 0; n < unit.matrix.nodeCount; ++n, keep += 3 * directions) {
                 const double mass = unit.matrix.masses[n];
                 Lanes x[directions], momentum[directions], afterwards[directions];
                 place(unit, n, x);
@@ -434,19 +462,19 @@ void moveIn(const NodeMotion& m, double scaling, ScaledUnits* units, int count, 
                     if (!free[d]) continue;
                     const Lanes previous = *at(unit.velocities + row, part);
                     Lanes& u = *at(unit.displacements + row, part);
-                    const Lanes opposing = keep[2 * d + 1];
+                    const Lanes taken = keep[3 * d + 1];
                     // Mean velocity of the step without viscous damping, and the velocity after the step.
-                    const Lanes mean = keep[2 * d] - (Block::at(opposed[k], x, d) + share * opposing);
-                    const Lanes now = 2 * (mean - steady * mean) - previous;
+                    const Lanes middle = keep[3 * d] - Block::at(damped[k], x, d) - (taken - Block::at(rest[k], x, d));
+                    const Lanes next = 2 * (middle - steady * middle) - previous;
                     gravityWork += mass * m.gravity[direction[d]] * *at(&unit.present, part) * u;
-                    damping += mass * opposing * previous;
-                    pending += mass * opposing * now;
-                    before += mass * mean * previous;
-                    after += mass * mean * now;
-                    kinetic += mass * previous * now;
-                    keep[2 * d] = now;
-                    momentum[d] = mass * mean;
-                    afterwards[d] = mass * now;
+                    damping += mass * taken * previous;
+                    pending += mass * taken * next;
+                    before += mass * middle * previous;
+                    after += mass * middle * next;
+                    kinetic += mass * previous * next;
+                    keep[3 * d] = next;
+                    momentum[d] = mass * middle;
+                    afterwards[d] = mass * next;
                     means[k].sum[d] += momentum[d];
                     nows[k].sum[d] += afterwards[d];
                 }
@@ -456,41 +484,44 @@ void moveIn(const NodeMotion& m, double scaling, ScaledUnits* units, int count, 
             kinetics[k] = kinetic;
             befores[k] = before;
             afters[k] = after;
-            dampings[k] = damping;
-            pendings[k] = pending;
+            withOld[k] = damping;
+            withNow[k] = pending;
             *at(&unit.sums.gravityWork, part) = gravityWork;
-            keep -= 2 * directions * unit.matrix.nodeCount;
-            for (int n = 0; n < unit.matrix.nodeCount; ++n, keep += 2 * directions)
+            keep -= 3 * directions * unit.matrix.nodeCount;
+            for (int n = 0; n < unit.matrix.nodeCount; ++n, keep += 3 * directions)
                 for (int d = 0; d < directions; ++d) {
                     if (!free[d]) continue;
                     const int row = 3 * n + direction[d];
                     Lanes& u = *at(unit.displacements + row, part);
-                    *at(unit.velocities + row, part) = keep[2 * d];
+                    *at(unit.velocities + row, part) = keep[3 * d];
                     // x of the next unit counts from the first node, which must not have moved yet
-                    if (k > 0 || n > 0) u += m.dt * keep[2 * d];
-                    moved[direction[d]] += unit.matrix.masses[n] * (k > 0 || n > 0 ? u : u + m.dt * keep[2 * d]);
+                    if (k > 0 || n > 0) u += m.dt * keep[3 * d];
+                    moved[direction[d]] += unit.matrix.masses[n] * (k > 0 || n > 0 ? u : u + m.dt * keep[3 * d]);
                 }
             for (int d = 0; d < 3; ++d)
                 *at(unit.sums.moved + d, part) = moved[d];
         }
         // Energies with the scaled masses: the product of velocities a and b is (1 + s) a M b - (s - t) a M H b - t a M
         // W b, with the factor 1 + t on the motion of the two units of a block against each other. That of W stands
-        // with the first unit.
-        const Lanes against = together * scaling + (one - together) * (scaling * sharedScaling);
+        // with the first unit. What damping takes has the true masses in the rigid part, and 1 + s times these in the
+        // rest.
+        const Lanes against = together * scaling + split * (scaling * sharedScaling);
         const auto scaled = [&](const Lanes& plain, int k, const typename Sums::Vector* a,
                                 const typename Sums::Vector* b) {
-            Lanes sum = (1 + scaling) * plain - (scaling - against) * Block::product(a[k], own[k].motion(b[k]));
+            if (count == 1) return Lanes((1 + scaling) * plain - scaling * Block::product(a[0], own[0].motion(b[0])));
+            const Lanes sum = (1 + scaling) * plain - (scaling - against) * Block::product(a[k], own[k].motion(b[k]));
             if (k > 0) return sum;
-            const bool single = count == 1;
-            return Lanes(sum - against * Block::product(single ? a[0] : weighted(one, a[0], one, a[1]),
-                                                        both.motion(single ? b[0] : weighted(one, b[0], one, b[1]))));
+            return Lanes(sum - against * Block::product(weighted(one, a[0], one, a[1]),
+                                                        both.motion(weighted(one, b[0], one, b[1]))));
         };
-        typename Sums::Vector olds[2] = {sums[0].velocity, sums[count - 1].velocity};
+        rigidPart(nows, together, split, now);
         for (int k = 0; k < count; ++k) {
             auto& result = units[k].sums;
             *at(&result.kinetic, part) = 0.5 * scaled(kinetics[k], k, olds, nows);
-            *at(&result.damping, part) = dampings[k];
-            *at(&result.pending, part) = pendings[k];
+            *at(&result.damping, part) =
+                Block::product(ofRigid[k], old[k]) + (1 + scaling) * (withOld[k] - Block::product(ofRest[k], old[k]));
+            *at(&result.pending, part) =
+                Block::product(ofRigid[k], now[k]) + (1 + scaling) * (withNow[k] - Block::product(ofRest[k], now[k]));
             if (steady == 0) continue;
             *at(&result.damping, part) += steady * scaled(befores[k], k, olds, means);
             *at(&result.pending, part) += steady * scaled(afters[k], k, nows, means);

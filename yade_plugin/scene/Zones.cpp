@@ -392,7 +392,7 @@ void Zones::advanceTeam(const Team& team, const NodeMotion& motion, BodyColumns&
     std::size_t nodes = 0;
     for (int k = 0; k < count; ++k)
         nodes += batches_[members[k]].elasticity->masses().size();
-    if (scratch.size() < 6 * nodes) scratch.resize(6 * nodes);
+    if (scratch.size() < 9 * nodes) scratch.resize(9 * nodes);
     ScaledUnits scaled[2];
     Row turned[2][9];
     for (int k = 0; k < count; ++k) {

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Selective mass scaling in the engine loop: the time step, energy, bricks that crack, checkpoints and threads."""
+
+import json
+
+import pytest
+from masonry import (
+    MasonryJoint,
+    MasonryLoad,
+    MasonryMat,
+    MasonryZones,
+    addBlock,
+    connect,
+    criticalTimeStep,
+    engines,
+    loadCheckpoint,
+    saveCheckpoint,
+)
+from masonry.bricks import boxCorners as corners
+from yade import O
+
+X, Y, Z = 0.11, 0.102, 0.081  # half a brick [m]
+
+
+def bricks(scaling, damping=0.3, strength=0.3e6, plane=True, kind="combined"):
+    """Two bricks of two halves each on a plate, and a plate on top that pulls the right half up and breaks a brick."""
+    O.reset()
+    mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    stiff = MasonryMat(density=1800, young=1e16, jointSet="plate")
+    put = lambda low, high, m: addBlock(corners(low, high), m, inPlane=plane)
+    base = put((0, 0, -0.05), (2 * X, Y, 0), stiff)
+    units = [
+        put((i * X, 0, k * Z), ((i + 1) * X, Y, (k + 1) * Z), mat)
+        for k in (0, 1)
+        for i in (0, 1)
+    ]
+    top = put((0, 0, 2 * Z), (2 * X, Y, 2 * Z + 0.05), stiff)
+    O.bodies[base].state.blockedDOFs = "xyzXYZ"
+    O.bodies[top].state.blockedDOFs = "xyXZ" if plane else "xyXYZ"
+    load = MasonryLoad(
+        body=top, point=(2 * X, Y / 2, 2 * Z), direction=(0, 0, 1), driven=True
+    )
+    zones = MasonryZones(
+        bodies=units,
+        divisions=[2, 1, 2],
+        blocked="y" if plane else "",
+        damping=damping,
+        dampingKind=kind,
+        massScaling=scaling,
+    )
+    bed = MasonryJoint(name="bed", elastic=True)
+    plate = MasonryJoint(name="plate", jointSet="plate", elastic=True)
+    crack = MasonryJoint(
+        name="crack",
+        monolithic=True,
+        normalStiffness=3e12,
+        shearStiffness=1.3e12,
+        tensileStrength=strength,
+        cohesion=5e5,
+        cap=False,
+    )
+    engines(
+        [plate, bed, crack],
+        damping=damping,
+        inPlane=plane,
+        loads=[load],
+        zones=zones,
+    )
+    connect(lambda one, two, geom: crack if abs(geom.normal[0]) > 0.9 else None)
+    return load, zones
+
+
+def energy():
+    return next(e for e in O.engines if e.label == "energy").balance()
+
+
+def cracked():
+    """How many bricks have lost energy in their crack surface."""
+    return sum(
+        any(i.phys.dissipated)
+        for i in O.interactions
+        if i.phys.joint.name == "crack"
+    )
+
+
+def test_the_time_step_grows_by_the_root_until_rigid_motions_limit_it(scene):
+    limits = {}
+    for scaling in (0, 1, 3, 1e8):
+        bricks(scaling)
+        limits[scaling] = criticalTimeStep()[0]
+    assert limits[1] / limits[0] == pytest.approx(2**0.5, rel=0.1)
+    assert limits[0] < limits[1] < limits[3] < limits[1e8]
+
+
+@pytest.mark.parametrize("plane", [True, False], ids=["plane", "space"])
+def test_the_balance_is_an_identity_while_bricks_crack_and_the_scaling_changes(
+    scene, plane
+):
+    load, zones = bricks(20, plane=plane)
+    O.dt = 0.8 * criticalTimeStep()[0]
+    load.velocity = 2e-2
+    for step in range(4000):
+        O.step()
+        if step % 1000 == 999:
+            assert abs(energy()["error"]) < 1e-6
+    if plane:
+        assert cracked() > 0
+    zones.massScaling = 0
+    O.dt = 0.8 * criticalTimeStep()[0]
+    for _ in range(500):
+        O.step()
+    assert abs(energy()["error"]) < 1e-6
+
+
+def test_a_state_of_rest_is_the_same_with_any_masses(scene):
+    found = []
+    for scaling in (0, 20):
+        load, zones = bricks(scaling, damping=0.8)
+        O.dt = 0.8 * criticalTimeStep()[0]
+        for _ in range(int(0.05 / O.dt)):
+            O.step()
+        found.append([u[2] for u in zones.displacements])
+    size = max(map(abs, found[0]))
+    assert max(abs(a - b) for a, b in zip(*found)) < 0.01 * size
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_run_that_is_resumed_before_or_after_a_brick_cracks_goes_on_the_same(
+    scene, tmp_path, threads
+):
+    def start():
+        load, zones = bricks(20)
+        O.dt = 0.8 * criticalTimeStep()[0]
+        load.velocity = 2e-2
+        return zones
+
+    state = lambda zones: json.dumps(
+        [list(map(tuple, zones.displacements)), list(map(tuple, zones.velocities)), energy()]
+    )  # fmt: skip
+    zones = start()
+    whole, counts = [], []
+    for part in range(8):
+        saveCheckpoint(str(tmp_path / f"{part}"), {})
+        for _ in range(500):
+            O.step()
+        whole.append(state(zones))
+        counts.append(cracked())
+    assert counts[0] == 0 < counts[-1]
+    first = next(n for n, count in enumerate(counts) if count)
+    for part in {0, max(0, first - 1), first, min(7, first + 1)}:
+        zones = start()
+        loadCheckpoint(str(tmp_path / f"{part}"))
+        for _ in range(500):
+            O.step()
+        assert state(zones) == whole[part]
+
+
+def test_a_negative_scaling_is_refused():
+    with pytest.raises(ValueError, match="massScaling -1 must be at least 0"):
+        MasonryZones(massScaling=-1)
