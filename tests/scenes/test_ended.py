@@ -10,11 +10,13 @@ import time
 
 import pytest
 import yade
+from masonry import Scene
 from masonry.limit import worker
 from masonry.memory import FULL
 from masonry.read.files import readRun
 from masonry.run.run import Run
 from masonry.scene import outcome
+from masonry.scene.bounds import GIVEN_UP
 from masonry.scene.outcome import Outcome
 from small import SMALL, carryOut, parsed
 
@@ -62,26 +64,28 @@ def signalled():
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-def test_a_signal_ends_limit_analysis_and_the_run_finds_its_bound_later(
+def test_a_signal_ends_limit_analysis_and_the_run_says_so(
     scene, tmp_path, undrawn, own, signalled, number
 ):
-    asked, exchange = [], own._exchange
+    exchange, asked = own._exchange, tmp_path / "asked"
 
     def slow(ask, until):
+        time.sleep(0.5)  # it has begun
         own._process.send_signal(signal.SIGSTOP)  # a solver that takes its time
-        asked.append(own._process)
+        asked.write_text(str(own._process.pid))
         return exchange(ask, until)
 
     own._exchange = slow
-    sent = signalled(number, lambda: asked)
+    sent = signalled(number, asked.exists)
     assert carryOut(SMALL, parsed(*SHORT, "--out", str(tmp_path))) == 130
     assert time.monotonic() - sent[0] < PROMPT
-    assert asked[0].poll() == -signal.SIGKILL
+    gone = f"/proc/{asked.read_text()}"
+    assert not os.path.exists(gone) or "(zombie)" in open(gone + "/status").read()
     run = readRun(str(tmp_path))
-    assert run["interrupted"] and "bounds" not in run
+    assert run["interrupted"] and run["bounds"][0]["note"] == GIVEN_UP
     own._exchange = exchange
     assert carryOut(SMALL, parsed("--resume", str(tmp_path))) == 0
-    assert readRun(str(tmp_path))["bounds"][0]["factor"] > 0
+    assert readRun(str(tmp_path))["bounds"][0]["note"] == GIVEN_UP  # its stage was over
     assert carryOut(SMALL, parsed(*SHORT, "--out", str(tmp_path / "whole"))) == 0
     curves = [folder / "curve.csv" for folder in (tmp_path, tmp_path / "whole")]
     assert curves[0].read_bytes() == curves[1].read_bytes()
@@ -94,7 +98,8 @@ def test_a_signal_ends_the_drawing_of_figures(
     slow.write_text(f"#!/bin/sh\ntouch {begun}\nexec sleep 60\n")
     slow.chmod(0o755)
     monkeypatch.setattr(outcome.sys, "executable", str(slow))
-    sent = signalled(signal.SIGTERM, begun.exists)
+    drawing = lambda: begun.exists() and Scene.present.finished
+    sent = signalled(signal.SIGTERM, drawing)
     out = tmp_path / "out"
     assert carryOut(SMALL, parsed(*SHORT, "--out", str(out))) == 130
     assert time.monotonic() - sent[0] < PROMPT

@@ -18,6 +18,8 @@ import sys
 
 from .. import folders, memory
 from ..arguments import FilePath
+from ..basics import say
+from ..packages import Missing, needed
 from .crack_figure import cracks
 from .curve_figure import curve
 from .files import filesOf, onFolder
@@ -44,6 +46,11 @@ def _waitForFolder() -> list[str]:
         import matplotlib.style  # noqa: F401
     folder = sys.stdin.buffer.read()
     if not folder:
+        sys.exit(0)
+    try:
+        needed("matplotlib")
+    except Missing as missing:
+        say(f"the figures are left out: {missing}", sys.stderr)
         sys.exit(0)
     return [os.fsdecode(folder)]
 

@@ -8,6 +8,7 @@ Where the system gives no process the work is done at once instead.
 
 import contextlib
 import ctypes
+import math
 import os
 import pickle
 import select
@@ -18,6 +19,7 @@ import traceback
 
 from .results import Lock
 
+LONGEST = 60.0  # [s] that is waited for at once
 PARENT_ENDS = 1  # PR_SET_PDEATHSIG of prctl
 
 
@@ -56,7 +58,10 @@ class Job:
         while len(self._found) <= part and self._process:
             poll = select.poll()
             poll.register(self._reads, select.POLLIN)
-            if not poll.poll(1e3 * max(0.0, until - time.monotonic())):
+            rest = max(0.0, until - time.monotonic())
+            if not poll.poll(1e3 * min(rest, LONGEST)):
+                if rest > LONGEST:
+                    continue
                 return False
             if os.read(self._reads, 1):
                 with open(self._files[len(self._found)], "rb", closefd=False) as file:
@@ -70,8 +75,7 @@ class Job:
 
     def result(self, part=0):
         """A result; it is waited for. Raises what the work raised, or Failed if its process has ended without it."""
-        while not self.ready(part, 3600.0):
-            pass
+        self.ready(part, math.inf)
         found = self._found[-1] if self._found else None
         if isinstance(found, BaseException):
             raise found

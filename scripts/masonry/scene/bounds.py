@@ -37,6 +37,10 @@ TOLERANCE = 0.02
 #: tilts at which it ends, and the largest tilt [rad].
 TILTS, SAME_TILT, STEEPEST = 20, 1e-6, math.radians(89.9)
 FIGURE = "mechanism.png"
+#: The note of a bound that was not found when the run was interrupted. One that goes on in the same stage looks for it again.
+GIVEN_UP = (
+    "limit analysis: the run was interrupted before its end; scene.bound() finds it"
+)
 SILENT = 0.3  # so long something beside the run is waited for without a word [s]
 
 
@@ -68,18 +72,21 @@ class Bounds:
         """What was found, by the load: entries of run.json. A checkpoint keeps them."""
         return self.place.bounds
 
-    def push(self, target, direction, both=False, lowerUpTo=0):
+    def push(self, target, direction, both=False, lowerUpTo=0, beside=False):
         """Find the bound of a push [kN], without what acts beside it. Returns its entry of run.json, the last one if there are two.
 
         :param target: what is pushed
         :param direction: unit vector of the push
         :param both: whether it goes there and back
         :param lowerUpTo: up to so many joints a collapse without dilatancy is looked for, too, if the bound is not exact
+        :param beside: whether it is found beside the run, and the entry gets its numbers by :meth:`take`
         """
         for sign in (1, -1) if both else (1,):
             what = nameOfPush(target, sign * direction)
             live = lambda a: self._pushed(a, target, sign * direction)
-            entry = self._find(what, "kN", live, lowerUpTo, pushed=(target, direction))
+            entry = self._find(
+                what, "kN", live, lowerUpTo, beside, pushed=(target, direction)
+            )
         return entry
 
     def _pushed(self, assembly, target, direction):
@@ -90,30 +97,30 @@ class Bounds:
         block = assembly.ids.index(target.body)
         return assembly.force(block, 1e3 * np.array(direction), point)
 
-    def lean(self, towards, tilts=False, lowerUpTo=0):
+    def lean(self, towards, tilts=False, lowerUpTo=0, beside=False):
         """Find the bound of a horizontal acceleration [g]. Returns its entry of run.json.
 
         :param towards: unit vector
         :param tilts: whether gravity turns, and does not grow; the factor is then the horizontal over the vertical part
-        :param lowerUpTo: as of :meth:`push`
+        :param lowerUpTo: and ``beside``: as of :meth:`push`
         """
         scaled = GRAVITY / self.model.args.density_scaling
         what = nameOfLean(towards, tilts)
         live = lambda a: a.weights(scaled * np.array(towards))
         down = (0, 0, -self.model.gravity)  # it replaces another acceleration
         if not tilts:
-            return self._find(what, "g", live, lowerUpTo, gravity=down)
+            return self._find(what, "g", live, lowerUpTo, beside, gravity=down)
         share = self.model.gravity / scaled
         turned = lambda a: share * live(a)
-        return self._find(what, "", turned, lowerUpTo, tilts=True, gravity=down)
+        return self._find(what, "", turned, lowerUpTo, beside, tilts=True, gravity=down)
 
-    def forces(self, what, unit, loads, lowerUpTo=0):
+    def forces(self, what, unit, loads, lowerUpTo=0, beside=False):
         """Find the bound of forces that grow together. Returns its entry of run.json.
 
         :param what: name of the load
         :param unit: of its factor
         :param loads: pairs of a MasonryLoad and its force at a factor of 1 [N]
-        :param lowerUpTo: as of :meth:`push`
+        :param lowerUpTo: and ``beside``: as of :meth:`push`
         """
 
         def live(assembly):
@@ -123,18 +130,25 @@ class Bounds:
                 found += assembly.force(block, np.array(force), _pointOf(load, assembly))  # fmt: skip
             return found
 
-        return self._find(what, unit, live, lowerUpTo)
+        return self._find(what, unit, live, lowerUpTo, beside)
 
     def _find(
-        self, what, unit, load, lowerUpTo, tilts=False, pushed=None, gravity=None
+        self,
+        what,
+        unit,
+        load,
+        lowerUpTo,
+        beside,
+        tilts=False,
+        pushed=None,
+        gravity=None,
     ):
-        beside = not lowerUpTo
         self.take(True)
         known, model = self.entries.get(what), self.model
         acting = self._acting(gravity or model.now)
         same = self.place.beside.get(what, acting) == acting
         self.place.beside = {**self.place.beside, what: acting}
-        if known and same and not lowerUpTo:
+        if known and same and not lowerUpTo and known.get("note") != GIVEN_UP:
             return known
         if not same:  # what was held before was held beside other loads
             self.place.held = {k: v for k, v in self.place.held.items() if k != what}
@@ -228,20 +242,23 @@ class Bounds:
                     files[name] = file.read()
         yield files
 
-    def take(self, wait, most=math.inf):
+    def take(self, wait, givesUp=lambda: False):
         """Take the bound that is found beside the run, if it is there.
 
         :param wait: whether to wait for it
-        :param most: how long at most [s]; it is given up then
+        :param givesUp: function that says while it is waited for whether to do without it
         """
         job, what = self._job, self._looksFor
         if not what or not (wait or job.ready()):
             return
-        if not job.ready(0, min(most, SILENT)):
+        if not job.ready(0, SILENT):
             say("waiting for limit analysis")
+        while not job.ready(0, SILENT):
+            if givesUp():
+                self._note(what, {"note": GIVEN_UP}, [f"note: {GIVEN_UP}"], False, None)
+                self.drop()
+                return
         try:
-            if not job.ready(0, most):
-                job.end()
             self._note(what, *job.result())
         except Failed as failed:
             note = f"limit analysis: {failed}"

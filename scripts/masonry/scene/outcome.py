@@ -5,7 +5,6 @@ import math
 import os
 import subprocess
 import sys
-from importlib.util import find_spec
 
 from yade import O
 from yade.wrapper import MasonryVtkRecorder
@@ -14,7 +13,7 @@ from ..assembly import columns
 from ..assembly.blocks import units
 from ..basics import Unwritable, say, withoutCollector
 from ..memory import FULL
-from ..packages import Missing, needed
+from ..packages import Missing
 from ..read import cracks, measure
 from ..read.curves import (
     cycleNumbers,
@@ -432,12 +431,6 @@ class Outcome:
     def draw(self, directory):
         """Draw the figures of a run that has ended, in a program of its own. Raises Unwritable if that fails. Without matplotlib
         a note says that they are left out."""
-        if not find_spec("matplotlib"):
-            try:
-                needed("matplotlib")
-            except Missing as missing:
-                say(f"the figures are left out: {missing}", sys.stderr)
-                return
         try:
             self.prepare()
             self._drawing.communicate(os.fsencode(directory))

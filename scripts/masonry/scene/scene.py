@@ -28,6 +28,7 @@ import functools
 import math
 import os
 import sys
+import time
 from typing import (
     Any,
     Callable,
@@ -57,7 +58,7 @@ from ..run.presets import BOUND
 from ..run.results import Results
 from ..run.run import Run
 from . import loads, options, probing, records, showing, stages, supports
-from .bounds import EVERY, SMALL, Bounds, nameOfLean, nameOfPush
+from .bounds import EVERY, GIVEN_UP, SMALL, Bounds, nameOfLean, nameOfPush
 from .description import Description
 from .materials import Masonry, linesOf, loadingBlock
 from .outcome import Outcome
@@ -500,27 +501,28 @@ class Scene:
             return known
         return self._find("lean", towards, lowerUpTo=EVERY)
 
-    def _find(self, kind, *load, lowerUpTo):
+    def _find(self, kind, *load, lowerUpTo, beside=False):
         """Find a bound, which Ctrl-C and SIGTERM end at once: a method of :class:`masonry.scene.bounds.Bounds`."""
         with self.running.breakable():
-            return getattr(self.bounds, kind)(*load, lowerUpTo=lowerUpTo)
+            return getattr(self.bounds, kind)(*load, lowerUpTo=lowerUpTo, beside=beside)
 
     def _takeFound(self, wait):
         """Take the bound that is found beside the run; a run that is interrupted does not wait long for it."""
-        interrupted = self.running.interrupted
-        self.bounds.take(wait, SOON if interrupted else math.inf)
-        if not (interrupted or self.args.lean):
-            with contextlib.suppress(
-                OSError
-            ):  # it is said when there is something to draw
+        began, running = time.monotonic(), self.running
+        late = lambda: running.interrupted and time.monotonic() - began > SOON
+        self.bounds.take(wait, late)
+        if not (running.interrupted or self.args.lean):
+            with contextlib.suppress(OSError):  # it is said when figures are drawn
                 self.outcome.prepare()
 
     def findBound(self, kind: str, *load: Any) -> None:
         """Find the bound of a stage, which pushes or leans, as :meth:`_find`."""
         resumed = self.running.redoes and self.running.takesUp
-        if self.args.lean and not self.only or resumed:
+        missing = any(e.get("note") == GIVEN_UP for e in self.bounds.entries.values())
+        if self.args.lean and not self.only or resumed and not missing:
             return  # in a stage that goes on it was found when that began
-        self._find(kind, *load, lowerUpTo=SMALL if self.only else 0)
+        upTo = SMALL if self.only else 0
+        self._find(kind, *load, lowerUpTo=upTo, beside=not self.only)
 
     # -- the end --------------------------------------------------------------------------------------------------
 
