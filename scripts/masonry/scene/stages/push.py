@@ -128,6 +128,10 @@ def follow(
 
 def _drive(scene, name, target, aims, direction, rate, continued):
     args = _argumentsOf(scene, name, aims)
+    if rate is not None and args.accuracy:
+        raise Refused(
+            f"--accuracy: it chooses the rate, and {name}() has one of its own: rate={rate:g} mm/s"
+        )
     args.rate = args.rate if rate is None else rate
     model = scene.model
     direction = vector(direction, f"{name}: direction").normalized()
