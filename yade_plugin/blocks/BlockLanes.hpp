@@ -94,10 +94,10 @@ struct ScaledUnits {
 // Damping acts on the rigid motion of blocks and on the rest of the motion, each for itself: as moveBlocks() would on
 // masses M under the rigid part of the forces, and on masses (1 + s) M under the rest. What it takes at a node is then
 // projected on its part. The parts are orthogonal under both masses, and a projection makes nothing larger, so damping
-// takes energy in every step and reverses no part of the motion. If it acted on the forces of the nodes as they are, the
-// slow vibration of blocks would be a friction on their rigid motion. Viscous damping is in proportion to M*. The
-// kinetic energy is that of M*; what belongs to two units stands in the sums of the first. `scratch` is working memory of
-// nine rows a node of all units.
+// takes energy in every step and reverses no part of the motion. If it acted on the forces of the nodes as they are,
+// the slow vibration of blocks would be a friction on their rigid motion. Viscous damping is in proportion to M*. The
+// kinetic energy is that of M*; what belongs to two units stands in the sums of the first. `scratch` is working memory
+// of nine rows a node of all units.
 void moveScaled(const NodeMotion&, double scaling, ScaledUnits* units, int count, const Row& whole, Row* scratch);
 
 } // namespace masonry

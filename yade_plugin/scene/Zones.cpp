@@ -190,12 +190,18 @@ void Zones::addUnit(int number, int n) {
     batch.units.push_back(number);
 }
 
+// Whether both bodies of a brick are deformable, and both in the plane or both in space.
+bool Zones::isPair(const Brick& brick) {
+    const auto *one = unitOf(brick.body1), *two = unitOf(brick.body2);
+    return one && two && one->elasticity->mesh().across == two->elasticity->mesh().across;
+}
+
 // Gives both units of every brick the same lane in two batches that are moved together.
 void Zones::pairUp() {
     std::map<std::pair<const BlockElasticity*, const BlockElasticity*>, int> open; // the last team of two kinds
     for (std::size_t b = 0; b < bricks_.size(); ++b) {
+        if (!isPair(bricks_[b])) continue;
         const auto *one = unitOf(bricks_[b].body1), *two = unitOf(bricks_[b].body2);
-        if (!one || !two || one->elasticity->mesh().across != two->elasticity->mesh().across) continue;
         const auto [at, fresh] = open.emplace(std::pair(one->elasticity.get(), two->elasticity.get()), -1);
         if (fresh || teams_[at->second].bricks.size() == lanes) {
             at->second = int(teams_.size());
@@ -501,15 +507,17 @@ void Zones::followMasses(const SceneStore& store) {
     scaledBy = massScaling;
 }
 
+// They do not depend on how the units are laid out, which may have changed since the last step.
 std::vector<Zones::Block> Zones::blocks() {
     std::vector<Block> all;
-    for (const auto& team : teams_)
-        for (std::size_t lane = 0; lane < batches_[team.first].units.size(); ++lane) {
-            all.push_back({{&units_[batches_[team.first].units[lane]]}, false});
-            if (team.second < 0) continue;
-            all.back().units.push_back(&units_[batches_[team.second].units[lane]]);
-            all.back().split = bricks_[team.bricks[lane]].split;
-        }
+    std::vector<bool> taken(units().size(), false);
+    for (const auto& brick : bricks_) {
+        if (!isPair(brick)) continue;
+        all.push_back({{unitOf(brick.body1), unitOf(brick.body2)}, brick.split});
+        taken[unitOfBody_[brick.body1]] = taken[unitOfBody_[brick.body2]] = true;
+    }
+    for (std::size_t u = 0; u < units_.size(); ++u)
+        if (!taken[u]) all.push_back({{&units_[u]}, false});
     return all;
 }
 

@@ -151,6 +151,7 @@ private:
         std::vector<int> bricks; // number of the brick in every lane
     };
     void addUnit(int unit, int batch);
+    bool isPair(const Brick&);
     void pairUp();
     void advanceTeam(const Team&, const NodeMotion&, BodyColumns&, std::vector<NodeSums>&, std::vector<Row>& energies);
     std::vector<int> crackedNow(const SceneStore&, bool everything) const;
