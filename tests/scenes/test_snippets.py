@@ -32,6 +32,7 @@ REASONS = {
     r".*tests/references/references\.py": "tests/host/test_references.py",
     r".*validation/\w+/?\w*\.py": "minutes or hours; tests/scenes/test_validation.py and its like run parts of them",
     r".*(masonry\.study|masonry\.study\.report) (validation|results/validation)/": "minutes or hours: a study of validation/",
+    r".*wall_comp4\.py --accuracy": "minutes: tests/scenes/test_accuracy.py has a small wall",
     r".*vtable\.py FOLDER": "needs an unpacked YADE of another release",
     r"jupyter": "opens a browser",
 }  # fmt: skip

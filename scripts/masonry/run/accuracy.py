@@ -35,8 +35,9 @@ from .presets import CHOSEN, COMPANIONS, FIDELITIES, MAIN, asOption, fidelityOf
 
 FOLDER = "accuracy"  # of the companions, in that of the results
 PLAN = "plan.json"  # there: what was run, while it goes on
-#: Name in the environment of a companion. Its scene looks at no other runs.
+#: Name in the environment of a companion, with the number of the process that started it. Its scene looks at no other runs.
 COMPANION = "MASONRY_COMPANION"
+_parent = os.environ.pop(COMPANION, None)  # what a companion itself starts is none
 LOOK_EVERY = 0.05  # [s]
 DIES_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux
 #: Half the width of a 95 % interval over the range of three runs, for the difference from another run: Student's t with two
@@ -117,15 +118,15 @@ def needed(number: int) -> list[str]:
 
 def isCompanion() -> bool:
     """Whether this process is a companion of another run."""
-    return COMPANION in os.environ
+    return _parent is not None
 
 
 def endWithParent() -> None:
     """Let a companion end in order when the run beside which it was started is gone, also if that was killed."""
-    if isCompanion() and sys.platform == "linux":
+    if _parent is not None and sys.platform == "linux":
         with contextlib.suppress(AttributeError, OSError):
             ctypes.CDLL(None).prctl(DIES_WITH_PARENT, signal.SIGTERM, 0, 0, 0)
-        if os.getppid() != int(os.environ[COMPANION]):
+        if os.getppid() != int(_parent):
             os.kill(os.getpid(), signal.SIGTERM)
 
 

@@ -158,7 +158,8 @@ class Outcome:
             rows = self._pushRows()
             found.update(self._ofPush(lambda head: [column(head)[n] for n in rows]))
             found.update(self._ofCracks(column))
-            if scene.accuracy:
+            if scene.accuracy and not scene.running.interrupted:
+                # a push that is not over is shorter than those of its companions
                 found.update(self._ofAccuracy(found, column))
         found["answers"] = scene.answers
         return found
@@ -176,8 +177,7 @@ class Outcome:
         stage = {"stage": "push", "number": int(number)}
         others = [a for a in at.answers.get(number, []) if a["name"] not in names]
         at.answers = {**at.answers, number: [*({**stage, **one} for one in own), *others]}  # fmt: skip
-        if not self.scene.running.interrupted:
-            asked.companions.over()
+        asked.companions.over()
         return entries
 
     def _ofCracks(self, column):
