@@ -84,7 +84,7 @@ def test_a_push_is_the_shear_force_below_and_its_lever_arm_the_moment(
     tmp_path, scene, plane, axis, blocks
 ):
     """The platen can turn, so what acts on it are the push and the pressure, at places that are known."""
-    words = "--blocks", blocks, "--rate", "5"
+    words = "--blocks", blocks, "--rate", "2.5"
     wall = made(tmp_path, bricks.Wall(0.66, 0.486), *words, plane=plane)
     wall.platen("bottom")
     top = wall.platen("top", rotation="free", height=0.1)

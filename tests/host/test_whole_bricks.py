@@ -428,8 +428,8 @@ def test_what_reads_the_scene_again_changes_nothing():
 
 @pytest.mark.parametrize("inPlane", [True, False], ids=["plane", "space"])
 def test_a_wall_of_whole_bricks_is_one_of_single_blocks(inPlane):
-    """Stiffness of the joints, forces and motion. In a longer run damping, which depends on the sign of changes, lets
-    round-off grow: two runs of single blocks whose time steps differ in the last digit are 5e-4 apart after 2,000 steps.
+    """Stiffness of the joints, forces and motion, without numerical damping: it depends on the sign of changes, so that
+    round-off alone decides about it where nothing moves yet.
     """
     runs = []
     for single in (False, True):
@@ -437,11 +437,14 @@ def test_a_wall_of_whole_bricks_is_one_of_single_blocks(inPlane):
         interactions = wall(
             inPlane=inPlane, single=single, speed=0.05, bed=bed, elastic=True
         )
+        integrator().damping = 0
         advance(100)
         drive = next(e for e in O.engines if isinstance(e, MasonryLoad))
         top = O.bodies[len(O.bodies) - 1].state
         energies = balance()
         assert abs(energies.pop("error")) < 1e-7
+        # A joint of a plate has other points than its two halves: the same energy, with other signs of the stress.
+        energies["elastic_tension"] += energies.pop("elastic_compression")
         joints = [i for i in interactions if i.phys.joint.name != "crack"]
         stiffness = {
             round(i.phys.normalStiffness / 1e5)

@@ -1195,13 +1195,13 @@ TEST_CASE("every property is described once, with a meaning, a unit and a source
             CHECK(p.*member >= description.usualLow);
         }
     });
-    CHECK(names.size() == 30);
+    CHECK(names.size() == 31);
     CHECK(bytes + 16 >= sizeof(JointProperties)); // no member is left out; the rest is the padding after two switches
     CHECK(names.count("compressiveFractureEnergy") == 1);
 }
 
 TEST_CASE("a law reads properties that are described, and every property is read by a law") {
-    std::set<std::string> unread; // by laws; everybody reads name, stiffnesses, law and elastic
+    std::set<std::string> unread; // by laws; everybody reads name, stiffnesses, law, elastic and monolithic
     JointProperties::describe([&](const char* name, auto, const Property&) { unread.insert(name); });
     CHECK(laws().size() == 2);
     CHECK(laws()[0].name == JointProperties{}.law);
@@ -1209,7 +1209,7 @@ TEST_CASE("a law reads properties that are described, and every property is read
         JointProperties::describe([&](const char* name, auto, const Property&) {
             if (law.reads(name)) unread.erase(name);
         });
-    CHECK(unread == std::set<std::string>{"name", "normalStiffness", "shearStiffness", "law", "elastic"});
+    CHECK(unread == std::set<std::string>{"name", "normalStiffness", "shearStiffness", "law", "elastic", "monolithic"});
     JointProperties p;
     p.law = "cyclical";
     CHECK(problemsOf(p) == std::vector<std::string>{"law \"cyclical\" must be one of: softening, cyclic"});

@@ -16,7 +16,7 @@ void MasonryZones::postLoad() {
 void MasonryZones::action() {
     const EngineTurn turn(*scene, *this);
     if (!turn->loop) gatherFromFunctors(turn->joints, *this);
-    followMasses(turn.store());
+    followMasses(turn->kinds);
     advance(*scene, turn->bodies, turn->gravity(), turn->massDamping());
     turn.end();
 }

@@ -30,10 +30,10 @@ void Integrator::setLastForces(const std::vector<Vector3r>& all) {
     }
 }
 
-void Integrator::advance(SceneStore& store) {
-    auto& scene = store.scene();
-    auto& bodies = store.bodies;
-    const auto& loads = store.loads;
+void Integrator::advance(SceneContents& contents) {
+    auto& scene = contents.scene();
+    auto& bodies = contents.bodies;
+    const auto& loads = contents.loads;
     const int count = bodies.size();
     if (std::size_t(count) < last_[0].size())
         throw std::invalid_argument("MasonryIntegrator remembers forces of " + std::to_string(last_[0].size()) +
@@ -47,7 +47,7 @@ void Integrator::advance(SceneStore& store) {
         load->workBefore(scene.dt, bodies.state(load->body));
     }
     const WholeBricks::Around around{scene.dt, gravity, damping, massDamping, combined(), last_, on.forces, on.torques};
-    bricks.notice(store, around);
+    bricks.notice(contents, around);
     // The pieces over which energies are summed up do not depend on the number of threads, so neither do the sums.
     constexpr int piece = RigidMotion::most;
     const int pieces = (count + piece - 1) / piece;
@@ -61,9 +61,9 @@ void Integrator::advance(SceneStore& store) {
     if (ofBricks > 0)
         Parallel::instance().overPieces(ofBricks, 1, [&](int first, int beyond) {
             for (int n = first; n < beyond; ++n)
-                found[pieces + n].energies = bricks.advancePiece(store, around, n);
+                found[pieces + n].energies = bricks.advancePiece(contents, around, n);
         });
-    bricks.splitYielded(store, around);
+    bricks.splitYielded(contents, around);
     const double before = fallen;
     Vector3r moment = Vector3r::Zero();
     beginStep();

@@ -2,6 +2,7 @@
 #include "Resultant.hpp"
 #include "BodyCheck.hpp"
 #include "Integrator.hpp"
+#include "SceneStore.hpp"
 #include "StepGate.hpp"
 #include "Zones.hpp"
 

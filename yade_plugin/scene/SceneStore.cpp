@@ -58,7 +58,7 @@ bool sameStates(const yade::Scene& scene, const BodyColumns& bodies) {
 
 } // namespace
 
-SceneStore::SceneStore(yade::Scene& scene) : scene_(scene), life_(scene.shared_from_this()) {}
+SceneStore::SceneStore(yade::Scene& scene) : SceneContents(scene), life_(scene.shared_from_this()) {}
 
 SceneStore& SceneStore::of(yade::Scene& scene) {
     // Never destroyed: what it holds may belong to Python, which ends first.

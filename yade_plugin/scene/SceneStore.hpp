@@ -2,9 +2,8 @@
 // The view of a scene that all engines of this plugin share: its engines, bodies and joints. It is read again when they
 // have changed. It owns the columns in which the state of joints and rigid bodies lives.
 #pragma once
-#include "BodyColumns.hpp"
 #include "Collapse.hpp"
-#include "JointView.hpp"
+#include "SceneContents.hpp"
 
 namespace masonry {
 
@@ -12,13 +11,7 @@ class Integrator;
 class Load;
 class Zones;
 
-// What others use of the engine that makes the step of the joints.
-struct JointLoop {
-    double stiffnessDamping = 0; // stiffness-proportional viscous damping of joints [s]
-    double dampingWork = 0;      // energy that it has taken so far [J]
-};
-
-class SceneStore {
+class SceneStore : public SceneContents {
 public:
     static SceneStore& of(yade::Scene&);
     static SceneStore& present(); // the store of the scene that Python works on
@@ -38,15 +31,11 @@ public:
     void connected();
     bool isConnected() const { return !connected_.empty(); }
 
-    yade::Scene& scene() const { return scene_; }
     bool gone() const { return life_.expired(); }
     // Expires when the scene ends.
     const boost::weak_ptr<yade::Factorable>& life() const { return life_; }
-    // A number that changes whenever bodies or joints were read again. No two readings of any scenes have the same.
-    long revision() const { return revision_; }
 
     // The engines of the scene that are not dead; null if there is none of a class.
-    JointLoop* loop = nullptr;
     Zones* zones = nullptr;
     Integrator* integrator = nullptr;
     const yade::NewtonIntegrator* hostIntegrator = nullptr;
@@ -54,17 +43,7 @@ public:
     const yade::Engine* last = nullptr;  // the last of this plugin's engines in a step; recorders do not count
     std::string endsWith;                // why the run ends after this step; empty: it goes on
     bool watched = false;                // whether an engine watches over the run: it looks for a collapse itself
-    std::vector<Load*> loads;
-    std::vector<Load*> allLoads; // also those that are dead, whose work so far counts
-
-    BodyColumns bodies;
-    std::vector<JointKind> kinds;
-    std::vector<JointView> joints; // of all kinds, in the host's order
-    // The joints of bricks that have split since the joints' last step: their JointReference has changed.
-    struct Split {
-        int kind, joint; // place in `kinds`
-    };
-    std::vector<Split> splits;
+    std::vector<Load*> allLoads;         // also those that are dead, whose work so far counts
 
     // Looks whether a block has collapsed.
     Collapse findCollapse(const CollapseLimits&);
@@ -96,9 +75,7 @@ private:
     void readEngines();
     void readJoints();
 
-    yade::Scene& scene_;
     boost::weak_ptr<yade::Factorable> life_;
-    long revision_ = 0;
     long seenChanges_ = -1;                                     // value of `changes` when the joints were last read
     std::size_t seenInteractions_ = 0;                          // number of interactions when the joints were last read
     long seenStep_ = -1;                                        // step in which the bodies were last looked at

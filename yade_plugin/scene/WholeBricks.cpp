@@ -144,8 +144,8 @@ void WholeBricks::setNumbers(const std::vector<double>& all) {
     revision_ = -1;
 }
 
-void WholeBricks::update(SceneStore& store) {
-    if (revision_ == store.revision() && !restore_) return;
+void WholeBricks::update(SceneContents& scene) {
+    if (revision_ == scene.revision() && !restore_) return;
     std::map<std::pair<int, int>, std::vector<double>> known; // numbers of the bricks by their bodies
     const auto before = numbers();
     constexpr std::size_t width = 2 + 13 + 6 + 14 + 6 + 1 + 9;
@@ -156,17 +156,17 @@ void WholeBricks::update(SceneStore& store) {
     restore_ = false;
     bricks_.clear();
     boxes_.clear();
-    auto& bodies = store.bodies;
+    auto& bodies = scene.bodies;
     brickOf_.assign(bodies.size(), -1);
     bodies.isHalf.assign(bodies.size(), false);
     std::map<const JointShapes*, int> kindOf;
-    for (int k = 0; k < int(store.kinds.size()); ++k) {
-        kindOf[store.kinds[k].shapes.get()] = k;
-        store.kinds[k].shapes->whole.clear();
+    for (int k = 0; k < int(scene.kinds.size()); ++k) {
+        kindOf[scene.kinds[k].shapes.get()] = k;
+        scene.kinds[k].shapes->whole.clear();
     }
-    if (store.loop)
-        for (const auto& pair : monolithicPairs(store)) {
-            const auto& joint = store.joints[pair.joint];
+    if (scene.loop)
+        for (const auto& pair : monolithicPairs(scene)) {
+            const auto& joint = scene.joints[pair.joint];
             if (pair.split || joint.geom->reference().attached) continue;
             Brick brick;
             brick.body[0] = pair.body1;
@@ -183,12 +183,12 @@ void WholeBricks::update(SceneStore& store) {
         if (found != known.end()) {
             const double* next = found->second.data();
             eachNumber(n, [&](double& number) { number = *next++; });
-            complete(store, n);
-            whole = asPlaced(store, n);
+            complete(scene, n);
+            whole = asPlaced(scene, n);
         } else
             whole = false;
-        if (!whole) whole = adopt(store, n);
-        auto& kind = store.kinds[brick.kind];
+        if (!whole) whole = adopt(scene, n);
+        auto& kind = scene.kinds[brick.kind];
         if (!whole) { // a script has moved its halves against each other, or holds one of them
             kind.shapes->joints[brick.joint].split = true;
             continue;
@@ -204,7 +204,7 @@ void WholeBricks::update(SceneStore& store) {
             brick.momentum[side] = bodies.state(brick.body[side]).angMom;
         }
     }
-    revision_ = store.revision();
+    revision_ = scene.revision();
 }
 
 // Whether both halves are held in the same axes, as halves of a brick can be.
@@ -215,13 +215,13 @@ bool WholeBricks::held(const BodyColumns& bodies, int n, unsigned& blocked) cons
 }
 
 // Makes a brick of the present places and motions of its halves. Returns false if these are not those of one body.
-bool WholeBricks::adopt(SceneStore& store, int n) {
+bool WholeBricks::adopt(SceneContents& scene, int n) {
     auto& brick = bricks_[n];
-    const auto& bodies = store.bodies;
+    const auto& bodies = scene.bodies;
     unsigned blocked;
     if (!held(bodies, n, blocked)) return false;
     const State* s[2] = {&bodies.state(brick.body[0]), &bodies.state(brick.body[1])};
-    const auto& r = store.kinds[brick.kind].shapes->joints[brick.joint];
+    const auto& r = scene.kinds[brick.kind].shapes->joints[brick.joint];
     const double mass = s[0]->mass + s[1]->mass;
     const Vector3r centre = (s[0]->mass * s[0]->pos + s[1]->mass * s[1]->pos) / mass;
     Vector3r velocity = (s[0]->mass * s[0]->vel + s[1]->mass * s[1]->vel) / mass;
@@ -275,16 +275,16 @@ bool WholeBricks::adopt(SceneStore& store, int n) {
         put(own_.velocity, n, Vector3r(Vector3r::Zero()));
         put(own_.velocity + 3, n, Vector3r(Vector3r::Zero()));
     }
-    complete(store, n);
+    complete(scene, n);
     return true;
 }
 
 // Finds what follows from the numbers of a brick, from its halves and from its joint.
-void WholeBricks::complete(const SceneStore& store, int n) {
+void WholeBricks::complete(const SceneContents& scene, int n) {
     auto& brick = bricks_[n];
-    const auto& bodies = store.bodies;
-    const auto& shapes = *store.kinds[brick.kind].shapes;
-    const auto& columns = *store.kinds[brick.kind].states->columns;
+    const auto& bodies = scene.bodies;
+    const auto& shapes = *scene.kinds[brick.kind].shapes;
+    const auto& columns = *scene.kinds[brick.kind].states->columns;
     const auto& r = shapes.joints[brick.joint];
     const Quaternionr turned = turnOf(own_.orientation, n);
     Matrix3r tensor = Matrix3r::Zero();
@@ -353,8 +353,8 @@ void WholeBricks::complete(const SceneStore& store, int n) {
 }
 
 // Whether the halves are where the brick says, and move as it says.
-bool WholeBricks::asPlaced(const SceneStore& store, int n) const {
-    const auto& bodies = store.bodies;
+bool WholeBricks::asPlaced(const SceneContents& scene, int n) const {
+    const auto& bodies = scene.bodies;
     const auto& brick = bricks_[n];
     unsigned blocked;
     if (!held(bodies, n, blocked) || brick.spins != ((blocked >> 3) == 0)) return false;
@@ -369,7 +369,7 @@ bool WholeBricks::asPlaced(const SceneStore& store, int n) const {
         const Vector3r arm = turned * vectorOf(local_[side], n);
         const double length = arm.norm(), speed = velocity.norm() + length * spin.norm();
         // velocities belong to the middle of the step
-        const double step = 2 * store.scene().dt * spin.squaredNorm() * length;
+        const double step = 2 * scene.scene().dt * spin.squaredNorm() * length;
         if (!((s.pos - centre - arm).norm() <= round * (length + centre.norm())) ||
             !((turned * turnOf(turned_[side], n)).angularDistance(s.ori) <= 1e-7) ||
             !((s.vel - velocity - spin.cross(arm)).norm() <= step + round * speed) ||
@@ -386,9 +386,9 @@ bool WholeBricks::asPlaced(const SceneStore& store, int n) const {
 
 int WholeBricks::pieces() const { return (int(bricks_.size()) + piece - 1) / piece; }
 
-void WholeBricks::notice(SceneStore& store, const Around& around) {
-    auto& bodies = store.bodies;
-    const bool thoroughly = store.scene().iter % 10 == 0;
+void WholeBricks::notice(SceneContents& scene, const Around& around) {
+    auto& bodies = scene.bodies;
+    const bool thoroughly = scene.scene().iter % 10 == 0;
     for (int n = 0; n < int(bricks_.size()); ++n) {
         auto& brick = bricks_[n];
         if (!brick.whole) continue;
@@ -406,10 +406,10 @@ void WholeBricks::notice(SceneStore& store, const Around& around) {
         const bool alike = held(bodies, n, blocked);
         brick.blocked = blocked;
         if (!alike) {
-            split(store, around, n, true);
+            split(scene, around, n, true);
             carry(around, n);
-        } else if (!asPlaced(store, n) && !adopt(store, n))
-            split(store, around, n, false);
+        } else if (!asPlaced(scene, n) && !adopt(scene, n))
+            split(scene, around, n, false);
     }
 }
 
@@ -427,9 +427,9 @@ void WholeBricks::carry(const Around& around, int n) {
     around.torques[brick.body[1]] -= moment + (arm - between).cross(force);
 }
 
-EnergyLedger WholeBricks::advancePiece(SceneStore& store, const Around& around, int number) {
+EnergyLedger WholeBricks::advancePiece(SceneContents& scene, const Around& around, int number) {
     const int first = number * piece, count = std::min(piece, int(bricks_.size()) - first);
-    auto& bodies = store.bodies;
+    auto& bodies = scene.bodies;
     EnergyLedger sum;
     RigidMotion motion;
     double force1[3][piece] = {}, torque1[3][piece] = {}, released[6][piece];
@@ -528,7 +528,7 @@ EnergyLedger WholeBricks::advancePiece(SceneStore& store, const Around& around, 
         sum.pendingExternal = sum.external;
     }
     for (int i = 0; spinning && i < count; ++i)
-        if (moves[i] == 2) sum.add(turnFreely(store, around, first + i, on[i]));
+        if (moves[i] == 2) sum.add(turnFreely(scene, around, first + i, on[i]));
 
     double placed[2][13][piece];
     for (int side = 0; side < 2; ++side) {
@@ -582,10 +582,10 @@ EnergyLedger WholeBricks::advancePiece(SceneStore& store, const Around& around, 
 }
 
 // A step of a brick that turns freely in space; leaves its motion in the columns, for its halves.
-EnergyLedger WholeBricks::turnFreely(SceneStore& store, const Around& around, int n, const Vector3r (&on)[4]) {
+EnergyLedger WholeBricks::turnFreely(SceneContents& scene, const Around& around, int n, const Vector3r (&on)[4]) {
     auto& brick = bricks_[n];
     auto& s = *brick.state;
-    const auto& bodies = store.bodies;
+    const auto& bodies = scene.bodies;
     s.isDamped = bodies.isDamped(brick.body[0]) && bodies.isDamped(brick.body[1]);
     const Vector3r arm1 = vectorOf(arm_[0], n), arm2 = vectorOf(arm_[1], n);
     const BodyForces all{on[0] + on[2], on[1] + on[3] + arm1.cross(on[0]) + arm2.cross(on[2])};
@@ -636,10 +636,10 @@ LinearStress stressOf(const Vector3r& force, const Vector3r& moment, double perA
 
 } // namespace
 
-bool WholeBricks::yields(const SceneStore& store, int n) const {
+bool WholeBricks::yields(const SceneContents& scene, int n) const {
     const auto& brick = bricks_[n];
-    const auto& shapes = *store.kinds[brick.kind].shapes;
-    const auto& columns = *store.kinds[brick.kind].states->columns;
+    const auto& shapes = *scene.kinds[brick.kind].shapes;
+    const auto& columns = *scene.kinds[brick.kind].states->columns;
     const auto stress = stressOf(vectorOf(force_, n), vectorOf(moment_, n), perArea_[n], bend_[0][n], bend_[1][n],
                                  bend_[2][n], twist_[n]);
     for (int p = 0; p < shapes.points; ++p) {
@@ -650,18 +650,18 @@ bool WholeBricks::yields(const SceneStore& store, int n) const {
     return false;
 }
 
-void WholeBricks::splitYielded(SceneStore& store, const Around& around) {
+void WholeBricks::splitYielded(SceneContents& scene, const Around& around) {
     for (int n = 0; n < int(bricks_.size()); ++n)
-        if (outside_[n] && bricks_[n].whole && yields(store, n)) split(store, around, n, true);
+        if (outside_[n] && bricks_[n].whole && yields(scene, n)) split(scene, around, n, true);
 }
 
 // Makes two blocks of a brick. Where they are, the crack surface gets the jump under which its law carries force and
 // moment of the last step: its reference moves, and the blocks stay. `loaded`: whether it carries them at all.
-void WholeBricks::split(SceneStore& store, const Around& around, int n, bool loaded) {
+void WholeBricks::split(SceneContents& scene, const Around& around, int n, bool loaded) {
     auto& brick = bricks_[n];
-    auto& bodies = store.bodies;
-    auto& shapes = *store.kinds[brick.kind].shapes;
-    auto& columns = *store.kinds[brick.kind].states->columns;
+    auto& bodies = scene.bodies;
+    auto& shapes = *scene.kinds[brick.kind].shapes;
+    auto& columns = *scene.kinds[brick.kind].states->columns;
     auto& r = shapes.joints[brick.joint];
     brick.whole = false;
     outside_[n] = 0;
@@ -705,7 +705,7 @@ void WholeBricks::split(SceneStore& store, const Around& around, int n, bool loa
         r.sides[1].orientation = axes * by.conjugate() * axes.conjugate() * r.sides[1].orientation;
         r.sides[1].position = r.sides[0].position + r.axes() * span;
     }
-    store.splits.push_back({brick.kind, brick.joint});
+    scene.splits.push_back({brick.kind, brick.joint});
 
     // The halves go on as they moved, and damping remembers what they were accelerated by.
     const Vector3r lastTurn = vectorOf(last_ + 3, n);

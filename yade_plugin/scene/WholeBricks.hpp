@@ -3,7 +3,7 @@
 // integrator owns them. README.md, Whole bricks, says how a brick splits.
 #pragma once
 #include "BodyColumns.hpp"
-#include "SceneStore.hpp"
+#include "SceneContents.hpp"
 #include "motion/EnergyLedger.hpp"
 #include <array>
 #include <map>
@@ -38,15 +38,15 @@ public:
 
     // Reads the bricks of a scene that has changed, and tells the columns of joints which of them are whole. A brick is
     // whole if the scene has a MasonryJointLoop, both blocks are rigid and are held in the same axes.
-    void update(SceneStore&);
+    void update(SceneContents&);
     int pieces() const; // of advancePiece()
     // Looks at what scripts have done to the bricks since the last step. A brick whose halves were moved against each
     // other, or of which one half is held otherwise than the other, splits.
-    void notice(SceneStore&, const Around&);
+    void notice(SceneContents&, const Around&);
     // Makes a step of the bricks of a piece. Threads may take different pieces.
-    EnergyLedger advancePiece(SceneStore&, const Around&, int piece);
+    EnergyLedger advancePiece(SceneContents&, const Around&, int piece);
     // Splits the bricks whose crack surface has yielded in this step.
-    void splitYielded(SceneStore&, const Around&);
+    void splitYielded(SceneContents&, const Around&);
 
     const Carrier* carrierOf(int body, Carrier&) const; // null if the body is no half of a whole brick
     std::vector<Section> sections() const;
@@ -62,7 +62,7 @@ public:
 private:
     struct Brick {
         int body[2];
-        int kind, joint; // place of the joint in SceneStore::kinds
+        int kind, joint; // place of the joint in SceneContents::kinds
         bool whole = false;
         bool spins = false;         // whether it turns freely in space
         unsigned blocked = 0;       // axes in which both halves are held, as in State.blockedDOFs
@@ -73,14 +73,14 @@ private:
         std::unique_ptr<yade::State> state; // of a brick that turns freely
     };
     void resize(int count);
-    bool adopt(SceneStore&, int brick);
-    void complete(const SceneStore&, int brick);
-    bool asPlaced(const SceneStore&, int brick) const;
+    bool adopt(SceneContents&, int brick);
+    void complete(const SceneContents&, int brick);
+    bool asPlaced(const SceneContents&, int brick) const;
     void carry(const Around&, int brick);
     bool held(const BodyColumns&, int brick, unsigned& blocked) const;
-    EnergyLedger turnFreely(SceneStore&, const Around&, int brick, const yade::Vector3r (&on)[4]);
-    bool yields(const SceneStore&, int brick) const;
-    void split(SceneStore&, const Around&, int brick, bool loaded);
+    EnergyLedger turnFreely(SceneContents&, const Around&, int brick, const yade::Vector3r (&on)[4]);
+    bool yields(const SceneContents&, int brick) const;
+    void split(SceneContents&, const Around&, int brick, bool loaded);
     template <class F> void eachNumber(int brick, F&& visit);
     yade::Vector3r vectorOf(const std::vector<double>* columns, int brick) const {
         return {columns[0][brick], columns[1][brick], columns[2][brick]};

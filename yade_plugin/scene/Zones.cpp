@@ -2,7 +2,6 @@
 #include "Zones.hpp"
 #include "Blocks.hpp"
 #include "Changes.hpp"
-#include "SceneStore.hpp"
 #include "UnitMaterial.hpp"
 #include "common/Parallel.hpp"
 #include <algorithm>
@@ -468,9 +467,9 @@ void Zones::takeBricks(std::vector<Brick> bricks) {
 
 // First bodies of bricks that have not split, and whose crack surface yields in this step; with `everything`, those
 // whose crack surface has ever lost energy, too.
-std::vector<int> Zones::crackedNow(const SceneStore& store, bool everything) const {
+std::vector<int> Zones::crackedNow(const std::vector<JointKind>& kinds, bool everything) const {
     std::vector<int> found;
-    for (const auto& kind : store.kinds) {
+    for (const auto& kind : kinds) {
         const auto& states = *kind.states->columns;
         if (!kind.attached || !states.law().properties().monolithic) continue;
         const int count = int(kind.shapes->joints.size());
@@ -493,10 +492,10 @@ std::vector<int> Zones::crackedNow(const SceneStore& store, bool everything) con
     return found;
 }
 
-void Zones::followMasses(const SceneStore& store) {
+void Zones::followMasses(const std::vector<JointKind>& kinds) {
     if (massScaling == 0 && scaledBy == 0) return;
     const bool changed = massScaling != scaledBy;
-    const auto cracked = crackedNow(store, changed);
+    const auto cracked = crackedNow(kinds, changed);
     if (cracked.empty() && !changed) return;
     const double before = kineticEnergy(scaledBy);
     for (int body : cracked) {

@@ -14,8 +14,6 @@
 
 namespace masonry {
 
-class SceneStore;
-
 class Zones : public EnergyLedger, public GravityWork {
 public:
     std::vector<int> bodies; // ids of the deformable units
@@ -58,7 +56,7 @@ public:
     void takeBricks(std::vector<Brick>);
     // Finds the bricks whose crack surface has yielded, and books the kinetic energy that a change of the scaled masses
     // makes or takes. To be called in every step before advance(), when the joints have been advanced.
-    void followMasses(const SceneStore&);
+    void followMasses(const std::vector<JointKind>&);
     // Kinetic energy of the present velocities with the masses of this scaling [J].
     double kineticEnergy(double scaling);
     // A unit, or the two units of a brick, whose masses are scaled together.
@@ -154,7 +152,7 @@ private:
     bool isPair(const Brick&);
     void pairUp();
     void advanceTeam(const Team&, const NodeMotion&, BodyColumns&, std::vector<NodeSums>&, std::vector<Row>& energies);
-    std::vector<int> crackedNow(const SceneStore&, bool everything) const;
+    std::vector<int> crackedNow(const std::vector<JointKind>&, bool everything) const;
     static Vector3r at(const std::vector<Row>& rows, int place) {
         const double* v = rows[0].lane + place;
         return {v[0], v[lanes], v[2 * lanes]};

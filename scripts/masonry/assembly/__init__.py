@@ -5,6 +5,7 @@
   :mod:`masonry.assembly.connecting`: ``connect``: for scenes that are built body by body
 - :mod:`masonry.assembly.given`: which properties of joints and units were given, and ``set``, which takes several together
 - :mod:`masonry.assembly.structure`: what a scene is in YADE; :mod:`masonry.assembly.motion`: how its blocks move
+- :mod:`masonry.assembly.period`: the first period of a structure
 - :mod:`masonry.assembly.columns`: what a row of curve.csv holds
 - :mod:`masonry.assembly.window`: the scene in YADE's own 3-D view while it runs
 - :mod:`masonry.assembly.threads`: how many threads YADE has in plain Python

@@ -14,6 +14,8 @@ import io
 import os
 from collections import namedtuple
 
+from ..run.checkpoints import alike
+
 LEAST, MOST = 0.02, 1000.0  # [mm] bounds of an amplitude; a row of curve.csv is 0.01 mm
 AT_ZERO = 0.015  # [mm] within which a wall is at zero: more than a history misses, less than any amplitude
 NOISE = 0.01  # of the largest displacement of a file: smaller excursions may be noise of the measurement
@@ -194,6 +196,12 @@ def noise(history):
     if "file" not in history:
         return AT_ZERO
     return max(AT_ZERO, NOISE * max(map(abs, history["points_mm"])))
+
+
+def canBe(value):
+    """Whether a value that was read from a file has the form of a history."""
+    points = value.get("points_mm") if isinstance(value, dict) else None
+    return bool(points) and alike(points, None) and alike(value.get("text"), "")
 
 
 def extends(new, old):

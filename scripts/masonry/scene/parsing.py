@@ -193,11 +193,15 @@ class Parser(argparse.ArgumentParser):
 
     def _checkKnown(self, known, folder):
         """Refuse options of a checkpoint that this scene could not have had."""
-        names = {action.dest for action in self._actions} | set(self._defaults)
+        acting = {action.dest for action in self._actions}
+        names = acting | set(self._defaults)
         wrong = [asOption(name) for name in known if name not in names | {"overrides"}]
         beside = known.get("overrides")
         if not (isinstance(beside, list) and all(isinstance(n, str) for n in beside)):
             wrong.append("what stands beside a preset")
+        for name in set(self._defaults) - acting:
+            if known.get(name) != self._defaults[name]:
+                wrong.append(f"{asOption(name)} {known.get(name)!r}")
         for action in self._actions:
             name, value = action.dest, known.get(action.dest)
             if name in ("help", "out", "resume"):
@@ -225,8 +229,7 @@ class Parser(argparse.ArgumentParser):
         if action.dest == "field":
             return isinstance(value, list) and all(isinstance(v, str) for v in value)
         if action.dest == "history":
-            points = value.get("points_mm") if isinstance(value, dict) else None
-            return bool(points) and alike(points, None) and alike(value.get("text"), "")
+            return history.canBe(value)
         try:
             return not isinstance(value, (list, dict, bool)) and (
                 action.type is None or action.type(str(value)) == value

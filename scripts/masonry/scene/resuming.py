@@ -37,6 +37,9 @@ def putState(scene, state):
     try:
         if not (_alike(state, like) and _alike(state["model"], like["model"])):
             raise otherVersion("the state of the scene")
+        path = state["pushed"].get("history")
+        if path is not None and not history.canBe(path):
+            raise otherVersion("the history of the last push")
         scene.model.putState(state["model"])
     except KeyError as error:
         raise otherVersion(f"the state of the scene, {error}") from None

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Bodies and joints of a scene, as far as the parts of engines need them that do not know the engines themselves.
+#pragma once
+#include "BodyColumns.hpp"
+#include "JointView.hpp"
+
+namespace masonry {
+
+class Load;
+
+// What others use of the engine that makes the step of the joints.
+struct JointLoop {
+    double stiffnessDamping = 0; // stiffness-proportional viscous damping of joints [s]
+    double dampingWork = 0;      // energy that it has taken so far [J]
+};
+
+class SceneContents {
+public:
+    explicit SceneContents(yade::Scene& scene) : scene_(scene) {}
+    SceneContents(const SceneContents&) = delete;
+    SceneContents& operator=(const SceneContents&) = delete;
+
+    yade::Scene& scene() const { return scene_; }
+    // A number that changes whenever bodies or joints were read again. No two readings of any scenes have the same.
+    long revision() const { return revision_; }
+
+    JointLoop* loop = nullptr; // null if no engine of the scene makes the step of the joints
+    std::vector<Load*> loads;  // those that are not dead
+    BodyColumns bodies;
+    std::vector<JointKind> kinds;
+    std::vector<JointView> joints; // of all kinds, in the host's order
+    // The joints of bricks that have split since the joints' last step: their JointReference has changed.
+    struct Split {
+        int kind, joint; // place in `kinds`
+    };
+    std::vector<Split> splits;
+
+protected:
+    yade::Scene& scene_;
+    long revision_ = 0;
+};
+
+} // namespace masonry
