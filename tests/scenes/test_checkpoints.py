@@ -4,8 +4,10 @@
 import errno
 import io
 import itertools
+import math
 import os
 import random
+import re
 import signal
 import subprocess
 import time
@@ -17,6 +19,7 @@ from crafted import Crafted
 from masonry import readCheckpoint, saveCheckpoint
 from masonry.read.files import readCurve, readRun
 from masonry.run import checkpoints
+from masonry.run import run as running
 from masonry.run.results import Results
 from masonry.run.run import Run
 from masonry.scene.outcome import Outcome
@@ -259,6 +262,9 @@ def test_a_full_disk_is_reported_and_the_run_goes_on(
 def test_a_run_whose_results_cannot_be_written_goes_on_when_there_is_room(
     scene, tmp_path, at, capsys, monkeypatch, lost
 ):
+    monkeypatch.setattr(
+        running, "SLOW_FRAME", math.inf
+    )  # no frame is written beside the run
     assert run(tmp_path / "whole", *PUSH) == 0
     out = tmp_path / "full"
 
@@ -289,6 +295,26 @@ def test_a_run_whose_results_cannot_be_written_goes_on_when_there_is_room(
     assert f"--resume {out} goes on from here" in said.out
     assert run(out, resume=True) == 0
     assert files(out) == files(tmp_path / "whole")
+
+
+def test_a_frame_that_is_lost_beside_a_run_is_said_and_is_in_no_list(
+    scene, tmp_path, at, capsys, monkeypatch
+):
+    out = tmp_path / "full"
+    monkeypatch.setattr(
+        running, "SLOW_FRAME", -1
+    )  # all frames are written beside the run
+    at(32, lambda run: os.symlink("/dev/full", out / "joints_0001.vtp"))
+    assert run(out, *PUSH) == 1
+    said = capsys.readouterr()
+    assert re.search(
+        r"the frame at [\d.]+ s is lost: .*No space left on device", said.err
+    )
+    os.remove(out / "joints_0001.vtp")
+    assert run(out, resume=True) == 0
+    for name in "blocks", "joints":
+        listed = re.findall(r'file="(.*?)"', (out / f"{name}.pvd").read_text())
+        assert len(listed) > 2 and all((out / file).exists() for file in listed)
 
 
 # -- rows that wait ----------------------------------------------------------------------------------------------------

@@ -395,13 +395,19 @@ class Run:
         yield True
 
     def awaitFrame(self):
-        """Wait until the frame is whole that is written beside the run. Raises Unwritable if it could not be written."""
+        """Wait until the frame is whole that is written beside the run. Raises Unwritable if it could not be written: then
+        the run has gone on, and the frame is none of its frames."""
         job, self._frame = self._frame, None
         try:
             if job:
                 job.result()
-        except Failed as failed:
-            raise Unwritable(f"a frame is not written: {failed}") from None
+        except (Failed, Unwritable) as failed:
+            lost = self.vtk.times[-1]
+            self.vtk.times = self.at.frames = list(self.vtk.times[:-1])
+            if self._safe:
+                count = min(self._safe["frameCount"], len(self.at.frames))
+                self._safe["frameCount"] = count
+            raise Unwritable(f"the frame at {lost:.6g} s is lost: {failed}") from None
 
     def show(self, fraction, detail, final=False):
         """Show on the terminal how far the present stage has come, if it is time to.

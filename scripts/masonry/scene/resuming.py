@@ -13,6 +13,7 @@ from types import SimpleNamespace
 from .._masonry import loadScene
 from ..run.checkpoints import alike
 from ..run.place import otherVersion
+from . import history
 from .words import PUSHES, asData
 
 
