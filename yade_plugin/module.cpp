@@ -88,8 +88,16 @@ py::tuple criticalTimeStep() {
     const BetweenSteps still;
     auto& store = SceneStore::present();
     store.update();
-    const auto limit = timeStepLimit(store, true);
-    return py::make_tuple(limit.dt, limit.id1, limit.id2);
+    const double limit = timeStepLimit(store, true);
+    const auto [id1, id2] = limitingBodies(store);
+    return py::make_tuple(limit, id1, id2);
+}
+
+double presentLimit() {
+    const BetweenSteps still;
+    auto& store = SceneStore::present();
+    store.update();
+    return timeStepLimit(store, true);
 }
 
 // How many threads may be used, and what steps took on them.
@@ -191,6 +199,8 @@ static void registerAll() {
         "(dt, id1, id2): the stable time step [s] under the damping of O.engines, at most 1.1 % below the limit, and "
         "the pair of bodies whose joint sets it (twice the same for a deformable unit). Ask again after changing "
         "joints, masses, blocked motions or damping.");
+    py::def("timeStepLimit", &presentLimit,
+            "The first number of criticalTimeStep() [s], in half the time. For masonry.assembly.structure.");
     py::def("gather", &gather, "Move the joints that are there into their columns. For connect().");
     py::def("lumpBricks", &lumpBricks,
             "Give the joints of bricks that are whole until they crack the stiffness of joints between whole bricks. "

@@ -54,9 +54,8 @@ void MasonryEnergy::watchOver(SceneStore& store) {
     checkedStep_ = scene->dt;
     checkedRevision_ = store.revision();
     for (bool anew : {false, true}) { // the limit is found anew before a run is stopped: masses may have changed
-        const auto limit = timeStepLimit(store, anew);
-        if (scene->dt <= limit.dt) break;
-        if (anew) throw std::runtime_error("unstable: " + masonry::described(store, limit));
+        if (scene->dt <= timeStepLimit(store, anew)) break;
+        if (anew) throw std::runtime_error("unstable: " + masonry::describedLimit(store));
     }
     if (!tenth) return;
     // The step is finished first, so that the energies belong to one instant.
@@ -66,14 +65,13 @@ void MasonryEnergy::watchOver(SceneStore& store) {
     if (!std::isfinite(motion)) {
         stopIfCollapsed(store);
         throw std::runtime_error("numbers " + firstNotFinite(*scene) + " are not finite at step " +
-                                 std::to_string(scene->iter) + "; " +
-                                 masonry::described(store, timeStepLimit(store, false)));
+                                 std::to_string(scene->iter) + "; " + masonry::describedLimit(store));
     }
     largestInput = std::max(largestInput, std::abs(all.work + all.falls));
     if (motion > 100 * largestInput + 1e-12) {
         const auto what = "unstable: motion out of nothing at step " + std::to_string(scene->iter) + ", " +
                           text(motion) + " J where " + text(largestInput) + " J of work were done; " +
-                          masonry::described(store, timeStepLimit(store, true)) +
+                          masonry::describedLimit(store) +
                           ". Velocities set by hand must be reported at once by MasonryEnergy.given()";
         stopIfCollapsed(store, what);
         throw std::runtime_error(what);

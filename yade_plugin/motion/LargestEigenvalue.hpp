@@ -9,40 +9,45 @@
 
 namespace masonry {
 
-struct LargestEigenvalue {
-    double bound = 0;     // at least the largest eigenvalue, and at most 2.1 % above it
-    Eigen::VectorXd mode; // unit vector made of the modes with the highest eigenvalues
-};
+constexpr double marginOfLanczos = 0.02;
 
-// `multiply(x, y)` sets y to the operator times x. `moves` says which components of the vectors can be other than zero;
-// `multiply` must leave the others at zero.
+// How many steps are enough for `count` components; see largestEigenvalue().
+inline int enoughSteps(int count) {
+    constexpr double chance = 1e-12;
+    return int(std::ceil(0.5 + 0.5 * std::log(1.648 * std::sqrt(count) / chance) / std::sqrt(marginOfLanczos)));
+}
+
+// A random unit vector, the same in every run; zero where components cannot move. Returns how many can.
+inline int startOf(const std::vector<bool>& moves, Eigen::VectorXd& start) {
+    std::mt19937_64 dice(1);
+    std::normal_distribution<> normal;
+    start.setZero(Eigen::Index(moves.size()));
+    int count = 0;
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+        if (!moves[i]) continue;
+        start[Eigen::Index(i)] = normal(dice);
+        ++count;
+    }
+    if (count > 0) start.normalize();
+    return count;
+}
+
+// A number that is at least the largest eigenvalue, and at most 2.1 % above it. `multiply(x, y)` sets y to the operator
+// times x. `moves` says which components of the vectors can be other than zero; `multiply` must leave the others at
+// zero.
 //
 // Let the start vector be uniform on the sphere of n dimensions. After k steps of Lanczos the estimate is less than
 // 1 - e times the largest eigenvalue with a probability of at most 1.648 sqrt(n) exp(-sqrt(e) (2k - 1)), whatever the
 // operator; after n steps it is the eigenvalue (Kuczyński and Woźniakowski 1992, doi 10.1137/0613066). With e = 0.02,
 // and k so large that this probability is 1e-12, the estimate divided by 1 - e is taken as the bound. This takes some
 // 120 steps. The random numbers of the start vector are the same in every run, so that runs can be repeated.
-template <class Multiply> LargestEigenvalue largestEigenvalue(const std::vector<bool>& moves, Multiply&& multiply) {
-    constexpr double margin = 0.02;
-    constexpr double chance = 1e-12;
-    std::mt19937_64 dice(1);
-    std::normal_distribution<> normal;
-    LargestEigenvalue result;
-    auto& mode = result.mode;
-    mode.resize(moves.size());
-    int count = 0;
-    for (std::size_t i = 0; i < moves.size(); ++i) {
-        mode[i] = 0;
-        if (!moves[i]) continue;
-        mode[i] = normal(dice);
-        ++count;
-    }
-    if (count == 0) return result;
-    mode.normalize();
-
-    const int enough = int(std::ceil(0.5 + 0.5 * std::log(1.648 * std::sqrt(count) / chance) / std::sqrt(margin)));
+template <class Multiply> double largestEigenvalue(const std::vector<bool>& moves, Multiply&& multiply) {
+    Eigen::VectorXd now;
+    const int count = startOf(moves, now);
+    if (count == 0) return 0;
+    const int enough = enoughSteps(count);
     std::vector<double> diagonal, beside; // entries of the tridiagonal matrix that Lanczos makes of the operator
-    Eigen::VectorXd now = mode, before = Eigen::VectorXd::Zero(mode.size()), next = before;
+    Eigen::VectorXd before = Eigen::VectorXd::Zero(now.size()), next = before;
     double top = 0; // bound of that matrix's eigenvalues by Gershgorin's circles
     while (int(diagonal.size()) < std::min(count, enough)) {
         multiply(now, next);
@@ -68,15 +73,20 @@ template <class Multiply> LargestEigenvalue largestEigenvalue(const std::vector<
     double low = 0, high = top * (1 + 1e-12);
     for (int i = 0; i < 60; ++i)
         (isAbove(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
-    result.bound = int(diagonal.size()) < enough ? high : high / (1 - margin);
+    return int(diagonal.size()) < enough ? high : high / (1 - marginOfLanczos);
+}
 
-    // The vectors of Lanczos are not kept. The mode only has to show which part is stiffest, and power iteration is
-    // enough for that.
-    for (int i = 0; i < enough; ++i) {
+// A unit vector made of the modes with the highest eigenvalues, of an operator as above. It only has to show which part
+// is stiffest, and power iteration is enough for that.
+template <class Multiply> Eigen::VectorXd highMode(const std::vector<bool>& moves, Multiply&& multiply) {
+    Eigen::VectorXd mode;
+    const int count = startOf(moves, mode);
+    Eigen::VectorXd next = mode;
+    for (int i = 0; count > 0 && i < enoughSteps(count); ++i) {
         multiply(mode, next);
         mode = next.normalized();
     }
-    return result;
+    return mode;
 }
 
 } // namespace masonry

@@ -5,7 +5,11 @@
 #include "SceneStore.hpp"
 #include "Zones.hpp"
 #include "motion/LargestEigenvalue.hpp"
+#include <Eigen/SparseCore>
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <deque>
 #include <map>
 
 namespace masonry {
@@ -15,106 +19,118 @@ using yade::State;
 
 namespace {
 
-// Stiffness over mass of a scene: the operator S^T K S with S = sqrt((1 + alpha) / M), as a sum over joints and
-// deformable units. Where masses of deformable units are scaled, S = sqrt((1 + alpha) / M) (Q + (I - Q) / sqrt(1 + s)),
-// in which Q projects on the rigid motions of the blocks, and a further part for those of cracked bricks: then
-// S S^T / (1 + alpha) is the inverse of the scaled masses (blocks/BlockLanes.hpp). The degrees of freedom are three of
-// every node and six of every rigid body that has a joint; those that are blocked are left out.
+// Stiffness over mass of a scene: the operator S^T K S with S = sqrt(1 / M). Where masses of deformable units are
+// scaled, S = sqrt(1 / M) (Q + (I - Q) / sqrt(1 + s)), in which Q projects on the rigid motions of the blocks, and a
+// further part for those of cracked bricks: then S S^T is the inverse of the scaled masses (blocks/BlockLanes.hpp). The
+// degrees of freedom are three of every node and six of every rigid body that has a joint; those that are blocked are
+// left out. Damping divides every damped mass by 1 + alpha. The two parts of every brick that can crack move against
+// each other: bricks do crack during a run, whose time step stays, and one that moves as a whole has no higher
+// eigenvalues, because its masses are larger.
 class Dynamics {
 public:
-    // With `allSplit` the two parts of every brick that could crack move against each other (blocks/BlockLanes.hpp).
-    Dynamics(SceneStore&, bool allSplit);
+    enum Damping { Each, AsIfAllWereDamped }; // by its own alpha, or by the largest
+    Dynamics(SceneStore&, Damping);
 
-    // Whether there are bricks with scaled masses whose parts move as one, but need not for ever.
-    bool mayCrack() const {
-        return std::any_of(blocks_.begin(), blocks_.end(), [](const Scaled& b) { return b.mayCrack; });
-    }
-    std::vector<bool> moves; // whether a degree of freedom can move, that is, is not blocked
-    void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
-    // The bodies of the joint that has most of a mode's elastic energy, or twice the body of the unit that has.
-    std::pair<int, int> stiffest(const Eigen::VectorXd& mode) const;
+    // The largest eigenvalue, at most 2.1 % above it [1/s²].
+    double highest() const;
+    // The two bodies whose joint has most of the elastic energy of the highest mode, or twice the body of the unit that
+    // has.
+    std::pair<int, int> stiffest() const;
 
 private:
-    struct Joint {                // a joint between rigid bodies, or one subcontact of a joint with a deformable side
+    struct Part {                 // a joint between rigid bodies, or one subcontact of a joint with a deformable side
         std::vector<int> degrees; // the degrees of freedom on which it acts
         Eigen::MatrixXd stiffness;
         int body1, body2;
     };
     struct Scaled { // a block whose masses are scaled
-        std::vector<int> degrees;
+        Zones::Block block;
+        std::vector<int> degrees, rows; // degrees of freedom that can move, and their rows among those of the block
+        std::vector<double> roots;      // of their masses
         // Rigid motions of the block, and of its parts if they move against each other, times the roots of the masses:
         // orthonormal columns.
         Eigen::MatrixXd whole, parts;
-        bool mayCrack;
+        Eigen::MatrixXd moving(const Eigen::MatrixXd& motions) const; // such columns of these motions
     };
-    void slow(Eigen::VectorXd& x) const;                    // multiplies by what stands beside sqrt((1 + alpha) / M)
-    Eigen::VectorXd scaled(const Eigen::VectorXd& x) const; // S x
-    struct Unit {                                           // a deformable unit
-        BlockMatrix matrix;
-        int first; // its first degree of freedom
-        int body;
-    };
+    void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
+    void slow(Eigen::VectorXd& x) const; // multiplies by what stands beside sqrt(1 / M)
+    std::vector<bool> moves() const;
     void addDegree(double mass, double damping, bool blocked) {
-        moves.push_back(!blocked);
-        scale_.push_back(blocked ? 0 : std::sqrt((1 + damping) / mass));
+        scale_.push_back(blocked ? 0 : std::sqrt(1 / mass));
+        damping_.push_back(damping);
     }
-    void addJoint(const SceneStore&, const JointView&);
-    // Calls `visit(body1, body2, degree, force)` for every degree of freedom of every joint and unit, with the force
-    // that the joint or unit has there under these displacements.
-    template <class F> void eachForce(const Eigen::VectorXd& motion, F&& visit) const;
+    void addBodies(const JointView&);
+    void splitDamping(Damping);
+    template <class F> void eachPartOf(const JointView&, F&& visit) const;
+    template <class F> void eachPart(F&& visit) const;
+    void assemble();
+    void addBlocks();
 
-    std::vector<double> scale_;      // sqrt((1 + alpha) / mass) of a degree of freedom; 0 where it is blocked
-    std::map<int, int> firstOfBody_; // first degree of freedom of a rigid body
-    std::vector<Joint> joints_;
-    std::vector<Unit> units_;
+    SceneStore& store_;
+    std::vector<double> scale_, damping_; // of a degree of freedom: sqrt(1 / mass), 0 where it is blocked; and alpha
+    double common_ = 1;                   // a factor 1 + alpha of all that moves, which is not in `scale_`
+    std::map<int, int> firstOfBody_;      // first degree of freedom of a rigid body
+    Eigen::SparseMatrix<double, Eigen::RowMajor> matrix_; // stiffness, scaled from both sides
     std::vector<Scaled> blocks_;
     double slowness_ = 1, slownessOfParts_ = 1; // 1 / sqrt(1 + s), also of parts of a brick against each other
 };
 
-Dynamics::Dynamics(SceneStore& store, bool allSplit) {
+Dynamics::Dynamics(SceneStore& store, Damping damping) : store_(store) {
     if (store.zones)
-        for (const auto& unit : store.zones->units()) {
-            units_.push_back({unit.elasticity->matrix(), 3 * unit.firstNode, unit.body});
+        for (const auto& unit : store.zones->units())
             for (double mass : unit.elasticity->masses())
                 for (int d = 0; d < 3; ++d)
                     addDegree(mass, store.zones->damping, store.zones->holds(d));
-        }
-    if (store.zones && store.zones->massScaling > 0) {
-        slowness_ = 1 / std::sqrt(1 + store.zones->massScaling);
-        slownessOfParts_ = 1 / std::sqrt(1 + sharedScaling * store.zones->massScaling);
-        for (const auto& block : store.zones->blocks()) {
-            const bool apart = block.units.size() > 1 && (allSplit || block.split);
-            Scaled made{{}, store.zones->rigidMotions(block.units), {}, block.units.size() > 1 && !apart};
-            if (apart) made.parts = store.zones->motionsOfParts(block);
-            for (const auto* unit : block.units)
-                for (std::size_t n = 0; n < unit->elasticity->masses().size(); ++n)
-                    for (int d = 0; d < 3; ++d) {
-                        const auto row = Eigen::Index(made.degrees.size());
-                        const double root = std::sqrt(unit->elasticity->masses()[n]);
-                        made.whole.row(row) *= root;
-                        if (apart) made.parts.row(row) *= root;
-                        made.degrees.push_back(3 * (unit->firstNode + int(n)) + d);
-                    }
-            blocks_.push_back(std::move(made));
-        }
-    }
     for (const auto& joint : store.joints)
-        addJoint(store, joint);
+        addBodies(joint);
+    splitDamping(damping);
+    assemble();
+    addBlocks();
 }
 
-void Dynamics::addJoint(const SceneStore& store, const JointView& joint) {
-    const auto& geom = *joint.geom;
-    const auto& r = geom.reference();
-    if (r.attached && r.attached->zones.get() != store.zones)
+void Dynamics::addBodies(const JointView& joint) {
+    const auto& r = joint.geom->reference();
+    if (r.attached && r.attached->zones.get() != store_.zones)
         throw std::invalid_argument("the joint of bodies " + std::to_string(r.sides[0].body) + " and " +
                                     std::to_string(r.sides[1].body) +
                                     " needs its MasonryZones in O.engines, and not dead");
+    for (int side = 0; side < 2; ++side) {
+        if (!r.rigid(side)) continue;
+        const auto& body = bodyAt(store_.scene(), r.sides[side].body, "a joint holds body");
+        if (!firstOfBody_.emplace(body.id, int(scale_.size())).second) continue;
+        if (const auto wrong = problemsOf(body); !wrong.empty()) throw std::invalid_argument(joined(wrong));
+        const State& s = *body.state;
+        for (int d = 0; d < 6; ++d)
+            addDegree(d < 3 ? s.mass : s.inertia[d - 3], s.isDamped ? store_.damping() : 0, isBlocked(s, d));
+    }
+}
+
+// Where damping is the same everywhere, the matrix without it is the same for every damping.
+void Dynamics::splitDamping(Damping damping) {
+    double least = HUGE_VAL, most = 0;
+    for (std::size_t i = 0; i < scale_.size(); ++i) {
+        if (scale_[i] == 0) continue;
+        least = std::min(least, damping_[i]);
+        most = std::max(most, damping_[i]);
+    }
+    if (damping == AsIfAllWereDamped || !(least < most)) {
+        common_ = 1 + most;
+        return;
+    }
+    for (std::size_t i = 0; i < scale_.size(); ++i)
+        scale_[i] *= std::sqrt(1 + damping_[i]);
+}
+
+template <class F> void Dynamics::eachPartOf(const JointView& joint, F&& visit) const {
+    const auto& geom = *joint.geom;
+    const auto& r = geom.reference();
     const Matrix3r axes = r.axes();
+    Part part{{}, {}, r.sides[0].body, r.sides[1].body};
     for (int p = 0; p < geom.points(); ++p) {
-        Joint part{{}, {}, r.sides[0].body, r.sides[1].body};
+        part.degrees.clear();
         std::vector<Vector3r> rows; // derivative of the jump by each of these degrees of freedom
         const auto add = [&](int degree, const Vector3r& moved) {
-            if (!moves[degree]) return;
+            if (scale_[degree] == 0) return;
             part.degrees.push_back(degree);
             rows.push_back(axes.transpose() * moved);
         };
@@ -127,83 +143,175 @@ void Dynamics::addJoint(const SceneStore& store, const JointView& joint) {
                         add(3 * a.nodes[n] + d, sign * a.weights[n] * Vector3r::Unit(d));
                 continue;
             }
-            const auto& body = bodyAt(store.scene(), r.sides[side].body, "a joint holds body");
+            const auto& body = bodyAt(store_.scene(), r.sides[side].body, "a joint holds body");
             const State& s = *body.state;
-            const auto [first, fresh] = firstOfBody_.emplace(body.id, int(moves.size()));
-            if (fresh)
-                if (const auto wrong = problemsOf(body); !wrong.empty()) throw std::invalid_argument(joined(wrong));
-            for (int d = 0; fresh && d < 6; ++d)
-                addDegree(d < 3 ? s.mass : s.inertia[d - 3], s.isDamped ? store.damping() : 0, isBlocked(s, d));
+            const int first = firstOfBody_.at(body.id);
             const Matrix3r own = rotationRestrained(s) ? Matrix3r(Matrix3r::Identity()) : s.ori.toRotationMatrix();
             const Vector3r arm = geom.centre(p) - r.sides[side].position;
             for (int d = 0; d < 6; ++d)
-                add(first->second + d, sign * (d < 3 ? Vector3r(Vector3r::Unit(d)) : own.col(d - 3).cross(arm)));
+                add(first + d, sign * (d < 3 ? Vector3r(Vector3r::Unit(d)) : own.col(d - 3).cross(arm)));
         }
         const auto& stiffness = joint.phys->stiffness();
         const Vector3r k = geom.area(p) * Vector3r(stiffness.normal, stiffness.shear, stiffness.shear);
-        part.stiffness.resize(rows.size(), rows.size());
+        if (r.attached || p == 0) part.stiffness.setZero(rows.size(), rows.size());
         for (std::size_t i = 0; i < rows.size(); ++i)
             for (std::size_t j = 0; j < rows.size(); ++j)
-                part.stiffness(i, j) = rows[i].dot(k.cwiseProduct(rows[j]));
-        if (r.attached || p == 0)
-            joints_.push_back(std::move(part));
-        else
-            joints_.back().stiffness += part.stiffness;
+                part.stiffness(i, j) += rows[i].dot(k.cwiseProduct(rows[j]));
+        if (r.attached || p + 1 == geom.points()) visit(part);
     }
 }
 
-template <class F> void Dynamics::eachForce(const Eigen::VectorXd& motion, F&& visit) const {
-    for (const auto& joint : joints_)
-        for (std::size_t i = 0; i < joint.degrees.size(); ++i) {
-            double force = 0;
-            for (std::size_t j = 0; j < joint.degrees.size(); ++j)
-                force += joint.stiffness(j, i) * motion[joint.degrees[j]];
-            visit(joint.body1, joint.body2, joint.degrees[i], force);
+// Calls `visit(body1, body2, degree1, degree2, stiffness)` for all entries of the stiffness matrices of joints and
+// units.
+template <class F> void Dynamics::eachPart(F&& visit) const {
+    for (const auto& joint : store_.joints)
+        eachPartOf(joint, [&](const Part& part) {
+            for (std::size_t i = 0; i < part.degrees.size(); ++i)
+                for (std::size_t j = 0; j < part.degrees.size(); ++j)
+                    visit(part.body1, part.body2, part.degrees[i], part.degrees[j], part.stiffness(i, j));
+        });
+    if (!store_.zones) return;
+    for (const auto& unit : store_.zones->units()) {
+        const auto matrix = unit.elasticity->matrix();
+        const int first = 3 * unit.firstNode;
+        for (int r = 0; r < matrix.rowCount; ++r)
+            for (int e = matrix.rows[r].first; e < matrix.rows[r].beyond; ++e)
+                visit(unit.body, unit.body, first + matrix.rows[r].degree, first + matrix.columns[e], matrix.values[e]);
+    }
+}
+
+void Dynamics::assemble() {
+    const auto size = Eigen::Index(scale_.size());
+    matrix_.resize(size, size);
+    std::vector<Eigen::Triplet<double>> entries;
+    const auto add = [&] {
+        Eigen::SparseMatrix<double, Eigen::RowMajor> some(size, size);
+        some.setFromTriplets(entries.begin(), entries.end());
+        matrix_ += some;
+        entries.clear();
+    };
+    constexpr std::size_t many = 2000000; // more would take more memory than the matrix
+    eachPart([&](int, int, int row, int column, double stiffness) {
+        const double value = scale_[row] * stiffness * scale_[column];
+        if (value == 0) return;
+        entries.emplace_back(row, column, value);
+        if (entries.size() == many) add();
+    });
+    add();
+}
+
+void Dynamics::addBlocks() {
+    if (!store_.zones || store_.zones->massScaling == 0) return;
+    slowness_ = 1 / std::sqrt(1 + store_.zones->massScaling);
+    slownessOfParts_ = 1 / std::sqrt(1 + sharedScaling * store_.zones->massScaling);
+    for (const auto& block : store_.zones->blocks()) {
+        Scaled made{block, {}, {}, {}, {}, {}};
+        int row = 0;
+        for (const auto* unit : block.units) {
+            const auto& masses = unit->elasticity->masses();
+            for (int i = 0; i < 3 * int(masses.size()); ++i, ++row) {
+                const int degree = 3 * unit->firstNode + i;
+                if (scale_[degree] == 0) continue;
+                made.degrees.push_back(degree);
+                made.rows.push_back(row);
+                made.roots.push_back(std::sqrt(masses[i / 3]));
+            }
         }
-    for (const auto& unit : units_)
-        for (int r = 0; r < unit.matrix.rowCount; ++r) {
-            const auto& row = unit.matrix.rows[r];
-            double force = 0;
-            for (int e = row.first; e < row.beyond; ++e)
-                force += unit.matrix.values[e] * motion[unit.first + unit.matrix.columns[e]];
-            visit(unit.body, unit.body, unit.first + row.degree, force);
-        }
+        made.whole = made.moving(store_.zones->rigidMotions(block.units));
+        if (block.units.size() > 1) made.parts = made.moving(store_.zones->motionsOfParts(block));
+        blocks_.push_back(std::move(made));
+    }
+}
+
+Eigen::MatrixXd Dynamics::Scaled::moving(const Eigen::MatrixXd& motions) const {
+    Eigen::MatrixXd found(rows.size(), motions.cols());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        found.row(i) = roots[i] * motions.row(rows[i]);
+    return found;
 }
 
 void Dynamics::slow(Eigen::VectorXd& x) const {
-    Eigen::VectorXd own;
+    Eigen::VectorXd own, amounts, moved;
     for (const auto& block : blocks_) {
         own.resize(Eigen::Index(block.degrees.size()));
         for (std::size_t i = 0; i < block.degrees.size(); ++i)
             own[i] = x[block.degrees[i]];
-        Eigen::VectorXd rigid = block.whole * (block.whole.transpose() * own);
-        Eigen::VectorXd slowed = rigid + slowness_ * (own - rigid);
-        if (block.parts.size() > 0)
-            slowed += (slownessOfParts_ - slowness_) * (block.parts * (block.parts.transpose() * own) - rigid);
+        // Q x + slowness (x - Q x), and beside it that of the parts
+        const bool apart = block.parts.size() > 0;
+        amounts.noalias() = block.whole.transpose() * own;
+        amounts *= apart ? 1 - slownessOfParts_ : 1 - slowness_;
+        moved.noalias() = block.whole * amounts;
+        moved += slowness_ * own;
+        if (apart) {
+            amounts.noalias() = block.parts.transpose() * own;
+            amounts *= slownessOfParts_ - slowness_;
+            moved.noalias() += block.parts * amounts;
+        }
         for (std::size_t i = 0; i < block.degrees.size(); ++i)
-            x[block.degrees[i]] = slowed[Eigen::Index(i)];
+            x[block.degrees[i]] = moved[Eigen::Index(i)];
     }
 }
 
-Eigen::VectorXd Dynamics::scaled(const Eigen::VectorXd& x) const {
+void Dynamics::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+    if (blocks_.empty()) {
+        y.noalias() = matrix_ * x;
+        return;
+    }
     Eigen::VectorXd slowed = x;
     slow(slowed);
-    return Eigen::Map<const Eigen::VectorXd>(scale_.data(), Eigen::Index(scale_.size())).cwiseProduct(slowed);
-}
-
-void Dynamics::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
-    const Eigen::Map<const Eigen::VectorXd> scale(scale_.data(), Eigen::Index(scale_.size()));
-    y.setZero();
-    eachForce(scaled(x), [&](int, int, int degree, double force) { y[degree] += force; });
-    y.array() *= scale.array();
+    y.noalias() = matrix_ * slowed;
     slow(y);
 }
 
-std::pair<int, int> Dynamics::stiffest(const Eigen::VectorXd& mode) const {
-    const Eigen::VectorXd motion = scaled(mode);
+std::vector<bool> Dynamics::moves() const {
+    std::vector<bool> found;
+    for (double scale : scale_)
+        found.push_back(scale != 0);
+    return found;
+}
+
+double Dynamics::highest() const {
+    // The stages of a run ask again and again for the limit of the same bricks: those found last are kept by content.
+    static std::deque<std::pair<std::uint64_t, double>> found;
+    std::uint64_t content = 1469598103934665603u; // FNV-1a, a number at a time
+    const auto add = [&](std::uint64_t number) {
+        content = (content ^ number) * 1099511628211u;
+        content ^= content >> 32;
+    };
+    const auto mix = [&](const double* numbers, Eigen::Index count) {
+        for (Eigen::Index i = 0; i < count; ++i) {
+            std::uint64_t number;
+            std::memcpy(&number, numbers + i, sizeof number);
+            add(number);
+        }
+    };
+    mix(scale_.data(), Eigen::Index(scale_.size()));
+    mix(matrix_.valuePtr(), matrix_.nonZeros());
+    for (Eigen::Index e = 0; e < matrix_.nonZeros(); ++e)
+        add(std::uint64_t(matrix_.innerIndexPtr()[e]));
+    for (const auto& block : blocks_) {
+        mix(block.whole.data(), block.whole.size());
+        mix(block.parts.data(), block.parts.size());
+    }
+    const double slowness[2] = {slowness_, slownessOfParts_};
+    mix(slowness, 2);
+    for (const auto& [known, bound] : found)
+        if (known == content) return common_ * bound;
+    const auto bound =
+        largestEigenvalue(moves(), [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) { multiply(x, y); });
+    found.emplace_front(content, bound);
+    if (found.size() > 8) found.pop_back();
+    return common_ * bound;
+}
+
+std::pair<int, int> Dynamics::stiffest() const {
+    Eigen::VectorXd motion = highMode(moves(), [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) { multiply(x, y); });
+    slow(motion);
+    for (std::size_t i = 0; i < scale_.size(); ++i)
+        motion[Eigen::Index(i)] *= scale_[i];
     std::map<std::pair<int, int>, double> energies;
-    eachForce(motion, [&](int body1, int body2, int degree, double force) {
-        energies[{body1, body2}] += motion[degree] * force;
+    eachPart([&](int body1, int body2, int row, int column, double stiffness) {
+        energies[{body1, body2}] += motion[row] * stiffness * motion[column];
     });
     const auto most = std::max_element(energies.begin(), energies.end(),
                                        [](const auto& a, const auto& b) { return a.second < b.second; });
@@ -221,11 +329,19 @@ struct Known {
     }
 };
 
+// The time step at which a motion of this eigenvalue is on the verge of being unstable [s].
+double stepOf(double eigenvalue, double stiffnessDamping) {
+    if (!(eigenvalue > 0)) return HUGE_VAL;
+    const double dt = 2 / std::sqrt(eigenvalue);
+    const double ratio = stiffnessDamping / dt; // of the damping of the highest mode to the critical one
+    return dt * (std::sqrt(1 + ratio * ratio) - ratio);
+}
+
 } // namespace
 
-TimeStepLimit timeStepLimit(SceneStore& store, bool anew) {
+double timeStepLimit(SceneStore& store, bool anew) {
     static Known known;
-    static TimeStepLimit last;
+    static double last;
     const Known now{&store,
                     store.revision(),
                     store.damping(),
@@ -233,35 +349,30 @@ TimeStepLimit timeStepLimit(SceneStore& store, bool anew) {
                     store.stiffnessDamping(),
                     store.zones ? store.zones->massScaling : 0};
     if (!anew && now == known) return last;
-    last = {HUGE_VAL, -1, -1};
-    const auto lower = [&](const Dynamics& dynamics) {
-        const auto highest = largestEigenvalue(
-            dynamics.moves, [&](const Eigen::VectorXd& x, Eigen::VectorXd& y) { dynamics.multiply(x, y); });
-        double dt = highest.bound > 0 ? 2 / std::sqrt(highest.bound) : HUGE_VAL;
-        const double ratio = now.stiffnessDamping / dt; // of the damping of the highest mode to the critical one
-        dt *= std::sqrt(1 + ratio * ratio) - ratio;
-        if (!(dt < last.dt)) return;
-        last.dt = dt;
-        std::tie(last.id1, last.id2) = dynamics.stiffest(highest.mode);
-    };
-    const Dynamics present(store, false);
-    lower(present);
-    if (present.mayCrack()) lower(Dynamics(store, true)); // bricks crack during the run, whose time step stays
+    if (!anew) { // a bound that does not depend on which of the bodies are damped is enough if it is kept to
+        known = now;
+        last = stepOf(Dynamics(store, Dynamics::AsIfAllWereDamped).highest(), now.stiffnessDamping);
+        if (store.scene().dt <= last) return last;
+    }
+    last = stepOf(Dynamics(store, Dynamics::Each).highest(), now.stiffnessDamping);
     known = now;
     return last;
 }
 
-std::string described(const SceneStore& store, const TimeStepLimit& limit) {
+std::pair<int, int> limitingBodies(SceneStore& store) { return Dynamics(store, Dynamics::Each).stiffest(); }
+
+std::string describedLimit(SceneStore& store) {
     std::string what = "the time step is " + text(store.scene().dt) + " s";
-    if (limit.id1 < 0) return what;
-    what += ", its limit " + text(limit.dt) + " s, which ";
-    if (limit.id1 == limit.id2) return what + "unit " + std::to_string(limit.id1) + " sets";
+    const double limit = timeStepLimit(store, true);
+    const auto [id1, id2] = limitingBodies(store);
+    if (id1 < 0) return what;
+    what += ", its limit " + text(limit) + " s, which ";
+    if (id1 == id2) return what + "unit " + std::to_string(id1) + " sets";
     std::string name;
     for (const auto& joint : store.joints)
-        if (joint.interaction->id1 == limit.id1 && joint.interaction->id2 == limit.id2)
-            name = joint.phys->propertySet()->name;
-    return what + "joint \"" + name + "\" between bodies " + std::to_string(limit.id1) + " and " +
-           std::to_string(limit.id2) + " sets";
+        if (joint.interaction->id1 == id1 && joint.interaction->id2 == id2) name = joint.phys->propertySet()->name;
+    return what + "joint \"" + name + "\" between bodies " + std::to_string(id1) + " and " + std::to_string(id2) +
+           " sets";
 }
 
 } // namespace masonry

@@ -2,6 +2,7 @@
 // The largest time step for which a scene is stable.
 #pragma once
 #include <string>
+#include <utility>
 
 namespace masonry {
 
@@ -29,25 +30,20 @@ class SceneStore;
 //
 // Where masses of deformable units are scaled (MasonryZones.massScaling), M stands for the scaled masses. Damping takes
 // no more from a component of w than with the true masses, which are at most the scaled ones, so E falls there, too.
-// The limit is the smaller of two: with the bricks as they are, and with all bricks cracked that can crack, because
-// they do so during a run whose time step stays.
+// All bricks that can crack count as cracked, because they do so during a run whose time step stays.
 //
 // All this holds for elastic joints and small rotations; joints that yield, open or crush are softer. The host's own
 // damping may bring w beyond zero. That such runs are calm below the limit is measured, not proved
 // (validation/stability).
-struct TimeStepLimit {
-    double dt = 0; // [s]; infinite where nothing can vibrate
-    // The two bodies whose joint sets the limit; twice the same body where a deformable unit does; -1 where nothing
-    // does.
-    int id1 = -1;
-    int id2 = -1;
-};
+//
+// The limit of a scene [s]; infinite where nothing can vibrate. It is kept while joints, units and damping are the
+// same; with `anew` it is found again in any case, because changes of masses or blocked axes are not noticed.
+double timeStepLimit(SceneStore&, bool anew);
 
-// The limit of a scene. It is kept while joints, units and damping are the same; with `anew` it is found again in any
-// case, because changes of masses or blocked axes are not noticed.
-TimeStepLimit timeStepLimit(SceneStore&, bool anew);
+// The two bodies whose joint sets the limit; twice the same body where a deformable unit does; -1 where nothing does.
+std::pair<int, int> limitingBodies(SceneStore&);
 
 // A text for messages: the scene's time step, its limit, and what sets the limit.
-std::string described(const SceneStore&, const TimeStepLimit&);
+std::string describedLimit(SceneStore&);
 
 } // namespace masonry

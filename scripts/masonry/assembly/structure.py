@@ -6,7 +6,7 @@ import math
 from yade import O, Vector3
 from yade.wrapper import MasonryJoint, MasonryLoad, MasonryZones
 
-from .._masonry import criticalTimeStep, loadScene, saveScene
+from .._masonry import loadScene, saveScene, timeStepLimit
 from ..basics import GRAVITY, Refused, say
 from ..bricks import boxCorners
 from . import threads
@@ -355,7 +355,7 @@ class Structure:
         limits = []
         for scaling in (0.0, 1e8):
             self.scaleMasses(scaling)
-            limits.append(criticalTimeStep()[0])
+            limits.append(timeStepLimit())
         return min(MOST_SCALED, max(0.0, round((limits[1] / limits[0]) ** 2 - 1, 1)))
 
     def scaleMasses(self, scaling):
@@ -390,7 +390,7 @@ class Structure:
 
         :param limit: the stable limit if it is known [s]: that of blocks that have moved differs in its third digit
         """
-        self.limit = limit or criticalTimeStep()[0]
+        self.limit = limit or timeStepLimit()
         O.dt = self.args.dt_fraction * self.limit
         return self.limit
 
