@@ -349,12 +349,13 @@ double timeStepLimit(SceneStore& store, bool anew) {
                     store.stiffnessDamping(),
                     store.zones ? store.zones->massScaling : 0};
     if (!anew && now == known) return last;
-    if (!anew) { // a bound that does not depend on which of the bodies are damped is enough if it is kept to
-        known = now;
-        last = stepOf(Dynamics(store, Dynamics::AsIfAllWereDamped).highest(), now.stiffnessDamping);
-        if (store.scene().dt <= last) return last;
-    }
-    last = stepOf(Dynamics(store, Dynamics::Each).highest(), now.stiffnessDamping);
+    const auto limit = [&](Dynamics::Damping damping) {
+        return stepOf(Dynamics(store, damping).highest(), now.stiffnessDamping);
+    };
+    // A bound that does not depend on which of the bodies are damped is enough if it is kept to.
+    double found = anew ? 0 : limit(Dynamics::AsIfAllWereDamped);
+    if (!(store.scene().dt <= found)) found = limit(Dynamics::Each);
+    last = found;
     known = now;
     return last;
 }
@@ -363,10 +364,18 @@ std::pair<int, int> limitingBodies(SceneStore& store) { return Dynamics(store, D
 
 std::string describedLimit(SceneStore& store) {
     std::string what = "the time step is " + text(store.scene().dt) + " s";
-    const double limit = timeStepLimit(store, true);
-    const auto [id1, id2] = limitingBodies(store);
+    double limit = HUGE_VAL;
+    int id1 = -1, id2 = -1;
+    try {
+        limit = timeStepLimit(store, true);
+        std::tie(id1, id2) = limitingBodies(store);
+    } catch (const std::invalid_argument&) { // of bodies whose numbers are not finite nothing is known any more
+        limit = timeStepLimit(store, false);
+    }
+    if (!std::isfinite(limit)) return what;
+    what += ", its limit " + text(limit) + " s";
     if (id1 < 0) return what;
-    what += ", its limit " + text(limit) + " s, which ";
+    what += ", which ";
     if (id1 == id2) return what + "unit " + std::to_string(id1) + " sets";
     std::string name;
     for (const auto& joint : store.joints)
