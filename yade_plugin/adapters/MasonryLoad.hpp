@@ -25,7 +25,14 @@ public:
         visit("direction", &L::direction, described("Direction of the driven velocity; not zero"));
         visit("driven", &L::driven, described("Whether the velocity is prescribed"));
         visit("damped", &L::damped, described("Whether the block keeps its numerical damping; not if it is driven"));
-        visit("velocity", &L::velocity, number("m/s", "Velocity of the point along the direction"));
+        visit("velocity", &L::velocity,
+              number("m/s", "Velocity of the point along the direction, when the ramp is over"));
+        visit("ramp", &L::ramp,
+              number("",
+                     "Steps in which the velocity still grows evenly, with `acceleration`, to `velocity`; the engine "
+                     "counts them down")
+                  .atLeast(0));
+        visit("acceleration", &L::acceleration, number("m/s²", "Growth of the velocity in the ramp"));
         visit("reaction", &L::reaction, number("N", "Force that the drive applies along the direction"), ReadOnly);
         visit("work", &L::work,
               number("J", "Work done on the block by force and drive so far; counted by the engine that counts the "

@@ -3,12 +3,14 @@
 #include "BodyCheck.hpp"
 #include "BodyStep.hpp"
 #include "WholeBricks.hpp"
+#include <algorithm>
 
 namespace masonry {
 
 std::vector<std::string> Load::problems() const {
     std::vector<std::string> found;
     if (direction.allFinite() && !(direction.norm() > 0)) found.push_back("direction must not be zero");
+    if (ramp < 0) found.push_back("ramp is " + std::to_string(ramp) + " steps, and must be at least 0");
     if (driven && damped) found.push_back("damped must be off if the block is driven");
     return found;
 }
@@ -19,10 +21,12 @@ void Load::act(yade::Scene& scene, const Vector3r& gravity, const WholeBricks* b
     arm_ = state.ori * state.refOri.conjugate() * (point - state.refPos);
     total_ = force;
     const auto sums = scene.forces().sums(body + 1);
+    const double aim = ramp > 0 ? this->velocity - acceleration * scene.dt * (ramp - 1) : this->velocity;
+    ramp = std::max(0, ramp - 1);
     if (driven) {
-        // R is the force along d that gives the point its velocity V after this step, d·(v' + w' × arm) = V, where
-        // v' = v + dt (F + R d) / m + dt g and w' = w + dt I^-1 (T + arm × R d).
-        // If the body is a half of a whole brick, all of these are the brick's.
+        // R is the force along d that gives the point its velocity V = `aim` after this step, d·(v' + w' × arm) = V,
+        // where v' = v + dt (F + R d) / m + dt g and w' = w + dt I^-1 (T + arm × R d). If the body is a half of a whole
+        // brick, all of these are the brick's.
         const Vector3r d = direction.normalized();
         WholeBricks::Carrier brick;
         Vector3r perMass = inverseMass(state), velocity = state.vel, spin = state.angVel, arm = arm_;
@@ -51,7 +55,7 @@ void Load::act(yade::Scene& scene, const Vector3r& gravity, const WholeBricks* b
         if (mobility <= 0)
             throw std::invalid_argument("MasonryLoad: body " + std::to_string(body) +
                                         " is blocked in the driven direction");
-        reaction = (this->velocity - d.dot(v) - lever.dot(w)) / (mobility * scene.dt);
+        reaction = (aim - d.dot(v) - lever.dot(w)) / (mobility * scene.dt);
         total_ += reaction * d;
     } else
         reaction = 0;

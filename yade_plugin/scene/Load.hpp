@@ -17,7 +17,9 @@ public:
     Vector3r direction = Vector3r::UnitX(); // of the driven velocity
     bool driven = false;                    // whether the velocity of the point along `direction` is prescribed
     bool damped = false;                    // whether the block keeps its numerical damping
-    double velocity = 0;                    // of the point along `direction` [m/s]
+    double velocity = 0;                    // of the point along `direction`, when `ramp` is over [m/s]
+    int ramp = 0;                           // steps until then, in each of which the velocity grows evenly
+    double acceleration = 0;                // in the ramp [m/s²]
     double reaction = 0;                    // force of the drive along `direction` [N]
     double work = 0;                        // of force and drive so far [J]
     double pendingWork = 0;                 // second half of the last step's work, which the next step adds [J]

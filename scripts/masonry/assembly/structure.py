@@ -450,7 +450,7 @@ class Structure:
             )
         for label, other in self.loads.items():
             if "_drive" in label:
-                other.velocity = 0
+                other.velocity = other.ramp = 0
         load.damped = False
         load.direction, load.driven = direction, True
         self.target, self.direction, self.loads["push"] = target, direction, load

@@ -49,11 +49,11 @@ def quasiStatic(top: Numbers, base: Numbers, weight: float = SHEAR) -> list[floa
 
 
 def stiffness(displacement: Numbers, force: Numbers, ramp: int = 0) -> float:
-    """Initial stiffness of a push [force/displacement], from the work of its first part: 2 W/u².
+    """Initial stiffness of a push [force/displacement]: that of a line through its beginning that fits its first part best.
 
-    This is the stiffness of a spring that takes the same work W over the same displacement u. The first part ends where the
-    force is a quarter of its peak, but not before the velocity of the drive has grown: in between a wave passes through
-    the structure, and its work is that of the static forces only when a whole first period is over.
+    The first part begins where the velocity of the drive has grown, because before that a wave passes through the structure,
+    which is over after a whole first period. It ends where the force is a quarter of its peak and the displacement twice that
+    at its beginning, since other waves go on; or before, a tenth beyond its beginning, where the force is a third of its peak.
 
     :param force: that of :func:`quasiStatic`. What it is in the first row does not count if it is more than a hundredth of
         the peak, as of a drive that held a weight before
@@ -61,16 +61,22 @@ def stiffness(displacement: Numbers, force: Numbers, ramp: int = 0) -> float:
     """
     if not force:
         return 0.0
-    start = force[0] if abs(force[0]) > 0.01 * max(force) else 0.0
-    peak = max(force) - start
-    end = next((n for n, f in enumerate(force) if f - start > 0.25 * peak), 0)
-    end = min(max(end, ramp, 1), len(force) - 1)
-    pairs = list(zip(displacement, force))[: end + 1]
-    work = sum(
-        0.5 * (f + g - 2 * start) * (b - a) for (a, f), (b, g) in zip(pairs, pairs[1:])
+    before = force[0] if abs(force[0]) > 0.01 * max(force) else 0.0
+    moved = [u - displacement[0] for u in displacement]
+    ramp = min(max(ramp, 1), len(force) - 1)
+    peak, grown = max(force) - before, moved[ramp]
+    first = [(u, f - before) for u, f in zip(moved[ramp:], force[ramp:])]
+    end = next(
+        (
+            n
+            for n, (u, f) in enumerate(first)
+            if (f > 0.25 * peak and u >= 2 * grown)
+            or (f > peak / 3 and u >= 1.1 * grown)
+        ),
+        len(first) - 1,
     )
-    path = pairs[-1][0] - pairs[0][0]
-    return 2 * work / path**2 if path else 0.0
+    squares = sum(u * u for u, _ in first[: end + 1])
+    return sum(u * f for u, f in first[: end + 1]) / squares if squares else 0.0
 
 
 def peakAtBothEnds(top: Numbers, base: Numbers) -> float:

@@ -147,7 +147,7 @@ def _drive(scene, name, target, aims, direction, rate, continued):
     scene.running.note("push", *names)
     if not scene.only:
         drivePush(scene, name, args, began, continued)
-        model.loads["push"].velocity = 0
+        model.loads["push"].velocity = model.loads["push"].ramp = 0
     scene.ended = DONE
     return DONE
 

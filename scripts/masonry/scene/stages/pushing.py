@@ -17,7 +17,7 @@ from .rest import rampTime
 ROW_EVERY = 0.01  # [mm] of a push between rows of curve.csv
 SHORT = 0.05  # [mm]: a shorter push has rows that are closer together
 ARRIVED = 2e-3  # [mm] from a turning point of a history at which the drive turns: what remains of the path takes it there
-STAIRS = 20  # rows at least while the velocity of the drive grows, in each of which it is constant
+GROWING = 20  # rows at least while the velocity of the drive grows
 LONGEST = 5  # the longest first period that is looked for, over rampTime() [-]
 #: Likewise, over the time that the path takes at full speed: a shorter push is no slow one [-].
 SHARE = 1.0
@@ -165,13 +165,19 @@ def drivePush(scene, name, args, began, continued=False):
     while moves:
         goal = goals[at.passed]
         model.goal = at.passed + 1, goal.displacement
-        growth, steps = _pace(at, goal, args, every)
+        growth, start, steps = _pace(at, goal, args, every)
         free = bool(at.period) and not at.turned and growth < 1
         if free != undamped:
             undamped = free
             model.damp(0.0, "local") if free else model.dampByOptions()
-        if velocity != goal.direction * args.rate * 1e-3 * growth:
-            velocity = load.velocity = goal.direction * args.rate * 1e-3 * growth
+        full = goal.direction * args.rate * 1e-3
+        if velocity != full * growth:
+            velocity = load.velocity = full * growth
+        if (
+            start < growth
+        ):  # a velocity that grows in stairs would make the pushed block swing in time with them
+            load.ramp = run.at.left or steps
+            load.acceleration = full * (growth - start) / (steps * O.dt)
         model.keepLoadLine()
         run.advance(steps)
         reading = run.record()
@@ -242,13 +248,14 @@ def _rampOf(at, args, every, turns):
     if not at.period:
         return least, every
     ramp = at.period * (math.ceil(least / at.period) if turns else 1)
-    every = max(1, min(every, int(ramp / (STAIRS * O.dt))))
+    every = max(1, min(every, int(ramp / (GROWING * O.dt))))
     row = every * O.dt
     return row * max(1, round(ramp / row)), every
 
 
 def _pace(at, goal, args, every):
-    """Velocity of the drive over the full one, and for how many steps it holds, from what a push remembers.
+    """Velocities of the drive at the end and at the beginning of the next row, over the full one, and how many steps the row
+    has, from what a push remembers.
 
     The velocity grows evenly to the full one, but is not more than what can be braked before the next turn: √(2·a·s) at
     the distance s with the deceleration a.
@@ -259,19 +266,24 @@ def _pace(at, goal, args, every):
     rate = args.rate
     growing, closer = _rampOf(at, args, every, at.turned)
     braking, _ = _rampOf(at, args, every, True)
-    row = every if at.growth == 1.0 else closer
-    growth = min(1.0, at.growth + (at.now - at.since + row * O.dt) / growing)
-    if growth > 1 - 1e-9:  # the sum of equal parts
-        growth = 1.0
-    if growth == 1.0:
-        row = every
+    start = _sum(at.growth, (at.now - at.since) / growing)
+    row = every if start == 1.0 else closer
+    growth = _sum(start, row * O.dt / growing)
     if goal.brake is None:
-        return growth, row
+        return growth, start, row
     distance = max(0.0, goal.direction * (goal.brake - at.moved))
-    growth = min(growth, math.sqrt(2 * distance / (rate * braking)))
+    slow = math.sqrt(2 * distance / (rate * braking))
+    if slow < growth:
+        start = growth = slow
     if growth <= 0:
-        return growth, row
-    return growth, max(1, min(row, int(distance / (rate * growth * O.dt))))
+        return growth, start, row
+    return growth, start, max(1, min(row, int(distance / (rate * growth * O.dt))))
+
+
+def _sum(growth, more):
+    """A velocity over the full one that has grown; it is 1 at most, also after the sum of equal parts."""
+    grown = growth + more
+    return 1.0 if grown > 1 - 1e-9 else grown
 
 
 def pathOf(args, start=0.0):
