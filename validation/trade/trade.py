@@ -38,6 +38,8 @@ RESULTS = os.path.join(studies.RESULTS, "trade")
 WALLS = {"wall_comp0a": 30, "wall_comp1": 30, "wall_comp4": 12, "wall_comp6": 16}
 
 SOFT = "--blocks deformable"
+#: With masses that are scaled as far as the joints allow.
+QUICK = f"{SOFT} --mass-scaling auto"
 
 
 def asOptions(preset):
@@ -51,10 +53,10 @@ def asOptions(preset):
 
 #: What is varied, and its runs: options of a scene, all others at their defaults.
 RUNS = {
-    "reference": [f"{SOFT} --divisions 3 --rate 50"],
+    "reference": [f"{QUICK} --divisions 3 --rate 20"],
     "rigid": [""],
     "rigid: rate": [f"--rate {v}" for v in (50, 100, 200)],
-    "rigid: subcontacts": [f"--subcontacts {n}" for n in (2, 6)],
+    "rigid: subcontacts": [f"--subcontacts {n}" for n in (2, 6, 12)],
     "rigid: rate and subcontacts": ["--rate 100 --subcontacts 2"],
     "rigid: cyclic law": ["--joints cyclic"],
     "rigid: density scaling": ["--density-scaling 25"],
@@ -62,11 +64,17 @@ RUNS = {
     "rigid: local damping": ["--damping-kind local --rate 50"],
     "rigid: time step": ["--dt-fraction 0.95"],
     "rigid: no crack surfaces": ["--crack-surfaces off"],
-    "deformable": [f"{SOFT} --rate 50"],
-    "deformable: rate": [f"{SOFT} --rate {v}" for v in (100, 200)],
-    "deformable: mesh and rate": [
-        f"{SOFT} --divisions 2 --rate {v}" for v in (50, 100, 200)
+    "rigid: whole bricks": [
+        f"--crack-surfaces whole{rate}" for rate in ("", " --rate 100")
     ],
+    "deformable": [f"{QUICK} --rate 50"],
+    "deformable: rate": [f"{QUICK} --rate {v}" for v in (100, 200)],
+    "deformable: mesh and rate": [
+        f"{QUICK} --divisions 2 --rate {v}" for v in (50, 100, 200)
+    ],
+    "deformable: true masses": [f"{SOFT} --divisions 2 --rate 50"],
+    "deformable: mass scaling": [f"{SOFT} --mass-scaling 5 --divisions 2 --rate 50"],
+    "deformable: tetrahedra": [f"{SOFT} --units space --divisions 2 --rate 100"],
     **{f"preset {name}": [asOptions(name)] for name in PRESETS},
 }
 
@@ -81,7 +89,15 @@ BOUND = "--preset bound"
 PATCH = (2, 3)
 
 #: What makes a step cheap or dear, of run.json's options; and the short run that times such a step.
-KINDS = ("blocks", "divisions", "subcontacts", "crack_surfaces", "damping_kind")
+KINDS = (
+    "blocks",
+    "divisions",
+    "subcontacts",
+    "crack_surfaces",
+    "damping_kind",
+    "units",
+    "mass_scaling",
+)
 STRETCH = {"rigid": "--until 3 --rate 50", "deformable": "--until 3 --rate 100"}
 THREADS = (1, 2)
 
@@ -181,7 +197,9 @@ def kind(wall, options):
     """What makes the step of a run as dear as it is: options of a scene that has such steps."""
     chosen = readRun(folder(wall, options))["options"]
     chosen = {name: chosen[name] for name in KINDS}
-    chosen.pop("divisions" if chosen["blocks"] == "rigid" else "subcontacts")
+    rigid = chosen["blocks"] == "rigid"
+    for name in ("divisions", "units", "mass_scaling") if rigid else ("subcontacts",):
+        chosen.pop(name)
     return " ".join(f"{asOption(n)} {v}" for n, v in chosen.items())
 
 

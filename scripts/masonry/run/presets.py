@@ -14,6 +14,7 @@ USUAL = {
     "damping": 0.8,
     "damping_kind": "combined",
     "dt_fraction": 0.8,
+    "mass_scaling": 0.0,
 }
 
 #: Options by preset, the same for all walls. A scene of one's own may take them from here.
@@ -24,8 +25,18 @@ PRESETS: dict[str, dict[str, Any]] = {
         "subcontacts": 3,
         "rate": 100.0,
     },
-    "balanced": {"blocks": "deformable", "divisions": 2, "rate": 100.0},
-    "accurate": {"blocks": "deformable", "divisions": 2, "rate": 50.0},
+    "balanced": {
+        "blocks": "deformable",
+        "divisions": 2,
+        "rate": 100.0,
+        "mass_scaling": "auto",
+    },
+    "accurate": {
+        "blocks": "deformable",
+        "divisions": 2,
+        "rate": 50.0,
+        "mass_scaling": "auto",
+    },
 }
 for _preset in PRESETS.values():
     _preset.update(damping=0.8, damping_kind="combined", dt_fraction=0.8)
@@ -127,7 +138,9 @@ MAIN = "this run"
 _ONE: dict[str, Any]
 _TWO: dict[str, Any]
 _THREE: dict[str, Any]
-_ONE, _TWO, _THREE = ({"blocks": "deformable", "divisions": n} for n in (1, 2, 3))
+_ONE, _TWO, _THREE = (
+    {"blocks": "deformable", "divisions": n, "mass_scaling": "auto"} for n in (1, 2, 3)
+)
 
 #: Runs beside a run, by name: options that replace those without options. They are cheap beside the run that they judge.
 COMPANIONS: dict[str, dict[str, Any]] = {

@@ -162,7 +162,7 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         default=0.0,
         help="selective mass scaling of deformable units in all stages but shake and run: 1 + BETA is the factor on the masses "
         "in every motion of a brick but rigid ones, which keep their inertia, so that the time step is longer [-]; auto: as "
-        "much as the time step that the joints allow between rigid bricks can use",
+        "much as the time step that the joints allow between rigid bricks can use; none if all units are rigid",
     )
     p.add_argument(
         "--crack-surfaces",
@@ -292,7 +292,7 @@ def check(args, masonry, more=(), plane=False):
     problems = list(more)
     if args.blocks == "rigid" and args.divisions > 1:
         problems.append("--divisions: rigid units are not divided")
-    if args.mass_scaling and args.blocks == "rigid":
+    if args.mass_scaling not in (0, "auto") and args.blocks == "rigid":
         problems.append("--mass-scaling: rigid units have no deformation to slow")
     if args.rows and plane:
         problems.append(
