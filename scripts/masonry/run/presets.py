@@ -181,7 +181,7 @@ FIDELITIES = (
     Fidelity(
         "deformable units of one cell, 50 mm/s",
         {**_ONE, "rate": 50.0},
-        20,
+        6,
         {"peak": 0.006, "work": 0.006},
         (
             _CHANCE[1],
@@ -193,7 +193,7 @@ FIDELITIES = (
     Fidelity(
         "deformable units of two by two cells, 50 mm/s",
         {**_TWO, "rate": 50.0},
-        70,
+        18,
         {"peak": 0.005, "work": 0.005},
         (
             _CHANCE[1],
@@ -204,7 +204,7 @@ FIDELITIES = (
     Fidelity(
         "deformable units of three by three cells, 50 mm/s",
         {**_THREE, "rate": 50.0},
-        160,
+        45,
         {"peak": 0.004, "work": 0.004},
         (_CHANCE[1], _RATE, Source("mesh", ("two cells, 100 mm/s", MAIN), 0.5)),
     ),

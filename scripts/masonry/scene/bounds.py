@@ -28,8 +28,9 @@ from ..run.beside import Failed, Job
 SMALL = 500
 EVERY = math.inf  # it is looked for however many joints there are
 JOINTS = 3000  # up to so many joints every run has its bounds; limit analysis of more takes longer than seconds
-#: Time that limit analysis may take for a load, if nobody asked for it, and if somebody did [s]
-UNASKED, ASKED = 10.0, 600.0
+#: Time that limit analysis may take for a load, if nobody asked for it, and if somebody did [s]. Beside a run that nobody has to
+#: wait for it may take longer.
+UNASKED, ASKED, BESIDE = 10.0, 600.0, 120.0
 #: By how much a run may be above its bound [-]: joints of finite stiffness, displacements that are not small, and motion,
 #: whose measured share is added.
 TOLERANCE = 0.02
@@ -41,6 +42,8 @@ FIGURE = "mechanism.png"
 GIVEN_UP = (
     "limit analysis: the run was interrupted before its end; scene.bound() finds it"
 )
+#: The note of one that was not found when the run came to its end, or to a checkpoint.
+LATE = "limit analysis: it was not solved in time; scene.bound() takes its time"
 SILENT = 0.3  # so long something beside the run is waited for without a word [s]
 
 
@@ -60,6 +63,7 @@ class Bounds:
             None  # finds a bound beside the run, and then the files of its mechanism
         )
         self._looksFor = ""  # name of the load whose bound it has not found yet
+        self._since = 0.0  # since when it looks [s]
         self.endless = set()  # names of loads under which nothing gives way
 
     def prepare(self):
@@ -167,12 +171,12 @@ class Bounds:
                 f"note: {entry['note']}; scene.bound() and --preset bound take their time"
             )
             return entry
-        seconds = ASKED if lowerUpTo else UNASKED
+        seconds = ASKED if lowerUpTo else BESIDE if beside else UNASKED
         work = lambda: self._found(what, unit, load, tilts, pushed, gravity, lowerUpTo, seconds)  # fmt: skip
         if beside:
             self.drop()  # of two mechanisms the last one is kept
             self._job = Job(lambda: self._withFiles(what, work), parts=2)
-            self._looksFor = what
+            self._looksFor, self._since = what, time.monotonic()
             return entry
         try:
             self._note(what, *work())
@@ -251,11 +255,13 @@ class Bounds:
         job, what = self._job, self._looksFor
         if not what or not (wait or job.ready()):
             return
-        if not job.ready(0, SILENT):
+        if not job.ready(0, SILENT) and time.monotonic() - self._since < UNASKED:
             say("waiting for limit analysis")
         while not job.ready(0, SILENT):
-            if givesUp():
-                self._note(what, {"note": GIVEN_UP}, [f"note: {GIVEN_UP}"], False, None)
+            late = time.monotonic() - self._since > UNASKED
+            if late or givesUp():
+                note = LATE if late else GIVEN_UP
+                self._note(what, {"note": note}, [f"note: {note}"], False, None)
                 self.drop()
                 return
         try:
