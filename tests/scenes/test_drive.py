@@ -2,12 +2,14 @@
 """The first period along a push, and what begins with it."""
 
 import math
+from types import SimpleNamespace
 
 import pytest
 from masonry import Scene, bricks, materials
 from masonry._masonry import saveScene
 from masonry.assembly.period import firstPeriod
 from masonry.read.files import readRun
+from masonry.scene.stages import pushing
 from small import SMALL, carryOut, parsed
 from yade import Vector3
 
@@ -61,3 +63,11 @@ def test_a_push_without_a_period_says_so(tmp_path, capsys):
     )
     assert "no first period up to 0.2 ms was found" in capsys.readouterr().out
     assert readRun(tmp_path)["first_period_s"] is None
+
+
+def test_the_cure_of_a_push_that_long_time_steps_brake_is_shorter_ones():
+    args = lambda f: SimpleNamespace(
+        rate=20, damping=0.8, damping_kind="combined", dt_fraction=f
+    )
+    assert "--dt-fraction 0.8 would do" in pushing.tooFast(args(0.95), 0.47)
+    assert "--rate 4.3 would do" in pushing.tooFast(args(0.93), 0.47)

@@ -145,7 +145,7 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         metavar="F",
         type=lambda t: number(t, 1e-3, 1),
         default=USUAL["dt_fraction"],
-        help="time step over its stable limit [-]",
+        help="time step over its stable limit [-]; above 0.94 combined damping may brake the push",
     )
     p.add_argument(
         "--density-scaling",

@@ -11,6 +11,7 @@ from yade import O
 
 from ...assembly.period import firstPeriod
 from ...basics import Collapsed, Refused, say
+from ...run.presets import USUAL
 from ..history import aim, pathLength, turns
 from .rest import rampTime
 
@@ -314,6 +315,11 @@ def tooFast(args, imbalance):
     """The warning of a push that is too fast, with what would do: the imbalance grows with the rate at least."""
     slower = f"--rate {float(f'{args.rate * IMBALANCE / imbalance:.2g}'):g}"
     cure = "--damping-kind combined" if args.damping_kind == "local" else slower
+    # The stiffest joints swing with a period of four time steps if the step is 1/√2 of the limit without damping. Combined
+    # damping then finds the same signs in every swing, and can brake a steady motion.
+    usual, fours = USUAL["dt_fraction"], 0.7 * math.sqrt(1 + args.damping)
+    if args.dt_fraction > max(fours, usual):
+        cure = f"--dt-fraction {usual:g}"
     return (
         f"warning: the push is too fast: {100 * imbalance:.0f} % of the force does not reach the supports, "
         f"more than {100 * IMBALANCE:.0f} % spoil the peak; {cure} would do"
