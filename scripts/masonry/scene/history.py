@@ -14,8 +14,6 @@ import io
 import os
 from collections import namedtuple
 
-from ..run.checkpoints import alike
-
 LEAST, MOST = 0.02, 1000.0  # [mm] bounds of an amplitude; a row of curve.csv is 0.01 mm
 AT_ZERO = 0.015  # [mm] within which a wall is at zero: more than a history misses, less than any amplitude
 NOISE = 0.01  # of the largest displacement of a file: smaller excursions may be noise of the measurement
@@ -201,7 +199,13 @@ def noise(history):
 def canBe(value):
     """Whether a value that was read from a file has the form of a history."""
     points = value.get("points_mm") if isinstance(value, dict) else None
-    return bool(points) and alike(points, None) and alike(value.get("text"), "")
+    number = lambda p: isinstance(p, (int, float)) and abs(p) <= MOST
+    return (
+        isinstance(points, list)
+        and len(points) > 0
+        and all(map(number, points))
+        and isinstance(value.get("text"), str)
+    )
 
 
 def extends(new, old):
