@@ -18,9 +18,8 @@ REST = 5e-3  # of the load: what may be missing at the supports of a structure t
 CALM = 1e-5  # kinetic over elastic energy of a structure that is said to be at rest [-]
 LOOKS = 3  # so many looks one after the other find a structure at rest before it is said to be
 EVERY = 100  # steps between two looks
-#: Parts in which loads are put on: fewer would shake a structure, which then comes to rest later.
-PARTS = 100
-#: Steps in which such a part is put on, and after which it is seen whether a block has fallen far.
+#: If time steps are long: steps in which a part of the loads is put on, a third at most, and after which it is seen whether a
+#: block has fallen far.
 SHORTER = 1, 2, 5, 10, 20, 50, EVERY
 SETTLING = 0.5  # most local damping of deformable units in settle(): with more they creep to rest
 
@@ -91,7 +90,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True):
     ramp *= max(1.0, (box.high[2] - box.low[2]) / 3)
     ramp = max(ramp, over)
     growing = max(1, int(ramp / O.dt))
-    every = max(n for n in SHORTER if n == 1 or n <= growing / PARTS)
+    every = max(n for n in SHORTER if n == 1 or n <= growing / 3)
     longest = longest or 20 * ramp
     most = int(longest / O.dt)
     if most < 1:
@@ -99,11 +98,10 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True):
             f"longest {longest:g} s, after which the wait for rest ends, must be above the time step, {O.dt:.3g} s"
         )
     while (at.done < most or at.done % EVERY) and at.quiet < LOOKS:
-        steps = every if at.load < 1 else EVERY - at.done % EVERY
-        load = min(1.0, (at.done + steps) / growing)
+        load = min(1.0, (at.done + every) / growing)
         grow(load)
-        running.advance(steps)
-        at.load, at.done = load, at.done + steps
+        running.advance(every)
+        at.load, at.done = load, at.done + every
         if at.done % EVERY:
             model.motion.checkFall(FAR)
             continue
