@@ -12,6 +12,8 @@ class Load;
 struct JointLoop {
     double stiffnessDamping = 0; // stiffness-proportional viscous damping of joints [s]
     double dampingWork = 0;      // energy that it has taken so far [J]
+    int refinement = 0;          // points along a joint that is about to crush; 0: as many as before
+    double refiningEnergy = 0;   // elastic energy that joints got when they were refined, so far [J]
 };
 
 class SceneContents {

@@ -161,6 +161,8 @@ class Structure:
             dampingKind="local" if description.functors else kind,
         )
         self.energy, self.integrator = engine("energy"), engine("integrator")
+        if args.refine:
+            engine("joints").refinement = args.refine
         self.damp(args.damping, kind)
         blocks = dict(zip(self.ids, description.bricks))
         self.interactions = connect(
