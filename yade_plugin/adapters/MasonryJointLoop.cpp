@@ -12,6 +12,7 @@ void MasonryJointLoop::action() {
     const EngineTurn turn(*scene, *this);
     refining_.look(turn.store());
     dampingWork += plan_.advance(turn.store(), stiffnessDamping);
+    refining_.count(turn.store());
 }
 
 int MasonryJointLoop::groups() const {

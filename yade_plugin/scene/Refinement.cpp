@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Refinement.hpp"
-#include "Changes.hpp"
 #include "blocks/JointPoints.hpp"
 #include "common/Text.hpp"
 #include <algorithm>
@@ -227,9 +226,9 @@ Refinement::Limit::Limit(const LawColumns& columns) : columns_(&columns) {
     normal_ = p.capNormal;
     shear_ = p.capShear;
     linear_ = p.capLinear;
-    capSquared_ = std::pow(share * columns.law().compression().elasticLimit, 2);
+    elasticLimit_ = columns.law().compression().elasticLimit;
     if (!cracks_) return;
-    const auto within = [&](double sigma, double tau) { return !yieldsNear(sigma, tau, 0); };
+    const auto within = [&](double sigma, double tau) { return !yields(sigma / company, tau / company, 0); };
     constexpr double most = 1e12, least = 1; // [Pa]
     for (tension_ = most; tension_ > least && !within(tension_, 0);)
         tension_ *= 0.5;
@@ -238,33 +237,32 @@ Refinement::Limit::Limit(const LawColumns& columns) : columns_(&columns) {
         slip_ *= 0.5;
 }
 
-bool Refinement::Limit::isReached(double sigma, double a, double b) const {
-    const double squared = a * a + b * b, pressed = std::min(sigma, 0.0);
-    if (crushes_) return (normal_ * pressed + linear_) * pressed + shear_ * squared > capSquared_;
-    return (sigma > tension_ || squared > slip_ * slip_) && yieldsNear(sigma, a, b);
+bool Refinement::Limit::isReached(double part, double sigma, double a, double b) const {
+    const double squared = a * a + b * b, pressed = std::min(sigma, 0.0), limit = part * elasticLimit_;
+    if (crushes_) return (normal_ * pressed + linear_) * pressed + shear_ * squared > limit * limit;
+    return (sigma > tension_ || squared > slip_ * slip_) && yields(sigma / part, a / part, b / part);
 }
 
-bool Refinement::Limit::yieldsNear(double sigma, double a, double b) const {
-    constexpr double more = 1 / share;
-    const auto f = columns_->yieldingUnder(more * sigma, {more * a, more * b});
+bool Refinement::Limit::yields(double sigma, double a, double b) const {
+    const auto f = columns_->yieldingUnder(sigma, {a, b});
     return f.tension > 0 || f.slip > 0;
 }
 
-// Whether a joint gets its points now: a point of it has come near the limit, or is beyond it already.
-bool Refinement::isDue(const JointKind& kind, const Limit& limit, int j) const {
+// Whether a point of a joint has reached this part of the limit, or was beyond it already.
+bool Refinement::isDue(const JointKind& kind, const Limit& limit, double part, int j) const {
     const auto& shapes = *kind.shapes;
     const auto& columns = *kind.states->columns.asTheyStand();
     for (int p = 0; p < shapes.points && !shapes.byPoints[j]; ++p) {
         const auto& k = columns.stiffness();
         const Vector3r jump = shapes.intactJumpAt(p, j);
-        if (limit.isReached(k.normal * jump[0], k.shear * jump[1], k.shear * jump[2])) return true;
+        if (limit.isReached(part, k.normal * jump[0], k.shear * jump[1], k.shear * jump[2])) return true;
     }
     for (int p = 0; p < shapes.points && shapes.byPoints[j]; ++p) {
         const double a = *columns.shearStressA(p, j), b = *columns.shearStressB(p, j);
         const double* damage = limit.cracks() ? columns.tensionDamage(p, j) : nullptr;
         if ((damage && *damage > 0) || (!limit.cracks() && *columns.regime(p, j) == Regime::Crushing)) return true;
-        if (limit.isReached(columns.stressIfClosed(p, j), a, b) &&
-            limit.isReached(columns.state(p, j).normalStress, a, b))
+        if (limit.isReached(part, columns.stressIfClosed(p, j), a, b) &&
+            limit.isReached(part, columns.state(p, j).normalStress, a, b))
             return true;
     }
     return false;
@@ -303,26 +301,60 @@ void Refinement::check(const SceneStore& store, int points) {
 
 void Refinement::look(SceneStore& store) {
     const int points = store.loop->refinement;
+    changed_.clear();
     if (points == 0) return;
     const bool read = store.revision() != revision_;
     if (read) readLimits(store);
     if (read || points != checkedPoints_) check(store, points);
     if (store.scene().iter % every != 0 && store.splits.empty()) return;
     std::set<std::pair<const JointShapes*, int>> due;
+    bool any = false;
     for (std::size_t k = 0; k < store.kinds.size(); ++k) {
         const auto& kind = store.kinds[k];
         const auto& whole = kind.shapes->whole;
         if (kind.attached || kind.shapes->points >= points || !limits_[k].isNeeded()) continue;
-        for (int j = 0; j < int(kind.shapes->joints.size()); ++j)
-            if ((whole.empty() || !whole[j]) && isDue(kind, limits_[k], j)) due.emplace(kind.shapes.get(), j);
+        for (int j = 0; j < int(kind.shapes->joints.size()); ++j) {
+            if ((!whole.empty() && whole[j]) || !isDue(kind, limits_[k], company, j)) continue;
+            due.emplace(kind.shapes.get(), j);
+            any = any || isDue(kind, limits_[k], share, j);
+        }
     }
-    if (due.empty()) return;
+    if (!any) return;
+    const auto add = [](Changed& to, double sign) {
+        const auto& geom = *to.joint.geom;
+        for (int p = 0; p < geom.points(); ++p) {
+            const auto s = to.joint.phys->state(p);
+            const Vector3r stress =
+                Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) + geom.group->viscousAt(p, geom.index);
+            to.forces.push_back({geom.offset(p)[to.along], sign * geom.area(p) * stress});
+        }
+    };
     for (const auto& joint : store.joints) // in the host's order, so that the sum does not depend on addresses
-        if (due.count({joint.geom->group.get(), joint.geom->index}))
-            store.loop->refiningEnergy += refine(joint, rowOf(pointsOf(*joint.geom)), points);
-    ++changes;
-    store.update(SceneStore::Look::AtJoints);
+        if (due.count({joint.geom->group.get(), joint.geom->index})) {
+            Changed change{joint, {}, rowOf(pointsOf(*joint.geom)), {}};
+            add(change, 1);
+            store.loop->refiningEnergy += refine(joint, change.along, points);
+            add(change, -1);
+            for (int p = 0; p < joint.geom->points(); ++p)
+                change.jumps.push_back(joint.geom->jump(p));
+            changed_.push_back(std::move(change));
+        }
+    store.jointsRefined();
     readLimits(store);
+}
+
+void Refinement::count(SceneStore& store) {
+    for (const auto& change : changed_) {
+        const auto& geom = *change.joint.geom;
+        // The jump grows linearly along the row.
+        const int last = int(change.jumps.size()) - 1;
+        const double from = geom.offset(0)[change.along], length = geom.offset(last)[change.along] - from;
+        const Vector3r first = geom.jump(0) - change.jumps[0];
+        const Vector3r slope = (geom.jump(last) - change.jumps[last] - first) / length;
+        for (const auto& [place, force] : change.forces)
+            store.loop->refiningEnergy -= 0.5 * force.dot(first + (place - from) * slope);
+    }
+    changed_.clear();
 }
 
 bool Refinement::setPoints(SceneStore& store, const std::vector<double>& refined) {
@@ -345,8 +377,7 @@ bool Refinement::setPoints(SceneStore& store, const std::vector<double>& refined
         fresh.shapes->joints[0].coarse = count ? std::make_shared<const Points>(first) : nullptr;
         fresh.giveTo(*joint);
     }
-    ++changes;
-    store.update(SceneStore::Look::AtJoints);
+    store.jointsRefined();
     return true;
 }
 

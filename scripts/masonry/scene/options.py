@@ -31,6 +31,7 @@ MOST_PERCENT = 50
 #: Fewest rows of points that give a joint its stiffness against bending: two give three times that, one none.
 FEWEST = 3
 
+
 def parser(description, until, rate=USUAL["rate"], loops=True):
     """A parser with the common options, to which a scene adds its own.
 
