@@ -33,17 +33,19 @@ public:
                      "sqrt(1 + d²) - d for the highest mode; criticalTimeStep() counts that")
                   .atLeast(0));
         visit("dampingWork", &L::dampingWork, number("J", "Energy taken by stiffnessDamping so far"), ReadOnly);
-        visit("refinement", &L::refinement,
-              number("",
-                     "Points along a joint between rigid blocks from when its cap is about to yield: once a "
-                     "subcontact bears 0.9 of the cap's elastic limit, which is looked for at every tenth step, the "
-                     "joint gets as many along its row, at the points of Gauss and Lobatto, and they take over its "
-                     "state. 0: joints keep the points that they were made with. Joints that have as many are not "
-                     "refined, nor are those of deformable units, which have the points of their cells. Else 3 "
-                     "to 100, and joints need one row of at least three points, as blocks that move in a plane "
-                     "have")
-                  .atLeast(0)
-                  .atMost(Refinement::most));
+        visit(
+            "refinement", &L::refinement,
+            number("",
+                   "Points along a joint between rigid blocks from when it is about to yield: when a subcontact bears "
+                   "0.9 of the elastic limit of the cap, or, of a joint that cannot crush, as the crack surface of a "
+                   "brick, 0.9 of its strength, the joint gets as many along its row, at the points of Gauss and "
+                   "Lobatto, and they take over its state. Every tenth step looks for such joints, and takes those "
+                   "at 0.75 along. 0: joints keep the points that they were made with. Else 3 to 100, and joints "
+                   "need one row of at least three points, as blocks that move in a plane have. A joint that has as "
+                   "many already is left alone, and so are those of deformable units")
+                .atLeast(0)
+                .atMost(Refinement::most)
+                .source("yade_plugin/README.md, Points where a joint yields"));
         visit("refiningEnergy", &L::refiningEnergy,
               number("J", "Elastic energy that joints got so far when they were refined: 0 of those that were elastic, "
                           "the difference between few and many points of those that were cracked"),

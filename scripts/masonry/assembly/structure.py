@@ -609,6 +609,10 @@ class Structure:
                 beside += load.reaction * load.direction.normalized()
         return beside
 
+    def refinedJoints(self):
+        """How many joints have got more points during the run."""
+        return engine("joints").refinedJoints
+
     def unrest(self):
         """What of the loads is missing at the supports, and kinetic over elastic energy [-]."""
         energy = self.energy.balance()

@@ -129,8 +129,8 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         metavar="POINTS",
         type=refinement,
         default=0,
-        help="in the x-z plane: points along a joint of rigid units from when a point of it bears 0.9 of the elastic limit "
-        "of its cap, as the toe of a wall that is pushed, where --subcontacts are too few for what follows; 0: never",
+        help="in the x-z plane: points along a joint of rigid units from when it is about to crush or, a crack surface of a "
+        "brick, to crack: 12 give what 12 --subcontacts give, in a fraction of the time; 0: as many as before",
     )
     p.add_argument(
         "--rows",
