@@ -22,6 +22,8 @@ def panel(
     turn=Quaternion.Identity,
     damping=0,
     size=4,
+    rows=2,
+    subcontacts=None,
     **properties,
 ):
     """A small panel that is pressed and torn at once, so that joints open, slip and crush within some hundred steps."""
@@ -41,15 +43,14 @@ def panel(
     ]
     top = put((0, 0, height), (length, UNIT[1], height + 0.1), plate)
     O.bodies[base].state.blockedDOFs = "xyzXYZ"
-    joint = MasonryJoint(
-        name="weak",
+    weak = dict(
         compressiveStrength=1e6,
         peakRatio=20,
         compressiveFractureEnergy=3000,
         dilatancy=0.1,
         residualFriction=0.3,
-        **properties,
     )
+    joint = MasonryJoint(name="weak", **{**weak, **properties})
     zones = (
         MasonryZones(bodies=laid, damping=damping, divisions=[1, 1, 1])
         if blocks == "deformable"
@@ -70,7 +71,8 @@ def panel(
         gravity=turn * Vector3(0, 0, -9.81),
         loads=[load],
         zones=zones,
-        rows=2,
+        rows=rows,
+        subcontacts=subcontacts,
         functors=functors,
     )
     made = connect()

@@ -87,6 +87,11 @@ def test_a_strip_that_bends_cracks_at_a_force_that_settles_with_more_rows(
         (("--rows", "5"), True, "--rows 5: this scene is in the x-z plane"),
         (("--rows", "5", "--blocks", "deformable"), False, "--rows 5: joints of deformable units have the points of"),
         (("--rows", "2"), False, "'2' must be a whole number from 3 to 100"),
+        (("--refine", "12"), False, "--refine 12: this scene is in space"),
+        (("--refine", "12", "--blocks", "deformable"), True, "--refine 12: joints of deformable units have the points of"),
+        (("--refine", "12", "--subcontacts", "12"), True, "--refine 12: it must be above --subcontacts, which is 12"),
+        (("--refine", "12", "--subcontacts", "2"), True, "--refine 12: it must be above --subcontacts, which is 2"),
+        (("--refine", "3"), True, "'3' must be 0 or a whole number from 4 to 100"),
     ],
 )  # fmt: skip
 def test_rows_that_would_do_nothing_or_harm_are_refused(

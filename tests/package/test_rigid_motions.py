@@ -475,7 +475,7 @@ def test_frames_of_another_structure_are_refused(run, monkeypatch):
     monkeypatch.setattr(sys.modules["masonry.read.motion"], "readFrame", other)
     for changed, name, factor, words in (
         ("blocks", "points", 2.0, "frame 2 has other blocks than frame 0"),
-        ("joints", "points", 2.0, "frame 2 has other joints than frame 0"),
+        ("joints", "points", 2.0, "frame 2 has other joints than frame 3"),
         ("blocks", "displacement", np.nan, "a number of the blocks in frame 2 is not finite"),  # fmt: skip
         ("joints", "opening", np.inf, "the opening of a joint in frame 2 is not finite"),  # fmt: skip
         ("blocks", "displacement", np.linspace(0.5, 2, 16)[:, None], "block 1 does not move as a rigid body in frame 2"),  # fmt: skip

@@ -111,7 +111,9 @@ def state():
         "torque on the base [N m]": list(O.forces.t(0, True)),
         "error of the balance [-]": [balance.pop("error")],
         # no reference has bricks that split
-        "energy [J]": [v for name, v in balance.items() if name != "splitting"],
+        "energy [J]": [
+            v for name, v in balance.items() if name not in ("splitting", "refining")
+        ],
         "subcontacts in a regime": [
             float(regimes.count(r))
             for r in ("elastic", "opening", "slipping", "crushing")

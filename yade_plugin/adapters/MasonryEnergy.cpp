@@ -16,9 +16,18 @@ namespace masonry {
 
 using yade::State;
 
+namespace {
+
+// Elastic energy [J] that joints got so far when bricks split and when joints were refined.
+double givenByChanges(const SceneStore& store) {
+    return (store.integrator ? store.integrator->bricks.energy : 0) + (store.loop ? store.loop->refiningEnergy : 0);
+}
+
+} // namespace
+
 MasonryEnergy::Inventory MasonryEnergy::inventory(const SceneStore& store) const {
     Inventory all{external, fallen, kinetic, damped, 0, 0};
-    if (store.integrator) all.given = store.integrator->bricks.energy;
+    all.given = givenByChanges(store);
     for (const auto* load : store.allLoads)
         all.work += load->work;
     if (store.loop) all.drag += store.loop->dampingWork;
@@ -98,7 +107,7 @@ void MasonryEnergy::lookAtBalance(const SceneStore& store) {
     if (stepThen >= 0 && scene->iter == stepThen + 1) {
         auto all = inventory(store);
         all.drag += dampingThen - damping;
-        all.given = splittingThen; // the bricks split after the joints were looked at
+        all.given = splittingThen; // bricks split, and joints are refined, after the joints were looked at
         warnOfBalance(std::abs(balanceOf(all, storedThen, lostThen).error));
     }
     if (scene->iter % 1000 != 0 || scene->iter == 0) return;
@@ -106,7 +115,7 @@ void MasonryEnergy::lookAtBalance(const SceneStore& store) {
     storedThen = now.stored;
     lostThen = now.lost;
     dampingThen = damping;
-    splittingThen = store.integrator ? store.integrator->bricks.energy : 0;
+    splittingThen = givenByChanges(store);
     stepThen = int(scene->iter);
 }
 
@@ -233,7 +242,8 @@ py::dict MasonryEnergy::balance() {
     py::dict all;
     all["external"] = work;
     all["gravity"] = falls;
-    all["splitting"] = given;
+    all["refining"] = store.loop ? store.loop->refiningEnergy : 0;
+    all["splitting"] = given - (store.loop ? store.loop->refiningEnergy : 0);
     all["kinetic"] = moving;
     all["damping"] = drag;
     all["elastic_units"] = inUnits;

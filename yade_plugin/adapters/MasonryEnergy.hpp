@@ -97,7 +97,9 @@ public:
               number("J", "Energies dissipated in the joints at the last look at the balance, by mode"), Hidden);
         visit("dampingThen", &E::dampingThen, number("J", "Work of the damping of joints at that look"), Hidden);
         visit("splittingThen", &E::splittingThen,
-              number("J", "Energy that crack surfaces had when their bricks split, at that look"), Hidden);
+              number("J", "Energy that crack surfaces had when their bricks split, and that joints got when they were "
+                          "refined, at that look"),
+              Hidden);
         visit("stepThen", &E::stepThen, number("", "Step of the last look at the balance; -1: there was none"), Hidden);
         visit("largestError", &E::largestError,
               number("-", "Largest error of the balance seen by balance(), relative to the work done"), ReadOnly);
@@ -113,7 +115,8 @@ public:
 
     template <class PyClass> static void extras(PyClass& cls) {
         cls.def("balance", &MasonryEnergy::balance,
-                "All energies of the last step [J]: external, gravity, kinetic, damping, elastic_ and dissipated_ "
+                "All energies of the last step [J]: external, gravity, splitting, refining, kinetic, damping, elastic_ "
+                "and dissipated_ "
                 "tension, shear, compression; and error, the balance's error relative to the work done [-].")
             .def("given", &MasonryEnergy::given,
                  "Count the kinetic energy of the present motion as work done from outside. Call this directly after "
@@ -130,7 +133,8 @@ private:
         double moving = 0;  // kinetic energy
         double drag = 0;    // taken by damping
         double inUnits = 0; // elastic energy of deformable units
-        double given = 0;   // elastic energy that crack surfaces had when their bricks split
+        double given = 0;   // elastic energy that crack surfaces had when their bricks split, and that joints got when
+                            // they were refined
     };
     Inventory inventory(const SceneStore&) const;
     struct Balance {

@@ -90,6 +90,10 @@ void exchange(Numbers& n, JointReference& r) {
     int split = r.split;
     n(split);
     r.split = split != 0;
+    n(r.refined);
+    auto coarse = r.coarse ? *r.coarse : std::vector<JointPoint>();
+    n.list(coarse);
+    if (!r.coarse && !coarse.empty()) r.coarse = std::make_shared<std::vector<JointPoint>>(std::move(coarse));
     std::vector<Attachment> none;
     for (int side = 0; side < 2; ++side)
         n.list(r.attached ? r.attached->sides[side] : none);

@@ -10,7 +10,9 @@ namespace masonry {
 
 void MasonryJointLoop::action() {
     const EngineTurn turn(*scene, *this);
+    refining_.look(turn.store());
     dampingWork += plan_.advance(turn.store(), stiffnessDamping);
+    refining_.count(turn.store());
 }
 
 int MasonryJointLoop::groups() const {
@@ -29,6 +31,14 @@ int MasonryJointLoop::intactJoints() const {
         count += int(
             std::count(kind.shapes->byPoints.begin(), kind.shapes->byPoints.begin() + kind.shapes->joints.size(), 0));
     return count;
+}
+
+int MasonryJointLoop::refinedJoints() const {
+    const BetweenSteps still;
+    auto& store = SceneStore::present();
+    store.update();
+    return int(std::count_if(store.joints.begin(), store.joints.end(),
+                             [](const JointView& joint) { return joint.geom->reference().refined > 0; }));
 }
 
 } // namespace masonry

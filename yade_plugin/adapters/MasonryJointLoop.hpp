@@ -3,6 +3,7 @@
 #include "Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom.hpp"
 #include "Ip2_MasonryMat_MasonryMat_MasonryJointPhys.hpp"
 #include "scene/JointPlan.hpp"
+#include "scene/Refinement.hpp"
 #include "scene/SceneCheck.hpp"
 
 namespace masonry {
@@ -32,6 +33,23 @@ public:
                      "sqrt(1 + d²) - d for the highest mode; criticalTimeStep() counts that")
                   .atLeast(0));
         visit("dampingWork", &L::dampingWork, number("J", "Energy taken by stiffnessDamping so far"), ReadOnly);
+        visit(
+            "refinement", &L::refinement,
+            number("",
+                   "Points along a joint between rigid blocks from when it is about to yield: when a subcontact bears "
+                   "0.9 of the elastic limit of the cap, or, of a joint that cannot crush, as the crack surface of a "
+                   "brick, 0.9 of its strength, the joint gets as many along its row, at the points of Gauss and "
+                   "Lobatto, and they take over its state. Every tenth step looks for such joints, and takes those "
+                   "at 0.75 along. 0: joints keep the points that they were made with. Else 3 to 100, and joints "
+                   "need one row of at least three points, as blocks that move in a plane have. A joint that has as "
+                   "many already is left alone, and so are those of deformable units")
+                .atLeast(0)
+                .atMost(Refinement::most)
+                .source("yade_plugin/README.md, Points where a joint yields"));
+        visit("refiningEnergy", &L::refiningEnergy,
+              number("J", "Elastic energy that joints got so far when they were refined: 0 of those that were elastic, "
+                          "the difference between few and many points of those that were cracked"),
+              ReadOnly);
         visit("geometry", &L::geometry, described("Ig2 functor with which masonry.connect() makes joints"));
         visit("physics", &L::physics, described("Ip2 functor with which masonry.connect() makes joints"));
     }
@@ -44,6 +62,8 @@ public:
         cls.add_property("intactJoints", &MasonryJointLoop::intactJoints,
                          "Number of joints whose points need not be advanced, because they are between rigid blocks "
                          "and have always been elastic. It is known from the first step on.");
+        cls.add_property("refinedJoints", &MasonryJointLoop::refinedJoints,
+                         "Number of joints that have more points than they were made with; see refinement.");
     }
 
     bool isActivated() override { return standsAlone(*this); }
@@ -52,8 +72,11 @@ public:
 private:
     int groups() const;
     int intactJoints() const;
+    int refinedJoints() const;
 
-    JointPlan plan_; // holds no state: all that it keeps from step to step follows from the scene
+    // Both hold no state: all that they keep from step to step follows from the scene.
+    JointPlan plan_;
+    Refinement refining_;
 };
 
 } // namespace masonry

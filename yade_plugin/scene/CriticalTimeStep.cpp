@@ -343,7 +343,7 @@ double timeStepLimit(SceneStore& store, bool anew) {
     static Known known;
     static double last;
     const Known now{&store,
-                    store.revision(),
+                    store.stiffnessRevision(),
                     store.damping(),
                     store.zones ? store.zones->damping : 0,
                     store.stiffnessDamping(),

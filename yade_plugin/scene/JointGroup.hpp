@@ -47,6 +47,17 @@ template <class F> void numbers(Attachment& a, F&& each) {
     }
 }
 
+// A subcontact in the reference state.
+struct JointPoint {
+    Vector3r offset = Vector3r::Zero(); // from the centre of body 1, in the joint's axes [m]
+    double area = 0;                    // that it stands for [m²]
+};
+template <> struct IsNumbers<JointPoint> : std::true_type {};
+template <class F> void numbers(JointPoint& p, F&& each) {
+    numbers(p.offset, each);
+    each(p.area);
+}
+
 // Geometry of a joint in its reference state: the state of its two blocks when it was made. Vectors without another
 // remark are in global axes.
 struct JointReference {
@@ -62,6 +73,10 @@ struct JointReference {
     Side sides[2]; // bodies 1 and 2 of the interaction
     // Whether a monolithic joint (JointProperties::monolithic) has yielded, so that its blocks are two from then on.
     bool split = false;
+    // Of a joint that was refined (Refinement): its number of points along the joint, and the points that it was made
+    // with, which copies of a joint have in common. 0 and null if it was not.
+    int refined = 0;
+    std::shared_ptr<const std::vector<JointPoint>> coarse;
     // How the subcontacts of a joint with a deformable side move with the nodes.
     struct Attached {
         shared_ptr<Zones> zones;
@@ -154,6 +169,12 @@ struct JointShapes : JointGroup {
     void findMiddles(); // fills `middle` to `rim` from areas and offsets
     // Place of a joint in the columns `middle` to `inertia`.
     std::size_t face(int joint) const { return alike ? std::size_t(joint % JointFrames::most) : std::size_t(joint); }
+    // Jump of a subcontact of an intact joint [m].
+    Vector3r intactJumpAt(int point, int joint) const {
+        if (!behind) return vectorAt(jump, at(point, joint)); // the same bits
+        const std::size_t s = shape(point, joint), f = face(joint);
+        return linear.at(joint, offset[1][s] - middle[1][f], offset[2][s] - middle[2][f]);
+    }
     // Whether what stands at the points of a joint is that of an intact one with these linear fields.
     bool isIntact(int joint) const;
 

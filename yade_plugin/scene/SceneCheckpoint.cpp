@@ -2,6 +2,7 @@
 #include "SceneCheckpoint.hpp"
 #include "Blocks.hpp"
 #include "Changes.hpp"
+#include "Refinement.hpp"
 #include "SceneStore.hpp"
 #include "StepGate.hpp"
 #include "Transfer.hpp"
@@ -82,6 +83,15 @@ void transferBodies(yade::Scene& scene, Transfer& to) {
 // A record of a joint holds the numbers of JointShapes::readFields(). A record of a subcontact holds its jump [m], the
 // stress of damping in the last step [Pa], the energies dissipated in tension, shear and compression [J/m²], and the
 // numbers of its law.
+// How many points the joints have that were refined. It comes first, because all other records of joints follow it.
+void transferPoints(SceneStore& store, Transfer& to) {
+    std::vector<double> refined;
+    for (const auto& joint : store.joints)
+        refined.push_back(joint.geom->reference().refined);
+    to.several("refined", refined.data(), refined.size());
+    if (to.back && !Refinement::setPoints(store, refined)) to.damaged("refined");
+}
+
 void transferJoints(const SceneStore& store, Transfer& to) {
     std::vector<double> records;
     const auto add = [&](double x, double y, double z) { records.insert(records.end(), {x, y, z}); };
@@ -154,6 +164,7 @@ void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
     transferBodies(scene, to);
     auto& store = SceneStore::of(scene);
     store.update();
+    transferPoints(store, to);
     transferJoints(store, to);
     transferSplits(store, to);
     int number = 0;
@@ -213,7 +224,10 @@ Checkpoint captured(yade::Scene& scene) {
         if (fresh) joints(dynamic_cast<Stateful*>(properties));
         joints(kind->second, double(joint.interaction->id1), double(joint.interaction->id2), r.normal, r.tangent,
                joint.phys->stiffness().normal, joint.phys->stiffness().shear);
-        for (int p = 0; p < joint.geom->points(); ++p)
+        // A joint that was refined is still the one that it was made as.
+        for (const auto& point : r.coarse ? *r.coarse : std::vector<JointPoint>())
+            joints(point.offset, point.area);
+        for (int p = 0; p < joint.geom->points() && !r.coarse; ++p)
             joints(joint.geom->offset(p), joint.geom->area(p));
         for (int side = 0; side < 2 && r.attached; ++side)
             for (const auto& attachment : r.attached->sides[side])

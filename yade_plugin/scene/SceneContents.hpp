@@ -12,6 +12,8 @@ class Load;
 struct JointLoop {
     double stiffnessDamping = 0; // stiffness-proportional viscous damping of joints [s]
     double dampingWork = 0;      // energy that it has taken so far [J]
+    int refinement = 0;          // points along a joint that is about to crush; 0: as many as before
+    double refiningEnergy = 0;   // elastic energy that joints got when they were refined, so far [J]
 };
 
 class SceneContents {
@@ -23,6 +25,8 @@ public:
     yade::Scene& scene() const { return scene_; }
     // A number that changes whenever bodies or joints were read again. No two readings of any scenes have the same.
     long revision() const { return revision_; }
+    // The same, but for readings between which only joints were refined: their stiffness stays what it is.
+    long stiffnessRevision() const { return stiffnessRevision_; }
 
     JointLoop* loop = nullptr; // null if no engine of the scene makes the step of the joints
     std::vector<Load*> loads;  // those that are not dead
@@ -37,7 +41,7 @@ public:
 
 protected:
     yade::Scene& scene_;
-    long revision_ = 0;
+    long revision_ = 0, stiffnessRevision_ = 0;
 };
 
 } // namespace masonry

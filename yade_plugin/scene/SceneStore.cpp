@@ -160,9 +160,17 @@ void SceneStore::update(Look look) {
         zones->takeBricks(std::move(bricks));
     }
     static long readings = 0;
-    revision_ = ++readings;
+    revision_ = stiffnessRevision_ = ++readings;
     seenChanges_ = changes;
     seenInteractions_ = scene_.interactions->currSize;
+}
+
+void SceneStore::jointsRefined() {
+    const bool same = sameJoints();
+    const long before = stiffnessRevision_;
+    ++changes;
+    update(Look::AtJoints);
+    if (same) stiffnessRevision_ = before;
 }
 
 // Moves all joints into common groups, one for each kind. Within a kind they keep the order of the host's container.

@@ -161,6 +161,8 @@ class Structure:
             dampingKind="local" if description.functors else kind,
         )
         self.energy, self.integrator = engine("energy"), engine("integrator")
+        if args.refine:
+            engine("joints").refinement = args.refine
         self.damp(args.damping, kind)
         blocks = dict(zip(self.ids, description.bricks))
         self.interactions = connect(
@@ -606,6 +608,10 @@ class Structure:
             if label != "push" and load is not push and load.driven:
                 beside += load.reaction * load.direction.normalized()
         return beside
+
+    def refinedJoints(self):
+        """How many joints have got more points during the run."""
+        return engine("joints").refinedJoints
 
     def unrest(self):
         """What of the loads is missing at the supports, and kinetic over elastic energy [-]."""

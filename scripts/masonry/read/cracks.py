@@ -83,7 +83,7 @@ def layOut(
     )
     area = frame["area"]
     total = lambda values: np.bincount(joint, area * values)
-    centres = _centres(frame["points"], frame["cells"])
+    centres = centresOf(frame["points"], frame["cells"])
     whole = total(1)
     x, z = total(centres[:, 0]) / whole / half, total(centres[:, 2]) / whole / height
     values = {
@@ -103,8 +103,13 @@ def layOut(
     return bed, upright
 
 
-def _centres(points, cells):
-    """Means of the corners of every cell, an array (cells, 3) [m]; cells with as many corners are looked at together."""
+def centresOf(points: np.ndarray, cells: Sequence[np.ndarray]) -> np.ndarray:
+    """Means of the corners of every cell, an array (cells, 3) [m].
+
+    :param points: corners (n, 3) [m]
+    :param cells: the numbers of the corners of each
+    """
+    # cells with as many corners are looked at together
     counts = np.fromiter(map(len, cells), int, len(cells))
     corners, starts = np.concatenate(cells), np.cumsum(counts) - counts
     centres = np.empty((len(cells), 3))

@@ -4,12 +4,15 @@
 The 3-D page (:mod:`masonry.read.page`) and glTF files (:mod:`masonry.read.gltf`) are made of this.
 """
 
+from __future__ import annotations
+
 import os
+from typing import Any
 
 import numpy as np
 
 from ..basics import Refused
-from .cracks import CRACK, CRUSHED, DAMAGED, crushed, widths
+from .cracks import CRACK, CRUSHED, DAMAGED, centresOf, crushed, widths
 from .curve_figure import plan, unitOf
 from .files import filesOf, readCurve, readRun
 from .frames import framePaths, frameTimes, readFrame, readSurfaces
@@ -245,14 +248,16 @@ class Cracks:
     def __init__(self, motion):
         names = ("opening", "slide", "closure", "damage", "kind")
         rows = {name: [] for name in names}
-        moved, first = [], None
+        moved = []
         deforms = not motion.rigid.all()
+        # joints never get fewer points during a run
+        last = readFrame(motion.directory, "joints", motion.numbers[-1])
         for number in motion.numbers:
             frame = readFrame(motion.directory, "joints", number)
-            first = first or frame
             with filesOf(motion.directory):
-                if not np.array_equal(frame["points"], first["points"]):
-                    raise Refused(f"{motion.directory}: frame {number} has other joints than frame {motion.numbers[0]}")  # fmt: skip
+                same = pointsFor(last, frame)
+                if same is None:
+                    raise Refused(f"{motion.directory}: frame {number} has other joints than frame {motion.numbers[-1]}")  # fmt: skip
                 slide = np.linalg.norm(frame["slide"], axis=1)
                 _, opened, cracked = widths(frame)
                 kind = np.where(cracked, np.where(opened, OPEN, SLID), 0)
@@ -261,10 +266,10 @@ class Cracks:
                 for name, value in zip(names, values):
                     if not np.isfinite(value).all():
                         raise Refused(f"{motion.directory}: the {name} of a joint in frame {number} is not finite")  # fmt: skip
-                    rows[name].append(value)
+                    rows[name].append(value[same])
                 if deforms:
                     moved.append(frame["displacement"] - self._still(motion, number))
-        self.count = len(first["cells"])
+        self.count = len(last["cells"])
         rows = {name: np.array(values) for name, values in rows.items()}
         shown = (
             (rows["kind"] > 0)
@@ -275,16 +280,16 @@ class Cracks:
         kept = np.flatnonzero(shown)
         for name in names:
             setattr(self, name, rows[name][:, kept])
-        cells = [first["cells"][n] for n in kept]
+        cells = [last["cells"][n] for n in kept]
         corners = np.concatenate(cells) if cells else np.zeros(0, int)
-        self.points = first["points"][corners]
+        self.points = last["points"][corners]
         sizes = np.array([len(c) for c in cells], int)
         self.owner = np.repeat(np.arange(len(kept)), sizes)
         self.cells = np.split(np.arange(len(corners)), np.cumsum(sizes)[:-1]) if cells else []  # fmt: skip
-        between = np.searchsorted(motion.bodies, first["bodies"][kept])
+        between = np.searchsorted(motion.bodies, last["bodies"][kept])
         if between.size and (
             between.max() >= len(motion.bodies)
-            or (motion.bodies[between] != first["bodies"][kept]).any()
+            or (motion.bodies[between] != last["bodies"][kept]).any()
         ):
             raise Refused(f"{motion.directory}: its joints are of bodies that are no blocks")  # fmt: skip
         self.between = between
@@ -311,6 +316,37 @@ class Cracks:
             arms = self.points - motion.centres[block]
             found = found + 0.5 * (motion.shift[k][block] + turned(motion.turn[k][block], arms))  # fmt: skip
         return found
+
+
+def pointsFor(last: dict[str, Any], frame: dict[str, Any]) -> np.ndarray | None:
+    """For every point of joints in a frame, the number of the nearest point of the same joint in an earlier frame, where the
+    joint may have fewer. None if the joints are others, or if one has fewer points later.
+
+    :param last: the frame, of joints, as of :func:`masonry.read.frames.readFrame`
+    :param frame: the earlier one
+    """
+    if np.array_equal(frame["points"], last["points"]):
+        return np.arange(len(last["cells"]))
+    starts, numbers = [], []
+    for one in (frame, last):
+        changes = (np.diff(one["bodies"], axis=0) != 0).any(axis=1)
+        starts.append(np.append(0, np.flatnonzero(changes) + 1))
+        numbers.append(np.diff(np.append(starts[-1], len(one["cells"]))))
+    if not np.array_equal(frame["bodies"][starts[0]], last["bodies"][starts[1]]):
+        return None
+    if (numbers[0] > numbers[1]).any():
+        return None
+    centres = [centresOf(one["points"], one["cells"]) for one in (frame, last)]
+    found = np.repeat(starts[0] - starts[1], numbers[1]) + np.arange(len(last["cells"]))
+    same = np.repeat(numbers[0] == numbers[1], numbers[1])
+    moved = np.abs(centres[0][found[same]] - centres[1][same])
+    if moved.max(initial=0.0) > 1e-9 * np.ptp(last["points"], axis=0).max():
+        return None  # by more than round-off
+    for n in np.flatnonzero(numbers[0] != numbers[1]):
+        few, many = (slice(s[n], s[n] + c[n]) for s, c in zip(starts, numbers))
+        apart = centres[1][many, None] - centres[0][None, few]
+        found[many] = starts[0][n] + (apart**2).sum(axis=2).argmin(axis=1)
+    return found
 
 
 #: From where on a value of a joint is drawn; the same for all frames.

@@ -231,6 +231,8 @@ def _describe(run, scene):
         kinds=run.vtk.kinds if run.vtk else [],
         seconds={part: round(s, 3) for part, s in at.seconds.items()},
     )
+    if run.args.refine:
+        entries["refined_joints"] = scene.model.refinedJoints()
     if at.steps:
         perStep = at.seconds["steps"] / at.steps
         entries["microseconds_per_step"] = 1e6 * perStep

@@ -64,6 +64,15 @@ def count(text, high, low=1):
     return int(text)
 
 
+def refinement(text):
+    """The number of points that a text of ``--refine`` stands for: 0, or 4 to 100. Raises argparse.ArgumentTypeError."""
+    if text == "0" or text.isdecimal() and 4 <= int(text) <= 100:
+        return int(text)
+    raise argparse.ArgumentTypeError(
+        f"'{text}' must be 0 or a whole number from 4 to 100"
+    )
+
+
 def massScaling(text):
     """The selective mass scaling that a text stands for: a number of at least 0, or ``auto``. Raises
     argparse.ArgumentTypeError."""

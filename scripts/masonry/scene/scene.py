@@ -346,6 +346,8 @@ class Scene:
         """The materials for the options of this run: :class:`masonry.scene.materials.Masonry`. Raises Refused."""
         masonry = self.description.materials.variant(self.args)
         problems = self.description.problems(masonry)
+        if self.args.refine and self.description.functors:
+            problems.append(f"--refine {self.args.refine}: the functors keep the points of joints; leave functors=False")  # fmt: skip
         options.check(self.args, masonry, problems, self.description.plane)
         self.assumed = masonry.assumed()
         return masonry

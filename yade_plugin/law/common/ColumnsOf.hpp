@@ -73,6 +73,12 @@ public:
         s.regime = regimeOf(regime);
         set(point, joint, s);
     }
+    void take(int point, int joint, const LawColumns& from, int other) override {
+        const auto* same = dynamic_cast<const ColumnsOf*>(&from);
+        if (!same) return LawColumns::take(point, joint, from, other);
+        set(point, joint, same->get(point, other)); // the same law: no names need to be compared
+        setDissipated(point, joint, from.dissipated(point, other));
+    }
     void show(int point, int joint, const ShowField& shown) const override {
         LawType::show(equations_, get(point, joint), shown);
     }

@@ -37,6 +37,12 @@ public:
     // Damage of the bond in tension [-], null where the law knows no bond.
     virtual const double* tensionDamage(int point, int from) const;
 
+    // Normal stress [Pa] that a subcontact has if it is closed and its stiffness is that of an intact one.
+    double stressIfClosed(int point, int joint) const {
+        const std::size_t i = at(point, joint);
+        return k_.normal * (columns_[SharedColumn::Opening][i] + columns_[SharedColumn::Irreversible][i]);
+    }
+
     // Sets the shear stress out of the plane to zero, of which round-off has left something.
     void dropShearStressB(int point, int joint) { columns_[SharedColumn::ShearStressB][at(point, joint)] = 0; }
 
@@ -53,7 +59,7 @@ public:
     // One of these numbers; zero if the law has none of this name.
     double number(int point, int joint, const char* name) const;
     // Takes the state of a subcontact from other columns, that is all numbers that both laws call the same.
-    void take(int point, int joint, const LawColumns& from, int other);
+    virtual void take(int point, int joint, const LawColumns& from, int other);
 
     // What files show of a subcontact beside its stresses.
     virtual void show(int point, int joint, const ShowField&) const = 0;

@@ -1,0 +1,375 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Joints that are about to yield get more points: what they take over, and that the rest of a run does not notice."""
+
+import math
+
+import numpy as np
+import pytest
+from masonry import addBlock, connect, engine, engines, loadCheckpoint, saveCheckpoint
+from masonry._masonry import allowThreads
+from masonry.assembly.engines import functorLoop
+from masonry.bricks import boxCorners as corners
+from masonry.read.cracks import centresOf
+from masonry.read.frames import asFrame
+from masonry.read.motion import pointsFor
+from yade import O, Vector3
+from yade.wrapper import *
+
+from test_checkpoint import bits
+from test_joint_loop import panel
+from test_whole_bricks import brick, pull
+
+LENGTH, WIDTH, HEIGHT = 0.22, 0.102, 0.081
+AREA = LENGTH * WIDTH
+JOINT = dict(
+    name="bed",
+    normalStiffness=1e11,
+    shearStiffness=4e10,
+    tensileStrength=0.1e6,
+    modeIFractureEnergy=16,
+    cohesion=0.2e6,
+    modeIIFractureEnergy=160,
+    friction=0.6,
+    residualFriction=0.6,
+    compressiveStrength=8e6,
+    elasticLimitRatio=0.5,
+    peakRatio=20,
+    compressiveFractureEnergy=20000,
+)
+
+
+def couplet(refine=0, inPlane=True, subcontacts=3, **properties):
+    """Two bricks on each other, the lower one fixed; the upper one moves as :func:`move` says."""
+    O.reset()
+    unit = MasonryMat(density=1800, young=1e13, poisson=0.2)
+    low = addBlock(corners((0, 0, 0), (LENGTH, WIDTH, HEIGHT)), unit, inPlane=inPlane)
+    top = addBlock(corners((0, 0, HEIGHT), (LENGTH, WIDTH, 2 * HEIGHT)), unit, inPlane=inPlane)  # fmt: skip
+    O.bodies[low].state.blockedDOFs = "xyzXYZ"
+    load = MasonryLoad(body=top, point=(LENGTH / 2, WIDTH / 2, HEIGHT), damped=True, label="load")  # fmt: skip
+    engines(
+        [MasonryJoint(**{**JOINT, **properties})],
+        damping=0.7,
+        gravity=(0, 0, 0),
+        subcontacts=subcontacts,
+        inPlane=inPlane,
+        loads=[load],
+    )
+    joint = connect()[0]
+    engine("joints").refinement = refine
+    O.dt = 0.5 * O.bodies[top].state.mass ** 0.5 / math.sqrt(4 * 1e11 * AREA)
+    return joint
+
+
+def press(force, lever=0.0, shear=0.0):
+    """Load the upper brick: a force down [N] at a lever [m] from the middle, and one along x [N]."""
+    load = engine("load")
+    load.force = Vector3(shear, 0, -force)
+    load.point = (LENGTH / 2 + lever, WIDTH / 2, HEIGHT)
+
+
+def run(steps):
+    for _ in range(steps):
+        O.step()
+
+
+def resultants(joint):
+    """Normal force, shear force [N] and moment about the middle [N m] of the joint's stresses."""
+    area, stress = np.array(joint.geom.areas), np.array(joint.phys.stress)
+    lever = np.array(joint.geom.centres)[:, 0] - LENGTH / 2
+    return np.array([area @ stress[:, 0], area @ stress[:, 1], area @ (stress[:, 0] * lever)])  # fmt: skip
+
+
+def energies(kind):
+    balance = engine("energy").balance()
+    return sum(v for name, v in balance.items() if name.startswith(kind))
+
+
+def states(joint):
+    """All numbers that a joint shows, as bytes."""
+    parts = [joint.geom.areas, joint.geom.jumps, joint.phys.stress, joint.phys.damage, joint.phys.largest, joint.phys.slip]  # fmt: skip
+    return b"".join(np.array(part, float).tobytes() for part in parts)
+
+
+def ramp(force, lever=0.0, shear=0.0, start=0.0, parts=100, steps=20):
+    """Let the load grow from a share of it, and come to rest."""
+    for n in range(1, parts + 1):
+        share = start + (1 - start) * n / parts
+        press(share * force, lever, share * shear)
+        run(steps)
+    run(500)
+
+
+LAWS = pytest.mark.parametrize("law", ["softening", "cyclic"])
+
+
+@LAWS
+@pytest.mark.parametrize("points", [5, 12, 13])
+def test_an_elastic_joint_keeps_force_moment_and_energy(law, points):
+    results = []
+    for refine in (0, points):
+        joint = couplet(law=law)
+        ramp(60e3, 0.015, 4e3)
+        assert not any(max(list(d)) for d in joint.phys.damage)
+        assert 0.92 * 4e6 < -np.array(joint.phys.stress)[:, 0].min() < 4e6
+        engine("joints").refinement = refine
+        run(10)
+        results.append((resultants(joint), energies("elastic"), len(joint.geom.areas)))
+        assert abs(engine("joints").refiningEnergy) < 1e-12 * energies("elastic")
+    (one, stored, few), (other, kept, many) = results
+    assert (few, many) == (3, points)
+    assert np.abs(one - other).max() < 1e-9 * np.abs(one[0])
+    assert stored == pytest.approx(kept, rel=1e-9)
+
+
+def test_a_joint_gets_its_points_at_nine_tenths_of_the_limit_of_its_cap():
+    joint = couplet(refine=12)
+    for share, count in ((0.85, 3), (0.95, 12)):
+        ramp(share * 4e6 * AREA, start=share - 0.05)
+        assert len(joint.geom.areas) == count
+    assert engine("joints").refinedJoints == 1
+
+
+def test_a_joint_that_cannot_crush_gets_its_points_before_it_cracks():
+    joint = couplet(refine=12, cap=False)
+    ramp(-0.85 * 0.1e6 * AREA)
+    assert len(joint.geom.areas) == 3
+    ramp(-0.95 * 0.1e6 * AREA, start=0.85)
+    assert len(joint.geom.areas) == 12
+    assert not any(max(list(d)) for d in joint.phys.damage)
+
+
+@LAWS
+def test_a_cracked_joint_takes_its_crack_along_and_the_balance_closes(law):
+    joint = couplet(law=law)
+    ramp(12e3, 0.09, 1e3)  # cracked at the far edge
+    before = [list(d)[0] for d in joint.phys.damage]
+    assert before[0] > 0.1 and before[2] == 0
+    lost = energies("dissipated")
+    engine("joints").refinement = 12
+    ramp(18e3, 0.09, 1.5e3, start=2 / 3)
+    after = [list(d)[0] for d in joint.phys.damage]
+    assert len(after) == 12
+    assert after[0] >= before[0] and after[-1] == 0
+    assert after == sorted(after, reverse=True)  # the crack goes in from one edge
+    balance = engine("energy").balance()
+    assert balance["refining"] == engine("joints").refiningEnergy != 0
+    assert abs(balance["error"]) < 1e-6
+    assert energies("dissipated") > lost
+
+
+def test_other_numbers_of_points_have_the_same_end():
+    """A joint that crushes: with points that come late it is as one that has had them from the beginning."""
+    ends = {}
+    for name, (few, refine) in {"few": (3, 0), "refined": (3, 12), "many": (12, 0)}.items():  # fmt: skip
+        joint = couplet(refine, subcontacts=few)
+        ramp(85e3, 0.03, 2e3, parts=200)
+        ends[name] = O.bodies[1].state.rot()[1]
+    assert abs(ends["few"] / ends["many"] - 1) > 0.05
+    assert ends["refined"] == pytest.approx(ends["many"], rel=0.01)
+
+
+def test_at_zero_nothing_changes_and_a_late_refinement_begins_where_it_is_set():
+    ends = []
+    for refine in (0, 12):
+        joint = couplet(refine)
+        ramp(30e3)  # far from the limit
+        ends.append(states(joint))
+    assert ends[0] == ends[1]
+
+
+# ---- a panel: several joints are refined one after the other ---------------------------------------------------------
+
+CASES = {
+    "softening": {},
+    "cyclic": dict(law="cyclic", shearStiffnessLoss=0.3),
+    "cannot crush": dict(cap=False, tensileStrength=0.4e6, cohesion=0.8e6),
+    "damped": dict(stiffnessDamping=1e-6),
+}
+
+
+def pushed(refine=12, case="softening", stiffnessDamping=0.0, **more):
+    """A panel that is pressed and torn, whose joints have one row of three points."""
+    given = {**CASES[case], **more}
+    stiffnessDamping = given.pop("stiffnessDamping", stiffnessDamping)
+    strength = dict(compressiveStrength=4e6, compressiveFractureEnergy=12000)
+    interactions = panel(False, damping=0.3, rows=1, **{**strength, **given})
+    engine("joints").refinement = refine
+    if stiffnessDamping:
+        engine("joints").stiffnessDamping = stiffnessDamping
+        O.dt *= 0.5
+    return interactions
+
+
+def end(interactions):
+    loop = engine("joints")
+    sizes = [len(i.geom.areas) for i in interactions]
+    return bits(interactions), sizes, loop.refiningEnergy, loop.refinedJoints
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_run_that_was_saved_goes_on_in_the_same_bits(case, tmp_path):
+    path = str(tmp_path / "c")
+    interactions = pushed(case=case)
+    run(120)
+    whole = end(interactions)
+    counts = set()
+    for at in (5, 15, 25, 45):
+        interactions = pushed(case=case)
+        run(at)
+        counts.add(engine("joints").refinedJoints)
+        saveCheckpoint(path)
+        there = end(interactions)
+        run(120 - at)
+        assert end(interactions) == whole
+
+        loadCheckpoint(path)  # back, to fewer points
+        assert end(interactions) == there
+        run(120 - at)
+        assert end(interactions) == whole
+
+        interactions = pushed(case=case)
+        loadCheckpoint(path)  # into a new scene, where no joint was refined
+        assert end(interactions) == there
+        run(120 - at)
+        assert end(interactions) == whole
+    assert len(counts) > 2 and whole[3] < len(interactions)
+
+
+def test_a_checkpoint_of_another_scene_leaves_the_points_alone(tmp_path):
+    path = str(tmp_path / "c")
+    pushed()
+    run(240)
+    assert engine("joints").refinedJoints > 0
+    saveCheckpoint(path)
+    interactions = pushed(compressiveFractureEnergy=13000)
+    run(1)
+    before = end(interactions)
+    with pytest.raises(ValueError, match="is of another scene: its joints are others"):
+        loadCheckpoint(path)
+    assert end(interactions) == before
+
+
+def test_a_scene_that_yade_saves_keeps_the_points(tmp_path):
+    path = str(tmp_path / "scene.xml")
+    pushed()
+    run(200)
+    O.save(path)
+    areas = lambda: [len(i.geom.areas) for i in O.interactions]
+    there, count = areas(), engine("joints").refinedJoints
+    run(50)
+    ends = O.bodies[1].state.pos
+    O.load(path)
+    assert areas() == there and engine("joints").refinedJoints == count > 0
+    run(50)
+    assert (O.bodies[1].state.pos - ends).norm() == 0
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_balance_closes_as_it_does_without(case):
+    errors = []
+    for refine in (0, 12):
+        pushed(refine, case)
+        run(300)
+        errors.append(abs(engine("energy").balance()["error"]))
+    assert engine("joints").refinedJoints > 3
+    assert errors[1] < max(3 * errors[0], 1e-6)
+
+
+def test_any_number_of_threads_gives_the_same_bits():
+    ends = []
+    for threads in (1, 2, 3):
+        allowThreads(threads, True)
+        interactions = pushed(size=8)
+        run(250)
+        ends.append(end(interactions))
+    allowThreads(1)
+    assert ends[0][3] > 3 and ends[1] == ends[0] == ends[2]
+
+
+def test_a_panel_with_points_that_come_late_is_one_that_has_had_them_from_the_beginning():
+    lost, turned = {}, {}
+    for name, (refine, few) in {"few": (0, 3), "refined": (12, 3), "many": (0, 12)}.items():  # fmt: skip
+        pushed(refine, size=6, subcontacts=few)
+        run(1000)
+        lost[name] = energies("dissipated_compression")
+        turned[name] = O.bodies[-1].state.rot()[1]
+    for found in (lost, turned):
+        assert abs(found["few"] / found["many"] - 1) > 0.3
+        assert found["refined"] == pytest.approx(found["many"], rel=0.01)
+
+
+def test_files_and_functors_take_joints_with_other_numbers_of_points(tmp_path):
+    interactions = pushed()
+    run(240)
+    sizes = [len(i.geom.areas) for i in interactions]
+    assert len(set(sizes)) == 2
+    recorder = MasonryVtkRecorder(directory=str(tmp_path))
+    found = recorder.joints()
+    assert len(found["area"]) == sum(sizes)
+    assert sum(found["area"]) == pytest.approx(sum(sum(i.geom.areas) for i in interactions))  # fmt: skip
+
+    O.engines = [
+        ForceResetter(),
+        functorLoop(engine("joints").geometry, engine("joints").physics),
+        *[e for e in O.engines if isinstance(e, (MasonryLoad, MasonryEnergy))],
+        engine("integrator"),
+    ]
+    run(20)
+    assert [
+        len(i.geom.areas) for i in interactions
+    ] == sizes  # the functors refine none
+    assert abs(engine("energy").balance()["error"]) < 1e-3
+
+
+def test_bricks_that_are_whole_are_refined_when_they_split():
+    crack = dict(monolithic=True, cap=False, tensileStrength=1e5)
+    bodies, joint = brick(**crack)
+    engine("joints").refinement = 12
+    force = Vector3(0.5e5 * 0.102 * 0.081, 0, 0)
+    for n in range(1, 400):
+        pull(bodies, n * 0.01 * force, Vector3(0, 2 * n * 0.01, 0))
+        O.step()
+        if engine("integrator").splits:
+            break
+        assert len(joint.geom.areas) == 3
+    O.step()
+    assert engine("integrator").splits == 1 and len(joint.geom.areas) == 12
+
+
+@pytest.mark.parametrize("refinement", [1, 2, 101, -1])
+def test_numbers_of_points_that_mean_nothing_are_refused(refinement):
+    couplet()
+    with pytest.raises(ValueError, match=f"refinement {refinement} must be 0"):
+        engine("joints").refinement = refinement
+        O.step()
+
+
+def test_joints_in_space_are_refused_with_what_helps():
+    couplet(inPlane=False)
+    engine("joints").refinement = 12
+    with pytest.raises(ValueError, match="bodies 0 and 1 has 9 points, .* as many subcontacts and rows"):  # fmt: skip
+        O.step()
+
+
+def test_an_earlier_frame_is_shown_at_the_points_of_the_last():
+    """What reads several frames takes, where a joint had fewer points, the nearest of these."""
+    pushed()
+    recorder, frames = MasonryVtkRecorder(), []
+    for steps in (5, 10, 60):
+        run(steps)
+        frames.append(asFrame(recorder.joints()))
+    counts = [len(f["cells"]) for f in frames]
+    assert counts == sorted(set(counts))
+    last = frames[-1]
+    places = centresOf(last["points"], last["cells"])
+    for frame in frames:
+        found = pointsFor(last, frame)
+        assert np.array_equal(frame["bodies"][found], last["bodies"])
+        apart = centresOf(frame["points"], frame["cells"])[found] - places
+        assert np.abs(apart).max() < 0.5 * 0.11  # at most half of a joint
+        assert set(found) == set(range(len(frame["cells"])))
+    assert np.array_equal(pointsFor(last, last), np.arange(counts[-1]))
+    assert pointsFor(frames[0], last) is None  # fewer points later
+    other = {**last, "bodies": last["bodies"] + 1}
+    other["points"] = last["points"] + 1.0
+    assert pointsFor(last, other) is None
