@@ -59,23 +59,23 @@ PROMISES = {
         },
     },
     "balanced": {
-        "peak_error": 0.02,
-        "work_error": 0.04,
+        "peak_error": 0.04,
+        "work_error": 0.03,
         "walls": {
-            "wall_comp0a": (30, 30),
-            "wall_comp1": (30, 30),
-            "wall_comp4": (12, 40),
-            "wall_comp6": (16, 50),
+            "wall_comp0a": (30, 20),
+            "wall_comp1": (30, 15),
+            "wall_comp4": (12, 20),
+            "wall_comp6": (16, 25),
         },
     },
     "accurate": {
         "peak_error": 0.02,
         "work_error": 0.02,
         "walls": {
-            "wall_comp0a": (30, 60),
-            "wall_comp1": (30, 60),
-            "wall_comp4": (12, 90),
-            "wall_comp6": (16, 120),
+            "wall_comp0a": (30, 30),
+            "wall_comp1": (30, 25),
+            "wall_comp4": (12, 30),
+            "wall_comp6": (16, 40),
         },
     },
 }
