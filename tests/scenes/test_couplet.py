@@ -38,7 +38,7 @@ def test_shear_under_constant_stress_peaks_on_the_coulomb_line_and_keeps_frictio
         "--until",
         "60",
         "--rate",
-        "100",
+        "50",  # at 100 mm/s the first wave through the bricks adds 1 % to the peak
     )
     peak, residual = 0.11 - 0.43 * stress, -0.43 * stress
     assert run["peak_shear_stress_MPa"] == pytest.approx(peak, rel=0.005)
