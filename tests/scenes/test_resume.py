@@ -25,7 +25,13 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize("seed", range(SEED, SEED + SCRIPTS))
+@pytest.mark.parametrize(
+    "seed",
+    [
+        pytest.param(SEED + n, marks=[pytest.mark.long] if n >= SCRIPTS // 2 else [])
+        for n in range(SCRIPTS)
+    ],
+)
 def test_a_script_that_is_stopped_and_resumed_leaves_what_an_unbroken_run_leaves(
     here, seed
 ):
