@@ -50,6 +50,9 @@ LONG = [
     "test_a_push_that_is_too_fast_says_so_and_what_would_do",
     "test_a_search_and_loads_of_later_stages_resume_bit_for_bit",
     "test_mypy_finds_what_a_user_does_wrong_and_nothing_else",
+    "test_what_cannot_be_reached_is_said_with_the_width_that_was_found",
+    "test_loops_interrupted_anywhere_leave_the_curve_of_a_whole_run",
+    "test_slurm_gives_the_same",
 ]
 
 #: On a busy machine examples take longer than hypothesis expects, and some are large.
