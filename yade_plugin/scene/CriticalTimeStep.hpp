@@ -38,6 +38,7 @@ class SceneStore;
 //
 // The limit of a scene [s]; infinite where nothing can vibrate. It is kept while joints, units and damping are the
 // same; with `anew` it is found again in any case, because changes of masses or blocked axes are not noticed.
+// Without it the value may be lower than the limit, but it is below the scene's time step only if the limit is, too.
 double timeStepLimit(SceneStore&, bool anew);
 
 // The two bodies whose joint sets the limit; twice the same body where a deformable unit does; -1 where nothing does.

@@ -21,10 +21,8 @@ from ..basics import GRAVITY
 SHARE = 0.05  # of gravity: the acceleration that acts in the measurement
 SAMPLE = 2e-5  # [s] between two readings of the forces, at true masses
 FEWEST = 10  # readings in half a period, else it is too short to be found within half a per cent
-BEYOND = (
-    1.1,
-    2.0,
-)  # how far the first side goes beyond its own half period, for the difference to both sides [-]
+#: How far the first side goes, over its own half period, so that the difference of both sides has its zero [-].
+BEYOND = 1.1, 2.0
 
 
 def firstPeriod(structure, direction, longest):

@@ -352,6 +352,8 @@ class Structure:
         of bricks are left. Waves through a brick get slower by the root of 1 + massScaling, so the least that brings their
         limit to the second one is known.
         """
+        if not self.zones:
+            return 0.0
         if self.args.mass_scaling != "auto":
             return self.args.mass_scaling
         limits = []

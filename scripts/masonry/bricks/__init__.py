@@ -25,9 +25,7 @@ with ``joint``, the thickness of the mortar, ``unit`` is the brick without it.
 
 from ..packages import promised
 
-promised(
-    "scipy"
-)  # which is imported when convex solids that are no boxes are looked at
+promised("scipy")  # it is imported for convex solids that are no boxes
 
 from .blocks import Block, Bricks, boxCorners, summary
 from .checks import Joint

@@ -42,10 +42,8 @@ def hull(corners):
     for n, corner in enumerate(centred):
         if n and np.abs(centred[:n] - corner).max(axis=1).min() < 1e-9:
             raise ValueError(f"corner {n} at {_place(corners[n])} m is given twice")
-    from scipy.spatial import (
-        ConvexHull,
-        QhullError,
-    )  # a run of a wall of boxes needs none
+    # not above: a run of a wall of boxes needs none
+    from scipy.spatial import ConvexHull, QhullError
 
     try:
         found = ConvexHull(centred)

@@ -52,8 +52,9 @@ def stiffness(displacement: Numbers, force: Numbers, ramp: int = 0) -> float:
     """Initial stiffness of a push [force/displacement]: that of a line through its beginning that fits its first part best.
 
     The first part begins where the velocity of the drive has grown, because before that a wave passes through the structure,
-    which is over after a whole first period. It ends where the force is a quarter of its peak and the displacement twice that
-    at its beginning, since other waves go on; or before, a tenth beyond its beginning, where the force is a third of its peak.
+    which is over after a whole first period. It ends at the first row that has a quarter of the largest force and twice the
+    displacement of its beginning, because weaker waves go on. In a structure that cracks early it ends before that: at the
+    first row that has a third of the largest force and 1.1 times that displacement.
 
     :param force: that of :func:`quasiStatic`. What it is in the first row does not count if it is more than a hundredth of
         the peak, as of a drive that held a weight before

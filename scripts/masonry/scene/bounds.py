@@ -28,8 +28,8 @@ from ..run.beside import Failed, Job
 SMALL = 500
 EVERY = math.inf  # it is looked for however many joints there are
 JOINTS = 3000  # up to so many joints every run has its bounds; limit analysis of more takes longer than seconds
-#: Time that limit analysis may take for a load, if nobody asked for it, and if somebody did [s]. Beside a run that nobody has to
-#: wait for it may take longer.
+#: Time that limit analysis may take for a load, if nobody asked for it, if somebody did, and if it is done beside a run that
+#: still takes steps [s]. A run that has come to its end, or to a checkpoint, waits until the first of them is over.
 UNASKED, ASKED, BESIDE = 10.0, 600.0, 120.0
 #: By how much a run may be above its bound [-]: joints of finite stiffness, displacements that are not small, and motion,
 #: whose measured share is added.
@@ -56,11 +56,10 @@ class Bounds:
 
     def __init__(self, model, place):
         self.model, self.place = model, place
-        self.last = (
-            None  # what was found last, in this process: limit.Bound and its entry
-        )
+        #: what was found last, in this process: limit.Bound and its entry
+        self.last = None
         self._job = (
-            None  # finds a bound beside the run, and then the files of its mechanism
+            None  # beside the run: finds a bound, then the files of its mechanism
         )
         self._looksFor = ""  # name of the load whose bound it has not found yet
         self._since = 0.0  # since when it looks [s]

@@ -50,7 +50,7 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     p.add_argument(
         "--preset",
         choices=[BOUND, *PRESETS],
-        help="blocks, divisions, subcontacts, rate and damping with a promise of error and time; "
+        help="blocks, divisions, subcontacts, rate, damping and mass scaling with a promise of error and time; "
         "an option given beside it wins, and drops the promise; bound is limit analysis alone, without a run",
     )
     p.add_argument(
@@ -106,7 +106,7 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         choices=["plane", "space"],
         default="plane",
         help="deformable units of a scene in the x-z plane: triangles in plane stress in the middle plane of every brick, or "
-        "tetrahedra whose nodes are held along y, as in versions before 1.1, which cost twice as much; a block that is no "
+        "tetrahedra whose nodes are held along y, as in versions before 3.0, which cost twice as much; a block that is no "
         "right prism along y has tetrahedra in any case. In space all units have tetrahedra, and this has no effect",
     )
     p.add_argument(

@@ -41,9 +41,8 @@ class Pushing:
     start: float = 0.0
     path: float = 0.0  # length of the path to there [mm]
     period: float = 0.0  # the first one when the push began [s]; 0 if none was found
-    places: list = field(
-        default_factory=list
-    )  # of the blocks then, while the velocity grows [m]
+    #: of the blocks then, while the velocity grows [m]
+    places: list = field(default_factory=list)
     turned: bool = False  # whether the drive has turned since the push began
     since: float = 0.0  # time from which the velocity grows [s]
     #: velocity then, in the present direction, over the full one [-]
@@ -104,11 +103,12 @@ def drivePush(scene, name, args, began, continued=False):
     """Drive the pushed target to ``--until`` or along ``--history``, with rows and frames.
 
     The drive moves at ``--rate``. When it begins, its velocity grows evenly in time, from rest to ``--rate`` within one
-    first period of the structure, which is measured then, and without damping: a motion that begins so leaves no swing of that
-    period. Numerical damping would act as more mass. Where the history turns it takes whole periods, of :func:`rampTime` together at least, because joints that are open make them
-    longer. Where no period is found it takes :func:`rampTime`. It brakes by the displacement that curve.csv has, so the wall turns within
-    0.01 mm of the history's turning points. Points at which the history does not turn are passed at full speed, and so
-    is the end, unless it is that of a file.
+    first period of the structure, which is measured then, and without damping: a motion that begins so leaves no swing of
+    that period. Numerical damping would act as more mass. Where the history turns, the velocity changes within whole
+    periods, together :func:`rampTime` at least, because open joints make periods longer. Where no period is found both take
+    :func:`rampTime`. The drive brakes by the displacement that curve.csv has, so the wall turns within 0.01 mm of the
+    history's turning points. Points at which the history does not turn are passed at full speed, and so is the end, unless
+    it is that of a file.
 
     Rows are 0.01 mm apart at full speed; where the drive is slower, the time between them is the same or less.
     ParaView frames are :func:`frameSpacing` of the path apart. Those of a history are also at its turning points and where
@@ -174,9 +174,8 @@ def drivePush(scene, name, args, began, continued=False):
         full = goal.direction * args.rate * 1e-3
         if velocity != full * growth:
             velocity = load.velocity = full * growth
-        if (
-            start < growth
-        ):  # a velocity that grows in stairs would make the pushed block swing in time with them
+        # A velocity that grew in stairs would make the pushed block swing in time with them.
+        if start < growth:
             load.ramp = run.at.left or steps
             load.acceleration = full * (growth - start) / (steps * O.dt)
         model.keepLoadLine()
