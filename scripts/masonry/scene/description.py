@@ -80,6 +80,8 @@ class Description:
         self.joints = []  # whose means are recorded
         self.drifts = []
         self.sections = []
+        self.ties = []  # of masonry.scene.connections
+        self.springs = []
         self.winds = []  # brick, force [N] and point [m]
         self.views = {}  # direction of sight by part
         self.extra = []  # columns of the user's own
@@ -111,6 +113,11 @@ class Description:
             ]
         return []
 
+    def connectedBricks(self):
+        """Indices of the bricks at the ends of ties and springs."""
+        ends = [end for one in (*self.ties, *self.springs) for end in one.ends]
+        return {end.brick for end in ends if end.brick is not None}
+
     def followed(self):
         """The target whose displacement is drawn under a load that grows: the first that is watched, else the first that
         moves, or None."""
@@ -136,8 +143,8 @@ class Description:
         return target
 
     def replace(self, one, other):
-        """Let a record that a script holds stand for one that was made by the same word again: a target, a recorded joint or a
-        section. Its values become those of the new one."""
+        """Let a record that a script holds stand for one that was made by the same word again: a target, a recorded joint, a
+        section, a tie or springs. Its values become those of the new one."""
         if not hasattr(one, "__dict__"):
             return
         vars(other).clear()
@@ -145,7 +152,7 @@ class Description:
         for name, target in self.targets.items():
             if target is one:
                 self.targets[name] = other
-        for records in (self.joints, self.sections):
+        for records in (self.joints, self.sections, self.ties, self.springs):
             records[:] = [other if record is one else record for record in records]
 
     def columns(self, structure, looped):
@@ -161,9 +168,10 @@ class Description:
             found += drift.columns(self.plane)
         for joint in self.joints:
             found += joint.columns()
-        for section in self.sections:
-            found += section.columns(self.plane)
-        found += [*self.extra, *columns.BALANCE, *columns.HISTORY * looped]
+        for record in (*self.sections, *self.ties, *self.springs):
+            found += record.columns(self.plane)
+        balance = columns.BALANCE + columns.CONNECTORS * bool(self.ties or self.springs)
+        found += [*self.extra, *balance, *columns.HISTORY * looped]
         heads = columns.heads(found)
         twice = sorted({n for n in heads if heads.count(n) > 1})
         if twice:
@@ -175,7 +183,7 @@ class Description:
             raise Refused(
                 f"no column {', '.join(unknown)}; there are {', '.join(heads)}"
             )
-        always = columns.heads(columns.BALANCE + columns.HISTORY)
+        always = columns.heads(balance + columns.HISTORY)
         chosen = [found[heads.index(n)] for n in self.choice if n not in always]
         return chosen + [c for c in found if c.head in always]
 
