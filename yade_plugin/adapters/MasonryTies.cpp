@@ -13,4 +13,12 @@ void MasonryTies::action() {
     turn.end();
 }
 
+double MasonryTies::forceOf(int tie) {
+    const BetweenSteps still;
+    if (tie < 0 || tie >= count())
+        throw std::invalid_argument("MasonryTies.forceOf: tie " + std::to_string(tie) + " must be from 0 to " +
+                                    std::to_string(count() - 1));
+    return std::size_t(tie) < forces.size() ? forces[std::size_t(tie)] : 0;
+}
+
 } // namespace masonry

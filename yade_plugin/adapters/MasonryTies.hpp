@@ -52,9 +52,17 @@ public:
         visit("restBefore", &T::restBefore, described("rest in the last step [m]"), Hidden);
     }
 
+    template <class PyClass> static void extras(PyClass& cls) {
+        cls.def("forceOf", &MasonryTies::forceOf, py::args("tie"),
+                "Force of a tie in the last step, by its number from 0 [N]; 0 before the first step.");
+    }
+
     using Ties::problems;
     bool isActivated() override { return standsAlone(*this); }
     void action() override;
+
+private:
+    double forceOf(int tie);
 };
 
 } // namespace masonry

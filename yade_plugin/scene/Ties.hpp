@@ -32,6 +32,21 @@ public:
     void act(SceneContents&) override;
     Vector3r stiffnessOf(int tie) const override { return Vector3r::Constant(stiffness[std::size_t(tie)]); }
     Vector3r rotationalStiffnessOf(int) const override { return Vector3r::Zero(); }
+
+private:
+    static constexpr int most = 64; // ties that are worked on at a time, so that all their numbers are in the cache
+    struct Piece;                   // these numbers
+
+    void prepare(SceneContents&);
+    void gather(SceneContents&, Piece&, int first, int count) const;
+    static void pull(int count, Piece&);
+    void scatter(yade::ForceContainer::Sums, const Piece&, int first, int count) const;
+
+    // Of every tie, found from the ends and the reference state: arms of both ends in the reference orientation of
+    // their bodies [m], the way from one end to the other [m], and the length of that [m].
+    std::vector<double> arms_[2][3], span_[3], length_;
+    std::vector<double> both_, whole_; // 1 where a tie carries compression, and where it is not broken; else 0
+    long revision_ = -1;               // SceneContents::revision() of that
 };
 
 } // namespace masonry

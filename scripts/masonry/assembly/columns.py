@@ -48,6 +48,7 @@ class Reading:
     - ``topShear``: force that drives the pushed point [N]
     - ``energy``: the energy balance [J]
     - ``goal``: number of the point of a history that the drive is going to, from 1, and its displacement [mm]
+    - ``ofTies``: forces [N] and elongations [m] of all ties, two lists
     - ``forces``: force of the structure on what is held, along the axes that are held now or that springs hold, by the name of
       the target [N]
 
@@ -80,6 +81,7 @@ class Reading:
         beside = structure.besideThePush()
         self.baseShear = held.dot(structure.direction) - beside.dot(structure.direction)
         self.energy = structure.energy.balance()
+        self.ofTies = structure.ofTies()
         self.goal = structure.goal
 
     def moved(self, target):

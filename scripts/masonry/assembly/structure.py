@@ -651,6 +651,13 @@ class Structure:
                 carried += load.reaction * load.direction.normalized()
         return carried - self.onGround()
 
+    def ofTies(self):
+        """Forces [N] and elongations [m] of all ties: two lists."""
+        count = len(self.description.ties)
+        if not (self.ties and len(self.ties.forces)):
+            return [0.0] * count, [0.0] * count
+        return list(self.ties.forces), list(self.ties.elongations)
+
     def onGround(self):
         """Force of ties and springs on the ground, to which they are fixed, along the axes of the scene [N]."""
         force = Vector3.Zero

@@ -8,6 +8,8 @@ and :mod:`masonry.scene.records`. :class:`masonry.assembly.structure.Structure` 
 import math
 from numbers import Integral
 
+import numpy as np
+
 from ..arguments import flag, listOf, misfits, number, orNone, shown, text, vector
 from ..assembly import columns
 from ..basics import GRAVITY, Refused
@@ -79,6 +81,7 @@ class Description:
         self.targets = {}  # by name
         self.joints = []  # whose means are recorded
         self.drifts = []
+        self._boxes = None  # bricks, and their lower and upper corners and middles, for _nearest()
         self.sections = []
         self.ties = []  # of masonry.scene.connections
         self.springs = []
@@ -206,7 +209,7 @@ class Description:
                 raise ValueError(
                     f"{shown(where)} must be a brick: its index, a point (x, y, z) [m], or the block itself"
                 ) from None
-            index = min(range(count), key=lambda i: self._distance(i, point))
+            index = self._nearest(point)
             away, size = self._distance(index, point), self.size(index)
             if away > size:
                 raise ValueError(
@@ -225,6 +228,16 @@ class Description:
         return max(
             max(p[i] for p in corners) - min(p[i] for p in corners) for i in range(3)
         )
+
+    def _nearest(self, point):
+        """Index of the brick that is nearest to a point, by :meth:`_distance`."""
+        if self._boxes is None or self._boxes[0] is not self.bricks:
+            corners = [np.asarray(block.corners, float) for block in self.bricks]
+            of = lambda f: np.array([f(c, axis=0) for c in corners])
+            self._boxes = self.bricks, of(np.min), of(np.max), of(np.mean)
+        _, low, high, middle = self._boxes
+        away = np.maximum(0, np.maximum(low - point, point - high).max(axis=1))
+        return int((away + 1e-6 * np.linalg.norm(middle - point, axis=1)).argmin())
 
     def _distance(self, index, point):
         """How far a point is from the box around a brick, with a little of the way to its middle to break ties [m]."""

@@ -82,7 +82,7 @@ class Tie:
     @property
     def force(self) -> float:
         """Present force, positive in tension [N]."""
-        return self.engine.forces[self.number] if len(self.engine.forces) else 0.0
+        return self.engine.forceOf(self.number)
 
     @property
     def elongation(self) -> float:
@@ -101,8 +101,8 @@ class Tie:
     def columns(self, plane: bool) -> Iterator[Column]:
         """What is recorded of it."""
         where = f"{self.ends[0].words} and {self.ends[1].words}"
-        yield Column(f"{self.name}_force", "kN", f"force of the tie between {where}, positive in tension", lambda r: 1e-3 * self.force)  # fmt: skip
-        yield Column(f"{self.name}_elongation", "mm", f"elongation of the distance between {where}", lambda r: 1e3 * self.elongation)  # fmt: skip
+        yield Column(f"{self.name}_force", "kN", f"force of the tie between {where}, positive in tension", lambda r: 1e-3 * r.ofTies[0][self.number])  # fmt: skip
+        yield Column(f"{self.name}_elongation", "mm", f"elongation of the distance between {where}", lambda r: 1e3 * r.ofTies[1][self.number])  # fmt: skip
 
     def entry(self) -> dict[str, Any]:
         """What run.json says of it."""
