@@ -121,7 +121,7 @@ GROWS = dict(over=0.02, within=0.5)
 
 #: What stands before a word of a scene, and its arguments. A word that describes, and is a stage later, has two examples.
 WORDS = {
-    "platen": (bare, dict(where="top", rotation=None, height=0.2, name=None, point=None, guided="", part=None, upTo=None, recorded=None, drive="")),
+    "platen": (bare, dict(where="top", rotation=None, height=0.2, name=None, point=None, guided="", part=None, upTo=None, recorded=None, drive="", springs=None)),
     "hold": (bare, dict(where=0, name=None, axes="xyzXYZ")),
     "watch": (bare, dict(where=0, name=None)),
     "handle": (bare, dict(where=0, name=None)),
@@ -132,6 +132,8 @@ WORDS = {
     "column": (scene, dict(name="own_mm", meaning="mine", value=lambda: 1.0)),
     "joint": (scene, dict(one=0, two=1, name=None)),
     "section": (scene, dict(z=0.1, part=None, name=None)),
+    "tie": (scene, dict(one=2, other=TOP, stiffness=1e6, strength=1e3, prestress=0.0, slack=0.0, breaking=None, compression=False, anchor=None, name=None)),
+    "spring": (scene, dict(one=2, other=None, stiffness=(1e6, 0, 0), rotation=(0, 0, 0), name=None)),
     "view": (scene, dict(direction=(0, 1, 0), part=None)),
     "settle": (scene, dict(longest=0.05, damping=None, record=True)),
     "push": (settled, dict(until=0.2, **PUSHES)),

@@ -127,7 +127,9 @@ def test_prestress_grows_in_settle_and_its_work_is_counted(tmp_path):
     rows = readCurve(tmp_path / "results")
     pressed = -1e-3 * (WEIGHT + tie.force)
     assert rows["base_force_z_kN"][-1] == pytest.approx(pressed, rel=1e-4)
-    assert rows["elastic_connectors_J"][-1] == pytest.approx(tie.force**2 / 2e6, rel=1e-4)
+    assert rows["elastic_connectors_J"][-1] == pytest.approx(
+        tie.force**2 / 2e6, rel=1e-4
+    )
     assert rows["external_J"][-1] == pytest.approx(force**2 / 2e6, rel=0.02)
     assert abs(rows["balance_error"][-1]) < 1e-3
 

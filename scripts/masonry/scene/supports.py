@@ -156,11 +156,11 @@ def platen(
         )
     )
     if springs:
-        standOn(description, target, springs, middle)
+        _standOn(description, target, springs, middle)
     return target
 
 
-def standOn(description, target, springs, point):
+def _standOn(description, target, springs, point):
     """Let a platen stand on springs to the ground."""
     of = lambda axes: tuple(float(springs.get(axis, 0)) for axis in axes)
     ends = End(point, target), End(point)

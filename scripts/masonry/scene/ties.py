@@ -67,6 +67,11 @@ class Tie:
     number: int = 0  # among the ties of the engine
 
     @property
+    def bodies(self) -> tuple[int, int]:
+        """YADE's ids of the bodies of its ends, -1 for the ground."""
+        return self.engine.bodies1[self.number], self.engine.bodies2[self.number]
+
+    @property
     def length(self) -> float:
         """Distance of its ends when the scene is built [m]."""
         a, b = (end.point for end in self.ends)
@@ -111,6 +116,7 @@ class Tie:
         return {
             "name": self.name,
             "ends_m": [list(end.point) for end in self.ends],
+            "bodies": list(self.bodies),
             "between": [end.words for end in self.ends],
             "stiffness_N_per_m": self.stiffness,
             "strength_N": self.strength,
