@@ -61,6 +61,10 @@ class Structure:
         self.ties = self.springs = None  # their engines
         self._newsFrom = 0  # step from which ties that yield or break are news
         self.bricks, self.loads, self.zones = {}, {}, None
+        #: Indices of blocks that are rigid also where bricks are deformable.
+        self._rigid = description.connectedBricks() | {
+            n for n, b in enumerate(description.bricks) if b.kind in masonry.stiff
+        }
         #: What is pushed; from the beginning the target that a drive holds.
         self.target = next((t for t in description.targets.values() if t.drives), None)
         self.followed = self.target  # whose displacement is recorded along the load
@@ -142,7 +146,7 @@ class Structure:
             for target in description.targets.values():
                 if target.freedom:
                     self.bricks.pop(target.body, None)
-            for index in description.connectedBricks():
+            for index in self._rigid:
                 self.bricks.pop(self.ids[index], None)
             # cells of a half brick along its length; a whole one has twice as many
             n = args.divisions
@@ -191,7 +195,7 @@ class Structure:
         for target in self.description.targets.values():
             if not target.loaded:
                 continue
-            if deformable and target.brick is not None and not target.freedom:
+            if deformable and target.brick not in {None, *self._rigid} and not target.freedom:  # fmt: skip
                 raise Refused(
                     f"handle: {target.name} is a deformable brick, and loads and drives act on rigid ones: load a platen, "
                     "or choose --blocks rigid"
