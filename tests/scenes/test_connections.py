@@ -249,3 +249,50 @@ def test_no_energy_is_made_by_ties_in_a_shaken_wall(tmp_path):
     assert abs(rows["balance_error"]).max() < 0.01
     lost = rows["dissipated_connectors_J"]
     assert lost[-1] > 0 and (np.diff(lost) > -1e-3 * lost[-1]).all()
+
+
+def test_an_overlay_gives_a_section_the_moment_of_its_fibres(tmp_path):
+    """F h = W d / 2 + f b d: force at the height h, weight, thickness, strength of the fibres a metre, width."""
+    width, depth, height, strength = 0.5, 0.2, 0.8, 4e3
+    scene = Scene(
+        "panel",
+        bricks.stack(2, (width, depth, height)),
+        materials.dry(5.0, normalStiffness=1e12),
+        plane=False,
+        arguments=[*LEAN, "--out", str(tmp_path)],
+        rate=5,
+    )
+    scene.platen("bottom")
+    scene.hold(0, name="foot")
+    layer = scene.overlay((0, -1, 0), stiffness=1e7, strength=strength, gauge=0.2)
+    assert len(layer.ties) == 2
+    top = scene.handle((width / 2, depth / 2, 1.6), "top")
+    scene.settle()
+    scene.push(top, 3.0, direction=(0, 1, 0))
+    scene.finish()
+    weight = width * depth * height * 2600 * GRAVITY
+    expected = (weight * depth / 2 + strength * width * depth) / height
+    rows = readCurve(tmp_path)
+    swings = rows["top_shear_kN"][rows["displacement_mm"] > 1]  # about its mean
+    assert swings.mean() == pytest.approx(1e-3 * expected, rel=0.01)
+    assert rows["overlay0_yielded"][-1] == 2 and rows["overlay0_broken"][-1] == 0
+    run = readRun(tmp_path)
+    assert run["overlays"][0]["bundles"] == 2 and len(run["ties"]) == 2
+
+
+def test_fibres_cross_the_joints_of_one_face_only(tmp_path):
+    wall = bricks.Wall(0.66, 0.243, halves=False)
+    scene = Scene("wall", wall, materials.dry(0.6), plane=False, arguments=[*LEAN, "--out", str(tmp_path)])  # fmt: skip
+    scene.platen("bottom")
+    both = scene.overlay((0, 1, 0), stiffness=1e7, strength=1e4, gauge=0.1)
+    joints = wall.joints()
+    assert len(both.ties) == 2 * len(joints)
+    level = sum(abs(joint.normal[2]) > 0.9 for joint in joints)
+    upright = scene.overlay((0, -1, 0), stiffness=1e7, strength=1e4, gauge=0.1, fibres="vertical", name="other")  # fmt: skip
+    assert len(upright.ties) == 2 * level
+    front = max(c[1] for block in wall for c in block.corners)
+    assert {round(end.point[1] - front, 12) for t in both.ties for end in t.ends} == {0}
+    with refused("no joint ends at a face"):
+        scene.overlay((0, 0, 1), stiffness=1e7, strength=1e4, gauge=0.1, fibres="vertical")  # fmt: skip
+    scene.settle()
+    scene.finish()

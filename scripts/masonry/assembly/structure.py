@@ -59,6 +59,10 @@ class Structure:
         self.gravity = description.gravity / args.density_scaling
         self.axes = (0, 2) if description.plane else (0, 1, 2)
         self.ties = self.springs = None  # their engines
+        self._news = {
+            "yields": set(),
+            "breaks": set(),
+        }  # overlays of which that was said
         self._newsFrom = 0  # step from which ties that yield or break are news
         self.bricks, self.loads, self.zones = {}, {}, None
         #: Indices of blocks that are rigid also where bricks are deformable.
@@ -693,7 +697,9 @@ class Structure:
         since, self._newsFrom = min(self._newsFrom, O.iter), O.iter
         for what, steps in (("yields", self.ties.yieldedAt), ("breaks", self.ties.brokenAt)):  # fmt: skip
             for one, step in zip(self.description.ties, steps):
-                if step >= since:
+                first = not one.overlay or one.overlay not in self._news[what]
+                if step >= since and first:
+                    self._news[what].add(one.overlay)
                     yield f"{one.name} {what}: between {one.ends[0].words} and {one.ends[1].words}"  # fmt: skip
 
     def besideThePush(self):

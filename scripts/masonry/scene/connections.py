@@ -5,15 +5,18 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..arguments import Numbers, flag, number, orNone, takes
+import numpy as np
+
+from ..arguments import Numbers, direction, flag, number, oneOf, orNone, takes
 from ..arguments import name as nameOf
 from ..arguments import vector as numbers
 from ..assembly.blocks import vector
 from ..basics import Refused
-from ..bricks import Block
+from ..bricks import Block, Bricks
 from .supports import POINT
 from .targets import Target, brick
-from .ties import End, Spring, Tie
+from .targets import part as partName
+from .ties import End, Overlay, Spring, Tie
 from .words import describes
 
 MOST = 1e15  # of stiffness [N/m], [N m] and force [N]: more has no structure
@@ -180,6 +183,94 @@ def spring(
     return made
 
 
+#: Places of two bundles of fibres along the edge of a joint, which have the force and the moment of a layer whose strain is
+#: linear along it: those of Gauss.
+BUNDLES = 0.5 - 0.5 / 3**0.5, 0.5 + 0.5 / 3**0.5
+NEAR = (
+    1e-6  # of the largest extent of the structure: corners so near to a face lie on it
+)
+
+
+@describes
+@takes(
+    side=direction(),
+    stiffness=STIFFNESS,
+    strength=number("N/m", 0, MOST, above=True),
+    gauge=number("m", 0, 10, above=True),
+    strain=orNone(number("", 0, 10, above=True)),
+    fibres=oneOf("both", "vertical", "horizontal"),
+    part=orNone(partName),
+    name=orNone(nameOf),
+)
+def overlay(
+    description: Any,
+    side: Numbers,
+    *,
+    stiffness: float,
+    strength: float,
+    gauge: float,
+    strain: float | None = None,
+    fibres: str = "both",
+    part: str | None = None,
+    name: str | None = None,
+) -> Overlay:
+    """A fibre layer on a face: textile or steel in mortar. Its fibres cross every joint that ends at that face.
+
+    Fibres carry tension only. Two bundles over the edge of every joint are bars (:meth:`tie`) between both bricks, at right
+    angles to the joint. Mortar and bond of the layer are not modelled but by ``gauge``, the length over which fibres are free
+    on either side of a crack together.
+
+    :param side: outward direction of the face, for example (0, -1, 0)
+    :param stiffness: E t of the fibres, a metre of width [N/m]
+    :param strength: force a metre of width at which they slip or yield [N/m]
+    :param gauge: length over which they stretch at a crack [m]
+    :param strain: of that length, at which they break [-]; None: they do not
+    :param fibres: ``"vertical"``: over joints that are nearer to level; ``"horizontal"``: over the others; ``"both"``
+    :param part: name of a part of the bricks; None: all
+    :param name: of its columns, the numbers of bundles that have yielded and broken; None: ``overlay`` and a number
+    :returns: an :class:`Overlay`, whose ``ties`` are the bundles
+    """
+    name = name or f"overlay{len(description.overlays)}"
+    _checkName(description, name, "overlay")
+    outward = np.asarray(vector(side, "overlay: side").normalized(), float)
+    bricks = Bricks(description.bricks)
+    size = max(b - a for a, b in zip(description.low, description.high))
+    fronts = [max(np.dot(c, outward) for c in b.corners) for b in description.bricks]
+    made, covered = [], 0.0
+    for joint in bricks.joints():
+        pair, normal = (joint.first, joint.second), np.array(joint.normal)
+        level = abs(normal[2]) > 0.5**0.5
+        if abs(normal @ outward) > 0.5 or fibres == ("horizontal" if level else "vertical"):  # fmt: skip
+            continue
+        if part is not None and {description.bricks[n].part for n in pair} != {part}:
+            continue
+        corners = np.array(joint.polygon)
+        heights = corners @ outward
+        edge = corners[heights > min(fronts[n] for n in pair) - NEAR * size]
+        if len(edge) < 2:
+            continue
+        along = np.cross(normal, outward)
+        first, last = edge[np.argmin(edge @ along)], edge[np.argmax(edge @ along)]
+        width = float(np.linalg.norm(last - first))
+        if not width > NEAR * size:
+            continue
+        covered += width * gauge
+        across = normal - (normal @ outward) * outward
+        across *= 0.5 * gauge / np.linalg.norm(across)
+        for share in BUNDLES:
+            point = first + share * (last - first)
+            ends = tuple(End(tuple(map(float, point + sign * across)), None, n) for sign, n in zip((-1, 1), pair))  # fmt: skip
+            number = len(description.ties) + len(made)
+            made.append(Tie(f"{name}_{len(made)}", ends, 0.5 * width * stiffness / gauge, 0.5 * width * strength, 0.0, 0.0, strain, False, number=number, overlay=name))  # fmt: skip
+    if not made:
+        raise Refused(f"overlay: no joint ends at a face that looks along {tuple(side)}")  # fmt: skip
+    if description.plane:
+        raise Refused("overlay: the scene is in the x-z plane, in which a layer on one face would bend it; Scene(..., plane=False) is in space")  # fmt: skip
+    description.ties += made
+    description.overlays.append(Overlay(name, made, covered))
+    return description.overlays[-1]
+
+
 def _samePlace(one, other):
     """Whether two ends are on the same brick or platen."""
     same = one.target is not None and one.target is other.target
@@ -187,6 +278,6 @@ def _samePlace(one, other):
 
 
 def _checkName(description, name, word):
-    known = {one.name for one in (*description.ties, *description.springs)}
+    known = {one.name for one in (*description.ties, *description.springs, *description.overlays)}  # fmt: skip
     if name in known or name in description.targets:
         raise Refused(f"{word}: there is a {name!r} already; give one of them another name")  # fmt: skip

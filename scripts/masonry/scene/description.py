@@ -85,6 +85,7 @@ class Description:
         self.sections = []
         self.ties = []  # of masonry.scene.connections
         self.springs = []
+        self.overlays = []
         self.winds = []  # brick, force [N] and point [m]
         self.views = {}  # direction of sight by part
         self.extra = []  # columns of the user's own
@@ -171,7 +172,7 @@ class Description:
             found += drift.columns(self.plane)
         for joint in self.joints:
             found += joint.columns()
-        for record in (*self.sections, *self.ties, *self.springs):
+        for record in (*self.sections, *self.ties, *self.springs, *self.overlays):
             found += record.columns(self.plane)
         balance = columns.BALANCE + columns.CONNECTORS * bool(self.ties or self.springs)
         found += [*self.extra, *balance, *columns.HISTORY * looped]

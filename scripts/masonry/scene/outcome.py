@@ -169,7 +169,8 @@ class Outcome:
     def _connections(self):
         """Entries for ties and springs, if there are any."""
         description = self.description
-        kinds = {"ties": description.ties, "springs": description.springs}
+        ties = [one for one in description.ties if not one.overlay or one.state != "elastic"]  # fmt: skip
+        kinds = {"ties": ties, "springs": description.springs, "overlays": description.overlays}  # fmt: skip
         return {name: [one.entry() for one in records] for name, records in kinds.items() if records}  # fmt: skip
 
     def _ofAccuracy(self, found, column):

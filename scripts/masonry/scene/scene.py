@@ -236,6 +236,7 @@ class Scene:
     drift, column = records.drift, records.column
     joint, section, view = records.joint, records.section, records.view
     tie, spring = connections.tie, connections.spring
+    overlay = connections.overlay
     # Their names are those of stages, too, which are meant after the first stage.
     hold = _either(supports.hold, stages.hold)
     press = _either(loads.press, stages.press)

@@ -65,6 +65,7 @@ class Tie:
     compression: bool
     engine: Any = None  # YADE's, when the scene is built
     number: int = 0  # among the ties of the engine
+    overlay: str = ""  # name of the overlay of which it is a fibre; then it has no columns of its own
 
     @property
     def bodies(self) -> tuple[int, int]:
@@ -105,14 +106,23 @@ class Tie:
 
     def columns(self, plane: bool) -> Iterator[Column]:
         """What is recorded of it."""
+        if self.overlay:
+            return
         where = f"{self.ends[0].words} and {self.ends[1].words}"
         yield Column(f"{self.name}_force", "kN", f"force of the tie between {where}, positive in tension", lambda r: 1e-3 * r.ofTies[0][self.number])  # fmt: skip
         yield Column(f"{self.name}_elongation", "mm", f"elongation of the distance between {where}", lambda r: 1e3 * r.ofTies[1][self.number])  # fmt: skip
 
+    @property
+    def state(self) -> str:
+        """``elastic``, ``yielded`` or ``broken``."""
+        engine, n = self.engine, self.number
+        if not len(engine.forces):
+            return "elastic"
+        return "broken" if engine.brokenAt[n] >= 0 else "yielded" if engine.yieldedAt[n] >= 0 else "elastic"  # fmt: skip
+
     def entry(self) -> dict[str, Any]:
         """What run.json says of it."""
         engine, n = self.engine, self.number
-        state = "broken" if engine.brokenAt and engine.brokenAt[n] >= 0 else "yielded" if engine.yieldedAt and engine.yieldedAt[n] >= 0 else "elastic"  # fmt: skip
         return {
             "name": self.name,
             "ends_m": [list(end.point) for end in self.ends],
@@ -124,7 +134,7 @@ class Tie:
             "slack_m": self.slack,
             "breaking_strain": self.breaking,
             "compression": self.compression,
-            "state": state,
+            "state": self.state,
             "force_N": self.force,
             "plastic_elongation_m": engine.flows[n] if len(engine.flows) else 0.0,
         }
@@ -177,3 +187,33 @@ class Spring:
             "force_N": list(self.force),
             "moment_Nm": list(self.moment),
         }
+
+
+@dataclass
+class Overlay:
+    """Fibres over the joints of a face; ``scene.overlay`` makes them and says what the values mean."""
+
+    name: str
+    ties: list[Tie]
+    area: float  # of the face that it covers, about [m²]
+
+    def columns(self, plane: bool) -> Iterator[Column]:
+        """What is recorded of it."""
+        for n, what in enumerate(("yielded", "broken")):
+            meaning = f"how many of the {len(self.ties)} bundles of fibres of {self.name} have {what}"
+            yield Column(f"{self.name}_{what}", "-", meaning, lambda r, n=n: self._count()[n])  # fmt: skip
+
+    def _count(self):
+        engine = self.ties[0].engine
+        if not len(engine.forces):
+            return 0, 0
+        yielded, broken = list(engine.yieldedAt), list(engine.brokenAt)
+        numbers = [one.number for one in self.ties]
+        return sum(yielded[n] >= 0 for n in numbers), sum(
+            broken[n] >= 0 for n in numbers
+        )
+
+    def entry(self) -> dict[str, Any]:
+        """What run.json says of it."""
+        yielded, broken = self._count()
+        return {"name": self.name, "bundles": len(self.ties), "yielded": yielded, "broken": broken}  # fmt: skip
