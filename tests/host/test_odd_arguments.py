@@ -248,6 +248,8 @@ CALLS = {
     "bricks.BarrelVault": (nothing, bricks.BarrelVault, dict(length=1.0, rows=2, staggered=True, part="vault", **RING)),
     "bricks.Dome": (nothing, bricks.Dome, dict(radius=2.0, thickness=0.3, courses=3, stones=6, oculus=0.5, angle=120.0, staggered=False, part="dome")),
     "bricks.stack": (nothing, bricks.stack, dict(count=3, size=(0.2, 0.1, 0.1), part="stack")),
+    "bricks.Beam": (nothing, bricks.Beam, dict(start=(0, 0, 0), length=2.0, width=0.1, height=0.2, along="x", pieces=3, name="beam")),
+    "bricks.Floor": (nothing, bricks.Floor, dict(start=(0, 0, 0), length=2.0, width=1.0, height=0.2, along="y", strips=3, name="floor")),
     "bricks.block": (nothing, bricks.block, dict(low=(0, 0, 0), high=(1, 1, 1), part="block", kind="block")),
     "bricks.Block": (nothing, bricks.Block, dict(corners=CUBE, brick=0, part="wall", course=-1, kind="brick")),
     "bricks.Bricks": (nothing, bricks.Bricks, dict(blocks=list(WALL))),

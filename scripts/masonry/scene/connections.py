@@ -259,7 +259,8 @@ def overlay(
         across *= 0.5 * gauge / np.linalg.norm(across)
         for share in BUNDLES:
             point = first + share * (last - first)
-            ends = tuple(End(tuple(map(float, point + sign * across)), None, n) for sign, n in zip((-1, 1), pair))  # fmt: skip
+            at = lambda sign, n: End(tuple(map(float, point + sign * across)), None, n)
+            ends = at(-1, pair[0]), at(1, pair[1])
             number = len(description.ties) + len(made)
             made.append(Tie(f"{name}_{len(made)}", ends, 0.5 * width * stiffness / gauge, 0.5 * width * strength, 0.0, 0.0, strain, False, number=number, overlay=name))  # fmt: skip
     if not made:
