@@ -12,6 +12,8 @@
 #include "adapters/MasonryIntegrator.hpp"
 #include "adapters/MasonryJointLoop.hpp"
 #include "adapters/MasonryLoad.hpp"
+#include "adapters/MasonrySprings.hpp"
+#include "adapters/MasonryTies.hpp"
 #include "adapters/MasonryVtkRecorder.hpp"
 #include "adapters/MasonryZones.hpp"
 #include "common/Memory.hpp"
@@ -165,6 +167,8 @@ static void registerAll() {
     enroll<GlExtra_MasonryLegend>(names);
     enroll<MasonryZones>(names);
     enroll<MasonryJointLoop>(names);
+    enroll<MasonryTies>(names);
+    enroll<MasonrySprings>(names);
     enroll<MasonryLoad>(names);
     enroll<MasonryEnergy>(names);
     enroll<MasonryIntegrator>(names);

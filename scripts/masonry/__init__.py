@@ -123,6 +123,8 @@ if TYPE_CHECKING:  # what is loaded later, for those that check types
         MasonryJointPhys,
         MasonryLoad,
         MasonryMat,
+        MasonrySprings,
+        MasonryTies,
         MasonryVtkRecorder,
         MasonryZones,
     )

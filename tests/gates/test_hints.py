@@ -14,12 +14,12 @@ PACKAGE = os.path.join(tree.ROOT, "scripts", "masonry")
 #: What users call: all public functions, methods and classes of these modules.
 PUBLIC = """
     assembly.blocks assembly.connecting assembly.engines assembly.window
-    bricks.blocks bricks.files bricks.vaults bricks.walls
+    bricks.beams bricks.blocks bricks.files bricks.vaults bricks.walls
     limit.assembly limit.bound limit.reading
     read.comparison read.cracks read.curve_figure read.curves read.figures read.files read.frames read.loops read.measure
     read.viewer
     run.checkpoints
-    scene.fields scene.ground scene.loads scene.records scene.scene scene.supports scene.targets
+    scene.connections scene.fields scene.ground scene.loads scene.records scene.scene scene.supports scene.targets
     scene.materials.assumptions scene.materials.formulas scene.materials.kinds scene.materials.published
     study.plan study.variables
 """.split()

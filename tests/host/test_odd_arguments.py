@@ -121,7 +121,7 @@ GROWS = dict(over=0.02, within=0.5)
 
 #: What stands before a word of a scene, and its arguments. A word that describes, and is a stage later, has two examples.
 WORDS = {
-    "platen": (bare, dict(where="top", rotation=None, height=0.2, name=None, point=None, guided="", part=None, upTo=None, recorded=None, drive="")),
+    "platen": (bare, dict(where="top", rotation=None, height=0.2, name=None, point=None, guided="", part=None, upTo=None, recorded=None, drive="", springs=None)),
     "hold": (bare, dict(where=0, name=None, axes="xyzXYZ")),
     "watch": (bare, dict(where=0, name=None)),
     "handle": (bare, dict(where=0, name=None)),
@@ -132,6 +132,9 @@ WORDS = {
     "column": (scene, dict(name="own_mm", meaning="mine", value=lambda: 1.0)),
     "joint": (scene, dict(one=0, two=1, name=None)),
     "section": (scene, dict(z=0.1, part=None, name=None)),
+    "tie": (scene, dict(one=2, other=TOP, stiffness=1e6, strength=1e3, prestress=0.0, slack=0.0, breaking=None, compression=False, anchor=None, name=None)),
+    "overlay": (space, dict(side=(0, 1, 0), stiffness=1e7, strength=1e4, gauge=0.1, strain=None, fibres="both", part=None, name=None)),
+    "spring": (scene, dict(one=2, other=None, stiffness=(1e6, 0, 0), rotation=(0, 0, 0), name=None)),
     "view": (scene, dict(direction=(0, 1, 0), part=None)),
     "settle": (scene, dict(longest=0.05, damping=None, record=True)),
     "push": (settled, dict(until=0.2, **PUSHES)),
@@ -245,6 +248,8 @@ CALLS = {
     "bricks.BarrelVault": (nothing, bricks.BarrelVault, dict(length=1.0, rows=2, staggered=True, part="vault", **RING)),
     "bricks.Dome": (nothing, bricks.Dome, dict(radius=2.0, thickness=0.3, courses=3, stones=6, oculus=0.5, angle=120.0, staggered=False, part="dome")),
     "bricks.stack": (nothing, bricks.stack, dict(count=3, size=(0.2, 0.1, 0.1), part="stack")),
+    "bricks.Beam": (nothing, bricks.Beam, dict(start=(0, 0, 0), length=2.0, width=0.1, height=0.2, along="x", pieces=3, name="beam")),
+    "bricks.Floor": (nothing, bricks.Floor, dict(start=(0, 0, 0), length=2.0, width=1.0, height=0.2, along="y", strips=3, name="floor")),
     "bricks.block": (nothing, bricks.block, dict(low=(0, 0, 0), high=(1, 1, 1), part="block", kind="block")),
     "bricks.Block": (nothing, bricks.Block, dict(corners=CUBE, brick=0, part="wall", course=-1, kind="brick")),
     "bricks.Bricks": (nothing, bricks.Bricks, dict(blocks=list(WALL))),

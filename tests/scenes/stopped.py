@@ -122,6 +122,20 @@ class Writer:
             self.loaded = True
         if dice.random() < 0.3:
             self.lines.append("scene.section(0.081)")
+        if dice.random() < 0.4:
+            self._connect(length, 0.081 * courses)
+
+    def _connect(self, length, height):
+        """Ties that yield and break, and springs."""
+        dice = self.dice
+        for _ in range(dice.randint(1, 3)):
+            point = lambda: f"({self._number(0, length)}, 0.05, {self._number(0.5, 1) * height:.3g})"  # fmt: skip
+            far = f"anchor=({self._number(-1, 2)}, 0.05, {self._number(-1, 1)})"
+            more = dice.choice([f"prestress={self._number(10, 300)}", "slack=1e-5", "compression=True", f"breaking={self._number(1e-6, 1e-4)}"])  # fmt: skip
+            strength = f"strength={self._number(301, 900)}"
+            self.lines.append(f"scene.tie({point()}, {far}, stiffness=1e7, {strength}, {more})")  # fmt: skip
+        if dice.random() < 0.5:
+            self.lines.append(f"scene.spring({point()}, stiffness=(1e6, 0, 1e6), rotation=(0, 1e4, 0))")  # fmt: skip
 
     def _force(self):
         return tuple(self._number(-100, 100) * free for free in (1, 0, 1))

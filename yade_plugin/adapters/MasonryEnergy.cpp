@@ -2,6 +2,7 @@
 #include "MasonryEnergy.hpp"
 #include "scene/BodyCheck.hpp"
 #include "scene/BodyStep.hpp"
+#include "scene/Connectors.hpp"
 #include "scene/CriticalTimeStep.hpp"
 #include "scene/EngineTurn.hpp"
 #include "scene/Integrator.hpp"
@@ -23,10 +24,19 @@ double givenByChanges(const SceneStore& store) {
     return (store.integrator ? store.integrator->bricks.energy : 0) + (store.loop ? store.loop->refiningEnergy : 0);
 }
 
+// Work of tightening, energy stored and energy dissipated in the ties and springs [J].
+Vector3r energiesOfConnectors(const SceneStore& store) {
+    Vector3r sums = Vector3r::Zero();
+    for (const auto* connectors : store.allConnectors)
+        sums += Vector3r(connectors->given, connectors->stored, connectors->dissipated);
+    return sums;
+}
+
 } // namespace
 
 MasonryEnergy::Inventory MasonryEnergy::inventory(const SceneStore& store) const {
-    Inventory all{external, fallen, kinetic, damped, 0, 0};
+    const Vector3r connectors = energiesOfConnectors(store);
+    Inventory all{external + connectors[0], fallen, kinetic, damped, 0, 0, connectors[1], connectors[2]};
     all.given = givenByChanges(store);
     for (const auto* load : store.allLoads)
         all.work += load->work;
@@ -107,6 +117,10 @@ void MasonryEnergy::lookAtBalance(const SceneStore& store) {
     if (stepThen >= 0 && scene->iter == stepThen + 1) {
         auto all = inventory(store);
         all.drag += dampingThen - damping;
+        const Vector3r connectors = energiesOfConnectors(store);
+        all.work += connectorsThen[0] - connectors[0];
+        all.inConnectors = connectorsThen[1];
+        all.lostInConnectors = connectorsThen[2];
         all.given = splittingThen; // bricks split, and joints are refined, after the joints were looked at
         warnOfBalance(std::abs(balanceOf(all, storedThen, lostThen).error));
     }
@@ -116,6 +130,7 @@ void MasonryEnergy::lookAtBalance(const SceneStore& store) {
     lostThen = now.lost;
     dampingThen = damping;
     splittingThen = givenByChanges(store);
+    connectorsThen = energiesOfConnectors(store);
     stepThen = int(scene->iter);
 }
 
@@ -220,9 +235,10 @@ MasonryEnergy::Balance MasonryEnergy::presentBalance(const SceneStore& store) co
 }
 
 MasonryEnergy::Balance MasonryEnergy::balanceOf(const Inventory& all, const Vector3r& stored, const Vector3r& lost) {
-    const auto [work, falls, moving, drag, inUnits, given] = all;
+    const auto [work, falls, moving, drag, inUnits, given, inConnectors, lostInConnectors] = all;
     const double in = work + falls + given;
-    const double out = moving + drag + inUnits + stored[0] + stored[1] + stored[2] + lost.sum();
+    const double out =
+        moving + drag + inUnits + stored[0] + stored[1] + stored[2] + lost.sum() + inConnectors + lostInConnectors;
     const double size = std::max(std::abs(work) + std::abs(falls), std::abs(out));
     return {all, stored, lost, size, size > 0 ? (in - out) / size : 0};
 }
@@ -232,7 +248,7 @@ py::dict MasonryEnergy::balance() {
     auto& store = SceneStore::present();
     store.update(SceneStore::Look::AtJoints); // a full look would take too long: every row of curve.csv calls this
     const auto [inventory, stored, lost, size, error] = presentBalance(store);
-    const auto [work, falls, moving, drag, inUnits, given] = inventory;
+    const auto [work, falls, moving, drag, inUnits, given, inConnectors, lostInConnectors] = inventory;
     // Dissipated energies should never fall. They can: where a joint opens or closes within a step, the trapezoidal
     // rule takes the mean of the tractions before and after, and the error is counted as dissipated, also where it is
     // negative. A long undamped series of such steps makes energy. Damping or shorter steps prevent that.
@@ -253,6 +269,8 @@ py::dict MasonryEnergy::balance() {
     all["dissipated_tension"] = lost[0];
     all["dissipated_shear"] = lost[1];
     all["dissipated_compression"] = lost[2];
+    all["elastic_connectors"] = inConnectors;
+    all["dissipated_connectors"] = lostInConnectors;
     all["error"] = error;
     return all;
 }

@@ -44,6 +44,7 @@ public:
     Vector3r lostThen = Vector3r::Zero();
     double dampingThen = 0;
     double splittingThen = 0;
+    Vector3r connectorsThen = Vector3r::Zero();
     int stepThen = -1;
     bool begun = false;
     double largestError = 0;
@@ -100,6 +101,9 @@ public:
               number("J", "Energy that crack surfaces had when their bricks split, and that joints got when they were "
                           "refined, at that look"),
               Hidden);
+        visit("connectorsThen", &E::connectorsThen,
+              number("J", "Work of tightening, and energies stored and dissipated in ties and springs, at that look"),
+              Hidden);
         visit("stepThen", &E::stepThen, number("", "Step of the last look at the balance; -1: there was none"), Hidden);
         visit("largestError", &E::largestError,
               number("-", "Largest error of the balance seen by balance(), relative to the work done"), ReadOnly);
@@ -117,7 +121,8 @@ public:
         cls.def("balance", &MasonryEnergy::balance,
                 "All energies of the last step [J]: external, gravity, splitting, refining, kinetic, damping, elastic_ "
                 "and dissipated_ "
-                "tension, shear, compression; and error, the balance's error relative to the work done [-].")
+                "tension, shear, compression, connectors, which are ties and springs; and error, the balance's error "
+                "relative to the work done [-].")
             .def("given", &MasonryEnergy::given,
                  "Count the kinetic energy of the present motion as work done from outside. Call this directly after "
                  "setting velocities by hand, if the run has made a step before.");
@@ -135,6 +140,8 @@ private:
         double inUnits = 0; // elastic energy of deformable units
         double given = 0;   // elastic energy that crack surfaces had when their bricks split, and that joints got when
                             // they were refined
+        double inConnectors = 0;     // elastic energy of ties and springs
+        double lostInConnectors = 0; // dissipated by them
     };
     Inventory inventory(const SceneStore&) const;
     struct Balance {

@@ -2,6 +2,7 @@
 #include "CriticalTimeStep.hpp"
 #include "BodyCheck.hpp"
 #include "BodyStep.hpp"
+#include "Connectors.hpp"
 #include "SceneStore.hpp"
 #include "Zones.hpp"
 #include "motion/LargestEigenvalue.hpp"
@@ -38,7 +39,8 @@ public:
     std::pair<int, int> stiffest() const;
 
 private:
-    struct Part {                 // a joint between rigid bodies, or one subcontact of a joint with a deformable side
+    // A joint between rigid bodies, one subcontact of a joint with a deformable side, or a connector.
+    struct Part {
         std::vector<int> degrees; // the degrees of freedom on which it acts
         Eigen::MatrixXd stiffness;
         int body1, body2;
@@ -59,9 +61,11 @@ private:
         scale_.push_back(blocked ? 0 : std::sqrt(1 / mass));
         damping_.push_back(damping);
     }
+    void addBody(int id, const char* holder);
     void addBodies(const JointView&);
     void splitDamping(Damping);
     template <class F> void eachPartOf(const JointView&, F&& visit) const;
+    Part partOf(const Connectors&, int connector) const;
     template <class F> void eachPart(F&& visit) const;
     void assemble();
     void addBlocks();
@@ -83,9 +87,22 @@ Dynamics::Dynamics(SceneStore& store, Damping damping) : store_(store) {
                     addDegree(mass, store.zones->damping, store.zones->holds(d));
     for (const auto& joint : store.joints)
         addBodies(joint);
+    for (const auto* connectors : store.connectors)
+        for (const auto* ids : {&connectors->bodies1, &connectors->bodies2})
+            for (int id : *ids)
+                if (id != Connectors::ground) addBody(id, "a connector holds body");
     splitDamping(damping);
     assemble();
     addBlocks();
+}
+
+void Dynamics::addBody(int id, const char* holder) {
+    const auto& body = bodyAt(store_.scene(), id, holder);
+    if (!firstOfBody_.emplace(body.id, int(scale_.size())).second) return;
+    if (const auto wrong = problemsOf(body); !wrong.empty()) throw std::invalid_argument(joined(wrong));
+    const State& s = *body.state;
+    for (int d = 0; d < 6; ++d)
+        addDegree(d < 3 ? s.mass : s.inertia[d - 3], s.isDamped ? store_.damping() : 0, isBlocked(s, d));
 }
 
 void Dynamics::addBodies(const JointView& joint) {
@@ -94,15 +111,8 @@ void Dynamics::addBodies(const JointView& joint) {
         throw std::invalid_argument("the joint of bodies " + std::to_string(r.sides[0].body) + " and " +
                                     std::to_string(r.sides[1].body) +
                                     " needs its MasonryZones in O.engines, and not dead");
-    for (int side = 0; side < 2; ++side) {
-        if (!r.rigid(side)) continue;
-        const auto& body = bodyAt(store_.scene(), r.sides[side].body, "a joint holds body");
-        if (!firstOfBody_.emplace(body.id, int(scale_.size())).second) continue;
-        if (const auto wrong = problemsOf(body); !wrong.empty()) throw std::invalid_argument(joined(wrong));
-        const State& s = *body.state;
-        for (int d = 0; d < 6; ++d)
-            addDegree(d < 3 ? s.mass : s.inertia[d - 3], s.isDamped ? store_.damping() : 0, isBlocked(s, d));
-    }
+    for (int side = 0; side < 2; ++side)
+        if (r.rigid(side)) addBody(r.sides[side].body, "a joint holds body");
 }
 
 // Where damping is the same everywhere, the matrix without it is the same for every damping.
@@ -161,15 +171,48 @@ template <class F> void Dynamics::eachPartOf(const JointView& joint, F&& visit) 
     }
 }
 
+Dynamics::Part Dynamics::partOf(const Connectors& connectors, int connector) const {
+    const auto c = std::size_t(connector);
+    Part part{{}, {}, connectors.bodies1[c], connectors.bodies2[c]};
+    std::vector<Vector3r> moved, turned; // derivatives of the relative motion of both ends
+    for (int end = 0; end < 2; ++end) {
+        const int id = (end ? connectors.bodies2 : connectors.bodies1)[c];
+        if (id == Connectors::ground) continue;
+        const State& s = *bodyAt(store_.scene(), id, "a connector holds body").state;
+        const int first = firstOfBody_.at(id);
+        const Matrix3r own = rotationRestrained(s) ? Matrix3r(Matrix3r::Identity()) : s.ori.toRotationMatrix();
+        const Vector3r point = (end ? connectors.points2 : connectors.points1)[c];
+        const Vector3r arm = s.ori * (s.refOri.conjugate() * (point - s.refPos));
+        const double sign = end ? 1 : -1;
+        for (int d = 0; d < 6; ++d) {
+            if (scale_[first + d] == 0) continue;
+            part.degrees.push_back(first + d);
+            moved.push_back(sign * (d < 3 ? Vector3r(Vector3r::Unit(d)) : Vector3r(own.col(d - 3).cross(arm))));
+            turned.push_back(d < 3 ? Vector3r(Vector3r::Zero()) : Vector3r(sign * own.col(d - 3)));
+        }
+    }
+    const Vector3r k = connectors.stiffnessOf(connector), turning = connectors.rotationalStiffnessOf(connector);
+    part.stiffness.setZero(moved.size(), moved.size());
+    for (std::size_t i = 0; i < moved.size(); ++i)
+        for (std::size_t j = 0; j < moved.size(); ++j)
+            part.stiffness(i, j) =
+                moved[i].dot(k.cwiseProduct(moved[j])) + turned[i].dot(turning.cwiseProduct(turned[j]));
+    return part;
+}
+
 // Calls `visit(body1, body2, degree1, degree2, stiffness)` for all entries of the stiffness matrices of joints and
-// units.
+// connectors and units.
 template <class F> void Dynamics::eachPart(F&& visit) const {
+    const auto visitAll = [&](const Part& part) {
+        for (std::size_t i = 0; i < part.degrees.size(); ++i)
+            for (std::size_t j = 0; j < part.degrees.size(); ++j)
+                visit(part.body1, part.body2, part.degrees[i], part.degrees[j], part.stiffness(i, j));
+    };
     for (const auto& joint : store_.joints)
-        eachPartOf(joint, [&](const Part& part) {
-            for (std::size_t i = 0; i < part.degrees.size(); ++i)
-                for (std::size_t j = 0; j < part.degrees.size(); ++j)
-                    visit(part.body1, part.body2, part.degrees[i], part.degrees[j], part.stiffness(i, j));
-        });
+        eachPartOf(joint, visitAll);
+    for (const auto* connectors : store_.connectors)
+        for (int c = 0; c < connectors->count(); ++c)
+            visitAll(partOf(*connectors, c));
     if (!store_.zones) return;
     for (const auto& unit : store_.zones->units()) {
         const auto matrix = unit.elasticity->matrix();
@@ -323,9 +366,10 @@ struct Known {
     const SceneStore* store = nullptr;
     long revision = -1;
     double damping = 0, zoneDamping = 0, stiffnessDamping = 0, massScaling = 0;
+    double connectors = 0; // sum of their stiffness
     bool operator==(const Known& o) const {
         return store == o.store && revision == o.revision && damping == o.damping && zoneDamping == o.zoneDamping &&
-               stiffnessDamping == o.stiffnessDamping && massScaling == o.massScaling;
+               stiffnessDamping == o.stiffnessDamping && massScaling == o.massScaling && connectors == o.connectors;
     }
 };
 
@@ -340,6 +384,10 @@ double stepOf(double eigenvalue, double stiffnessDamping) {
 } // namespace
 
 double timeStepLimit(SceneStore& store, bool anew) {
+    double stiffnessOfConnectors = 0;
+    for (const auto* connectors : store.connectors)
+        for (int c = 0; c < connectors->count(); ++c)
+            stiffnessOfConnectors += connectors->stiffnessOf(c).sum() + connectors->rotationalStiffnessOf(c).sum();
     static Known known;
     static double last;
     const Known now{&store,
@@ -347,7 +395,8 @@ double timeStepLimit(SceneStore& store, bool anew) {
                     store.damping(),
                     store.zones ? store.zones->damping : 0,
                     store.stiffnessDamping(),
-                    store.zones ? store.zones->massScaling : 0};
+                    store.zones ? store.zones->massScaling : 0,
+                    stiffnessOfConnectors};
     if (!anew && now == known) return last;
     const auto limit = [&](Dynamics::Damping damping) {
         return stepOf(Dynamics(store, damping).highest(), now.stiffnessDamping);
@@ -380,6 +429,10 @@ std::string describedLimit(SceneStore& store) {
     std::string name;
     for (const auto& joint : store.joints)
         if (joint.interaction->id1 == id1 && joint.interaction->id2 == id2) name = joint.phys->propertySet()->name;
+    if (name.empty() && id2 == Connectors::ground)
+        return what + "the connector of body " + std::to_string(id1) + " to the ground sets";
+    if (name.empty())
+        return what + "the connector of bodies " + std::to_string(id1) + " and " + std::to_string(id2) + " sets";
     return what + "joint \"" + name + "\" between bodies " + std::to_string(id1) + " and " + std::to_string(id2) +
            " sets";
 }

@@ -2,6 +2,7 @@
 #include "SceneCheck.hpp"
 #include "Blocks.hpp"
 #include "BodyCheck.hpp"
+#include "Connectors.hpp"
 #include "JointFunctor.hpp"
 #include "SceneStore.hpp"
 #include "Zones.hpp"
@@ -55,7 +56,7 @@ void add(std::vector<std::string>& all, const std::vector<std::string>& more) {
 std::string problemOfEngines(const yade::Scene& scene, bool jointed) {
     std::vector<std::string> wrong;
     std::string loop, integrator;
-    bool reset = false;
+    bool reset = false, loaded = false;
     const bool looped = std::any_of(scene.engines.begin(), scene.engines.end(), [](const auto& engine) {
         const auto name = engine->getClassName();
         return !engine->dead && (name == "MasonryJointLoop" || name == "InteractionLoop");
@@ -79,7 +80,10 @@ std::string problemOfEngines(const yade::Scene& scene, bool jointed) {
             continue;
         }
         const bool moves = name == "MasonryIntegrator" || name == "NewtonIntegrator";
-        const bool loads = name == "MasonryLoad" || name == "MasonryEnergy";
+        const bool connects = dynamic_cast<const Connectors*>(engine.get()) != nullptr;
+        loaded |= name == "MasonryLoad";
+        if (connects && loaded) fail("must stand before MasonryLoad");
+        const bool loads = connects || name == "MasonryLoad" || name == "MasonryEnergy";
         if (looped && loop.empty() && (moves || loads || name == "MasonryZones"))
             fail("must stand after the joints' loop");
         if (loads && !integrator.empty()) fail("must stand before " + integrator);
@@ -145,6 +149,12 @@ void checkScene(const SceneStore& store) {
                 fail("was made before MasonryZones had body " + std::to_string(id) +
                      ": give the zones to masonry.engines(), then connect()");
     }
+    for (const auto* connectors : store.connectors)
+        try {
+            connectors->checkBodies(store);
+        } catch (const std::invalid_argument& error) {
+            wrong.push_back(error.what());
+        }
     for (int id : store.unjoinedBlocks())
         wrong.push_back("body " + std::to_string(id) +
                         " was added after connect() and has no joint, so nothing would hold it: build all blocks "

@@ -6,6 +6,7 @@
 
 namespace masonry {
 
+class Connectors;
 class Load;
 
 // What others use of the engine that makes the step of the joints.
@@ -28,8 +29,9 @@ public:
     // The same, but for readings between which only joints were refined: their stiffness stays what it is.
     long stiffnessRevision() const { return stiffnessRevision_; }
 
-    JointLoop* loop = nullptr; // null if no engine of the scene makes the step of the joints
-    std::vector<Load*> loads;  // those that are not dead
+    JointLoop* loop = nullptr;           // null if no engine of the scene makes the step of the joints
+    std::vector<Load*> loads;            // those that are not dead
+    std::vector<Connectors*> connectors; // those that are not dead
     BodyColumns bodies;
     std::vector<JointKind> kinds;
     std::vector<JointView> joints; // of all kinds, in the host's order

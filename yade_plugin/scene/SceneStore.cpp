@@ -2,6 +2,7 @@
 #include "SceneStore.hpp"
 #include "Blocks.hpp"
 #include "Changes.hpp"
+#include "Connectors.hpp"
 #include "Integrator.hpp"
 #include "Load.hpp"
 #include "MonolithicPairs.hpp"
@@ -104,6 +105,8 @@ void SceneStore::readEngines() {
     engines_.clear();
     loads.clear();
     allLoads.clear();
+    connectors.clear();
+    allConnectors.clear();
     loop = nullptr;
     zones = nullptr;
     watched = false;
@@ -113,7 +116,9 @@ void SceneStore::readEngines() {
     for (const auto& engine : scene_.engines) {
         engines_.emplace_back(engine.get(), engine->dead);
         auto* load = dynamic_cast<Load*>(engine.get());
+        auto* connector = dynamic_cast<Connectors*>(engine.get());
         if (load) allLoads.push_back(load);
+        if (connector) allConnectors.push_back(connector);
         if (engine->dead) continue;
         const auto note = [](auto*& place, auto* found) {
             if (!place) place = found;
@@ -122,9 +127,10 @@ void SceneStore::readEngines() {
         const auto name = engine->getClassName();
         const bool watch = name == "MasonryEnergy";
         if (load) loads.push_back(load);
+        if (connector) connectors.push_back(connector);
         if (name == "NewtonIntegrator") hostIntegrator = static_cast<const yade::NewtonIntegrator*>(engine.get());
         watched = watched || watch;
-        if (load || watch || note(loop, dynamic_cast<JointLoop*>(engine.get())) ||
+        if (load || connector || watch || note(loop, dynamic_cast<JointLoop*>(engine.get())) ||
             note(zones, dynamic_cast<Zones*>(engine.get())) ||
             note(integrator, dynamic_cast<Integrator*>(engine.get()))) {
             if (!first) first = engine.get();

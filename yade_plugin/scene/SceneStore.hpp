@@ -41,11 +41,12 @@ public:
     Zones* zones = nullptr;
     Integrator* integrator = nullptr;
     const yade::NewtonIntegrator* hostIntegrator = nullptr;
-    const yade::Engine* first = nullptr; // the first of this plugin's engines in a step
-    const yade::Engine* last = nullptr;  // the last of this plugin's engines in a step; recorders do not count
-    std::string endsWith;                // why the run ends after this step; empty: it goes on
-    bool watched = false;                // whether an engine watches over the run: it looks for a collapse itself
-    std::vector<Load*> allLoads;         // also those that are dead, whose work so far counts
+    const yade::Engine* first = nullptr;    // the first of this plugin's engines in a step
+    const yade::Engine* last = nullptr;     // the last of this plugin's engines in a step; recorders do not count
+    std::string endsWith;                   // why the run ends after this step; empty: it goes on
+    bool watched = false;                   // whether an engine watches over the run: it looks for a collapse itself
+    std::vector<Load*> allLoads;            // also those that are dead, whose work so far counts
+    std::vector<Connectors*> allConnectors; // likewise
 
     // Looks whether a block has collapsed.
     Collapse findCollapse(const CollapseLimits&);

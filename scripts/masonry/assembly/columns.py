@@ -48,7 +48,9 @@ class Reading:
     - ``topShear``: force that drives the pushed point [N]
     - ``energy``: the energy balance [J]
     - ``goal``: number of the point of a history that the drive is going to, from 1, and its displacement [mm]
-    - ``forces``: force of the structure on what is held, along the axes that are held now, by the name of the target [N]
+    - ``ofTies``: forces [N] and elongations [m] of all ties, two lists
+    - ``forces``: force of the structure on what is held, along the axes that are held now or that springs hold, by the name of
+      the target [N]
 
     :param structure: :class:`masonry.assembly.structure.Structure`
     """
@@ -59,9 +61,11 @@ class Reading:
         self.forces = {}
         held = Vector3(0, 0, 0)
         for target in structure.held:
-            force = self.forces[target.name] = structure.supportedBy(target)
+            force = structure.supportedBy(target)
+            self.forces[target.name] = force + structure.onSpringsOf(target)
             for i in structure.axes:
                 held[i] += force[i]
+        held += structure.onGround()
         self.along = self.up = self.topShear = self.rotation = 0.0
         self.sunk = -0.0
         if structure.followed:
@@ -77,6 +81,7 @@ class Reading:
         beside = structure.besideThePush()
         self.baseShear = held.dot(structure.direction) - beside.dot(structure.direction)
         self.energy = structure.energy.balance()
+        self.ofTies = structure.ofTies()
         self.goal = structure.goal
 
     def moved(self, target):
@@ -104,6 +109,13 @@ ENERGIES = {
 }
 
 
+#: Energies of ties and springs, of scenes that have some.
+OF_CONNECTORS = {
+    "elastic_connectors": "elastic energy in ties and springs",
+    "dissipated_connectors": "energy that ties dissipated",
+}
+
+
 def _energy(name):
     return lambda reading: reading.energy[name]
 
@@ -112,6 +124,10 @@ def _energy(name):
 BALANCE = [
     Column(name, "J", f"{meaning} since the scene was built", _energy(name))
     for name, meaning in ENERGIES.items()
+]
+CONNECTORS = [
+    Column(name, "J", f"{meaning} since the scene was built", _energy(name))
+    for name, meaning in OF_CONNECTORS.items()
 ]
 BALANCE += [
     Column(

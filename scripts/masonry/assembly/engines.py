@@ -16,6 +16,8 @@ from yade.wrapper import (
     MasonryJoint,
     MasonryJointLoop,
     MasonryLoad,
+    MasonrySprings,
+    MasonryTies,
     MasonryZones,
     NewtonIntegrator,
 )
@@ -54,6 +56,7 @@ def engines(
     zones: Any = None,
     functors: bool = False,
     dampingKind: str | None = None,
+    connectors: Sequence[Any] = (),
 ) -> None:
     """Fill O.engines for a masonry scene: joints, loads, energy balance and integration. There is no collider.
 
@@ -87,6 +90,7 @@ def engines(
     :param dampingKind: ``"combined"`` or ``"local"``; None: combined, and local with functors, because NewtonIntegrator
         knows no other. Combined damping takes energy from vibration and hardly brakes a steady motion. Local damping is
         the paper's eq. (3); it holds back what moves steadily, so a mechanism that turns slowly seems stronger than it is
+    :param connectors: MasonryTies and MasonrySprings engines
     """
     problems = misfits("engines: ", OWN, {"inPlane": inPlane, "functors": functors})
     down: Any = gravity
@@ -113,13 +117,15 @@ def engines(
         found = items(values)
         wrong = [values] if found is None else [v for v in found if not isinstance(v, kind)]  # fmt: skip
         if wrong:
+            names = " and ".join(one.__name__ for one in (kind if isinstance(kind, tuple) else (kind,)))  # fmt: skip
             problems.append(
-                f"engines: {what} must be a list of {kind.__name__}, got {shown(wrong[0])}"
+                f"engines: {what} must be a list of {names}, got {shown(wrong[0])}"
             )
         return found or []
 
     joints = listed(joints, "joints", MasonryJoint)
     loads = listed(loads, "loads", MasonryLoad)
+    connectors = listed(connectors, "connectors", (MasonryTies, MasonrySprings))
     if not joints:
         problems.append("engines: joints must not be empty")
     if zones is not None and not isinstance(zones, MasonryZones):
@@ -157,6 +163,7 @@ def engines(
     O.engines = [
         ForceResetter(),
         loop,
+        *connectors,
         *loads,
         MasonryEnergy(label="energy"),
         integrator,

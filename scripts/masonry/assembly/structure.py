@@ -4,7 +4,13 @@
 import math
 
 from yade import O, Vector3
-from yade.wrapper import MasonryJoint, MasonryLoad, MasonryZones
+from yade.wrapper import (
+    MasonryJoint,
+    MasonryLoad,
+    MasonrySprings,
+    MasonryTies,
+    MasonryZones,
+)
 
 from .._masonry import loadScene, saveScene, timeStepLimit
 from ..basics import GRAVITY, Refused, say
@@ -17,6 +23,7 @@ from .columns import Reading
 from .motion import Motion
 
 MOST_SCALED = 50.0  # largest massScaling that is chosen by itself: more gained nothing in any wall
+NEVER = 1e300  # strength [N] and breaking elongation [m] of a tie that has none
 FILLED = 1e-9  # of a platen's side: what may be free of bricks if it is said to be full
 
 
@@ -51,7 +58,17 @@ class Structure:
             unit.density *= args.density_scaling
         self.gravity = description.gravity / args.density_scaling
         self.axes = (0, 2) if description.plane else (0, 1, 2)
+        self.ties = self.springs = None  # their engines
+        self._news = {
+            "yields": set(),
+            "breaks": set(),
+        }  # overlays of which that was said
+        self._newsFrom = 0  # step from which ties that yield or break are news
         self.bricks, self.loads, self.zones = {}, {}, None
+        #: Indices of blocks that are rigid also where bricks are deformable.
+        self._rigid = description.connectedBricks() | {
+            n for n, b in enumerate(description.bricks) if b.kind in masonry.stiff
+        }
         #: What is pushed; from the beginning the target that a drive holds.
         self.target = next((t for t in description.targets.values() if t.drives), None)
         self.followed = self.target  # whose displacement is recorded along the load
@@ -126,13 +143,15 @@ class Structure:
     def _addEngines(self):
         """Engines, joints and the time step, when all blocks are there."""
         args, description = self.args, self.description
-        loads = self._loads()
+        loads, connectors = self._loads(), self._connectors()
         self.loads = {load.label: load for load in loads}
         kind = args.damping_kind
         if args.blocks == "deformable":
             for target in description.targets.values():
                 if target.freedom:
                     self.bricks.pop(target.body, None)
+            for index in self._rigid:
+                self.bricks.pop(self.ids[index], None)
             # cells of a half brick along its length; a whole one has twice as many
             n = args.divisions
             if args.mass_scaling and "crack" in self.joints:
@@ -156,6 +175,7 @@ class Structure:
             rows=args.rows,
             inPlane=description.plane,
             loads=loads,
+            connectors=connectors,
             zones=self.zones,
             functors=description.functors,
             dampingKind="local" if description.functors else kind,
@@ -179,7 +199,7 @@ class Structure:
         for target in self.description.targets.values():
             if not target.loaded:
                 continue
-            if deformable and target.brick is not None and not target.freedom:
+            if deformable and target.brick not in {None, *self._rigid} and not target.freedom:  # fmt: skip
                 raise Refused(
                     f"handle: {target.name} is a deformable brick, and loads and drives act on rigid ones: load a platen, "
                     "or choose --blocks rigid"
@@ -201,6 +221,40 @@ class Structure:
             on = dict(body=self.ids[brick], point=point)
             loads.append(MasonryLoad(label=f"wind_{n}", damped=True, **on))
         return loads
+
+    def _connectors(self):
+        """Engines of ties and springs, if there are any."""
+        ties, springs = self.description.ties, self.description.springs
+        bodies = lambda side, records: [one.ends[side].bodyIn(self.ids) for one in records]  # fmt: skip
+        points = lambda side, records: [one.ends[side].point for one in records]
+        ends = lambda records: dict(
+            bodies1=bodies(0, records),
+            points1=points(0, records),
+            bodies2=bodies(1, records),
+            points2=points(1, records),
+        )
+        never = lambda value: NEVER if value is None else value
+        self.ties = ties and MasonryTies(
+            label="ties",
+            **ends(ties),
+            stiffness=[one.stiffness for one in ties],
+            strength=[never(one.strength) for one in ties],
+            breaking=[
+                never(one.breaking and one.breaking * one.length) for one in ties
+            ],
+            compression=[int(one.compression) for one in ties],
+            rest=[one.rest(0) for one in ties],
+        )
+        self.springs = springs and MasonrySprings(
+            label="springs",
+            **ends(springs),
+            stiffness=[one.stiffness for one in springs],
+            rotationalStiffness=[one.rotation for one in springs],
+        )
+        for records, made in ((ties, self.ties), (springs, self.springs)):
+            for one in records:
+                one.engine = made
+        return [made for made in (self.ties, self.springs) if made]
 
     def _joinRecords(self):
         """Find the joints whose means are recorded, and those of the sections."""
@@ -320,8 +374,11 @@ class Structure:
     def grow(self, x):
         """Let presses and dead loads grow smoothly: 0 to 1 is from nothing to their whole."""
         self.grown = x == 1
+        share = x * x * (3 - 2 * x)
         for label, force in self._grown.items():
-            self.loads[label].force = force * x * x * (3 - 2 * x)
+            self.loads[label].force = force * share
+        if self.ties:
+            self.ties.rest = [one.rest(share) for one in self.description.ties]
 
     def deadLoads(self):
         """Loads of the scene, each with its force, or that which it will have when presses, dead loads and wind have grown:
@@ -516,6 +573,7 @@ class Structure:
         self.pushing, self.grown = state["pushing"], state["grown"]
         self.goal, self.loadFactor = tuple(state["goal"]), state["loadFactor"]
         self._freeMass, self.limit = state["freeMass"], state["limit"]
+        self._newsFrom = O.iter
         self.held = [targets[name] for name in state["held"]]
         for name, freedom in state["held"].items():
             targets[name].freedom = freedom
@@ -599,7 +657,50 @@ class Structure:
         for label, load in self.loads.items():
             if label != "push":
                 carried += load.reaction * load.direction.normalized()
-        return carried
+        return carried - self.onGround()
+
+    def ofTies(self):
+        """Forces [N] and elongations [m] of all ties: two lists."""
+        count = len(self.description.ties)
+        if not (self.ties and len(self.ties.forces)):
+            return [0.0] * count, [0.0] * count
+        return list(self.ties.forces), list(self.ties.elongations)
+
+    def onGround(self):
+        """Force of ties and springs on the ground, to which they are fixed, along the axes of the scene [N]."""
+        force = Vector3.Zero
+        for one in (*self.description.ties, *self.description.springs):
+            if one.ends[1].isGround:
+                force -= one.on(one.ends[0], self)[0]
+        return Vector3(*(force[i] if i in self.axes else 0.0 for i in range(3)))
+
+    def onSpringsOf(self, target):
+        """Force of a target on the springs on which it stands [N]."""
+        force = Vector3.Zero
+        for one in self.description.springs:
+            if one.ends[0].target is target and one.ends[1].isGround:
+                force -= Vector3(*one.force)
+        return force
+
+    def placeOf(self, end):
+        """Where the end of a tie or a spring is now [m]."""
+        if end.isGround:
+            return Vector3(*end.point)
+        state = O.bodies[end.bodyIn(self.ids)].state
+        turn = state.ori * state.refOri.conjugate()
+        return state.pos + turn * (Vector3(*end.point) - state.refPos)
+
+    def news(self):
+        """Sentences on ties that have yielded or broken since this was asked last."""
+        if not self.ties:
+            return
+        since, self._newsFrom = min(self._newsFrom, O.iter), O.iter
+        for what, steps in (("yields", self.ties.yieldedAt), ("breaks", self.ties.brokenAt)):  # fmt: skip
+            for one, step in zip(self.description.ties, steps):
+                first = not one.overlay or one.overlay not in self._news[what]
+                if step >= since and first:
+                    self._news[what].add(one.overlay)
+                    yield f"{one.name} {what}: between {one.ends[0].words} and {one.ends[1].words}"  # fmt: skip
 
     def besideThePush(self):
         """What acts on the structure beside a push: weights, dead loads, and other drives [N]. Nothing if none is pushed."""
@@ -619,7 +720,8 @@ class Structure:
         """What of the loads is missing at the supports, and kinetic over elastic energy [-]."""
         energy = self.energy.balance()
         elastic = sum(
-            energy[f"elastic_{m}"] for m in ("compression", "shear", "tension", "units")
+            energy[f"elastic_{m}"]
+            for m in ("compression", "shear", "tension", "units", "connectors")
         )
         applied, carried = self.applied(), self.carried()
         if self.description.plane:

@@ -7,6 +7,7 @@ one, and raise ValueError with all problems of what they are given at once:
 - :func:`Wall`: running, stack, header, English and Flemish bond, with :class:`Opening` and :class:`Lintel`;
 - :func:`Corner`, :func:`Tee` and :func:`Room`: walls that meet, with interlocking courses;
 - :func:`Arch`, :func:`BarrelVault` and :func:`Dome`, from voussoirs;
+- :func:`Beam` and :func:`Floor`: beams that bend and floors that shear, in pieces (:mod:`masonry.bricks.beams`);
 - :func:`stack` and :func:`block`: boxes;
 - :func:`fromFile`: one block for each convex solid of a file.
 
@@ -27,6 +28,7 @@ from ..packages import promised
 
 promised("scipy")  # it is imported for convex solids that are no boxes
 
+from .beams import Beam, Floor
 from .blocks import Block, Bricks, boxCorners, summary
 from .checks import Joint
 from .files import fromFile
@@ -37,10 +39,12 @@ from .walls import Corner, Room, Tee, Wall, block, stack
 __all__ = [
     "Arch",
     "BarrelVault",
+    "Beam",
     "Block",
     "Bricks",
     "Corner",
     "Dome",
+    "Floor",
     "Joint",
     "Lintel",
     "Opening",

@@ -50,6 +50,8 @@ class Assembly:
     :param deadline: end of the time that the solver has for all programmes together, as time.monotonic() counts [s]
     :param props: points of blocks that cannot move in a direction, whatever force that takes: a list of (number of the
         block, unit vector, point [m])
+    :param links: ties and springs: a list of (loads that a unit of the force makes, as a list of (number of the block, force
+        and moment about its centroid), least force, largest force [N])
     """
 
     centres: np.ndarray
@@ -69,6 +71,7 @@ class Assembly:
     polygons: list
     corners: list
     props: list = field(default_factory=list)
+    links: list = field(default_factory=list)
     stood: bool = True
     deadline: float = math.inf
 

@@ -64,7 +64,7 @@ class Programme:
             self._equal.append((rows[kept], which[kept], sign * six[kept]))
 
     def joints(self, turn, fixed):
-        """All joints and props. Parameters as of :meth:`Assembly._solve`."""
+        """All joints, props, ties and springs. Parameters as of :meth:`Assembly._solve`."""
         a = self.assembly
         self._rigid()
         for block, direction, point in a.props:
@@ -73,6 +73,13 @@ class Programme:
             kept = (self.rows[block] >= 0) & (load != 0)
             column, rows = self._new(1, -np.inf, np.inf), self.rows[block][kept]
             self._equal.append((rows, np.repeat(column, len(rows)), load[kept]))
+        for loads, least, most in a.links:
+            column = self._new(1, least / self.force, most / self.force)
+            for block, load in loads:
+                load = np.concatenate([load[:3], load[3:] / self.size])
+                kept = (self.rows[block] >= 0) & (load != 0)
+                rows = self.rows[block][kept]
+                self._equal.append((rows, np.repeat(column, len(rows)), load[kept]))
         c = a.contacts
         dry = a.dry[c.joint] & (fixed is None) & (not a.plane)
         self._dry(np.flatnonzero(dry), turn)

@@ -14,6 +14,7 @@ from .assembly import Assembly
 #: What has moved by less, over the size of a typical block, is taken where it stood when the joints were made [-]. It changes
 #: a factor by as much, and without it all coefficients of a programme differ by a little, which takes Clp ten times as long.
 STOOD = 1e-3
+NEVER = 1e300  # strength of a tie that does not yield [N]
 AXES = "xyzXYZ"  # as blockedDOFs names the freedoms of a body
 
 
@@ -71,7 +72,44 @@ def read() -> Assembly:
         polygons=np.split(moved, np.cumsum([len(p) for p in polygons])[:-1]),
         corners=[_corners(b, place.stood) for b in blocks],
         stood=place.stood,
+        links=_links(numbers, place),
     )
+
+
+def _links(numbers, place):
+    """Ties and springs of the scene, as :class:`Assembly` takes them. Springs carry any force; ties that break keep theirs, so
+    what is found stays an upper bound."""
+    found = []
+    for engine in O.engines:
+        kind = type(engine).__name__
+        if kind not in ("MasonryTies", "MasonrySprings") or engine.dead:
+            continue
+        ends = zip(engine.bodies1, engine.points1, engine.bodies2, engine.points2)
+        for n, (one, at1, other, at2) in enumerate(ends):
+            sides = [(body, place.placed(numbers.get(body), at)) for body, at in ((one, at1), (other, at2))]  # fmt: skip
+            if kind == "MasonryTies":
+                if engine.brokenAt and engine.brokenAt[n] >= 0:
+                    continue
+                away = sides[1][1] - sides[0][1]
+                most = engine.strength[n] if engine.strength[n] < NEVER else np.inf
+                least = -most if engine.compression[n] else 0.0
+                pairs = [(away / np.linalg.norm(away), False, least, most)]
+            else:
+                pairs = [
+                    (axis, turns, -np.inf, np.inf)
+                    for turns, stiffness in ((False, engine.stiffness[n]), (True, engine.rotationalStiffness[n]))
+                    for k, axis in zip(stiffness, np.eye(3))
+                    if k > 0
+                ]  # fmt: skip
+            for axis, turns, least, most in pairs:
+                loads = []
+                for sign, (body, at) in zip((1, -1), sides):
+                    if body in numbers:
+                        arm = at - place.now[numbers[body]]
+                        six = [np.zeros(3), axis] if turns else [axis, np.cross(arm, axis)]  # fmt: skip
+                        loads.append((numbers[body], sign * np.concatenate(six)))
+                found.append((loads, least, most))
+    return found
 
 
 def _rows(vectors):
@@ -109,6 +147,13 @@ class _Placement:
         self.stood = bool((moved < STOOD * np.median(sizes)).all())
         if self.stood:
             self.now, self.turns = self.was, np.tile(np.eye(3), (len(blocks), 1, 1))
+
+    def placed(self, block, point):
+        """Where a point of a block is, given in the reference state; of None, the ground, the point itself."""
+        point = np.array([point[0], point[1], point[2]])
+        if block is None:
+            return point
+        return self.turns[block] @ (point - self.was[block]) + self.now[block]
 
     def turned(self, pairs, vectors):
         """The mean of directions fixed to both blocks of pairs (k, 2), from the reference state (k, 3)."""

@@ -27,13 +27,19 @@ FACING = 0.87  # cosine from which a joint that faces the viewer is drawn as an 
 
 BRICK = "#f3e3c8"  # the colour of a block
 COLOURS = {"open": "tab:red", "slid": "tab:blue"}
+#: Lines of ties by their state.
+TIES = {
+    "elastic": ("0.2", "-"),
+    "yielded": ("tab:orange", "-"),
+    "broken": ("tab:purple", ":"),
+}
 
 #: A part in its view. ``faces`` and ``moved`` are outlines of its blocks, from the back to the front, at rest and moved,
 #: where displacements are magnified; ``lines`` are pairs of ends of the cracks by kind; ``areas`` are those that face the
 #: viewer; ``spots`` are crushed places (x, y, closure); ``shades`` are the colour of every block and its label in the legend,
-#: or None.
+#: or None; ``ties`` are pairs of ends by state.
 Picture = namedtuple(
-    "Picture", "view faces moved lines areas spots shades", defaults=[()]
+    "Picture", "view faces moved lines areas spots shades ties", defaults=[(), ()]
 )
 
 
@@ -93,6 +99,33 @@ class _Part:
         return Picture(
             self.view, [f[1] for f in faces], [f[2] for f in faces], lines, areas, spots
         )
+
+    def ties(self, entries, magnification):
+        """The ties of which an end is in the part: pairs of ends by state.
+
+        :param entries: ``ties`` of run.json
+        """
+        found = {}
+        for one in entries:
+            if not set(one["bodies"]) & set(self.corners):
+                continue
+            ends = [
+                self.flat(np.array(point)) + magnification * self.shift(self._movedAt(body, np.array(point)))
+                for body, point in zip(one["bodies"], one["ends_m"])
+            ]  # fmt: skip
+            found.setdefault(one["state"], []).append(ends)
+        return found
+
+    def _movedAt(self, body, point):
+        """Displacement of a point of a body, rigid or strained evenly: of the others it is that of the ground [m]."""
+        nodes = [c for b, c in zip(self.blocks["body"], self.blocks["cells"]) if b == body]  # fmt: skip
+        if not nodes:
+            return np.zeros(3)
+        nodes = np.unique(np.concatenate(nodes))
+        places = self.blocks["points"][nodes]
+        from_middle = np.column_stack([places - places.mean(axis=0), np.ones(len(places))])  # fmt: skip
+        field = np.linalg.lstsq(from_middle, self.blocks["displacement"][nodes], None)[0]  # fmt: skip
+        return np.append(point - places.mean(axis=0), 1) @ field
 
     def _cracks(self, magnification):
         """Lines, areas and spots of :class:`Picture`."""
@@ -263,7 +296,11 @@ def figureOf(run, blocks, joints, when, directory):
     }
     sizes, moved = zip(*(part.sizes() for part in parts.values()))
     magnification = magnificationOf(max(sizes), np.concatenate(moved))
-    pictures = {n: part.picture(magnification) for n, part in parts.items()}
+    tied = run.get("ties", [])
+    pictures = {
+        n: part.picture(magnification)._replace(ties=part.ties(tied, magnification))
+        for n, part in parts.items()
+    }
     title = (
         f"{run['title']}\n{when}, displacements × {magnification}; "
         f"open or slid more than {1e3 * CRACK:g} mm, crushed more than {1e3 * CRUSHED:g} mm"
@@ -355,7 +392,8 @@ def page(pictures, title):
 
 def _box(picture):
     """Two corners of what is drawn of a part: all of it, but not much farther than the part is large."""
-    rest = np.concatenate(picture.faces)
+    tied = [np.array(ends) for ends in dict(picture.ties).values()]
+    rest = np.concatenate([*picture.faces, *(ends.reshape(-1, 2) for ends in tied)])
     low, high = rest.min(axis=0), rest.max(axis=0)
     reach = 0.6 * (high - low).max()
     moved = np.concatenate(picture.moved)
@@ -400,6 +438,12 @@ def _panel(axes, picture, box, points):
                 picture.lines[kind], color=COLOURS[kind], lw=wide, label=kind
             )
         )
+    for state, lines in dict(picture.ties).items():
+        colour, dash = TIES[state]
+        label = "tie" if state == "elastic" else f"tie, {state}"
+        axes.add_collection(
+            LineCollection(lines, color=colour, lw=1.2 * bold, ls=dash, label=label, zorder=4)
+        )  # fmt: skip
     if picture.spots:
         x, y, closure = np.array(picture.spots).T
         axes.scatter(

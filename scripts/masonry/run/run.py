@@ -342,6 +342,8 @@ class Run:
         """
         began = time.perf_counter()
         reading = self.model.read()
+        for sentence in self.model.news():
+            say(sentence)
         self._readings.append([value(reading) for value in self._values])
         self._recordedTime = reading.time
         now = time.perf_counter()

@@ -3,8 +3,9 @@
 
 - :mod:`masonry.scene.scene`: ``Scene``
 - :mod:`masonry.scene.description`: what a scene describes, by the words of :mod:`masonry.scene.supports`,
-  :mod:`masonry.scene.loads` and :mod:`masonry.scene.records`; :mod:`masonry.scene.targets`,
-  :mod:`masonry.scene.sections`: what is recorded
+  :mod:`masonry.scene.loads`, :mod:`masonry.scene.connections` and :mod:`masonry.scene.records`;
+  :mod:`masonry.scene.targets`, :mod:`masonry.scene.sections`: what is recorded; :mod:`masonry.scene.ties`: ties, springs and
+  fibre layers
 - :mod:`masonry.scene.stages`: the stages of a test
 - :mod:`masonry.scene.materials`: masonry of one's own, published parameter sets, properties that vary from place to place,
   and what of all this was assumed

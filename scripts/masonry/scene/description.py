@@ -8,6 +8,8 @@ and :mod:`masonry.scene.records`. :class:`masonry.assembly.structure.Structure` 
 import math
 from numbers import Integral
 
+import numpy as np
+
 from ..arguments import flag, listOf, misfits, number, orNone, shown, text, vector
 from ..assembly import columns
 from ..basics import GRAVITY, Refused
@@ -79,7 +81,11 @@ class Description:
         self.targets = {}  # by name
         self.joints = []  # whose means are recorded
         self.drifts = []
+        self._boxes = None  # bricks, and their lower and upper corners and middles, for _nearest()
         self.sections = []
+        self.ties = []  # of masonry.scene.connections
+        self.springs = []
+        self.overlays = []
         self.winds = []  # brick, force [N] and point [m]
         self.views = {}  # direction of sight by part
         self.extra = []  # columns of the user's own
@@ -111,6 +117,11 @@ class Description:
             ]
         return []
 
+    def connectedBricks(self):
+        """Indices of the bricks at the ends of ties and springs."""
+        ends = [end for one in (*self.ties, *self.springs) for end in one.ends]
+        return {end.brick for end in ends if end.brick is not None}
+
     def followed(self):
         """The target whose displacement is drawn under a load that grows: the first that is watched, else the first that
         moves, or None."""
@@ -136,8 +147,8 @@ class Description:
         return target
 
     def replace(self, one, other):
-        """Let a record that a script holds stand for one that was made by the same word again: a target, a recorded joint or a
-        section. Its values become those of the new one."""
+        """Let a record that a script holds stand for one that was made by the same word again: a target, a recorded joint, a
+        section, a tie or springs. Its values become those of the new one."""
         if not hasattr(one, "__dict__"):
             return
         vars(other).clear()
@@ -145,7 +156,7 @@ class Description:
         for name, target in self.targets.items():
             if target is one:
                 self.targets[name] = other
-        for records in (self.joints, self.sections):
+        for records in (self.joints, self.sections, self.ties, self.springs):
             records[:] = [other if record is one else record for record in records]
 
     def columns(self, structure, looped):
@@ -161,9 +172,10 @@ class Description:
             found += drift.columns(self.plane)
         for joint in self.joints:
             found += joint.columns()
-        for section in self.sections:
-            found += section.columns(self.plane)
-        found += [*self.extra, *columns.BALANCE, *columns.HISTORY * looped]
+        for record in (*self.sections, *self.ties, *self.springs, *self.overlays):
+            found += record.columns(self.plane)
+        balance = columns.BALANCE + columns.CONNECTORS * bool(self.ties or self.springs)
+        found += [*self.extra, *balance, *columns.HISTORY * looped]
         heads = columns.heads(found)
         twice = sorted({n for n in heads if heads.count(n) > 1})
         if twice:
@@ -175,7 +187,7 @@ class Description:
             raise Refused(
                 f"no column {', '.join(unknown)}; there are {', '.join(heads)}"
             )
-        always = columns.heads(columns.BALANCE + columns.HISTORY)
+        always = columns.heads(balance + columns.HISTORY)
         chosen = [found[heads.index(n)] for n in self.choice if n not in always]
         return chosen + [c for c in found if c.head in always]
 
@@ -198,7 +210,7 @@ class Description:
                 raise ValueError(
                     f"{shown(where)} must be a brick: its index, a point (x, y, z) [m], or the block itself"
                 ) from None
-            index = min(range(count), key=lambda i: self._distance(i, point))
+            index = self._nearest(point)
             away, size = self._distance(index, point), self.size(index)
             if away > size:
                 raise ValueError(
@@ -217,6 +229,16 @@ class Description:
         return max(
             max(p[i] for p in corners) - min(p[i] for p in corners) for i in range(3)
         )
+
+    def _nearest(self, point):
+        """Index of the brick that is nearest to a point, by :meth:`_distance`."""
+        if self._boxes is None or self._boxes[0] is not self.bricks:
+            corners = [np.asarray(block.corners, float) for block in self.bricks]
+            of = lambda f: np.array([f(c, axis=0) for c in corners])
+            self._boxes = self.bricks, of(np.min), of(np.max), of(np.mean)
+        _, low, high, middle = self._boxes
+        away = np.maximum(0, np.maximum(low - point, point - high).max(axis=1))
+        return int((away + 1e-6 * np.linalg.norm(middle - point, axis=1)).argmin())
 
     def _distance(self, index, point):
         """How far a point is from the box around a brick, with a little of the way to its middle to break ties [m]."""

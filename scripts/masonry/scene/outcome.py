@@ -138,6 +138,7 @@ class Outcome:
             figure=self._figure(),
             held=sorted(t.name for t in self.description.targets.values() if t.fixed),
             recorded_joints=[joint.name for joint in self.description.joints],
+            **self._connections(),
             **scene.bounds.describe(self._pushes()),
         )
         if self.description.views:
@@ -161,8 +162,16 @@ class Outcome:
             if scene.accuracy and not scene.running.interrupted:
                 # a push that is not over is shorter than those of its companions
                 found.update(self._ofAccuracy(found, column))
+        found.update(self._connections())
         found["answers"] = scene.answers
         return found
+
+    def _connections(self):
+        """Entries for ties and springs, if there are any."""
+        description = self.description
+        ties = [one for one in description.ties if not one.overlay or one.state != "elastic"]  # fmt: skip
+        kinds = {"ties": ties, "springs": description.springs, "overlays": description.overlays}  # fmt: skip
+        return {name: [one.entry() for one in records] for name, records in kinds.items() if records}  # fmt: skip
 
     def _ofAccuracy(self, found, column):
         """Entries for --accuracy, whose half-widths the answers of the last push get, too."""

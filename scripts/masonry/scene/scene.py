@@ -57,7 +57,7 @@ from ..run.ending import end
 from ..run.presets import BOUND
 from ..run.results import Results
 from ..run.run import Run
-from . import loads, options, probing, records, showing, stages, supports
+from . import connections, loads, options, probing, records, showing, stages, supports
 from .bounds import EVERY, GIVEN_UP, SMALL, Bounds, nameOfLean, nameOfPush
 from .description import Description
 from .materials import Masonry, linesOf, loadingBlock
@@ -235,6 +235,8 @@ class Scene:
     platen, watch, handle = supports.platen, supports.watch, supports.handle
     drift, column = records.drift, records.column
     joint, section, view = records.joint, records.section, records.view
+    tie, spring = connections.tie, connections.spring
+    overlay = connections.overlay
     # Their names are those of stages, too, which are meant after the first stage.
     hold = _either(supports.hold, stages.hold)
     press = _either(loads.press, stages.press)

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a horizontal section of a structure transmits: normal force, shear force and moment, from its joints.
+"""What a horizontal section of a structure transmits: normal force, shear force and moment, from its joints, ties and springs.
 
 The free body is that of all blocks, platens too, whose centroid was above the height z when the scene was built. The
-joints between it and the other blocks transmit all that acts between both, so their resultant is exact statics in any
+joints, ties and springs between it and the other blocks and the ground transmit all that acts between both, so their resultant is exact statics in any
 bond, also where the section goes in steps. At rest it is the weight of these blocks and the loads on them.
 """
 
 from dataclasses import dataclass, field
 
-from yade import O
+from yade import O, Vector3
 
 from .._masonry import resultant
 from ..assembly.columns import Column
@@ -35,6 +35,10 @@ class Section:
     signs: list = field(
         default_factory=list
     )  # of each: 1 if its first body is the lower one, else -1
+    connections: list = field(
+        default_factory=list
+    )  # ties and springs that cross it, each with its upper end
+    _structure: object = None
     _read: tuple = (None, None)  # the last reading, and what was found then
 
     def join(self, structure):
@@ -57,6 +61,14 @@ class Section:
             if self.part in (None, parts.get(upper, parts.get(lower))):
                 self.interactions.append(one)
                 self.signs.append(1 if above[1] else -1)
+        self._structure, self.connections = structure, []
+        for one in (*description.ties, *description.springs):
+            bodies = [end.bodyIn(structure.ids) for end in one.ends]
+            above = [body >= 0 and O.bodies[body].state.refPos[2] > level for body in bodies]  # fmt: skip
+            if above[0] != above[1]:
+                upper, lower = bodies if above[0] else bodies[::-1]
+                if self.part in (None, parts.get(upper, parts.get(lower))):
+                    self.connections.append((one, one.ends[0 if above[0] else 1]))
         if not self.interactions:
             what = f" of part {self.part!r}" if self.part else ""
             raise Refused(
@@ -68,7 +80,16 @@ class Section:
         """Force [N] and moment about the middle [N m] of what is above on what is below, in global axes: two vectors."""
         if not self.interactions:
             raise ValueError(f"section {self.name}: the scene is not built yet")
-        return resultant(self.interactions, self.signs, self.middle)
+        force, moment = resultant(self.interactions, self.signs, self.middle)
+        for one, upper in self.connections:
+            force, moment = self._with(force, moment, one, upper)
+        return force, moment
+
+    def _with(self, force, moment, one, upper):
+        """Force and moment with those of a tie or a spring, whose upper end is given."""
+        on, turning = one.on(upper, self._structure)
+        arm = self._structure.placeOf(upper) - Vector3(*self.middle)
+        return force - on, moment - arm.cross(on) - turning
 
     def _of(self, reading):
         if self._read[0] is not reading:

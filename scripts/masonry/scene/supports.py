@@ -6,16 +6,28 @@ from __future__ import annotations
 from typing import Any
 
 from ..bricks import Block
-from ..arguments import Axes, Numbers, axes, number, oneOf, orNone, takes
+from ..arguments import Axes, Numbers, axes, byName, number, oneOf, orNone, shown, takes
 from ..arguments import name as nameOf
 from ..arguments import vector as numbers
 from ..assembly.blocks import vector
 from ..basics import Refused
 from .targets import Target, brick
 from .targets import part as partName
+from .ties import End, Spring
 from .words import describes
 
 PLATEN = 0.2  # [m] height of a platen
+STIFFEST = 1e15  # of a spring [N/m], [N m]
+
+
+def stiffnesses(value: Any, first: Any = None) -> Any:
+    """The kind of the stiffnesses of springs: a dict from axes to numbers above 0."""
+    found = byName(number("N/m or N m", 0, STIFFEST, above=True))(value)
+    unknown = [axis for axis in found if axis not in ("x", "y", "z", "X", "Y", "Z")]
+    if unknown or not found:
+        raise ValueError(f"{shown(value)} must be a dict from some of the axes xyzXYZ to stiffness")  # fmt: skip
+    return found
+
 
 #: Kinds of arguments: a coordinate and a point, not farther from the origin than any masonry.
 COORDINATE, POINT = number("m", -1e6, 1e6), numbers("m", 1e6)
@@ -33,6 +45,7 @@ COORDINATE, POINT = number("m", -1e6, 1e6), numbers("m", 1e6)
     upTo=orNone(COORDINATE),
     recorded=orNone(COORDINATE),
     drive=axes("xyz", none=True),
+    springs=orNone(stiffnesses),
 )
 def platen(
     description: Any,
@@ -46,6 +59,7 @@ def platen(
     upTo: float | None = None,
     recorded: float | None = None,
     drive: Axes = "",
+    springs: dict[str, float] | None = None,
 ) -> Target:
     """A stiff block over the whole lower or upper side of the structure.
 
@@ -65,6 +79,9 @@ def platen(
         ``point``
     :param drive: axes along which a drive holds the one at the top from the beginning: ``"x"``, or ``"xz"``; None of
         them: it is free until it is pushed
+    :param springs: of the one at the bottom, a soil or a rig that gives way: a dict from axes, xyz along and XYZ about, to
+        stiffness [N/m], [N m/rad], at the middle of its outer side, for example ``{"x": 37e6}``; along and about the others it
+        is fixed. None: about none it gives way
     """
     bottom = where == "bottom"
     level = description.low[2] if bottom else description.high[2]
@@ -76,6 +93,13 @@ def platen(
         problems.append(f"platen: guided {guided!r} is for the one at the top")
     if bottom and drive:
         problems.append(f"platen: drive {drive!r} is for the one at the top")
+    springs = springs or {}
+    if springs and not bottom:
+        problems.append(
+            "platen: springs are for the one at the bottom; spring() is for any"
+        )
+    if description.plane and set(springs) & set("yXZ"):
+        problems.append(f"platen: springs {springs}: the scene is in the x-z plane; Scene(..., plane=False) is in space")  # fmt: skip
     if "y" in drive and description.plane:
         problems.append(f"platen: drive {drive!r}: the scene is in the x-z plane; Scene(..., plane=False) is in space")  # fmt: skip
     if upTo is not None and not 0 < (level - upTo if bottom else upTo - level):
@@ -112,13 +136,14 @@ def platen(
         else ("yXZ" if description.plane else "")
     )
     freedom += "".join(axis for axis in guided if axis not in freedom)
+    freedom = "".join(axis for axis in freedom if axis not in springs)
     point = middle if point is None else point
     point = tuple(vector(point, "platen: point [m]"))
     if recorded is not None and not min(level, outer) <= recorded * (1 + 1e-12):
         raise ValueError(
             f"platen: recorded {recorded:g} m is not on the platen, which begins at {min(level, outer):g} m"
         )
-    return description.add(
+    target = description.add(
         Target(
             name or ("base" if bottom else "top"),
             fixed=bottom,
@@ -130,6 +155,17 @@ def platen(
             drives="".join(drive),
         )
     )
+    if springs:
+        _standOn(description, target, springs, middle)
+    return target
+
+
+def _standOn(description, target, springs, point):
+    """Let a platen stand on springs to the ground."""
+    of = lambda axes: tuple(float(springs.get(axis, 0)) for axis in axes)
+    ends = End(point, target), End(point)
+    name, number = f"{target.name}_spring", len(description.springs)
+    description.springs.append(Spring(name, ends, of("xyz"), of("XYZ"), number=number))
 
 
 @describes

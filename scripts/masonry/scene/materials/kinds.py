@@ -27,6 +27,7 @@ from ...arguments import (
     takes,
 )
 from ...assembly.engines import LAWS
+from ...bricks import Bricks
 from ...assembly.given import assumed, copied, isDefault, state
 from ...basics import Refused
 from ..settings import applySettings
@@ -75,6 +76,24 @@ def _varied(value, first=None):
     return value
 
 
+def _pieces(value, first=None):
+    """The kind of the pieces of a beam or a floor."""
+    if not (isinstance(value, Bricks) and len(value)):
+        raise ValueError(f"{shown(value)} must be what bricks.Beam or bricks.Floor gives")  # fmt: skip
+    return value
+
+
+def _bearing(value, first=None):
+    """The kind of what is between a beam or a floor and the masonry below."""
+    if isinstance(value, str) and value != "fixed":
+        raise ValueError(f"{shown(value)} must be 'fixed', a friction [-] or None")
+    return value if value is None or value == "fixed" else number("", 0, 5)(value)
+
+
+MODULUS, DENSITY = number("Pa", 0, 1e15, above=True), number("kg/m³", 0, 1e6, above=True)  # fmt: skip
+STIFFER = 1e4  # how much stiffer than the pieces of a beam the joints are that stand for nothing else [-]
+RIGID = 1e14  # Young's modulus of a piece that does not deform [Pa]
+
 #: Kinds of what a :class:`Masonry` is made of.
 KINDS = {
     "unit": isA(MasonryMat),
@@ -85,6 +104,7 @@ KINDS = {
     "varied": _varied,
     "brief": flag,
     "course": orNone(number("m", 0, above=True)),
+    "stiff": isA(frozenset),
 }
 
 
@@ -93,7 +113,8 @@ KINDS = {
 class Masonry:
     """Bricks and joints of a structure, and which joint a pair of blocks gets.
 
-    A pair of blocks gets the joint ``support`` if one of them is a platen, ``crack`` if they are pieces of one brick, else
+    A pair of blocks gets the joint ``support`` if one of them is a platen, ``crack`` if they are pieces of one brick, that of
+    a beam or floor (:meth:`withBeam`, :meth:`withFloor`) if they are pieces of one, and ``NAME_bearing`` if one of them is; else
     ``bed`` or ``head``. It is a bed joint if its normal is less than 45 degrees off the vertical. Joints between two parts
     of a structure, such as the wythes of a wall, get ``collar`` if there is one. Without ``head`` all are bed joints.
 
@@ -124,6 +145,8 @@ class Masonry:
     brief: bool = False
     #: Height of a course for which the stiffness of the joints was made [m]; None: for any.
     course: float | None = None
+    #: Kinds of blocks that are rigid also with ``--blocks deformable``: pieces of beams and floors.
+    stiff: frozenset[str] = frozenset()
 
     def __post_init__(self):
         problems = misfits("Masonry: ", KINDS, vars(self))
@@ -200,6 +223,95 @@ class Masonry:
         self.varied += found
         return self
 
+    @takes(beam=_pieces, young=MODULUS, density=DENSITY, poisson=number("", -1, 0.5, above=True, below=True), bearing=_bearing)  # fmt: skip
+    def withBeam(
+        self,
+        beam: Any,
+        young: float,
+        density: float,
+        poisson: float = 0.2,
+        bearing: float | str | None = None,
+    ) -> Masonry:
+        """Say what a beam of :func:`masonry.bricks.Beam` is made of. It is elastic. Returns the same masonry.
+
+        Its pieces are joined by the joint of its name, with the bending stiffness E I and the shear stiffness 5/6 G A of the
+        beam. Torsion has G (Iy + Iz), which is too stiff for flat sections.
+
+        :param beam: its pieces
+        :param young: [Pa]; ``poisson``: [-]
+        :param density: [kg/m³]
+        :param bearing: what is between it and masonry: None: a bed joint; a number: a dry joint of this friction [-];
+            ``"fixed"``: an elastic joint. The joint is called NAME_bearing
+        """
+        name, pitch = self._newKind("withBeam", beam)
+        shear = young / (2 * (1 + poisson))
+        # in series with the pieces, whose elasticity is lumped into their joints: E / l, and 5/6 G / l
+        glue = MasonryJoint(name=name, elastic=True, normalStiffness=STIFFER * young / pitch, shearStiffness=5 * shear / pitch)  # fmt: skip
+        unit = MasonryMat(label=name, young=young, poisson=poisson, density=density)
+        return self._take(name, unit, glue, bearing)
+
+    @takes(floor=_pieces, shear=number("N/m", 0, 1e15, above=True), mass=number("kg/m²", 0, 1e6, above=True), across=orNone(number("N/m", 0, 1e15, above=True)), bearing=_bearing)  # fmt: skip
+    def withFloor(
+        self,
+        floor: Any,
+        shear: float,
+        mass: float,
+        across: float | None = None,
+        bearing: float | str | None = 0.5,
+    ) -> Masonry:
+        """Say what a floor of :func:`masonry.bricks.Floor` is. It shears elastically in its plane. Returns the same masonry.
+
+        :param floor: its strips
+        :param shear: shear stiffness G t of its plane [N/m]: a square floor of which one edge is held moves by V / (G t) when a
+            force V acts along the other one
+        :param mass: with what lies on it [kg/m²]
+        :param across: stiffness E t across the strips [N/m]; None: ten times ``shear``, which is assumed
+        :param bearing: as of :meth:`withBeam`; the default, a friction of 0.5, is of joists that lie on masonry
+        """
+        name, pitch = self._newKind("withFloor", floor)
+        low, high = floor[0].low, floor[0].high
+        height = high[2] - low[2]
+        # strips are nearly rigid, so their joints have all of the stiffness: forces are G t / pitch times the slip
+        glue = MasonryJoint(
+            name=name,
+            elastic=True,
+            normalStiffness=(10 * shear if across is None else across)
+            / (pitch * height),  # fmt: skip
+            shearStiffness=shear / (pitch * height),
+        )
+        if across is None:
+            state(glue, normalStiffness="assumed by withFloor(): across its strips a floor is ten times as stiff as in shear")  # fmt: skip
+        unit = MasonryMat(label=name, young=RIGID, poisson=0.0, density=mass / height)
+        return self._take(name, unit, glue, bearing)
+
+    def _newKind(self, word, pieces):
+        """The kind of the pieces of a beam or a floor, and the distance of their middles [m]. Raises Refused."""
+        kinds, problems = {block.kind for block in pieces}, []
+        name = min(kinds)
+        if len(kinds) > 1:
+            problems.append(f"{word}: the pieces are of the kinds {', '.join(sorted(kinds))}: give those of one beam or floor")  # fmt: skip
+        if name in self.units or name in self.joints:
+            problems.append(f"{word}: this masonry has {name!r} already; give the beam or floor another name")  # fmt: skip
+        if len(pieces) < 2:
+            problems.append(f"{word}: {name} is one piece, which is rigid: bricks.Beam(..., pieces=8) bends")  # fmt: skip
+        if problems:
+            raise Refused("\n".join(problems))
+        return name, math.dist(pieces[0].middle, pieces[1].middle)
+
+    def _take(self, name, unit, glue, bearing):
+        """Take the material and the joints of a beam or a floor."""
+        self.units[name], self.joints[name] = unit, glue
+        self.stiff = self.stiff | {name}
+        if bearing is not None:
+            bed = self.joints["bed"]
+            values = dict(name=f"{name}_bearing", normalStiffness=bed.normalStiffness, shearStiffness=bed.shearStiffness)  # fmt: skip
+            if bearing == "fixed":
+                values["elastic"] = True
+            else:
+                values.update(tensileStrength=0, cohesion=0, friction=bearing, residualFriction=bearing, cap=False)  # fmt: skip
+            self.joints[f"{name}_bearing"] = MasonryJoint(**values)
+        return self
+
     def _numbersOf(self, joint):
         """Names of the properties of a joint that are numbers, or none if there is no such joint."""
         values = self.joints[joint].dict() if joint in self.joints else {}
@@ -236,6 +348,7 @@ class Masonry:
             [*self.varied],
             self.brief,
             self.course,
+            self.stiff,
         )
         own._follow()
         for text in args.field:
@@ -287,6 +400,11 @@ class Masonry:
             return "support"
         if first.brick == second.brick and "crack" in self.joints:
             return "crack"
+        if first.kind == second.kind and first.kind in self.stiff:
+            return first.kind
+        for block in (first, second):
+            if block.kind in self.stiff and f"{block.kind}_bearing" in self.joints:
+                return f"{block.kind}_bearing"
         if first.part != second.part and "collar" in self.joints:
             return "collar"
         steep = abs(normal[2]) > STEEP or "head" not in self.joints

@@ -1,0 +1,284 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Ties and springs, which connect bricks and platens beside the joints: words that describe a scene."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..arguments import Numbers, direction, flag, number, oneOf, orNone, takes
+from ..arguments import name as nameOf
+from ..arguments import vector as numbers
+from ..assembly.blocks import vector
+from ..basics import Refused
+from ..bricks import Block, Bricks
+from .supports import POINT
+from .targets import Target, brick
+from .targets import part as partName
+from .ties import End, Overlay, Spring, Tie
+from .words import describes
+
+MOST = 1e15  # of stiffness [N/m], [N m] and force [N]: more has no structure
+
+
+def end(value: Any, first: Any) -> Any:
+    """The kind of an end: a target of the scene, or a brick as of :func:`masonry.scene.targets.brick`."""
+    if isinstance(value, Target):
+        description = getattr(first, "description", first)
+        if description.targets.get(value.name) is not value:
+            raise ValueError(f"{value.name!r}, which is of another scene, must be of this one")  # fmt: skip
+        return value
+    return brick(value, first)
+
+
+def _endOf(description, where):
+    if isinstance(where, Target):
+        return End(tuple(where.point), where, where.brick)
+    index, point = description.find(where)
+    return End(tuple(point or description.middle(index)), None, index)
+
+
+def _inPlane(description, ends):
+    """In a scene in the x-z plane the ends stand in the plane of the first one's middle."""
+    if description.plane:
+        level = ends[0].point[1]
+        if ends[0].brick is not None:
+            level = description.middle(ends[0].brick)[1]
+        for one in ends:
+            one.point = (one.point[0], level, one.point[2])
+
+
+STIFFNESS = number("N/m", 0, MOST, above=True)
+FORCE = number("N", 0, MOST)
+
+
+@describes
+@takes(
+    one=end,
+    other=orNone(end),
+    anchor=orNone(POINT),
+    stiffness=STIFFNESS,
+    strength=orNone(number("N", 0, MOST, above=True)),
+    prestress=FORCE,
+    slack=number("m", 0, 1e3),
+    breaking=orNone(number("", 0, 10, above=True)),
+    compression=flag,
+    name=orNone(nameOf),
+)
+def tie(
+    description: Any,
+    one: Target | Numbers | int | Block,
+    other: Target | Numbers | int | Block | None = None,
+    *,
+    stiffness: float,
+    strength: float | None = None,
+    prestress: float = 0.0,
+    slack: float = 0.0,
+    breaking: float | None = None,
+    compression: bool = False,
+    anchor: Numbers | None = None,
+    name: str | None = None,
+) -> Tie:
+    """A bar between a point of a brick and another one, or the ground: a tie rod, an anchor, a strut.
+
+    It has no mass, does not bend, and pulls along the line between its ends, however far they move. Its columns in curve.csv
+    are its force [kN] and the elongation between its ends [mm]; when it yields or breaks, the terminal says so. Bricks at its
+    ends are rigid also with ``--blocks deformable``.
+
+    :param one: a point (x, y, z) [m] in a brick or near it, at which the tie is fixed to it; the index of a brick, or the
+        block itself: its middle; or a platen, a handle, a brick that is held or watched: the point on which loads act
+    :param other: the same for the other end; None: ``anchor`` says where
+    :param anchor: (x, y, z) [m] of an end on the ground, which does not move
+    :param stiffness: E A / L [N/m]
+    :param strength: force at which it yields, and then keeps [N]; None: it does not yield
+    :param prestress: force by which it is tightened, with the other loads that grow in :meth:`settle` [N]: it is shortened by
+        prestress / stiffness, so what the masonry gives way reduces the force
+    :param slack: elongation before it carries anything [m]
+    :param breaking: strain of the distance between its ends, its tightening included, at which it breaks [-]; None: it does not
+    :param compression: whether it carries compression, too, as a strut, with the same strength
+    :param name: of its columns; None: ``tie`` and a number
+    :returns: a :class:`Tie`, whose ``force`` and ``elongation`` can be read between stages
+    """
+    problems = []
+    if (other is None) == (anchor is None):
+        problems.append("tie: give either other or anchor")
+    if prestress and slack:
+        problems.append(f"tie: a prestress of {prestress:g} N and a slack of {slack:g} m exclude each other")  # fmt: skip
+    if strength is not None and prestress >= strength:
+        problems.append(f"tie: prestress {prestress:g} N must be below its strength, {strength:g} N")  # fmt: skip
+    if problems:
+        raise Refused("\n".join(problems))
+    far = (
+        End(tuple(vector(anchor, "tie: anchor [m]")))
+        if other is None
+        else _endOf(description, other)
+    )
+    ends = _endOf(description, one), far
+    _inPlane(description, ends)
+    if _samePlace(*ends):
+        raise Refused(f"tie: its ends, {ends[0].words} and {ends[1].words}, are on one brick")  # fmt: skip
+    number = len(description.ties)
+    made = Tie(name or f"tie{number}", ends, stiffness, strength, prestress, slack, breaking, compression, number=number)  # fmt: skip
+    if not made.length > 0:
+        raise Refused(f"tie: its ends are both at {ends[0].point} m")
+    if breaking is not None and prestress >= breaking * made.length * stiffness:
+        raise Refused(f"tie: prestress {prestress:g} N must be below the force at which it breaks, {breaking * made.length * stiffness:g} N")  # fmt: skip
+    _checkName(description, made.name, "tie")
+    description.ties.append(made)
+    return made
+
+
+SPRINGS = numbers("", MOST)
+
+
+def springs(value: Any, first: Any = None) -> Any:
+    """The kind of the stiffnesses of springs along or about three axes, of which none is negative."""
+    found = SPRINGS(value)
+    if min(found) < 0:
+        raise ValueError(f"{value!r} must be three numbers of at least 0")
+    return tuple(found)
+
+
+@describes
+@takes(one=end, other=orNone(end), stiffness=springs, rotation=springs, name=orNone(nameOf))  # fmt: skip
+def spring(
+    description: Any,
+    one: Target | Numbers | int | Block,
+    other: Target | Numbers | int | Block | None = None,
+    *,
+    stiffness: Numbers = (0.0, 0.0, 0.0),
+    rotation: Numbers = (0.0, 0.0, 0.0),
+    name: str | None = None,
+) -> Spring:
+    """Linear springs at a point, along and about x, y and z, between two bricks or platens, or one and the ground.
+
+    They have no force as the scene is built, and neither yield nor break. Directions stay those of the global axes, so turns
+    are small. Columns of curve.csv are the forces [kN] and moments [kN m] of ``one`` on them. Bricks at their ends are rigid
+    also with ``--blocks deformable``.
+
+    :param one: where they are fixed: a point in a brick, a brick or a target, as for :meth:`tie`
+    :param other: the other brick or platen, at the same point; None: the ground
+    :param stiffness: along x, y and z, three numbers [N/m]
+    :param rotation: about x, y and z, three numbers [N m/rad]
+    :param name: of the columns; None: ``spring`` and a number
+    :returns: a :class:`Spring`, whose ``force`` and ``moment`` can be read between stages
+    """
+    name = name or f"spring{len(description.springs)}"
+    first = _endOf(description, one)
+    second = End(first.point) if other is None else _endOf(description, other)
+    second.point = first.point
+    problems = []
+    if not any((*stiffness, *rotation)):
+        problems.append("spring: a stiffness must be above 0")
+    if description.plane and (stiffness[1] or rotation[0] or rotation[2]):
+        problems.append("spring: the scene is in the x-z plane: stiffness along x and z, and rotation about y, are what it can have; Scene(..., plane=False) is in space")  # fmt: skip
+    if _samePlace(first, second):
+        problems.append(f"spring: its ends, {first.words} and {second.words}, are on one brick")  # fmt: skip
+    if problems:
+        raise Refused("\n".join(problems))
+    _checkName(description, name, "spring")
+    made = Spring(name, (first, second), tuple(stiffness), tuple(rotation), number=len(description.springs))  # fmt: skip
+    description.springs.append(made)
+    return made
+
+
+#: Places of two bundles of fibres along the edge of a joint, which have the force and the moment of a layer whose strain is
+#: linear along it: those of Gauss.
+BUNDLES = 0.5 - 0.5 / 3**0.5, 0.5 + 0.5 / 3**0.5
+NEAR = (
+    1e-6  # of the largest extent of the structure: corners so near to a face lie on it
+)
+
+
+@describes
+@takes(
+    side=direction(),
+    stiffness=STIFFNESS,
+    strength=number("N/m", 0, MOST, above=True),
+    gauge=number("m", 0, 10, above=True),
+    strain=orNone(number("", 0, 10, above=True)),
+    fibres=oneOf("both", "vertical", "horizontal"),
+    part=orNone(partName),
+    name=orNone(nameOf),
+)
+def overlay(
+    description: Any,
+    side: Numbers,
+    *,
+    stiffness: float,
+    strength: float,
+    gauge: float,
+    strain: float | None = None,
+    fibres: str = "both",
+    part: str | None = None,
+    name: str | None = None,
+) -> Overlay:
+    """A fibre layer on a face: textile or steel in mortar. Its fibres cross every joint that ends at that face.
+
+    Fibres carry tension only. Two bundles over the edge of every joint are bars (:meth:`tie`) between both bricks, at right
+    angles to the joint. Mortar and bond of the layer are not modelled but by ``gauge``, the length over which fibres are free
+    on either side of a crack together.
+
+    :param side: outward direction of the face, for example (0, -1, 0)
+    :param stiffness: E t of the fibres, a metre of width [N/m]
+    :param strength: force a metre of width at which they slip or yield [N/m]
+    :param gauge: length over which they stretch at a crack [m]
+    :param strain: of that length, at which they break [-]; None: they do not
+    :param fibres: ``"vertical"``: over joints that are nearer to level; ``"horizontal"``: over the others; ``"both"``
+    :param part: name of a part of the bricks; None: all
+    :param name: of its columns, the numbers of bundles that have yielded and broken; None: ``overlay`` and a number
+    :returns: an :class:`Overlay`, whose ``ties`` are the bundles
+    """
+    name = name or f"overlay{len(description.overlays)}"
+    _checkName(description, name, "overlay")
+    outward = np.asarray(vector(side, "overlay: side").normalized(), float)
+    bricks = Bricks(description.bricks)
+    size = max(b - a for a, b in zip(description.low, description.high))
+    fronts = [max(np.dot(c, outward) for c in b.corners) for b in description.bricks]
+    made, covered = [], 0.0
+    for joint in bricks.joints():
+        pair, normal = (joint.first, joint.second), np.array(joint.normal)
+        level = abs(normal[2]) > 0.5**0.5
+        if abs(normal @ outward) > 0.5 or fibres == ("horizontal" if level else "vertical"):  # fmt: skip
+            continue
+        if part is not None and {description.bricks[n].part for n in pair} != {part}:
+            continue
+        corners = np.array(joint.polygon)
+        heights = corners @ outward
+        edge = corners[heights > min(fronts[n] for n in pair) - NEAR * size]
+        if len(edge) < 2:
+            continue
+        along = np.cross(normal, outward)
+        first, last = edge[np.argmin(edge @ along)], edge[np.argmax(edge @ along)]
+        width = float(np.linalg.norm(last - first))
+        if not width > NEAR * size:
+            continue
+        covered += width * gauge
+        across = normal - (normal @ outward) * outward
+        across *= 0.5 * gauge / np.linalg.norm(across)
+        for share in BUNDLES:
+            point = first + share * (last - first)
+            at = lambda sign, n: End(tuple(map(float, point + sign * across)), None, n)
+            ends = at(-1, pair[0]), at(1, pair[1])
+            number = len(description.ties) + len(made)
+            made.append(Tie(f"{name}_{len(made)}", ends, 0.5 * width * stiffness / gauge, 0.5 * width * strength, 0.0, 0.0, strain, False, number=number, overlay=name))  # fmt: skip
+    if not made:
+        raise Refused(f"overlay: no joint ends at a face that looks along {tuple(side)}")  # fmt: skip
+    if description.plane:
+        raise Refused("overlay: the scene is in the x-z plane, in which a layer on one face would bend it; Scene(..., plane=False) is in space")  # fmt: skip
+    description.ties += made
+    description.overlays.append(Overlay(name, made, covered))
+    return description.overlays[-1]
+
+
+def _samePlace(one, other):
+    """Whether two ends are on the same brick or platen."""
+    same = one.target is not None and one.target is other.target
+    return same or one.brick is not None and one.brick == other.brick
+
+
+def _checkName(description, name, word):
+    known = {one.name for one in (*description.ties, *description.springs, *description.overlays)}  # fmt: skip
+    if name in known or name in description.targets:
+        raise Refused(f"{word}: there is a {name!r} already; give one of them another name")  # fmt: skip

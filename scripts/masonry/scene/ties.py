@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Ties and springs of a scene: plain records with their columns, and their entries of run.json."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Iterator
+
+from yade import Vector3
+
+from ..assembly.columns import Column
+from .targets import Target
+
+GROUND = -1  # in place of the id of a body
+
+
+@dataclass
+class End:
+    """An end of a tie or a spring.
+
+    :param point: where it is fixed [m]
+    :param target: a platen or brick, or None
+    :param brick: index of a brick, or None. If both are None, the end is on the ground
+    """
+
+    point: tuple
+    target: Target | None = None
+    brick: int | None = None
+
+    def bodyIn(self, ids: list[int]) -> int:
+        """YADE's id of its body, -1 for the ground.
+
+        :param ids: of the bricks, in their order
+        """
+        if self.target:
+            assert self.target.body is not None
+            return self.target.body
+        return GROUND if self.brick is None else ids[self.brick]
+
+    @property
+    def isGround(self) -> bool:
+        """Whether it does not move."""
+        return self.target is None and self.brick is None
+
+    @property
+    def words(self) -> str:
+        """Where it is, in words."""
+        if self.target:
+            return self.target.name
+        at = ", ".join(f"{v:.4g}" for v in self.point)
+        return f"the ground at ({at}) m" if self.isGround else f"brick {self.brick} at ({at}) m"  # fmt: skip
+
+
+@dataclass
+class Tie:
+    """A bar between two points; ``scene.tie`` makes it and says what the values mean."""
+
+    name: str
+    ends: tuple[End, End]
+    stiffness: float  # [N/m]
+    strength: float | None  # [N]
+    prestress: float  # [N]
+    slack: float  # [m]
+    breaking: float | None  # strain [-]
+    compression: bool
+    engine: Any = None  # YADE's, when the scene is built
+    number: int = 0  # among the ties of the engine
+    overlay: str = ""  # name of the overlay of which it is a fibre; then it has no columns of its own
+
+    @property
+    def bodies(self) -> tuple[int, int]:
+        """YADE's ids of the bodies of its ends, -1 for the ground."""
+        return self.engine.bodies1[self.number], self.engine.bodies2[self.number]
+
+    @property
+    def length(self) -> float:
+        """Distance of its ends when the scene is built [m]."""
+        a, b = (end.point for end in self.ends)
+        return sum((x - y) ** 2 for x, y in zip(a, b)) ** 0.5
+
+    def rest(self, share: float) -> float:
+        """Elongation without force when so much of the prestress has grown [m].
+
+        :param share: 0 to 1 [-]
+        """
+        return self.slack - share * self.prestress / self.stiffness
+
+    @property
+    def force(self) -> float:
+        """Present force, positive in tension [N]."""
+        return self.engine.forceOf(self.number)
+
+    @property
+    def elongation(self) -> float:
+        """Present elongation of the distance between its ends [m]."""
+        return self.engine.elongations[self.number] if len(self.engine.elongations) else 0.0  # fmt: skip
+
+    def on(self, end: End, structure: Any) -> Any:
+        """Force [N] and moment [N m] on one of its ends: two vectors.
+
+        :param structure: :class:`masonry.assembly.structure.Structure`
+        """
+        other = self.ends[1] if end is self.ends[0] else self.ends[0]
+        away = structure.placeOf(other) - structure.placeOf(end)
+        return self.force * away.normalized(), 0 * away
+
+    def columns(self, plane: bool) -> Iterator[Column]:
+        """What is recorded of it."""
+        if self.overlay:
+            return
+        where = f"{self.ends[0].words} and {self.ends[1].words}"
+        yield Column(f"{self.name}_force", "kN", f"force of the tie between {where}, positive in tension", lambda r: 1e-3 * r.ofTies[0][self.number])  # fmt: skip
+        yield Column(f"{self.name}_elongation", "mm", f"elongation of the distance between {where}", lambda r: 1e3 * r.ofTies[1][self.number])  # fmt: skip
+
+    @property
+    def state(self) -> str:
+        """``elastic``, ``yielded`` or ``broken``."""
+        engine, n = self.engine, self.number
+        if not len(engine.forces):
+            return "elastic"
+        return "broken" if engine.brokenAt[n] >= 0 else "yielded" if engine.yieldedAt[n] >= 0 else "elastic"  # fmt: skip
+
+    def entry(self) -> dict[str, Any]:
+        """What run.json says of it."""
+        engine, n = self.engine, self.number
+        return {
+            "name": self.name,
+            "ends_m": [list(end.point) for end in self.ends],
+            "bodies": list(self.bodies),
+            "between": [end.words for end in self.ends],
+            "stiffness_N_per_m": self.stiffness,
+            "strength_N": self.strength,
+            "prestress_N": self.prestress,
+            "slack_m": self.slack,
+            "breaking_strain": self.breaking,
+            "compression": self.compression,
+            "state": self.state,
+            "force_N": self.force,
+            "plastic_elongation_m": engine.flows[n] if len(engine.flows) else 0.0,
+        }
+
+
+@dataclass
+class Spring:
+    """Springs at a point; ``scene.spring`` makes them and says what the values mean."""
+
+    name: str
+    ends: tuple[End, End]
+    stiffness: tuple  # along x, y and z [N/m]
+    rotation: tuple  # about x, y and z [N m]
+    engine: Any = None  # YADE's, when the scene is built
+    number: int = 0  # among the springs of the engine
+
+    @property
+    def force(self) -> Any:
+        """Present force on the first end [N]."""
+        return self.engine.forces[self.number] if len(self.engine.forces) else (0.0, 0.0, 0.0)  # fmt: skip
+
+    @property
+    def moment(self) -> Any:
+        """Present moment on the first end, about its point [N m]."""
+        return self.engine.moments[self.number] if len(self.engine.moments) else (0.0, 0.0, 0.0)  # fmt: skip
+
+    def on(self, end: End, structure: Any) -> Any:
+        """As :meth:`Tie.on`."""
+        sign = 1 if end is self.ends[0] else -1
+        return sign * Vector3(*self.force), sign * Vector3(*self.moment)
+
+    def columns(self, plane: bool) -> Iterator[Column]:
+        """What is recorded of it."""
+        where = f"the spring between {self.ends[0].words} and {self.ends[1].words}"
+        for i, axis in enumerate("xyz"):
+            if self.stiffness[i] and not (plane and axis == "y"):
+                yield Column(f"{self.name}_force_{axis}", "kN", f"force of the first on {where}, along {axis}", lambda r, i=i: -1e-3 * self.force[i])  # fmt: skip
+        for i, axis in enumerate("xyz"):
+            if self.rotation[i]:
+                yield Column(f"{self.name}_moment_{axis}", "kNm", f"moment of the first on {where}, about {axis}", lambda r, i=i: -1e-3 * self.moment[i])  # fmt: skip
+
+    def entry(self) -> dict[str, Any]:
+        """What run.json says of it."""
+        return {
+            "name": self.name,
+            "at_m": list(self.ends[0].point),
+            "between": [end.words for end in self.ends],
+            "stiffness_N_per_m": list(self.stiffness),
+            "rotational_stiffness_Nm": list(self.rotation),
+            "force_N": list(self.force),
+            "moment_Nm": list(self.moment),
+        }
+
+
+@dataclass
+class Overlay:
+    """Fibres over the joints of a face; ``scene.overlay`` makes them and says what the values mean."""
+
+    name: str
+    ties: list[Tie]
+    area: float  # of the face that it covers, about [m²]
+
+    def columns(self, plane: bool) -> Iterator[Column]:
+        """What is recorded of it."""
+        for n, what in enumerate(("yielded", "broken")):
+            meaning = f"how many of the {len(self.ties)} bundles of fibres of {self.name} have {what}"
+            yield Column(f"{self.name}_{what}", "-", meaning, lambda r, n=n: self._count()[n])  # fmt: skip
+
+    def _count(self):
+        engine = self.ties[0].engine
+        if not len(engine.forces):
+            return 0, 0
+        yielded, broken = list(engine.yieldedAt), list(engine.brokenAt)
+        numbers = [one.number for one in self.ties]
+        return sum(yielded[n] >= 0 for n in numbers), sum(
+            broken[n] >= 0 for n in numbers
+        )
+
+    def entry(self) -> dict[str, Any]:
+        """What run.json says of it."""
+        yielded, broken = self._count()
+        return {"name": self.name, "bundles": len(self.ties), "yielded": yielded, "broken": broken}  # fmt: skip

@@ -1,0 +1,298 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Ties and springs: what they carry against statics, what a run says of them, and what is refused."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+from masonry import COLLAPSED, Scene, bricks, materials
+from masonry.basics import GRAVITY, Refused
+from masonry.read.files import readRun
+from masonry.read import files
+from yade import O
+
+LEAN = ["--lean", "--checkpoint-every", "0"]
+WIDTH, DEPTH, HEIGHT = 0.4, 0.3, 1.6  # of a block [m]
+BLOCK = WIDTH, DEPTH, HEIGHT
+WEIGHT = WIDTH * DEPTH * HEIGHT * 2600 * GRAVITY  # [N]
+
+
+def refused(text):
+    return pytest.raises((Refused, ValueError), match=re.escape(text))
+
+
+def block(tmp_path, *words, friction=5.0, bricksOf=None, **settings):
+    """A stiff block on a platen, on which it cannot slide, or other bricks."""
+    scene = Scene(
+        "block",
+        bricksOf or bricks.stack(1, BLOCK),
+        materials.dry(friction, normalStiffness=1e11),
+        arguments=[*LEAN, "--out", str(tmp_path / "results"), *words],
+        **settings,
+    )
+    return scene
+
+
+def readCurve(folder):
+    return {name: np.array(values) for name, values in files.readCurve(folder).items()}
+
+
+def at(height, x=WIDTH / 2):
+    return (x, DEPTH / 2, height)
+
+
+def test_a_tie_that_yields_holds_a_rocking_block_as_statics_says(tmp_path):
+    """a W h / 2 = W b / 2 + T t: acceleration, weight, height of the block and of the tie, its force."""
+    scene, force, level = block(tmp_path), 500.0, 1.2
+    scene.platen("bottom")
+    scene.handle(0, "top")
+    scene.tie(at(level), anchor=at(level, -3.0), stiffness=1e7, strength=force)
+    scene.settle()
+    scene.accelerate(2.0, towards=(1, 0, 0))
+    expected = (WEIGHT * WIDTH / 2 + force * level) / (WEIGHT * HEIGHT / 2)
+    assert scene.factor == pytest.approx(expected, rel=0.01)
+    scene.finish()
+
+
+def test_limit_analysis_has_the_tie(tmp_path):
+    scene, force, level = block(tmp_path, "--preset", "bound"), 500.0, 1.2
+    scene.platen("bottom")
+    scene.tie(at(level), anchor=at(level, -3.0), stiffness=1e7, strength=force)
+    scene.tie(at(0.5), anchor=at(0.5, 3.0), stiffness=1e7, strength=force)  # slack
+    found = scene.bound(towards=(1, 0, 0))
+    expected = (WEIGHT * WIDTH / 2 + force * level) / (WEIGHT * HEIGHT / 2)
+    assert found["factor"] == pytest.approx(expected, rel=1e-4)
+    scene.finish()
+
+
+def pulled(tmp_path, *words, most=1.0, **properties):
+    """A block that a drive lifts against a tie: the rows of the push, the tie, and run.json."""
+    scene = block(tmp_path, *words, rate=10)
+    scene.platen("bottom")
+    top = scene.handle(0, "top")
+    tie = scene.tie(at(HEIGHT / 2), anchor=at(HEIGHT / 2 - 0.5), **properties)
+    scene.settle()
+    scene.push(top, most, direction=(0, 0, 1))
+    scene.finish()
+    return readCurve(tmp_path / "results"), tie, readRun(tmp_path / "results")
+
+
+def test_a_tie_is_elastic_then_yields(tmp_path, capsys):
+    stiffness, strength = 4e6, 1e3
+    rows, tie, run = pulled(tmp_path, stiffness=stiffness, strength=strength)
+    moved = rows["tie0_elongation_mm"]
+    expected = np.minimum(stiffness * 1e-6 * np.maximum(moved, 0), strength / 1e3)
+    assert np.abs(rows["tie0_force_kN"] - expected).max() < 1e-8
+    assert run["ties"][0]["state"] == "yielded"
+    assert run["ties"][0]["plastic_elongation_m"] == pytest.approx(1e-3 * moved[-1] - strength / stiffness)  # fmt: skip
+    lost = strength * (1e-3 * moved[-1] - strength / stiffness)
+    assert rows["dissipated_connectors_J"][-1] == pytest.approx(lost, rel=1e-2)
+    assert rows["elastic_connectors_J"][-1] == pytest.approx(strength**2 / (2 * stiffness))  # fmt: skip
+    assert abs(rows["balance_error"]).max() < 1e-3
+    assert capsys.readouterr().out.count("tie0 yields: between brick 0 at") == 1
+
+
+def test_a_tie_breaks_at_its_strain(tmp_path, capsys):
+    rows, tie, run = pulled(tmp_path, stiffness=4e6, breaking=1e-3)
+    broken = rows["tie0_elongation_mm"] > 0.5
+    assert (rows["tie0_force_kN"][broken] == 0).all() and broken.any()
+    assert rows["tie0_force_kN"].max() == pytest.approx(2.0, rel=0.1)
+    assert rows["dissipated_connectors_J"][-1] == pytest.approx(0.5 * 4e6 * 0.5e-3**2, rel=0.02)  # fmt: skip
+    assert run["ties"][0]["state"] == "broken" and tie.force == 0
+    assert abs(rows["balance_error"]).max() < 0.01
+    assert "tie0 breaks" in capsys.readouterr().out
+
+
+def test_slack_comes_before_the_force_and_a_strut_pushes(tmp_path):
+    rows, _, _ = pulled(tmp_path, stiffness=4e6, slack=0.4e-3)
+    moved = rows["tie0_elongation_mm"]
+    expected = 4e3 * 1e-3 * np.maximum(moved - 0.4, 0)
+    assert np.abs(rows["tie0_force_kN"] - expected).max() < 1e-8
+
+
+def test_prestress_grows_in_settle_and_its_work_is_counted(tmp_path):
+    """The tie and the weight press the block down by u on a support of stiffness K: (P - k u) + W = K u."""
+    scene, force = block(tmp_path), 2e3
+    scene.platen("bottom")
+    scene.watch(0, "top")
+    tie = scene.tie(at(HEIGHT), anchor=at(-0.5), stiffness=1e6, prestress=force)
+    assert scene.settle() == "at rest"
+    (joint,) = scene.model.interactions
+    support = joint.phys.normalStiffness * WIDTH * DEPTH
+    down = (force + WEIGHT) / (1e6 + support)
+    assert tie.force == pytest.approx(force - 1e6 * down, rel=1e-4)
+    scene.run(0.05, damping=0.5)
+    scene.finish()
+    rows = readCurve(tmp_path / "results")
+    pressed = -1e-3 * (WEIGHT + tie.force)
+    assert rows["base_force_z_kN"][-1] == pytest.approx(pressed, rel=1e-4)
+    assert rows["elastic_connectors_J"][-1] == pytest.approx(
+        tie.force**2 / 2e6, rel=1e-4
+    )
+    assert rows["external_J"][-1] == pytest.approx(force**2 / 2e6, rel=0.02)
+    assert abs(rows["balance_error"][-1]) < 1e-3
+
+
+def test_a_wall_on_a_rocking_spring_has_both_stiffnesses_in_series(tmp_path):
+    """A force H at the height h of a rigid block on springs moves it by H / kx + H h² / kY."""
+    kx, turning, level = 2e6, 3e6, 1.5
+    scene = block(tmp_path, rate=1)
+    base = scene.platen("bottom", springs={"x": kx, "Y": turning}, height=0.2)
+    top = scene.handle(at(level), "top")
+    scene.settle()
+    scene.push(top, 0.05)
+    scene.finish()
+    rows = readCurve(tmp_path / "results")
+    height = level + 0.2  # over the springs, at the outer side of the platen
+    arm = WEIGHT * (HEIGHT / 2 + 0.2) + O.bodies[base.body].state.mass * GRAVITY * 0.1
+    expected = 1 / (1 / kx + height**2 / (turning - arm))  # weight that leans helps
+    found = np.polyfit(rows["displacement_mm"], rows["base_shear_kN"], 1)[0] * 1e6
+    assert found == pytest.approx(expected, rel=0.02)
+    assert rows["base_spring_moment_y_kNm"][-1] == pytest.approx(rows["base_shear_kN"][-1] * height, rel=0.05)  # fmt: skip
+    assert rows["base_force_x_kN"][-1] == pytest.approx(rows["base_shear_kN"][-1], rel=1e-6)  # fmt: skip
+    assert abs(rows["balance_error"]).max() < 1e-3
+
+
+def test_a_spring_period_is_its_closed_form(tmp_path):
+    """Of a block and its platen on a spring along x alone: T = 2π √(m / k)."""
+    scene = block(tmp_path)
+    base = scene.platen("bottom", springs={"x": 4e5})
+    scene.watch(0, "top")
+    scene.settle()
+    state = O.bodies[base.body].state
+    mass = WEIGHT / GRAVITY + state.mass
+    for body in O.bodies:
+        body.state.vel = (0.01, 0, 0)
+    scene.model.energy.given()
+    period = 2 * math.pi * math.sqrt(mass / 4e5)
+    scene.run(2 * period, damping=0.0)
+    scene.finish()
+    rows = readCurve(tmp_path / "results")
+    moved, times = rows["base_x_mm"], rows["time_s"]
+    assert moved.max() == pytest.approx(10 * period / (2 * math.pi), rel=0.01)
+    ups = [t for t, a, b in zip(times[1:], moved, moved[1:]) if a < 0 <= b]
+    assert len(ups) >= 1
+    downs = [t for t, a, b in zip(times[1:], moved, moved[1:]) if a > 0 >= b]
+    assert downs[1] - downs[0] == pytest.approx(period, rel=0.02)
+
+
+def test_a_tie_sets_the_time_step_where_it_is_stiffest(tmp_path):
+    limits = []
+    for n, stiffness in enumerate((1e3, 1e13)):
+        scene = block(tmp_path / str(n))
+        scene.platen("bottom")
+        scene.tie(at(1.2), anchor=at(1.2, -3.0), stiffness=stiffness)
+        assert scene.settle() == "at rest"
+        limits.append(scene.model.limit)
+        scene.finish()
+    mass = WEIGHT / GRAVITY
+    assert limits[1] < 2 / math.sqrt(1e13 / mass) * 1.35 < 0.1 * limits[0]
+
+
+def test_what_makes_no_sense_is_refused_with_all_problems(tmp_path):
+    scene = block(tmp_path)
+    base = scene.platen("bottom")
+    with refused("tie: give either other or anchor"):
+        scene.tie(at(1.2), stiffness=1e6)
+    with refused("a prestress of 5 N and a slack of 0.1 m exclude each other"):
+        scene.tie(at(1), base, stiffness=1e6, prestress=5, slack=0.1)
+    with refused("prestress 50 N must be below its strength, 20 N"):
+        scene.tie(at(1), base, stiffness=1e6, prestress=50, strength=20)
+    with refused("stiffness 0 N/m must be above 0"):
+        scene.tie(at(1), base, stiffness=0)
+    with refused("are on one brick"):
+        scene.tie(at(1), 0, stiffness=1e6)
+    with refused("stiffness must be given"):
+        scene.tie(at(1), base)
+    with refused("a stiffness must be above 0"):
+        scene.spring(at(1))
+    with refused("must be three numbers of at least 0"):
+        scene.spring(at(1), stiffness=(1, -1, 0))
+    with refused("the scene is in the x-z plane"):
+        scene.spring(at(1), stiffness=(0, 1e6, 0))
+    with refused("there is a 'base' already"):
+        scene.tie(at(1), anchor=at(3), stiffness=1e6, name="base")
+    with refused("springs are for the one at the bottom"):
+        scene.platen("top", springs={"x": 1e6})
+    with refused("axes xyzXYZ"):
+        scene.platen("bottom", name="other", springs={"q": 1e6})
+    scene.tie(at(1), base, stiffness=1e6)
+    scene.settle()
+    with refused("must come before the first stage"):
+        scene.tie(at(1), base, stiffness=1e6)
+    scene.finish()
+
+
+def test_no_energy_is_made_by_ties_in_a_shaken_wall(tmp_path):
+    """Bars that slacken, yield and tighten again under a strong motion: the balance closes, and what is lost never falls."""
+    scene = Scene(
+        "shaken",
+        bricks.Wall(0.66, 0.486, halves=False),
+        materials.dry(0.6),
+        plane=False,
+        arguments=[*LEAN, "--out", str(tmp_path)],
+    )
+    scene.platen("bottom")
+    wall = scene.description.bricks
+    rng = np.random.default_rng(5)
+    for n in range(8):
+        one, other = rng.choice(len(wall), 2, replace=False)
+        scene.tie(int(one), int(other), stiffness=10 ** rng.uniform(5, 7), strength=10 ** rng.uniform(0, 2),
+                  compression=bool(n % 2))  # fmt: skip
+    scene.settle()
+    times = np.arange(0, 0.5, 0.005)
+    ended = scene.shake(list(9 * np.sin(30 * times)), every=0.005)
+    scene.finish()
+    rows = readCurve(tmp_path)
+    assert ended != COLLAPSED
+    assert abs(rows["balance_error"]).max() < 0.01
+    lost = rows["dissipated_connectors_J"]
+    assert lost[-1] > 0 and (np.diff(lost) > -1e-3 * lost[-1]).all()
+
+
+def test_an_overlay_gives_a_section_the_moment_of_its_fibres(tmp_path):
+    """F h = W d / 2 + f b d: force at the height h, weight, thickness, strength of the fibres a metre, width."""
+    width, depth, height, strength = 0.5, 0.2, 0.8, 4e3
+    scene = Scene(
+        "panel",
+        bricks.stack(2, (width, depth, height)),
+        materials.dry(5.0, normalStiffness=1e12),
+        plane=False,
+        arguments=[*LEAN, "--out", str(tmp_path)],
+        rate=5,
+    )
+    scene.platen("bottom")
+    scene.hold(0, name="foot")
+    layer = scene.overlay((0, -1, 0), stiffness=1e7, strength=strength, gauge=0.2)
+    assert len(layer.ties) == 2
+    top = scene.handle((width / 2, depth / 2, 1.6), "top")
+    scene.settle()
+    scene.push(top, 3.0, direction=(0, 1, 0))
+    scene.finish()
+    weight = width * depth * height * 2600 * GRAVITY
+    expected = (weight * depth / 2 + strength * width * depth) / height
+    rows = readCurve(tmp_path)
+    swings = rows["top_shear_kN"][rows["displacement_mm"] > 1]  # about its mean
+    assert swings.mean() == pytest.approx(1e-3 * expected, rel=0.01)
+    assert rows["overlay0_yielded"][-1] == 2 and rows["overlay0_broken"][-1] == 0
+    run = readRun(tmp_path)
+    assert run["overlays"][0]["bundles"] == 2 and len(run["ties"]) == 2
+
+
+def test_fibres_cross_the_joints_of_one_face_only(tmp_path):
+    wall = bricks.Wall(0.66, 0.243, halves=False)
+    scene = Scene("wall", wall, materials.dry(0.6), plane=False, arguments=[*LEAN, "--out", str(tmp_path)])  # fmt: skip
+    scene.platen("bottom")
+    both = scene.overlay((0, 1, 0), stiffness=1e7, strength=1e4, gauge=0.1)
+    joints = wall.joints()
+    assert len(both.ties) == 2 * len(joints)
+    level = sum(abs(joint.normal[2]) > 0.9 for joint in joints)
+    upright = scene.overlay((0, -1, 0), stiffness=1e7, strength=1e4, gauge=0.1, fibres="vertical", name="other")  # fmt: skip
+    assert len(upright.ties) == 2 * level
+    front = max(c[1] for block in wall for c in block.corners)
+    assert {round(end.point[1] - front, 12) for t in both.ties for end in t.ends} == {0}
+    with refused("no joint ends at a face"):
+        scene.overlay((0, 0, 1), stiffness=1e7, strength=1e4, gauge=0.1, fibres="vertical")  # fmt: skip
+    scene.settle()
+    scene.finish()

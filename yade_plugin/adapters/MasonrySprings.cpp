@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "MasonrySprings.hpp"
+#include "scene/EngineTurn.hpp"
+
+template class masonry::Adapter<masonry::MasonrySprings, yade::GlobalEngine>;
+BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonrySprings)
+
+namespace masonry {
+
+void MasonrySprings::action() {
+    const EngineTurn turn(*scene, *this);
+    act(turn.store());
+    turn.end();
+}
+
+} // namespace masonry

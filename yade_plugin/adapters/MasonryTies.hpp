@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+#include "Adapter.hpp"
+#include "scene/SceneCheck.hpp"
+#include "scene/Ties.hpp"
+
+namespace masonry {
+
+// The ends of connectors, for the attributes of an engine.
+template <class Class, class Visit> void endsOfConnectors(Visit&& visit) {
+    visit("bodies1", &Class::bodies1, described("Body of the first end of each connector; -1: the ground"), Given);
+    visit("points1", &Class::points1,
+          described("Place of the first end in the reference state of its body, global axes [m]"), Given);
+    visit("bodies2", &Class::bodies2, described("Body of the second end of each; -1: the ground"), Given);
+    visit("points2", &Class::points2, described("Place of the second end, likewise [m]"), Given);
+    visit("elastic", &Class::stored, number("J", "Elastic energy in the last step"), ReadOnly);
+    visit("dissipated", &Class::dissipated, number("J", "Dissipated energy so far"), ReadOnly);
+    visit("given", &Class::given, number("J", "Work of tightening so far"), ReadOnly);
+}
+
+class MasonryTies : public Adapter<MasonryTies, yade::GlobalEngine>, public Ties {
+public:
+    static constexpr const char* className = "MasonryTies";
+    static constexpr const char* baseName = "GlobalEngine";
+    static constexpr const char* doc =
+        "Bars between points of two rigid bodies, or of one and the ground: elastic, yielding at a force, breaking at "
+        "an "
+        "elongation, with prestress or slack, with or without compression. A bar has no mass and does not bend. Its "
+        "force "
+        "acts along the line between its ends, which move with their bodies however far. Stands after the loop of the "
+        "joints and before MasonryLoad.";
+
+    template <class Visit> static void attributes(Visit&& visit) {
+        using T = MasonryTies;
+        endsOfConnectors<T>(visit);
+        visit("stiffness", &T::stiffness, described("E A / L of each bar [N/m], above 0"), Given);
+        visit("strength", &T::strength, described("Force at which each bar yields [N], above 0; 1e300: never"), Given);
+        visit(
+            "breaking", &T::breaking,
+            described("Elongation of each bar, its prestress included, at which it breaks [m], above 0; 1e300: never"),
+            Given);
+        visit("compression", &T::compression, described("1 for a bar that carries compression, too, else 0"), Given);
+        visit("rest", &T::rest,
+              described("Elongation of the distance between the ends at which each bar has no force [m]: below 0 it is "
+                        "prestressed, above 0 slack. It may change during a run: the energy balance counts the work"));
+        visit("elongations", &T::elongations, described("Of the distance between the ends, in the last step [m]"),
+              ReadOnly);
+        visit("forces", &T::forces, described("Force of each bar in the last step, positive in tension [N]"), ReadOnly);
+        visit("flows", &T::flows, described("Plastic elongation of each bar so far [m]"), ReadOnly);
+        visit("yieldedAt", &T::yieldedAt, described("Step in which each bar yielded first; -1: it has not"), ReadOnly);
+        visit("brokenAt", &T::brokenAt, described("Step in which each bar broke; -1: it has not"), ReadOnly);
+        visit("restBefore", &T::restBefore, described("rest in the last step [m]"), Hidden);
+    }
+
+    template <class PyClass> static void extras(PyClass& cls) {
+        cls.def("forceOf", &MasonryTies::forceOf, py::args("tie"),
+                "Force of a tie in the last step, by its number from 0 [N]; 0 before the first step.");
+    }
+
+    using Ties::problems;
+    bool isActivated() override { return standsAlone(*this); }
+    void action() override;
+
+private:
+    double forceOf(int tie);
+};
+
+} // namespace masonry
+
+extern template class masonry::Adapter<masonry::MasonryTies, yade::GlobalEngine>;
+BOOST_CLASS_EXPORT_KEY(masonry::MasonryTies)
