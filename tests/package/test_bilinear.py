@@ -314,7 +314,9 @@ def test_drifts_are_displacements_over_the_height(tmp_path):
     with pytest.raises(Refused, match="drifts need height=, in m"):
         bilinear.drifts(other)
     assert bilinear.drifts(other, 2.0)[1].value == pytest.approx(1)
-    # with a first crack run.json has the height by its drift
+    new = run(tmp_path / "new", *WHOLE, recorded_height_m=2.0, wall=wall)
+    assert bilinear.drifts(new)[1].value == pytest.approx(1)
+    # runs of before have it by the drift at their first crack
     crack = run(tmp_path / "crack", *WHOLE, displacement_at_first_crack_mm=0.5, drift_at_first_crack_mrad=0.25)  # fmt: skip
     assert bilinear.drifts(crack)[1].value == pytest.approx(1)
 

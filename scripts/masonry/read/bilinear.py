@@ -28,7 +28,7 @@ from __future__ import annotations
 import math
 import sys
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Sequence
 
 import numpy as np
 
@@ -377,7 +377,10 @@ def pushover(directory: FilePath) -> Pushover:
 
 
 def _heightOf(run):
-    """Height of the recorded point above the lowest brick [m], or None if run.json does not have it."""
+    """Height of the recorded point above the lowest brick [m], or None if run.json does not have it, as of an older run that saw
+    no crack."""
+    if run.get("recorded_height_m"):
+        return run["recorded_height_m"]
     moved, drift = run.get("displacement_at_first_crack_mm"), run.get("drift_at_first_crack_mrad")  # fmt: skip
     if moved and drift:
         return moved / drift
@@ -449,15 +452,20 @@ def drifts(
     ]  # fmt: skip
 
 
-def lines(numbers: list[Number]) -> list[str]:
-    """Numbers as lines for the terminal: name, value, unit, and what the number does not say."""
+def lines(numbers: list[Number], notes: Sequence[str] = ()) -> list[str]:
+    """Numbers as lines for the terminal: name, value, unit, meaning, and a mark where a note below says more.
+
+    :param numbers: to print
+    :param notes: more sentences, which follow
+    """
+    marks: dict[str, int] = {}
     found = []
     for one in numbers:
         value = "none" if one.value is None else f"{one.value:.6g} {one.unit}".removesuffix(" -")  # fmt: skip
-        found.append(
-            f"{one.name:30} {value:18} {one.meaning}{one.note and f' ({one.note})'}"
-        )
-    return found
+        mark = f" [{marks.setdefault(one.note, len(marks) + 1)}]" if one.note else ""
+        found.append(f"{one.name:34} {value + mark:20} {one.meaning}")
+    found += [f"[{mark}] {note}" for note, mark in marks.items()]
+    return found + [f"note: {note}" for note in notes if note not in marks]
 
 
 def show(directory: FilePath) -> None:
@@ -466,10 +474,7 @@ def show(directory: FilePath) -> None:
     for rule, source in RULES.items():
         found = ofRun(push, rule)
         say(f"{rule}: {source}")
-        say("\n".join(lines(found.numbers())))
-        for note in found.notes:
-            say(f"note: {note}")
-        say("")
+        say("\n".join([*lines(found.numbers(), found.notes), ""]))
     try:
         say("\n".join(lines(drifts(push))))
     except Refused as refused:
