@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Capacity and demand: spectra of EN 1998-1, the N2 method against numbers by hand, the files of a run, and N-V domains."""
 
+import contextlib
 import json
 import math
 
@@ -388,6 +389,38 @@ def test_the_program_prints_every_number_with_its_unit(tmp_path, capsys):
     assert program.main([folder]) == 0
     assert "no spectrum, so no demand" in capsys.readouterr().out
     assert program.main([]) == 2
+
+
+def test_a_folder_that_has_no_curve_does_not_keep_the_others_from_theirs(tmp_path, capsys):  # fmt: skip
+    good = run(tmp_path / "good", *WHOLE)
+    bad = run(tmp_path / "bad", *WHOLE, interrupted=True)
+    assert program.main([bad, good]) == 2
+    assert (tmp_path / "good" / "capacity.json").exists()
+    assert f"{bad}: the run was interrupted" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "entries",
+    [
+        {"answers": [1]},
+        {"answers": None},
+        {"recorded_height_m": math.nan, "displacement_at_first_crack_mm": "x"},
+        {"first_period_s": math.inf, "collapse_displacement_mm": math.nan},
+        {"figure": {"rows": ["a"]}},
+        {"figure": {"rows": [10**9]}},
+        {"wall": 3},
+    ],
+)  # fmt: skip
+def test_damaged_files_give_a_sentence_or_are_left_alone(tmp_path, entries):
+    folder = run(tmp_path, *WHOLE, **entries)
+    spectrum = capacity.elastic(0.2, "g", type=1, ground="B")
+    try:
+        capacity.assess(folder, spectrum)
+    except Refused as refused:
+        assert "not the files of a finished run" in str(refused) or "neither is guessed" in str(refused)  # fmt: skip
+    with contextlib.suppress(Refused):
+        capacity.assess(folder)
+        json.loads((tmp_path / "capacity.json").read_text(), parse_constant=pytest.fail)
 
 
 # -- N-V domains ------------------------------------------------------------------------------------------------------

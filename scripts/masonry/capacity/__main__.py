@@ -149,17 +149,22 @@ def main(words: Sequence[str] | None = None) -> int:
             raise Refused("name one folder of results at least, for example results/wall_comp4")  # fmt: skip
         if args.out and len(args.result) > 1:
             raise Refused(f"--out {args.out}: it is for one folder, not {len(args.result)}")  # fmt: skip
-        spectrum, system = spectrumOf(args), systemOf(args)
+        spectrum, system, status = spectrumOf(args), systemOf(args), 0
         for folder in args.result:
-            found = assess(folder, spectrum, system, args.rule, args.mechanism, args.limited, args.height, args.out)  # fmt: skip
-            _show(folder, found, args.out)
+            try:
+                found = assess(folder, spectrum, system, args.rule, args.mechanism, args.limited, args.height, args.out)  # fmt: skip
+            except Refused as problem:
+                say(problem, sys.stderr)
+                status = 2
+            else:
+                _show(folder, found, args.out)
+        return status
     except Refused as problem:
         say(problem, sys.stderr)
         return 2
     except MemoryError:
         say(memory.FULL, sys.stderr)
         return 1
-    return 0
 
 
 if __name__ == "__main__":

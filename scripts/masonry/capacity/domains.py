@@ -8,13 +8,14 @@ runs beside it. This module needs no YADE.
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import dataclass
 from typing import Any, Sequence
 
 import numpy as np
 
-from ..arguments import FilePath
+from ..arguments import FilePath, isNumber
 from ..basics import GRAVITY, Refused
 from ..read.bilinear import pushover
 from ..read.files import filesOf, readCurve, readRun
@@ -150,6 +151,9 @@ def domain(directory: FilePath, runs: Sequence[FilePath] = ()) -> Domain:
             if "factor" not in entry:
                 notes.append(f"{entry['load']}: {entry['note']}")
                 continue
+            found = [entry["normal_kN"], entry["factor"]]
+            if not all(isNumber(one) and math.isfinite(one) for one in found):
+                raise Refused(f"{directory}: {entry['load']}: the normal force and the bound must be finite numbers, not {found}")  # fmt: skip
             bounds.append(
                 BoundPoint(
                     normal=entry["normal_kN"],

@@ -13,6 +13,7 @@ from typing import Any
 from ..arguments import Numbers, isA, items, isNumber, number, flag, takes
 from ..basics import Refused
 from ..read.bilinear import Bilinear, Number
+from ..read.files import filesOf
 from .spectra import Spectrum
 
 #: Names and units of the answers of a script by which a run says its equivalent system (``scene.result``).
@@ -71,8 +72,10 @@ def ofRun(run: dict[str, Any], directory: str = "run.json") -> Equivalent:
     :raises Refused: if mass or factor are missing, with how they are given
     """
     found, missing = [], []
+    with filesOf(directory):
+        answers = {a["name"]: a for a in run.get("answers", [])}
     for name, unit in (MASS, GAMMA):
-        one = next((a for a in run.get("answers", []) if a.get("name") == name), {})
+        one = answers.get(name, {})
         if not isNumber(one.get("value")):
             missing.append(name)
         elif one.get("unit") != unit:
