@@ -98,6 +98,10 @@ def test_a_run_is_a_point_below_its_bound(tmp_path):
     most = found.shear(point.normal)
     assert point.source == "curve.csv: base_force_z_kN"
     assert 0.97 * most < point.shear < 1.005 * most
+    # what the bilinear curve takes from a run is there
+    assert readRun(tmp_path / "r")["recorded_height_m"] == pytest.approx(top.recorded[2])  # fmt: skip
+    curve = capacity.bilinearOf(tmp_path / "r")
+    assert curve.yieldForce < curve.peakForce == pytest.approx(point.shear)
 
 
 def test_a_domain_is_kept_when_a_run_is_resumed(tmp_path):

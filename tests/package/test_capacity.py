@@ -297,6 +297,38 @@ def test_what_does_not_hold_says_so_and_a_short_curve_is_not_known():
     assert found.holds is True and not any("4.3.3.4.2.3" in note for note in found.notes)  # fmt: skip
 
 
+def test_the_iteration_ends_where_the_mechanism_forms_at_the_target(tmp_path):
+    """The curve is 1 - exp(-d/5): with a mechanism at d, Fy is that, and dy = 2 (d - (d - 5 Fy)/Fy)."""
+    moved = np.append(np.linspace(0, 60, 6001), 60.001)
+    force = 100 * (1 - np.exp(-moved / 5))
+    force[-1] = 0
+    push = capacity.pushover(run(tmp_path, moved, force))
+    system = capacity.equivalent(100e3, 1.0)
+    spectrum = capacity.elastic(0.05, "g", type=1, ground="C")
+    found = capacity.iterated(push, system, spectrum)
+    at = found.targetDisplacement
+    assert found.curve.mechanism == pytest.approx(at, rel=1e-3) and not found.notes
+    share = 1 - math.exp(-at / 5)
+    yields = 2 * (at - (at - 5 * share) / share)
+    period = 2 * math.pi * math.sqrt(100 * 1e-3 * yields / (100 * share))
+    assert found.period == pytest.approx(period, rel=1e-3) and period > 0.6
+    assert at == pytest.approx(spectrum.displacement(period), rel=1e-3)
+    # with the mechanism at the peak, 60 mm, it is another one
+    assert capacity.demand(capacity.bilinearOf(push, "en1998"), system, spectrum).targetDisplacement > 1.02 * at  # fmt: skip
+
+
+def test_an_iteration_that_leads_beyond_the_curve_says_so(tmp_path):
+    push = capacity.pushover(run(tmp_path, *WHOLE))
+    spectrum = capacity.elastic(1.0, "g", type=1, ground="C")
+    found = capacity.iterated(push, capacity.equivalent(300e3, 1.0), spectrum)
+    assert "was ended with a mechanism at 2 mm: the target displacement" in found.notes[0]  # fmt: skip
+    folder = push.directory
+    with pytest.raises(Refused, match="iterate: it is of the rule en1998 with a spectrum"):  # fmt: skip
+        capacity.assess(folder, iterate=True)
+    again = capacity.assess(folder, spectrum, capacity.equivalent(300e3, 1.0), iterate=True)  # fmt: skip
+    assert again["holds"] is False and found.notes[0] in again["notes"]
+
+
 def test_a_period_beyond_the_spectrum_is_refused_with_its_equation():
     with pytest.raises(Refused, match=r"the equivalent period \(B.7\) is 6.283 s: the spectrum .* goes from 0 to 4 s"):  # fmt: skip
         capacity.demand(

@@ -34,9 +34,9 @@ is for the user to say. So neither is guessed: they are given, or the script of 
 less. Torsion, walls that fall out of their plane, and the change of the stiffness by the cycles of an earthquake are not in it.
 """
 
-from ..read.bilinear import Bilinear, Number, bilinear, drifts
+from ..read.bilinear import Bilinear, Number, Pushover, bilinear, drifts, pushover
 from ..read.bilinear import ofRun as bilinearOf
-from .n2 import Demand, Equivalent, demand, equivalent, ofMasses, ofRun
+from .n2 import Demand, Equivalent, demand, equivalent, iterated, ofMasses, ofRun
 from .domains import BoundPoint, Domain, RunPoint, domain, runPoint
 from .report import assess, assessDomain
 from .spectra import Spectrum, elastic, readSpectrum
@@ -48,6 +48,7 @@ __all__ = [
     "Domain",
     "Equivalent",
     "Number",
+    "Pushover",
     "RunPoint",
     "Spectrum",
     "assess",
@@ -59,8 +60,10 @@ __all__ = [
     "drifts",
     "elastic",
     "equivalent",
+    "iterated",
     "ofMasses",
     "ofRun",
+    "pushover",
     "readSpectrum",
     "runPoint",
 ]

@@ -51,8 +51,8 @@ class Domain:
     notes: list[str]  #: sentences: normal forces without a bound, and why
 
     def shear(self, normal: float) -> float:
-        """The upper bound of the shear force under a normal force [kN], between two of the domain by a line: a domain is
-        convex, so this is not above it.
+        """The bound of the shear force under a normal force [kN], between two of the domain by a line. A domain is convex, so
+        limit analysis for this normal force itself would give as much or more.
 
         :param normal: [kN]
         :raises Refused: if the domain does not reach so far

@@ -26,18 +26,18 @@ def _corners(curve, one=1.0):
 
 def forces(push: Pushover, curve: Bilinear, path: FilePath) -> None:
     """Draw the curve of a push and its bilinear one: force over displacement. Writes a PNG file."""
+    ends = f"du {curve.ultimateDisplacement:.4g} mm{'' if curve.reached else ' (not reached)'}"  # fmt: skip
+    label = (
+        f"bilinear, {curve.rule}: Vy {curve.yieldForce:.4g} kN, dy {curve.yieldDisplacement:.3g} mm,\n"
+        f"{ends}, ductility {curve.ductility:.3g}"
+    )
     with drawing.style():
         figure = drawing.empty(7, 4.6)
         axes = figure.subplots()
         axes.plot(push.displacement, push.force, color=CURVE, lw=1.0, label="the push")
-        axes.plot(*_corners(curve), color=IDEAL, lw=1.8, label=f"bilinear, {curve.rule}")  # fmt: skip
-        axes.annotate(
-            f"Vy {curve.yieldForce:.4g} kN, dy {curve.yieldDisplacement:.3g} mm\n"
-            f"du {curve.ultimateDisplacement:.4g} mm{'' if curve.reached else ', not reached'}, "
-            f"mu {curve.ductility:.3g}",
-            (0.97, 0.05), xycoords="axes fraction", ha="right",
-        )  # fmt: skip
-        axes.set_title(push.run.get("title", ""))
+        axes.plot(*_corners(curve), color=IDEAL, lw=1.8, label=label)
+        axes.set_ylim(bottom=min(0, 1.1 * float(push.force.min())))
+        axes.set_title(str(push.run.get("title", "")))
         _finish(figure, axes, "displacement [mm]", "force carried at both ends [kN]")
         drawing.save(figure, path, DPI)
 

@@ -7,18 +7,21 @@ Equations have the numbers of the annex. Units are those of curve.csv: mm, kN, a
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ..arguments import Numbers, isA, items, isNumber, number, flag, takes
 from ..basics import Refused
-from ..read.bilinear import Bilinear, Number
+from ..read.bilinear import Bilinear, Number, Pushover
+from ..read.bilinear import ofRun as bilinearOf
 from ..read.files import filesOf
 from .spectra import Spectrum
 
 #: Names and units of the answers of a script by which a run says its equivalent system (``scene.result``).
 MASS, GAMMA = ("equivalent_mass", "kg"), ("participation_factor", "-")
 ANNEX = "EN 1998-1:2004, annex B"
+#: Rounds of :func:`iterated` at most, and the difference of two target displacements at which it ends [-].
+ROUNDS, SAME = 50, 1e-4
 #: The largest ratio of the target displacement to that of the elastic system that annex B.5 asks for [-].
 MOST = 3.0
 
@@ -224,3 +227,33 @@ def _scale(ductility, corner, limited):
     """
     ratio = 1 + (ductility - 1) / corner
     return max(ratio, ductility / MOST) if limited else ratio
+
+
+def iterated(
+    push: Pushover, system: Equivalent, spectrum: Spectrum, limited: bool = False
+) -> Demand:
+    """The target displacement by the iterative procedure of EN 1998-1:2004, annex B.6: the plastic mechanism forms at the target
+    displacement itself, which is found again until both agree.
+
+    :param push: of :func:`masonry.read.bilinear.pushover`; other parameters as of :func:`demand`
+    :raises Refused: as of :func:`demand`. Where the procedure leads nowhere, a note says so, and the result is that of its last round
+    """
+    found = demand(bilinearOf(push, "en1998"), system, spectrum, limited)
+    for _ in range(ROUNDS):
+        target, before = found.targetDisplacement, found.curve
+        if abs(target - before.mechanism) <= SAME * target:
+            return found
+        if target > before.ultimateDisplacement:
+            return _notIterated(found, f"the target displacement, {target:.4g} mm, is beyond the ultimate displacement")  # fmt: skip
+        try:
+            curve = bilinearOf(push, "en1998", mechanism=target)
+        except Refused as refused:
+            return _notIterated(found, str(refused))
+        found = demand(curve, system, spectrum, limited)
+    return _notIterated(found, f"the last two target displacements are {target:.4g} and {found.targetDisplacement:.4g} mm")  # fmt: skip
+
+
+def _notIterated(found, why):
+    """The same demand, with a note that its mechanism does not form at the target displacement."""
+    note = f"the iteration of annex B.6 was ended with a mechanism at {found.curve.mechanism:.4g} mm: {why}"
+    return replace(found, notes=(note, *found.notes))

@@ -35,6 +35,7 @@ def assess(
     rule: str = "en1998",
     mechanism: float | None = None,
     limited: bool = False,
+    iterate: bool = False,
     height: float | None = None,
     out: FilePath | None = None,
 ) -> dict[str, Any]:
@@ -47,27 +48,38 @@ def assess(
         gives, :func:`masonry.capacity.ofRun`
     :param rule: of the bilinear curve, and ``mechanism``: as of :func:`masonry.read.bilinear.bilinear`
     :param limited: as of :func:`masonry.capacity.demand`
+    :param iterate: whether the plastic mechanism forms at the target displacement, :func:`masonry.capacity.iterated`
     :param height: as of :func:`masonry.read.bilinear.drifts`
     :param out: folder of both files; None: ``directory``
     :returns: dict with ``scene``, ``title``, ``rule``, ``numbers`` (a list of dicts as of :class:`masonry.read.bilinear.Number`), ``notes``,
         and with a spectrum ``spectrum``, ``holds``, ``verdict`` and ``assumed``
     :raises Refused: if the run has no whole push, or if something is missing for the demand; nothing is written then
     """
+    if iterate and (rule != "en1998" or mechanism is not None or not spectrum):
+        raise Refused(
+            "iterate: it is of the rule en1998 with a spectrum, and finds the mechanism itself: leave rule= and mechanism= away"
+        )
     push = bilinear.pushover(directory)
-    curve = bilinear.ofRun(push, rule, mechanism=mechanism)
+    needs = None
+    if spectrum:
+        known = system or n2.ofRun(push.run, push.directory)
+    if spectrum and iterate:
+        needs = n2.iterated(push, known, spectrum, limited)
+        curve = needs.curve
+    else:
+        curve = bilinear.ofRun(push, rule, mechanism=mechanism)
+    if spectrum and not needs:
+        needs = n2.demand(curve, known, spectrum, limited)
     numbers, notes = curve.numbers(), list(curve.notes)
     try:
         numbers += bilinear.drifts(push, height)
     except Refused as refused:
         notes.append(str(refused))
     found = {"scene": push.run.get("scene"), "title": push.run.get("title"), "rule": rule}  # fmt: skip
-    needs = None
-    if spectrum:
-        known = system or n2.ofRun(push.run, push.directory)
-        needs = n2.demand(curve, known, spectrum, limited)
+    if needs:
         numbers += needs.numbers()
         notes += needs.notes
-        found.update(spectrum=spectrum.name, holds=needs.holds, verdict=needs.verdict(), assumed=ASSUMED)  # fmt: skip
+        found.update(spectrum=needs.spectrum.name, holds=needs.holds, verdict=needs.verdict(), assumed=ASSUMED)  # fmt: skip
     found.update(numbers=[one.entry() for one in numbers], notes=notes)
     folder = out or directory
     data, picture = (os.path.join(folder, name) for name in CAPACITY)
