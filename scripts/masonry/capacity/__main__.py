@@ -40,7 +40,7 @@ def parser() -> argparse.ArgumentParser:
     g.add_argument("--masses", metavar="KG,KG", help="masses of the storeys, in place of both")  # fmt: skip
     g.add_argument("--shape", metavar="PHI,PHI", help="their displacements over that of the recorded point")  # fmt: skip
     g = p.add_argument_group("spectrum of EN 1998-1:2004")
-    g.add_argument("--type", type=int, choices=list(PARAMETERS), help="1, or 2 for weak earthquakes nearby")  # fmt: skip
+    g.add_argument("--type", type=int, choices=list(PARAMETERS), help="1, or 2 where only earthquakes of a surface-wave magnitude up to 5.5 count")  # fmt: skip
     g.add_argument("--ground", choices=list("ABCDE"), help="ground type")
     g.add_argument("--ag", metavar="NUMBER+UNIT", help="reference peak ground acceleration on ground of type A, with its unit: 0.15g, or 1.5m/s2")  # fmt: skip
     g.add_argument("--importance", metavar="G", type=float, default=1.0, help="importance factor (default 1)")  # fmt: skip
