@@ -466,10 +466,10 @@ def bounds(*rows):
     ]  # fmt: skip
 
 
-def scene(folder, *entries):
+def scene(folder, *entries, **known):
     """A folder of a scene that says domain(...), beside the bound of another load."""
     other = {"load": "top along x", "unit": "kN", "factor": 3.0, "exact": True}
-    return writeRun(folder, ["time_s"], [], bounds=[other, *entries])
+    return writeRun(folder, ["time_s"], [], bounds=[other, *entries], **known)
 
 
 def test_a_domain_has_its_bounds_in_order_and_runs_as_points(tmp_path):
@@ -516,6 +516,14 @@ def test_a_scene_without_a_domain_is_refused_and_a_force_without_bound_is_a_note
     assert program.main(["--domain", folder]) == 0
     said = capsys.readouterr().out
     assert "25" in said and "note: top along x under 9 kN" in said
+
+
+def test_a_run_of_another_pier_is_a_note(tmp_path):
+    material, wall = {"density_kg_per_m3": 1800.0}, {"length_m": 1.0, "thickness_m": 0.1, "height_m": 2.5, "precompression_Pa": 1e5}  # fmt: skip
+    made = {"unit_material": material, "wall": wall, "units": 10, "joints": {"bed": {"friction": 0.6}}}  # fmt: skip
+    folder = scene(tmp_path / "pier", *bounds((20, 25, 5.4)), units=10, joints={"bed": {"friction": 0.5}})  # fmt: skip
+    other = run(tmp_path / "run", *WHOLE, **made)
+    assert capacity.domain(folder, [other]).notes == ["run: its properties of joints are not those of the domain: is it the same pier?"]  # fmt: skip
 
 
 def test_every_public_name_is_documented():

@@ -48,7 +48,9 @@ class Domain:
 
     bounds: list[BoundPoint]  #: by their normal forces
     runs: list[RunPoint]
-    notes: list[str]  #: sentences: normal forces without a bound, and why
+    notes: list[
+        str
+    ]  #: sentences: normal forces without a bound, and why; runs that seem to be of another pier
 
     def shear(self, normal: float) -> float:
         """The bound of the shear force under a normal force [kN], between two of the domain by a line. A domain is convex, so
@@ -172,8 +174,21 @@ def domain(directory: FilePath, runs: Sequence[FilePath] = ()) -> Domain:
                 ]
             )
         )
+    points = []
+    for one in runs:
+        points.append(runPoint(one))
+        unlike = _unlike(run, readRun(one))
+        if unlike:
+            notes.append(f"{points[-1].name}: its {' and its '.join(unlike)} are not those of the domain: is it the same pier?")  # fmt: skip
     return Domain(
-        bounds=sorted(bounds, key=lambda one: one.normal),
-        runs=[runPoint(one) for one in runs],
-        notes=notes,
+        bounds=sorted(bounds, key=lambda one: one.normal), runs=points, notes=notes
     )
+
+
+#: Entries of run.json in which a run and a domain of the same pier agree, and what they are.
+ALIKE = {"units": "bricks", "joint_count": "joints", "joints": "properties of joints"}
+
+
+def _unlike(one, other):
+    """What differs in two runs, as words."""
+    return [what for key, what in ALIKE.items() if key in one and key in other and one[key] != other[key]]  # fmt: skip
