@@ -49,8 +49,8 @@ def parser() -> argparse.ArgumentParser:
     g.add_argument("--spectrum", metavar="FILE", help="two columns: period [s] and acceleration")  # fmt: skip
     g.add_argument("--unit", choices=list(UNITS), help="of its accelerations")
     g.add_argument("--corner", metavar="S", type=float, help="TC, upper limit of the periods with constant acceleration")  # fmt: skip
-    p.add_argument("--limited", action="store_true", help="take at most 3 det*, which annex B.5 allows")  # fmt: skip
-    p.add_argument("--iterate", action="store_true", help="let the plastic mechanism form at the target displacement, by the iteration of annex B.6")  # fmt: skip
+    p.add_argument("--limited", action="store_true", help="take at most 3 det*, which annex B allows")  # fmt: skip
+    p.add_argument("--iterate", action="store_true", help="let the plastic mechanism form at the target displacement, by the iteration of annex B")  # fmt: skip
     p.add_argument("--domain", metavar="FOLDER", help="in place of all that: the N-V domain of a scene that says scene.domain(...), with the peaks of the other folders as points; writes domain.json and domain.png")  # fmt: skip
     return p
 

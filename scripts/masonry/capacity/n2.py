@@ -22,7 +22,7 @@ MASS, GAMMA = ("equivalent_mass", "kg"), ("participation_factor", "-")
 ANNEX = "EN 1998-1:2004, annex B"
 #: Rounds of :func:`iterated` at most, and the difference of two target displacements at which it ends [-].
 ROUNDS, SAME = 50, 1e-4
-#: The largest ratio of the target displacement to that of the elastic system that annex B.5 asks for [-].
+#: The largest ratio of the target displacement to that of the elastic system that annex B asks for [-].
 MOST = 3.0
 
 
@@ -157,7 +157,7 @@ def demand(
     :param curve: bilinear curve of the structure, of :func:`masonry.read.bilinear.ofRun`; the annex has its rule ``en1998``
     :param system: :class:`Equivalent`
     :param spectrum: :class:`masonry.capacity.spectra.Spectrum`
-    :param limited: whether the target displacement is at most 3 det*, which annex B.5 allows; else it is what equation (B.10)
+    :param limited: whether the target displacement is at most 3 det*, which annex B allows; else it is what equation (B.10)
         gives, which is more where the period is short
     :raises Refused: if the spectrum does not have the period of the structure
     """
@@ -183,7 +183,7 @@ def demand(
                 target, branch = MOST * elastic, "B.10, at most 3 det*"
             else:
                 notes.append(
-                    f"annex B.5 lets the target displacement of the equivalent system be at most 3 det*, {MOST * elastic:.4g} mm, in place of "
+                    f"annex B lets the target displacement of the equivalent system be at most 3 det*, {MOST * elastic:.4g} mm, in place of "
                     f"{target:.4g} mm (limited=True, --limited)"
                 )
     ultimate = curve.ultimateDisplacement / gamma
@@ -232,7 +232,7 @@ def _scale(ductility, corner, limited):
 def iterated(
     push: Pushover, system: Equivalent, spectrum: Spectrum, limited: bool = False
 ) -> Demand:
-    """The target displacement by the iterative procedure of EN 1998-1:2004, annex B.6: the plastic mechanism forms at the target
+    """The target displacement by the iterative procedure of EN 1998-1:2004, annex B: the plastic mechanism forms at the target
     displacement itself, which is found again until both agree.
 
     :param push: of :func:`masonry.read.bilinear.pushover`; other parameters as of :func:`demand`
@@ -255,5 +255,5 @@ def iterated(
 
 def _notIterated(found, why):
     """The same demand, with a note that its mechanism does not form at the target displacement."""
-    note = f"the iteration of annex B.6 was ended with a mechanism at {found.curve.mechanism:.4g} mm: {why}"
+    note = f"the iteration of annex B was ended with a mechanism at {found.curve.mechanism:.4g} mm: {why}"
     return replace(found, notes=(note, *found.notes))
