@@ -15,8 +15,9 @@ PACKAGE = os.path.join(tree.ROOT, "scripts", "masonry")
 PUBLIC = """
     assembly.blocks assembly.connecting assembly.engines assembly.window
     bricks.beams bricks.blocks bricks.files bricks.vaults bricks.walls
+    capacity.domains capacity.figure capacity.n2 capacity.report capacity.spectra
     limit.assembly limit.bound limit.reading
-    read.comparison read.cracks read.curve_figure read.curves read.figures read.files read.frames read.loops read.measure
+    read.bilinear read.comparison read.cracks read.curve_figure read.curves read.figures read.files read.frames read.loops read.measure
     read.viewer
     run.checkpoints
     scene.connections scene.fields scene.ground scene.loads scene.records scene.scene scene.supports scene.targets
