@@ -209,7 +209,7 @@ def test_a_scene_beside_the_sources_uses_the_installed_package(tmp_path):
 BANNER = ("Welcome to Yade", "Using python version", "TCP python prompt", "XMLRPC info", "Running script")  # fmt: skip
 #: Times of the clock, and what is as fast as the machine.
 TIMES = re.compile(
-    r'"(seconds|setup|steps|rows|frames|wall_clock_s|microseconds_per_step|nanoseconds_per_subcontact_step|out)": .*'
+    r'"(date|seconds|setup|steps|rows|frames|wall_clock_s|microseconds_per_step|nanoseconds_per_subcontact_step|out)": .*'
 )
 
 
