@@ -16,7 +16,7 @@ PUBLIC = """
     assembly.blocks assembly.connecting assembly.engines assembly.window
     bricks.blocks bricks.files bricks.vaults bricks.walls
     limit.assembly limit.bound limit.reading
-    read.comparison read.cracks read.curve_figure read.curves read.figures read.files read.frames read.loops read.measure
+    read.bilinear read.comparison read.cracks read.curve_figure read.curves read.figures read.files read.frames read.loops read.measure
     read.viewer
     run.checkpoints
     scene.fields scene.ground scene.loads scene.records scene.scene scene.supports scene.targets

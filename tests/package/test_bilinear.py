@@ -1,0 +1,339 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Bilinear curves and drifts of a push: closed forms, what does not depend on units, and curves that have none."""
+
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from masonry.basics import Refused
+from masonry.read import bilinear
+from test_figures import writeRun
+
+HEADS = ["time_s", "displacement_mm", "base_shear_kN", "top_shear_kN"]
+
+
+def curve(*points, rows=401):
+    """A curve of straight lines through points, with their corners."""
+    corners, values = np.array(points, float).T
+    moved = np.unique(np.append(np.linspace(0, corners[-1], rows), corners))
+    return moved, np.interp(moved, corners, values)
+
+
+# -- closed forms -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rule", bilinear.RULES)
+def test_a_perfect_bilinear_curve_gives_itself(rule):
+    """50 kN/mm up to 100 kN, a plateau to 12 mm and a fall within a thousandth of it; its mechanism may form anywhere on it."""
+    moved, force = curve((0, 0), (2, 100), (12, 100), (12.001, 0))
+    for mechanism in (None, 5.0, 12.0):
+        found = bilinear.bilinear(moved, force, rule, mechanism=mechanism)
+        assert found.stiffness == pytest.approx(50)
+        assert found.yieldForce == pytest.approx(100, rel=1e-4)
+        assert found.yieldDisplacement == pytest.approx(2, rel=1e-4)
+        assert found.ultimateDisplacement == pytest.approx(12.0002)
+        assert found.ductility == pytest.approx(6, rel=2e-4)
+        assert found.reached and found.notes == ()
+
+
+def test_a_triangle_has_its_closed_form():
+    """Up to 1 at 1 and down to 0 at 2: K = 1, du = 1.2, area 1/2 + (1 + 0.8)/2 × 0.2 = 0.68, Vy = 1.2 - √(1.44 - 1.36)."""
+    found = bilinear.bilinear(*curve((0, 0), (1, 1), (2, 0)))
+    assert found.stiffness == pytest.approx(1)
+    assert found.ultimateDisplacement == pytest.approx(1.2)
+    assert found.area == pytest.approx(0.68)
+    assert found.yieldForce == pytest.approx(1.2 - math.sqrt(0.08))
+    found = bilinear.bilinear(*curve((0, 0), (1, 1), (2, 0)), "en1998")
+    assert (found.yieldForce, found.yieldDisplacement) == pytest.approx((1, 1))
+
+
+def test_a_parabola_has_its_closed_form():
+    """V = 1 - (d - 1)²: 0.7 at 1 - √0.3, 0.8 at 1 + √0.2, area d² - d³/3; up to the peak 2/3, so dy = 2 (1 - 2/3)."""
+    moved = np.linspace(0, 2, 20001)
+    force = 1 - (moved - 1) ** 2
+    stiffness, end = 0.7 / (1 - math.sqrt(0.3)), 1 + math.sqrt(0.2)
+    area = end**2 - end**3 / 3
+    found = bilinear.bilinear(moved, force)
+    assert found.stiffness == pytest.approx(stiffness, rel=1e-6)
+    assert found.ultimateDisplacement == pytest.approx(end, rel=1e-6)
+    assert found.area == pytest.approx(area, rel=1e-6)
+    plateau = stiffness * (end - math.sqrt(end**2 - 2 * area / stiffness))
+    assert found.yieldForce == pytest.approx(plateau, rel=1e-5)
+    found = bilinear.bilinear(moved, force, "en1998")
+    assert found.yieldForce == pytest.approx(1)
+    assert found.yieldDisplacement == pytest.approx(2 / 3, rel=1e-6)
+    assert found.stiffness == pytest.approx(1.5, rel=1e-6)
+    half = bilinear.bilinear(moved, force, "en1998", mechanism=0.5)
+    assert half.yieldForce == pytest.approx(0.75)
+    assert half.yieldDisplacement == pytest.approx(2 * (0.5 - (0.25 - 0.125 / 3) / 0.75))  # fmt: skip
+
+
+def test_the_secant_and_the_fall_are_those_that_are_given():
+    moved, force = curve((0, 0), (1, 50), (3, 100), (5, 100), (9, 0))
+    found = bilinear.bilinear(moved, force, secant=0.5, fall=0.25)
+    assert found.stiffness == pytest.approx(50)
+    assert found.ultimateDisplacement == pytest.approx(8)
+    assert bilinear.bilinear(moved, force).stiffness == pytest.approx(70 / 1.8)
+
+
+def test_the_curve_itself_has_the_plateau_and_no_force_beyond_its_end():
+    found = bilinear.bilinear(*curve((0, 0), (2, 100), (12, 100), (12.001, 0)))
+    force = found.force([0, 1, 2, 12, 13])
+    assert force[:4] == pytest.approx([0, 50, 100, 100], rel=1e-4)
+    assert math.isnan(force[4])
+
+
+# -- whatever the curve -----------------------------------------------------------------------------------------------
+
+shares = st.floats(0.05, 1.0)
+
+
+@st.composite
+def pushes(draw):
+    """A curve that hardens less and less up to its peak, keeps it for a while, and softens."""
+    slopes = sorted(draw(st.lists(shares, min_size=2, max_size=6)), reverse=True)
+    steps = draw(st.lists(shares, min_size=len(slopes), max_size=len(slopes)))
+    corners, values = [0.0], [0.0]
+    for step, slope in zip(steps, slopes):
+        corners.append(corners[-1] + step)
+        values.append(values[-1] + slope * step)
+    for length, share in ((draw(shares), 1.0), (draw(shares), draw(st.floats(0.0, 0.95)))):  # fmt: skip
+        corners.append(corners[-1] + length)
+        values.append(values[-1] * share)
+    return curve(*zip(corners, values), rows=draw(st.integers(20, 200)))
+
+
+def found(moved, force, *words):
+    """The bilinear curve. Those that lie too far above their secant to have one are left out of a test."""
+    try:
+        return bilinear.bilinear(moved, force, *words)
+    except Refused as refused:
+        assume("lies far above its secant" not in str(refused))
+        raise
+
+
+@given(pushes(), st.floats(1e-3, 1e3), st.floats(1e-3, 1e3), st.sampled_from(sorted(bilinear.RULES)))  # fmt: skip
+def test_other_units_of_displacement_and_force_scale_the_answer(push, long, strong, rule):  # fmt: skip
+    moved, force = push
+    one = found(moved, force, rule)
+    two = bilinear.bilinear(long * moved, strong * force, rule)
+    assert two.ultimateDisplacement == pytest.approx(long * one.ultimateDisplacement)
+    assert two.yieldForce == pytest.approx(strong * one.yieldForce, rel=1e-6)
+    assert two.stiffness == pytest.approx(strong / long * one.stiffness, rel=1e-6)
+    assert two.ductility == pytest.approx(one.ductility, rel=1e-6)
+    assert two.reached == one.reached
+
+
+@given(pushes())
+def test_areas_are_equal(push):
+    moved, force = push
+    one = found(moved, force)
+    end, yields = one.ultimateDisplacement, one.yieldDisplacement
+    under = one.yieldForce * (end - yields / 2)
+    fine = np.linspace(0, end, 200001)
+    assert under == pytest.approx(np.trapz(np.interp(fine, moved, force), fine), rel=1e-4)  # fmt: skip
+    assert 0 < yields <= end * (1 + 1e-9)
+    above = [note for note in one.notes if "yield force is above the peak" in note]
+    assert bool(above) == (one.yieldForce > one.peakForce * (1 + 1e-9))
+    work = lambda b, d: b.yieldForce * (d - b.yieldDisplacement / 2)
+    code = bilinear.bilinear(moved, force, "en1998")
+    fine = np.linspace(0, code.mechanism, 200001)
+    assert work(code, code.mechanism) == pytest.approx(np.trapz(np.interp(fine, moved, force), fine), rel=1e-4)  # fmt: skip
+
+
+@given(pushes(), st.integers(2, 4))
+def test_more_rows_of_the_same_curve_change_nothing(push, times):
+    moved, force = push
+    fine = np.unique(np.concatenate([moved, np.linspace(0, moved[-1], times * len(moved))]))  # fmt: skip
+    one, two = found(moved, force), found(fine, np.interp(fine, moved, force))
+    assume(not one.notes and not two.notes)
+    assert two.yieldForce == pytest.approx(one.yieldForce, rel=1e-6)
+    assert two.ductility == pytest.approx(one.ductility, rel=1e-6)
+
+
+# -- curves that end early, and curves that are none ------------------------------------------------------------------
+
+
+def test_a_curve_that_does_not_fall_so_far_ends_at_its_end_and_says_so():
+    found = bilinear.bilinear(*curve((0, 0), (2, 100), (10, 85)))
+    assert found.ultimateDisplacement == 10 and not found.reached
+    assert found.notes[0].startswith("not reached: the force never falls to 0.8 of its peak")  # fmt: skip
+    notes = {one.name: one.note for one in found.numbers()}
+    assert notes["ultimate_displacement_mm"] == notes["displacement_ductility"] == found.notes[0]  # fmt: skip
+    assert notes["bilinear_stiffness_kN_per_mm"] == ""
+
+
+def test_a_plateau_up_to_the_end_says_that_the_force_may_grow():
+    found = bilinear.bilinear(*curve((0, 0), (2, 100), (10, 101)))
+    assert any("largest at the end of the curve" in note for note in found.notes)
+
+
+def test_a_short_fall_is_a_wave_and_a_long_one_is_the_ultimate_displacement():
+    moved, force = curve((0, 0), (2, 100), (3, 98), (3.01, 70), (3.04, 70), (3.05, 98), (6, 90), (7, 0), rows=4001)  # fmt: skip
+    found = bilinear.bilinear(moved, force, pulse=0.1)
+    assert found.ultimateDisplacement == pytest.approx(6 + 1 / 9) and not found.notes
+    found = bilinear.bilinear(moved, force)
+    assert found.ultimateDisplacement == pytest.approx(3 + 0.01 * 18 / 28)
+    assert "the force came back above that, up to 6.1" in found.notes[0]
+
+
+@pytest.mark.parametrize(
+    "moved, force, message",
+    [
+        ([], [], "the curve is empty"),
+        ([0, 1], [0, 1, 2], "as many displacements as forces, not 2 and 3"),
+        ([0, 1, math.nan], [0, 1, 2], "a number that is not finite"),
+        ([0, 1], [0, 1], "is no push: it has 2 rows"),
+        ([0, 1, 2], [0, -1, -2], "its largest force is 0 kN"),
+        ([0, 1, 2, 3], [0, 1, 2, 3], "has no peak: its force still grows at its end, 3 mm, with 1 kN/mm"),
+        ([0, 1, 2, 1, 0], [0, 5, 6, 2, 0], "the displacement goes back by 2 mm: the curve is of cycles or of several pushes"),
+        ([0, 1, 2, 3], [3, 5, 6, 2], "the curve begins with 3 kN at 0 mm"),
+        ([1, 2, 3, 4], [0, 5, 6, 2], "the curve begins with 0 kN at 1 mm"),
+    ],
+)  # fmt: skip
+def test_a_curve_that_has_none_is_refused_in_a_sentence(moved, force, message):
+    for rule in bilinear.RULES:
+        with pytest.raises(Refused, match=message):
+            bilinear.bilinear(moved, force, rule)
+
+
+def test_a_curve_with_more_area_than_any_bilinear_one_is_refused():
+    # the triangle of 1 kN/mm has 8 J up to 4 mm, the curve has 0.5 + 2.5 + 8 J
+    moved, force = curve((0, 0), (1, 1), (2, 4), (4, 4.0), (4.001, 0))
+    with pytest.raises(
+        Refused,
+        match="the whole triangle has 8.*J, because the curve lies far above its secant",
+    ):
+        bilinear.bilinear(moved, force, secant=0.25)
+    with pytest.raises(Refused, match="no yield displacement between 0 and 2 mm"):
+        bilinear.bilinear(moved, force, "en1998", mechanism=2.0)
+    with pytest.raises(Refused, match="beyond the ultimate displacement"):
+        bilinear.bilinear(moved, force, "en1998", mechanism=9.0)
+
+
+def test_odd_arguments_are_refused_by_name():
+    moved, force = curve((0, 0), (2, 100), (12, 100), (13, 0))
+    with pytest.raises(Refused, match="rule 'en' must be one of masonry, en1998"):
+        bilinear.bilinear(moved, force, "en")
+    with pytest.raises(Refused, match="secant 1.2 - must be above 0 and below 1"):
+        bilinear.bilinear(moved, force, secant=1.2)
+
+
+# -- of a run ---------------------------------------------------------------------------------------------------------
+
+
+def run(folder, moved, base, top=None, **entries):
+    """A folder of results with a push that takes a second."""
+    rows = np.column_stack([np.linspace(0, 1, len(moved)), moved, base, base if top is None else top])  # fmt: skip
+    entries = {"peak_base_shear_kN": max(base), "figure": {}, "interrupted": False, **entries}  # fmt: skip
+    return writeRun(folder, HEADS, rows, **entries)
+
+
+def alike(one, two):
+    """Whether two bilinear curves have the same numbers, to the nine digits of curve.csv."""
+    numbers = lambda found: [number.value for number in found.numbers()]
+    return numbers(one) == pytest.approx(numbers(two), rel=1e-8) and one.notes == two.notes  # fmt: skip
+
+
+WHOLE = curve((0, 0), (2, 100), (10, 95), (12, 60))
+
+
+def test_the_force_of_a_run_is_what_both_ends_carry_at_once(tmp_path):
+    moved, base = WHOLE
+    top = base.copy()
+    top[150], base = 140, np.where(np.arange(len(base)) == 160, 150, base)
+    folder = run(tmp_path, moved, base, top)
+    assert alike(bilinear.ofRun(folder), bilinear.bilinear(*WHOLE))
+
+
+def test_a_wave_of_a_run_lasts_no_longer_than_its_first_period(tmp_path):
+    moved, force = curve((0, 0), (2, 100), (3, 98), (3.01, 70), (3.04, 70), (3.05, 98), (6, 90), (7, 0), rows=4001)  # fmt: skip
+    slow = run(tmp_path / "slow", moved, force, first_period_s=1e-3)
+    fast = run(tmp_path / "fast", moved, force, first_period_s=2e-2)
+    assert bilinear.pushover(fast).pulse == pytest.approx(0.14)
+    assert bilinear.ofRun(slow).ultimateDisplacement < 3.01
+    assert bilinear.ofRun(fast).ultimateDisplacement == pytest.approx(6 + 1 / 9)
+
+
+def test_only_the_rows_of_the_last_push_count(tmp_path):
+    moved, force = WHOLE
+    both = np.append([3.0, 1.0, 0.0], moved), np.append([9.0, 9.0, 9.0], force)
+    folder = run(tmp_path, *both, figure={"rows": list(range(3, len(moved) + 3))})
+    assert alike(bilinear.ofRun(folder), bilinear.bilinear(moved, force))
+
+
+@pytest.mark.parametrize(
+    "entries, message",
+    [
+        ({"interrupted": True}, "the run was interrupted, so its curve is not whole"),
+        ({"error": "the disk is full"}, "ended by an error: the disk is full"),
+        ({"history": {"text": "1,2"}}, "goes along a history of loading"),
+        ({"figure": None}, "not the files of a finished run"),
+    ],
+)
+def test_a_run_without_a_whole_push_is_refused_with_its_folder(tmp_path, entries, message):  # fmt: skip
+    folder = run(tmp_path, *WHOLE, **entries)
+    with pytest.raises(Refused, match=message) as refused:
+        bilinear.ofRun(folder)
+    assert str(refused.value).startswith(folder)
+
+
+def test_a_run_that_is_no_push_is_refused(tmp_path):
+    folder = writeRun(tmp_path, ["time_s", "load_factor"], [[0, 0], [1, 1]], figure={})
+    with pytest.raises(Refused, match="the run has no push: curve.csv has no column displacement_mm, base_shear_kN, top_shear_kN"):  # fmt: skip
+        bilinear.ofRun(folder)
+    with pytest.raises(Refused, match="cannot read"):
+        bilinear.ofRun(tmp_path / "nowhere")
+
+
+def test_a_push_to_its_collapse_and_one_that_was_too_fast_say_so(tmp_path):
+    moved, force = curve((0, 0), (2, 100), (10, 90))
+    folder = run(tmp_path, moved, force, collapse_displacement_mm=10.0, too_fast=True, dynamic_imbalance=0.12)  # fmt: skip
+    notes = bilinear.ofRun(folder).notes
+    assert notes[0].startswith("not reached: the structure collapsed at 10 mm")
+    assert notes[1] == "the push was too fast: 12 % of the force did not reach the supports"  # fmt: skip
+
+
+def test_drifts_are_displacements_over_the_height(tmp_path):
+    wall = {"measure_height_m": 2.5}
+    folder = run(tmp_path / "wall", *WHOLE, wall=wall, displacement_at_first_crack_mm=0.5)  # fmt: skip
+    found = {one.name: one for one in bilinear.drifts(folder)}
+    fall = bilinear.bilinear(*WHOLE).ultimateDisplacement
+    assert found["drift_at_first_crack_mrad"].value == pytest.approx(0.2)
+    assert found["drift_at_peak_mrad"].value == pytest.approx(0.8)
+    assert found["drift_at_fall_mrad"].value == pytest.approx(fall / 2.5)
+    assert found["drift_at_collapse_mrad"].value is None
+    assert found["drift_at_collapse_mrad"].note == "the push did not end in a collapse"
+    doubled = {one.name: one for one in bilinear.drifts(folder, height=5.0)}
+    assert doubled["drift_at_peak_mrad"].value == pytest.approx(0.4)
+    other = run(tmp_path / "other", *WHOLE)
+    with pytest.raises(Refused, match="drifts need height=, in m"):
+        bilinear.drifts(other)
+    assert bilinear.drifts(other, 2.0)[1].value == pytest.approx(1)
+    # with a first crack run.json has the height by its drift
+    crack = run(tmp_path / "crack", *WHOLE, displacement_at_first_crack_mm=0.5, drift_at_first_crack_mrad=0.25)  # fmt: skip
+    assert bilinear.drifts(crack)[1].value == pytest.approx(1)
+
+
+def test_numbers_have_unit_meaning_and_source(tmp_path):
+    found = bilinear.bilinear(*WHOLE)
+    for one in found.numbers():
+        assert one.name.endswith(one.unit.replace("/", "_per_")) or one.unit == "-"
+        assert one.meaning.endswith(".") and one.source
+    code = bilinear.bilinear(*WHOLE, "en1998").numbers()
+    assert code[0].source == "EN 1998-1:2004, annex B.3, equation (B.6)"
+
+
+def test_the_program_prints_both_rules_and_the_drifts(tmp_path):
+    folder = run(tmp_path, *WHOLE)
+    program = [sys.executable, "-m", "masonry.read.bilinear"]
+    ran = subprocess.run([*program, folder], capture_output=True, text=True)
+    assert ran.returncode == 0, ran.stderr
+    assert ran.stdout.count("yield_force_kN") == 2
+    assert "drifts need height=" in ran.stdout
+    ran = subprocess.run([*program, "nowhere"], capture_output=True, text=True)
+    assert ran.returncode == 2 and "cannot read" in ran.stderr
