@@ -77,7 +77,7 @@ def page(record: Record) -> str:
         '<link rel="icon" href="data:,">\n'
         f"<title>{title}: report</title>\n<style>{_own('report.css')}</style>\n"
         f"<script>{asScript(_own('report.js'))}</script>\n{library}</head>\n"
-        f'<body class="masonry-report">\n<header>{structure.head(record)}</header>\n'
+        f'<body class="masonry-report">\n<header>{joined(*_made(structure.head, record))}</header>\n'
         f"{tag('nav', *links, aria_label='parts of the report')}\n"
         f"<main>\n{joined(*parts)}</main>\n</body>\n</html>\n"
     )

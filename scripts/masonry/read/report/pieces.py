@@ -38,7 +38,7 @@ def written(value: Any, digits: int = DIGITS) -> str:
     if not isNumber(value):
         return UNKNOWN
     if isinstance(value, int) and abs(value) < 1e15:
-        return f"{value:,}".replace(",", "\u202f").replace("-", "−")
+        return f"{value:,}".replace("-", "−")
     rounded = float(f"{value:.{digits}g}")
     if rounded == 0:
         return "0"
@@ -47,7 +47,7 @@ def written(value: Any, digits: int = DIGITS) -> str:
         text = f"{rounded:,.{max(digits - 1 - power, 0)}f}"
         if "." in text and abs(rounded - value) <= 1e-9 * abs(value):  # it was round
             text = text.rstrip("0").rstrip(".")
-        return text.replace(",", "\u202f").replace("-", "−")
+        return text.replace("-", "−")
     text = f"{rounded / 10.0**power:.{digits - 1}f}".rstrip("0").rstrip(".")
     return f"{text}\u202f·\u202f10{str(power).translate(_RAISED)}".replace("-", "−")
 

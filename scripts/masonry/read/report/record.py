@@ -6,6 +6,7 @@ from __future__ import annotations
 import base64
 import csv
 import datetime
+import functools
 import math
 import os
 from typing import Any
@@ -14,6 +15,7 @@ import numpy as np
 
 from ...arguments import FilePath
 from ...basics import Refused
+from .. import bilinear
 from ..curve_figure import plan
 from ..files import filesOf, readCurve, readRun, readWhole
 from ..motion import Motion
@@ -104,7 +106,7 @@ class Record:
                 if rows.size and (rows.min() < 0 or rows.max() >= count):
                     raise Refused(f"run.json: figure shows rows up to {rows.max()}, and curve.csv has {count}")  # fmt: skip
         except (Refused, ValueError) as refused:
-            self.problems.append(f"the curve is not drawn: {refused}")
+            self.problems.append(f"the curve is not drawn: {self._bare(refused)}")
             return
         good = np.isfinite([self.columns[name][rows] for name in shown[:2]]).all(axis=0)
         self.spec, self.rows = {**spec, "labels": labels}, rows[good]
@@ -124,8 +126,9 @@ class Record:
     def _frames(self):
         try:
             motion = Motion(self.directory, chosen=chosenFrames)
-            self.elevation = drawing(motion)
-            self.picture = dataOfMotion(motion, curve=self.columns)
+            with filesOf(self.directory):
+                self.elevation = drawing(motion)
+                self.picture = dataOfMotion(motion, curve=self.columns)
         except Refused as refused:
             self.missing = str(refused)
         except (ValueError, ArithmeticError, np.linalg.LinAlgError, OSError) as error:
@@ -171,7 +174,7 @@ class Record:
         return [
             n
             for n, stage in enumerate(self.stages, start=1)
-            if (stage.get("load") or [None])[0] == "push"
+            if isinstance(stage.get("load"), list) and stage["load"][:1] == ["push"]
         ]
 
     @property
@@ -183,6 +186,27 @@ class Record:
     def isLooped(self) -> bool:
         """Whether the push goes there and back."""
         return bool(self.spec and self.spec["looped"])
+
+    @functools.cached_property
+    def ideals(self) -> dict[str, Any]:
+        """The bilinear curve of the push by every rule of :mod:`masonry.read.bilinear`, or a text that says why there is none."""
+        try:
+            with filesOf(self.directory):
+                push = bilinear.pushover(self.directory)
+        except Refused as refused:
+            return dict.fromkeys(bilinear.RULES, self._bare(refused))
+        found: dict[str, Any] = {}
+        for rule in bilinear.RULES:
+            try:
+                with filesOf(self.directory):
+                    found[rule] = bilinear.ofRun(push, rule)
+            except Refused as refused:
+                found[rule] = self._bare(refused)
+        return found
+
+    def _bare(self, refused):
+        """The text of a refusal without the folder at its beginning."""
+        return str(refused).removeprefix(f"{self.directory}: ")
 
 
 def _finite(text):

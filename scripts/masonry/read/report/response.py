@@ -9,16 +9,17 @@ from typing import Any, Iterator
 
 import numpy as np
 
-from .. import loops
+from .. import bilinear, loops
 from ..curve_figure import energies, limits, unitOf
 from ..measure import TABLE
 from .charts import Chart, Line, svg
 
-from .pieces import Number, figure, folded, isNumber, note, numbers, share, table, tag, withUnit, written  # fmt: skip
+from .pieces import Number, figure, folded, isNumber, joined, note, numbers, share, table, tag, withUnit, written  # fmt: skip
 from .record import Record
 from .structure import answersOf, nameOf, sought, valueOf
 
 MOST_ANSWERS = 12  # in the table of what stages found; all are in a folded one
+NOISE = 1e-6  # of the largest force of a column: what is below is round-off
 NO_PUSH = "The run has no push"
 
 
@@ -32,7 +33,8 @@ def curve(record: Record) -> Iterator[Any]:
     x = record.column(spec["x"]["column"])
     data = {name: values[record.rows] for name, values in record.columns.items()}
     lines = []
-    for n, axis in enumerate(spec["y"]):
+    drawn = [a for a in spec["y"] if np.isfinite(data[a["column"]]).any()]
+    for n, axis in enumerate(drawn):
         kind = ("thin" if spec["looped"] else "line") + str(min(n, 7))
         lines.append(Line(x, data[axis["column"]], str(axis["label"]), kind))
     if spec["looped"]:
@@ -41,14 +43,18 @@ def curve(record: Record) -> Iterator[Any]:
             lines.append(Line(x[rows], first[rows], label, "envelope"))
         low = high = None
     else:
-        low, high = limits(spec, {n: v[np.isfinite(v)] for n, v in data.items()})
+        low, high = limits({**spec, "y": drawn}, {n: v[np.isfinite(v)] for n, v in data.items()})  # fmt: skip
+    ideal = record.ideals["masonry"]
+    if not isinstance(ideal, str):
+        dy, du, force = ideal.yieldDisplacement, ideal.ultimateDisplacement, ideal.yieldForce  # fmt: skip
+        lines.append(Line([0, dy, du], [0, force, force], "bilinear", "ideal"))
     marks = [
         (m["x"], m["y"], str(m["text"]), bool(m.get("below")) or m["y"] < 0)
         for m in spec["marks"]
         if isNumber(m.get("x")) and isNumber(m.get("y"))
     ]
     levels = [(b["y"], str(b["text"])) for b in spec["bounds"] if isNumber(b.get("y"))]
-    drawn = Chart(
+    chart = Chart(
         title="Curve of the run",
         about=_aboutCurve(spec, x, lines),
         xLabel=str(spec["x"]["label"]),
@@ -62,14 +68,59 @@ def curve(record: Record) -> Iterator[Any]:
         zero=bool(spec["looped"]),
     )
     sources = ", ".join([spec["x"]["column"], *(axis["column"] for axis in spec["y"])])
-    text = f"{drawn.about} Source: curve.csv: {sources}."
-    if record.picture and drawn.frames:
+    text = f"{chart.about} Source: curve.csv: {sources}."
+    if record.picture and chart.frames:
         text += " The ring is the frame that the turning picture shows; a click on the curve shows the nearest one there."
-    yield figure(svg(drawn), text)
+    yield figure(svg(chart), text)
+    yield from _ideal(record)
     pushes = record.pushes
     if len(pushes) > 1:
         numbered = ", ".join(map(str, pushes))
         yield note(f"The run has {len(pushes)} pushes, the stages {numbered}. The curve and the numbers of the push are those of the last one, and of those before it along the same line.")  # fmt: skip
+
+
+#: Numbers of a bilinear curve, by their names in :mod:`masonry.read.bilinear`.
+OF_IDEAL = {
+    "bilinear_stiffness_kN_per_mm": "stiffness K", "yield_force_kN": "yield force Vy", "yield_displacement_mm": "yield displacement dy",
+    "ultimate_displacement_mm": "ultimate displacement du", "displacement_ductility": "ductility µ = du/dy",
+    "peak_force_kN": "peak of this curve", "peak_displacement_mm": "displacement at this peak",
+}  # fmt: skip
+
+
+def _ideal(record):
+    """The bilinear idealisation of a push, by every rule."""
+    if not record.isPush:
+        yield note("The run has no push, so there is no bilinear curve.", kind="missing")  # fmt: skip
+        return
+    ideals = record.ideals
+    if all(isinstance(one, str) for one in ideals.values()):
+        yield note(f"There is no bilinear curve: {ideals['masonry']}.", kind="missing")
+        return
+    known = {
+        rule: {n.name: n for n in one.numbers()}
+        for rule, one in ideals.items()
+        if not isinstance(one, str)
+    }
+    lines = []
+    for name, what in OF_IDEAL.items():
+        values = [_idealOf(known.get(rule, {}).get(name)) for rule in ideals]
+        meanings = dict.fromkeys(known[rule][name].meaning for rule in known)
+        lines.append((what, *values, " Or: ".join(meanings)))
+    heads = ("quantity", *(bilinear.RULES[rule] for rule in ideals), "what it is")
+    caption = "Bilinear idealisation of the force that both ends carry at once. Source: curve.csv: displacement_mm, base_shear_kN, top_shear_kN"
+    yield table(heads, lines, caption, "ideal")
+    said = dict.fromkeys(n for one in ideals.values() if not isinstance(one, str) for n in one.notes)  # fmt: skip
+    said.update((f"{bilinear.RULES[rule]}: none, because {one}", None) for rule, one in ideals.items() if isinstance(one, str))  # fmt: skip
+    for text in said:
+        yield note(text[:1].upper() + text[1:], ".")
+
+
+def _idealOf(number):
+    """A number of a bilinear curve; one that ends before the force has fallen is marked."""
+    if number is None:
+        return "none"
+    mark = tag("span", "not reached", class_="badge") if number.note else None
+    return joined(withUnit(number.value, number.unit), mark)
 
 
 def _aboutCurve(spec, x, lines):
@@ -136,7 +187,7 @@ def _states(record):
     states = (
         ("first crack", firsts, "First row at which the joints have dissipated in tension and shear more than 1e-5 of the elastic energy.", "run.json: displacement_at_first_crack_mm", "no crack was seen"),
         ("peak", run.get("displacement_at_peak_mm"), "The largest force at the supports.", "run.json: displacement_at_peak_mm", ""),
-        ("0.8 of the peak", fallen, "Where the force has fallen to 0.8 of the peak, after it.", "curve.csv: displacement_mm, base_shear_kN, top_shear_kN", why),
+        ("0.8 of the peak", fallen, "Where the force that both ends carry at once has fallen to 0.8 of its peak, after it; of cycles on the envelope of the supports' force.", "curve.csv: displacement_mm, base_shear_kN, top_shear_kN", why),
         ("collapse", last, "The last row of a push that ended in a collapse.", "run.json: collapse_displacement_mm", "the push did not end in a collapse"),
     )  # fmt: skip
     lines = []
@@ -182,13 +233,20 @@ def _forceAt(moved, force, at, looped):
 
 
 def _fallen(record):
-    """Displacement at which the force has fallen to 0.8 of its peak [mm], or None and why."""
+    """Displacement at which the force has fallen to 0.8 of its peak [mm], or None and why. Of cycles it is that of the envelope of
+    the positive side."""
     moved, force = record.column("displacement_mm"), record.column("base_shear_kN")
     if moved is None or force is None or not len(force):
         return None, "curve.csv does not have the columns"
-    if record.isLooped:
-        rows = loops.envelope(moved)[0]
-        moved, force = moved[rows], force[rows]
+    if not record.isLooped:
+        ideal = record.ideals["masonry"]
+        if isinstance(ideal, str):
+            return None, ideal
+        if not ideal.reached:
+            return None, ideal.notes[0].removeprefix("not reached: ").partition(", so ")[0]  # fmt: skip
+        return ideal.ultimateDisplacement, ""
+    rows = loops.envelope(moved)[0]
+    moved, force = moved[rows], force[rows]
     if not len(force) or np.nanmax(force) <= 0:
         return None, "the force is never positive"
     at = int(np.nanargmax(force))
@@ -421,19 +479,20 @@ def base(record: Record) -> Iterator[Any]:
 
 def _forces(record, names, caption):
     meanings = record.run.get("columns") or {}
-    peak = None
+    places = {"first row": 0, "last row": -1}
     if record.isPush and record.column("base_shear_kN") is not None and len(record.rows):  # fmt: skip
-        peak = int(np.nanargmax(record.column("base_shear_kN")))
+        places = {"first row": 0, "at the peak": int(np.nanargmax(record.column("base_shear_kN"))), "last row": -1}  # fmt: skip
     lines = []
     for name in names:
         values = record.column(name)
         unit = name.rpartition("_")[2]
         finite = values[np.isfinite(values)]
-        if not len(finite):
-            lines.append((name.removesuffix("_" + unit), *[written(None)] * 5, _bare(meanings.get(name)), f"curve.csv: {name}"))  # fmt: skip
-            continue
-        cells = [values[0], values[peak] if peak is not None else None, finite.min(), finite.max(), values[-1]]  # fmt: skip
-        texts = ["–" if v is None else withUnit(float(v), unit) for v in cells]
+        ends = [finite.min(), finite.max()] if len(finite) else [np.nan] * 2
+        most = max(map(abs, ends))
+        texts = [
+            "≈ 0" if abs(v) < NOISE * most else withUnit(float(v), unit)
+            for v in [*(values[n] for n in places.values()), *ends]
+        ]
         lines.append((name.removesuffix("_" + unit), *texts, _bare(meanings.get(name)), f"curve.csv: {name}"))  # fmt: skip
-    heads = ("force", "first row", "at the peak", "smallest", "largest", "last row", "what it is", "source")  # fmt: skip
+    heads = ("force", *places, "smallest", "largest", "what it is", "source")
     return table(heads, lines, caption, "forces")

@@ -18,8 +18,9 @@ MOST_LEADING = 3  # answers at the head of a report
 OLDER = "The run was made by an older version of the plugin, whose run.json does not say this."
 
 
-def head(record: Record) -> Html:
+def head(record: Record) -> Iterator[Any]:
     """Title, date, versions and how the run ended."""
+    yield tag("h1", record.title)
     run = record.run
     when, whence = record.date()
     versions = run.get("versions")
@@ -36,7 +37,8 @@ def head(record: Record) -> Html:
         tag("div", tag("dt", name), tag("dd", value, title=source))
         for name, value, source in facts
     ]
-    return joined(tag("h1", record.title), tag("dl", *pairs, class_="facts"), _state(run))  # fmt: skip
+    yield tag("dl", *pairs, class_="facts")
+    yield _state(run)
 
 
 def _state(run):
@@ -69,7 +71,8 @@ def _firstUpper(text):
 
 def answersOf(run: dict[str, Any]) -> list[dict[str, Any]]:
     """The entries ``answers`` that are ones."""
-    return [a for a in run.get("answers") or [] if isinstance(a, dict)]
+    found = run.get("answers")
+    return [a for a in found if isinstance(a, dict)] if isinstance(found, list) else []  # fmt: skip
 
 
 def nameOf(answer: dict[str, Any]) -> str:
