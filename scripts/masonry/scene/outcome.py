@@ -10,8 +10,8 @@ import sys
 from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
-from ..assembly import columns
-from ..assembly.blocks import properties, units
+from ..assembly import blocks, columns
+from ..assembly.blocks import units
 from ..basics import Unwritable, say, withoutCollector
 from ..memory import FULL
 from ..packages import Missing
@@ -549,7 +549,7 @@ class Outcome:
 
 def _meanings(cls):
     """What the properties of a class of the plugin mean, by their names."""
-    return {p["name"]: p["meaning"] for p in properties(cls)}
+    return {p["name"]: p["meaning"] for p in blocks.properties(cls)}
 
 
 def shortened(said):

@@ -23,7 +23,7 @@ from typing import Any, Callable, Iterable
 from ...arguments import FilePath
 from ...basics import Refused
 from ...folders import replaced
-from ..escaping import Html, escaped, joined, tag
+from ..escaping import escaped, joined, tag
 from ..page import POLICY, asScript, assets
 from . import response, structure, trust
 from .pieces import note

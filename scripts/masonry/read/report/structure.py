@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any, Iterator
 
-from .pieces import Html, Number, figure, folded, isNumber, joined, listed, note, numbers, row, table, tag, withUnit, written  # fmt: skip
+from .pieces import Number, figure, folded, isNumber, joined, listed, note, numbers, row, table, tag, withUnit, written  # fmt: skip
 from .record import Record
 
 #: Units in which properties are shown, and the factor from SI units.
