@@ -189,9 +189,16 @@ def test_properties_have_engineers_units_and_what_was_assumed_is_marked(pushed):
     assert pushed.row("bed")[1:] == ["modeIFractureEnergy 0.016 N/mm, friction 0.43", "the paper gives no value"]  # fmt: skip
 
 
+def test_what_does_not_count_for_a_joint_has_a_dash(tmp_path):
+    dry = {**JOINT, "tensileStrength": 0.0, "cohesion": 0.0}
+    found = page(folder(tmp_path, joints={"bed": JOINT, "dry": dry}))
+    assert found.row("modeIFractureEnergy")[2:] == ["0.016assumed", "–"]
+    assert found.row("friction")[2:] == ["0.43assumed", "0.43"]
+
+
 def test_supports_loads_stages_and_the_script_are_listed(pushed):
     assert pushed.row("top") == ["top", "platen, held about y; pressed by 0.5 MPa"]
-    assert pushed.row("2") == ["2", "push", "push, top along x", "4,000", "peak 100 ± 1.5 kN"]  # fmt: skip
+    assert pushed.row("2") == ["2", "push", "top along x", "4,000", "peak 100 ± 1.5 kN"]  # fmt: skip
     codes = [text for tag, text in pushed.texts if tag == "code"]
     assert codes == ["platen(where='bottom')", "push(target='top')"]
     assert "until 4 mm; rate 20 mm/s; set –; preset –" in pushed.said()

@@ -107,9 +107,12 @@ def figure(picture: Html, caption: Any, kind: str | None = None) -> Html:
     return tag("figure", picture, tag("figcaption", caption), class_=kind)
 
 
-def folded(title: str, *inside: Any, kind: str | None = None) -> Html:
-    """What is seen after a click on its title, and on paper; of the kind ``screen`` not on paper."""
-    return tag("details", tag("summary", title), *inside, class_=kind)
+def folded(
+    title: str, *inside: Any, kind: str | None = None, opened: bool = False
+) -> Html:
+    """What is seen after a click on its title, and on paper; of the kind ``screen`` not on paper. ``opened``: it is seen at once,
+    and a click hides it."""
+    return tag("details", tag("summary", title), *inside, class_=kind, open="" if opened else None)  # fmt: skip
 
 
 def listed(texts: Iterable[Any], kind: str | None = None) -> Html:

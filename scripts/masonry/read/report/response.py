@@ -127,8 +127,9 @@ def _aboutCurve(spec, x, lines):
     """What the curve shows, in a sentence for those who do not see it."""
     y = lines[0].y
     unit = unitOf({"label": str(spec["y_label"]), "column": spec["y"][0]["column"]})
+    label = str(spec["y_label"])
     return (
-        f"{spec['y_label']}, {lines[0].label}, over {spec['x']['label']}: {len(x):,} rows, from {withUnit(float(y.min()), unit)} to "
+        f"{label[:1].upper() + label[1:]}, {lines[0].label}, over {spec['x']['label']}: {len(x):,} rows, from {withUnit(float(y.min()), unit)} to "
         f"{withUnit(float(y.max()), unit)}."
     )
 

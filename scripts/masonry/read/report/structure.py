@@ -12,8 +12,11 @@ from .record import Record
 SHOWN = {"Pa": ("MPa", 1e-6), "Pa/m": ("N/mm³", 1e-9), "J/m²": ("N/mm", 1e-3), "m": ("mm", 1e3), "1/m": ("1/mm", 1e-3)}  # fmt: skip
 #: Properties that count where a joint can crush, and for no other joint.
 OF_CAP = {"compressiveStrength", "elasticLimitRatio", "residualStrengthRatio", "peakRatio", "compressiveFractureEnergy", "capNormal", "capShear", "capLinear"}  # fmt: skip
+#: Energies that count where there is the strength that they soften.
+SOFTENING = {"modeIFractureEnergy": "tensileStrength", "modeIIFractureEnergy": "cohesion"}  # fmt: skip
 STIFFNESSES = {"normalStiffness", "shearStiffness"}
 CYCLIC = "cyclic"
+MOST_WORDS = 12  # of a script that are shown at once
 MOST_LEADING = 3  # answers at the head of a report
 OLDER = "The run was made by an older version of the plugin, whose run.json does not say this."
 
@@ -221,6 +224,8 @@ def _cell(joint, name, factor, isAssumed):
         return "–"
     if name in OF_CAP and not joint.get("cap", True):
         return "–"
+    if name in SOFTENING and not joint.get(SOFTENING[name]):
+        return "–"
     value = joint.get(name)
     text = written(factor * value) if isNumber(value) else written(None)
     return joined(text, _badge(isAssumed))
@@ -262,7 +267,7 @@ def loaded(record: Record) -> Iterator[Any]:
         yield note(f"Held: {held}. Source: run.json: held.")
     lines = []
     for number, stage in enumerate(record.stages, start=1):
-        load = [str(one) for one in stage.get("load") or [] if one]
+        load = [str(one) for one in (stage.get("load") or [])[1:2] if one]
         found = [
             f"{nameOf(a)} {valueOf(a)}"
             for a in answersOf(run)
@@ -275,7 +280,8 @@ def loaded(record: Record) -> Iterator[Any]:
     if words:
         said = listed((tag("code", spoken(word, arguments)) for word, arguments in words), "script")  # fmt: skip
         about = note("Stresses are in Pa, forces in N, lengths in m, and displacements of pushes and supports in mm; help(masonry.Scene) describes the words. Source: run.json: script.")  # fmt: skip
-        yield folded("The words of the script, in their order", said, about)
+        few = len(words) <= MOST_WORDS
+        yield folded("The words of the script, in their order", said, about, opened=few)
     options = run.get("options")
     if isinstance(options, dict):
         units = run.get("option_units") or {}
