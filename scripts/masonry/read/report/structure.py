@@ -42,6 +42,11 @@ def head(record: Record) -> Iterator[Any]:
     ]
     yield tag("dl", *pairs, class_="facts")
     yield _state(run)
+    warnings = [str(w) for w in run.get("warnings") or []] + record.problems
+    if warnings:
+        more = f", and {len(warnings) - 1} more" if len(warnings) > 1 else ""
+        link = tag("a", "How far to trust it", href="#trust")
+        yield note(tag("strong", "Warning: "), warnings[0], more, ". ", link, kind="warning")  # fmt: skip
 
 
 def _state(run):
@@ -109,7 +114,9 @@ def _ofPush(run):
     if isNumber(run.get("negative_peak_base_shear_kN")):
         text += f" and {withUnit(run['negative_peak_base_shear_kN'], 'kN')} at {withUnit(run.get('displacement_at_negative_peak_mm'), 'mm')}"
     if isNumber(run.get("bound_base_shear_kN")):
-        text += f"; limit analysis: {withUnit(run['bound_base_shear_kN'], 'kN')}"
+        bounds = [b for b in run.get("bounds") or [] if isinstance(b, dict)]
+        most = "" if bounds and all(b.get("exact") for b in bounds) else "at most "
+        text += f"; limit analysis: {most}{withUnit(run['bound_base_shear_kN'], 'kN')}"
     return text + "."
 
 
@@ -190,6 +197,8 @@ def _joints(run):
         yield note(OLDER, kind="missing")
         return
     units, meanings = run.get("joint_units") or {}, run.get("joint_meanings") or {}
+    counted = run.get("joints_by_kind") or joints  # kinds without joints do not count
+    joints = {kind: found for kind, found in joints.items() if kind in counted}
     assumed, kinds = _namesOf(run), list(joints)
     names = dict.fromkeys(n for p in joints.values() for n in p if n in units)
     cyclic = any(p.get("law") == CYCLIC for p in joints.values())
