@@ -109,7 +109,7 @@ def test_a_scene_shows_itself_before_between_and_after_its_stages(kernel, tmp_pa
         "1.1 × 0.102 × 0.81 m",
         "100 of 110 × 102 × 81 mm",
         "platen, held<",
-        "pressed by 3e+05 Pa",
+        "pressed by 0.3 MPa",
         "tensileStrength</th><td",
         "kg/m³",
     ):

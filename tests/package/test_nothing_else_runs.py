@@ -22,7 +22,7 @@ def planted(tmp_path):
     return tmp_path
 
 
-@pytest.mark.parametrize("words", ["read.measure nowhere", "read.figures nowhere", "study nowhere.py --out out"])  # fmt: skip
+@pytest.mark.parametrize("words", ["read.measure nowhere", "read.figures nowhere", "read.report nowhere", "study nowhere.py --out out"])  # fmt: skip
 def test_programs_of_the_package_run_nothing_of_the_present_folder(planted, words):
     module, *more = words.split()
     command = [sys.executable, "-m", f"masonry.{module}", *more]
@@ -38,7 +38,7 @@ def test_figures_are_drawn_with_nothing_of_the_present_folder(planted, monkeypat
 
     monkeypatch.chdir(planted)
     outcome = Outcome.__new__(Outcome)
-    outcome._drawing = None
+    outcome._drawing, outcome._begun = None, False
     with pytest.raises(Unwritable):
         outcome.draw("nowhere")
     assert not (planted / "ran").exists()

@@ -29,7 +29,7 @@ from masonry import AT_REST, Scene, bricks, materials
 """
 TRY = "try:\n    {}\nexcept ValueError as error:\n    print(error)"
 #: Entries of run.json that may differ between an unbroken run and a resumed one.
-TIMES = "wall_clock_s seconds microseconds_per_step nanoseconds_per_subcontact_step resumed_at_s host directory options stages started".split()
+TIMES = "date wall_clock_s seconds microseconds_per_step nanoseconds_per_subcontact_step resumed_at_s host directory options stages started".split()
 
 
 class Stopped(BaseException):

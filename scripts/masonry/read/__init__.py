@@ -14,4 +14,6 @@
 - :mod:`masonry.read.viewer`: its pictures and films by ParaView, which :mod:`masonry.read.viewer_scene` draws
 - :mod:`masonry.read.motion`: how its blocks move and what its joints do in all frames; :mod:`masonry.read.page`: a page that
   shows that in any browser, and in a notebook; :mod:`masonry.read.gltf`: a 3-D model of it
+- :mod:`masonry.read.report`: all of a run on one page, as a program, too; :mod:`masonry.read.crew`: the program beside a run that
+  draws its figures and writes this; :mod:`masonry.read.escaping`: what stands in files is text in a page
 """

@@ -144,7 +144,7 @@ def _curves(axes, spec, data, x):
         axes.axvline(0, color="0.3", lw=0.8, zorder=0)
         axes.margins(y=0.12)
     else:
-        axes.set_ylim(*_limits(spec, data))
+        axes.set_ylim(*limits(spec, data))
     low, high = axes.get_ylim()
     if low < 0 < high:
         axes.axhline(0, color="0.3", lw=0.8, zorder=0)
@@ -180,7 +180,7 @@ def _curves(axes, spec, data, x):
     axes.grid(alpha=0.3)
 
 
-def _limits(spec, data):
+def limits(spec: dict[str, Any], data: dict[str, Any]) -> tuple[float, float]:
     """Range of the upper panel that has all of the first curve, and of the others what is more than single swings."""
     columns = [data[axis["column"]] for axis in spec["y"]]
     marks = [thing["y"] for key in ("marks", "bounds") for thing in spec[key]]

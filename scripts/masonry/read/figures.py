@@ -11,15 +11,12 @@ What curve.png shows is said by the entry ``figure`` of run.json, and what the p
 
 from __future__ import annotations
 
-import contextlib
 import glob
 import os
 import sys
 
 from .. import folders, memory
 from ..arguments import FilePath
-from ..basics import say
-from ..packages import Missing, needed
 from .crack_figure import cracks
 from .curve_figure import curve
 from .files import filesOf, onFolder
@@ -35,26 +32,5 @@ def draw(directory: FilePath) -> None:
             cracks(directory)
 
 
-#: In place of a folder: load what drawing needs, and then read the folder from the standard input. A run starts this early.
-WAIT = "--folder-from-input"
-
-
-def _waitForFolder() -> list[str]:
-    """The folder that a run names when its files are there; the program ends if it names none."""
-    with contextlib.suppress(ImportError):  # it is said when something is drawn
-        import matplotlib.backends.backend_agg  # noqa: F401
-        import matplotlib.style  # noqa: F401
-    folder = sys.stdin.buffer.read()
-    if not folder:
-        sys.exit(0)
-    try:
-        needed("matplotlib")
-    except Missing as missing:
-        say(f"the figures are left out: {missing}", sys.stderr)
-        sys.exit(0)
-    return [os.fsdecode(folder)]
-
-
 if __name__ == "__main__":
-    words = sys.argv[1:]
-    sys.exit(onFolder(draw, _waitForFolder() if words == [WAIT] else words))
+    sys.exit(onFolder(draw, sys.argv[1:]))

@@ -168,7 +168,8 @@ def _frame(root):
         raise ValueError("it has no points or no cells")
     if ends[-1] != len(corners) or corners.max() >= len(frame["points"]):
         raise ValueError("its cells have points that are not there")
-    frame["cells"] = np.split(corners, ends[:-1])
+    places = [0, *ends.tolist()]  # np.split does the same in ten times the time
+    frame["cells"] = [corners[a:b] for a, b in zip(places, places[1:])]
     return frame
 
 

@@ -30,7 +30,8 @@ OPEN, SLID, CRUSHED_TOO = (
 class Motion:
     """Blocks of a run in all of its frames, or in one. N points, B blocks, F frames.
 
-    - ``run``, ``title``: run.json and its title; ``times``: of the frames [s]; ``numbers``: of the frames, from 0
+    - ``run``, ``title``: run.json and its title; ``times``: of the frames [s]; ``numbers``: of the frames that were read, from 0;
+      ``count``: of all frames of the run
     - ``points`` (N, 3): corners and nodes as built [m]; ``owner`` (N): number of the block of each
     - ``bodies`` (B): ids of the bodies of the blocks; ``centres`` (B, 3): means of their points [m]
     - ``brick`` (B): whether a block is one of the masonry, not a platen, a support or the like
@@ -45,11 +46,13 @@ class Motion:
     If run.json names a ``reference_body``, as the ground of a shaken structure, its displacement is taken off all others.
     """
 
-    def __init__(self, directory, number=None):
+    def __init__(self, directory, number=None, chosen=None):
         """Read a run.
 
         :param directory: folder of results
         :param number: of the only frame to read, from 0; None: all
+        :param chosen: function of the number of frames and of the number of blocks that gives the numbers of the frames to read;
+            None: all
         :raises Refused: if the folder has no frames, if they are damaged or of different structures, or without that frame
         """
         self.directory, self.run = directory, readRun(directory)
@@ -62,8 +65,11 @@ class Motion:
             if number is not None and not 0 <= number < count:
                 raise Refused(f"{directory}: there is no frame {number}; its frames are 0 to {count - 1}")  # fmt: skip
             self.numbers = list(range(count)) if number is None else [number]
-            self.times = [times[n] for n in self.numbers]
+            self.count = count  # of all frames of the run
             self._build()
+            if chosen:
+                self.numbers = list(chosen(count, len(self.bodies)))
+            self.times = [times[n] for n in self.numbers]
             self._move()
 
     def _times(self):
@@ -199,12 +205,16 @@ class Motion:
         found[self.free] = self.moved[k]
         return found
 
-    def captions(self):
+    def captions(self, curve=None):
         """What is shown beside every frame: a list of dicts with ``stage``, or None, and ``values``, a list of texts as
-        "supports: 92.1 kN" of the columns that curve.png shows."""
+        "supports: 92.1 kN" of the columns that curve.png shows.
+
+        :param curve: columns of curve.csv; None: they are read
+        """
         data, spec = {}, None
         if "figure" in self.run:
-            data = {k: np.array(v) for k, v in readCurve(self.directory).items()}
+            curve = readCurve(self.directory) if curve is None else curve
+            data = {k: np.array(v) for k, v in curve.items()}
             spec = plan(self.run, data, self.directory)
         found = []
         for time in self.times:

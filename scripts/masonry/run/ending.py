@@ -2,6 +2,7 @@
 """How a run ends: in order, whatever ended it, with what was computed kept."""
 
 import contextlib
+import datetime
 import os
 import site
 import socket
@@ -21,6 +22,7 @@ from .plausible import DAMAGES, brief
 from .presets import presetNote
 
 OFF = 0.01  # of the work done: a larger error of the energy balance is a warning
+DATE = "%Y-%m-%dT%H:%M:%SZ"  # of the end of a run, in run.json
 
 
 def end(run, scene, error):
@@ -167,20 +169,29 @@ def _finish(run, scene):
         finally:
             _describe(run, scene)
             run.results.close()
-        _report(run, scene)
+        if _draws(run):
+            with contextlib.suppress(OSError):  # it is said when they are waited for
+                scene.outcome.beginDrawing(run.results.directory)
     finally:
         _writeMechanism(run, scene)
+    _report(run, scene)
+
+
+def _draws(run):
+    """Whether a run leaves figures and a report: one that is interrupted shall end at once."""
+    return not (run.args.lean or run.interrupted)
 
 
 def _draw(run, scene):
-    """Draw the figures; a run that is interrupted shall end at once, and leaves them out."""
+    """Draw the figures and write the report; a run that is interrupted shall end at once, and leaves them out."""
     directory = run.results.directory
     try:
         with run.breakable():
             scene.outcome.draw(directory)
     except Interrupted:
         say(
-            f"interrupted: the figures are not drawn; /usr/bin/python3 -m masonry.read.figures {directory} draws them"
+            f"interrupted: the figures are not drawn; /usr/bin/python3 -m masonry.read.figures {directory} draws them, and "
+            f"/usr/bin/python3 -m masonry.read.report {directory} writes the report"
         )
 
 
@@ -204,6 +215,7 @@ def _describe(run, scene):
         scene=run.name,
         options=_options(run),
         preset=run.preset,
+        preset_note=presetNote(run.preset, run.name) if run.preset else None,
         columns=meanings(scene.columns),
         versions={
             "yade": yade.config.version,
@@ -211,6 +223,7 @@ def _describe(run, scene):
             "masonry": version,
         },
         commit=commit,
+        date=datetime.datetime.now(datetime.timezone.utc).strftime(DATE),
         threads=threads.allowed(),
         steps_by_threads=threads.used(),
         host=socket.gethostname(),
@@ -239,6 +252,7 @@ def _describe(run, scene):
         entries["nanoseconds_per_subcontact_step"] = (
             1e9 * perStep / scene.model.subcontacts
         )
+    entries["warnings"] = [w.removeprefix("warning: ") for w in _warnings(run, scene)]
 
 
 def _options(run):
@@ -252,15 +266,30 @@ def _options(run):
 def _stages(at):
     ends = [*at.stages[1:], ["", at.steps, at.seconds["steps"], 0]]
     return [
-        {"stage": name, "steps": after[1] - steps, "seconds": after[2] - seconds}
-        for (name, steps, seconds, _), after in zip(at.stages, ends)
+        {
+            "stage": name,
+            "steps": after[1] - steps,
+            "seconds": after[2] - seconds,
+            "first_row": row,
+            "load": at.loads.get(str(number)),
+        }
+        for number, ((name, steps, seconds, row), after) in enumerate(
+            zip(at.stages, ends), start=1
+        )
     ]
 
 
-def _report(run, scene):
+def _warnings(run, scene):
+    """Sentences on what the numbers of a run suffer from, for run.json."""
     entries = run.results.run
-    if run.results.rows and not run.args.lean:
-        _draw(run, scene)
+    if wrong := _ofBalance(entries):
+        yield wrong
+    if run.results.rows:
+        yield from scene.outcome.warnings(entries)
+
+
+def _ofBalance(entries):
+    """The warning of an energy balance that is off, or nothing."""
     off, made = entries.get("energy_balance_error", 0), entries.get("energy_made", 0)
     wrong = []
     if off > OFF:
@@ -269,10 +298,17 @@ def _report(run, scene):
         wrong.append(
             f"joints that open or close within a step made {100 * made:.1f} % of the work done"
         )
-    if wrong:
-        say(
-            f"warning: {', and '.join(wrong)}: a smaller --dt-fraction or --rate or more --damping helps"
-        )
+    return wrong and (
+        f"warning: {', and '.join(wrong)}: a smaller --dt-fraction or --rate or more --damping helps"
+    )
+
+
+def _report(run, scene):
+    entries = run.results.run
+    if not run.args.lean and (run.results.rows or not run.interrupted):
+        _draw(run, scene)
+    if wrong := _ofBalance(entries):
+        say(wrong)
     if run.results.rows:
         for line in scene.outcome.report(entries):
             say(line)

@@ -7,9 +7,10 @@
 
 - ``scene``: name of the scene; ``title``: what it is, for figures
 - ``options``: all options of the command line; ``option_units``: units of those that have one
-- ``preset``: None, or what :func:`masonry.run.presets.presetOf` says
+- ``preset``: None, or what :func:`masonry.run.presets.presetOf` says; ``preset_note``: what it promises, a sentence
 - ``columns``: what each column of curve.csv means
-- ``joints``: the properties of every kind of joint [SI units]; ``joint_units``: the units by property
+- ``joints``: the properties of every kind of joint [SI units]; ``joint_units``: the units by property; ``joint_meanings``: what
+  each property means
 - ``unit_material``: ``young_Pa``, ``poisson`` and ``density_kg_per_m3`` of the bricks
 - ``assumed``: properties of the materials that were not given: a list of dicts with ``name``, as ``bed.residualFriction``,
   ``value``, ``unit`` and ``source``. An entry with the name ``support`` says that these joints take the bed joint
@@ -17,11 +18,17 @@
   many joints between blocks; ``joints_by_kind``: how many of each kind; ``subcontacts``: how many points of joints when the
   run began; ``refined_joints``: with ``--refine``, how many joints got more of them
 - ``versions``: of ``yade``, ``python`` and ``masonry``; ``commit``: of the plugin; ``threads``: how many
-  steps may use; ``host``: its name
+  steps may use; ``host``: its name; ``date``: when the run ended, in UTC, as 2026-05-31T12:00:00Z
 - ``steps_by_threads``: what :func:`masonry.assembly.threads.used` says, of the process that ended the run
 - ``time_step_s``, ``time_step_limit_s``: the time step and its stable limit
 - ``steps``: how many were taken; ``microseconds_per_step``, ``nanoseconds_per_subcontact_step``: their mean cost
-- ``stages``: a list with the name of every ``stage``, its ``steps`` and their ``seconds`` of wall-clock time
+- ``stages``: a list with the name of every ``stage``, its ``steps`` and their ``seconds`` of wall-clock time, the number
+  ``first_row`` of its first row of curve.csv, from 0, and ``load``: its kind, its name, and that of the load back; None if it has
+  none
+- ``script``: what the script said, a list of words with their arguments, with those that were not given; a long list of numbers
+  is a text
+- ``built``, ``held_and_loaded``: what is built, and what is held and loaded before the first stage, pairs of texts; not with --lean
+- ``warnings``: sentences on what the numbers of the run suffer from
 - ``seconds``: wall-clock time of ``setup``, ``steps``, ``rows`` and ``frames`` [s]; ``wall_clock_s``: of all
 - ``energy_balance_error``: largest error of the energy balance, relative to the work done [-]
 - ``energy_made``: most energy that joints made by opening or closing within a step, relative to the work done [-]
@@ -54,6 +61,12 @@
   width of the interval that the run itself found about it, or None if it has no measure of it; and ``how``, a sentence on
   how both were found
 - ``recorded_joints``: names of the joints whose means are recorded
+- ``ties``: of every tie, and of every bundle of fibres that is no longer elastic, a dict: ``name``, ``ends_m``, ``bodies`` (-1: the
+  ground) and ``between`` of its ends, ``stiffness_N_per_m``, ``strength_N``, ``prestress_N``, ``slack_m``, ``breaking_strain``,
+  ``compression``, ``state`` (elastic, yielded or broken), ``force_N`` and ``plastic_elongation_m``; ``springs``: of every spring
+  ``name``, ``at_m``, ``between``, ``stiffness_N_per_m``, ``rotational_stiffness_Nm``, ``force_N`` and ``moment_Nm`` on its first end;
+  ``overlays``: of every fibre layer ``name``, and how many ``bundles`` it has, and have ``yielded`` or ``broken``. Each is there
+  if the scene has some
 - ``ended``: how the last stage ended: ``at rest``, ``moving``, ``done`` or ``collapsed``
 - ``collapse``: what has fallen, and how far; None if nothing has
 - ``held``: names of the platens and bricks that are held
@@ -153,6 +166,7 @@ FILES = [
     "curve.png",
     "cracks.png",
     "run.json",
+    "report.html",
     "run.checkpoint",
     "view.pvsm",
     "view.html",
@@ -168,6 +182,8 @@ FILES = [
     "blocks_*.vtu",
     "joints_*.vtp",
 ]
+#: Those of them that show how far a run has come: they go when it goes on.
+DRAWN = {"curve.png", "cracks.png", "report.html"}
 OURS = re.compile(
     "(%s)(\\.new)?" % "|".join(re.escape(f).replace(r"\*", r"\d+") for f in FILES)
 )
@@ -446,7 +462,7 @@ class Results:
         curve = self._curve()
         for name in os.listdir(self.directory):
             number = re.fullmatch(r"(?:blocks|joints)_(\d+)\.vt[up]", name)
-            if number and int(number[1]) >= frames:
+            if name in DRAWN or number and int(number[1]) >= frames:
                 os.remove(self.path(name))
         self._lock.ours = True
         self._file = curve

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What comes out of a scene: entries of run.json, what curve.png shows, and the lines at the end on the terminal."""
 
+import contextlib
 import math
 import os
 import subprocess
@@ -9,12 +10,12 @@ import sys
 from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
-from ..assembly import columns
+from ..assembly import blocks, columns
 from ..assembly.blocks import units
 from ..basics import Unwritable, say, withoutCollector
 from ..memory import FULL
 from ..packages import Missing
-from ..read import cracks, measure
+from ..read import cracks, crew, measure
 from ..read.curves import (
     cycleNumbers,
     dampedShare,
@@ -26,16 +27,16 @@ from ..read.curves import (
     stiffness,
     stillGrows,
 )
-from ..read.figures import WAIT
 from ..read.frames import asFrame
 from ..run import accuracy
-from . import history
+from . import facts, history
 from .parsing import UNITS
 from .stages import pushing
 from .stages.stage import answersText
 from .wall import wallOf
 
 FRAMES = 20  # for ParaView in a stage that is no push
+MOST_NUMBERS = 24  # of a list that the script said, as run.json has it
 
 
 class Outcome:
@@ -48,7 +49,16 @@ class Outcome:
         self.scene, self.model = scene, scene.model
         self.description, self.args = scene.description, scene.args
         self.results = scene.running.results
-        self._drawing = None  # the program that draws the figures
+        self._drawing = None  # the program that draws the figures and writes the report
+        self._begun = False  # whether it knows the folder
+        self._facts = self._inWords()
+
+    def _inWords(self):
+        """Entries of run.json that say in words what is built and held, as it is before the first stage."""
+        if self.args.lean:
+            return {}
+        built, held = facts.sizes(self.description), facts.held(self.description)
+        return {"built": [*map(list, built)], "held_and_loaded": [*map(list, held)]}
 
     @property
     def pushed(self):
@@ -121,6 +131,7 @@ class Outcome:
             option_units=UNITS,
             joints=joints,
             joint_units=units(type(next(iter(model.joints.values())))),
+            joint_meanings=_meanings(type(next(iter(model.joints.values())))),
             unit_material={
                 "young_Pa": model.unit.young,
                 "poisson": model.unit.poisson,
@@ -139,6 +150,8 @@ class Outcome:
             held=sorted(t.name for t in self.description.targets.values() if t.fixed),
             recorded_joints=[joint.name for joint in self.description.joints],
             **self._connections(),
+            script=shortened(scene.script.words),
+            **self._facts,
             **scene.bounds.describe(self._pushes()),
         )
         if self.description.views:
@@ -342,8 +355,9 @@ class Outcome:
         }
 
     def _rowsOf(self, rows):
-        """The entry of the figure that says which rows it shows, if these are not all."""
-        return {} if len(rows) == len(self.results.rows) else {"rows": list(rows)}
+        """The entry of the figure that says which rows it shows, if these are not all in their order."""
+        every = list(range(len(self.results.rows)))
+        return {} if list(rows) == every else {"rows": list(rows)}
 
     def _figureOfLoad(self, number, load):
         """What is drawn of a load that grew, or that was put on step by step: its factor over the displacement of what is
@@ -441,24 +455,37 @@ class Outcome:
     # -- files and terminal ---------------------------------------------------------------------------------------
 
     def draw(self, directory):
-        """Draw the figures of a run that has ended, in a program of its own. Raises Unwritable if that fails. Without matplotlib
-        a note says that they are left out."""
+        """Wait until the figures of a run that has ended are drawn and its report is written, in a program of their own. Raises
+        Unwritable if one of them fails. Without matplotlib a note says that the figures are left out.
+        """
         try:
-            self.prepare()
-            self._drawing.communicate(os.fsencode(directory))
+            self.beginDrawing(directory)
+            self._drawing.communicate()
         except OSError as error:
             raise Unwritable(f"the figures are not drawn: {error.strerror}") from None
         finally:
-            status = self.end()
+            status, self._begun = self.end(), False
+        if status == crew.NO_REPORT:
+            raise Unwritable("the report is not written")
         if status:
             raise Unwritable("the figures are not drawn")
 
+    def beginDrawing(self, directory):
+        """Name the folder to that program, which then begins; the report waits until :meth:`draw` is called, because figures
+        that the run itself writes stand in it. Raises OSError if there is no process.
+        """
+        if not self._begun:
+            self.prepare()
+            self._drawing.stdin.write(os.fsencode(directory) + crew.END)
+            self._drawing.stdin.flush()
+            self._begun = True
+
     def prepare(self):
-        """Start the program that draws the figures, which loads its libraries while the run goes on, and then waits. Raises
-        OSError if there is no process."""
+        """Start the program that draws the figures and writes the report, which loads its libraries while the run goes on, and
+        then waits. Raises OSError if there is no process."""
         if not self._drawing:
             # -P: nothing of the present folder is run; in a session of its own, since Ctrl-C is for the run
-            command = [sys.executable, "-P", "-m", "masonry.read.figures", WAIT]
+            command = [sys.executable, "-P", "-m", "masonry.read.crew"]
             self._drawing = subprocess.Popen(
                 command, stdin=subprocess.PIPE, start_new_session=True
             )
@@ -471,7 +498,8 @@ class Outcome:
         if program.poll() is None:
             program.kill()
         status = program.wait()
-        program.stdin.close()
+        with contextlib.suppress(OSError):
+            program.stdin.close()
         return status
 
     def write(self, directory, draws=True):
@@ -518,3 +546,27 @@ class Outcome:
             return
         other = at("negative_peak_base_shear_kN", "displacement_at_negative_peak_mm")
         yield f"{name}: {len(run['cycles'])} cycles, peaks {peak} and {other}, {end}"
+
+    def warnings(self, run):
+        """Sentences on what the numbers of a run suffer from, from the entries of run.json."""
+        yield from self.scene.bounds.over(run)
+        if self.pushed and run["too_fast"]:
+            yield pushing.tooFast(self.pushed, run["dynamic_imbalance"])
+        if self.pushed and run.get("damped_share", 0) > pushing.DAMPED:
+            yield pushing.tooDamped(self.pushed, run["damped_share"])
+
+
+def _meanings(cls):
+    """What the properties of a class of the plugin mean, by their names."""
+    return {p["name"]: p["meaning"] for p in blocks.properties(cls)}
+
+
+def shortened(said):
+    """What a script said, with long lists, as a record of an earthquake, as a text that says how long they are."""
+    if isinstance(said, dict):
+        return {name: shortened(value) for name, value in said.items()}
+    if isinstance(said, (list, tuple)):
+        if len(said) > MOST_NUMBERS and all(isinstance(v, (int, float)) for v in said):
+            return f"{len(said):,} numbers from {min(said):.6g} to {max(said):.6g}"
+        return [shortened(value) for value in said]
+    return said

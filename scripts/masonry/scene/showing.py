@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How a scene shows itself in a notebook: what is built before its first stage, and what has come out of it after that."""
 
-import collections
 import tempfile
 
 from yade.wrapper import MasonryVtkRecorder
@@ -11,12 +10,12 @@ from ..arguments import takes
 from ..assembly import columns
 from ..assembly.blocks import units
 from ..basics import Refused
-from ..bricks import Bricks, boxCorners, summary
+from ..bricks import Bricks, boxCorners
 from ..read import block_figure, drawing
 from ..read.frames import readFrame
 from ..read.shown import DPI, RunFolder, Curve, cracksOf, curveOf, resultsOf
+from .facts import held, sizes
 
-MOST_SIZES = 4  # of blocks that the table lists
 MOST_COUNTED = 20_000  # blocks whose joints are counted before the scene is built
 #: Properties of joints and units that the table shows.
 OF_JOINTS = "normalStiffness", "shearStiffness", "tensileStrength", "cohesion", "friction", "compressiveStrength"  # fmt: skip
@@ -98,7 +97,7 @@ def _built(scene):
     return notebook.titled(
         f"{description.title}: before its first stage",
         drawn,
-        notebook.table([*_sizes(description), *_held(description)]),
+        notebook.table([*_counted(description), *held(description)]),
         materials,
     )
 
@@ -138,67 +137,14 @@ def _touches(box, blocks):
     )
 
 
-def _sizes(description):
-    """Rows of the table: what is built."""
+def _counted(description):
+    """Rows of the table: what is built, with the number of its joints."""
+    yield from sizes(description)
     bricks = Bricks(description.bricks)
-    found = summary(bricks)
-    kinds = ", ".join(f"{count} {kind}" for kind, count in found["kinds"].items())
-    size = " × ".join(f"{b - a:.4g}" for a, b in zip(found["low_m"], found["high_m"]))
-    blocks = collections.Counter(_size(block) for block in description.bricks)
-    most = blocks.most_common(MOST_SIZES)
-    sizes = "; ".join(f"{count} of {text} mm" for text, count in most)
-    sizes += "; and others" * (len(blocks) > len(most))
-    yield "blocks", f"{found['blocks']:,} in {found['bricks']:,} bricks ({kinds})"
-    if len(found["parts"]) > 1:
-        parts = found["parts"].items()
-        yield "parts", ", ".join(f"{name}: {count:,} blocks" for name, count in parts)
-    if found["courses"]:
-        yield "courses", f"{found['courses']}"
-    yield "size", f"{size} m (x × y × z), {found['volume_m3']:.4g} m³"
-    yield "sizes of blocks", sizes
-    if found["blocks"] <= MOST_COUNTED:
+    if len(bricks) <= MOST_COUNTED:
         platens = "platens are not counted" if any(t.box for t in description.targets.values()) else ""  # fmt: skip
         count = f"{len(bricks.joints()):,} between blocks"
         yield "joints", f"{count}; {platens}" if platens else count
-    yield "moves", "in the x-z plane" if description.plane else "in space"
-    model = "deformable" if description.deformable else "rigid"
-    yield "block model", model
-
-
-def _size(block):
-    return " × ".join(f"{1e3 * (b - a):.4g}" for a, b in zip(block.low, block.high))
-
-
-def _held(description):
-    """Rows of the table: what is held, loaded and watched."""
-    for target in description.targets.values():
-        where = "platen" if target.box else f"brick {target.brick}"
-        what = [f"{where}, {_freedom(target)}"]
-        if target.pressed:
-            what.append(f"pressed by {target.pressed:.4g} Pa")
-        if target.force:
-            what.append("dead load ({:.4g}, {:.4g}, {:.4g}) N".format(*target.force))
-        if target.drives:
-            what.append(f"a drive holds it along {', '.join(target.drives)}")
-        yield target.name, "; ".join(what)
-    if description.winds:
-        force = [sum(w[1][i] for w in description.winds) for i in range(3)]
-        yield "wind", "({:.4g}, {:.4g}, {:.4g}) N in all".format(*force)
-    recorded = [thing.name for thing in (*description.joints, *description.drifts, *description.sections)]  # fmt: skip
-    if recorded:
-        yield "recorded, too", ", ".join(recorded)
-
-
-def _freedom(target):
-    """What a target can do, in words."""
-    freedom = target.freedom or ""
-    along = [axis for axis in "xyz" if axis in freedom]
-    about = [axis.lower() for axis in "XYZ" if axis in freedom]
-    if len(along + about) == 6:
-        return "held"
-    held = [f"along {', '.join(along)}"] * bool(along)
-    held += [f"about {', '.join(about)}"] * bool(about)
-    return f"held {' and '.join(held)}" if held else "free"
 
 
 def _materials(scene):

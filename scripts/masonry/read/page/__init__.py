@@ -15,12 +15,12 @@ finds three.js.
 """
 
 import html
-import json
 import os
 
 from ...arguments import whole
-from ...basics import Refused, plain
+from ...basics import Refused
 from ...folders import replaced
+from ..escaping import asJson, escaped
 from .data import dataOf
 from .library import three
 
@@ -34,22 +34,9 @@ def _own(name):
         return file.read()
 
 
-def _script(code):
+def asScript(code):
     """A text that can stand in a script element: nothing in it ends or comments out the element."""
     return code.replace("</script", "<\\/script").replace("<!--", "<\\!--")
-
-
-def _json(value):
-    """JSON that can stand in any element: what HTML could take for a tag is written as an escape."""
-    text = json.dumps(value, allow_nan=False, separators=(",", ":"))
-    for letter in "<>&":
-        text = text.replace(letter, f"\\u{ord(letter):04x}")
-    return text
-
-
-def _words(text):
-    """A text of a file of a run in HTML."""
-    return html.escape(plain(text))
 
 
 def assets():
@@ -62,8 +49,8 @@ def assets():
     return (
         f"<style>{_own('viewer.css')}</style>\n"
         f"<!-- three.js, which the first script below is:\n{_comment(licence)}\n-->\n"
-        f"<script>{_script(code)}</script>\n"
-        f"<script>{_script(_own('viewer.js'))}</script>\n"
+        f"<script>{asScript(code)}</script>\n"
+        f"<script>{asScript(_own('viewer.js'))}</script>\n"
     )
 
 
@@ -82,15 +69,16 @@ def fragment(directory, number=None, magnification=None):
     :returns: HTML
     :raises Refused: if the folder has no frames or is no folder of results
     """
-    return _fragment(*dataOf(directory, number, magnification))
+    return fragmentOf(*dataOf(directory, number, magnification))
 
 
-def _fragment(head, numbers):
-    title = _words(head["title"])
+def fragmentOf(head, numbers):
+    """As :func:`fragment`, of the head and the arrays that :func:`masonry.read.page.data.dataOf` gives."""
+    title = escaped(head["title"])
     return (
         f'<div class="masonry-view" role="group" aria-label="{title}, in 3-D">\n'
         '<p class="masonry-note">This picture needs JavaScript and WebGL, and there is no JavaScript here.</p>\n'
-        f'<script type="application/json">{_json(head)}</script>\n'
+        f'<script type="application/json">{asJson(head)}</script>\n'
         f'<script type="text/plain">{numbers}</script>\n'
         "</div>\n"
     )
@@ -99,7 +87,7 @@ def _fragment(head, numbers):
 def page(directory, number=None, magnification=None):
     """A whole page with the picture of a run; parameters and errors as of :func:`fragment` and :func:`assets`."""
     head, numbers = dataOf(directory, number, magnification)
-    title = _words(head["title"])
+    title = escaped(head["title"])
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
@@ -107,7 +95,7 @@ def page(directory, number=None, magnification=None):
         '<meta name="color-scheme" content="light dark">\n'
         '<link rel="icon" href="data:,">\n'
         f"<title>{title}</title>\n{assets()}</head>\n"
-        f'<body class="masonry-page">\n<h1>{title}</h1>\n{_fragment(head, numbers)}</body>\n</html>\n'
+        f'<body class="masonry-page">\n<h1>{title}</h1>\n{fragmentOf(head, numbers)}</body>\n</html>\n'
     )
 
 

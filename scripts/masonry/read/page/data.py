@@ -77,9 +77,20 @@ def dataOf(directory, number=None, magnification=None):
     count = len(motion.times)
     if number is not None and not 0 <= number < count:
         raise Refused(f"{directory}: there is no frame {number}; its frames are 0 to {count - 1}")  # fmt: skip
-    with filesOf(directory):
+    return dataOfMotion(motion, number, magnification)
+
+
+def dataOfMotion(motion, number=None, magnification=None, curve=None):
+    """As :func:`dataOf`, of a run whose frames have been read.
+
+    :param motion: :class:`masonry.read.motion.Motion`
+    :param number: of the frame that is shown first among those that were read, from 0
+    :param curve: columns of curve.csv for what is said beside the frames; None: they are read
+    """
+    count = len(motion.times)
+    with filesOf(motion.directory):
         cracks = Cracks(motion)
-        arrays, head = Arrays(), _head(motion, magnification)
+        arrays, head = Arrays(), _head(motion, magnification, curve)
     _addBlocks(arrays, motion)
     head["values"] = _addJoints(arrays, cracks)
     head.update(
@@ -92,7 +103,7 @@ def dataOf(directory, number=None, magnification=None):
     return head, arrays.text()
 
 
-def _head(motion, magnification):
+def _head(motion, magnification, curve):
     """What is said about a run, and how it is seen first."""
     with filesOf(motion.directory):
         joints = readFrame(motion.directory, "joints", motion.numbers[0])
@@ -112,7 +123,7 @@ def _head(motion, magnification):
         "title": plain(motion.title),
         "frames": [
             {"time": time, "stage": found["stage"] and plain(found["stage"]), "values": [plain(v) for v in found["values"]]}
-            for time, found in zip(motion.times, motion.captions())
+            for time, found in zip(motion.times, motion.captions(curve))
         ],
         "magnification": magnification,
         "low": low.tolist(),

@@ -391,6 +391,7 @@
       if (this.picked !== undefined) this.says.append(make("div", {}, this.about(this.picked)));
       this.slider.setAttribute("aria-valuetext", [`frame ${this.frame + 1}`, `${digits(about.time)} s`, ...about.values].join(", "));
       this.colour();
+      this.element.dispatchEvent(new CustomEvent("masonryframe", { bubbles: true, detail: this.frame }));
     }
 
     play() {

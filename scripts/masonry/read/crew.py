@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The program beside a run that draws its figures and writes its report when the run is over.
+
+    python3 -P -m masonry.read.crew
+
+A run starts it early: it loads what it needs while the run goes on. Then it reads the folder from the standard input, up to a zero
+byte, when the files of the run are there. It draws curve.png and cracks.png in a copy of the process, and reads the frames for
+the report meanwhile. When the standard input ends, all figures that the run itself writes are there, too, and it writes
+report.html. It ends without a word if it is given no folder. This module needs no YADE.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import os
+import signal
+import sys
+
+from .. import memory
+from ..basics import say
+from ..folders import check
+from ..packages import Missing, needed
+from . import figures, report
+from .files import onFolder, readWhole
+
+STDIN = 0
+END = b"\0"  # of the name of the folder
+#: Exit statuses beside 0 and those of figures: there is no report, and there are figures.
+NO_REPORT = 3
+PARENT_ENDS = 1  # PR_SET_PDEATHSIG of prctl
+
+
+def _load() -> None:
+    """Load what drawing needs."""
+    with contextlib.suppress(ImportError):  # it is said when something is drawn
+        import matplotlib.backends.backend_agg  # noqa: F401
+        import matplotlib.style  # noqa: F401
+
+
+def _folder() -> str:
+    """The folder from the standard input, or an empty text if it ends before."""
+    name = b""
+    while not name.endswith(END):
+        byte = os.read(STDIN, 1)
+        if not byte:
+            return ""
+        name += byte
+    return os.fsdecode(name[:-1])
+
+
+def _draw(folder: str) -> int:
+    """Draw the figures. Returns the exit status."""
+    with contextlib.suppress(OSError):  # it is said when it is drawn
+        if len(readWhole(os.path.join(folder, "curve.csv")).splitlines()) < 2:
+            return 0  # limit analysis alone has no curve
+    try:
+        needed("matplotlib")
+    except Missing as missing:
+        say(f"the figures are left out: {missing}", sys.stderr)
+        return 0
+    return onFolder(figures.draw, [folder])
+
+
+def _beside(folder: str) -> int:
+    """Draw the figures in a copy of this process, which ends with it. Returns the copy's number, or 0 if there is none."""
+    sys.stdout.flush(), sys.stderr.flush()
+    try:
+        process = os.fork()
+    except OSError:  # no process is to be had
+        return 0
+    if process:
+        return process
+    status = 1
+    try:
+        with contextlib.suppress(AttributeError, OSError):
+            ctypes.CDLL(None).prctl(PARENT_ENDS, signal.SIGKILL)
+        status = _draw(folder)
+        sys.stdout.flush(), sys.stderr.flush()
+    finally:
+        os._exit(status)
+
+
+def main() -> int:
+    """The program. Returns its exit status."""
+    _load()
+    folder = _folder()
+    if not folder:
+        return 0
+    process = _beside(folder)
+    status = 0 if process else _draw(folder)
+    written = NO_REPORT
+
+    def write(directory: str) -> None:
+        nonlocal status, process
+        memory.reserve()
+        check(directory)
+        record = report.read(directory)
+        status, process = _ended(process, status), 0
+        while os.read(STDIN, 1):  # at its end the run has written its own figures
+            pass
+        report.write(record, os.path.join(directory, report.NAME))
+
+    try:
+        written = onFolder(write, [folder]) and NO_REPORT
+    finally:
+        status = _ended(process, status)
+    return status or written
+
+
+def _ended(process: int, status: int) -> int:
+    """Wait for the copy that draws. Returns its exit status; without one, the other."""
+    return os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]) if process else status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

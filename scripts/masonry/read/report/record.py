@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a report is made of: the files of a run, as far as they can be read. This module needs no YADE."""
+
+from __future__ import annotations
+
+import base64
+import csv
+import datetime
+import functools
+import math
+import os
+from typing import Any
+
+import numpy as np
+
+from ...arguments import FilePath
+from ...basics import Refused
+from .. import bilinear
+from ..curve_figure import plan
+from ..files import filesOf, readCurve, readRun, readWhole
+from ..motion import Motion
+from ..page.data import dataOfMotion
+from .elevation import drawing
+
+#: Frames times blocks that a report shows at most: reading them takes seconds, and they take some 12 bytes each.
+MOST_PLACES = 80_000
+FEWEST = 10  # frames that it shows at least, if there are as many
+LARGEST_PICTURE = 600e3  # [bytes] of a figure that goes into a report
+
+
+class Record:
+    """The files of a run.
+
+    - ``directory``; ``run``: entries of run.json; ``title``: its title, or the name of the folder
+    - ``columns``: arrays of curve.csv by name; what is no finite number there is NaN. Empty without rows
+    - ``problems``: sentences on what is damaged or missing in the files
+    - ``spec``: the entry ``figure`` of run.json as :func:`masonry.read.curve_figure.plan` completes it, or None
+    - ``rows``: numbers of the rows that it shows; ``whole``: whether these are all
+    - ``picture``: head and numbers of the 3-D picture, or None; ``missing``: why there is none
+    - ``elevation``: the drawing of what was built and a sentence about it, or None
+    """
+
+    def __init__(self, directory: FilePath):
+        """Read a folder of results.
+
+        :raises Refused: if it has no run.json
+        """
+        self.directory = os.fspath(directory)
+        self.run = readRun(directory)
+        name = os.path.basename(os.path.abspath(self.directory))
+        self.title = str(self.run.get("title") or self.run.get("scene") or name)
+        self.problems: list[str] = []
+        self.columns = self._columns()
+        self.spec, self.rows = None, np.zeros(0, int)
+        self._plan()
+        self.picture: Any = None
+        self.missing, self.elevation, self.frameTimes = "", None, []
+        self.frameCount = 0
+        self._frames()
+
+    # -- curve.csv
+
+    def _columns(self):
+        try:
+            found = readCurve(self.directory)
+        except Refused as refused:
+            found = self._damaged(str(refused))
+        return {name: np.array(values, float) for name, values in found.items()}
+
+    def _damaged(self, why):
+        """The columns of a curve.csv with numbers that are not finite, or with lines that are torn; else no column."""
+        try:
+            text = readWhole(os.path.join(self.directory, "curve.csv")).decode()
+        except (OSError, UnicodeDecodeError):
+            self.problems.append(why)
+            return {}
+        lines = list(csv.reader(text.splitlines()))
+        if len(lines) < 2:
+            return {}
+        heads, rows, torn = lines[0], [], 0
+        for line in lines[1:]:
+            if len(line) != len(heads):
+                torn += 1
+                continue
+            rows.append([_finite(text) for text in line])
+        if torn:
+            self.problems.append(f"curve.csv: {torn:,} lines do not have a number for every column, and are left out of this report")  # fmt: skip
+        found = {name: [row[n] for row in rows] for n, name in enumerate(heads)}
+        for name, values in found.items():
+            bad = sum(map(math.isnan, values))
+            if bad:
+                self.problems.append(f"curve.csv: {bad:,} of {len(values):,} values of {name} are no finite numbers, and are left out of this report")  # fmt: skip
+        return found if rows else {}
+
+    def _plan(self):
+        if not self.columns:
+            return
+        count = len(next(iter(self.columns.values())))
+        self.rows = np.arange(count)
+        try:
+            with filesOf(self.directory):
+                spec = plan(self.run, self.columns, self.directory)
+                rows = np.array(spec.get("rows", self.rows), int)
+                shown = [axis["column"] for axis in (spec["x"], *spec["y"])]
+                labels = [axis["label"] for axis in (spec["x"], *spec["y"])]
+                if rows.size and (rows.min() < 0 or rows.max() >= count):
+                    raise Refused(f"run.json: figure shows rows up to {rows.max()}, and curve.csv has {count}")  # fmt: skip
+        except (Refused, ValueError) as refused:
+            self.problems.append(f"the curve is not drawn: {self._bare(refused)}")
+            return
+        good = np.isfinite([self.columns[name][rows] for name in shown[:2]]).all(axis=0)
+        self.spec, self.rows = {**spec, "labels": labels}, rows[good]
+
+    @property
+    def whole(self) -> bool:
+        """Whether the figure shows all rows."""
+        return self.spec is None or "rows" not in self.spec
+
+    def column(self, name: str) -> np.ndarray | None:
+        """A column in the rows that the figure shows, or None."""
+        values = self.columns.get(name)
+        return None if values is None else values[self.rows]
+
+    # -- frames
+
+    def _frames(self):
+        try:
+            motion = Motion(self.directory, chosen=chosenFrames)
+            with filesOf(self.directory):
+                self.elevation = drawing(motion)
+                self.picture = dataOfMotion(motion, curve=self.columns)
+        except Refused as refused:
+            self.missing = str(refused)
+        except (ValueError, ArithmeticError, np.linalg.LinAlgError, OSError) as error:
+            self.missing = f"{self.directory}: its frames cannot be read ({type(error).__name__}: {error})"  # fmt: skip
+        else:
+            self.frameTimes, self.frameCount = motion.times, motion.count
+
+    # -- figures, date
+
+    def image(self, name: str) -> str | None:
+        """A figure of the folder as an address that holds it all, or None if it is not there."""
+        try:
+            data = readWhole(os.path.join(self.directory, name))
+        except OSError:
+            return None
+        if not data.startswith(b"\x89PNG\r\n\x1a\n") or len(data) > LARGEST_PICTURE:
+            return None
+        return "data:image/png;base64," + base64.b64encode(data).decode()
+
+    def date(self) -> tuple[str, str]:
+        """When the run ended, and where that is from."""
+        said = self.run.get("date")
+        if isinstance(said, str):
+            return said.replace("T", " ").replace("Z", " UTC"), "run.json: date"
+        try:
+            seconds = os.stat(os.path.join(self.directory, "run.json")).st_mtime
+        except OSError:
+            return "not known", "run.json has no date"
+        when = datetime.datetime.fromtimestamp(seconds, datetime.timezone.utc)
+        return when.strftime("%Y-%m-%d %H:%M:%S UTC"), "time of the file run.json"
+
+    # -- what kind of run it is
+
+    @property
+    def stages(self) -> list[dict[str, Any]]:
+        """Entries of the stages that can be used."""
+        found = self.run.get("stages")
+        return [s for s in found if isinstance(s, dict)] if isinstance(found, list) else []  # fmt: skip
+
+    @property
+    def pushes(self) -> list[int]:
+        """Numbers of the stages that push, from 1. Empty, too, if run.json of an older version does not say."""
+        return [
+            n
+            for n, stage in enumerate(self.stages, start=1)
+            if isinstance(stage.get("load"), list) and stage["load"][:1] == ["push"]
+        ]
+
+    @property
+    def isPush(self) -> bool:
+        """Whether the numbers of a push are there."""
+        return "peak_base_shear_kN" in self.run
+
+    @property
+    def isLooped(self) -> bool:
+        """Whether the push goes there and back."""
+        return bool(self.spec and self.spec["looped"])
+
+    @functools.cached_property
+    def ideals(self) -> dict[str, Any]:
+        """The bilinear curve of the push by every rule of :mod:`masonry.read.bilinear`, or a text that says why there is none."""
+        try:
+            with filesOf(self.directory):
+                push = bilinear.pushover(self.directory)
+        except Refused as refused:
+            return dict.fromkeys(bilinear.RULES, self._bare(refused))
+        found: dict[str, Any] = {}
+        for rule in bilinear.RULES:
+            try:
+                with filesOf(self.directory):
+                    found[rule] = bilinear.ofRun(push, rule)
+            except Refused as refused:
+                found[rule] = self._bare(refused)
+        return found
+
+    def _bare(self, refused):
+        """The text of a refusal without the folder at its beginning."""
+        return str(refused).removeprefix(f"{self.directory}: ")
+
+
+def _finite(text):
+    """A number, NaN for what is none."""
+    try:
+        value = float(text)
+    except ValueError:
+        return math.nan
+    return value if math.isfinite(value) else math.nan
+
+
+def chosenFrames(count: int, blocks: int) -> list[int]:
+    """The frames that a report shows of so many, the first and the last among them, evenly spaced."""
+    most = max(FEWEST, MOST_PLACES // max(blocks, 1))
+    if count <= most:
+        return list(range(count))
+    return sorted({round(n * (count - 1) / (most - 1)) for n in range(most)})

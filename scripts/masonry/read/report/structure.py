@@ -1,0 +1,322 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Parts of a report on what was built, and how it was held and loaded. This module needs no YADE."""
+
+from __future__ import annotations
+
+from typing import Any, Iterator
+
+from .pieces import Number, figure, folded, isNumber, joined, listed, note, numbers, row, table, tag, withUnit, written  # fmt: skip
+from .record import Record
+
+#: Units in which properties are shown, and the factor from SI units.
+SHOWN = {"Pa": ("MPa", 1e-6), "Pa/m": ("N/mm³", 1e-9), "J/m²": ("N/mm", 1e-3), "m": ("mm", 1e3), "1/m": ("1/mm", 1e-3)}  # fmt: skip
+#: Properties that count where a joint can crush, and for no other joint.
+OF_CAP = {"compressiveStrength", "elasticLimitRatio", "residualStrengthRatio", "peakRatio", "compressiveFractureEnergy", "capNormal", "capShear", "capLinear"}  # fmt: skip
+#: Energies that count where there is the strength that they soften.
+SOFTENING = {"modeIFractureEnergy": "tensileStrength", "modeIIFractureEnergy": "cohesion"}  # fmt: skip
+STIFFNESSES = {"normalStiffness", "shearStiffness"}
+CYCLIC = "cyclic"
+MOST_WORDS = 12  # of a script that are shown at once
+MOST_LEADING = 3  # answers at the head of a report
+OLDER = "The run was made by an older version of the plugin, whose run.json does not say this."
+
+
+def head(record: Record) -> Iterator[Any]:
+    """Title, date, versions and how the run ended."""
+    yield tag("h1", record.title)
+    run = record.run
+    when, whence = record.date()
+    versions = run.get("versions")
+    versions = versions if isinstance(versions, dict) else {}
+    names = (("masonry", "masonry"), ("yade", "YADE"), ("python", "Python"))
+    made = [f"{name} {versions[key]}" for key, name in names if key in versions]
+    facts = [
+        ("scene", run.get("scene", "not known"), "run.json: scene"),
+        ("run ended", when, whence),
+        ("versions", ", ".join(made) or "not known", "run.json: versions"),
+        ("commit", run.get("commit", "not known"), "run.json: commit"),
+    ]
+    pairs = [
+        tag("div", tag("dt", name), tag("dd", value, title=source))
+        for name, value, source in facts
+    ]
+    yield tag("dl", *pairs, class_="facts")
+    yield _state(run)
+    warnings = [str(w) for w in run.get("warnings") or []] + record.problems
+    if warnings:
+        more = f", and {len(warnings) - 1} more" if len(warnings) > 1 else ""
+        link = tag("a", "How far to trust it", href="#trust")
+        yield note(tag("strong", "Warning: "), warnings[0], more, ". ", link, kind="warning")  # fmt: skip
+
+
+def _state(run):
+    """How the run ended, and the numbers that it was run for."""
+    if run.get("error"):
+        state = note(tag("strong", "The run ended by an error: "), run["error"], kind="warning")  # fmt: skip
+    elif run.get("interrupted"):
+        state = note(tag("strong", "The run was interrupted. "), "All numbers are those up to there; --resume goes on.", kind="warning")  # fmt: skip
+    elif run.get("collapsed"):
+        fell = run.get("collapse") or "the structure has fallen"
+        state = note(tag("strong", "Collapsed: "), fell, ".", kind="warning")
+    elif run.get("ended"):
+        state = note(f"The last stage ended: {run['ended']}.")
+    else:
+        state = note("The run has no rows: it took no time steps, or ended before there was one.")  # fmt: skip
+    if isNumber(run.get("peak_base_shear_kN")):
+        return joined(state, note(_ofPush(run), kind="lead"))
+    found = [f"{what} {valueOf(one)}" for one, what in sought(run)]
+    if not found:
+        answers = [a for a in answersOf(run) if isNumber(a.get("value"))]
+        found = [f"{nameOf(a)} {valueOf(a)}" for a in answers[-MOST_LEADING:]]
+    if not found:
+        return state
+    return joined(state, note(_firstUpper("; ".join(found)), ".", kind="lead"))
+
+
+def _firstUpper(text):
+    return text[:1].upper() + text[1:]
+
+
+def answersOf(run: dict[str, Any]) -> list[dict[str, Any]]:
+    """The entries ``answers`` that are ones."""
+    found = run.get("answers")
+    return [a for a in found if isinstance(a, dict)] if isinstance(found, list) else []  # fmt: skip
+
+
+def nameOf(answer: dict[str, Any]) -> str:
+    """The name of an answer in words."""
+    return str(answer.get("name")).replace("_", " ")
+
+
+def valueOf(answer: dict[str, Any]) -> str:
+    """An answer with its uncertainty and unit."""
+    if not isNumber(answer.get("value")):
+        return "not found"
+    text, unit = written(answer["value"]), answer.get("unit", "-")
+    if isNumber(answer.get("uncertainty")):
+        text += f" ± {written(answer['uncertainty'], 2)}"
+    return text if unit == "-" else f"{text}\u00a0{unit}"
+
+
+def sought(run: dict[str, Any]) -> list[tuple[dict[str, Any], str]]:
+    """The largest load that was held and the smallest that was not, as answers, of a run that looked for one load."""
+    found = []
+    for name, choose, what in (("factor_held", max, "largest load that was held"), ("factor_not_held", min, "smallest load that was not held")):  # fmt: skip
+        ones = [a for a in answersOf(run) if a.get("name") == name and isNumber(a.get("value"))]  # fmt: skip
+        if ones and len({(a.get("stage"), a.get("unit")) for a in ones}) == 1:
+            found.append((choose(ones, key=lambda a: a["value"]), what))
+    return found
+
+
+def _ofPush(run):
+    """The peak of a push, and its bound, in a sentence."""
+    text = f"Peak {withUnit(run['peak_base_shear_kN'], 'kN')} at {withUnit(run.get('displacement_at_peak_mm'), 'mm')}"
+    if isNumber(run.get("negative_peak_base_shear_kN")):
+        text += f" and {withUnit(run['negative_peak_base_shear_kN'], 'kN')} at {withUnit(run.get('displacement_at_negative_peak_mm'), 'mm')}"
+    if isNumber(run.get("bound_base_shear_kN")):
+        bounds = [b for b in run.get("bounds") or [] if isinstance(b, dict)]
+        most = "" if bounds and all(b.get("exact") for b in bounds) else "at most "
+        text += f"; limit analysis: {most}{withUnit(run['bound_base_shear_kN'], 'kN')}"
+    return text + "."
+
+
+# -- what was built ---------------------------------------------------------------------------------------------------
+
+
+def built(record: Record) -> Iterator[Any]:
+    """What was built: a drawing, counts, and materials with what was assumed."""
+    run = record.run
+    if record.elevation:
+        drawn, about = record.elevation
+        yield figure(drawn, f"{about} Lengths of the masonry in m.")
+    else:
+        yield note(f"There is no drawing of what was built: {record.missing}", kind="missing")  # fmt: skip
+    rows = [(name, text, "run.json: built") for name, text in run.get("built") or []]
+    counts = (
+        ("units", "blocks of the model, bricks or their halves"),
+        ("joint_count", "joints between blocks"),
+        ("subcontacts", "points of joints when the run began"),
+        ("refined_joints", "joints that got more points"),
+        ("nodes", "nodes of deformable units"),
+    )
+    rows += [
+        (what, written(run[key]), f"run.json: {key}")
+        for key, what in counts
+        if run.get(key) and not (key == "units" and run.get("built"))
+    ]
+    kinds = run.get("joints_by_kind")
+    if kinds:
+        text = ", ".join(f"{written(count)} {name}" for name, count in kinds.items())
+        rows.append(("joints by kind", text, "run.json: joints_by_kind"))
+    yield table(("what", "how much", "source"), rows, "Counts and sizes")
+    yield from _units(run)
+    yield from _joints(run)
+    yield from _assumed(run)
+
+
+def _units(run):
+    unit = run.get("unit_material")
+    if not unit:
+        return
+    assumed = _namesOf(run)
+    rows = (
+        ("Young's modulus of the units", "young", "young_Pa", 1e-6, "MPa", "Elastic modulus of the material of the bricks; rigid units have theirs in the stiffness of their joints."),
+        ("Poisson's ratio of the units", "poisson", "poisson", 1, "-", "Lateral over longitudinal strain of the material of the bricks."),
+        ("density of the units", "density", "density_kg_per_m3", 1, "kg/m³", "Mass of a brick over its volume."),
+    )  # fmt: skip
+    found = [
+        Number(
+            joined(what, _badge(f"unit.{name}" in assumed)),
+            factor * unit[key] if isNumber(unit.get(key)) else None,
+            shown,
+            meaning,
+            f"run.json: unit_material.{key}",
+        )
+        for what, name, key, factor, shown, meaning in rows
+    ]
+    yield numbers(found, "Units")
+
+
+def _badge(isAssumed):
+    return tag("span", "assumed", class_="badge") if isAssumed else None
+
+
+def _namesOf(run):
+    """Names of the properties that were assumed; those of the support are those of the bed joint where it takes these."""
+    names = {str(a.get("name")) for a in run.get("assumed") or []}
+    if "support" in names:
+        names |= {
+            "support." + n.partition(".")[2] for n in names if n.startswith("bed.")
+        }
+    return names
+
+
+def _joints(run):
+    joints = run.get("joints")
+    if not joints:
+        yield note(OLDER, kind="missing")
+        return
+    units, meanings = run.get("joint_units") or {}, run.get("joint_meanings") or {}
+    counted = run.get("joints_by_kind") or joints  # kinds without joints do not count
+    joints = {kind: found for kind, found in joints.items() if kind in counted}
+    assumed, kinds = _namesOf(run), list(joints)
+    names = dict.fromkeys(n for p in joints.values() for n in p if n in units)
+    cyclic = any(p.get("law") == CYCLIC for p in joints.values())
+    shown, others = [], []
+    for name in names:
+        meaning = str(meanings.get(name, "")).partition(". ")[0].rstrip(".")
+        unit, factor = SHOWN.get(units[name], (units[name], 1))
+        cells = [_cell(joints[kind], name, factor, f"{kind}.{name}" in assumed) for kind in kinds]  # fmt: skip
+        line = row((tag("span", meaning or name, title=name), unit, *cells))
+        used = any(joints[kind].get(name) for kind in kinds)
+        used = used and set(cells) != {"–"} and (cyclic or "Read by the cyclic law" not in str(meanings.get(name)))  # fmt: skip
+        (shown if used else others).append(line)
+    laws = [_lawOf(joints[kind]) for kind in kinds]
+    heads = ("property", "unit", *kinds)
+    caption = "Joints, by kind. A dash: the property does not count for this kind. Source: run.json: joints"
+    yield table(heads, [row(("law", "", *laws)), *shown], caption, "joints")
+    if others:
+        inside = table(heads, others, "Other properties of the joints", "joints")
+        yield folded("Properties that are zero, or of no meaning for these joints", inside, kind="screen")  # fmt: skip
+
+
+def _lawOf(joint):
+    """What a kind of joint can do, in words."""
+    if joint.get("elastic"):
+        return "elastic: no strength is reached"
+    return f"{joint.get('law', 'not known')}{'' if joint.get('cap', True) else ', cannot crush'}"
+
+
+def _cell(joint, name, factor, isAssumed):
+    """A property of a kind of joint."""
+    if joint.get("elastic") and name not in STIFFNESSES:
+        return "–"
+    if name in OF_CAP and not joint.get("cap", True):
+        return "–"
+    if name in SOFTENING and not joint.get(SOFTENING[name]):
+        return "–"
+    value = joint.get(name)
+    text = written(factor * value) if isNumber(value) else written(None)
+    return joined(text, _badge(isAssumed))
+
+
+def _assumed(run):
+    entries = run.get("assumed")
+    if entries is None:
+        yield note(OLDER, kind="missing")
+        return
+    if not entries:
+        yield note("Nothing was assumed: every property of the materials was given. Source: run.json: assumed.")  # fmt: skip
+        return
+    groups = {}
+    for one in entries:
+        kind, _, name = str(one.get("name", "?")).partition(".")
+        found = groups.setdefault((kind, str(one.get("source", "not known"))), [])
+        value = one.get("value")
+        if isNumber(value):
+            unit, factor = SHOWN.get(one.get("unit"), (one.get("unit", "-"), 1))
+            found.append(f"{name}\u00a0{withUnit(factor * value, unit)}")
+        else:
+            found.append(" ".join(filter(None, (name, str(value or "")))))
+    lines = [(kind, ", ".join(found), source) for (kind, source), found in groups.items()]  # fmt: skip
+    yield table(("of", "property and value", "where it is from"), lines, "What was not given, and is ASSUMED. Source: run.json: assumed")  # fmt: skip
+
+
+# -- how it was held and loaded ---------------------------------------------------------------------------------------
+
+
+def loaded(record: Record) -> Iterator[Any]:
+    """How it was held and loaded: targets, stages, the words of the script, and the options."""
+    run = record.run
+    pairs = run.get("held_and_loaded")
+    if pairs:
+        yield table(("what", "how it is held and loaded before the first stage"), pairs, "Supports and dead loads. Source: run.json: held_and_loaded")  # fmt: skip
+    else:
+        held = ", ".join(map(str, run.get("held") or [])) or "nothing"
+        yield note(f"Held: {held}. Source: run.json: held.")
+    lines = []
+    for number, stage in enumerate(record.stages, start=1):
+        load = [str(one) for one in (stage.get("load") or [])[1:2] if one]
+        found = [
+            f"{nameOf(a)} {valueOf(a)}"
+            for a in answersOf(run)
+            if a.get("number") == number and isNumber(a.get("value"))
+        ]
+        lines.append((number, stage.get("stage", "?"), ", ".join(load) or "–", written(stage.get("steps")), "; ".join(found) or "–"))  # fmt: skip
+    if lines:
+        yield table(("number", "stage", "load", "time steps", "what it found"), lines, "Stages in their order. Source: run.json: stages, answers", "stages")  # fmt: skip
+    words = [w for w in run.get("script") or [] if isinstance(w, list) and len(w) == 2]
+    if words:
+        said = listed((tag("code", spoken(word, arguments)) for word, arguments in words), "script")  # fmt: skip
+        about = note("Stresses are in Pa, forces in N, lengths in m, and displacements of pushes and supports in mm; help(masonry.Scene) describes the words. Source: run.json: script.")  # fmt: skip
+        few = len(words) <= MOST_WORDS
+        yield folded("The words of the script, in their order", said, about, opened=few)
+    options = run.get("options")
+    if isinstance(options, dict):
+        units = run.get("option_units") or {}
+        text = "; ".join(f"{name} {_said(value)} {units.get(name, '')}".strip() for name, value in options.items())  # fmt: skip
+        yield folded("All options of the run", note(text, ". Source: run.json: options."))  # fmt: skip
+
+
+def _said(value):
+    if value is None or value == [] or value == "":
+        return "–"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return written(value, 6) if isNumber(value) else str(value)
+
+
+def spoken(word: Any, arguments: Any) -> str:
+    """A word of a script as it was said, without the arguments that are nothing."""
+    if not isinstance(arguments, dict):
+        return f"{word}({arguments})"
+    given = {n: v for n, v in arguments.items() if v not in (None, False, "", [], {})}
+    return f"{word}({', '.join(f'{n}={_short(v)}' for n, v in given.items())})"
+
+
+def _short(value):
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_short, value)) + "]"
+    return repr(value) if isinstance(value, str) else str(value)

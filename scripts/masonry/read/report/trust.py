@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Parts of a report on the pictures, and on how far to trust the numbers. This module needs no YADE."""
+
+from __future__ import annotations
+
+from typing import Any, Iterator
+
+from ..escaping import Html
+from ..page import fragmentOf
+
+from .pieces import Number, figure, isNumber, listed, note, numbers, table, tag, written  # fmt: skip
+from .record import Record
+
+
+def pictures(record: Record) -> Iterator[Any]:
+    """The turning picture, and the cracks at the end."""
+    if record.picture:
+        yield tag("div", Html(fragmentOf(*record.picture)), class_="turning")
+        shown, count = len(record.frameTimes), record.frameCount
+        text = "The sliders are for the frame and for the magnification of displacements; joints are coloured by what they did, by opening, slide, damage or plastic closure. Source: the frames for ParaView."  # fmt: skip
+        if shown < count:
+            text += f" It has {shown} of the {count} frames of the run, so that this file stays small; scripts/view.py --html writes one with all."  # fmt: skip
+        yield note(text)
+    else:
+        yield note(f"There is no turning picture: {record.missing}", kind="missing")
+    cracks = record.image("cracks.png")
+    if cracks:
+        yield figure(tag("img", src=cracks, alt="The structure at the end of the run with its cracks: open joints red, slid joints blue, crushed joints black."), "Cracks at the end of the run. Source: cracks.png.", "image")  # fmt: skip
+
+
+#: Measures of the run itself: key of run.json, name, factor, unit and definition.
+MEASURES = (
+    ("energy_balance_error", "error of the energy balance", 100, "%", "Largest error of the balance in all rows, relative to the work done. It shows errors of the scheme, as a time step that is too long, and not those of mesh or law."),
+    ("energy_made", "energy that joints made", 100, "%", "Most energy that joints made by opening or closing within a step, relative to the work done."),
+    ("dynamic_imbalance", "dynamic imbalance", 100, "%", "Root mean square of the force that did not arrive at the supports, from half of the peak to the peak, over the largest force. A slow test has nearly none."),
+    ("damped_share", "share of damping", 100, "%", "Of what joints and damping took in all, the share of damping."),
+)  # fmt: skip
+
+
+def trust(record: Record) -> Iterator[Any]:
+    """How far to trust it: errors that the run knows of itself, promises, warnings, and what is not known."""
+    run = record.run
+    warnings = run.get("warnings")
+    said = [str(w) for w in warnings or []] + record.problems
+    if said:
+        yield tag("div", tag("strong", "Warnings"), listed(said), class_="warning", role="note")  # fmt: skip
+    elif warnings is None:
+        yield note("run.json of this older version does not list the warnings of the run.", kind="missing")  # fmt: skip
+    else:
+        yield note("The run has no warnings. Source: run.json: warnings.")
+    rows = [
+        Number(what, factor * run[key], unit, meaning, f"run.json: {key}")
+        for key, what, factor, unit, meaning in MEASURES
+        if isNumber(run.get(key))
+    ]
+    step, limit = run.get("time_step_s"), run.get("time_step_limit_s")
+    if isNumber(step) and isNumber(limit) and limit > 0:
+        rows.append(Number("time step", 1e6 * step, "µs", f"{written(100 * step / limit, 3)} % of the largest stable one.", "run.json: time_step_s, time_step_limit_s"))  # fmt: skip
+    for key, what in (("steps", "time steps"), ("wall_clock_s", "time of the run")):
+        if isNumber(run.get(key)):
+            rows.append(Number(what, run[key], "s" if key.endswith("_s") else "-", "How many were taken." if key == "steps" else "On the clock of the machine, with set-up and files.", f"run.json: {key}"))  # fmt: skip
+    if rows:
+        yield numbers(rows, "What the run knows of its own errors")
+    yield from _accuracy(run)
+    preset = run.get("preset")
+    if isinstance(preset, dict):
+        promise = run.get("preset_note") or f"preset {preset.get('name')}: run.json of this older version does not say what it promises"  # fmt: skip
+        yield note("The ", promise, ". Source: run.json: preset_note.")
+    elif "accuracy" not in run:
+        yield note("No preset and no --accuracy was chosen, so no error of peak or work is promised. Source: run.json: preset.")  # fmt: skip
+    unknown = [
+        "Whether the model fits real masonry of this kind: validation/README.md of the project compares it with tests and closed forms.",
+        "What the scatter of the material does: studies run a scene many times with properties that vary.",
+    ]
+    if "accuracy" not in run:
+        unknown.insert(0, "How far rate, mesh and points of joints change the result: one run does not tell. --accuracy 2 finds it for peak and work of a push.")  # fmt: skip
+    if run.get("assumed"):
+        unknown.append("What the properties change that were assumed; the table of what was built lists them.")  # fmt: skip
+    yield tag("h3", "What is not known from this run")
+    yield listed(unknown)
+
+
+def _accuracy(run):
+    """The ± of --accuracy."""
+    found = run.get("accuracy")
+    if not isinstance(found, dict):
+        return
+    lines = [
+        (q["name"], f"{written(q['value'])} ± {written(q['half_width'], 2)} {q['unit']}", f"{written(q['half_width_percent'], 2)} %",
+         ", ".join(f"{n}: {written(v, 2)} %" for n, v in q["parts_percent"].items()))
+        for q in found["quantities"]
+    ]  # fmt: skip
+    yield table(("quantity", "value", "half-width", "its parts by their sources"), lines, f"Accuracy, asked for: {written(found['asked_percent'])} %, by {found['fidelity']} and {len(found['companions'])} runs beside it. Source: run.json: accuracy")  # fmt: skip
+    if not found.get("reached", True):
+        yield note(f"The {written(found['asked_percent'])} % are not reached: the ± is what was found.", kind="warning")  # fmt: skip
+    yield note(f"The ± does not cover {found['not_covered']}.")

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a scene is, in words: what is built, and what is held, loaded and watched. Notebooks show it, and run.json has it."""
+
+import collections
+
+from ..bricks import Bricks, summary
+
+MOST_SIZES = 4  # of blocks that are listed
+
+
+def sizes(description):
+    """What is built: pairs of texts, what and how much."""
+    bricks = Bricks(description.bricks)
+    found = summary(bricks)
+    kinds = ", ".join(f"{count} {kind}" for kind, count in found["kinds"].items())
+    size = " × ".join(f"{b - a:.4g}" for a, b in zip(found["low_m"], found["high_m"]))
+    blocks = collections.Counter(_size(block) for block in description.bricks)
+    most = blocks.most_common(MOST_SIZES)
+    sizes = "; ".join(f"{count} of {text} mm" for text, count in most)
+    sizes += "; and others" * (len(blocks) > len(most))
+    yield "blocks", f"{found['blocks']:,} in {found['bricks']:,} bricks ({kinds})"
+    if len(found["parts"]) > 1:
+        parts = found["parts"].items()
+        yield "parts", ", ".join(f"{name}: {count:,} blocks" for name, count in parts)
+    if found["courses"]:
+        yield "courses", f"{found['courses']}"
+    yield "size", f"{size} m (x × y × z), {found['volume_m3']:.4g} m³"
+    yield "sizes of blocks", sizes
+    yield "moves", "in the x-z plane" if description.plane else "in space"
+    model = "deformable" if description.deformable else "rigid"
+    yield "block model", model
+
+
+def _size(block):
+    return " × ".join(f"{1e3 * (b - a):.4g}" for a, b in zip(block.low, block.high))
+
+
+def held(description):
+    """What is held, loaded and watched before the first stage: pairs of texts, its name and what is done to it."""
+    for target in description.targets.values():
+        where = "platen" if target.box else f"brick {target.brick}"
+        what = [f"{where}, {_freedom(target)}"]
+        if target.pressed:
+            what.append(f"pressed by {1e-6 * target.pressed:.4g} MPa")
+        if target.force:
+            what.append("dead load ({:.6g}, {:.6g}, {:.6g}) N".format(*target.force))
+        if target.drives:
+            what.append(f"a drive holds it along {', '.join(target.drives)}")
+        yield target.name, "; ".join(what)
+    if description.winds:
+        force = [sum(w[1][i] for w in description.winds) for i in range(3)]
+        yield "wind", "({:.4g}, {:.4g}, {:.4g}) N in all".format(*force)
+    recorded = [thing.name for thing in (*description.joints, *description.drifts, *description.sections)]  # fmt: skip
+    if recorded:
+        yield "recorded, too", ", ".join(recorded)
+
+
+def _freedom(target):
+    """What a target can do, in words."""
+    freedom = target.freedom or ""
+    along = [axis for axis in "xyz" if axis in freedom]
+    about = [axis.lower() for axis in "XYZ" if axis in freedom]
+    if len(along + about) == 6:
+        return "held"
+    held = [f"along {', '.join(along)}"] * bool(along)
+    held += [f"about {', '.join(about)}"] * bool(about)
+    return f"held {' and '.join(held)}" if held else "free"

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The report that real runs leave: when there is one, and what its reader sees in a real browser. What it says of a run,
+tests/package/test_report.py compares."""
+
+import base64
+import os
+import re
+import subprocess
+import sys
+
+import browser
+import numpy as np
+import pytest
+from conftest import ROOT
+from masonry.read import report
+from masonry.read.files import readCurve, readRun
+from masonry.scene.outcome import Outcome
+from matplotlib.image import imread
+from small import SMALL, carryOut, parsed
+
+MOST = 3e6  # [bytes] of the report of COMP-4
+BRICK, RED = (232, 215, 184), (214, 39, 40)
+#: Numbers of the picture, whose last digits depend on where LAPACK finds its arrays in the memory.
+PICTURE = re.compile(r"<script type.*?</script>", re.S)
+needsBrowser = pytest.mark.skipif(bool(browser.MISSING), reason=browser.MISSING)
+
+
+# -- when there is one ------------------------------------------------------------------------------------------------
+
+
+def test_a_run_leaves_its_report_beside_its_figures(scene, tmp_path):
+    assert carryOut(SMALL, parsed("--until", "0.3", "--rate", "60", "--out", str(tmp_path))) == 0  # fmt: skip
+    text = (tmp_path / "report.html").read_text()
+    run = readRun(str(tmp_path))
+    assert "report.html" in run["files"] and "is not whole" not in text
+    assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", run["date"])
+    assert run["warnings"] == [] or all(isinstance(w, str) for w in run["warnings"])
+    assert ["base", "platen, held"] in run["held_and_loaded"]
+    assert [word for word, _ in run["script"]] == ["platen", "platen", "press", "settle", "push"]  # fmt: skip
+    assert [stage["load"] and stage["load"][0] for stage in run["stages"]] == [None, "push"]  # fmt: skip
+    rows = readCurve(str(tmp_path))["displacement_mm"]
+    assert 0 <= run["stages"][1]["first_row"] < len(rows)
+    assert run["recorded_height_m"] == pytest.approx(SMALL.courses * SMALL.unit[2])
+    assert set(run["joint_meanings"]) >= set(run["joint_units"])
+    # written again from the folder it is the same
+    again = tmp_path / "again.html"
+    report.write(report.read(str(tmp_path)), str(again))
+    assert PICTURE.sub("", again.read_text()) == PICTURE.sub("", text)
+
+
+def test_a_lean_run_leaves_none_and_no_words_for_it(scene, tmp_path):
+    words = ["--until", "0.05", "--rate", "60", "--lean", "--out", str(tmp_path)]
+    assert carryOut(SMALL, parsed(*words)) == 0
+    assert not (tmp_path / "report.html").exists()
+    assert "built" not in readRun(str(tmp_path))
+
+
+def test_a_run_that_goes_on_has_no_report_of_before(scene, tmp_path, monkeypatch):
+    words = ["--rate", "60", "--no-vtk"]
+    assert carryOut(SMALL, parsed("--until", "0.1", *words, "--out", str(tmp_path))) == 0  # fmt: skip
+    assert {"report.html", "curve.png"} <= set(os.listdir(tmp_path))
+    there = []
+    monkeypatch.setattr(Outcome, "beginDrawing", lambda self, folder: there.extend(os.listdir(folder)))  # fmt: skip
+    monkeypatch.setattr(Outcome, "draw", lambda self, folder: None)
+    assert carryOut(SMALL, parsed("--until", "0.2", *words, "--resume", str(tmp_path))) == 0  # fmt: skip
+    assert "run.json" in there and not {"report.html", "curve.png"} & set(there)
+
+
+def test_a_bound_alone_has_a_report_without_a_curve(scene, tmp_path):
+    assert carryOut(SMALL, parsed("--preset", "bound", "--out", str(tmp_path))) == 0
+    text = (tmp_path / "report.html").read_text()
+    assert "There is no curve" in text and "an upper bound" in text
+    assert "is not whole" not in text
+    assert text.count("data:image/png") == 1  # the mechanism
+
+
+# -- what its reader sees ---------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def comp4(tmp_path_factory):
+    """The report of the wall COMP-4, pushed beyond its peak."""
+    folder = tmp_path_factory.mktemp("comp4")
+    path = os.path.join(ROOT, "scripts", "wall_comp4.py")
+    run = subprocess.run(["yade", "-n", "-x", path, "--preset", "fast", "--until", "4", "--vtk-every", "0.5", "--out", str(folder)], capture_output=True, text=True)  # fmt: skip
+    assert run.returncode == 0, run.stdout + run.stderr
+    return str(folder / "report.html")
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    with browser.browser() as found:
+        yield found
+
+
+@pytest.fixture
+def opened(chromium, comp4):
+    chromium.problems.clear()
+    chromium.requests.clear()
+    chromium.open(comp4, height=900)
+    chromium.value("masonryViews[0].then(found => { window.view = found; return 0 })")
+    return chromium
+
+
+def near(pixels, colour, within=0.08):
+    """How many pixels have nearly a colour, given from 0 to 255."""
+    return int((np.abs(pixels - np.array(colour) / 255) < within).all(axis=2).sum())
+
+
+def seen(chromium, tmp_path, element):
+    """Colours of the window after an element has been brought into it."""
+    chromium.value(f"(document.querySelector('{element}').scrollIntoView(), 0)")
+    path = str(tmp_path / "seen.png")
+    chromium.picture(path)
+    return imread(path)[..., :3]
+
+
+RING = "(() => { const r = document.querySelector('.now'); return [Number(r.getAttribute('cx')), Number(r.getAttribute('cy'))] })()"  # fmt: skip
+
+
+def moved(chromium, frame):
+    """Move the slider of the frames."""
+    chromium.value(f"(() => {{ const s = document.querySelector('[aria-label=frame]'); s.value = {frame}; s.dispatchEvent(new Event('input')); return 0 }})()")  # fmt: skip
+    chromium.drawn()
+
+
+pictured = [needsBrowser, pytest.mark.xdist_group("browser")]
+
+
+class TestInABrowser:
+    pytestmark = pictured
+
+    def test_it_opens_without_a_request_or_an_error_and_is_small(self, opened, comp4):
+        assert opened.requests == ["file://" + comp4]
+        assert opened.problems == []
+        assert os.path.getsize(comp4) < MOST
+        text = opened.value("document.body.innerText")
+        assert "TUD-COMP-4" in text and "is not whole" not in text
+        assert re.search(r"Peak 11\d(\.\d)? kN at \d\.\d+ mm", text.replace("\u00a0", " "))  # fmt: skip
+        headings = opened.value("[...document.querySelectorAll('h1, h2, h3')].map(h => h.tagName)")  # fmt: skip
+        assert headings[0] == "H1" and headings.count("H1") == 1 and headings.count("H2") == 10  # fmt: skip
+
+    def test_the_picture_shows_bricks_and_the_slider_moves_it_and_the_ring(self, opened, tmp_path):  # fmt: skip
+        end = seen(opened, tmp_path, ".masonry-view")
+        assert near(end, BRICK) > 0.1 * end[..., 0].size
+        last = opened.value(RING)
+        moved(opened, 0)
+        assert opened.value("view.frame") == 0 and opened.value(RING) != last
+        start = seen(opened, tmp_path, ".masonry-view")
+        assert near(start, RED) < near(end, RED) / 2
+        places = opened.value("document.querySelector('svg.chart').dataset.frames").split()  # fmt: skip
+        assert len(places) == opened.value("view.head.frames.length")
+        moved(opened, 3)
+        assert opened.value(RING) == pytest.approx([*map(float, places[3].split(","))])
+
+    def test_a_click_on_the_curve_shows_the_nearest_frame(self, opened):
+        moved(opened, 0)
+        opened.value("(document.querySelector('svg.chart').scrollIntoView(), 0)")
+        place = opened.value("""(() => { const chart = document.querySelector('svg.chart'), [x, y] = chart.dataset.frames.split(' ')[4].split(',').map(Number);
+            const at = new DOMPoint(x + 2, y).matrixTransform(chart.getScreenCTM()); return [at.x, at.y] })()""")  # fmt: skip
+        opened.drag(place, place)
+        assert opened.value("new Promise(done => setTimeout(() => done(view.frame), 100))") == 4  # fmt: skip
+
+    def test_joints_are_coloured_by_damage_opening_and_slide(self, opened):
+        for name in ("damage", "opening", "slide"):
+            opened.value(f"""(() => {{ const list = [...document.querySelectorAll('label')].find(l => l.textContent.startsWith('joints')).querySelector('select');
+                list.value = '{name}'; list.dispatchEvent(new Event('change')); return 0 }})()""")  # fmt: skip
+            assert name in opened.value("view.legend.innerText")
+        assert opened.problems == []
+
+    def test_all_that_can_be_set_has_a_name_and_all_pictures_have_a_text(self, opened):
+        names = opened.value("[...document.querySelectorAll('canvas, input, select, button, summary')].map(e => e.getAttribute('aria-label') || (e.labels && e.labels[0] ? e.labels[0].textContent : e.textContent))")  # fmt: skip
+        assert all(names)
+        assert opened.value("[...document.images].every(i => i.alt && i.naturalWidth > 0)")  # fmt: skip
+        assert opened.value("[...document.querySelectorAll('svg[role=img]')].every(s => s.getAttribute('aria-label'))")  # fmt: skip
+        assert opened.value("document.images.length") == 2  # mechanism and cracks
+
+    def test_light_dark_and_a_narrow_screen(self, chromium, comp4, tmp_path):
+        for dark in (False, True):
+            chromium.open(comp4, dark=dark)
+            path = str(tmp_path / "page.png")
+            chromium.picture(path)
+            corner = imread(path)[5, 5, :3]
+            assert corner.max() < 0.2 if dark else corner.min() > 0.95
+        chromium.open(comp4, width=390, height=780)
+        assert chromium.value("document.documentElement.scrollWidth") <= 390
+
+    def test_paper_is_a4_black_on_white_without_controls(self, opened, tmp_path):
+        path = str(tmp_path / "print.pdf")
+        opened.call("Emulation.setEmulatedMedia", media="print")
+        try:
+            style = lambda what, name: opened.value(f"getComputedStyle(document.querySelector('{what}')).{name}")  # fmt: skip
+            assert style(".masonry-controls", "display") == style("nav", "display") == "none"  # fmt: skip
+            assert style(".masonry-report", "color") == "rgb(0, 0, 0)"
+            assert style(".masonry-report", "backgroundColor") == "rgb(255, 255, 255)"
+        finally:
+            opened.call("Emulation.setEmulatedMedia", media="")
+        data = opened.call("Page.printToPDF", preferCSSPageSize=True)["data"]
+        with open(path, "wb") as file:
+            file.write(base64.b64decode(data))
+        printed = open(path, "rb").read()
+        boxes = set(re.findall(rb"/MediaBox ?\[0 0 ([\d.]+) ([\d.]+)\]", printed))
+        assert {(round(float(w)), round(float(h))) for w, h in boxes} == {(595, 842)}
+        assert 3 <= len(re.findall(rb"/Type\s*/Page\b", printed)) <= 16
+
+    def test_without_webgl_a_sentence_stands_in_place_of_the_picture(self, comp4):
+        with browser.browser("--disable-3d-apis") as chromium:
+            chromium.open(comp4)
+            text = chromium.value("document.body.innerText")
+            assert "This browser shows no 3-D pictures, because WebGL" in text
+            assert "How far to trust it" in text and chromium.problems == []
+
+
+def test_the_program_needs_no_yade(comp4, tmp_path):
+    path = str(tmp_path / "wall.html")
+    code = "import sys; from masonry.read.report.__main__ import main; assert main(sys.argv[1:]) == 0; assert 'yade' not in sys.modules"  # fmt: skip
+    done = subprocess.run([sys.executable, "-c", code, os.path.dirname(comp4), "-o", path], capture_output=True, text=True)  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    texts = [PICTURE.sub("", open(name).read()) for name in (path, comp4)]
+    assert texts[0] == texts[1]
