@@ -27,7 +27,7 @@ SLOW = ["sanitizers", "fuzz", "studies", "scenes"]  # rings of which every test 
 #: Rings, and files of other rings, that need no YADE.
 WITHOUT_YADE = ["common", "law", "motion", "blocks", "files", "gates"] + [
     f"package/test_{name}.py"
-    for name in "bricks bricks_checks bricks_files bricks_vaults compare_loops cycles imports loops measure "
+    for name in "accelerograms bricks bricks_checks bricks_files bricks_vaults compare_loops cycles imports loops measure "
     "measured_loops plain_wall".split()
 ]
 TOGETHER = [

@@ -10,8 +10,10 @@ from .._masonry import commit, version
 from ..arguments import shown
 from ..assembly.engines import LAWS
 from ..basics import Refused
+from ..run import batch
 from ..run.presets import BOUND, PRESETS, USUAL
 from . import keywords
+from .ground import readRecord
 from .parsing import (
     DAMPINGS,
     RATES,
@@ -79,6 +81,20 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
             help="loops in place of --until: amplitudes in mm with repeats, as 1,2x3,4, each cycle 0, +A, -A, 0; or a "
             "CSV file with a column displacement_mm",
         )
+    p.add_argument(
+        "--record",
+        metavar="FILE",
+        type=folder,
+        default=None,
+        help="file of PEER (AT2) or ESM, or a text that has times and a unit, in place of the record of the scene's first shake(), with its factor",
+    )
+    p.add_argument(
+        "--scale",
+        metavar="S",
+        type=lambda text: number(text, -1e6, 1e6),
+        default=1.0,
+        help="how many times as strong the scene's first shake() is [-]",
+    )
     p.add_argument(
         "--rate",
         metavar="MM_PER_S",
@@ -299,6 +315,11 @@ def check(args, masonry, more=(), plane=False):
     :raises Refused: with all problems at once
     """
     problems = list(more)
+    if args.record is not None:
+        try:
+            readRecord(batch.beside(args.record), None, args.scale)
+        except Refused as refused:
+            problems.append(f"--record: {str(refused).removeprefix('shake: ')}")
     if args.blocks == "rigid" and args.divisions > 1:
         problems.append("--divisions: rigid units are not divided")
     if args.mass_scaling not in (0, "auto") and args.blocks == "rigid":

@@ -67,7 +67,7 @@ from .resuming import State
 from .stages import AT_REST, STAGES, gravity, prepare
 from .stages.stage import Answer
 from .targets import LOADED, Target
-from .words import RESULT, Call, Script
+from .words import RESULT, SHAKES, Call, Script
 
 
 SOON = 1.0  # [s] in which a run that is interrupted waits for its bound
@@ -545,6 +545,10 @@ class Scene:
         self.finished = True
         if not error and not self.model:
             return False
+        if not (error or self.only or any(word in SHAKES for word, _ in self.script.words)):  # fmt: skip
+            given = [o for o, usual in (("record", None), ("scale", 1)) if getattr(self.args, o, usual) != usual]  # fmt: skip
+            for option in given:
+                say(f"warning: --{option} was not used: the scene was not shaken")
         with self.running.listening():
             done = end(self.running, self, error)
         if self.status and (done or not error):
