@@ -10,10 +10,8 @@ from .._masonry import commit, version
 from ..arguments import shown
 from ..assembly.engines import LAWS
 from ..basics import Refused
-from ..run import batch
 from ..run.presets import BOUND, PRESETS, USUAL
 from . import keywords
-from .ground import readRecord
 from .parsing import (
     DAMPINGS,
     RATES,
@@ -315,11 +313,6 @@ def check(args, masonry, more=(), plane=False):
     :raises Refused: with all problems at once
     """
     problems = list(more)
-    if args.record is not None:
-        try:
-            readRecord(batch.beside(args.record), None, args.scale)
-        except Refused as refused:
-            problems.append(f"--record: {str(refused).removeprefix('shake: ')}")
     if args.blocks == "rigid" and args.divisions > 1:
         problems.append("--divisions: rigid units are not divided")
     if args.mass_scaling not in (0, "auto") and args.blocks == "rigid":
