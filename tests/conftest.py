@@ -46,6 +46,7 @@ LONG = [
     "test_a_limit_on_the_size_of_files_fails_rows_in_order",
     "test_ctrl_c_leaves_checkpoints_and_the_study_goes_on",
     "test_kills_at_random_moments_change_no_number",
+    "test_interruptions_and_the_order_of_rows_change_no_number",
     "test_walls_at_the_extremes_are_stable_or_stopped_with_a_reason",
     "test_a_push_that_is_too_fast_says_so_and_what_would_do",
     "test_a_search_and_loads_of_later_stages_resume_bit_for_bit",

@@ -16,7 +16,7 @@ from .. import folders
 from ..basics import Refused, Unwritable
 from ..read.files import filesOf, readWhole
 from ..run.results import held
-from .incremental import FOLDER, Chains, fell, isPlan
+from .incremental import FOLDER, Chains, fell, isPlan, shaken
 
 TABLE, STUDY, CSV, TIMES = "table.txt", "study.json", "study.csv", "times.csv"
 
@@ -55,6 +55,10 @@ FIRST = (
     "displacement_end_mm",
     "push_work_J",
 )
+
+
+#: Why a run that has ended is no row of an incremental dynamic analysis.
+UNSHAKEN = "it was not shaken: the scene has no shake(), or fell before it"
 
 
 class Folder:
@@ -139,6 +143,8 @@ class Folder:
         """``ended``, ``above collapse``, ``running``, ``failed`` or ``missing``."""
         if self.isAboveCollapse(number):
             return "above collapse"
+        if self.chains.plan and self.isEnded(number):
+            return "ended" if shaken(batch.ended(self.row(number))) else "failed"
         if self.isEnded(number):
             return "ended"
         if self.isHeld(number):
@@ -219,7 +225,7 @@ def gather(folder, table):
     """
     record, chains = folder.description()["study"], folder.chains
     names, found, times, counts = list(record["vary"]), [], [], {}
-    shaken = ["record", "scale", chains.plan["measure"]] if chains.plan else []
+    strengths = ["record", "scale", chains.plan["measure"]] if chains.plan else []
     for number, row in enumerate(table, 1):
         run, status = batch.ended(folder.row(number)) or {}, folder.status(number)
         counts[status] = counts.get(status, 0) + 1
@@ -250,6 +256,7 @@ def gather(folder, table):
         )
         job = folder.lastJob(number)
         why = job.get("told", "") if status == "failed" else ""
+        why = UNSHAKEN if status == "failed" and run else why
         cost = run.get("wall_clock_s")
         times.append(
             [
@@ -265,7 +272,7 @@ def gather(folder, table):
     known = {n for _, measures in found for n in measures}
     heads = [n for n in FIRST if n in known] + sorted(known - set(FIRST))
     lines = [[*begin, *(_text(m.get(n)) for n in heads)] for begin, m in found]
-    heads = ["run", *names, *shaken, "status", *heads]
+    heads = ["run", *names, *strengths, "status", *heads]
     written(folder.of(CSV), _csv(heads, lines))
     head = "run status host run_seconds job_seconds commit told".split()
     written(folder.of(TIMES), _csv(head, times))
