@@ -54,6 +54,7 @@ LONG = [
     "test_what_cannot_be_reached_is_said_with_the_width_that_was_found",
     "test_loops_interrupted_anywhere_leave_the_curve_of_a_whole_run",
     "test_slurm_gives_the_same",
+    "test_a_task_of_slurm_runs_the_levels_of_a_record",
 ]
 
 #: On a busy machine examples take longer than hypothesis expects, and some are large.

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 
+import cluster
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -187,6 +188,27 @@ def test_interruptions_and_the_order_of_rows_change_no_number(whole, tmp_path):
     done = study(path, "--out", out)
     assert done.returncode == 0, done.stdout + done.stderr
     assert (out / "study.csv").read_bytes() == (whole[0] / "study.csv").read_bytes()
+
+
+@pytest.mark.xdist_group("whole")
+def test_a_task_of_slurm_runs_the_levels_of_a_record(whole, tmp_path):
+    if cluster.missing():
+        pytest.skip("slurm-wlm and munge are not installed")
+    path, out = write(tmp_path), tmp_path / "out"
+    with cluster.cluster(tasks=4) as env:
+        run = lambda *words: subprocess.run([*map(str, words)], capture_output=True, text=True, env=env)  # fmt: skip
+        done = run(*COMMAND, path, "--out", out, "--slurm", "--partition=walls")
+        assert done.returncode == 0, done.stderr
+        script = (out / "slurm.sh").read_text()
+        assert "#SBATCH --array=0-2" in script and "rows=(1 5 9)" in script
+        end = time.monotonic() + 300
+        while run("squeue", "--noheader").stdout:
+            assert time.monotonic() < end
+            time.sleep(0.1)
+        done = run(*COMMAND, "--out", out, "--gather")
+        assert done.returncode == 0, done.stdout + done.stderr
+    assert (out / "study.csv").read_bytes() == (whole[0] / "study.csv").read_bytes()
+    assert len((out / "ended.txt").read_text().split()) == 9
 
 
 # -- what is planned --------------------------------------------------------------------------------------------------
