@@ -2,6 +2,7 @@
 """Incremental dynamic analysis: which rows are run, what they find beside closed forms, and what is said of them."""
 
 import csv
+import hashlib
 import json
 import math
 import os
@@ -18,6 +19,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from masonry.basics import Refused
+from masonry.read import drawing
 from masonry.study import Sa, Study, report, uniform
 from masonry.study.demands import Demands, _between, _quantile
 from masonry.study.gathering import Folder
@@ -327,6 +329,22 @@ def test_a_scene_that_is_not_shaken_gives_no_data(tmp_path):
     assert [folder.status(n) for n in (1, 2)] == ["failed", "missing"]
 
 
+def test_a_row_refuses_a_record_that_was_cut_off(tmp_path):
+    out = fake(tmp_path, [0.3, 0.6], ["a"], {})
+    (tmp_path / "fake" / "table.txt").write_text("description lean record scale\n0001 True 'records/a.txt' 1.0\n0002 True 'records/a.txt' 2.0\n")  # fmt: skip
+    (tmp_path / "fake" / "records").mkdir()
+    (tmp_path / "fake" / "records" / "a.txt").write_text("# unit: g\n# every: 0.01 s\n0\n0.5\n")  # fmt: skip
+    scene = tmp_path / "x.py"
+    scene.write_text("raise SystemExit(3)\n")
+    path = tmp_path / "fake" / "study.json"
+    record = json.loads(path.read_text())
+    record["scene_sha256"] = hashlib.sha256(scene.read_bytes()).hexdigest()
+    path.write_text(json.dumps(record))
+    done = subprocess.run([sys.executable, "-P", "-m", "masonry.study.row", "--scene", str(scene), out, "1"], capture_output=True, text=True)  # fmt: skip
+    assert done.returncode == 2
+    assert "a.txt is not the record with which the study began" in done.stderr
+
+
 # -- what is found ----------------------------------------------------------------------------------------------------
 
 
@@ -408,6 +426,53 @@ def test_a_report_says_in_a_sentence_what_it_cannot_find(tmp_path, capsys, found
     said = capsys.readouterr().out
     assert message in said and "median" not in said
     assert f"no fragility.png: " in said
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """Figures that would be saved, by the name of their file."""
+    found = {}
+    save = lambda figure, path, dpi: found.update({os.path.basename(path): figure})
+    monkeypatch.setattr(drawing, "save", save)
+    return found
+
+
+def lines(figure):
+    return {line.get_label(): line for line in figure.axes[0].lines}
+
+
+def test_a_quantile_is_drawn_until_it_is_infinite(tmp_path, drawn):
+    inf = math.inf
+    found = {1: 1.0, 2: 4.0, 3: inf, 4: 2.0, 5: inf, 7: 3.0, 8: 6.0, 9: 12.0}
+    out = fake(tmp_path, [0.3, 0.6, 0.9], ["a", "b", "c"], found)
+    assert report.main([out]) == 0
+    axis = drawn["ida.png"].axes[0]
+    median = lines(drawn["ida.png"])["50 %"]
+    assert median.get_xdata() == pytest.approx([0, 2, 6])
+    assert median.get_ydata() == pytest.approx([0, 0.3, 0.6])
+    assert lines(drawn["ida.png"])["84 %"].get_xdata() == pytest.approx([0, 2.68])
+    right = axis.get_xlim()[1]
+    flat = [line.get_ydata()[0] for line in axis.lines if list(line.get_xdata())[-1:] == [right]]  # fmt: skip
+    # two records fall, at 0.9 and 0.6 g, and three quantiles become infinite, at 0.9, 0.9 and 0.6 g
+    assert sorted(flat) == [0.6, 0.6, 0.9, 0.9, 0.9]
+    assert axis.get_xlabel() == "shake 2 largest displacement of top x [mm]"
+    assert axis.get_ylabel() == "PGA [g]"
+
+
+def test_a_fitted_fragility_is_drawn_with_its_band_and_the_shares(tmp_path, drawn):
+    inf = math.inf
+    found = {1: 1.0, 2: 4.0, 3: inf, 4: 2.0, 5: inf, 7: 3.0, 8: 6.0, 9: 12.0}
+    out = fake(tmp_path, [0.3, 0.6, 0.9], ["a", "b", "c"], found)
+    fit = Demands(Record(out)).fragility()
+    assert report.main([out]) == 0
+    found = lines(drawn["fragility.png"])
+    assert found["share of 3 records"].get_ydata() == pytest.approx([0, 1 / 3, 2 / 3])
+    curve = next(line for label, line in found.items() if label.startswith("lognormal"))
+    x, y = curve.get_data()
+    assert np.interp(fit.median.value, x, y) == pytest.approx(0.5, abs=0.01)
+    assert (np.diff(y) > 0).all()
+    band = drawn["fragility.png"].axes[0].collections[0].get_paths()[0].vertices
+    assert band[:, 1].min() >= 0 and band[:, 1].max() <= 1
 
 
 @given(

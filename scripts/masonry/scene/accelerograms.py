@@ -11,7 +11,7 @@ The format is found from the contents, not from the name of the file:
 - **Text**: one column, accelerations, or two, time [s] and acceleration, with blanks or commas between them. Lines that
   begin with # are comments, but for two that say what the numbers are: ``# unit: g`` and ``# every: 0.005 s``.
 
-What a file says of itself is compared with what is in it: another number of samples, times that are not evenly apart, and
+g is 9.81 m/s². What a file says of itself is compared with what is in it: another number of samples, times that are not evenly apart, and
 numbers that are not finite are refused with the file, the line and the value.
 """
 

@@ -298,6 +298,8 @@ def isPlan(plan: Any, runs: int) -> bool:
         and all(
             isinstance(one, dict)
             and isinstance(one.get("name"), str)
+            and re.fullmatch(r"[A-Za-z0-9_-]+", one["name"])
+            and isinstance(one.get("sha256"), str)
             and isNumber(one.get("intensity"))
             for one in records
         )

@@ -25,6 +25,7 @@ from ..folders import inside
 from ..read.files import readRun, readWhole
 from .continuing import rowsOf
 from .gathering import STUDY, TABLE, Folder, reason
+from .incremental import FOLDER
 
 REFUSED = 2  # exit status of a scene that refuses its input
 ATTEMPTS = (
@@ -65,6 +66,7 @@ class Job:
         folder = self.folder
         if folder.isDone(number):
             return 0
+        self._checkRecord(number)
         os.makedirs(folder.of(batch.ROWS), exist_ok=True)
         own = log is None
         if own and folder.isHeld(number):
@@ -93,6 +95,20 @@ class Job:
                 json.dump(record, f)
             os.replace(f.name, folder.job(number))
         return 0 if folder.isEnded(number) else status
+
+    def _checkRecord(self, number):
+        """Refuse a record that is not the one with which the study began: a file that was cut off in a copy, for example."""
+        chains = self.folder.chains
+        if not chains.plan:
+            return
+        one = chains.plan["records"][chains.record(number)]
+        path = self.folder.of(FOLDER, one["name"] + ".txt")
+        try:
+            found = hashlib.sha256(readWhole(path)).hexdigest()
+        except OSError as error:
+            raise Refused(f"cannot read {path}: {error.strerror}") from None
+        if found != one["sha256"]:
+            raise Refused(f"{path} is not the record with which the study began; remove it, and begin the study again")  # fmt: skip
 
     def _attempts(self, number, log):
         """Run it; once more from the beginning if its checkpoint is refused. Returns the exit status."""
