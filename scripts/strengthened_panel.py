@@ -17,7 +17,9 @@ scene = Scene("strengthened_panel", wall, materials.dry(normalStiffness=2e11), p
 scene.platen("bottom")
 top = scene.platen("top", rotation="free", guided="xy", height=0.02)
 scene.press(top, 20e3)  # [Pa] a light roof
-if args.layer:  # glass: E t of the fibres, their strength, their strain when they break; free over 0.1 m at a crack
+if (
+    args.layer
+):  # glass: E t of the fibres, their strength, their strain when they break; free over 0.1 m at a crack
     scene.overlay((0, 1, 0), stiffness=3e6, strength=45e3, strain=0.02, gauge=0.1, fibres="vertical", name="textile")  # fmt: skip
 scene.watch((0.22, 0, 1.35), name="middle")
 scene.view((1, 0, 0))

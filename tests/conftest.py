@@ -27,7 +27,7 @@ SLOW = ["sanitizers", "fuzz", "studies", "scenes"]  # rings of which every test 
 #: Rings, and files of other rings, that need no YADE.
 WITHOUT_YADE = ["common", "law", "motion", "blocks", "files", "gates"] + [
     f"package/test_{name}.py"
-    for name in "bilinear bricks bricks_checks bricks_files bricks_vaults capacity compare_loops cycles imports "
+    for name in "accelerograms bilinear bricks bricks_checks bricks_files bricks_vaults capacity compare_loops cycles imports "
     "loops measure measured_loops plain_wall report".split()
 ]
 TOGETHER = [
@@ -46,6 +46,7 @@ LONG = [
     "test_a_limit_on_the_size_of_files_fails_rows_in_order",
     "test_ctrl_c_leaves_checkpoints_and_the_study_goes_on",
     "test_kills_at_random_moments_change_no_number",
+    "test_interruptions_and_the_order_of_rows_change_no_number",
     "test_walls_at_the_extremes_are_stable_or_stopped_with_a_reason",
     "test_a_push_that_is_too_fast_says_so_and_what_would_do",
     "test_a_search_and_loads_of_later_stages_resume_bit_for_bit",
@@ -53,6 +54,7 @@ LONG = [
     "test_what_cannot_be_reached_is_said_with_the_width_that_was_found",
     "test_loops_interrupted_anywhere_leave_the_curve_of_a_whole_run",
     "test_slurm_gives_the_same",
+    "test_a_task_of_slurm_runs_the_levels_of_a_record",
 ]
 
 #: On a busy machine examples take longer than hypothesis expects, and some are large.

@@ -20,9 +20,10 @@ PUBLIC = """
     read.bilinear read.comparison read.cracks read.curve_figure read.curves read.figures read.files read.frames read.loops read.measure
     read.viewer
     run.checkpoints
-    scene.connections scene.fields scene.ground scene.loads scene.records scene.scene scene.supports scene.targets
+    scene.accelerograms scene.connections scene.fields scene.ground scene.loads scene.records scene.scene scene.spectrum scene.supports
+    scene.targets
     scene.materials.assumptions scene.materials.formulas scene.materials.kinds scene.materials.published
-    study.plan study.variables
+    study.incremental study.plan study.variables
 """.split()
 #: Stages are words of a scene, in modules that hold more.
 STAGES = "rest push drive supports gravity loading shake".split()

@@ -22,6 +22,8 @@ VALUES = {
     "joints": ("brittle", "cyclic"),
     "crack_surfaces": ("off", "on"),
     "vtk_every": (0.5, 2.0),
+    "record": ("one.AT2", "other.AT2"),
+    "scale": (2.0, 0.5),
 }
 
 

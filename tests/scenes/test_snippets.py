@@ -5,6 +5,7 @@ Commands run in the order of the documents, in one folder, as a reader types the
 tenth of their way, and names such as FILE get a meaning. Those of the tutorial are run by test_tutorial.py.
 """
 
+import math
 import os
 import re
 import subprocess
@@ -49,10 +50,16 @@ REPLACED = (
 )  # fmt: skip
 #: Documents with Python, and what becomes of it: a file that commands name, or a program of its own.
 BLOCKS = {
-    "README.md": "my_scene.py",
-    "scripts/README.md": "checkpoint.py",
-    "scripts/STUDIES.md": "study.py",
+    "README.md": ["my_scene.py"],
+    "scripts/README.md": ["checkpoint.py"],
+    "scripts/STUDIES.md": ["study.py", "ida.py"],
 }
+#: A record of the format of PEER: a sine that swells and fades, with another frequency in every file.
+PEER = """PEER NGA STRONG MOTION DATABASE RECORD
+none
+ACCELERATION TIME SERIES IN UNITS OF G
+NPTS= 201, DT= .0050 SEC
+"""
 SCENE = """
 from masonry import Scene, bricks, materials
 scene = Scene("panel", bricks.stack(2, (0.3, 0.3, 0.2)), materials.dry(friction=0.6))
@@ -103,7 +110,7 @@ def test_every_reason_is_for_a_command_and_names_tests_that_are_there():
 
 def test_every_piece_of_python_is_run():
     assert {d for d, found in PYTHON.items() if found} == set(BLOCKS)
-    assert all(len(PYTHON[d]) == 1 for d in BLOCKS)
+    assert {d: len(PYTHON[d]) for d in BLOCKS} == {d: len(n) for d, n in BLOCKS.items()}
 
 
 @pytest.fixture(scope="module")
@@ -117,6 +124,14 @@ def folder(tmp_path_factory):
     small = study.replace("runs=200", "runs=3").replace('"until": 6', '"until": 0.2')
     assert small.count("runs=3") == 1 and small.count('"until": 0.2') == 1
     (path / "study.py").write_text(small)
+    shaken = PYTHON["scripts/STUDIES.md"][1]
+    short = shaken.replace("levels=[0.2, 0.4, 0.6, 0.9, 1.3, 1.8]", "levels=[0.2, 0.4]")
+    assert short != shaken
+    (path / "ida.py").write_text(short.replace('"parapet",', '"parapet", options={"quick": True},'))  # fmt: skip
+    (path / "records").mkdir()
+    for hertz in (2, 3, 4):
+        wave = [math.sin(0.005 * n * math.pi) ** 4 * math.sin(0.01 * n * math.pi * hertz) for n in range(201)]  # fmt: skip
+        (path / "records" / f"sine{hertz}.AT2").write_text(PEER + "\n".join(f"{0.3 * a:.6E}" for a in wave))  # fmt: skip
     (path / "measured.csv").write_text("displacement_mm\n0.1\n-0.1\n0\n")
     (path / "test.csv").write_text("d,F\n0,0\n1,50\n2,60\n")
     (path / "checkpoint.py").write_text(
@@ -152,3 +167,4 @@ def test_every_command_that_has_no_reason_runs(folder):
     assert ran >= 10
     assert (folder / "results" / "wall_comp4" / "curve.png").exists()
     assert (folder / "study" / "study.csv").exists()
+    assert (folder / "IDA" / "study.csv").exists()

@@ -8,6 +8,7 @@ underscores for dashes, and properties of joints. Values are written as in Pytho
     0001        'fast' 6     110000.0     'lognormal(cov=0.3,length=0.5,seed=7)'
 
 - an option: its value, or True for one that has none; ``*`` is the default, ``=`` the value of the row before
+- ``record``: a path that is not absolute begins at the folder of the table
 - ``JOINT.PROPERTY``: as ``--set``; several of them that have the same value are joined by ``+``
 - ``field:JOINT.PROPERTY``: as ``--field``; several of them that vary alike are joined by ``+``
 - ``description``: names the row; its results are in the folder ``rows/DESCRIPTION`` beside the table
@@ -114,6 +115,14 @@ def place(text):
     if not path or not line.isdecimal():
         raise Refused(f"{VARIABLE}={text}: must read TABLE:LINE")
     return path, int(line)
+
+
+def beside(path):
+    """The path of a file that a row names: beside its table, if it is not absolute. In no row it is the path itself."""
+    text = os.environ.get(VARIABLE)
+    if not text or os.path.isabs(path):
+        return path
+    return os.path.join(os.path.dirname(os.path.abspath(place(text)[0])), path)
 
 
 def named(number):

@@ -10,7 +10,8 @@
 - :mod:`masonry.scene.materials`: masonry of one's own, published parameter sets, properties that vary from place to place,
   and what of all this was assumed
 - :mod:`masonry.scene.fields`: random fields; :mod:`masonry.scene.history`: displacements there and back;
-  :mod:`masonry.scene.ground`: ground motion and Rayleigh damping
+  :mod:`masonry.scene.ground`: ground motion and Rayleigh damping; :mod:`masonry.scene.accelerograms`: files of records;
+  :mod:`masonry.scene.spectrum`: spectral acceleration
 - :mod:`masonry.scene.options`: the options of the command line, which :mod:`masonry.scene.parsing` reads;
   :mod:`masonry.scene.settings`: ``--set``; :mod:`masonry.scene.keywords`: options that the script gives to ``Scene``
 - :mod:`masonry.scene.bounds`: limit analysis beside a run

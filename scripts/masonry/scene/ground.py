@@ -9,6 +9,8 @@ from typing import Any
 
 from ..arguments import FilePath, Numbers, listOf, number, path, takes
 from ..basics import Refused
+from . import accelerograms
+from .accelerograms import UNEVEN, UNITS
 
 
 HERTZ = number("Hz", 0, 1e6, above=True)  # the kind of a frequency
@@ -27,7 +29,6 @@ def rayleigh(ratio: float, low: float, high: float) -> tuple[float, float]:
     return 2 * ratio * one * two / (one + two), 2 * ratio / (one + two)
 
 
-UNITS = {"m/s²": 1.0, "g": 9.81, "cm/s²": 0.01}  # [m/s²]
 LOWEST_PEAK, HIGHEST_PEAK = (
     1.5,
     30.0,
@@ -57,34 +58,22 @@ def readRecord(
     if unit not in (None, *UNITS):
         raise Refused(f"shake: unit must be one of {', '.join(UNITS)}, got {unit!r}")
     if isinstance(accelerations, (str, os.PathLike)):
-        rows, named, line = [], accelerations, 1
+        named = accelerations
         try:
-            with open(named) as f:
-                for line, content in enumerate(f, start=1):
-                    words = content.replace(",", " ").split()
-                    if words and not words[0].startswith("#"):
-                        rows.append([float(w) for w in words])
-        except OSError as error:
-            raise Refused(f"shake: cannot read {named}: {error.strerror}") from None
-        except (ValueError, UnicodeDecodeError):
-            raise Refused(f"shake: {named}, line {line}: not numbers") from None
-        widths = {len(row) for row in rows}
-        if widths not in ({1}, {2}) or len(rows) < 2:
-            raise Refused(
-                f"shake: {named} must have two lines at least, of one or two numbers each"
-            )
-        accelerations = [row[-1] for row in rows]
-        if widths == {2}:
-            times = [row[0] for row in rows]
-            steps = [b - a for a, b in zip(times, times[1:])]
-            mean = sum(steps) / len(steps)
-            if not mean > 0 or max(abs(s - mean) for s in steps) > 1e-3 * mean:
-                raise Refused(f"shake: {named}: its times are not evenly apart")
-            if every is not None and abs(every - mean) > 1e-3 * mean:
+            found = accelerograms.read(named)
+        except Refused as refused:
+            raise Refused(f"shake: {refused}") from None
+        if found.every is not None:
+            if every is not None and abs(every - found.every) > UNEVEN * found.every:
                 raise Refused(
-                    f"shake: {named}: its times are {mean:g} s apart, not {every:g} s"
+                    f"shake: {named}: its samples are {found.every:g} s apart, not {every:g} s"
                 )
-            every = mean
+            every = found.every
+        if found.unit is not None:
+            if unit is not None and unit != found.unit:
+                raise Refused(f"shake: {named}: it is in {found.unit}, not in {unit}")
+            unit = found.unit
+        accelerations = found.values
     values: list[float] = [float(a) for a in accelerations]
     if len(values) < 2 or not all(map(math.isfinite, values)):
         raise Refused("shake: a record needs two finite accelerations at least")

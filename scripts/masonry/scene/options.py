@@ -80,6 +80,20 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
             "CSV file with a column displacement_mm",
         )
     p.add_argument(
+        "--record",
+        metavar="FILE",
+        type=folder,
+        default=None,
+        help="file of PEER (AT2) or ESM, or a text that has times and a unit, in place of the record of the scene's first shake(), with its factor",
+    )
+    p.add_argument(
+        "--scale",
+        metavar="S",
+        type=lambda text: number(text, -1e6, 1e6),
+        default=1.0,
+        help="how many times as strong the scene's first shake() is [-]",
+    )
+    p.add_argument(
         "--rate",
         metavar="MM_PER_S",
         type=lambda text: number(text, *RATES),

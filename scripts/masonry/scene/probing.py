@@ -67,6 +67,8 @@ def probe(scene, stage, traits, arguments):
     if not {"until", "history"} & set(used):
         for name in {"rate", "until", "history"} - set(used):
             entries["doubtful"][name] = f"its first stage is {stage}()"
+    for name in {"record", "scale"} - set(used):
+        entries["doubtful"][name] = f"its first stage is {stage}()"
     path = os.environ[batch.PROBE]
     scene.finished = True
     scene.results.release()

@@ -52,7 +52,7 @@ from ..assembly.blocks import vector
 from ..assembly.structure import Structure
 from ..basics import GRAVITY, Interrupted, Refused, say, withoutCollector
 from ..bricks import Bricks
-from ..run import accuracy
+from ..run import accuracy, batch
 from ..run.ending import end
 from ..run.presets import BOUND
 from ..run.results import Results
@@ -60,6 +60,7 @@ from ..run.run import Run
 from . import connections, loads, options, probing, records, showing, stages, supports
 from .bounds import EVERY, GIVEN_UP, SMALL, Bounds, nameInDomain, nameOfLean, nameOfPush
 from .description import Description
+from .ground import readRecord
 from .materials import Masonry, linesOf, loadingBlock
 from .outcome import Outcome
 from .parsing import Parser
@@ -67,7 +68,7 @@ from .resuming import State
 from .stages import AT_REST, STAGES, gravity, prepare
 from .stages.stage import Answer
 from .targets import LOADED, MOVING_PLATEN, Target
-from .words import RESULT, Call, Script
+from .words import RESULT, SHAKES, Call, Script
 
 
 SOON = 1.0  # [s] in which a run that is interrupted waits for its bound
@@ -350,9 +351,20 @@ class Scene:
         problems = self.description.problems(masonry)
         if self.args.refine and self.description.functors:
             problems.append(f"--refine {self.args.refine}: the functors keep the points of joints; leave functors=False")  # fmt: skip
+        problems += self._wrongRecord()
         options.check(self.args, masonry, problems, self.description.plane)
         self.assumed = masonry.assumed()
         return masonry
+
+    def _wrongRecord(self):
+        """What is wrong with the record of ``--record``, a list: it is read before anything is built."""
+        if self.args.record is None:
+            return []
+        try:
+            readRecord(batch.beside(self.args.record), None, self.args.scale)
+        except Refused as refused:
+            return [f"--record: {str(refused).removeprefix('shake: ')}"]
+        return []
 
     def begin(self) -> None:
         """Build the scene in YADE, if it does not stand there yet."""
@@ -594,6 +606,10 @@ class Scene:
         self.finished = True
         if not error and not self.model:
             return False
+        if not (error or self.only or any(word in SHAKES for word, _ in self.script.words)):  # fmt: skip
+            given = [o for o, usual in (("record", None), ("scale", 1)) if getattr(self.args, o, usual) != usual]  # fmt: skip
+            for option in given:
+                say(f"warning: --{option} was not used: the scene was not shaken")
         with self.running.listening():
             done = end(self.running, self, error)
         if self.status and (done or not error):

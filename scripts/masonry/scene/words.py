@@ -16,6 +16,7 @@ R = TypeVar("R")
 
 RESULT = "result"  # the word that keeps a number of the script's own
 PUSHES = "push", "cycle", "follow"  # to the first of them --until and --history apply
+SHAKES = ("shake",)  # to the first of them --record and --scale apply
 
 
 @dataclass

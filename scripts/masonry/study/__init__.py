@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING
 #: Public names by the module that has them. They are loaded when they are used first, because a row needs none of them.
 _NAMES = {
     "plan": ["Study"],
+    "incremental": ["Sa"],
     "variables": [
         "Distribution",
         "Field",
@@ -38,6 +39,7 @@ __all__ = [name for names in _NAMES.values() for name in names]
 
 
 if TYPE_CHECKING:
+    from .incremental import Sa
     from .plan import Study
     from .variables import (
         Distribution,

@@ -17,7 +17,7 @@ SHOWN = 5  # differences that are named
 
 #: Options of which run.json has the value that the table gives.
 COMPARED = {*presets.USUAL, "until", "preset", "joints", "crack_surfaces"}
-COMPARED |= {"joint_stiffness", "density_scaling", "units", "quick"}
+COMPARED |= {"joint_stiffness", "density_scaling", "units", "quick", "record", "scale"}
 
 
 def compareTable(folder, drawn):
@@ -82,6 +82,7 @@ def rowsOf(folder):
     study, path = folder.description()["study"], folder.of(TABLE)
     rows = [*batch.readTable(path).values()]
     needed = {"description", "lean", *study["options"], *study["vary"]}
+    needed |= {"record", "scale"} if study.get("ida") else set()
     fields = [name for name in study["vary"] if name.startswith(batch.FIELD)]
     known = needed | {name[len(batch.FIELD) :] for name in fields}
     heads = set(rows[0]) if rows else set()

@@ -12,7 +12,7 @@ from ..basics import Refused
 from .variables import Distribution, openturns
 
 EDGE = 1e-12  # probabilities closer to 0 or 1 are moved here, where all quantiles are finite
-DESIGNS = ("random", "latin", "sobol", "grid")
+DESIGNS = ("random", "latin", "sobol", "grid", "ida")
 
 
 @contextlib.contextmanager

@@ -16,6 +16,7 @@ from .. import folders
 from ..basics import Refused, Unwritable
 from ..read.files import filesOf, readWhole
 from ..run.results import held
+from .incremental import FOLDER, Chains, fell, isPlan, shaken
 
 TABLE, STUDY, CSV, TIMES = "table.txt", "study.json", "study.csv", "times.csv"
 
@@ -56,11 +57,19 @@ FIRST = (
 )
 
 
+#: Why a run that has ended is no row of an incremental dynamic analysis.
+UNSHAKEN = "it was not shaken: the scene has no shake(), or fell before it"
+
+
 class Folder:
     """A folder of a study."""
 
     def __init__(self, path):
         self.path = os.path.abspath(path)
+        self._chains = None
+        self._ended = (
+            {}
+        )  # whether the structure fell, by the numbers of rows that have ended
 
     def of(self, *names):
         return os.path.join(self.path, *names)
@@ -76,7 +85,7 @@ class Folder:
     def check(self):
         """Refuse a folder, or one of rows, that holds what is neither file nor folder; a row looks at its own."""
         try:
-            folders.check(self.path, self.of(batch.ROWS))
+            folders.check(self.path, self.of(batch.ROWS), self.of(FOLDER))
         except OSError as error:
             raise Refused(f"cannot read {error.filename}: {error.strerror}") from None
 
@@ -106,8 +115,36 @@ class Folder:
     def isHeld(self, number):
         return held(self.row(number))
 
+    @property
+    def chains(self):
+        """:class:`masonry.study.incremental.Chains` of the study."""
+        if self._chains is None:
+            self._chains = Chains(self.description()["study"])
+        return self._chains
+
+    def hasFallen(self, number):
+        """Whether a row has ended with a structure that fell when it was shaken."""
+        if number not in self._ended:
+            run = batch.ended(self.row(number))
+            if run is None:
+                return False
+            self._ended[number] = fell(run)
+        return self._ended[number]
+
+    def isAboveCollapse(self, number):
+        """Whether the structure fell at a lower level of the record of a row."""
+        return any(map(self.hasFallen, self.chains.lower(number)))
+
+    def isDone(self, number):
+        """Whether there is nothing to run for a row."""
+        return self.isEnded(number) or self.isAboveCollapse(number)
+
     def status(self, number):
-        """``ended``, ``running``, ``failed`` or ``missing``."""
+        """``ended``, ``above collapse``, ``running``, ``failed`` or ``missing``."""
+        if self.isAboveCollapse(number):
+            return "above collapse"
+        if self.chains.plan and self.isEnded(number):
+            return "ended" if shaken(batch.ended(self.row(number))) else "failed"
         if self.isEnded(number):
             return "ended"
         if self.isHeld(number):
@@ -125,6 +162,7 @@ def _isStudy(record):
         and all(isinstance(study.get(name), dict) for name in ("options", "vary"))
         and all(isinstance(what, dict) for what in study["vary"].values())
         and isinstance(record.get("script"), str)
+        and ("ida" not in study or isPlan(study["ida"], study["runs"]))
     )
 
 
@@ -185,27 +223,40 @@ def gather(folder, table):
 
     :param table: the rows of the table, as of :func:`masonry.study.continuing.rowsOf`
     """
-    record = folder.description()["study"]
+    record, chains = folder.description()["study"], folder.chains
     names, found, times, counts = list(record["vary"]), [], [], {}
+    strengths = ["record", "scale", chains.plan["measure"]] if chains.plan else []
     for number, row in enumerate(table, 1):
         run, status = batch.ended(folder.row(number)) or {}, folder.status(number)
         counts[status] = counts.get(status, 0) + 1
+        if status == "above collapse":
+            run = {}  # somebody may have run it before the rows below
         measures = {
             n: v
             for n, v in run.items()
             if n not in ASIDE and (v is None or isinstance(v, (bool, int, float, str)))
         }
+        strength = []
+        if chains.plan:
+            one = chains.plan["records"][chains.record(number)]["name"]
+            strength = [one, row["scale"], _text(chains.intensity(number))]
         with filesOf(folder.row(number)):
             answers = run.get("answers", [])
             measures.update((_answerName(a), a["value"]) for a in answers)
         found.append(
             (
-                [batch.named(number), *(_varied(n, row[n]) for n in names), status],
+                [
+                    batch.named(number),
+                    *(_varied(n, row[n]) for n in names),
+                    *strength,
+                    status,
+                ],
                 measures,
             )
         )
         job = folder.lastJob(number)
         why = job.get("told", "") if status == "failed" else ""
+        why = UNSHAKEN if status == "failed" and run else why
         cost = run.get("wall_clock_s")
         times.append(
             [
@@ -221,7 +272,8 @@ def gather(folder, table):
     known = {n for _, measures in found for n in measures}
     heads = [n for n in FIRST if n in known] + sorted(known - set(FIRST))
     lines = [[*begin, *(_text(m.get(n)) for n in heads)] for begin, m in found]
-    written(folder.of(CSV), _csv(["run", *names, "status", *heads], lines))
+    heads = ["run", *names, *strengths, "status", *heads]
+    written(folder.of(CSV), _csv(heads, lines))
     head = "run status host run_seconds job_seconds commit told".split()
     written(folder.of(TIMES), _csv(head, times))
     return counts

@@ -54,7 +54,7 @@ class Local:
     def __init__(self, folder, runs, jobs):
         self.folder, self.runs, self.jobs = folder, runs, jobs
         self.scene = folder.description()["script"]
-        self.open = {n for n in range(1, runs + 1) if not folder.isEnded(n)}
+        self.open = {n for n in range(1, runs + 1) if not folder.isDone(n)}
         self.failed, self.interrupted = {}, False
         self.progress = Progress()
         self._process, self._before = None, self._stamps()
@@ -72,7 +72,9 @@ class Local:
             while self.open and idle < TRIES and not self.interrupted:
                 self._checkSpace()
                 before = len(self.open)
-                mine = {n for n in self.open if not self.folder.isHeld(n)}
+                # a job goes on with the higher levels of its record
+                lowest = self.folder.chains.lowest(self.open)
+                mine = {n for n in lowest if not self.folder.isHeld(n)}
                 if mine:
                     self._batch(mine)
                 else:  # somebody else runs all that is left
@@ -151,8 +153,12 @@ class Local:
         for number in sorted(self.open):
             if quick and jobOf(number) not in names:
                 continue
+            if number not in self.open:
+                continue  # above the collapse of one before
             if self.folder.isEnded(number):
                 self.open.remove(number)
+                if self.folder.hasFallen(number):
+                    self.open -= set(self.folder.chains.higher(number))
                 continue
             last = self._job(number)
             if last and last["status"] > 0 and last["status"] != 130:

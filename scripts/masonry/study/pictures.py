@@ -293,6 +293,83 @@ def fragility(path, capacities, label):
         axis.grid(alpha=0.3)
 
 
+# -- incremental dynamic analysis -------------------------------------------------------------------------------------
+
+
+def ida(path, rows, fell, quantiles, xLabel, yLabel):
+    """Demand and intensity of every record, with the quantiles of the demand over the records.
+
+    A curve ends at the last level at which the structure stood; a thin line leads from there to the right at the level at
+    which it fell. A quantile ends likewise where it is infinite.
+
+    :param rows: of every record its intensities and demands
+    :param fell: of every record the intensity at which it fell; infinite: it stood
+    :param quantiles: dict of a share -> list of (intensity, demand)
+    :raises Refused: if no record has a demand
+    """
+    curves = [_standing(*one) for one in rows]
+    largest = max((d[-1] for d, _ in curves if len(d) > 1), default=0)
+    largest = max([largest, *(max(d) for d, _ in curves)])
+    if not largest > 0:
+        raise Refused("no record has a demand at a level at which the structure stood")
+    right = 1.15 * largest
+    with _Picture(path, 6.0, 4.2) as figure:
+        axis = figure.subplots()
+        for (demands, intensities), level in zip(curves, fell):
+            axis.plot(demands, intensities, color="0.55", lw=0.7, marker=".", ms=3)
+            if np.isfinite(level):
+                ends = [demands[-1], right], [level, level]
+                axis.plot(*ends, color="0.55", lw=0.5, ls=DASHES[3])
+        for (share, points), dashes in zip(quantiles.items(), (DASHES[1], "-", DASHES[2])):  # fmt: skip
+            demands, intensities = _standing(*zip(*points)) if points else ([0], [0])
+            axis.plot(demands, intensities, color=LINE, lw=1.8, ls=dashes, label=f"{100 * share:g} %")  # fmt: skip
+            beyond = [x for x, demand in points if np.isinf(demand)]
+            if beyond:
+                axis.plot([demands[-1], right], [beyond[0]] * 2, color=LINE, lw=1, ls=dashes)  # fmt: skip
+        axis.plot([], [], color="0.55", lw=0.7, marker=".", ms=3, label=f"{len(rows)} records")  # fmt: skip
+        axis.plot([], [], color="0.55", lw=0.5, ls=DASHES[3], label="falls at this level")  # fmt: skip
+        axis.set_xlim(0, right)
+        axis.set_ylim(bottom=0)
+        axis.set_xlabel(xLabel)
+        axis.set_ylabel(yLabel)
+        axis.legend(loc="lower center", bbox_to_anchor=(0.5, 1.01), ncols=3)
+        axis.grid(alpha=0.3)
+
+
+def _standing(intensities, demands):
+    """Demands and intensities from zero to the last level at which the structure stood; unknown ones are left out."""
+    found = [(0.0, 0.0)]
+    for intensity, demand in zip(intensities, demands):
+        if np.isinf(demand):
+            break
+        if not np.isnan(demand):
+            found.append((demand, intensity))
+    return tuple(map(list, zip(*found)))
+
+
+def fitted(path, fit, counts, xLabel, yLabel):
+    """A fitted fragility with its band, and the shares of the records at every level.
+
+    :param fit: :class:`masonry.study.fragility.Fit`
+    :param counts: list of (intensity, how many records have reached the limit, of how many)
+    """
+    known = [(x, k, n) for x, k, n in counts if n]
+    ends = [x for x, _, _ in known] + [fit.median.value]
+    x = 1.3 * max(ends) * np.arange(1, POINTS + 1) / POINTS
+    bands = np.array([fit.probability(v) for v in x])
+    with _Picture(path, 6.0, 3.8) as figure:
+        axis = figure.subplots()
+        axis.fill_between(x, bands[:, 1], bands[:, 2], color=POINT, alpha=0.2, lw=0, label=f"{100 * fit.confidence:g} % confidence")  # fmt: skip
+        axis.plot(x, bands[:, 0], color="black", lw=1.2, label=f"lognormal: median {fit.median.value:.3g}, dispersion {fit.dispersion.value:.3g}")  # fmt: skip
+        axis.plot([v for v, _, _ in known], [k / n for _, k, n in known], ls="", marker="o", ms=4, color=LINE, label=f"share of {fit.records} records")  # fmt: skip
+        axis.set_ylim(-0.02, 1.02)
+        axis.set_xlim(0, x[-1])
+        axis.set_xlabel(xLabel)
+        axis.set_ylabel(yLabel)
+        axis.legend(loc="lower right")
+        axis.grid(alpha=0.3)
+
+
 # -- all curves -------------------------------------------------------------------------------------------------------
 
 

@@ -6,14 +6,14 @@ from __future__ import annotations
 import hashlib
 import os
 import re
-from typing import Any
+from typing import Any, Sequence
 
 import numpy as np
 
 from ..arguments import FilePath
 from ..run import batch
 from ..basics import Refused
-from . import designs
+from . import designs, incremental
 from .variables import Choice, Distribution, Field, choice
 
 MOST = 100_000  # rows of a study
@@ -31,9 +31,18 @@ class Study:
     :param vary: dict of a name -> what it is in the rows. A name is an option, for example ``"rate"``, or a property of a
         kind of joints, ``"bed.cohesion"``; a tuple of properties have the same value or field. What it is, is a number or a
         text, a list of these, :func:`choice`, :func:`lognormal`, :func:`normal`, :func:`uniform` or :func:`field`
-    :param design: ``"random"``, ``"latin"`` (hypercube), ``"sobol"`` (Sobol's sequence), or ``"grid"``: all combinations of
-        the lists
+    :param design: ``"random"``, ``"latin"`` (hypercube), ``"sobol"`` (Sobol's sequence), ``"grid"``: all combinations of
+        the lists, or ``"ida"``, incremental dynamic analysis: the scene is shaken by records that grow in strength until it
+        falls. What varies beside that is drawn once for every record
     :param correlation: dict of pairs of names -> rank correlation of two distributions [-]
+    :param records: of an ``"ida"``: files as of :mod:`masonry.scene.accelerograms`, with paths from the study's file on, or
+        patterns of files such as ``"records/*.AT2"``
+    :param levels: of an ``"ida"``: growing values of the measure of intensity [g] to which all records are scaled
+    :param scales: in place of levels: growing factors on the records as they are [-]
+    :param measure: of intensity: ``"PGA"``, the peak ground acceleration (None means that, too), or
+        :func:`masonry.study.Sa`, a spectral acceleration
+    :param unit: of those records whose files do not say theirs: ``"m/s²"``, ``"g"`` or ``"cm/s²"``; None: m/s², and a
+        record whose peak looks like another unit is refused
     :raises Refused: with all problems at once
     """
 
@@ -46,6 +55,11 @@ class Study:
         vary: dict[Any, Any] | None = None,
         design: str = "random",
         correlation: dict[tuple[str, str], float] | None = None,
+        records: FilePath | Sequence[FilePath] | None = None,
+        levels: Sequence[float] | None = None,
+        scales: Sequence[float] | None = None,
+        measure: str | incremental.Measure | None = None,
+        unit: str | None = None,
     ) -> None:
         problems = []
         self.scene, self.seed, self.design = str(scene), seed, design
@@ -63,8 +77,20 @@ class Study:
             problems += _wrongOption(name, value)
         for key, what in dict(vary or {}).items():
             self._take(key, what, problems)
-        if not self.vary:
-            problems.append("vary: nothing varies")
+        #: the records and their strengths of an incremental dynamic analysis, else None
+        self.ida = None
+        own = dict(records=records, levels=levels, scales=scales, measure=measure, unit=unit)  # fmt: skip
+        if design == "ida":
+            self.ida = incremental.Incremental(
+                records, levels, scales, measure, unit, problems
+            )
+            for name in {"record", "scale"} & {*self.options, *self.vary}:
+                problems.append(f"{name}: it is what an incremental analysis varies")
+        else:
+            given = [name for name, value in own.items() if value is not None]
+            problems += [f'{name}: only a study with design="ida" has it' for name in given]  # fmt: skip
+            if not self.vary:
+                problems.append("vary: nothing varies")
         self._count(problems)
         self._correlate(dict(correlation or {}), problems)
         if problems:
@@ -137,6 +163,10 @@ class Study:
             if self.runs not in (None, size):
                 problems.append(f"runs {self.runs}: the grid has {size} points")
             self.runs = size
+        if self.ida:
+            if self.runs is not None:
+                problems.append(f"runs {self.runs!r}: there are as many as records times levels; leave it out")  # fmt: skip
+            return
         if (
             isinstance(self.runs, bool)
             or not isinstance(self.runs, int)
@@ -173,7 +203,11 @@ class Study:
     # -- what follows -------------------------------------------------------------------------------------------------
 
     def describe(self) -> dict[str, Any]:
-        """The study as JSON has it: two studies with the same description have the same rows."""
+        """The study as JSON has it: two studies with the same description have the same rows.
+
+        The records of an incremental analysis must have been read: :meth:`read`.
+        """
+        plan = {"ida": self.ida.describe()} if self.ida else {}
         return {
             "scene": self.scene,
             "options": self.options,
@@ -182,15 +216,42 @@ class Study:
             "design": self.design,
             "vary": {name: what.describe() for name, what in self.vary.items()},
             "correlation": [[*pair, v] for pair, v in self.correlation.items()],
+            **plan,
         }
 
+    def read(self, near: FilePath) -> None:
+        """Read the records of an incremental analysis, which say how many rows there are. Raises Refused.
+
+        :param near: folder of the study's file
+        """
+        if self.ida:
+            self.runs = len(self.ida.read(near)) * self.ida.steps
+            if self.runs > MOST:
+                raise Refused(f"study: {self.runs} rows, there must be at most {MOST}")
+
     def rows(self) -> list[dict[str, Any]]:
-        """The values of every row: a list of dicts, with the options that all have. Raises Refused."""
+        """The values of every row: a list of dicts, with the options that all have. Raises Refused.
+
+        The records of an incremental analysis must have been read: :meth:`read`.
+        """
+        if self.ida:
+            shaken = self.ida.rows()
+            drawn = self._drawn("random", len(shaken) // self.ida.steps)
+            return [
+                {
+                    **drawn[n // self.ida.steps],
+                    "record": f"{incremental.FOLDER}/{motion.name}.txt",
+                    "scale": scale,
+                }
+                for n, (motion, scale) in enumerate(shaken)
+            ]
+        return self._drawn(self.design, self.runs)
+
+    def _drawn(self, design, count):
+        """What is drawn for some rows, with the options that all have: a list of dicts."""
         drawn = {n: w for n, w in self.vary.items() if not isinstance(w, Field)}
         fields = {n: w for n, w in self.vary.items() if isinstance(w, Field)}
-        found = designs.values(
-            self.design, self.runs, self.seed, drawn, self.correlation
-        )
+        found = designs.values(design, count, self.seed, drawn, self.correlation)
         means = {
             n[len(batch.FIELD) :]: w.mean
             for n, w in fields.items()

@@ -4,6 +4,7 @@
 /usr/bin/python3 -m masonry.study.report DIR
 /usr/bin/python3 -m masonry.study.report DIR --measure base_shear_end_kN --demand 90,100,110
 /usr/bin/python3 -m masonry.study.report ACCURATE --cheap FAST
+/usr/bin/python3 -m masonry.study.report DIR --limit 20          of an incremental dynamic analysis
 
 The pictures go into the folder of the study. With ``--cheap`` its rows are the expensive ones and those of the other study
 the cheap ones; see :mod:`masonry.study.estimate`.
@@ -19,6 +20,8 @@ import numpy as np
 from ..basics import Refused, say
 from ..folders import check
 from . import estimate, pictures, sensitivity, statistics
+from .demands import QUANTILES, Demands
+from .gathering import Folder
 from .records import Record, paired
 
 MEASURE = "peak_base_shear_kN"
@@ -29,7 +32,7 @@ MODE = "failure_mode"
 def label(name):
     """A column as the label of an axis: its unit, at the end of the name, goes into brackets."""
     words = name.split("_")
-    units = {"kN": "kN", "mm": "mm", "J": "J", "s": "s", "m": "m"}
+    units = {"kN": "kN", "mm": "mm", "J": "J", "s": "s", "m": "m", "mrad": "mrad", "g": "g"}  # fmt: skip
     if len(words) > 1 and words[-1] in units:
         return f"{' '.join(words[:-1])} [{units[words[-1]]}]"
     return " ".join(words)
@@ -114,15 +117,24 @@ def draw(record, measure):
             raise Refused("no row has a curve of " + " and ".join(CURVE))
         pictures.fan(path, curves, *map(label, CURVE))
 
-    for name, make in {
+    makes = {
         "scatter": lambda path: pictures.scatter(path, inputs, values, title),
         "tornado": tornado,
         "sobol": sobol,
         "histogram": lambda path: pictures.histogram(path, values, title, modes),
         "fragility": lambda path: pictures.fragility(path, values, title),
         "curves": fan,
-    }.items():
-        path = os.path.join(record.directory, name + ".png")
+    }
+    yield from _drawn(record.directory, makes)
+
+
+def _drawn(directory, makes):
+    """Write pictures, and yield a line for each, or why there is none.
+
+    :param makes: dict of a name -> function of the path that writes it or raises Refused
+    """
+    for name, make in makes.items():
+        path = os.path.join(directory, name + ".png")
         try:
             make(path)
         except Refused as refused:
@@ -165,6 +177,79 @@ def compare(expensive, cheap, measure, other, method, prices=None):
     yield from ("  note: " + doubt for doubt in estimate.doubts(y, x))
 
 
+def incremental(demands, limit, intensities):
+    """Lines of what an incremental dynamic analysis says: demands at every level, and the fragility.
+
+    :param demands: :class:`masonry.study.demands.Demands`
+    :param limit: of the demand; None: collapse
+    :param intensities: those at which the probability is printed, or an empty list
+    """
+    measure, reaches = label(demands.intensityName), reached(demands, limit)
+    yield f"incremental dynamic analysis of {len(demands.names)} records; the intensity is {measure}"
+    if demands.measure:
+        yield f"the demand is the amount of {label(demands.measure)}; where the structure falls, and above, it is infinite"
+    else:
+        yield "no row has a demand: scene.watch() records one"
+    heads = [f"{100 * share:g} %" for share in QUANTILES]
+    yield f"  {measure:>12} " + "".join(
+        f"{head:>11}" for head in heads
+    ) + f"   records: {reaches}"
+    for level, count, known in demands.counts(limit):
+        found = [_cell(value) for value in demands.quantiles(level)]
+        yield f"  {level:12.4g} " + "".join(
+            f"{f:>11}" for f in found
+        ) + f"   {count} of {known}"
+    try:
+        fit = demands.fragility(limit)
+    except Refused as refused:
+        yield str(refused)
+        return
+    yield f"fragility, {reaches}: lognormal, of {fit.reached} of {fit.records} records"
+    yield line(f"median {measure.partition('[')[2] and '[g]'}", fit.median)
+    yield line("dispersion [-]", fit.dispersion)
+    yield (
+        f"  maximum likelihood of the levels between which each record reaches the limit; {100 * fit.confidence:g} % intervals "
+        "of the profile likelihood, records being independent"
+    )
+    if intensities:
+        yield f"probability that {reaches}, at {measure}"
+        for one in intensities:
+            yield line(f"{one:g}", fit.probability(one), "{:.3f}")
+
+
+def reached(demands, limit):
+    """What a limit is, in words."""
+    if limit is None:
+        return "the structure falls"
+    return f"{label(demands.measure or 'demand')} reaches {limit:g}"
+
+
+def _cell(value):
+    """A demand in a table."""
+    return "-" if math.isnan(value) else "infinite" if math.isinf(value) else f"{value:.4g}"  # fmt: skip
+
+
+def drawIncremental(demands, limit):
+    """Write the pictures of an incremental dynamic analysis, and yield a line for each, or why there is none."""
+    measure = label(demands.intensityName)
+
+    def curves(path):
+        if not demands.measure:
+            raise Refused("no row has a demand")
+        points = [(level, demands.quantiles(level)) for level in demands.levels]
+        quantiles = {
+            share: [(level, q[n]) for level, q in points if not math.isnan(q[n])]
+            for n, share in enumerate(QUANTILES)
+        }
+        pictures.ida(path, demands.rows, demands.fell, quantiles, label(demands.measure), measure)  # fmt: skip
+
+    def fragility(path):
+        fit, text = demands.fragility(limit), f"probability: {reached(demands, limit)}"
+        pictures.fitted(path, fit, demands.counts(limit), measure, text)
+
+    yield from _drawn(demands.directory, {"ida": curves, "fragility": fragility})
+
+
 def main(words=None):
     parser = argparse.ArgumentParser(
         prog="python3 -m masonry.study.report",
@@ -197,6 +282,11 @@ def main(words=None):
         "--prices",
         help="seconds of a run of the study and of one of --cheap, with a comma; the mean times of the runs by default",
     )
+    parser.add_argument(
+        "--limit",
+        help="of an incremental dynamic analysis: the demand whose fragility is found; without it that of collapse. --measure is "
+        "the demand, and --demand has intensities at which the probability is printed",
+    )
     parser.add_argument("--no-pictures", action="store_true", help="the table alone")
     args = parser.parse_args(words)
     try:
@@ -209,6 +299,11 @@ def main(words=None):
             )
         check(args.study)
         record = Record(args.study)
+        limit = _listed("--limit", args.limit)
+        if isIncremental(args.study):
+            return _sayIncremental(record, args, limit, demands)
+        if limit:
+            raise Refused("--limit: this is no incremental dynamic analysis")
         args.measure = args.measure or record.measure(MEASURE)
         for text in (*table(record, args.measure), *modes(record), *statuses(record)):
             say(text)
@@ -236,6 +331,32 @@ def main(words=None):
     except OSError as error:
         say(f"cannot write to {args.study}: {error.strerror}", sys.stderr)
         return 2
+    return 0
+
+
+def isIncremental(directory):
+    """Whether a folder holds a study with records; a study.csv alone is none."""
+    try:
+        return Folder(directory).chains.plan is not None
+    except Refused:
+        return False
+
+
+def _sayIncremental(record, args, limit, intensities):
+    """Print and draw what an incremental dynamic analysis says. Returns the exit status."""
+    if args.cheap:
+        raise Refused("--cheap: rows of an incremental dynamic analysis are not independent")  # fmt: skip
+    if len(limit) > 1 or limit and not limit[0] > 0:
+        raise Refused(f"--limit {args.limit} must be one number above 0")
+    if intensities and not intensities[0] > 0:
+        raise Refused(f"--demand {args.demand}: intensities must be above 0")
+    limit = limit[0] if limit else None
+    found = Demands(record, args.measure)
+    for text in (*incremental(found, limit, intensities), *statuses(record)):
+        say(text)
+    if not args.no_pictures:
+        for text in drawIncremental(found, limit):
+            say(text)
     return 0
 
 

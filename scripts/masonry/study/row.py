@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Runs rows of a study: ``/usr/bin/python3 -P -m masonry.study.row --scene FILE DIR NUMBER...``
 
-A row that was run is left out, one that was stopped goes on from its checkpoint, and one that somebody else is running is
+A row of an incremental analysis is followed by the higher levels of its record, until the structure falls. A row that was
+run is left out, one that was stopped goes on from its checkpoint, and one that somebody else is running is
 left alone. ``DIR/rows/NUMBER.log`` has what it says. This is what a task of Slurm, or of GNU parallel, calls; yade-batch calls
 it too, with the row and the scene in its environment. The exit status is 0 if all rows are ended.
 
@@ -24,6 +25,7 @@ from ..folders import inside
 from ..read.files import readRun, readWhole
 from .continuing import rowsOf
 from .gathering import STUDY, TABLE, Folder, reason
+from .incremental import FOLDER
 
 REFUSED = 2  # exit status of a scene that refuses its input
 ATTEMPTS = (
@@ -62,8 +64,9 @@ class Job:
         :param log: file object that takes what it says; None: the log of the row
         """
         folder = self.folder
-        if folder.isEnded(number):
+        if folder.isDone(number):
             return 0
+        self._checkRecord(number)
         os.makedirs(folder.of(batch.ROWS), exist_ok=True)
         own = log is None
         if own and folder.isHeld(number):
@@ -92,6 +95,20 @@ class Job:
                 json.dump(record, f)
             os.replace(f.name, folder.job(number))
         return 0 if folder.isEnded(number) else status
+
+    def _checkRecord(self, number):
+        """Refuse a record that is not the one with which the study began: a file that was cut off in a copy, for example."""
+        chains = self.folder.chains
+        if not chains.plan:
+            return
+        one = chains.plan["records"][chains.record(number)]
+        path = self.folder.of(FOLDER, one["name"] + ".txt")
+        try:
+            found = hashlib.sha256(readWhole(path)).hexdigest()
+        except OSError as error:
+            raise Refused(f"cannot read {path}: {error.strerror}") from None
+        if found != one["sha256"]:
+            raise Refused(f"{path} is not the record with which the study began; remove it, and begin the study again")  # fmt: skip
 
     def _attempts(self, number, log):
         """Run it; once more from the beginning if its checkpoint is refused. Returns the exit status."""
@@ -189,7 +206,10 @@ def _batched(words):
     folder, scene = os.path.dirname(os.path.abspath(path)), os.environ.get(batch.SCENE)
     job = Job(folder, words[: words.index("-x")], scene)
     say(f"note: this runs {job.script}")
-    return job.run(line - 1, sys.stdout.buffer)
+    status = job.run(line - 1, sys.stdout.buffer)
+    for number in job.folder.chains.higher(line - 1):
+        status = status if job.stopped else job.run(number) or status
+    return status
 
 
 def requeue(job):
@@ -227,12 +247,14 @@ def _rows(words):
     if beyond:
         raise Refused(f"no row {', '.join(beyond)}: {words[0]} has {runs}")
     say(f"note: this runs {job.script}")
-    worst = 0
+    worst, numbers = 0, []
     for word in words[1:]:
-        status = job.run(int(word))
+        numbers += [int(word), *job.folder.chains.higher(int(word))]
+    for number in dict.fromkeys(numbers):
+        status = job.run(number)
         if status:
-            why = job.folder.lastJob(int(word)).get("told") or f"exit status {status}"
-            say(f"row {batch.named(int(word))}: {why}", sys.stderr)
+            why = job.folder.lastJob(number).get("told") or f"exit status {status}"
+            say(f"row {batch.named(number)}: {why}", sys.stderr)
         worst = max(worst, status if status >= 0 else 128 - status)
         if job.stopped:
             requeue(job)

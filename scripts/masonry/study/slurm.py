@@ -88,7 +88,8 @@ def submit(folder, runs, words):
         raise Refused(
             f"--slurm: job array {before} still has tasks of this study: wait for them, or scancel {before}"
         )
-    rows = [n for n in range(1, runs + 1) if not folder.isEnded(n)]
+    rows = [n for n in range(1, runs + 1) if not folder.isDone(n)]
+    rows = sorted(folder.chains.lowest(rows))  # a task goes on with higher levels
     if not rows:
         say("all rows are ended: --gather writes study.csv")
         return 0

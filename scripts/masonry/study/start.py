@@ -10,8 +10,10 @@ import tempfile
 from ..run import batch
 from ..basics import Refused, Unwritable, say
 from ..folders import fromJson
+from ..read.files import readWhole
 from .continuing import checkRows, compareTable, rowsOf
 from .gathering import STUDY, TABLE, Folder, reason, written
+from .incremental import FOLDER
 from .interrupts import watched
 from .variables import NEVER, Distribution, Field
 
@@ -32,6 +34,7 @@ def begin(study, path, near):
     """
     folder = Folder(path)
     folder.check()
+    study.read(near)
     script, fingerprint = study.script(near)
     now = {"version": VERSION, "study": study.describe(), "scene_sha256": fingerprint}
     now, known = json.loads(json.dumps(now)), None
@@ -44,9 +47,10 @@ def begin(study, path, near):
             compareTable(folder, table)
         else:
             written(folder.of(TABLE), table)
+        _putRecords(folder, study)
         checkRows(folder, rowsOf(folder))
     else:
-        _checkEmpty(folder)
+        _checkEmpty(folder, study)
         problems, needed = _look(study, script, table)
         problems += _checkSpace(folder, study.runs * needed)
         if problems:
@@ -55,11 +59,32 @@ def begin(study, path, near):
             os.makedirs(folder.of(batch.ROWS), exist_ok=True)
         except OSError as error:
             raise Refused(f"--out: cannot write to {path}: {error.strerror}") from None
+        _putRecords(folder, study)
         written(folder.of(TABLE), table)
     now["script"] = script
     if known != now:
         written(folder.of(STUDY), json.dumps(now, indent=2) + "\n")
     return folder
+
+
+def _recordsOf(study):
+    """The names and texts of the files of the records that a study has, a dict."""
+    return {f"{m.name}.txt": m.text for m in study.ida.read("")} if study.ida else {}
+
+
+def _putRecords(folder, study):
+    """Write the records of a study into its folder. Those that are there must be what the study has read."""
+    if not study.ida:
+        return
+    os.makedirs(folder.of(FOLDER), exist_ok=True)
+    for name, text in _recordsOf(study).items():
+        path = folder.of(FOLDER, name)
+        if not os.path.lexists(path):
+            written(path, text)
+        elif readWhole(path) != text.encode():
+            raise Refused(
+                f"--out: {path} is not the record that the study reads; remove it, and it is written again"
+            )
 
 
 def _compare(folder, known, now):
@@ -79,12 +104,16 @@ def _compare(folder, known, now):
         )
 
 
-def _checkEmpty(folder):
-    """Refuse a folder of something else. A table without study.json is left by a study that was killed when it began."""
+def _checkEmpty(folder, study):
+    """Refuse a folder of something else. A table or records without study.json are left by a study that was killed when it
+    began."""
     try:
         names = set(os.listdir(folder.path)) - {TABLE, TABLE + ".new", STUDY + ".new"}
         if batch.ROWS in names and not os.listdir(folder.of(batch.ROWS)):
             names.remove(batch.ROWS)
+        records = {n for name in _recordsOf(study) for n in (name, name + ".new")}
+        if FOLDER in names and records.issuperset(os.listdir(folder.of(FOLDER))):
+            names.remove(FOLDER)
     except FileNotFoundError:
         return
     except OSError as error:
@@ -120,6 +149,10 @@ def _look(study, script, table):
         path = os.path.join(place, TABLE)
         with open(path, "w") as f:
             f.write(table)
+        for name, text in _recordsOf(study).items():
+            os.makedirs(os.path.join(place, FOLDER), exist_ok=True)
+            with open(os.path.join(place, FOLDER, name), "w", encoding="utf-8") as f:
+                f.write(text)
         found = _probed(script, path, os.path.join(place, "probe.json"))
         if isinstance(found, str):  # the first row may be to blame
             found = (
@@ -131,8 +164,10 @@ def _look(study, script, table):
     with watched(NOTHING):
         problems = _names(study, found) + _ranges(study, found) + found["problems"]
     for name, why in found["doubtful"].items():
-        if name in study.vary:
+        if name in study.vary or study.ida and name == "record":
             say(f"warning: {name} varies, and the scene may not use it: {why}")
+    for doubt in study.ida.doubts() if study.ida else ():
+        say(doubt)
     return problems, found["room"]
 
 
@@ -178,7 +213,8 @@ def _names(study, found):
             "its scene takes no options from the command line (arguments=...), and would ignore all that varies"
         ]
     problems, joints = [], found["joints"]
-    for name in [*study.options, *study.vary]:
+    shaken = ["record", "scale"] if study.ida else []
+    for name in [*study.options, *study.vary, *shaken]:
         for one in name.removeprefix(batch.FIELD).split("+"):
             kind, dot, attribute = one.partition(".")
             if not dot:

@@ -10,9 +10,12 @@ from typing import Any
 from yade import O, Vector3
 
 from ...arguments import FilePath, Numbers, number, oneOf, orNone, takes
-from ...basics import Refused
+from ...basics import Refused, say
+from ...run import batch
+from ..accelerograms import drift
 from ..ground import UNITS, readRecord, record
 from ..parsing import DAMPING
+from ..words import SHAKES
 from .gravity import LEVEL, sideways
 from .stage import DONE, Answer, stage
 from .timed import DURATION, TIME, Timed, timed
@@ -49,6 +52,17 @@ def displacements(scene, rows):
     return found
 
 
+def byOptions(scene, accelerations, every, scale, unit):
+    """What ``--record`` and ``--scale`` make of a record, the time between its samples, its factor and its unit. They are
+    for the first shake of a scene."""
+    args = scene.args
+    if not scene.script.isFirst(SHAKES):
+        return accelerations, every, scale, unit
+    if args.record is not None:
+        accelerations, every, scale, unit = batch.beside(args.record), None, 1.0, None
+    return accelerations, every, scale * args.scale, unit
+
+
 @dataclass
 class Damped(Timed):
     """What a stage remembers that has a damping of its own."""
@@ -57,7 +71,7 @@ class Damped(Timed):
     limit: float = 0.0
 
 
-@stage(answers=displacements)
+@stage(options=("record", "scale"), answers=displacements)
 @takes(
     accelerations=record,
     every=orNone(DURATION),
@@ -85,25 +99,35 @@ def shake(
 
     The scene moves with the ground: every block feels the negative ground acceleration, and all displacements are
     those relative to the ground, whose motion is exact. Time is real, so masses must not be scaled. Between the
-    samples the acceleration changes evenly.
+    samples the acceleration changes evenly, and each step has that of its middle: nothing is filtered, and the time step
+    does not depend on the samples.
 
     Joints that slide, crack and crush take energy. The default adds no other damping, since none is measured for
     masonry that rocks. :func:`rayleigh` gives the two viscous ones from a damping ratio. The stages that follow have the
     damping of the options again.
 
-    :param accelerations: a list, or the path of a text file with one or two columns: acceleration, or time
-        [s] and acceleration
-    :param every: time between two samples [s]; of a file with times it may be None
+    ``--record FILE`` replaces the record of the first shake of a scene, with the time between its samples, its factor and its
+    unit, and ``--scale S`` makes that shake S times as strong. A record that does not end at rest is named with its numbers; nothing is corrected.
+
+    :param accelerations: a list, or the path of a file of PEER or ESM or of a text with one or two columns, as
+        :mod:`masonry.scene.accelerograms` says
+    :param every: time between two samples [s]; None: that of the file
     :param direction: of the ground's motion, horizontal
     :param scale: factor on the accelerations
-    :param unit: of the accelerations: ``"m/s²"``, ``"g"`` or ``"cm/s²"``; None: m/s², and a record whose peak looks like
-        another unit is refused
+    :param unit: of the accelerations: ``"m/s²"``, ``"g"`` or ``"cm/s²"``; None: what the file says, or else m/s², and a
+        record whose peak looks like another unit is refused
     :param after: time that follows the record [s]
     :param damping: numerical damping constant of the options' kind [-]
     :param massDamping: viscous, of the motion relative to the ground [1/s]
     :param stiffnessDamping: viscous, of the joints [s]; it shortens the time step
     """
+    accelerations, every, scale, unit = byOptions(
+        scene, accelerations, every, scale, unit
+    )
     values, every = readRecord(accelerations, every, scale, unit)
+    doubt = drift(values, every).sentence()
+    if doubt:
+        say(f"note: shake: the record drifts: {doubt}")
     direction = sideways(scene, direction, "shake")
     if scene.args.density_scaling != 1:
         raise Refused("--density-scaling: a scene that is shaken runs in real time")

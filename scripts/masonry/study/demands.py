@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What came out of an incremental dynamic analysis: demands over intensity, and the intensities that a limit needs.
+
+The demand of a row is the amount of one of its measures, for example the largest displacement of a point. Where the structure
+falls the demand is infinite, and it stays so at all higher levels, which are not run. Quantiles over the records at a level
+count infinite demands like others: where more than half of the records have fallen, the median is infinite. Between two levels
+of a record the demand changes evenly, from zero at zero on; between the highest level at which it stood and that at which it
+fell it counts as infinite, which is on the safe side and matters only where records have other levels than each other.
+
+Rows that failed or are missing are left out, and at a level at which fewer than three records are known there is no quantile.
+This module needs no YADE.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+
+import numpy as np
+
+from ..basics import Refused
+from . import fragility
+from .gathering import Folder
+
+QUANTILES = (0.16, 0.5, 0.84)
+
+
+class Demands:
+    """The rows of an incremental dynamic analysis.
+
+    :param record: :class:`masonry.study.records.Record` of its folder
+    :param measure: the column whose amount is the demand; None: the usual one
+    :raises Refused: if there is no such column
+    """
+
+    def __init__(self, record, measure=None):
+        chains = Folder(record.directory).chains
+        self.intensityName = chains.plan["measure"]
+        self.directory = record.directory
+        self.names = [one["name"] for one in chains.plan["records"]]
+        status, fallen = record.cells["status"], record.cells.get("collapsed", [])
+        self.measure = measure or _usual(record)
+        found = np.full(len(record), np.nan)
+        if self.measure:
+            found = abs(record.numbers(self.measure))
+        #: of every record its rows, the lowest level first: intensity and demand, NaN where it is not known
+        self.rows = [([], []) for _ in self.names]
+        #: of every record the level at which the structure fell; infinite: it stood
+        self.fell = [math.inf] * len(self.names)
+        for n in range(len(record)):
+            one, intensity = chains.record(n + 1), chains.intensity(n + 1)
+            collapsed = status[n] == "ended" and fallen[n] == "True"
+            if collapsed:
+                self.fell[one] = min(self.fell[one], intensity)
+            known = status[n] == "ended" and not collapsed
+            self.rows[one][0].append(intensity)
+            self.rows[one][1].append(
+                math.inf if collapsed or status[n] == "above collapse"
+                else found[n] if known else math.nan
+            )  # fmt: skip
+        #: whether a row that has ended has no demand, as those of a scene in which nothing is watched
+        self.stood = [
+            [i for i, n in zip(self.rows[r][0], self._numbers(r)) if status[n] == "ended" and fallen[n] != "True"]
+            for r in range(len(self.names))
+        ]  # fmt: skip
+
+    def _numbers(self, record):
+        """The rows of a record in study.csv, from 0."""
+        each = len(self.rows[record][0])
+        return range(record * each, (record + 1) * each)
+
+    @property
+    def levels(self):
+        """The intensities of all rows, each once, growing."""
+        return sorted({i for intensities, _ in self.rows for i in intensities})
+
+    def at(self, intensity):
+        """The demand of every record at an intensity, NaN where it is not known."""
+        return np.array([_between(*rows, intensity) for rows in self.rows])
+
+    def quantiles(self, intensity, shares=QUANTILES):
+        """Quantiles of the demand over the records at an intensity; NaN where fewer than three records are known."""
+        values = self.at(intensity)
+        values = np.sort(values[~np.isnan(values)])
+        if len(values) < fragility.FEWEST:
+            return [math.nan] * len(shares)
+        return [_quantile(values, share) for share in shares]
+
+    def intervals(self, limit=None):
+        """Of every record that has a row: the highest intensity below the first at which a limit is reached (0: none), and
+        that first one (infinite: none).
+
+        :param limit: of the demand; None: the structure falls
+        """
+        low, high = [], []
+        for (intensities, demands), stood in zip(self.rows, self.stood):
+            below, first, known = 0.0, math.inf, False
+            for intensity, demand in zip(intensities, demands):
+                stands = intensity in stood if limit is None else demand < limit
+                reached = demand == math.inf or limit is not None and demand >= limit
+                known = known or stands or reached
+                if reached:
+                    first = intensity
+                    break
+                if stands:
+                    below = intensity
+            if known:
+                low.append(below)
+                high.append(first)
+        return np.array(low), np.array(high)
+
+    def counts(self, limit=None):
+        """Of every level: the intensity, how many records have reached a limit at or below it, and of how many it is known."""
+        low, high = self.intervals(limit)
+        return [
+            (level, int((high <= level).sum()), int(((high <= level) | (low >= level)).sum()))
+            for level in self.levels
+        ]  # fmt: skip
+
+    def fragility(self, limit=None):
+        """:class:`masonry.study.fragility.Fit` of reaching a limit of the demand; None: of collapse. Raises Refused."""
+        if limit is not None and not self.measure:
+            raise Refused("no fragility of a limit: no row has a demand; scene.watch() records one")  # fmt: skip
+        return fragility.fit(*self.intervals(limit))
+
+
+def _usual(record):
+    """The largest displacement that the shake of a scene found, of the point and along the axis where it is largest; None if
+    nothing was watched."""
+    names = [m for m in record.measures if re.match(r"shake_\d+_largest_.*_mm$", m)]
+    sizes = {name: np.abs(record.numbers(name)) for name in names}
+    sizes = {name: v[np.isfinite(v)].max() for name, v in sizes.items() if np.isfinite(v).any()}  # fmt: skip
+    return max(sizes, key=lambda name: (sizes[name], name)) if sizes else None
+
+
+def _between(intensities, demands, at):
+    """The demand of a record at an intensity; the module says how."""
+    x, y = 0.0, 0.0
+    for intensity, demand in zip(intensities, demands):
+        if intensity == at:
+            return demand
+        if intensity > at:
+            if math.isnan(demand) or math.isinf(demand):
+                return demand
+            return y + (demand - y) * (at - x) / (intensity - x)
+        if math.isinf(demand):
+            return demand
+        x, y = intensity, demand
+    return math.nan
+
+
+def _quantile(values, share):
+    """A quantile of sorted numbers, of which some may be infinite: even between two of them."""
+    place = share * (len(values) - 1)
+    below = int(place)
+    part = place - below
+    if part == 0:
+        return float(values[below])
+    if math.isinf(values[below + 1]):
+        return math.inf
+    return float(values[below] + part * (values[below + 1] - values[below]))

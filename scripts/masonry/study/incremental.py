@@ -1,0 +1,320 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Incremental dynamic analysis: a scene is shaken by records that grow in strength. Here is what is run; what is found is in
+:mod:`masonry.study.demands`.
+
+Rows are in the order of the records, those of a record with growing levels. A record is not run beyond the level at which
+the structure falls: rows above it are ``above collapse``. That is found from the rows that are done whenever it is asked, so
+it does not matter who ran which row, nor in which order.
+"""
+
+from __future__ import annotations
+
+import glob
+import hashlib
+import math
+import os
+import re
+from dataclasses import dataclass
+from typing import Any, Iterable, Sequence
+
+from ..arguments import FilePath, isNumber, listOf, misfits, number, shown
+from ..basics import GRAVITY, Refused
+from ..scene import accelerograms
+from ..scene.ground import UNITS, readRecord
+from ..scene.spectrum import DAMPING, LONGEST, PERIOD, RATIO, SHORTEST
+from ..scene.spectrum import spectralAcceleration
+
+FOLDER = "records"  # in the folder of a study: the records as it read them
+MOST_RECORDS = 1000
+LEVEL = number("", 0, 1000, above=True)
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A measure of the intensity of a record: the peak ground acceleration, or a spectral acceleration, both in g.
+
+    :param period: of the oscillator [s]; None: peak ground acceleration
+    :param damping: of the oscillator, a share of critical damping [-]
+    """
+
+    period: float | None = None
+    damping: float = DAMPING
+
+    @property
+    def name(self) -> str:
+        """As a column of study.csv."""
+        if self.period is None:
+            return "PGA_g"
+        ratio = "" if self.damping == DAMPING else f"_{100 * self.damping:g}%"
+        return f"Sa_{self.period:g}s{ratio}_g"
+
+    def of(self, values: Sequence[float], every: float) -> float:
+        """The measure of a record [g].
+
+        :param values: samples [m/s²]; ``every``: the time between them [s]
+        """
+        if self.period is None:
+            return max(abs(a) for a in values) / GRAVITY
+        return spectralAcceleration(values, every, self.period, self.damping) / GRAVITY
+
+
+def Sa(period: float, damping: float = DAMPING) -> Measure:
+    """Spectral acceleration as the measure of intensity: see :func:`masonry.scene.spectrum.spectralAcceleration`.
+
+    :param period: of the oscillator [s]
+    :param damping: share of critical damping [-]
+    :raises Refused: if one is out of its bounds
+    """
+    problems = misfits("Sa: ", {"period": PERIOD, "damping": RATIO}, {"period": period, "damping": damping})  # fmt: skip
+    if problems:
+        raise Refused("\n".join(problems))
+    return Measure(float(period), float(damping))
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A record that a study has read.
+
+    :param name: its name in the study
+    :param path: of its file
+    :param values: samples [m/s²]; ``every``: the time between two of them [s]
+    :param intensity: the measure of the study [g]
+    """
+
+    name: str
+    path: str
+    values: list[float]
+    every: float
+    intensity: float
+
+    @property
+    def text(self) -> str:
+        """As the folder of the study has it; every digit of the samples is in it."""
+        return accelerograms.written(self.values, self.every, self.name)
+
+    @property
+    def seconds(self) -> float:
+        """How long it is [s]."""
+        return (len(self.values) - 1) * self.every
+
+    def describe(self) -> dict[str, Any]:
+        return {
+            "name": self.name,
+            "sha256": hashlib.sha256(self.text.encode()).hexdigest(),
+            "intensity": self.intensity,
+        }
+
+
+class Incremental:
+    """The records of a study, and how strong they are.
+
+    Parameters are those of :class:`masonry.study.plan.Study`; problems are appended to a list.
+    """
+
+    def __init__(
+        self,
+        records: Any,
+        levels: Any,
+        scales: Any,
+        measure: Any,
+        unit: Any,
+        problems: list[str],
+    ) -> None:
+        self.files = self._files(records, problems)
+        self.levels, self.scales = levels, scales
+        self.measure = Measure() if measure in (None, "PGA") else measure
+        self.unit = unit
+        self._motions: list[Motion] | None = None
+        if not isinstance(self.measure, Measure):
+            problems.append(
+                f'measure {shown(measure)} must be "PGA" or Sa(period), a spectral acceleration, with a period from '
+                f"{SHORTEST:g} to {LONGEST:g} s"
+            )
+        if unit not in (None, *UNITS):
+            problems.append(f"unit {shown(unit)} must be one of {', '.join(UNITS)}")
+        if (levels is None) == (scales is None):
+            problems.append(
+                "give either levels, in g of the measure, or scales, factors on the records"
+            )
+            return
+        name, strengths = ("levels", levels) if scales is None else ("scales", scales)
+        try:
+            strengths = listOf(LEVEL)(strengths)
+        except ValueError as error:
+            problems.append(f"{name}: {error}")
+            return
+        if any(b <= a for a, b in zip(strengths, strengths[1:])):
+            problems.append(f"{name}: {shown(list(strengths))} must grow")
+        setattr(self, name, [float(s) for s in strengths])
+
+    def _files(self, records, problems):
+        if isinstance(records, (str, os.PathLike)):
+            records = [records]
+        if not isinstance(records, (list, tuple)) or not records:
+            problems.append("records: must be a list of files")
+            return []
+        odd = [r for r in records if not isinstance(r, (str, os.PathLike)) or not os.fspath(r)]  # fmt: skip
+        if odd:
+            problems.append(f"records: {shown(odd[0])} must be the name of a file")
+            return []
+        return [os.fspath(r) for r in records]
+
+    @property
+    def steps(self) -> int:
+        """How many levels there are."""
+        return len(self.levels if self.scales is None else self.scales)
+
+    def read(self, near: FilePath) -> list[Motion]:
+        """The records, read when they are first asked for. Raises Refused with all problems.
+
+        :param near: folder from which paths that are not absolute begin
+        """
+        if self._motions is None:
+            problems: list[str] = []
+            motions: list[Motion] = []
+            for path in self._paths(near, problems):
+                try:
+                    motions.append(self._motion(path, motions))
+                except Refused as refused:
+                    problems.append(str(refused))
+            if len(motions) > MOST_RECORDS:
+                problems.append(f"records: {len(motions)}, there must be at most {MOST_RECORDS}")  # fmt: skip
+            if problems:
+                raise Refused("study: " + "\n  ".join(problems))
+            self._motions = motions
+        return self._motions
+
+    def _paths(self, near, problems):
+        found = []
+        for pattern in self.files:
+            path = os.path.join(near, pattern)
+            several = sorted(glob.glob(path)) if re.search(r"[*?[]", pattern) and not os.path.exists(path) else [path]  # fmt: skip
+            if not several:
+                problems.append(f"records: no file {path}")
+            found += several
+        twice = sorted({p for p in found if found.count(p) > 1})
+        if twice:
+            problems.append(f"records: {', '.join(twice)} is given twice")
+        return found
+
+    def _motion(self, path, before):
+        try:
+            # what a file says itself needs no unit, and what it says counts
+            unit = None if accelerograms.read(path).unit else self.unit
+            values, every = readRecord(path, None, 1.0, unit)
+        except Refused as refused:
+            raise Refused(str(refused).removeprefix("shake: ")) from None
+        stem = os.path.splitext(os.path.basename(path))[0]
+        stem = re.sub(r"[^A-Za-z0-9_-]+", "_", stem)[:60] or "record"
+        name, count, names = stem, 1, {motion.name.lower() for motion in before}
+        while name.lower() in names:
+            count += 1
+            name = f"{stem}_{count}"
+        intensity = self.measure.of(values, every)
+        if not (intensity > 0 and math.isfinite(intensity)):
+            raise Refused(f"{path}: its {self.measure.name} is {intensity:g}, it must be above 0")  # fmt: skip
+        return Motion(name, path, values, every, intensity)
+
+    def rows(self) -> list[tuple[Motion, float]]:
+        """What every row is shaken by, in turn: a record and the factor on it [-]. The records must have been read."""
+        if self._motions is None:
+            raise Refused("study: its records have not been read")
+        if self.scales is not None:
+            return [(motion, s) for motion in self._motions for s in self.scales]
+        return [(m, level / m.intensity) for m in self._motions for level in self.levels]  # fmt: skip
+
+    def describe(self) -> dict[str, Any]:
+        """As study.json has it. The records must have been read."""
+        return {
+            "records": [motion.describe() for motion in self._motions or []],
+            "measure": self.measure.name,
+            "levels": self.levels,
+            "scales": self.scales,
+        }
+
+    def doubts(self) -> list[str]:
+        """Sentences on records that drift."""
+        found = []
+        for motion in self._motions or []:
+            doubt = accelerograms.drift(motion.values, motion.every).sentence()
+            if doubt:
+                found.append(f"note: the record {motion.name} drifts: {doubt}")
+        return found
+
+
+class Chains:
+    """Which rows of a study go on from each other: those of one record, with growing levels.
+
+    :param study: the description of a study, of study.json. Without records every row stands alone
+    """
+
+    def __init__(self, study: dict[str, Any]) -> None:
+        plan = study.get("ida")
+        self.plan = plan
+        self.runs = study["runs"]
+        self.each = 1
+        if plan:
+            self.each = len(plan["levels"] or plan["scales"])
+
+    def record(self, number: int) -> int:
+        """The number of the record of a row, from 0."""
+        return (number - 1) // self.each
+
+    def lower(self, number: int) -> range:
+        """The rows of the same record below a row, the lowest first."""
+        return range(self.record(number) * self.each + 1, number)
+
+    def higher(self, number: int) -> range:
+        """Those above it, the lowest first."""
+        return range(number + 1, (self.record(number) + 1) * self.each + 1)
+
+    def lowest(self, numbers: Iterable[int]) -> set[int]:
+        """The lowest of some rows, of every record."""
+        found: dict[int, int] = {}
+        for number in sorted(numbers):
+            found.setdefault(self.record(number), number)
+        return set(found.values())
+
+    def intensity(self, number: int) -> float:
+        """The measure of a row [g]."""
+        record, level = divmod(number - 1, self.each)
+        if self.plan["levels"]:
+            return float(self.plan["levels"][level])
+        return float(self.plan["scales"][level] * self.plan["records"][record]["intensity"])  # fmt: skip
+
+
+def isPlan(plan: Any, runs: int) -> bool:
+    """Whether the entry ``ida`` of study.json is of the form that :meth:`Incremental.describe` gives it."""
+    if not isinstance(plan, dict) or plan.keys() != {"records", "measure", "levels", "scales"}:  # fmt: skip
+        return False
+    records, strengths = plan["records"], plan["levels"] or plan["scales"]
+    return (
+        isinstance(plan["measure"], str)
+        and isinstance(strengths, list)
+        and bool(strengths)
+        and all(map(isNumber, strengths))
+        and isinstance(records, list)
+        and len(records) * len(strengths) == runs
+        and all(
+            isinstance(one, dict)
+            and isinstance(one.get("name"), str)
+            and re.fullmatch(r"[A-Za-z0-9_-]+", one["name"])
+            and isinstance(one.get("sha256"), str)
+            and isNumber(one.get("intensity"))
+            for one in records
+        )
+    )
+
+
+def shaken(run: dict[str, Any]) -> bool:
+    """Whether a run came to a shake: what falls under its own weight before does not."""
+    stages = run.get("stages")
+    return isinstance(stages, list) and any(isinstance(s, dict) and s.get("stage") == "shake" for s in stages)  # fmt: skip
+
+
+def fell(run: dict[str, Any] | None) -> bool:
+    """Whether a structure fell when it was shaken, or after it.
+
+    :param run: run.json of a row that has ended, or None
+    """
+    return bool(run and run.get("collapsed") and shaken(run))

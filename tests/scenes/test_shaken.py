@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Scenes that are shaken: the record and its strength from the command line, and what a run says of a record."""
+
+import math
+
+import pytest
+
+from masonry import Scene, bricks, materials
+from masonry.scene import accelerograms
+
+EVERY = 0.005
+RECORD = [3 * math.sin(0.6 * n) * math.sin(math.pi * n / 60) for n in range(61)]
+
+
+def shaken(folder, *words, **settings):
+    """A block on a dry joint that is shaken: what its columns hold."""
+    words = ["--lean", "--out", str(folder), *words]
+    scene = Scene("block", bricks.stack(1, (0.3, 0.3, 0.3)), materials.dry(0.2, normalStiffness=1e10), arguments=words)  # fmt: skip
+    scene.platen("bottom")
+    scene.watch((0, 0, 0.3), name="top")
+    scene.settle()
+    scene.shake(**{"accelerations": RECORD, "every": EVERY, **settings})
+    scene.finish()
+    return scene.results.column("top_x_mm")
+
+
+@pytest.fixture
+def peer(tmp_path):
+    """A record of the format of PEER that is twice as strong as RECORD, in g."""
+    lines = ["PEER", "none", "ACCELERATION TIME SERIES IN UNITS OF G", f"NPTS= {len(RECORD)}, DT= {EVERY} SEC"]  # fmt: skip
+    path = tmp_path / "strong.AT2"
+    path.write_text("\n".join(lines + [repr(2 * a / 9.81) for a in RECORD]))
+    return str(path)
+
+
+def test_a_file_shakes_as_the_list_that_it_holds(tmp_path, peer):
+    strong = [9.81 * (2 * a / 9.81) for a in RECORD]
+    listed = shaken(tmp_path / "a", accelerations=strong)
+    assert shaken(tmp_path / "b", accelerations=peer, every=None) == listed
+    assert max(map(abs, listed)) > 0.3
+
+
+def test_the_command_line_replaces_the_record_with_its_factor_and_unit(tmp_path, peer):
+    listed = shaken(tmp_path / "a", accelerations=peer, every=None)
+    one = shaken(tmp_path / "b", "--record", peer, unit="cm/s²", scale=100)
+    assert one == listed
+    half = shaken(tmp_path / "c", "--record", peer, "--scale", "0.5", scale=100)
+    assert half == shaken(tmp_path / "d", accelerations=peer, every=None, scale=0.5)
+    assert half != listed
+    # and without another record the scale is that of the scene's own
+    weaker = shaken(tmp_path / "e", "--scale", "0.5", scale=2)
+    assert weaker == shaken(tmp_path / "f")
+
+
+def test_a_record_of_the_command_line_that_is_wrong_is_refused_before_the_run(tmp_path):
+    path = tmp_path / "short.AT2"
+    path.write_text("ACCELERATION IN UNITS OF G\nNPTS= 5, DT= 0.01 SEC\n0.1 0.2\n")
+    with pytest.raises(SystemExit) as end:
+        shaken(tmp_path / "a", "--record", str(path))
+    assert end.value.code == 2
+
+
+def test_only_the_first_shake_is_replaced_and_a_scene_that_is_not_shaken_says_so(tmp_path, peer, capsys):  # fmt: skip
+    words = ["--lean", "--out", str(tmp_path / "a"), "--scale", "0"]
+    scene = Scene("block", bricks.stack(1, (0.3, 0.3, 0.3)), materials.dry(0.2), arguments=words)  # fmt: skip
+    scene.platen("bottom")
+    scene.watch((0, 0, 0.3), name="top")
+    scene.settle()
+    largest = lambda: [a["value"] for a in scene.answers if a["name"] == "largest_displacement_of_top_x"][-1]  # fmt: skip
+    scene.shake(RECORD, EVERY)
+    assert abs(largest()) < 1e-6
+    scene.shake(RECORD, EVERY)
+    assert abs(largest()) > 0.01
+    scene.finish()
+    words = ["--lean", "--out", str(tmp_path / "b"), "--record", peer]
+    scene = Scene("block", bricks.stack(1, (0.3, 0.3, 0.3)), materials.dry(0.2), arguments=words)  # fmt: skip
+    scene.platen("bottom")
+    scene.settle()
+    assert "not used" not in capsys.readouterr().out
+    scene.finish()
+    assert "--record was not used: the scene was not shaken" in capsys.readouterr().out
+
+
+def test_a_record_that_drifts_is_named_with_its_numbers(tmp_path, capsys):
+    shaken(tmp_path / "a", accelerations=[2.0] * 21)
+    said = capsys.readouterr().out
+    assert "note: shake: the record drifts: its velocity at the end is 0.2 m/s, 100 % of its largest" in said  # fmt: skip
+    rest = lambda t: math.sin(math.pi * t) ** 4 * math.sin(8 * math.pi * t) / 200
+    h = 0.005
+    quiet = [(rest(n * h - h) - 2 * rest(n * h) + rest(n * h + h)) / h**2 for n in range(201)]  # fmt: skip
+    assert accelerograms.drift(quiet, h).sentence() is None
+    shaken(tmp_path / "b", accelerations=quiet)
+    assert "record drifts" not in capsys.readouterr().out

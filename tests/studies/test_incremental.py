@@ -1,0 +1,501 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Incremental dynamic analysis: which rows are run, what they find beside closed forms, and what is said of them."""
+
+import csv
+import hashlib
+import json
+import math
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import cluster
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as some
+
+from masonry.basics import Refused
+from masonry.read import drawing
+from masonry.study import Sa, Study, report, uniform
+from masonry.study.demands import Demands, _between, _quantile
+from masonry.study.gathering import Folder
+from masonry.study.incremental import Chains
+from masonry.study.records import Record
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROCKING = os.path.join(HERE, "rocking.py")
+LEVELS = [0.2, 0.36, 0.6, 0.9]  # [g]
+PULSES = {"long": 0.4, "middle": 0.2, "short": 0.1}  # [s]
+COMMAND = [sys.executable, "-m", "masonry.study"]
+
+
+def pulse(path, seconds, peak=0.5):
+    """A file of a rectangular pulse [g] with a rise and a fall of a millisecond."""
+    n = round(seconds / 1e-3)
+    path.write_text("# unit: g\n# every: 0.001 s\n" + "".join(f"{a}\n" for a in [0] + [peak] * n + [0, 0]))  # fmt: skip
+    return str(path)
+
+
+def write(folder, **changes):
+    """The file of a study of the rocking block, and its records."""
+    for name, seconds in PULSES.items():
+        pulse(folder / f"{name}.txt", seconds)
+    said = dict(design="ida", records=["*.txt"], levels=LEVELS, options={"checkpoint_every": 0.002})  # fmt: skip
+    words = ", ".join(f"{n}={v!r}" for n, v in {**said, **changes}.items())
+    path = folder / "study.py"
+    path.write_text(f"from masonry.study import *\nstudy = Study({ROCKING!r}, {words})\n")  # fmt: skip
+    return path
+
+
+def study(*words):
+    return subprocess.run([*COMMAND, *map(str, words)], capture_output=True, text=True)
+
+
+def rows(out):
+    return [*csv.DictReader((out / "study.csv").read_text().splitlines())]
+
+
+# -- the whole, beside Housner ----------------------------------------------------------------------------------------
+
+
+def housner(seconds, level):
+    """Largest rotation over the slope of a slender block under a rectangular pulse, and whether it falls: G. W. Housner,
+    "The behavior of inverted pendulum structures during earthquakes", Bulletin of the Seismological Society of
+    America 53 (1963), where cosh(pt) = 1 + 1/(2 r (r - 1)) with r = a/(gα) is the limit.
+    """
+    slope, radius = 0.25, math.hypot(0.125, 0.5)
+    p = math.sqrt(3 * 9.81 / (4 * radius))
+    beyond = level / slope - 1
+    if beyond <= 0:
+        return 0.0, False
+    rise, sinh = math.cosh(p * seconds) - 1, math.sinh(p * seconds)
+    rest = (1 - beyond * rise) ** 2 - (beyond * sinh) ** 2
+    falls = 2 * beyond * (beyond + 1) * rise >= 1
+    return (math.inf if falls else 1 - math.sqrt(rest)), falls
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A study that was not disturbed: its folder, and what it said."""
+    folder = tmp_path_factory.mktemp("whole")
+    done = study(write(folder), "--out", folder / "out", "--jobs", 2)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return folder / "out", done.stdout
+
+
+@pytest.mark.xdist_group("whole")
+def test_a_block_falls_at_the_levels_of_housner_and_no_row_above_is_run(whole):
+    out, said = whole
+    assert "3 above collapse, 9 ended" in said
+    found, expected = rows(out), []
+    assert [row["record"] for row in found] == [n for n in PULSES for _ in LEVELS]
+    for seconds in PULSES.values():
+        fallen = False
+        for level in LEVELS:
+            expected.append("above collapse" if fallen else "ended")
+            fallen = fallen or housner(seconds, level)[1]
+    assert [row["status"] for row in found] == expected
+    for row, level in zip(found, LEVELS * 3):
+        assert float(row["PGA_g"]) == level
+        assert float(row["scale"]) == pytest.approx(level / 0.5)
+        if row["status"] == "ended":
+            assert (row["collapsed"] == "True") == housner(PULSES[row["record"]], level)[1]  # fmt: skip
+        else:
+            assert row["collapsed"] == row["shake_2_largest_displacement_of_corner_x_mm"] == ""  # fmt: skip
+            assert not (out / "rows" / row["run"]).exists()
+    assert len((out / "ended.txt").read_text().split()) == 9
+
+
+@pytest.mark.xdist_group("whole")
+def test_rotations_are_those_of_housner(whole):
+    """His equations are for small slopes; that of this block is 0.25, whose square is 6 %. Joints add about a millimetre."""
+    compared = 0
+    for row, level in zip(rows(whole[0]), LEVELS * 3):
+        share, falls = housner(PULSES[row["record"]], level)
+        if row["status"] != "ended" or falls:
+            continue
+        found = 1e-3 * float(row["shake_2_largest_displacement_of_corner_x_mm"])
+        if share:
+            assert abs(found) == pytest.approx(0.25 * share, rel=0.06, abs=1.5e-3)
+            compared += 1
+        else:
+            assert abs(found) < 1e-3  # of the joint, elastic
+    assert compared == 3
+
+
+@pytest.mark.xdist_group("whole")
+def test_the_report_has_curves_and_a_fragility(whole, capsys):
+    out, _ = whole
+    assert report.main([str(out), "--demand", "0.5"]) == 0
+    said = capsys.readouterr().out
+    assert "incremental dynamic analysis of 3 records; the intensity is PGA [g]" in said
+    assert "where the structure falls, and above, it is infinite" in said
+    assert "of 3 of 3 records" in said and "median [g]" in said
+    assert "rows that have not ended: 3 above collapse" in said
+    for name in ("ida.png", "fragility.png"):
+        assert (out / name).stat().st_size > 20_000
+    assert report.main([str(out), "--limit", "30", "--no-pictures"]) == 0
+    said = capsys.readouterr().out
+    assert "shake 2 largest displacement of corner x [mm] reaches 30" in said
+    for words in (["--limit", "-1"], ["--limit", "1,2"], ["--demand", "0"], ["--cheap", "x"]):  # fmt: skip
+        assert report.main([str(out), *words]) == 2
+    assert report.main([str(out), "--measure", "height_m"]) == 2
+
+
+@pytest.mark.xdist_group("whole")
+def test_a_study_that_is_done_runs_nothing_and_compares_its_records(whole, tmp_path):
+    out, _ = whole
+    before = (out / "study.csv").read_bytes()
+    done = study(out.parent / "study.py", "--out", out)
+    assert done.returncode == 0 and (out / "study.csv").read_bytes() == before
+    assert len((out / "ended.txt").read_text().split()) == 9
+    shutil.copytree(out, tmp_path / "out")
+    record = tmp_path / "out" / "records" / "long.txt"
+    record.write_text(record.read_text() + "0.0\n")
+    done = study(out.parent / "study.py", "--out", tmp_path / "out")
+    assert done.returncode == 2
+    assert "long.txt is not the record that the study reads; remove it" in done.stderr
+    os.remove(record)
+    assert study(out.parent / "study.py", "--out", tmp_path / "out").returncode == 0
+    assert record.read_bytes() == (out / "records" / "long.txt").read_bytes()
+    pulse(tmp_path / "other.txt", 0.3)
+    other = write(tmp_path, records=["long.txt", "middle.txt", "other.txt"])
+    done = study(other, "--out", tmp_path / "out")
+    assert done.returncode == 2 and "holds another study" in done.stderr
+
+
+@pytest.mark.xdist_group("whole")
+def test_interruptions_and_the_order_of_rows_change_no_number(whole, tmp_path):
+    """A row above a collapse is run first, by hand; then the study is killed, and interrupted, and goes on."""
+    path, out = write(tmp_path), tmp_path / "out"
+    assert study(path, "--out", out, "--prepare").returncode == 0
+    row = [sys.executable, "-P", "-m", "masonry.study.row", "--scene", ROCKING, out]
+    assert subprocess.run([*map(str, row), "4"], capture_output=True).returncode == 0
+    assert (out / "rows" / "0004" / "run.json").exists()
+    folder = Folder(out)
+    for number in (signal.SIGKILL, signal.SIGINT):
+        while any(map(folder.isHeld, range(1, 13))):
+            time.sleep(0.05)  # rows of a study that was killed are asked to stop
+        process = subprocess.Popen([*COMMAND, path, "--out", out], stdout=subprocess.PIPE, stderr=subprocess.STDOUT)  # fmt: skip
+        seen = len([*out.glob("rows/*/curve.csv")])
+        while process.poll() is None and len([*out.glob("rows/*/curve.csv")]) == seen:
+            time.sleep(0.02)
+        process.send_signal(number)
+        process.communicate(timeout=60)
+        assert process.returncode in (-9, 130, 0)
+    done = study(path, "--out", out)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert (out / "study.csv").read_bytes() == (whole[0] / "study.csv").read_bytes()
+
+
+@pytest.mark.xdist_group("whole")
+def test_a_task_of_slurm_runs_the_levels_of_a_record(whole, tmp_path):
+    if cluster.missing():
+        pytest.skip("slurm-wlm and munge are not installed")
+    path, out = write(tmp_path), tmp_path / "out"
+    with cluster.cluster(tasks=4) as env:
+        run = lambda *words: subprocess.run([*map(str, words)], capture_output=True, text=True, env=env)  # fmt: skip
+        done = run(*COMMAND, path, "--out", out, "--slurm", "--partition=walls")
+        assert done.returncode == 0, done.stderr
+        script = (out / "slurm.sh").read_text()
+        assert "#SBATCH --array=0-2" in script and "rows=(1 5 9)" in script
+        end = time.monotonic() + 300
+        while run("squeue", "--noheader").stdout:
+            assert time.monotonic() < end
+            time.sleep(0.1)
+        done = run(*COMMAND, "--out", out, "--gather")
+        assert done.returncode == 0, done.stdout + done.stderr
+    assert (out / "study.csv").read_bytes() == (whole[0] / "study.csv").read_bytes()
+    assert len((out / "ended.txt").read_text().split()) == 9
+
+
+# -- what is planned --------------------------------------------------------------------------------------------------
+
+
+def planned(tmp_path, **changes):
+    for name, seconds in PULSES.items():
+        pulse(tmp_path / f"{name}.txt", seconds)
+    said = dict(design="ida", records=["*.txt"], levels=LEVELS)
+    made = Study("any", **{**said, **changes})
+    made.read(tmp_path)
+    return made
+
+
+def test_levels_scale_every_record_and_scales_leave_them(tmp_path):
+    found = planned(tmp_path).rows()
+    assert [(r["record"], r["scale"]) for r in found[:5]] == [
+        *(("records/long.txt", pytest.approx(level / 0.5)) for level in LEVELS),
+        ("records/middle.txt", pytest.approx(0.4)),
+    ]
+    found = planned(tmp_path, levels=None, scales=[1, 2.5]).rows()
+    assert [r["scale"] for r in found] == [1.0, 2.5] * 3
+
+
+def test_a_spectral_acceleration_is_reached_by_every_record(tmp_path):
+    made = planned(tmp_path, measure=Sa(0.5))
+    from masonry.scene.spectrum import spectralAcceleration
+
+    for (motion, scale), level in zip(made.ida.rows(), LEVELS * 3):
+        scaled = [scale * a for a in motion.values]
+        assert spectralAcceleration(scaled, motion.every, 0.5) == pytest.approx(9.81 * level)  # fmt: skip
+    assert made.describe()["ida"]["measure"] == "Sa_0.5s_g"
+    assert Sa(0.5, 0.02).name == "Sa_0.5s_2%_g"
+
+
+def test_what_varies_beside_is_drawn_once_for_every_record(tmp_path):
+    pytest.importorskip("openturns", reason="python3-openturns is not installed")
+    found = planned(tmp_path, vary={"bed.friction": uniform(0.4, 0.8)}, seed=3).rows()
+    values = [row["bed.friction"] for row in found]
+    assert len(set(values)) == 3
+    assert all(len(set(values[n : n + 4])) == 1 for n in (0, 4, 8))
+    again = planned(tmp_path, vary={"bed.friction": uniform(0.4, 0.8)}, seed=3)
+    assert again.rows() == found
+
+
+def test_records_of_one_name_are_named_apart(tmp_path):
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        pulse(tmp_path / folder / "el centro.txt", 0.1)
+    made = planned(tmp_path, records=["a/el centro.txt", "b/el centro.txt"])
+    assert [m.name for m in made.ida.read("")] == ["el_centro", "el_centro_2"]
+
+
+@pytest.mark.parametrize(
+    "changes, message",
+    [
+        (dict(levels=None), "give either levels, in g of the measure, or scales"),
+        (dict(scales=[1]), "give either levels, in g of the measure, or scales"),
+        (dict(levels=[0.2, 0.2]), r"levels: \[0.2, 0.2\] must grow"),
+        (dict(levels=[0.0, 0.2]), r"levels: .* 0.0 must be above 0"),
+        (dict(levels=[]), "levels: .* must be a list with at least 1 value"),
+        (dict(levels=0.3), "levels: 0.3 must be a list"),
+        (dict(records=[]), "records: must be a list of files"),
+        (dict(records=[3]), "records: 3 must be the name of a file"),
+        (dict(measure="PGV"), 'measure \'PGV\' must be "PGA" or Sa'),
+        (dict(unit="furlong"), "unit 'furlong' must be one of m/s², g, cm/s²"),
+        (dict(runs=12), "runs 12: there are as many as records times levels"),
+        (dict(options={"record": "x"}), "record: it is what an incremental analysis varies"),
+        (dict(vary={"scale": [1, 2]}), "scale: it is what an incremental analysis varies"),
+        (dict(design="random", vary={"rate": [1]}, runs=1), 'levels: only a study with design="ida" has it'),
+        (dict(records=["none*.AT2"]), "records: no file .*none"),
+        (dict(records=["none.AT2"]), "cannot read .*none.AT2: No such file"),
+        (dict(records=["long.txt", "long.txt"]), "long.txt is given twice"),
+        (dict(records=["flat.dat"]), "flat.dat: its PGA_g is 0, it must be above 0"),
+        (dict(records=["weak.dat"]), "the peak of the record is 0.4, .* is it in g"),
+        (dict(records=["odd.dat", "flat.dat"]), "(?s)odd.dat, line 2: 'x' is not a number.*flat.dat"),
+    ],
+)  # fmt: skip
+def test_a_plan_that_cannot_be_is_refused(tmp_path, changes, message):
+    (tmp_path / "flat.dat").write_text("# unit: g\n0 0\n0.01 0\n")
+    (tmp_path / "weak.dat").write_text("0 0\n0.01 0.4\n")
+    (tmp_path / "odd.dat").write_text("0 0\n0.01 x\n")
+    with pytest.raises(Refused, match=message):
+        planned(tmp_path, **changes)
+
+
+def test_the_unit_of_a_study_is_for_files_that_do_not_say_theirs(tmp_path):
+    (tmp_path / "weak.dat").write_text("0 0\n0.01 0.4\n")
+    made = planned(tmp_path, records=["weak.dat", "long.txt"], unit="g")
+    assert [m.intensity for m in made.ida.read("")] == pytest.approx([0.4, 0.5])
+
+
+@pytest.mark.parametrize("period, damping, message", [
+    (0, 0.05, "Sa: period 0 s must be at least 0.01"),
+    (1, 1, "Sa: damping 1 must be at least 0 and below 1"),
+])  # fmt: skip
+def test_a_spectral_acceleration_that_cannot_be_is_refused(period, damping, message):
+    with pytest.raises(Refused, match=message):
+        Sa(period, damping)
+
+
+def test_rows_of_one_record_follow_each_other():
+    plan = {"levels": [1, 2, 3], "scales": None, "records": [{}, {}], "measure": "PGA_g"}  # fmt: skip
+    chains = Chains({"runs": 6, "ida": plan})
+    assert [*chains.lower(6)] == [4, 5] and [*chains.higher(4)] == [5, 6]
+    assert [*chains.lower(4)] == [*chains.higher(3)] == []
+    assert chains.lowest({2, 3, 5, 6}) == {2, 5}
+    alone = Chains({"runs": 6})
+    assert alone.lowest({2, 3, 5}) == {2, 3, 5} and [*alone.higher(2)] == []
+
+
+def test_a_scene_that_is_not_shaken_gives_no_data(tmp_path):
+    """A run that ended without a shake is no row of an analysis: it is counted as failed, with the reason."""
+    out = fake(tmp_path, [0.3, 0.6], ["a"], {}, shaken=False)
+    folder = Folder(out)
+    assert [folder.status(n) for n in (1, 2)] == ["failed", "missing"]
+
+
+def test_a_row_refuses_a_record_that_was_cut_off(tmp_path):
+    out = fake(tmp_path, [0.3, 0.6], ["a"], {})
+    (tmp_path / "fake" / "table.txt").write_text("description lean record scale\n0001 True 'records/a.txt' 1.0\n0002 True 'records/a.txt' 2.0\n")  # fmt: skip
+    (tmp_path / "fake" / "records").mkdir()
+    (tmp_path / "fake" / "records" / "a.txt").write_text("# unit: g\n# every: 0.01 s\n0\n0.5\n")  # fmt: skip
+    scene = tmp_path / "x.py"
+    scene.write_text("raise SystemExit(3)\n")
+    path = tmp_path / "fake" / "study.json"
+    record = json.loads(path.read_text())
+    record["scene_sha256"] = hashlib.sha256(scene.read_bytes()).hexdigest()
+    path.write_text(json.dumps(record))
+    done = subprocess.run([sys.executable, "-P", "-m", "masonry.study.row", "--scene", str(scene), out, "1"], capture_output=True, text=True)  # fmt: skip
+    assert done.returncode == 2
+    assert "a.txt is not the record with which the study began" in done.stderr
+
+
+# -- what is found ----------------------------------------------------------------------------------------------------
+
+
+def fake(tmp_path, levels, names, found, shaken=True):
+    """A folder of a study as rows leave it.
+
+    :param found: dict of the number of a row -> demand; infinite: it fell; None: it failed
+    """
+    out = tmp_path / "fake"
+    (out / "rows").mkdir(parents=True)
+    plan = {
+        "records": [{"name": n, "sha256": "", "intensity": 0.5} for n in names],
+        "measure": "PGA_g",
+        "levels": levels,
+        "scales": None,
+    }
+    runs = len(levels) * len(names)
+    record = {"options": {}, "vary": {}, "runs": runs, "design": "ida", "ida": plan}
+    (out / "study.json").write_text(json.dumps({"study": record, "script": "x.py"}))
+    heads, lines = ["run", "record", "scale", "PGA_g", "status", "collapsed", "shake_2_largest_displacement_of_top_x_mm"], []  # fmt: skip
+    if not shaken:
+        (out / "rows" / "0001").mkdir()
+        (out / "rows" / "0001" / "run.json").write_text(json.dumps({"interrupted": False, "collapsed": True, "stages": [{"stage": "settle"}]}))  # fmt: skip
+    for r, name in enumerate(names):
+        fell = False
+        for k, level in enumerate(levels):
+            number = r * len(levels) + k + 1
+            value = found.get(number)
+            status = "above collapse" if fell else "failed" if value is None else "ended"  # fmt: skip
+            fell = fell or value == math.inf
+            known = status == "ended"
+            lines.append([f"{number:04d}", name, "1.0", str(level), status, str(value == math.inf) if known else "", "1e4" if value == math.inf else str(-value) if known else ""])  # fmt: skip
+    text = "\n".join(",".join(line) for line in [heads, *lines]) + "\n"
+    (out / "study.csv").write_text(text)
+    return str(out)
+
+
+def test_collapse_counts_as_an_infinite_demand(tmp_path):
+    inf = math.inf
+    found = {1: 1.0, 2: 4.0, 3: inf, 4: 2.0, 5: inf, 7: 3.0, 8: 6.0, 9: 12.0}
+    out = fake(tmp_path, [0.3, 0.6, 0.9], ["a", "b", "c"], found)
+    demands = Demands(Record(out))
+    assert demands.quantiles(0.3) == pytest.approx([1.32, 2.0, 2.68])
+    assert demands.quantiles(0.6) == [pytest.approx(4.64), 6.0, inf]
+    assert demands.quantiles(0.9) == [inf, inf, inf]  # 12, infinite, infinite
+    assert demands.quantiles(0.9, [0.0]) == [12.0]
+    low, high = demands.intervals()
+    assert low.tolist() == [0.6, 0.3, 0.9] and high.tolist() == [0.9, 0.6, inf]
+    assert demands.counts() == [(0.3, 0, 3), (0.6, 1, 3), (0.9, 2, 3)]
+    low, high = demands.intervals(limit=3.0)
+    assert low.tolist() == [0.3, 0.3, 0.0] and high.tolist() == [0.6, 0.6, 0.3]
+    assert demands.fell == [0.9, 0.6, inf]
+
+
+def test_rows_that_failed_make_intervals_wider(tmp_path):
+    inf = math.inf
+    found = {1: 1.0, 3: inf, 5: 2.0, 6: 5.0, 7: 1.0, 8: 2.0, 9: inf}
+    out = fake(tmp_path, [0.3, 0.6, 0.9], ["a", "b", "c", "d"], found)
+    demands = Demands(Record(out))
+    low, high = demands.intervals()
+    assert low.tolist() == [0.3, 0.9, 0.6] and high.tolist() == [0.9, inf, 0.9]
+    assert demands.counts() == [(0.3, 0, 3), (0.6, 0, 2), (0.9, 2, 3)]
+    assert math.isnan(demands.quantiles(0.3)[1])  # two records are known
+    assert report.main([out, "--no-pictures"]) == 0
+
+
+@pytest.mark.parametrize(
+    "found, message",
+    [
+        ({n: 1.0 for n in range(1, 10)}, "at none of the 3 records is the limit reached; add higher levels"),
+        ({1: math.inf, 4: math.inf, 7: math.inf}, "at all 3 records the limit is reached at the lowest level"),
+        ({1: 1.0, 2: 2.0, 4: 1.0, 5: math.inf}, "needs 3 records or more, there are 2"),
+        ({}, "needs 3 records or more, there are 0"),
+    ],
+)  # fmt: skip
+def test_a_report_says_in_a_sentence_what_it_cannot_find(tmp_path, capsys, found, message):  # fmt: skip
+    out = fake(tmp_path, [0.3, 0.6, 0.9], ["a", "b", "c"], found)
+    assert report.main([out]) == 0
+    said = capsys.readouterr().out
+    assert message in said and "median" not in said
+    assert f"no fragility.png: " in said
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """Figures that would be saved, by the name of their file."""
+    found = {}
+    save = lambda figure, path, dpi: found.update({os.path.basename(path): figure})
+    monkeypatch.setattr(drawing, "save", save)
+    return found
+
+
+def lines(figure):
+    return {line.get_label(): line for line in figure.axes[0].lines}
+
+
+def test_a_quantile_is_drawn_until_it_is_infinite(tmp_path, drawn):
+    inf = math.inf
+    found = {1: 1.0, 2: 4.0, 3: inf, 4: 2.0, 5: inf, 7: 3.0, 8: 6.0, 9: 12.0}
+    out = fake(tmp_path, [0.3, 0.6, 0.9], ["a", "b", "c"], found)
+    assert report.main([out]) == 0
+    axis = drawn["ida.png"].axes[0]
+    median = lines(drawn["ida.png"])["50 %"]
+    assert median.get_xdata() == pytest.approx([0, 2, 6])
+    assert median.get_ydata() == pytest.approx([0, 0.3, 0.6])
+    assert lines(drawn["ida.png"])["84 %"].get_xdata() == pytest.approx([0, 2.68])
+    right = axis.get_xlim()[1]
+    flat = [line.get_ydata()[0] for line in axis.lines if list(line.get_xdata())[-1:] == [right]]  # fmt: skip
+    # two records fall, at 0.9 and 0.6 g, and three quantiles become infinite, at 0.9, 0.9 and 0.6 g
+    assert sorted(flat) == [0.6, 0.6, 0.9, 0.9, 0.9]
+    assert axis.get_xlabel() == "shake 2 largest displacement of top x [mm]"
+    assert axis.get_ylabel() == "PGA [g]"
+
+
+def test_a_fitted_fragility_is_drawn_with_its_band_and_the_shares(tmp_path, drawn):
+    inf = math.inf
+    found = {1: 1.0, 2: 4.0, 3: inf, 4: 2.0, 5: inf, 7: 3.0, 8: 6.0, 9: 12.0}
+    out = fake(tmp_path, [0.3, 0.6, 0.9], ["a", "b", "c"], found)
+    fit = Demands(Record(out)).fragility()
+    assert report.main([out]) == 0
+    found = lines(drawn["fragility.png"])
+    assert found["share of 3 records"].get_ydata() == pytest.approx([0, 1 / 3, 2 / 3])
+    curve = next(line for label, line in found.items() if label.startswith("lognormal"))
+    x, y = curve.get_data()
+    assert np.interp(fit.median.value, x, y) == pytest.approx(0.5, abs=0.01)
+    assert (np.diff(y) > 0).all()
+    band = drawn["fragility.png"].axes[0].collections[0].get_paths()[0].vertices
+    assert band[:, 1].min() >= 0 and band[:, 1].max() <= 1
+
+
+@given(
+    values=some.lists(
+        some.one_of(some.floats(0, 1e6), some.just(math.inf)), min_size=1, max_size=9
+    ),
+    share=some.floats(0, 1),
+)
+@settings(max_examples=100)
+def test_quantiles_are_those_of_numpy_where_all_is_finite(values, share):
+    values = np.sort(values)
+    found = _quantile(values, share)
+    finite = values[np.isfinite(values)]
+    if len(finite) == len(values):
+        assert found == pytest.approx(np.quantile(values, share), rel=1e-9, abs=1e-9)
+    elif share * (len(values) - 1) <= len(finite) - 1:
+        assert found == pytest.approx(np.interp(share * (len(values) - 1), range(len(finite)), finite))  # fmt: skip
+    else:
+        assert found == math.inf
+
+
+def test_between_levels_a_demand_changes_evenly_and_above_the_last_it_is_unknown():
+    at = lambda x: _between([0.2, 0.6, 1.0], [1.0, 5.0, math.inf], x)
+    assert [at(0.1), at(0.2), at(0.4), at(0.6)] == pytest.approx([0.5, 1, 3, 5])
+    assert at(0.7) == at(1.0) == at(2.0) == math.inf
+    assert math.isnan(_between([0.2, 0.6], [1.0, 5.0], 0.7))
