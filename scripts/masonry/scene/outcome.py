@@ -170,7 +170,12 @@ class Outcome:
             found["factor"] = scene.factor
         if self.pushed:
             rows = self._pushRows()
-            found.update(self._ofPush(lambda head: [column(head)[n] for n in rows]))
+
+            def ofPush(head):
+                values = column(head)  # a list that is made anew every time
+                return [values[n] for n in rows]
+
+            found.update(self._ofPush(ofPush))
             found.update(self._ofCracks(column))
             if scene.accuracy and not scene.running.interrupted:
                 # a push that is not over is shorter than those of its companions
@@ -189,7 +194,8 @@ class Outcome:
     def _ofAccuracy(self, found, column):
         """Entries for --accuracy, whose half-widths the answers of the last push get, too."""
         at, rows = self.scene.running.at, self._pushRows()
-        shear, moved = ([column(head)[n] for n in rows] for head in ("base_shear_kN", "displacement_mm"))  # fmt: skip
+        whole = column("base_shear_kN"), column("displacement_mm")
+        shear, moved = ([values[n] for n in rows] for values in whole)
         work = measure.pushNumbers(moved, shear)["push_work_J"]
         asked = self.scene.accuracy
         entries = {"push_work_J": work, **asked.report({**found, "push_work_J": work})}
