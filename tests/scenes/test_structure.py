@@ -8,7 +8,9 @@ from masonry import Scene, bricks, materials
 from masonry.basics import Refused
 from masonry.scene.ground import readRecord
 from masonry.read.files import readCurve, readRun
+from masonry.run.results import Results
 from masonry import AT_REST, COLLAPSED, DONE
+from small import SMALL, carryOut, parsed
 from yade import O
 
 STONE = 2600 * 9.81  # [N/m³]
@@ -503,3 +505,15 @@ def test_scaled_masses_leave_the_weight_of_a_structure_that_leans(tmp_path, stag
     scene.finish()
     material = readRun(str(tmp_path))["unit_material"]
     assert material["density_kg_per_m3"] == pytest.approx(2600)
+
+
+def test_columns_are_read_as_often_in_a_run_of_many_rows(tmp_path, monkeypatch):
+    """A column is a list that is made anew whenever it is asked for, so asking for it row by row takes hours in long loops."""
+    counts = []
+    for until in ("0.02", "0.2"):
+        asked, read = [], Results.column
+        monkeypatch.setattr(Results, "column", lambda self, head: asked.append(head) or read(self, head))  # fmt: skip
+        carryOut(SMALL, parsed("--lean", "--rate", "50", "--until", until, "--out", str(tmp_path / until)))  # fmt: skip
+        monkeypatch.undo()
+        counts.append(len(asked))
+    assert counts[1] <= counts[0] + 5

@@ -442,8 +442,8 @@ class Outcome:
     def _marks(self):
         """Peaks of the push, for the figure."""
         column, rows = self.results.column, self._pushRows()
-        force = [column("base_shear_kN")[n] for n in rows]
-        moved = [column("displacement_mm")[n] for n in rows]
+        whole = column("base_shear_kN"), column("displacement_mm")
+        force, moved = ([values[n] for n in rows] for values in whole)
         if not force:
             return []
         ends = [max(range(len(force)), key=force.__getitem__)]
