@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The report that real runs leave: when there is one, and what its reader sees in a real browser. What it says of a run,
-tests/package/test_report.py compares."""
+tests/package/test_report_content.py compares."""
 
 import base64
 import os
@@ -36,6 +36,8 @@ def test_a_run_leaves_its_report_beside_its_figures(scene, tmp_path):
     assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", run["date"])
     assert run["warnings"] == [] or all(isinstance(w, str) for w in run["warnings"])
     assert ["base", "platen, held"] in run["held_and_loaded"]
+    assert [(t["name"], t["held"]) for t in run["targets"]] == [("base", True), ("top", False)]  # fmt: skip
+    assert text.count('class="held"') == 1 and "What is held is hatched" in text
     assert [word for word, _ in run["script"]] == ["platen", "platen", "press", "settle", "push"]  # fmt: skip
     assert [stage["load"] and stage["load"][0] for stage in run["stages"]] == [None, "push"]  # fmt: skip
     rows = readCurve(str(tmp_path))["displacement_mm"]

@@ -103,6 +103,8 @@ def main() -> int:
 
     try:
         written = onFolder(write, [folder]) and NO_REPORT
+    except Exception as problem:  # the figures shall be there all the same
+        say(f"the report cannot be made: {type(problem).__name__}: {problem}", sys.stderr)  # fmt: skip
     finally:
         status = _ended(process, status)
     return status or written

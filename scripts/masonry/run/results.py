@@ -69,7 +69,8 @@
   if the scene has some
 - ``ended``: how the last stage ended: ``at rest``, ``moving``, ``done`` or ``collapsed``
 - ``collapse``: what has fallen, and how far; None if nothing has
-- ``held``: names of the platens and bricks that are held
+- ``held``: names of the platens and bricks that are held; ``targets``: of all platens and bricks that are held, loaded or
+  watched, a list of dicts with ``name``, the id of its ``body`` and whether it is ``held``
 - ``factor``: as of :class:`masonry.scene.scene.Scene`, of a run that found one
 
 A run that pushes, leans or tilts has these, if limit analysis (:mod:`masonry.limit`) applies:

@@ -36,6 +36,7 @@ from .stages.stage import answersText
 from .wall import wallOf
 
 FRAMES = 20  # for ParaView in a stage that is no push
+REPORT = 2e6  # [bytes] of report.html, of which three.js takes nearly half
 MOST_NUMBERS = 24  # of a list that the script said, as run.json has it
 
 
@@ -112,7 +113,8 @@ class Outcome:
         frames = 0 if args.no_vtk or args.lean else frames
         figures = 50e3 if args.lean else 400e3
         least = figures + frame * min(frames, 2)  # and the first and last frame
-        return least, least + frame * frames + 250 * rows
+        report = 0 if args.lean else REPORT
+        return least, least + report + frame * frames + 250 * rows
 
     # -- run.json -------------------------------------------------------------------------------------------------
 
@@ -148,6 +150,10 @@ class Outcome:
             parts=model.parts,
             figure=self._figure(),
             held=sorted(t.name for t in self.description.targets.values() if t.fixed),
+            targets=[
+                {"name": t.name, "body": t.body, "held": t.fixed}
+                for t in self.description.targets.values()
+            ],
             recorded_joints=[joint.name for joint in self.description.joints],
             **self._connections(),
             script=shortened(scene.script.words),

@@ -16,6 +16,11 @@ from .pieces import written
 
 WIDE, HIGHEST = 720, 460  # of the structure in the drawing, in its own units
 RIM = 46
+MOST_LABELS = 12  # names of blocks in the drawing
+HATCHING = Html(
+    '<defs><pattern id="hatching" width="7" height="7" patternUnits="userSpaceOnUse" patternTransform="rotate(45)">'
+    '<rect width="7" height="7" class="platen plain"/><path d="M0 0v7" class="stroke"/></pattern></defs>'
+)
 CRACK_SURFACE = "crack"  # the kind of joint between the halves of a brick
 
 
@@ -42,21 +47,45 @@ def drawing(motion: Motion) -> tuple[Html, str]:
     starts = np.append(0, np.flatnonzero(np.diff(unit[order])) + 1)
     members = np.split(order, starts[1:])  # points of every unit
     depth = [(motion.points[points] @ view.towards).mean() for points in members]
+    named = _named(motion)
     paths: list[list[Any]] = []  # of units of one kind that follow each other
+    labels = []
     for number in np.argsort(np.round(depth, 6), kind="stable"):
         points = members[number]
         corners = hull(place[points].round(2))
-        kind = "brick" if motion.brick[motion.owner[points[0]]] else "platen"
+        block = motion.owner[points[0]]
+        kind = "brick" if motion.brick[block] else "platen"
+        names = [named[b] for b in np.unique(motion.owner[points]) if b in named]
+        if names:
+            kind = "held" if any(held for _, held in names) else "named"
+            middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
+            labels.append((middle, ", ".join(name for name, _ in names)))
         if not paths or paths[-1][0] != kind:
             paths.append([kind, []])
         text = "L".join(f"{x:.1f} {y:.1f}".replace(".0 ", " ") for x, y in corners)
         paths[-1][1].append(f"M{text}Z")
-    parts = [tag("path", d="".join(found), class_=kind) for kind, found in paths]
+    parts = [HATCHING]
+    parts += [tag("path", d="".join(found), class_=kind) for kind, found in paths]
+    if len(labels) <= MOST_LABELS:
+        parts += [
+            tag("text", name, x=f"{x:.1f}", y=f"{y + 4:.1f}", text_anchor="middle", class_="said")
+            for (x, y), name in labels
+        ]  # fmt: skip
     bricks = flat[motion.brick[motion.owner]] if motion.brick.any() else flat
     parts += _dimensions(bricks, low, high, scale, tall)
     about = _sentence(motion, view, bricks, unit)
     box = f"0 0 {wide + 2 * RIM + 30:.0f} {tall + 60:.0f}"
     return tag("svg", tag("title", "What was built"), tag("desc", about), *parts, viewBox=box, role="img", aria_label=about, class_="elevation"), about  # fmt: skip
+
+
+def _named(motion):
+    """Of the blocks that are held, loaded or watched: their names and whether they are held, by their numbers."""
+    numbers = {int(body): n for n, body in enumerate(motion.bodies)}
+    return {
+        numbers[one["body"]]: (str(one["name"]), bool(one.get("held")))
+        for one in motion.run.get("targets") or []
+        if one.get("body") in numbers
+    }
 
 
 def _units(motion, joints):
@@ -97,7 +126,9 @@ def _sentence(motion, view, bricks, unit):
         sign = "-" if view.towards[axis] > 0 else "+"
         seen = f"in the direction {sign}{'xyz'[axis]}" if exact else "from its front"
     count = len(np.unique(unit[motion.brick[motion.owner]]))
-    others = " Platens and other loading blocks are grey." if (~motion.brick).any() else ""  # fmt: skip
+    others = " Platens are grey." if (~motion.brick).any() else ""
+    if motion.run.get("targets"):
+        others = " What is held is hatched; what is loaded or watched is grey."
     return (
         f"The {count:,} units of the masonry as built, seen {seen}: {written(size[0])} m wide and {written(size[1])} m high."
         f"{others}"
