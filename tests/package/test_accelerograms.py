@@ -82,6 +82,11 @@ def test_the_spellings_of_the_time_step_of_peer(tmp_path, every):
     assert read(file(tmp_path, peer([0.1, 0.2, -0.1], every))).every == 0.005
 
 
+def test_a_header_of_peer_may_name_its_filter_behind_the_unit(tmp_path):
+    text = peer([0.1, 0.2], unit="UNITS OF G. FILTER POINT: HP=0.1 Hz LP=25.0 Hz")
+    assert read(file(tmp_path, text)).unit == "g"
+
+
 def test_the_old_line_of_peer_has_the_numbers_before_the_names(tmp_path):
     text = peer([0.1, 0.2, -0.1], what="TIME HISTORY").replace(
         "NPTS=      3, DT=   .0050 SEC,", "    3    .0050    NPTS, DT"

@@ -60,6 +60,14 @@ def test_a_record_of_the_command_line_that_is_wrong_is_refused_before_the_run(tm
     assert end.value.code == 2
 
 
+def test_samples_that_steps_pass_over_are_named(tmp_path, capsys):
+    shaken(tmp_path / "a", accelerations=[0.0, 2.0] * 1000, every=1e-6)
+    said = capsys.readouterr().out
+    assert "longer than the time between samples, 1e-06 s, so that some samples" in said
+    shaken(tmp_path / "b")
+    assert "between samples" not in capsys.readouterr().out
+
+
 def test_only_the_first_shake_is_replaced_and_a_scene_that_is_not_shaken_says_so(tmp_path, peer, capsys):  # fmt: skip
     words = ["--lean", "--out", str(tmp_path / "a"), "--scale", "0"]
     scene = Scene("block", bricks.stack(1, (0.3, 0.3, 0.3)), materials.dry(0.2), arguments=words)  # fmt: skip

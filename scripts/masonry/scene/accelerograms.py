@@ -174,7 +174,7 @@ class _File:
         known, values, begins = {}, [], None
         for line, text in enumerate(self.lines, 1):
             key, colon, value = text.partition(":")
-            if begins is None and colon and re.fullmatch(r"[A-Z][A-Z0-9_^/]*", key):
+            if begins is None and colon and key[:1].isalpha():
                 known.setdefault(key, (value.strip(), line))
             elif text.strip():
                 begins = begins or line

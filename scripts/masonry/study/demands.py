@@ -35,6 +35,8 @@ class Demands:
 
     def __init__(self, record, measure=None):
         chains = Folder(record.directory).chains
+        if len(record) != chains.runs:
+            raise Refused(f"{record.directory}: study.csv has {len(record)} rows, and the study {chains.runs}: --gather writes it anew")  # fmt: skip
         self.intensityName = chains.plan["measure"]
         self.directory = record.directory
         self.names = [one["name"] for one in chains.plan["records"]]

@@ -136,6 +136,11 @@ def shake(
     model.trueMasses("shake")
     model.damp(damping, scene.args.damping_kind, massDamping, stiffnessDamping)
     at.limit = model.chooseTimeStep(at.limit)
+    if O.dt > every:
+        say(
+            f"warning: shake: the time step, {O.dt:.3g} s, is longer than the time between samples, {every:.3g} s, so that some "
+            "samples are left out; a smaller --dt-fraction helps"
+        )
     down = -scene.description.gravity * Vector3.UnitZ
 
     def before(done, beyond):
