@@ -136,6 +136,7 @@ def ofStudies():
                    ("validation/dry_joint_walls/compare_loops.py", "validation/dry_joint_walls/blind.json", "scripts/wall_dry.py", *RIGID, *CYCLIC), 20, (f"validation/dry_joint_walls/loops_{law}*",))
             for law, joints in loops
         ),
+        Result("dry_joint_walls/rig", tuple(inYade("dry_joint_walls/rig.py", "--rig", k, "--no-vtk", "--out", f"results/validation/dry_joint_walls/rig_{k}") for k in ("0", "37")), (), ("validation/dry_joint_walls/rig.py", *RIGID), 1, ("validation/dry_joint_walls/rig_*",)),
         Result("dry_joint_walls/plain_wall", (program("dry_joint_walls/plain_wall.py"),), (), ("validation/dry_joint_walls/plain_wall.*",), 5),
         Result("cyclic/joint", (inYade("cyclic/joint.py"), program("cyclic/figures.py")), ("cyclic/joint.png",), (*own("cyclic"), *CYCLIC), 0.5, ("validation/cyclic/joint",)),
         Result("cyclic/walls", (program("cyclic/walls.py"),), ("cyclic/walls.md", "cyclic/loops_*.png", "cyclic/degradation.png"), (*own("cyclic"), *walls, *RIGID, *CYCLIC), 15, ("validation/cyclic/comp*",)),
