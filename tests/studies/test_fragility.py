@@ -134,10 +134,10 @@ def test_any_records_give_numbers_or_a_sentence(capacities, count):
         ([0.5, 1.0], "needs 3 records or more, there are 2"),
         ([9, 9, 9], "at none of the 3 records is the limit reached; add higher levels"),
         ([0.1, 0.1, 0.1, 0.1], "at all 4 records the limit is reached at the lowest level that was run; add lower"),
-        ([0.5, 0.5, 0.5], "all records may reach the limit at one intensity, from 0.434 to 0.638"),
+        ([0.5, 0.5, 0.5], "all records may reach the limit at one intensity, 0.434 to 0.638, so"),
         ([0.5, 0.8, 9], None),
-        ([0.5, 0.7, 0.7], "all records may reach the limit at one intensity, from 0.638 to 0.638"),
-        ([2.5, 9, 9], "all records may reach the limit at one intensity, from 3 to 3"),
+        ([0.5, 0.7, 0.7], "all records may reach the limit at one intensity, 0.638, so"),
+        ([2.5, 9, 9], "all records may reach the limit at one intensity, 3, so"),
         ([0.1, 9, 0.1, 9], "at their lowest level or not at all, so the dispersion has no bound"),
     ],
 )  # fmt: skip

@@ -85,9 +85,10 @@ def fit(low: Numbers, high: Numbers, confidence: float = CONFIDENCE) -> Fit:
     if not low.any():
         raise Refused(f"no fragility: at all {n} records the limit is reached at the lowest level that was run; add lower levels")  # fmt: skip
     if low.max() <= high.min():
+        ends = dict.fromkeys(f"{end:.3g}" for end in (low.max(), high.min()))
         raise Refused(
-            f"no fragility: all records may reach the limit at one intensity, from {low.max():.3g} to {high.min():.3g}, so the "
-            "dispersion cannot be found; add levels there, or records"
+            f"no fragility: all records may reach the limit at one intensity, {' to '.join(ends)}, so the dispersion cannot be "
+            "found; add levels about it, or records"
         )
     with np.errstate(divide="ignore"):
         ends = np.unique(np.column_stack([np.log(low), np.log(high)]), axis=0, return_counts=True)  # fmt: skip
