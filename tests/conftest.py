@@ -27,8 +27,8 @@ SLOW = ["sanitizers", "fuzz", "studies", "scenes"]  # rings of which every test 
 #: Rings, and files of other rings, that need no YADE.
 WITHOUT_YADE = ["common", "law", "motion", "blocks", "files", "gates"] + [
     f"package/test_{name}.py"
-    for name in "bilinear bricks bricks_checks bricks_files bricks_vaults compare_loops cycles imports loops "
-    "measure measured_loops plain_wall report_content".split()
+    for name in "bilinear bricks bricks_checks bricks_files bricks_vaults capacity compare_loops cycles imports "
+    "loops measure measured_loops plain_wall report_content".split()
 ]
 TOGETHER = [
     "programs",

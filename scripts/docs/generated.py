@@ -24,6 +24,7 @@ from tree import ROOT, read
 PROGRAMS = (
     ("python3 scripts/plot.py", ["scripts/plot.py"]),
     ("python3 scripts/view.py", ["scripts/view.py"]),
+    ("python3 -m masonry.capacity", ["-m", "masonry.capacity"]),
     ("python3 -m masonry.study", ["-m", "masonry.study"]),
     ("python3 -m masonry.study.report", ["-m", "masonry.study.report"]),
 )

@@ -19,6 +19,7 @@ A scene of one's own is bricks, materials and stages::
 - :mod:`masonry.study`: one scene, run many times with values that vary
 - :mod:`masonry.limit`: limit analysis, the bound beside every run
 - :mod:`masonry.read`: what reads the files of a run: numbers, figures, pictures by ParaView
+- :mod:`masonry.capacity`: bilinear curves, the demand of an earthquake, N-V domains
 - :mod:`masonry.run`: a run: checkpoints, results, presets, rows of a table
 - :mod:`masonry.assembly`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by body; the 3-D view
 - :mod:`masonry.folders`: what is written in folders that others may have packed, and how
@@ -30,7 +31,7 @@ A scene of one's own is bricks, materials and stages::
 - :mod:`masonry.arguments`: how every word checks what it is given
 - :mod:`masonry.basics`: gravity, how a run can end before its time, what is said on the terminal
 
-``masonry.read``, ``masonry.study``, ``masonry.bricks`` and what they import work without YADE.
+``masonry.read``, ``masonry.capacity``, ``masonry.study``, ``masonry.bricks`` and what they import work without YADE.
 
 Import it from a script of ``yade``, of plain Python or from a notebook: where YADE does not run yet, it starts when
 something is first used that needs it (:mod:`masonry.host`). The classes that are then registered in YADE
@@ -100,7 +101,7 @@ _NAMES = {
 #: What is there when the plugin is registered in YADE, beside the classes.
 _OF_PLUGIN = ["classes", "commit", "criticalTimeStep"]
 #: Rooms and modules of this package that work without YADE.
-_WITHOUT_YADE = ["arguments", "basics", "bricks", "fields", "folders", "host", "memory", "notebook", "packages", "read", "study"]  # fmt: skip
+_WITHOUT_YADE = ["arguments", "basics", "bricks", "capacity", "fields", "folders", "host", "memory", "notebook", "packages", "read", "study"]  # fmt: skip
 
 
 if TYPE_CHECKING:  # what is loaded later, for those that check types

@@ -15,6 +15,7 @@ PACKAGE = os.path.join(tree.ROOT, "scripts", "masonry")
 PUBLIC = """
     assembly.blocks assembly.connecting assembly.engines assembly.window
     bricks.blocks bricks.files bricks.vaults bricks.walls
+    capacity.domains capacity.figure capacity.n2 capacity.report capacity.spectra
     limit.assembly limit.bound limit.reading
     read.bilinear read.comparison read.cracks read.curve_figure read.curves read.figures read.files read.frames read.loops read.measure
     read.viewer

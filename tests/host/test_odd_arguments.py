@@ -93,6 +93,12 @@ def settled(make=scene):
     return made
 
 
+def pressing():
+    made = scene()
+    made.press(made.top, 1e5)
+    return settled(lambda: made)
+
+
 def holding():
     made = scene()
     made.brick, made.grip = made.hold(3), made.handle(5)
@@ -152,6 +158,7 @@ WORDS = {
     "bracket": (settled, dict(carries=lambda f: f < 0.5, low=0.0, high=1.0, within=0.3)),
     "result": (settled, dict(name="mine", value=1.0, unit="-", how="by hand")),
     "bound": (settled, dict(target=TOP, direction=LEVEL, towards=None)),
+    "domain": (pressing, dict(target=TOP, normal=[20.0, 40.0], direction=LEVEL)),
     "load, a stage": (settled, dict(target=TOP, force=(100.0, 0, 0), longest=0.05)),
     "wind, a stage": (lambda: settled(space), dict(**WINDS, longest=0.05)),
     "press, a stage": (settled, dict(platen=TOP, stress=1e4, longest=0.05)),

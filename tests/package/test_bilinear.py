@@ -181,6 +181,26 @@ def test_a_short_fall_is_a_wave_and_a_long_one_is_the_ultimate_displacement():
     assert "the force came back above that, up to 6.1" in found.notes[0]
 
 
+def test_a_fall_just_before_the_end_may_be_a_wave():
+    moved, force = curve((0, 0), (2, 100), (6, 90), (6.01, 70), (6.05, 70), rows=4001)
+    assert bilinear.bilinear(moved, force).reached
+    found = bilinear.bilinear(moved, force, pulse=0.1)
+    assert not found.reached and found.ultimateDisplacement == 6.05
+    assert "for longer than a wave of 0.1 mm" in found.notes[0]
+    assert bilinear.bilinear(moved, force, pulse=0.03).reached
+    drop = np.append(moved[moved <= 6], 6.0), np.append(force[moved <= 6], 0.0)
+    assert bilinear.bilinear(*drop).ultimateDisplacement == 6  # an upright line
+
+
+def test_a_peak_anywhere_on_a_plateau_says_what_the_stiffness_depends_on():
+    moved, force = curve((0, 0), (1, 50), (2, 96), (20, 100), (22, 0), rows=4001)
+    found = bilinear.bilinear(moved, force, "en1998")
+    early = bilinear.bilinear(moved, force, "en1998", mechanism=2 - 1 / 46)
+    assert "the force is above 0.95 of its peak from 1.978 mm on, and the peak is at 20 mm" in found.notes[0]  # fmt: skip
+    assert f"{early.stiffness:.4g} kN/mm with the first and {found.stiffness:.4g} kN/mm with the second" in found.notes[0]  # fmt: skip
+    assert early.notes == () and bilinear.bilinear(moved, force).notes == ()
+
+
 @pytest.mark.parametrize(
     "moved, force, message",
     [
@@ -314,7 +334,9 @@ def test_drifts_are_displacements_over_the_height(tmp_path):
     with pytest.raises(Refused, match="drifts need height=, in m"):
         bilinear.drifts(other)
     assert bilinear.drifts(other, 2.0)[1].value == pytest.approx(1)
-    # with a first crack run.json has the height by its drift
+    new = run(tmp_path / "new", *WHOLE, recorded_height_m=2.0, wall=wall)
+    assert bilinear.drifts(new)[1].value == pytest.approx(1)
+    # runs of before have it by the drift at their first crack
     crack = run(tmp_path / "crack", *WHOLE, displacement_at_first_crack_mm=0.5, drift_at_first_crack_mrad=0.25)  # fmt: skip
     assert bilinear.drifts(crack)[1].value == pytest.approx(1)
 

@@ -10,7 +10,7 @@ from conftest import ROOT
 
 PACKAGE = os.path.join(ROOT, "scripts", "masonry")
 #: Rooms of many modules. Those of bricks, limit and study are named by what users call, not by their modules.
-ROOMS = ["assembly", "read", "run", "scene", "scene/stages"]
+ROOMS = ["assembly", "capacity", "read", "run", "scene", "scene/stages"]
 
 
 def helpOf(folder):

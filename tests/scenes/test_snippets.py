@@ -34,6 +34,7 @@ REASONS = {
     r".*(masonry\.study|masonry\.study\.report) (validation|results/validation)/": "minutes or hours: a study of validation/",
     r".*wall_comp4\.py --accuracy": "minutes: tests/scenes/test_accuracy.py has a small wall",
     r".*vtable\.py FOLDER": "needs an unpacked YADE of another release",
+    r".*-m masonry\.capacity": "a tenth of a push has no peak: tests/package/test_capacity.py",
     r"jupyter": "opens a browser",
 }  # fmt: skip
 #: What is replaced in a command before it is run.

@@ -28,11 +28,11 @@ from __future__ import annotations
 import math
 import sys
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Sequence
 
 import numpy as np
 
-from ..arguments import FilePath, Numbers, number, oneOf, orNone, takes
+from ..arguments import FilePath, Numbers, isNumber, number, oneOf, orNone, takes
 from ..basics import Refused, say
 from .files import filesOf, onFolder, readCurve, readRun
 
@@ -44,6 +44,9 @@ BEGIN = 0.01
 BACK = 0.02
 #: A curve that still grows in the last tenth of its displacement with more than this share of its stiffness has no peak [-].
 GROWS = 0.05
+#: A plateau is above this share of the peak [-], and makes the mechanism of annex B.3 uncertain if it begins before this share of
+#: the displacement at the peak [-].
+PLATEAU, LONG = 0.95, 0.5
 #: Round-off, relative [-].
 SMALL = 1e-9
 
@@ -142,7 +145,10 @@ def _area(moved, force, end):
 
 
 def _fallen(moved, force, at, level, pulse):
-    """Displacement at which the force falls below a level for good, or for longer than a pulse, after row ``at``; else None."""
+    """Displacement at which the force falls below a level after row ``at`` and stays below for longer than a pulse; else None.
+
+    What falls within a pulse before the end of the curve may be a wave, too. Without pulses the first fall counts.
+    """
     below = force < level
     row = at
     while True:
@@ -151,10 +157,13 @@ def _fallen(moved, force, at, level, pulse):
             return None
         first = row + int(under[0])
         back = np.flatnonzero(~below[first:])
+        last = first + int(back[0]) if len(back) else len(moved) - 1
         down = _crossing(moved, force, level, first)
-        if not len(back) or moved[first + int(back[0])] - down > pulse:
+        if pulse == 0 or moved[last] - down > pulse:
             return down
-        row = first + int(back[0])
+        if not len(back):
+            return None
+        row = last
 
 
 def _checked(displacement, force):
@@ -226,8 +235,8 @@ def bilinear(
     :param secant: share of the peak at which ``masonry`` takes the stiffness, between 0 and 1 [-]
     :param fall: share of the peak to which the force falls at the ultimate displacement, between 0 and 1 [-]
     :param mechanism: of ``en1998``, displacement at which the plastic mechanism forms [mm]; None: that of the peak
-    :param pulse: a fall that is over within this displacement is a wave that passes through the structure, and does not count
-        [mm]
+    :param pulse: a fall that is over within this displacement, or begins within it of the end, may be a wave that passes through
+        the structure, and does not count [mm]
     :raises Refused: if there is no such curve: it is empty, goes back, does not begin at zero, has no peak, or has more
         area than any bilinear one with its stiffness
     """
@@ -246,9 +255,11 @@ def bilinear(
     reached = end is not None
     if end is None:
         end = float(moved[-1])
+        dips = (forces[at:] < fall * peak).any()
+        wave = f" for longer than a wave of {pulse:.2g} mm" if dips else ""
         notes.append(
-            f"not reached: the force never falls to {fall:g} of its peak, so the ultimate displacement is the end of the curve, and the "
-            "ductility is that of the part which was run"
+            f"not reached: the force never falls to {fall:g} of its peak{wave}, so the ultimate displacement is the end of the curve, and "
+            "the ductility is that of the part which was run"
         )
     else:
         again = (moved > end + pulse) & (forces >= fall * peak)
@@ -278,6 +289,8 @@ def bilinear(
                 f"forms with {yieldForce:.4g} kN: the area up to there is {work:.4g} J"
             )
         stiffness = yieldForce / yields
+        if mechanism is None:
+            notes += _onPlateau(moved, forces, forms, stiffness)
     if yieldForce > peak * (1 + SMALL):
         notes.append(
             f"the yield force is above the peak, {peak:.4g} kN: the curve lies far above its secant at {secant:g} of the peak; one at "
@@ -297,6 +310,22 @@ def bilinear(
         mechanism=forms,
         notes=tuple(notes),
     )
+
+
+def _onPlateau(moved, force, forms, stiffness):
+    """A sentence if the curve is nearly at its peak long before, so that the stiffness of annex B.3 depends on where within the
+    plateau the peak happens to be; else nothing."""
+    level = PLATEAU * float(force.max())
+    early = _crossing(moved, force, level, int(np.flatnonzero(force >= level)[0]))
+    work, highest = _area(moved, force, early)
+    yields = 2 * (early - work / highest)
+    if early > LONG * forms or yields <= 0:
+        return []
+    return [
+        f"the force is above {PLATEAU:g} of its peak from {early:.4g} mm on, and the peak is at {forms:.4g} mm: where the mechanism forms is not "
+        f"sharp, and the stiffness of annex B.3 is {highest / yields:.4g} kN/mm with the first and {stiffness:.4g} kN/mm with the second "
+        "(mechanism=, --mechanism)"
+    ]
 
 
 def _equalArea(stiffness, end, area):
@@ -356,7 +385,7 @@ def pushover(directory: FilePath) -> Pushover:
         if rows is not None:
             values = {name: column[rows] for name, column in values.items()}
         moved, base, top = (values[head] for head in heads)
-        pulse, period = 0.0, run.get("first_period_s")
+        pulse, period = 0.0, _known(run, "first_period_s")
         if period and "time_s" in values and len(moved) > 1:
             lasted = float(np.ptp(values["time_s"]))
             pulse = period * float(np.ptp(moved)) / lasted if lasted > 0 else 0.0
@@ -376,12 +405,22 @@ def pushover(directory: FilePath) -> Pushover:
         )
 
 
+def _known(run, key):
+    """A finite number of run.json, or None."""
+    value = run.get(key)
+    return float(value) if isNumber(value) and math.isfinite(value) else None
+
+
 def _heightOf(run):
-    """Height of the recorded point above the lowest brick [m], or None if run.json does not have it."""
-    moved, drift = run.get("displacement_at_first_crack_mm"), run.get("drift_at_first_crack_mrad")  # fmt: skip
-    if moved and drift:
-        return moved / drift
-    return run["wall"]["measure_height_m"] if "wall" in run else None
+    """Height of the recorded point above the lowest brick [m], or None if run.json does not have it, as of an older run that saw
+    no crack."""
+    known = _known(run, "recorded_height_m")
+    moved, drift = _known(run, "displacement_at_first_crack_mm"), _known(run, "drift_at_first_crack_mrad")  # fmt: skip
+    if known is None and moved and drift:
+        known = moved / drift
+    if known is None and "wall" in run:
+        known = _known(run["wall"], "measure_height_m")
+    return known if known and known > 0 else None
 
 
 def ofRun(
@@ -405,7 +444,7 @@ def ofRun(
     except Refused as refused:
         raise Refused(f"{push.directory}: {refused}") from None
     notes = (*found.notes, *push.notes)
-    if not found.reached and push.run.get("collapse_displacement_mm") is not None:
+    if not found.reached and _known(push.run, "collapse_displacement_mm") is not None:
         notes = (
             f"not reached: the structure collapsed at {found.ultimateDisplacement:.4g} mm before the force had fallen to {fall:g} of its "
             "peak, so the ultimate displacement is that of the collapse",
@@ -437,7 +476,7 @@ def drifts(
     if not found.reached:
         note = found.notes[0]
     run = push.run
-    first, last = run.get("displacement_at_first_crack_mm"), run.get("collapse_displacement_mm")  # fmt: skip
+    first, last = _known(run, "displacement_at_first_crack_mm"), _known(run, "collapse_displacement_mm")  # fmt: skip
     over = f"over the height, {high:.4g} m"
     source = "displacement over height"
     mrad = lambda moved: None if moved is None else moved / high
@@ -449,15 +488,20 @@ def drifts(
     ]  # fmt: skip
 
 
-def lines(numbers: list[Number]) -> list[str]:
-    """Numbers as lines for the terminal: name, value, unit, and what the number does not say."""
+def lines(numbers: list[Number], notes: Sequence[str] = ()) -> list[str]:
+    """Numbers as lines for the terminal: name, value, unit, meaning, and a mark where a note below says more.
+
+    :param numbers: to print
+    :param notes: more sentences, which follow
+    """
+    marks: dict[str, int] = {}
     found = []
     for one in numbers:
         value = "none" if one.value is None else f"{one.value:.6g} {one.unit}".removesuffix(" -")  # fmt: skip
-        found.append(
-            f"{one.name:30} {value:18} {one.meaning}{one.note and f' ({one.note})'}"
-        )
-    return found
+        mark = f" [{marks.setdefault(one.note, len(marks) + 1)}]" if one.note else ""
+        found.append(f"{one.name:34} {value + mark:20} {one.meaning}")
+    found += [f"[{mark}] {note}" for note, mark in marks.items()]
+    return found + [f"note: {note}" for note in notes if note not in marks]
 
 
 def show(directory: FilePath) -> None:
@@ -466,10 +510,7 @@ def show(directory: FilePath) -> None:
     for rule, source in RULES.items():
         found = ofRun(push, rule)
         say(f"{rule}: {source}")
-        say("\n".join(lines(found.numbers())))
-        for note in found.notes:
-            say(f"note: {note}")
-        say("")
+        say("\n".join([*lines(found.numbers(), found.notes), ""]))
     try:
         say("\n".join(lines(drifts(push))))
     except Refused as refused:

@@ -66,7 +66,7 @@ def _isBound(entry):
     """Whether an entry of the bounds is of the form that :mod:`masonry.scene.bounds` gives it."""
     if not isinstance(entry, dict):
         return False
-    numbers = ("factor", "without_dilatancy", "facet_error")
+    numbers = ("factor", "without_dilatancy", "facet_error", "pressed_kN", "normal_kN")
     return (
         all(isinstance(entry.get(name), str) for name in ("load", "unit"))
         and all(alike(entry[name], 0.0) for name in numbers if name in entry)

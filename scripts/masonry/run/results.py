@@ -75,7 +75,8 @@ A run that pushes, leans or tilts has these, if limit analysis (:mod:`masonry.li
   ``opens``, ``slides`` and ``crushes``; ``powers``, which share of the mechanism's power each strength takes [-]; ``facets``
   of the friction cones in space, and the ``facet_error`` they leave [-]; or a ``note``, why there is none. With --preset
   bound also ``without_dilatancy``, the factor of a collapse in which joints slip without opening, and whether it has
-  ``without_dilatancy_settled``
+  ``without_dilatancy_settled``. An entry of ``scene.domain`` has ``pressed_kN``, the normal force that was given, and ``normal_kN``,
+  that at the supports
   The process that finds the bound draws its mechanism at its end, so a run that was killed and resumed has no picture of it
 - ``bound_base_shear_kN``, ``negative_bound_base_shear_kN``: of the first push, and of the way back; ``bound_acceleration``:
   of the first lean, horizontal over vertical
@@ -97,7 +98,8 @@ A run with a push has these, too:
   (:func:`masonry.read.curves.firstCrack`); None if there is none. Of dry joints it is where slip begins to count
 - ``drift_at_first_crack_mrad``: that displacement over the height of the recorded point above the lowest brick; None without
   a crack, or if the push is not horizontal
-- ``recorded_height_m``: the height of the recorded point above the lowest brick; None if the push is not horizontal
+- ``recorded_height_m``: height of the recorded point above the lowest brick, over which displacements are
+  drifts; None if the push is not horizontal
 - ``collapse_displacement_mm``: the last row of a push that ended in a collapse; None if it did not
 - ``largest_crack_mm``: largest opening of a point of any joint at the end of the run, also of those to platens; slide does not
   count; 0 if none is open
@@ -163,6 +165,10 @@ FILES = [
     "run.checkpoint",
     "view.pvsm",
     "view.html",
+    "capacity.json",
+    "capacity.png",
+    "domain.json",
+    "domain.png",
     "blocks.pvd",
     "joints.pvd",
     "mechanism.png",

@@ -13,7 +13,7 @@ import tempfile
 import time
 
 import numpy as np
-from yade import O
+from yade import O, Vector3
 
 from .. import limit
 from ..basics import GRAVITY, Interrupted, Refused, say
@@ -100,6 +100,31 @@ class Bounds:
         block = assembly.ids.index(target.body)
         return assembly.force(block, 1e3 * np.array(direction), point)
 
+    def domain(self, target, normals, direction, lowerUpTo=0, beside=False):
+        """Find the bounds of a push under several normal forces. Returns their entries of run.json.
+
+        :param target: a platen with a press, whose vertical force is replaced
+        :param normals: with which it presses on what is below, its weight included [kN]
+        :param direction: unit vector of the push, horizontal
+        :param lowerUpTo: and ``beside``: as of :meth:`push`
+        """
+        live = lambda a: self._pushed(a, target, direction)
+        found = []
+        for normal in normals:
+            what = nameInDomain(target, direction, normal)
+            found.append(
+                self._find(
+                    what,
+                    "kN",
+                    live,
+                    lowerUpTo,
+                    beside,
+                    pushed=(target, direction),
+                    pressed=(target, normal),
+                )
+            )
+        return found
+
     def lean(self, towards, tilts=False, lowerUpTo=0, beside=False):
         """Find the bound of a horizontal acceleration [g]. Returns its entry of run.json.
 
@@ -145,6 +170,7 @@ class Bounds:
         tilts=False,
         pushed=None,
         gravity=None,
+        pressed=None,
     ):
         self.take(True)
         known, model = self.entries.get(what), self.model
@@ -156,6 +182,8 @@ class Bounds:
         if not same:  # what was held before was held beside other loads
             self.place.held = {k: v for k, v in self.place.held.items() if k != what}
         entry = self.entries[what] = {"load": what, "unit": unit}
+        if pressed:
+            entry["pressed_kN"] = pressed[1]
         self.endless.discard(what)
         if self.place.supportsMoved:
             reason = (
@@ -171,7 +199,7 @@ class Bounds:
             )
             return entry
         seconds = ASKED if lowerUpTo else BESIDE if beside else UNASKED
-        work = lambda: self._found(what, unit, load, tilts, pushed, gravity, lowerUpTo, seconds)  # fmt: skip
+        work = lambda: self._found(what, unit, load, tilts, pushed, gravity, lowerUpTo, seconds, pressed)  # fmt: skip
         if beside:
             self.drop()  # of two mechanisms the last one is kept
             self._job = Job(lambda: self._withFiles(what, work), parts=2)
@@ -186,14 +214,16 @@ class Bounds:
             raise
         return entry
 
-    def _found(self, what, unit, load, tilts, pushed, gravity, lowerUpTo, seconds):
+    def _found(self, what, unit, load, tilts, pushed, gravity, lowerUpTo, seconds, pressed=None):  # fmt: skip
         """Find a bound. Returns what its entry gets, lines to say, whether nothing gives way, and the :class:`limit.Bound`."""
         entry, lines = {}, []
         try:
             assembly = limit.read()
             assembly.deadline = time.monotonic() + seconds
             down = assembly.weights(gravity or self.model.now)
-            forces = self._forces(assembly, pushed)
+            forces = self._forces(assembly, pushed, pressed)
+            if pressed:
+                entry["normal_kN"] = _carriedBy(assembly, down + forces)
             live = load(assembly)
 
             def found(find, first):
@@ -286,14 +316,18 @@ class Bounds:
         held = [O.bodies[target.body].state.blockedDOFs for target in self.model.held]
         return [list(gravity), loads, held]
 
-    def _forces(self, assembly, pushed):
+    def _forces(self, assembly, pushed, pressed=None):
         """Presses, dead loads and wind with their whole, and props at the points that drives hold.
 
         :param pushed: target and direction of a push, whose own drive is no prop, or None
+        :param pressed: target and normal force [kN] that replaces its press, or None
         """
         loads = np.zeros_like(assembly.held, float)
         for load, force in self.model.deadLoads():
             block, point = assembly.ids.index(load.body), _pointOf(load, assembly)
+            if pressed and load.label == f"{pressed[0].name}_force":
+                own = self.model.weightOf(pressed[0])
+                force = Vector3(force[0], force[1], own - 1e3 * pressed[1])
             if force.norm():
                 loads += assembly.force(block, np.array(force), point)
             along = np.array(load.direction.normalized())
@@ -436,6 +470,17 @@ def _tilted(find, first):
 def _pointOf(load, assembly):
     """Where a MasonryLoad acts, on blocks as the assembly has them [m]."""
     return load.point if assembly.stood else load.point + load.displacement()
+
+
+def _carriedBy(assembly, dead):
+    """Vertical force of dead loads on all blocks that are free to move down, compression is positive [kN]: the supports carry
+    it."""
+    return -1e-3 * float(dead[~assembly.held[:, 2], 2].sum())
+
+
+def nameInDomain(target, direction, normal):
+    """Under which the bound of a push is found that is one of a domain."""
+    return f"{nameOfPush(target, direction)} under {normal:g} kN"
 
 
 def nameOfPush(target, direction):

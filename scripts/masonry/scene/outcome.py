@@ -212,7 +212,7 @@ class Outcome:
         moved = column("displacement_mm")
         first = None if row is None else moved[row]
         height = model.target.recorded[2] - self.description.low[2]
-        sways = first is not None and height > 0 and abs(model.direction[2]) < 1e-9
+        sways = height > 0 and abs(model.direction[2]) < 1e-9
         joints = (
             ((i.id1, i.id2), i.phys.opening, i.geom.centres) for i in model.interactions
         )
@@ -220,10 +220,10 @@ class Outcome:
         fell = self.scene.collapsed and len(stages) in pushes
         return dict(
             displacement_at_first_crack_mm=first,
-            drift_at_first_crack_mrad=first / height if sways else None,
-            recorded_height_m=height
-            if height > 0 and abs(model.direction[2]) < 1e-9
+            drift_at_first_crack_mrad=first / height
+            if sways and first is not None
             else None,
+            recorded_height_m=height if sways else None,
             collapse_displacement_mm=moved[-1] if fell else None,
             largest_crack_mm=1e3 * width,
             largest_crack_at_m=None

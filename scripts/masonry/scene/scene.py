@@ -46,7 +46,7 @@ from .._masonry import loadScene, saveScene
 from ..arguments import LONGEST_NAME, Numbers
 from ..arguments import direction as directionOf
 from ..arguments import name as nameOf
-from ..arguments import number, orNone, shown, takes, text
+from ..arguments import listOf, number, orNone, shown, takes, text
 from .. import notebook
 from ..assembly.blocks import vector
 from ..assembly.structure import Structure
@@ -58,7 +58,7 @@ from ..run.presets import BOUND
 from ..run.results import Results
 from ..run.run import Run
 from . import loads, options, probing, records, showing, stages, supports
-from .bounds import EVERY, GIVEN_UP, SMALL, Bounds, nameOfLean, nameOfPush
+from .bounds import EVERY, GIVEN_UP, SMALL, Bounds, nameInDomain, nameOfLean, nameOfPush
 from .description import Description
 from .materials import Masonry, linesOf, loadingBlock
 from .outcome import Outcome
@@ -66,7 +66,7 @@ from .parsing import Parser
 from .resuming import State
 from .stages import AT_REST, STAGES, gravity, prepare
 from .stages.stage import Answer
-from .targets import LOADED, Target
+from .targets import LOADED, MOVING_PLATEN, Target
 from .words import RESULT, Call, Script
 
 
@@ -502,6 +502,53 @@ class Scene:
         if before and known:
             return known
         return self._find("lean", towards, lowerUpTo=EVERY)
+
+    @takes(
+        target=MOVING_PLATEN,
+        normal=listOf(number("kN", 0, 1e9, above=True)),
+        direction=directionOf(level=True),
+    )
+    def domain(
+        self, target: Target, normal: Numbers, direction: Numbers = (1, 0, 0)
+    ) -> list[dict[str, Any]]:
+        """The N-V domain of a pier: limit analysis of a push under several normal forces, as :meth:`bound` for one.
+
+        The loads of the scene stay as they are; only for limit analysis the vertical force on the platen is replaced. So it says
+        nothing new where the platen is held along z. :func:`masonry.capacity.domain` reads what was found, and
+        ``/usr/bin/python3 -m masonry.capacity --domain`` draws it, with the peaks of runs as points.
+
+        :param target: a platen that is pushed, with a :meth:`press` that says where the normal force acts
+        :param normal: forces with which the platen presses on what is below, its weight included: a list [kN]
+        :param direction: of the push, horizontal
+        :returns: the entries of run.json: a list of dicts as of :meth:`bound`, with ``pressed_kN``, the force that was given, and
+            ``normal_kN``, the force at the supports, with the weight of what is above them
+        :raises ValueError: if the platen is not pressed, or is held along z
+        """
+        try:
+            with self.noted(Scene.domain, target, normal, direction), self.running.listening():  # fmt: skip
+                return self._domain(target, normal, direction)
+        except Interrupted as error:
+            return self.failed(error)
+
+    def _domain(self, target, normal, direction):
+        """As :meth:`domain`."""
+        if target.pressed is None:
+            raise ValueError(f"domain: {target.name} is not pressed: press({target.name}, ...) before the first stage says where the normal force acts")  # fmt: skip
+        self.begin()
+        self.bounds.take(True)
+        if "z" in (target.freedom or "") or self.model.isDriven(target, "z"):
+            raise ValueError(f"domain: {target.name} is held along z, so its normal force is no load that could be replaced")  # fmt: skip
+        if self.collapsed:
+            raise ValueError(
+                "domain: the structure has fallen; stepBack() goes back to its last state at rest"
+            )
+        before = self._saidBefore("domain", target=target.name, normal=list(normal))
+        direction = vector(direction, "domain: direction").normalized()
+        names = [nameInDomain(target, direction, one) for one in normal]
+        known = [self.bounds.entries.get(name) for name in names]
+        if before and all(known):
+            return known
+        return self._find("domain", target, normal, direction, lowerUpTo=SMALL)
 
     def _find(self, kind, *load, lowerUpTo, beside=False):
         """Find a bound, which Ctrl-C and SIGTERM end at once: a method of :class:`masonry.scene.bounds.Bounds`."""

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pictures of capacity and demand, and of an N-V domain, by matplotlib without a window. This module needs no YADE."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..arguments import FilePath
+from ..read import drawing
+from ..read.bilinear import Bilinear, Pushover
+from .n2 import Demand
+from .domains import Domain
+
+DPI = 110
+CURVE, IDEAL, SPECTRUM, TARGET = "0.45", "tab:blue", "tab:green", "tab:red"
+
+
+def _corners(curve, one=1.0):
+    """Displacements and forces of a bilinear curve, over a factor."""
+    moved = np.array([0, curve.yieldDisplacement, curve.ultimateDisplacement]) / one
+    return moved, np.array([0, curve.yieldForce, curve.yieldForce]) / one
+
+
+def forces(push: Pushover, curve: Bilinear, path: FilePath) -> None:
+    """Draw the curve of a push and its bilinear one: force over displacement. Writes a PNG file."""
+    ends = f"du {curve.ultimateDisplacement:.4g} mm{'' if curve.reached else ' (not reached)'}"  # fmt: skip
+    label = (
+        f"bilinear, {curve.rule}: Vy {curve.yieldForce:.4g} kN, dy {curve.yieldDisplacement:.3g} mm,\n"
+        f"{ends}, ductility {curve.ductility:.3g}"
+    )
+    with drawing.style():
+        figure = drawing.empty(7, 4.6)
+        axes = figure.subplots()
+        axes.plot(push.displacement, push.force, color=CURVE, lw=1.0, label="the push")
+        axes.plot(*_corners(curve), color=IDEAL, lw=1.8, label=label)
+        axes.set_ylim(bottom=min(0, 1.1 * float(push.force.min())))
+        axes.set_title(str(push.run.get("title", "")))
+        _finish(figure, axes, "displacement [mm]", "force carried at both ends [kN]")
+        drawing.save(figure, path, DPI)
+
+
+def capacity(push: Pushover, found: Demand, path: FilePath) -> None:
+    """Draw capacity and demand of the equivalent system: acceleration over displacement. Writes a PNG file."""
+    gamma, mass, spectrum = found.system.gamma, found.system.mass, found.spectrum
+    asAcceleration = lambda force: 1e3 * force / gamma / mass
+    with drawing.style():
+        figure = drawing.empty(7, 5.2)
+        axes = figure.subplots()
+        sd = 1e3 * spectrum.accelerations * (spectrum.periods / (2 * math.pi)) ** 2
+        axes.plot(sd, spectrum.accelerations, color=SPECTRUM, lw=1.4, label="elastic spectrum")  # fmt: skip
+        axes.plot(push.displacement / gamma, asAcceleration(push.force), color=CURVE, lw=1.0, label="the push")  # fmt: skip
+        moved, force = _corners(found.curve)
+        axes.plot(moved / gamma, asAcceleration(force), color=IDEAL, lw=1.8, label=f"bilinear, {found.curve.rule}")  # fmt: skip
+        elastic = found.elasticDisplacement, found.elasticAcceleration
+        axes.plot([0, elastic[0]], [0, elastic[1]], color="0.3", lw=0.8, ls=(0, (4, 3)), label=f"T* = {found.period:.3g} s")  # fmt: skip
+        target = found.equivalentDisplacement
+        axes.axvline(target, color=TARGET, lw=1.0, ls=(0, (6, 3)))
+        height = min(found.strength, found.strength * found.ductility)
+        axes.plot(target, height, "o", color=TARGET, ms=6, label=f"demand dt* = {target:.4g} mm")  # fmt: skip
+        last = max(target, moved[-1] / gamma, elastic[0])
+        axes.set_xlim(0, 1.25 * last)
+        axes.set_ylim(0, 1.1 * max(spectrum.accelerations.max(), asAcceleration(push.force).max()))  # fmt: skip
+        axes.set_title(f"{push.run.get('title', '')}\n{spectrum.name}", fontsize=9)
+        _finish(figure, axes, "displacement of the equivalent system [mm]", "acceleration [m/s²]")  # fmt: skip
+        drawing.save(figure, path, DPI)
+
+
+def domain(found: Domain, path: FilePath) -> None:
+    """Draw an N-V domain, and runs as points. Writes a PNG file."""
+    with drawing.style():
+        figure = drawing.empty(7, 4.6)
+        axes = figure.subplots()
+        for key, label, dash in (("largest", "limit analysis, at most", "-"), ("withoutDilatancy", "limit analysis, without dilatancy", (0, (5, 3)))):  # fmt: skip
+            points = [(one.normal, getattr(one, key)) for one in found.bounds if getattr(one, key) is not None]  # fmt: skip
+            if points:
+                axes.plot(*zip(*points), marker=".", color=IDEAL, ls=dash, label=label)
+        for n, run in enumerate(found.runs):
+            axes.plot(run.normal, run.shear, "o", color=TARGET, ms=6, label="runs" if n == 0 else None)  # fmt: skip
+            axes.annotate(run.name, (run.normal, run.shear), textcoords="offset points", xytext=(6, -10), fontsize=8)  # fmt: skip
+        axes.set_xlim(left=0)
+        axes.set_ylim(bottom=0)
+        _finish(figure, axes, "normal force at the base, compression [kN]", "shear force [kN]")  # fmt: skip
+        drawing.save(figure, path, DPI)
+
+
+def _finish(figure: Any, axes: Any, x: str, y: str) -> None:
+    axes.set_xlabel(x)
+    axes.set_ylabel(y)
+    axes.legend(fontsize=9)
+    axes.grid(alpha=0.3)
+    figure.tight_layout()

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Capacity and demand of a run, as files in its folder: capacity.json and capacity.png, or domain.json and domain.png. This
+module needs no YADE."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from typing import Any, Sequence
+
+from .. import folders
+from ..arguments import FilePath
+from ..basics import Refused, say
+from ..packages import Missing
+from ..read import bilinear
+from . import figure, n2
+from .domains import Domain, domain
+from .spectra import Spectrum
+
+#: Files that are written.
+CAPACITY, DOMAIN = ("capacity.json", "capacity.png"), ("domain.json", "domain.png")
+#: What the equivalent system of a wall is, as the report says it.
+ASSUMED = (
+    "The structure is taken as one mass on a spring that follows the bilinear curve: it moves in one shape, that of the push, and keeps it "
+    "after it yields. Of a wall that is pushed at its top the mass is what the wall holds back in an earthquake, floors and masonry at the "
+    "height of the loaded point, with a factor of 1; it is not the mass that presses the wall, unless that also moves with it."
+)
+
+
+def assess(
+    directory: FilePath,
+    spectrum: Spectrum | None = None,
+    system: n2.Equivalent | None = None,
+    rule: str = "en1998",
+    mechanism: float | None = None,
+    limited: bool = False,
+    iterate: bool = False,
+    height: float | None = None,
+    out: FilePath | None = None,
+) -> dict[str, Any]:
+    """Write capacity.json and capacity.png of a run: the bilinear curve of its push, its drifts and, for a spectrum, the
+    target displacement by the N2 method. Returns what capacity.json has.
+
+    :param directory: folder of results
+    :param spectrum: of :func:`masonry.capacity.elastic` or :func:`masonry.capacity.readSpectrum`; None: no demand
+    :param system: of :func:`masonry.capacity.equivalent` or :func:`masonry.capacity.ofMasses`; None: that which the script of the run
+        gives, :func:`masonry.capacity.ofRun`
+    :param rule: of the bilinear curve, and ``mechanism``: as of :func:`masonry.read.bilinear.bilinear`
+    :param limited: as of :func:`masonry.capacity.demand`
+    :param iterate: whether the plastic mechanism forms at the target displacement, :func:`masonry.capacity.iterated`
+    :param height: as of :func:`masonry.read.bilinear.drifts`
+    :param out: folder of both files; None: ``directory``
+    :returns: dict with ``scene``, ``title``, ``rule``, ``numbers`` (a list of dicts as of :class:`masonry.read.bilinear.Number`), ``notes``,
+        and with a spectrum ``spectrum``, ``holds``, ``verdict`` and ``assumed``
+    :raises Refused: if the run has no whole push, or if something is missing for the demand; nothing is written then
+    """
+    if iterate and (rule != "en1998" or mechanism is not None or not spectrum):
+        raise Refused(
+            "iterate: it is of the rule en1998 with a spectrum, and finds the mechanism itself: leave rule= and mechanism= away"
+        )
+    push = bilinear.pushover(directory)
+    needs = None
+    if spectrum:
+        known = system or n2.ofRun(push.run, push.directory)
+    if spectrum and iterate:
+        needs = n2.iterated(push, known, spectrum, limited)
+        curve = needs.curve
+    else:
+        curve = bilinear.ofRun(push, rule, mechanism=mechanism)
+    if spectrum and not needs:
+        needs = n2.demand(curve, known, spectrum, limited)
+    numbers, notes = curve.numbers(), list(curve.notes)
+    try:
+        numbers += bilinear.drifts(push, height)
+    except Refused as refused:
+        notes.append(str(refused))
+    found = {"scene": push.run.get("scene"), "title": push.run.get("title"), "rule": rule}  # fmt: skip
+    if needs:
+        numbers += needs.numbers()
+        notes += needs.notes
+        found.update(spectrum=needs.spectrum.name, holds=needs.holds, verdict=needs.verdict(), assumed=ASSUMED)  # fmt: skip
+    found.update(numbers=[one.entry() for one in numbers], notes=notes)
+    folder = out or directory
+    data, picture = (os.path.join(folder, name) for name in CAPACITY)
+    draw = lambda: figure.capacity(push, needs, picture) if needs else figure.forces(push, curve, picture)  # fmt: skip
+    _write(folder, data, found, draw)
+    return found
+
+
+def assessDomain(
+    directory: FilePath, runs: Sequence[FilePath] = (), out: FilePath | None = None
+) -> Domain:
+    """Write domain.json and domain.png: the N-V domain of a scene, with runs as points. Returns the domain.
+
+    :param directory: folder of results, and ``runs``: as of :func:`masonry.capacity.domain`
+    :param out: folder of both files; None: ``directory``
+    :raises Refused: as of :func:`masonry.capacity.domain`; nothing is written then
+    """
+    found = domain(directory, runs)
+    folder = out or directory
+    data, picture = (os.path.join(folder, name) for name in DOMAIN)
+    _write(folder, data, found.entries(), lambda: figure.domain(found, picture))
+    return found
+
+
+def _write(folder, path, entries, draw):
+    """Write a JSON file and a picture. Raises Refused if the disk refuses."""
+    try:
+        os.makedirs(folder, exist_ok=True)
+        folders.check(folder)
+        with folders.replaced(path) as file:
+            json.dump(entries, file, indent=2, allow_nan=False)
+            file.write("\n")
+        try:
+            draw()
+        except Missing as missing:
+            say(f"the picture is not drawn: {missing}", sys.stderr)
+    except OSError as error:
+        raise Refused(f"cannot write to {folder}: {error.strerror}") from None

@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Elastic response spectra: those of EN 1998-1:2004, and any that a file has. This module needs no YADE."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arguments import FilePath, Numbers, number, oneOf, orNone, path as pathOf, takes
+from ..basics import GRAVITY, Refused
+from ..read.files import readWhole
+
+#: Units of accelerations [m/s²].
+UNITS = {"g": GRAVITY, "m/s²": 1.0, "m/s2": 1.0, "cm/s²": 0.01, "cm/s2": 0.01}
+#: EN 1998-1:2004, tables 3.2 (type 1) and 3.3 (type 2): S [-], TB, TC and TD [s] by the ground type. These are the recommended
+#: values; a National Annex may have others.
+PARAMETERS: dict[int, dict[str, tuple[float, float, float, float]]] = {
+    1: {
+        "A": (1.0, 0.15, 0.4, 2.0),
+        "B": (1.2, 0.15, 0.5, 2.0),
+        "C": (1.15, 0.20, 0.6, 2.0),
+        "D": (1.35, 0.20, 0.8, 2.0),
+        "E": (1.4, 0.15, 0.5, 2.0),
+    },
+    2: {
+        "A": (1.0, 0.05, 0.25, 1.2),
+        "B": (1.35, 0.05, 0.25, 1.2),
+        "C": (1.5, 0.10, 0.25, 1.2),
+        "D": (1.8, 0.10, 0.30, 1.2),
+        "E": (1.6, 0.05, 0.25, 1.2),
+    },
+}
+#: The longest period of the spectrum of EN 1998-1:2004, 3.2.2.2 [s], and the least damping correction, equation (3.6) [-].
+LONGEST, LEAST_CORRECTION = 4.0, 0.55
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """An elastic response spectrum of a horizontal acceleration."""
+
+    name: str  #: for figures and reports
+    source: str  #: where it comes from
+    periods: np.ndarray  #: [s], corners and enough points between them, for figures
+    accelerations: np.ndarray  #: at these periods [m/s²]
+    corner: float  #: TC, upper limit of the periods with constant acceleration [s]
+    longest: float  #: longest period [s]
+    formula: Any = None  #: function of a period that gives the acceleration; None: lines between the points
+
+    def acceleration(self, period: float) -> float:
+        """Se at a period [m/s²].
+
+        :param period: [s]
+        :raises Refused: if the spectrum does not have this period
+        """
+        first = float(self.periods[0])
+        if not first <= period <= self.longest:
+            raise Refused(
+                f"the spectrum ({self.name}) has no period of {period:.4g} s: it goes from {first:g} to {self.longest:g} s"
+            )
+        if self.formula:
+            return float(self.formula(period))
+        return float(np.interp(period, self.periods, self.accelerations))
+
+    def displacement(self, period: float) -> float:
+        """Se (T/2π)² at a period [mm], EN 1998-1:2004, equation (3.7). Parameters as of :meth:`acceleration`."""
+        return 1e3 * self.acceleration(period) * (period / (2 * math.pi)) ** 2
+
+
+def checkedUnit(unit: Any) -> float:
+    """The factor of a unit of acceleration [m/s²]. Raises Refused."""
+    if unit not in UNITS:
+        raise Refused(f"unit must be one of {', '.join(UNITS)}, got {unit!r}: an acceleration has no unit that could be guessed")  # fmt: skip
+    return UNITS[unit]
+
+
+@takes(
+    ag=number("", 0, 1e4, above=True),
+    ground=oneOf(*"ABCDE"),
+    importance=number("-", 0.1, 10),
+    damping=number("%", 0, 100, above=True),
+)
+def elastic(
+    ag: float,
+    unit: str,
+    type: int,
+    ground: str,
+    importance: float = 1.0,
+    damping: float = 5.0,
+    parameters: Numbers | None = None,
+) -> Spectrum:
+    """The horizontal elastic response spectrum of EN 1998-1:2004, 3.2.2.2, equations (3.2) to (3.5).
+
+    :param ag: agR, the reference peak ground acceleration on ground of type A, in ``unit``
+    :param unit: ``"g"``, ``"m/s²"`` or ``"cm/s²"``
+    :param type: 1, or 2 where earthquakes of a surface-wave magnitude above 5.5 do not count, 3.2.2.2(2)
+    :param ground: ground type ``"A"`` to ``"E"``, table 3.1
+    :param importance: importance factor by which agR is multiplied, 4.2.5; 1.0 is that of ordinary buildings, class II [-]
+    :param damping: viscous damping, of which equation (3.6) makes the correction η [%]; 5 % is that of the spectrum itself
+    :param parameters: S [-], TB, TC and TD [s] of a National Annex; None: the recommended values of tables 3.2 and 3.3
+    :raises Refused: with what is wrong
+    """
+    factor = checkedUnit(unit)
+    if type not in PARAMETERS or isinstance(type, bool):
+        raise Refused(f"elastic: type {type!r} must be 1 or 2")
+    soil, tb, tc, td = PARAMETERS[type][ground] if parameters is None else _four(parameters)  # fmt: skip
+    correction = max(math.sqrt(10 / (5 + damping)), LEAST_CORRECTION)
+    peak = ag * factor * importance
+    if peak > 3 * GRAVITY:
+        raise Refused(
+            f"elastic: a ground acceleration of {peak:.4g} m/s² is more than 3 g: is ag {ag:g} {unit} in another unit?"
+        )
+    plateau = 2.5 * correction
+
+    def formula(period):
+        if period <= tb:
+            return peak * soil * (1 + period / tb * (plateau - 1))
+        if period <= tc:
+            return peak * soil * plateau
+        if period <= td:
+            return peak * soil * plateau * tc / period
+        return peak * soil * plateau * tc * td / period**2
+
+    periods = np.unique([0.0, tb, tc, td, *np.linspace(0, LONGEST, 801)])
+    where = "recommended values" if parameters is None else "given values"
+    return Spectrum(
+        name=f"EN 1998-1 type {type}, ground {ground}, agR {ag:g} {unit}, importance {importance:g}, damping {damping:g} %",
+        source=f"EN 1998-1:2004, 3.2.2.2, {where} of S, TB, TC and TD",
+        periods=periods,
+        accelerations=np.array([formula(period) for period in periods]),
+        corner=tc,
+        longest=LONGEST,
+        formula=formula,
+    )
+
+
+def _four(parameters):
+    """S, TB, TC and TD of a National Annex. Raises Refused."""
+    try:
+        soil, tb, tc, td = (float(value) for value in parameters)
+    except (TypeError, ValueError):
+        raise Refused(
+            f"elastic: parameters must be four numbers, S [-], TB, TC and TD [s], got {parameters!r}"
+        ) from None
+    if not (0 < soil < 10 and 0 < tb <= tc <= td <= LONGEST):
+        raise Refused(
+            f"elastic: parameters S {soil:g}, TB {tb:g} s, TC {tc:g} s, TD {td:g} s must have 0 < S < 10 and 0 < TB <= TC <= TD "
+            f"<= {LONGEST:g} s"
+        )
+    return soil, tb, tc, td
+
+
+@takes(path=pathOf, corner=orNone(number("s", 0, 1e3, above=True)))
+def readSpectrum(path: FilePath, unit: str, corner: float | None = None) -> Spectrum:
+    """A spectrum from a file of two columns: period [s] and acceleration. Between its rows it is a line.
+
+    Columns are apart by commas, semicolons, tabs or blanks; lines that begin with # and a first line of names are left out.
+
+    :param unit: of the accelerations: ``"g"``, ``"m/s²"`` or ``"cm/s²"``
+    :param corner: TC, the upper limit of the periods with constant acceleration, which the target displacement needs [s]
+    :raises Refused: if the file cannot be read, is no such table, or if the corner is missing
+    """
+    factor = checkedUnit(unit)
+    try:
+        text = readWhole(path).decode("utf-8-sig")
+    except OSError as error:
+        raise Refused(f"cannot read {path}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise Refused(f"cannot read {path}: it is no text") from None
+    rows: list[list[float]] = []
+    names = False
+    for count, line in enumerate(text.splitlines(), 1):
+        cells = re.split(r"[,;\s]+", line.strip().strip(",;"))
+        if not cells[0] or cells[0].startswith("#"):
+            continue
+        try:
+            row = [float(cell) for cell in cells]
+        except ValueError as error:
+            if not rows and not names:
+                names = True
+                continue
+            raise Refused(f"{path}, line {count}: {error}") from None
+        if len(row) != 2 or not all(map(math.isfinite, row)) or min(row) < 0:
+            raise Refused(
+                f"{path}, line {count}: it must have a period [s] and an acceleration, neither below zero, has {line.strip()[:60]!r}"
+            )
+        if rows and row[0] <= rows[-1][0]:
+            raise Refused(f"{path}, line {count}: periods must grow, {row[0]:g} s comes after {rows[-1][0]:g} s")  # fmt: skip
+        rows.append(row)
+    if len(rows) < 2:
+        raise Refused(f"{path}: there must be two rows at least")
+    periods, accelerations = np.array(rows).T
+    accelerations = factor * accelerations
+    if not 0 < accelerations.max() < 100 * GRAVITY:
+        raise Refused(
+            f"{path}: the largest acceleration is {accelerations.max():.4g} m/s², which must be above 0 and below 100 g: is the unit "
+            f"{unit!r}?"
+        )
+    if corner is None:
+        raise Refused(
+            f"{path}: a file does not say where the constant accelerations end: give TC in s, corner= in Python or --corner"
+        )
+    if not periods[0] < corner <= periods[-1]:
+        raise Refused(
+            f"{path}: the corner, {corner:g} s, must be within the periods, {periods[0]:g} to {periods[-1]:g} s"
+        )
+    return Spectrum(
+        name=f"{path}",
+        source=f"the file {path}, accelerations in {unit}",
+        periods=periods,
+        accelerations=accelerations,
+        corner=corner,
+        longest=float(periods[-1]),
+    )
