@@ -73,6 +73,9 @@ def curve(record: Record) -> Iterator[Any]:
         text += " The ring is the frame that the turning picture shows; a click on the curve shows the nearest one there."
     yield figure(svg(chart), text)
     yield from _ideal(record)
+    picture = record.image("capacity.png")
+    if picture:
+        yield figure(tag("img", src=picture, alt="The capacity curve and the demand of a spectrum."), "Capacity and demand, as masonry.capacity drew them. Source: capacity.png.", "image")  # fmt: skip
     pushes = record.pushes
     if len(pushes) > 1:
         numbered = ", ".join(map(str, pushes))
@@ -380,7 +383,7 @@ def energy(record: Record) -> Iterator[Any]:
     ]  # fmt: skip
     lines.append((tag("strong", "all that was put in"), withUnit(total, "J"), part(total), "sum of these"))  # fmt: skip
     stored = sum(map(change, elastic))
-    lines.append(("elastic energy, of joints and of deformable units", withUnit(stored, "J"), part(stored), f"curve.csv: {', '.join(elastic)}"))  # fmt: skip
+    lines.append(("elastic energy of all parts", withUnit(stored, "J"), part(stored), f"curve.csv: {', '.join(elastic)}"))  # fmt: skip
     lines += [
         (_energyOf(meanings, n), withUnit(change(n), "J"), part(change(n)), f"curve.csv: {n}")
         for n in spent

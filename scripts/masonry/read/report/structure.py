@@ -274,6 +274,7 @@ def loaded(record: Record) -> Iterator[Any]:
     else:
         held = ", ".join(map(str, run.get("held") or [])) or "nothing"
         yield note(f"Held: {held}. Source: run.json: held.")
+    yield from _connections(run)
     lines = []
     for number, stage in enumerate(record.stages, start=1):
         load = [str(one) for one in (stage.get("load") or [])[1:2] if one]
@@ -296,6 +297,36 @@ def loaded(record: Record) -> Iterator[Any]:
         units = run.get("option_units") or {}
         text = "; ".join(f"{name} {_said(value)} {units.get(name, '')}".strip() for name, value in options.items())  # fmt: skip
         yield folded("All options of the run", note(text, ". Source: run.json: options."))  # fmt: skip
+
+
+#: Units at the end of names in entries of ties and springs, the longest first.
+ENDINGS = (("_N_per_m", "N/m"), ("_Nm", "N m"), ("_N", "N"), ("_m", "m"))
+
+
+def _connections(run):
+    """Ties, springs and layers of fibres, if run.json has some."""
+    for key in ("ties", "springs", "overlays"):
+        entries = [one for one in run.get(key) or [] if isinstance(one, dict)]
+        lines = [
+            (one.get("name", "?"), "; ".join(_named(n, v) for n, v in one.items() if n != "name"))
+            for one in entries
+        ]  # fmt: skip
+        if lines:
+            yield table(("name", "what it is, and its state at the end"), lines, f"{key.capitalize()}. Source: run.json: {key}")  # fmt: skip
+
+
+def _named(name, value):
+    """An entry with its unit, which ends its name."""
+    unit = next((u for ending, u in ENDINGS if name.endswith(ending)), "")
+    ending = next((ending for ending, _ in ENDINGS if name.endswith(ending)), "")
+    words = name.removesuffix(ending).replace("_", " ")
+    return f"{words} {_values(value)} {unit}".strip()
+
+
+def _values(value):
+    if isinstance(value, list):
+        return "(" + ", ".join(map(_values, value)) + ")"
+    return _said(value)
 
 
 def _said(value):
