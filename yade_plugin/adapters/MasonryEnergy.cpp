@@ -269,8 +269,10 @@ py::dict MasonryEnergy::balance() {
     all["dissipated_tension"] = lost[0];
     all["dissipated_shear"] = lost[1];
     all["dissipated_compression"] = lost[2];
-    all["elastic_connectors"] = inConnectors;
-    all["dissipated_connectors"] = lostInConnectors;
+    if (!store.allConnectors.empty()) {
+        all["elastic_connectors"] = inConnectors;
+        all["dissipated_connectors"] = lostInConnectors;
+    }
     all["error"] = error;
     return all;
 }

@@ -121,8 +121,9 @@ public:
         cls.def("balance", &MasonryEnergy::balance,
                 "All energies of the last step [J]: external, gravity, splitting, refining, kinetic, damping, elastic_ "
                 "and dissipated_ "
-                "tension, shear, compression, connectors, which are ties and springs; and error, the balance's error "
-                "relative to the work done [-].")
+                "tension, shear, compression; elastic_connectors and dissipated_connectors of ties and springs where "
+                "there are "
+                "some; and error, the balance's error relative to the work done [-].")
             .def("given", &MasonryEnergy::given,
                  "Count the kinetic energy of the present motion as work done from outside. Call this directly after "
                  "setting velocities by hand, if the run has made a step before.");

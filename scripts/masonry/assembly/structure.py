@@ -720,7 +720,7 @@ class Structure:
         """What of the loads is missing at the supports, and kinetic over elastic energy [-]."""
         energy = self.energy.balance()
         elastic = sum(
-            energy[f"elastic_{m}"]
+            energy.get(f"elastic_{m}", 0.0)
             for m in ("compression", "shear", "tension", "units", "connectors")
         )
         applied, carried = self.applied(), self.carried()

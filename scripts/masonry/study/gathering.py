@@ -25,6 +25,7 @@ ASIDE = {
     "scene",
     "title",
     "commit",
+    "date",
     "host",
     "threads",
     "interrupted",

@@ -400,9 +400,9 @@ class Masonry:
             return "support"
         if first.brick == second.brick and "crack" in self.joints:
             return "crack"
-        if first.kind == second.kind and first.kind in self.stiff:
+        if self.stiff and first.kind == second.kind and first.kind in self.stiff:
             return first.kind
-        for block in (first, second):
+        for block in (first, second) if self.stiff else ():
             if block.kind in self.stiff and f"{block.kind}_bearing" in self.joints:
                 return f"{block.kind}_bearing"
         if first.part != second.part and "collar" in self.joints:
