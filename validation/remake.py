@@ -124,7 +124,7 @@ def ofStudies():
     return [
         Result("closed_forms", (inYade("closed_forms/closed_forms.py"),), (), (*own("closed_forms"), *ALL), 3),
         Result("closed_forms/convergence", (inYade("closed_forms/convergence.py"),), (), (*own("closed_forms"), *RIGID), 3),
-        Result("statics", (inYade("statics/statics.py"),), (), (*own("statics"), *ALL), 40),
+        Result("statics", (inYade("statics/statics.py", "--sample", "500", "--seed", "31"),), (), (*own("statics"), *ALL), 10),
         Result("held_loads", (inYade("held_loads/held_loads.py"),), (), (*own("held_loads"), *RIGID), 6),
         Result("stability/map", (inYade("stability/stability.py"),), ("stability/map.png",), ("validation/stability/stability.py", *ALL), 9),
         Result("stability/onset", (inYade("stability/onset.py"),), (), ("validation/stability/onset.py", *ALL), 2),
@@ -145,8 +145,8 @@ def ofStudies():
         Result("sensitivity/tornado", (program("sensitivity/tornado.py"),), ("sensitivity/tornado.png",), ("validation/sensitivity/tornado.py", "validation/sensitivity/ranges.py", *walls, *RIGID), 45, ("validation/sensitivity/wall*",)),
         Result("sensitivity/comp4", study("sensitivity/comp4"), ("sensitivity/comp4_*.png",), ("validation/sensitivity/comp4.py", "validation/sensitivity/ranges.py", *RIGID), 24, ("validation/sensitivity/comp4",)),
         Result("sensitivity/comp1", study("sensitivity/comp1"), ("sensitivity/comp1_*.png",), ("validation/sensitivity/comp1.py", "validation/sensitivity/ranges.py", *RIGID), 16, ("validation/sensitivity/comp1",)),
-        Result("random_fields/one_metre", study("random_fields/one_metre"), ("random_fields/*_one_metre.png",), ("validation/random_fields/*.py", *RIGID), 60, ("validation/random_fields/one_metre",)),
-        Result("random_fields/one_brick", study("random_fields/one_brick"), ("random_fields/*_one_brick.png",), ("validation/random_fields/*.py", *RIGID), 60, ("validation/random_fields/one_brick",)),
+        Result("random_fields/one_metre", study("random_fields/one_metre"), ("random_fields/*_one_metre.png",), ("validation/random_fields/*.py", *RIGID), 20, ("validation/random_fields/one_metre",)),
+        Result("random_fields/one_brick", study("random_fields/one_brick"), ("random_fields/*_one_brick.png",), ("validation/random_fields/*.py", *RIGID), 20, ("validation/random_fields/one_brick",)),
         Result("multifidelity", (program("multifidelity/multifidelity.py", "--jobs", "2"),), ("multifidelity/multifidelity.png",), (*own("multifidelity"), *RIGID, *DEFORMABLE), 120, ("validation/multifidelity",)),
         Result("benchmark", (inYade("benchmark/benchmark.py"), program("benchmark/threads.py"), program("benchmark/plain.py")), (), ("validation/benchmark/*.py", *ALL), 15, ("benchmark",)),
     ]  # fmt: skip
