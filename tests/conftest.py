@@ -41,6 +41,8 @@ TOGETHER = [
 #: Tests that take ten seconds to a minute each, and of which others try a part: ``scripts/test.sh`` leaves them out, and
 #: ``scripts/test.sh all`` runs them.
 LONG = [
+    "test_companions_end_with_the_run_and_the_same_command_goes_on",
+    "test_a_run_that_is_resumed_has_its_half_widths_too",
     "test_every_command_that_has_no_reason_runs",
     "test_a_wall_killed_six_times_leaves_the_curve_of_a_whole_run",
     "test_a_limit_on_the_size_of_files_fails_rows_in_order",

@@ -15,6 +15,8 @@ GALLERY = re.findall(
     open(os.path.join(ROOT, "scripts", "README.md")).read(),
     re.MULTILINE,
 )
+#: Those that take longest.
+LONGEST = "facade", "flemish_wall", "corner"
 #: Scenes that are held against published results, which stand in the top README.
 PUBLISHED = ["couplet"] + ["wall_" + n for n in "comp0a comp1 comp4 comp6 dry".split()]
 
@@ -40,7 +42,10 @@ def test_a_scene_of_the_gallery_is_short(name):
         assert len(f.readlines()) <= 60  # with the line of the licence
 
 
-@pytest.mark.parametrize("name", GALLERY)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(n, marks=[pytest.mark.long] * (n in LONGEST)) for n in GALLERY],
+)
 def test_a_scene_of_the_gallery(runScene, name):
     words = ["--quick", "--rate", "100"]
     _, out = runScene(name, *words)

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given, reject, settings
 from hypothesis import strategies as some
 from scipy import special
 
@@ -92,7 +92,10 @@ def test_fine_levels_give_the_interval_of_student():
 @settings(max_examples=10, deadline=None)
 def test_the_unit_of_the_intensity_does_not_matter(seed, scale):
     low, high = drawn(seed, 15)
-    one, other = fragility.fit(low, high), fragility.fit(scale * low, scale * high)
+    try:
+        one, other = fragility.fit(low, high), fragility.fit(scale * low, scale * high)
+    except Refused:  # as below
+        reject()
     assert other.dispersion == pytest.approx(one.dispersion, rel=1e-4)
     assert other.median == pytest.approx([scale * m for m in one.median], rel=1e-4)
     place = 0.7 * one.median.value
@@ -102,7 +105,10 @@ def test_the_unit_of_the_intensity_does_not_matter(seed, scale):
 @given(seed=some.integers(0, 1000))
 @settings(max_examples=20, deadline=None)
 def test_intervals_hold_the_value_and_probabilities_grow(seed):
-    found = fragility.fit(*drawn(seed, 12))
+    try:
+        found = fragility.fit(*drawn(seed, 12))
+    except Refused:  # of some draws all records may reach the limit at one level
+        reject()
     for one in (found.median, found.dispersion):
         assert one.low < one.value < one.high
     at = [found.probability(x) for x in np.geomspace(0.05, 10, 30)]

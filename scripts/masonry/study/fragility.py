@@ -85,9 +85,9 @@ def fit(low: Numbers, high: Numbers, confidence: float = CONFIDENCE) -> Fit:
     if not low.any():
         raise Refused(f"no fragility: at all {n} records the limit is reached at the lowest level that was run; add lower levels")  # fmt: skip
     if low.max() <= high.min():
-        ends = dict.fromkeys(f"{end:.3g}" for end in (low.max(), high.min()))
+        places = dict.fromkeys(f"{end:.3g}" for end in (low.max(), high.min()))
         raise Refused(
-            f"no fragility: all records may reach the limit at one intensity, {' to '.join(ends)}, so the dispersion cannot be "
+            f"no fragility: all records may reach the limit at one intensity, {' to '.join(places)}, so the dispersion cannot be "
             "found; add levels about it, or records"
         )
     with np.errstate(divide="ignore"):
