@@ -39,7 +39,7 @@ RATIO = number("", 0, 1, below=True)
 def spectralAcceleration(
     values: Numbers, every: float, period: float, damping: float = DAMPING
 ) -> float:
-    """The pseudo spectral acceleration ω² max |u| of a record [m/s²].
+    """The pseudo spectral acceleration of a record [m/s²]: ω² times the largest displacement.
 
     The largest displacement is looked for during the record and a period of free vibration after it, at a hundred
     points of a period or more, so it is too small by 0.05 % at most.
