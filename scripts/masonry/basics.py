@@ -8,6 +8,8 @@ import sys
 from typing import Iterator
 
 GRAVITY = 9.81  # [m/s²]
+#: Units in which accelerations may be given, in m/s².
+ACCELERATION_UNITS = {"m/s²": 1.0, "g": GRAVITY, "cm/s²": 0.01}
 
 # A terminal or a log that has no ³ or µ shows their numbers; that is no reason to stop a run either.
 for _stream in (sys.stdout, sys.stderr):

@@ -10,7 +10,10 @@ from masonry import COLLAPSED, Scene, bricks, materials
 from masonry.basics import GRAVITY, Refused
 from masonry.read.files import readRun
 from masonry.read import files
+from masonry.read.frames import readFrame
+from masonry.read.page.data import dataOf
 from yade import O
+from yade.wrapper import MasonryVtkRecorder
 
 LEAN = ["--lean", "--checkpoint-every", "0"]
 WIDTH, DEPTH, HEIGHT = 0.4, 0.3, 1.6  # of a block [m]
@@ -249,3 +252,86 @@ def test_fibres_cross_the_joints_of_one_face_only(tmp_path):
         scene.overlay((0, 0, 1), stiffness=1e7, strength=1e4, gauge=0.1, fibres="vertical")  # fmt: skip
     scene.settle()
     scene.finish()
+
+
+def test_ends_that_a_script_moves_are_where_it_moved_them(tmp_path):
+    """A tie is fixed at half the height, then at the top: what the block, which a drive turned, stretches it by."""
+    scene = block(tmp_path, rate=20)
+    scene.platen("bottom")
+    top = scene.handle(at(HEIGHT / 2), "top")
+    tie = scene.tie(at(HEIGHT / 4), anchor=at(HEIGHT / 4, 3.0), stiffness=1e3)
+    scene.settle()
+    scene.push(top, 2)
+    low = tie.elongation
+    engine = scene.model.ties
+    engine.updateAttrs({"points1": [at(HEIGHT)], "points2": [at(HEIGHT, 3.0)]})
+    O.step()
+    assert tie.elongation / low == pytest.approx(4, rel=0.01)
+    twice = {name: 2 * list(getattr(engine, name)) for name in ("bodies1", "points1", "bodies2", "points2")}  # fmt: skip
+    with refused("stiffness must have a number for each of the 2 connectors, got 1"):
+        engine.updateAttrs(twice)
+    of = {"stiffness": [1e3] * 2, "strength": [1e300] * 2, "breaking": [1e300] * 2, "compression": [0] * 2, "rest": [0.0] * 2}  # fmt: skip
+    engine.updateAttrs({**twice, **of})
+    O.step()
+    assert engine.elongations[1] == engine.elongations[0] == tie.elongation
+    scene.finish()
+
+
+def test_ties_pull_the_same_with_functors(tmp_path):
+    """Both ways to run the joints give the same forces at the same displacements."""
+    found = []
+    for functors in (False, True):
+        folder = tmp_path / str(functors)
+        scene = Scene("wall", bricks.Wall(0.66, 0.243, halves=False), materials.dry(0.6), functors=functors, arguments=[*LEAN, "--out", str(folder)])  # fmt: skip
+        scene.platen("bottom")
+        scene.tie(1, anchor=(-1, 0, 0.2), stiffness=3e6, prestress=200)
+        scene.spring(3, stiffness=(1e5, 0, 0))
+        top = scene.handle(3, "top")
+        scene.settle()
+        scene.push(top, 1)
+        scene.finish()
+        rows = readCurve(folder)
+        assert abs(rows["balance_error"]).max() < 1e-3
+        moved = rows["displacement_mm"]
+        at = lambda name: np.interp((0.3, 0.6, 0.9), moved, rows[name])
+        found.append([*at("tie0_force_kN"), *at("spring0_force_x_kN")])
+    assert found[0] == pytest.approx(found[1], rel=0.01)
+    assert min(map(abs, found[0])) > 0.01
+
+
+def test_bricks_at_ties_of_deformable_walls_are_said_to_be_rigid(tmp_path, capsys):
+    wall = bricks.Wall(0.66, 0.243, halves=False)
+    scene = Scene("wall", wall, materials.dry(0.6, young=4e9, poisson=0.2), arguments=[*LEAN, "--blocks", "deformable", "--out", str(tmp_path)])  # fmt: skip
+    scene.platen("bottom")
+    scene.tie(1, anchor=(-1, 0, 0.2), stiffness=1e6)
+    scene.settle()
+    scene.finish()
+    assert f"1 of {len(wall)} bricks are rigid, because ties" in capsys.readouterr().out
+
+
+def test_frames_have_ties_and_springs(tmp_path):
+    """The file of a frame for ParaView, and the page that draws it, against what the engines say."""
+    wall = bricks.Wall(0.66, 0.243, halves=False)
+    scene = Scene("wall", wall, materials.dry(0.6), arguments=["--checkpoint-every", "0", "--out", str(tmp_path)])  # fmt: skip
+    scene.platen("bottom", springs={"x": 1e7})
+    tie = scene.tie(3, anchor=(-1, 0, 0.2), stiffness=3e6, strength=100)
+    scene.tie(2, 3, stiffness=3e6)
+    top = scene.handle(3, "top")
+    scene.settle()
+    scene.push(top, 2)
+    scene.finish()
+    frame = readFrame(tmp_path, "connectors")
+    assert [len(cell) for cell in frame["cells"]] == [1, 2, 2]
+    assert set(frame) - {"points", "cells"} <= set(MasonryVtkRecorder.fields())
+    assert frame["condition"].tolist() == [0, 1, 0] and tie.state == "yielded"
+    assert frame["tension"][1] == pytest.approx(tie.force, rel=1e-12)
+    assert np.linalg.norm(frame["force"][1]) == pytest.approx(tie.force, rel=1e-12)
+    assert frame["elongation"][1] == pytest.approx(tie.elongation, rel=1e-12)
+    (spring,) = scene.description.springs
+    assert frame["force"][0] == pytest.approx(spring.force, rel=1e-12)
+    one, other = frame["points"][frame["cells"][1]] + frame["displacement"][frame["cells"][1]]  # fmt: skip
+    assert np.linalg.norm(other - one) - tie.length == pytest.approx(tie.elongation, rel=1e-6)  # fmt: skip
+    head, _ = dataOf(str(tmp_path))
+    arrays = head["arrays"]
+    assert arrays["tiePoints"]["count"] == 12
+    assert arrays["tieCondition"]["row"] == 2 and arrays["tieMoved"]["row"] == 12

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
-#include "MasonryTies.hpp"
+#include "Adapter.hpp"
+#include "scene/SceneCheck.hpp"
 #include "scene/Springs.hpp"
 
 namespace masonry {
@@ -17,7 +18,7 @@ public:
 
     template <class Visit> static void attributes(Visit&& visit) {
         using S = MasonrySprings;
-        endsOfConnectors<S>(visit);
+        Connectors::describe<S>(visit);
         visit("stiffness", &S::stiffness, described("Of each spring along x, y and z [N/m], at least 0"), Given);
         visit("rotationalStiffness", &S::rotationalStiffness,
               described("Of each spring about x, y and z [N m], at least 0"), Given);

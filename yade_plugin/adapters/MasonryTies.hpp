@@ -6,18 +6,6 @@
 
 namespace masonry {
 
-// The ends of connectors, for the attributes of an engine.
-template <class Class, class Visit> void endsOfConnectors(Visit&& visit) {
-    visit("bodies1", &Class::bodies1, described("Body of the first end of each connector; -1: the ground"), Given);
-    visit("points1", &Class::points1,
-          described("Place of the first end in the reference state of its body, global axes [m]"), Given);
-    visit("bodies2", &Class::bodies2, described("Body of the second end of each; -1: the ground"), Given);
-    visit("points2", &Class::points2, described("Place of the second end, likewise [m]"), Given);
-    visit("elastic", &Class::stored, number("J", "Elastic energy in the last step"), ReadOnly);
-    visit("dissipated", &Class::dissipated, number("J", "Dissipated energy so far"), ReadOnly);
-    visit("given", &Class::given, number("J", "Work of tightening so far"), ReadOnly);
-}
-
 class MasonryTies : public Adapter<MasonryTies, yade::GlobalEngine>, public Ties {
 public:
     static constexpr const char* className = "MasonryTies";
@@ -32,7 +20,7 @@ public:
 
     template <class Visit> static void attributes(Visit&& visit) {
         using T = MasonryTies;
-        endsOfConnectors<T>(visit);
+        Connectors::describe<T>(visit);
         visit("stiffness", &T::stiffness, described("E A / L of each bar [N/m], above 0"), Given);
         visit("strength", &T::strength, described("Force at which each bar yields [N], above 0; 1e300: never"), Given);
         visit(
@@ -58,6 +46,10 @@ public:
     }
 
     using Ties::problems;
+    void postLoad() {
+        Adapter::check();
+        forgetReference();
+    }
     bool isActivated() override { return standsAlone(*this); }
     void action() override;
 

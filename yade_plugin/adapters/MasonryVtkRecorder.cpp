@@ -2,6 +2,7 @@
 #include "MasonryVtkRecorder.hpp"
 #include "law/Laws.hpp"
 #include "scene/Blocks.hpp"
+#include "scene/Connectors.hpp"
 #include "scene/SceneStore.hpp"
 #include "scene/Zones.hpp"
 #include <Eigen/Eigenvalues>
@@ -60,7 +61,11 @@ const Field fields[] = {
     {"joint_dissipated", 3, number("J", "Energy that the whole joint dissipated in tension, shear and compression")},
     {"regime", 1, described("Regime in the last step: 0 elastic, 1 opening, 2 slipping, 3 crushing")},
     {"kind", 1, described("Number of the joint's kind in `kinds`")},
-    {"bodies", 2, described("Ids of the two bodies of the joint")},
+    {"bodies", 2, described("Ids of the two bodies of the joint, or of the tie or the spring; -1: the ground")},
+    {"force", 3, number("N", "Force of a tie or a spring on the first of its `bodies`")},
+    {"tension", 1, number("N", "Force of a tie along its line, positive in tension")},
+    {"elongation", 1, number("m", "Elongation of the distance between the ends of a tie")},
+    {"condition", 1, described("Of a tie: 0 elastic, 1 has yielded, 2 broken")},
 };
 
 template <class Array> Array* column(vtkDataSetAttributes* data, const Field& field) {
@@ -202,21 +207,34 @@ bool MasonryVtkRecorder::isActivated() { return stepPeriod > 0 && scene->iter % 
 
 void MasonryVtkRecorder::action() {
     const BetweenSteps still;
-    const auto blocks = directory + "/" + frame("blocks", times.size(), ".vtu");
-    writeBlocks(blocks);
+    std::vector<std::string> written;
+    const auto path = [&](const char* name, const char* extension) {
+        written.push_back(directory + "/" + frame(name, times.size(), extension));
+        return written.back();
+    };
     try {
-        writeJoints(directory + "/" + frame("joints", times.size(), ".vtp"));
+        writeBlocks(path("blocks", ".vtu"));
+        writeJoints(path("joints", ".vtp"));
+        if (hasConnectors()) writeConnectors(path("connectors", ".vtp"));
     } catch (...) {
-        std::remove(blocks.c_str()); // a frame is written whole or not at all
+        for (const auto& one : written) // a frame is written whole or not at all
+            std::remove(one.c_str());
         throw;
     }
     times.push_back(scene->time);
     collect();
 }
 
+bool MasonryVtkRecorder::hasConnectors() const {
+    auto& store = SceneStore::of(*scene);
+    store.update();
+    return !store.connectors.empty();
+}
+
 void MasonryVtkRecorder::collect() const {
     writeCollection("blocks", ".vtu");
     writeCollection("joints", ".vtp");
+    if (hasConnectors()) writeCollection("connectors", ".vtp");
 }
 
 void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
@@ -367,6 +385,50 @@ vtkSmartPointer<vtkPolyData> MasonryVtkRecorder::jointData() {
 }
 
 void MasonryVtkRecorder::writeJoints(const std::string& path) { write<vtkXMLPolyDataWriter>(path, jointData().Get()); }
+
+void MasonryVtkRecorder::writeConnectors(const std::string& path) const {
+    vtkNew<vtkPolyData> data;
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    vtkNew<vtkCellArray> ofBars, ofSprings;
+    auto* displacement = column<vtkDoubleArray>(data->GetPointData(), "displacement");
+    auto* values = data->GetCellData();
+    auto* force = column<vtkDoubleArray>(values, "force");
+    auto* tension = column<vtkDoubleArray>(values, "tension");
+    auto* elongation = column<vtkDoubleArray>(values, "elongation");
+    auto* condition = column<vtkIntArray>(values, "condition");
+    auto* ids = column<vtkIntArray>(values, "bodies");
+    const auto& store = SceneStore::of(*scene);
+    for (const bool bars : {false, true}) // VTK numbers cells that are points before those that are lines
+        for (const Connectors* all : store.connectors) {
+            if (all->isBar() != bars) continue;
+            for (int i = 0; i < all->count(); ++i) {
+                const auto at = std::size_t(i);
+                const auto add = [&](int body, const Vector3r& point) {
+                    const Vector3r moved = Connectors::endOf(store, body, point).place - point;
+                    displacement->InsertNextTuple(moved.data());
+                    return points->InsertNextPoint(point.data());
+                };
+                vtkIdType ends[2] = {add(all->bodies1[at], all->points1[at])};
+                if (bars) {
+                    ends[1] = add(all->bodies2[at], all->points2[at]);
+                    ofBars->InsertNextCell(2, ends);
+                } else
+                    ofSprings->InsertNextCell(1, ends);
+                const auto view = all->view(store, i);
+                force->InsertNextTuple(view.force.data());
+                tension->InsertNextValue(view.tension);
+                elongation->InsertNextValue(view.elongation);
+                condition->InsertNextValue(view.condition);
+                const double bodies[2] = {double(all->bodies1[at]), double(all->bodies2[at])};
+                ids->InsertNextTuple(bodies);
+            }
+        }
+    data->SetPoints(points);
+    data->SetVerts(ofSprings);
+    data->SetLines(ofBars);
+    write<vtkXMLPolyDataWriter>(path, data.Get());
+}
 
 py::dict MasonryVtkRecorder::jointsNow() {
     const BetweenSteps still;

@@ -12,8 +12,10 @@ public:
     static constexpr const char* className = "MasonryVtkRecorder";
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
-        "Writes blocks.pvd and joints.pvd with their series of files for ParaView, one frame at every action. Units "
-        "stand at their reference place, deformable ones are drawn as zones, and subcontacts are cells. fields() says "
+        "Writes blocks.pvd and joints.pvd with their series of files for ParaView, one frame at every action, and "
+        "connectors.pvd where there are ties or springs. Units "
+        "stand at their reference place, deformable ones are drawn as zones, subcontacts are cells, ties are lines and "
+        "springs points. fields() says "
         "what the files hold, and every field carries its unit. Call the engine as a function for a frame, or set "
         "stepPeriod.";
 
@@ -40,7 +42,7 @@ public:
 
     template <class PyClass> static void extras(PyClass& cls) {
         cls.def("collect", &MasonryVtkRecorder::collect,
-                "Write blocks.pvd and joints.pvd alone, for the frames of `times`.")
+                "Write blocks.pvd, joints.pvd and connectors.pvd alone, for the frames of `times`.")
             .def("joints", &MasonryVtkRecorder::jointsNow,
                  "All joints as they are now, without a file: a dict of what a file of joints holds, by the names of "
                  "fields(), with `points` [m] and `cells`, lists of numbers of points.")
@@ -54,6 +56,8 @@ private:
     void writeBlocks(const std::string& path) const;
     vtkSmartPointer<vtkPolyData> jointData();
     void writeJoints(const std::string& path);
+    bool hasConnectors() const;
+    void writeConnectors(const std::string& path) const;
     py::dict jointsNow();
     void writeCollection(const std::string& name, const std::string& extension) const;
 };

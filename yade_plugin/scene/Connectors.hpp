@@ -30,16 +30,40 @@ public:
     virtual Vector3r stiffnessOf(int connector) const = 0;
     virtual Vector3r rotationalStiffnessOf(int connector) const = 0;
 
+    // What files show of a connector, as the last step left it.
+    struct View {
+        Vector3r force = Vector3r::Zero(); // on its first body [N]
+        double tension = 0;                // along the line between its ends; 0 for what has no such line [N]
+        double elongation = 0;             // of that line [m]
+        int condition = 0;                 // 0 elastic, 1 has yielded, 2 broken
+    };
+    virtual View view(const SceneContents&, int connector) const = 0;
+    // Whether ends stand apart, so that a connector is a line; else it is a point.
+    virtual bool isBar() const = 0;
+
+    // The attributes that all kinds have.
+    template <class Class, class Visit> static void describe(Visit&& visit) {
+        visit("bodies1", &Class::bodies1, described("Body of the first end of each connector; -1: the ground"), Given);
+        visit("points1", &Class::points1,
+              described("Place of the first end in the reference state of its body, global axes [m]"), Given);
+        visit("bodies2", &Class::bodies2, described("Body of the second end of each; -1: the ground"), Given);
+        visit("points2", &Class::points2, described("Place of the second end, likewise [m]"), Given);
+        visit("elastic", &Class::stored, number("J", "Elastic energy in the last step"), ReadOnly);
+        visit("dissipated", &Class::dissipated, number("J", "Dissipated energy so far"), ReadOnly);
+        visit("given", &Class::given, number("J", "Work of tightening so far"), ReadOnly);
+    }
+
     // Throws std::invalid_argument if an end is on a body that is not there or that is a deformable unit.
     void checkBodies(const SceneContents&) const;
 
-protected:
     // An end of a connector in the present step.
     struct End {
         Vector3r place; // [m]
         Vector3r arm;   // from the centre of its body [m]
     };
     static End endOf(const SceneContents&, int body, const Vector3r& point);
+
+protected:
     // How far a body has turned since the reference state: a vector along the axis [rad]; zero for the ground.
     static Vector3r turnOf(const SceneContents&, int body);
     // What is wrong with the ends, one sentence for each problem.

@@ -48,4 +48,10 @@ void Springs::act(SceneContents& contents) {
     }
 }
 
+Connectors::View Springs::view(const SceneContents&, int spring) const {
+    View view;
+    if (std::size_t(spring) < forces.size()) view.force = forces[std::size_t(spring)];
+    return view;
+}
+
 } // namespace masonry

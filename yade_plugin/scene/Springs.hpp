@@ -19,6 +19,8 @@ public:
     void act(SceneContents&) override;
     Vector3r stiffnessOf(int spring) const override { return stiffness[std::size_t(spring)]; }
     Vector3r rotationalStiffnessOf(int spring) const override { return rotationalStiffness[std::size_t(spring)]; }
+    View view(const SceneContents&, int spring) const override;
+    bool isBar() const override { return false; }
 };
 
 } // namespace masonry

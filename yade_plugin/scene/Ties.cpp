@@ -226,4 +226,12 @@ void Ties::act(SceneContents& contents) {
     restBefore = rest;
 }
 
+Connectors::View Ties::view(const SceneContents& contents, int tie) const {
+    const auto i = std::size_t(tie);
+    if (i >= forces.size()) return {};
+    const Vector3r line = endOf(contents, bodies2[i], points2[i]).place - endOf(contents, bodies1[i], points1[i]).place;
+    const int condition = brokenAt[i] >= 0 ? 2 : yieldedAt[i] >= 0 ? 1 : 0;
+    return {forces[i] * line.normalized(), forces[i], elongations[i], condition};
+}
+
 } // namespace masonry

@@ -32,6 +32,12 @@ public:
     void act(SceneContents&) override;
     Vector3r stiffnessOf(int tie) const override { return Vector3r::Constant(stiffness[std::size_t(tie)]); }
     Vector3r rotationalStiffnessOf(int) const override { return Vector3r::Zero(); }
+    View view(const SceneContents&, int tie) const override;
+    bool isBar() const override { return true; }
+
+protected:
+    // What was found from ends and reference state is found again in the next step.
+    void forgetReference() { revision_ = -1; }
 
 private:
     static constexpr int most = 64; // ties that are worked on at a time, so that all their numbers are in the cache

@@ -109,7 +109,7 @@ ENERGIES = {
 }
 
 
-#: Energies of ties and springs, of scenes that have some.
+#: Likewise of ties and springs, in scenes that have some.
 OF_CONNECTORS = {
     "elastic_connectors": "elastic energy in ties and springs",
     "dissipated_connectors": "energy that ties dissipated",
@@ -120,23 +120,24 @@ def _energy(name):
     return lambda reading: reading.energy[name]
 
 
-#: The energy balance, in every run.
+def _energies(names):
+    return [
+        Column(name, "J", f"{meaning} since the scene was built", _energy(name))
+        for name, meaning in names.items()
+    ]
+
+
+#: The energy balance, in every run, and what ties and springs add to it.
 BALANCE = [
-    Column(name, "J", f"{meaning} since the scene was built", _energy(name))
-    for name, meaning in ENERGIES.items()
-]
-CONNECTORS = [
-    Column(name, "J", f"{meaning} since the scene was built", _energy(name))
-    for name, meaning in OF_CONNECTORS.items()
-]
-BALANCE += [
+    *_energies(ENERGIES),
     Column(
         "balance_error",
         "-",
         "error of the energy balance, relative to the work done",
         _energy("error"),
-    )
+    ),
 ]
+CONNECTORS = _energies(OF_CONNECTORS)
 
 #: Of a push.
 PUSH = [

@@ -66,8 +66,9 @@ class Structure:
         self._newsFrom = 0  # step from which ties that yield or break are news
         self.bricks, self.loads, self.zones = {}, {}, None
         #: Indices of blocks that are rigid also where bricks are deformable.
+        self._stiff = masonry.stiff
         self._rigid = description.connectedBricks() | {
-            n for n, b in enumerate(description.bricks) if b.kind in masonry.stiff
+            n for n, b in enumerate(description.bricks) if b.kind in self._stiff
         }
         #: What is pushed; from the beginning the target that a drive holds.
         self.target = next((t for t in description.targets.values() if t.drives), None)
@@ -152,6 +153,9 @@ class Structure:
                     self.bricks.pop(target.body, None)
             for index in self._rigid:
                 self.bricks.pop(self.ids[index], None)
+            held = [n for n in description.connectedBricks() if description.bricks[n].kind not in self._stiff]  # fmt: skip
+            if held:
+                say(f"note: {len(held)} of {len(description.bricks)} bricks are rigid, because ties, springs or fibre layers end at them")  # fmt: skip
             # cells of a half brick along its length; a whole one has twice as many
             n = args.divisions
             if args.mass_scaling and "crack" in self.joints:

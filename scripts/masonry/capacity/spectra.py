@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from ..arguments import FilePath, Numbers, number, oneOf, orNone, path as pathOf, takes
-from ..basics import GRAVITY, Refused
+from ..basics import ACCELERATION_UNITS, GRAVITY, Refused
 from ..read.files import readWhole
 
-#: Units of accelerations [m/s²].
-UNITS = {"g": GRAVITY, "m/s²": 1.0, "m/s2": 1.0, "cm/s²": 0.01, "cm/s2": 0.01}
+#: Units of accelerations in m/s², those with a raised 2 also as a keyboard writes them.
+UNITS = {**ACCELERATION_UNITS, "m/s2": ACCELERATION_UNITS["m/s²"], "cm/s2": ACCELERATION_UNITS["cm/s²"]}  # fmt: skip
 #: EN 1998-1:2004, tables 3.2 (type 1) and 3.3 (type 2): S [-], TB, TC and TD [s] by the ground type. These are the recommended
 #: values; a National Annex may have others.
 PARAMETERS: dict[int, dict[str, tuple[float, float, float, float]]] = {

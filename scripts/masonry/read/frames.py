@@ -29,7 +29,7 @@ TYPES = {"Float64": "f8", "Float32": "f4", "Int64": "i8", "Int32": "i4", "UInt8"
 def framePaths(directory: FilePath, kind: str) -> list[str]:
     """Paths of all frames of a run, in the order of time.
 
-    :param kind: ``blocks`` or ``joints``
+    :param kind: ``blocks``, ``joints`` or ``connectors``
     :raises Refused: if there is none
     """
     number = lambda path: int(re.search(r"_(\d+)\.vt[up]$", path)[1])
@@ -58,9 +58,10 @@ def frameTimes(directory: FilePath) -> list[float]:
 
 
 def readFrame(directory: FilePath, kind: str, number: int = -1) -> dict[str, Any]:
-    """A frame of blocks or joints as a dict: ``points`` [m], ``cells`` (arrays of point numbers), and every data array.
+    """A frame of blocks, joints or connectors as a dict: ``points`` [m], ``cells`` (arrays of point numbers), and every data
+    array.
 
-    :param kind: ``blocks`` or ``joints``
+    :param kind: ``blocks``, ``joints`` or ``connectors``, the ties and springs
     :param number: of the frame, from 0; negative numbers count from the end
     :raises Refused: if there is no such frame, or if its file is damaged
     """
@@ -159,17 +160,20 @@ def _frame(root):
         "CellData/DataArray"
     ):
         frame[array.get("Name")] = read(array)
-    kind = "Polys" if root.get("type") == "PolyData" else "Cells"
-    ends, corners = (
-        read(piece.find(f"{kind}/DataArray[@Name='{name}']"))
-        for name in ("offsets", "connectivity")
-    )
-    if not len(frame["points"]) or not len(ends):
+    frame["cells"] = []
+    for kind in ("Verts", "Lines", "Polys") if root.get("type") == "PolyData" else ("Cells",):  # fmt: skip
+        ends, corners = (
+            read(piece.find(f"{kind}/DataArray[@Name='{name}']"))
+            for name in ("offsets", "connectivity")
+        )
+        if not len(ends):
+            continue
+        if ends[-1] != len(corners) or corners.max() >= len(frame["points"]):
+            raise ValueError("its cells have points that are not there")
+        places = [0, *ends.tolist()]  # np.split does the same in ten times the time
+        frame["cells"] += [corners[a:b] for a, b in zip(places, places[1:])]
+    if not len(frame["points"]) or not frame["cells"]:
         raise ValueError("it has no points or no cells")
-    if ends[-1] != len(corners) or corners.max() >= len(frame["points"]):
-        raise ValueError("its cells have points that are not there")
-    places = [0, *ends.tolist()]  # np.split does the same in ten times the time
-    frame["cells"] = [corners[a:b] for a, b in zip(places, places[1:])]
     return frame
 
 

@@ -163,7 +163,7 @@ def sceneOf(
                 if still
                 else os.path.join(directory, kind + ".pvd")
             )
-            for kind in ("blocks", "joints")
+            for kind in ("blocks", "joints", *["connectors"] * bool(run.get("ties")))
         },
         "still": still,
         "title": f"{title}\n{when}displacements × {magnification:g}, slid joints in blue",

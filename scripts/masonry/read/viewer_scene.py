@@ -83,6 +83,18 @@ def build(pv, view, scene):
             else:
                 thing.ColorArrayName = ["POINTS", ""]
                 thing.DiffuseColor = thing.AmbientColor = SLID
+    if "connectors" in scene:
+        bars = read(scene["connectors"])
+        pulled = pv.WarpByVector(registrationName="ties moved", Input=bars)
+        pulled.Vectors = ["POINTS", "displacement"]
+        pulled.ScaleFactor = scene["magnification"]
+        rods = pv.Tube(registrationName="ties", Input=pulled)
+        rods.Radius, rods.NumberofSides = scene["tube"], 8
+        rods.Scalars, rods.Vectors = ["POINTS", ""], ["POINTS", ""]
+        drawn = pv.Show(rods, view)
+        drawn.ColorArrayName = ["POINTS", ""]
+        drawn.DiffuseColor = drawn.AmbientColor = (0.2, 0.2, 0.2)
+        drawn.Position = scene["forward"]
     # drawing has set the range of colours to that of the frame
     colours.RGBPoints = [
         v for share, *rgb in OPENINGS for v in (share * scene["widest_mm"], *rgb)

@@ -177,11 +177,13 @@ FILES = [
     "domain.png",
     "blocks.pvd",
     "joints.pvd",
+    "connectors.pvd",
     "mechanism.png",
     "mechanism_blocks.vtu",
     "mechanism_joints.vtu",
     "blocks_*.vtu",
     "joints_*.vtp",
+    "connectors_*.vtp",
 ]
 #: Those of them that show how far a run has come: they go when it goes on.
 DRAWN = {"curve.png", "cracks.png", "report.html"}

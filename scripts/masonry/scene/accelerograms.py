@@ -25,10 +25,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arguments import FilePath, Numbers, shown
+from ..basics import ACCELERATION_UNITS as UNITS
 from ..basics import Refused
 from ..read.files import readWhole
 
-UNITS = {"m/s²": 1.0, "g": 9.81, "cm/s²": 0.01}  # [m/s²]
 #: How files write these units, in small letters.
 WRITTEN = {
     **{f"{unit}{two}": f"{unit}²" for unit in ("m/s", "cm/s") for two in ("²", "2", "^2", "**2")},

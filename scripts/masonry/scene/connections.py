@@ -16,10 +16,8 @@ from ..bricks import Block, Bricks
 from .supports import POINT
 from .targets import Target, brick
 from .targets import part as partName
-from .ties import End, Overlay, Spring, Tie
+from .ties import MOST, End, Overlay, Spring, Tie
 from .words import describes
-
-MOST = 1e15  # of stiffness [N/m], [N m] and force [N]: more has no structure
 
 
 def end(value: Any, first: Any) -> Any:
@@ -230,13 +228,15 @@ def overlay(
     :param name: of its columns, the numbers of bundles that have yielded and broken; None: ``overlay`` and a number
     :returns: an :class:`Overlay`, whose ``ties`` are the bundles
     """
+    if description.plane:
+        raise Refused("overlay: the scene is in the x-z plane, in which a layer on one face would bend it; Scene(..., plane=False) is in space")  # fmt: skip
     name = name or f"overlay{len(description.overlays)}"
     _checkName(description, name, "overlay")
     outward = np.asarray(vector(side, "overlay: side").normalized(), float)
     bricks = Bricks(description.bricks)
     size = max(b - a for a, b in zip(description.low, description.high))
     fronts = [max(np.dot(c, outward) for c in b.corners) for b in description.bricks]
-    made, covered = [], 0.0
+    made = []
     for joint in bricks.joints():
         pair, normal = (joint.first, joint.second), np.array(joint.normal)
         level = abs(normal[2]) > 0.5**0.5
@@ -254,7 +254,6 @@ def overlay(
         width = float(np.linalg.norm(last - first))
         if not width > NEAR * size:
             continue
-        covered += width * gauge
         across = normal - (normal @ outward) * outward
         across *= 0.5 * gauge / np.linalg.norm(across)
         for share in BUNDLES:
@@ -265,10 +264,8 @@ def overlay(
             made.append(Tie(f"{name}_{len(made)}", ends, 0.5 * width * stiffness / gauge, 0.5 * width * strength, 0.0, 0.0, strain, False, number=number, overlay=name))  # fmt: skip
     if not made:
         raise Refused(f"overlay: no joint ends at a face that looks along {tuple(side)}")  # fmt: skip
-    if description.plane:
-        raise Refused("overlay: the scene is in the x-z plane, in which a layer on one face would bend it; Scene(..., plane=False) is in space")  # fmt: skip
     description.ties += made
-    description.overlays.append(Overlay(name, made, covered))
+    description.overlays.append(Overlay(name, made))
     return description.overlays[-1]
 
 

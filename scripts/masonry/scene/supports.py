@@ -13,24 +13,22 @@ from ..assembly.blocks import vector
 from ..basics import Refused
 from .targets import Target, brick
 from .targets import part as partName
-from .ties import End, Spring
+from .ties import MOST, End, Spring
 from .words import describes
 
 PLATEN = 0.2  # [m] height of a platen
-STIFFEST = 1e15  # of a spring [N/m], [N m]
+
+#: Kinds of arguments: a coordinate and a point, not farther from the origin than any masonry.
+COORDINATE, POINT = number("m", -1e6, 1e6), numbers("m", 1e6)
 
 
 def stiffnesses(value: Any, first: Any = None) -> Any:
     """The kind of the stiffnesses of springs: a dict from axes to numbers above 0."""
-    found = byName(number("N/m or N m", 0, STIFFEST, above=True))(value)
+    found = byName(number("N/m or N m", 0, MOST, above=True))(value)
     unknown = [axis for axis in found if axis not in ("x", "y", "z", "X", "Y", "Z")]
     if unknown or not found:
         raise ValueError(f"{shown(value)} must be a dict from some of the axes xyzXYZ to stiffness")  # fmt: skip
     return found
-
-
-#: Kinds of arguments: a coordinate and a point, not farther from the origin than any masonry.
-COORDINATE, POINT = number("m", -1e6, 1e6), numbers("m", 1e6)
 
 
 @describes
@@ -81,7 +79,7 @@ def platen(
         them: it is free until it is pushed
     :param springs: of the one at the bottom, a soil or a rig that gives way: a dict from axes, xyz along and XYZ about, to
         stiffness [N/m], [N m/rad], at the middle of its outer side, for example ``{"x": 37e6}``; along and about the others it
-        is fixed. None: about none it gives way
+        is fixed. None: it is fixed along and about all
     """
     bottom = where == "bottom"
     level = description.low[2] if bottom else description.high[2]

@@ -12,6 +12,7 @@ from ..assembly.columns import Column
 from .targets import Target
 
 GROUND = -1  # in place of the id of a body
+MOST = 1e15  # of stiffness [N/m], [N m] and force [N]: more has no structure
 
 
 @dataclass
@@ -195,7 +196,6 @@ class Overlay:
 
     name: str
     ties: list[Tie]
-    area: float  # of the face that it covers, about [m²]
 
     def columns(self, plane: bool) -> Iterator[Column]:
         """What is recorded of it."""

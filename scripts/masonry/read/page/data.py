@@ -93,6 +93,7 @@ def dataOfMotion(motion, number=None, magnification=None, curve=None):
         arrays, head = Arrays(), _head(motion, magnification, curve)
     _addBlocks(arrays, motion)
     head["values"] = _addJoints(arrays, cracks)
+    _addTies(arrays, motion)
     head.update(
         first=count - 1 if number is None else number,
         jointPoints=cracks.count,
@@ -185,6 +186,19 @@ def _addJoints(arrays, cracks):
         top = float(np.quantile(shown, 0.995)) if len(shown) else 0.0
         found[name] = {"least": LEAST[name], "top": nice(max(top, 4 * LEAST[name])), "most": most}  # fmt: skip
     return found
+
+
+def _addTies(arrays, motion):
+    """The bars between blocks: both ends of each, how they move, and 0 elastic, 1 has yielded, 2 broken."""
+    if not motion.run.get("ties"):
+        return
+    with filesOf(motion.directory):
+        frames = [readFrame(motion.directory, "connectors", n) for n in motion.numbers]
+    bars = [n for n, cell in enumerate(frames[0]["cells"]) if len(cell) == 2]
+    ends = np.concatenate([frames[0]["cells"][n] for n in bars])
+    arrays.add("tiePoints", frames[0]["points"][ends], "f4")
+    arrays.addMotion("tieMoved", np.array([one["displacement"][ends] for one in frames]))  # fmt: skip
+    arrays.add("tieCondition", np.array([one["condition"][bars] for one in frames]), "u1", frames=True)  # fmt: skip
 
 
 def nice(value):

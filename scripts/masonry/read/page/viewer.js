@@ -97,6 +97,7 @@
     moved: ["#f3e3c8", "#a9cfa4", "#3f9aa0", "#1d3f77"],
   };
   const KINDS = { open: "#d62728", slid: "#1f77b4", crushed: "#101010" }; // as in cracks.png
+  const TIES = ["#333333", "#ff7f0e"]; // elastic, has yielded; as in cracks.png
   const BRICK = "#f0debf", PLATEN = "#b9bdc2", EDGE = "#4d4437";
   const NAMES = {
     crack: "cracks: open or slid", opening: "opening", slide: "slide", closure: "plastic closure", damage: "damage",
@@ -291,26 +292,55 @@
       faces.setAttribute("colour", this.jointColour);
       faces.setIndex(new THREE.BufferAttribute(new Uint32Array(fans), 1));
       this.sides = sides;
-      const rims = new THREE.InstancedBufferGeometry();
-      rims.setAttribute("position", new THREE.BufferAttribute(new Float32Array([0, -1, 0, 0, 1, 0, 1, 1, 0, 1, -1, 0]), 3));
-      rims.setIndex([0, 1, 2, 0, 2, 3]);
-      const instance = (array, size, normal = false) => new THREE.InstancedBufferAttribute(array, size, normal);
-      const ends = [0, 1].map((side) => {
-        const found = new Float32Array((sides.length / 2) * 3);
-        for (let i = 0; i < sides.length / 2; ++i)
-          for (let k = 0; k < 3; ++k) found[3 * i + k] = corners[3 * sides[2 * i + side] + k];
-        return found;
-      });
-      this.rimMoved = ends.map((array) => instance(new Float32Array(array.length), 3));
-      this.rimColour = instance(new Uint8Array((sides.length / 2) * 4), 4, true);
-      rims.setAttribute("a", instance(ends[0], 3));
-      rims.setAttribute("b", instance(ends[1], 3));
-      rims.setAttribute("movedA", this.rimMoved[0]);
-      rims.setAttribute("movedB", this.rimMoved[1]);
-      rims.setAttribute("colour", this.rimColour);
       this.rims = { wide: { value: 1 }, pixels: { value: new THREE.Vector2(1, 1) } };
       this.cracks = [];
-      if (sides.length) this.cracks = [add(THREE.Mesh, faces, shader(FACES, {})), add(THREE.Mesh, rims, shader(RIMS, this.rims))];
+      if (sides.length) {
+        const rims = this.ribbons(corners, sides);
+        [this.rimMoved, this.rimColour] = [rims.moved, rims.colour];
+        this.cracks = [add(THREE.Mesh, faces, shader(FACES, {})), add(THREE.Mesh, rims.geometry, shader(RIMS, this.rims))];
+      }
+      if (data.tiePoints) {
+        this.ties = this.ribbons(own("tiePoints"), Array.from({ length: own("tiePoints").length / 3 }, (_, n) => n));
+        add(THREE.Mesh, this.ties.geometry, shader(RIMS, this.rims));
+      }
+    }
+
+    /** Lines as ribbons that face the viewer.
+     *  @param points of their ends, three numbers each
+     *  @param pairs of numbers of points, one after the other
+     */
+    ribbons(points, pairs) {
+      const geometry = new THREE.InstancedBufferGeometry(), count = pairs.length / 2;
+      geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array([0, -1, 0, 0, 1, 0, 1, 1, 0, 1, -1, 0]), 3));
+      geometry.setIndex([0, 1, 2, 0, 2, 3]);
+      const instance = (array, size, normal = false) => new THREE.InstancedBufferAttribute(array, size, normal);
+      const ends = [0, 1].map((side) => {
+        const found = new Float32Array(count * 3);
+        for (let i = 0; i < count; ++i)
+          for (let k = 0; k < 3; ++k) found[3 * i + k] = points[3 * pairs[2 * i + side] + k];
+        return found;
+      });
+      const moved = ends.map((array) => instance(new Float32Array(array.length), 3));
+      const colour = instance(new Uint8Array(count * 4), 4, true);
+      geometry.setAttribute("a", instance(ends[0], 3));
+      geometry.setAttribute("b", instance(ends[1], 3));
+      geometry.setAttribute("movedA", moved[0]);
+      geometry.setAttribute("movedB", moved[1]);
+      geometry.setAttribute("colour", colour);
+      return { geometry, moved, colour };
+    }
+
+    /** Ties in a frame: where their ends are, and a colour by what they did. Those that are broken are not drawn. */
+    showTies() {
+      const { tieMoved, tieCondition } = this.data, { moved, colour } = this.ties;
+      for (let i = 0; i < colour.count; ++i) {
+        for (let side = 0; side < 2; ++side)
+          for (let k = 0; k < 3; ++k)
+            moved[side].array[3 * i + k] = tieMoved.values[this.frame * tieMoved.row + 6 * i + 3 * side + k] * tieMoved.step;
+        const condition = tieCondition.values[this.frame * tieCondition.row + i];
+        colour.array.set([...rgb(TIES[Math.min(condition, 1)]), condition === 2 ? 0 : 255], 4 * i);
+      }
+      moved[0].needsUpdate = moved[1].needsUpdate = colour.needsUpdate = true;
     }
 
     /** Legend, scale, axes and what is said about the frame. */
@@ -378,7 +408,8 @@
       moveBlocks(data, this.frame, motion, this.moved.array);
       moveJoints(data, this.frame, motion, this.jointMoved.array);
       this.moved.needsUpdate = this.jointMoved.needsUpdate = true;
-      this.rimMoved.forEach((attribute, side) => {
+      if (this.ties) this.showTies();
+      (this.rimMoved || []).forEach((attribute, side) => {
         for (let i = 0; i < this.sides.length / 2; ++i)
           for (let k = 0; k < 3; ++k) attribute.array[3 * i + k] = this.jointMoved.array[3 * this.sides[2 * i + side] + k];
         attribute.needsUpdate = true;
@@ -445,7 +476,7 @@
         attribute.needsUpdate = true;
       };
       give(this.jointColour, owner.length, (i) => i);
-      give(this.rimColour, this.sides.length / 2, (i) => this.sides[2 * i]);
+      if (this.rimColour) give(this.rimColour, this.sides.length / 2, (i) => this.sides[2 * i]);
       this.cracks.forEach((mesh) => { mesh.visible = joints !== "none"; });
       this.looks.coloured.value = this.blocks === "moved";
       this.tell();
@@ -476,6 +507,7 @@
         parts.push(bar(this.joints, `${NAMES[this.joints]} [${unit}]`, least, top, most, factor));
       }
       if (this.blocks === "moved") parts.push(bar("moved", "displacement [mm]", 0, this.head.ramp, 0, 1e3));
+      if (this.ties) parts.push(make("section", {}, swatch(TIES[0], "tie"), swatch(TIES[1], "tie that has yielded")));
       this.legend.replaceChildren(...parts);
       this.legend.hidden = !parts.length;
     }
