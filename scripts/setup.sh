@@ -91,9 +91,8 @@ fi
 # Without root the package goes to the user's own folder, which plain yade searches too.
 places=()
 ((EUID == 0)) || places=(-DMASONRY_PACKAGES="$(/usr/bin/python3 -P -m site --user-site)")
-commit=$(git describe --always --dirty 2>/dev/null || echo unknown)
 failed() { tail -n 40 "$logs/build" >&2; exit 1; }
-cmake -S . -B build -DCMAKE_BUILD_TYPE=Release -DMASONRY_TESTS=$tests -DMASONRY_COMMIT="$commit" "${places[@]}" >"$logs/build" 2>&1 || failed
+cmake -S . -B build -DCMAKE_BUILD_TYPE=Release -DMASONRY_TESTS=$tests -UMASONRY_COMMIT "${places[@]}" >"$logs/build" 2>&1 || failed
 build=(cmake --build build --parallel "$(nproc)" --target "$target")
 # `make -n` names every compilation that is to come; without any there is nothing to wait for.
 count=$(make -C build -n "$target" 2>/dev/null | grep -c 'Building C' || true)
