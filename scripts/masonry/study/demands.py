@@ -60,7 +60,7 @@ class Demands:
                 math.inf if collapsed or status[n] == "above collapse"
                 else found[n] if known else math.nan
             )  # fmt: skip
-        #: whether a row that has ended has no demand, as those of a scene in which nothing is watched
+        #: of every record the intensities at which the structure stood, also where nothing was watched
         self.stood = [
             [i for i, n in zip(self.rows[r][0], self._numbers(r)) if status[n] == "ended" and fallen[n] != "True"]
             for r in range(len(self.names))
