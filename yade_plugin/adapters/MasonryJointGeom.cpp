@@ -91,6 +91,9 @@ void exchange(Numbers& n, JointReference& r) {
     n(split);
     r.split = split != 0;
     n(r.refined);
+    int handed = r.handed;
+    n(handed);
+    r.handed = handed != 0;
     auto coarse = r.coarse ? *r.coarse : std::vector<JointPoint>();
     n.list(coarse);
     if (!r.coarse && !coarse.empty()) r.coarse = std::make_shared<std::vector<JointPoint>>(std::move(coarse));

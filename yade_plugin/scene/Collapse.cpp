@@ -54,6 +54,7 @@ void CollapseWatch::measure(const yade::Scene& scene, const std::vector<JointKin
     };
     for (const auto& kind : kinds)
         for (const auto& r : kind.shapes->joints) {
+            if (kind.handed) break;
             Joint joint{r.sides[0].body,
                         r.sides[1].body,
                         r.sides[1].orientation.conjugate() * r.sides[0].orientation,
@@ -94,6 +95,7 @@ Collapse CollapseWatch::look(const yade::Scene& scene, const BodyColumns& column
     const double* const q[4] = {columns.orientation[0].data(), columns.orientation[1].data(),
                                 columns.orientation[2].data(), columns.orientation[3].data()};
     for (const auto& kind : kinds) {
+        if (kind.handed) continue;
         const auto& shapes = *kind.shapes;
         shapes.bringPoints();
         const double each = 1.0 / shapes.points;

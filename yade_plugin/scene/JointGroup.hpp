@@ -77,6 +77,8 @@ struct JointReference {
     // with, which copies of a joint have in common. 0 and null if it was not.
     int refined = 0;
     std::shared_ptr<const std::vector<JointPoint>> coarse;
+    // Whether the joint has been handed over to contact (HandOver): it has no forces any more, and its state stays.
+    bool handed = false;
     // How the subcontacts of a joint with a deformable side move with the nodes.
     struct Attached {
         shared_ptr<Zones> zones;
@@ -288,6 +290,7 @@ struct JointKind {
     shared_ptr<JointShapes> shapes;
     shared_ptr<JointStates> states;
     bool attached; // whether a side of these joints is deformable
+    bool handed;   // whether they were handed over to contact, so that they have no forces
 };
 
 } // namespace masonry

@@ -124,6 +124,10 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
         joints += stride;
         if (kind.attached) points += stride * kind.shapes->points;
         firstBatch_.push_back(int(batches_.size()));
+        if (kind.handed) {
+            std::fill(kind.shapes->byPoints.begin(), kind.shapes->byPoints.end(), 1);
+            continue;
+        }
         const int all = int(kind.shapes->joints.size()), each = batchSize(kind);
         for (int from = 0; from < all; from += each) {
             Batch batch{int(k), from, std::min(each, all - from)};
@@ -146,6 +150,10 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
         const auto* unit = zones_ ? zones_->unitOf(b) : nullptr;
         if (unit) momentPlace_[b] = unit->momentPlace;
     }
+    for (const auto& kind : store.kinds)
+        for (std::size_t j = 0; kind.handed && j < kind.shapes->joints.size(); ++j)
+            for (const auto& side : kind.shapes->joints[j].sides)
+                joined_[side.body] = 1; // so that a script that moves it is noticed
     onJoints_.assign(std::size_t(plane_ ? 4 : 9) * joints, 0);
     onPoints_.assign(std::size_t(plane_ ? 2 : 3) * points, 0);
     toBodies_.fill(atBodies);

@@ -312,7 +312,7 @@ void Refinement::look(SceneStore& store) {
     for (std::size_t k = 0; k < store.kinds.size(); ++k) {
         const auto& kind = store.kinds[k];
         const auto& whole = kind.shapes->whole;
-        if (kind.attached || kind.shapes->points >= points || !limits_[k].isNeeded()) continue;
+        if (kind.attached || kind.handed || kind.shapes->points >= points || !limits_[k].isNeeded()) continue;
         for (int j = 0; j < int(kind.shapes->joints.size()); ++j) {
             if ((!whole.empty() && whole[j]) || !isDue(kind, limits_[k], company, j)) continue;
             due.emplace(kind.shapes.get(), j);

@@ -92,6 +92,21 @@ void transferPoints(SceneStore& store, Transfer& to) {
     if (to.back && !Refinement::setPoints(store, refined)) to.damaged("refined");
 }
 
+// Which joints were handed over to contact.
+void transferHanded(SceneStore& store, Transfer& to) {
+    std::vector<double> handed;
+    for (const auto& joint : store.joints)
+        handed.push_back(joint.geom->reference().handed);
+    to.several("handed", handed.data(), handed.size());
+    if (!to.back) return;
+    for (std::size_t n = 0; n < store.joints.size(); ++n) {
+        const auto& geom = *store.joints[n].geom;
+        geom.group->joints[geom.index].handed = handed[n] != 0;
+    }
+    ++changes;
+    store.update();
+}
+
 void transferJoints(const SceneStore& store, Transfer& to) {
     std::vector<double> records;
     const auto add = [&](double x, double y, double z) { records.insert(records.end(), {x, y, z}); };
@@ -165,6 +180,7 @@ void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
     auto& store = SceneStore::of(scene);
     store.update();
     transferPoints(store, to);
+    transferHanded(store, to);
     transferJoints(store, to);
     transferSplits(store, to);
     int number = 0;

@@ -17,7 +17,7 @@ using yade::Vector3r;
 namespace {
 
 constexpr int piece = RigidMotion::most; // number of bricks that a thread takes at a time
-constexpr double flat = 1e-9;            // of a brick's length: its halves are where they were by this much at least
+constexpr double flatness = 1e-9;            // of a brick's length: its halves are where they were by this much at least
 constexpr double slow = 1e-3;            // the same of velocities
 constexpr unsigned allAxes = 63;
 
@@ -228,7 +228,7 @@ bool WholeBricks::adopt(SceneContents& scene, int n) {
     const double length = (s[1]->pos - s[0]->pos).norm();
     const Quaternionr frame1 = s[0]->ori * r.frame(0), frame2 = s[1]->ori * r.frame(1);
     const Vector3r apart = frame1.conjugate() * (s[1]->pos - s[0]->pos) - r.span();
-    if (!(apart.norm() <= flat * length) || !(frame1.angularDistance(frame2) <= flat)) return false;
+    if (!(apart.norm() <= flatness * length) || !(frame1.angularDistance(frame2) <= flatness)) return false;
 
     brick.spins = (blocked >> 3) == 0;
     Quaternionr turned = Quaternionr::Identity();
