@@ -3,6 +3,7 @@
 // energy.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include "blocks/BlockShape.hpp"
+#include "contact/BroadPhase.hpp"
 #include "contact/ContactDamping.hpp"
 #include "contact/ContactFriction.hpp"
 #include "contact/ContactStep.hpp"
@@ -415,6 +416,25 @@ TEST_CASE("the order of the two blocks, and where the pair is, change nothing") 
     }
 }
 
+TEST_CASE("a face in the plane between two cells is counted once") {
+    // A face of the other cube stands in the plane between the cells of two faces of the one.
+    Pair pair(box(Vector::Ones()), box(Vector(0.6, 0.4, 0.3)));
+    const Turn turn = about(M_PI / 4, Vector::UnitZ());
+    for (double sign : {-1.0, 1.0}) {
+        const Vector outward = sign * (turn * Vector::UnitX());
+        const auto at = [&](double off) {
+            const Vector along = turn * Vector::UnitY();
+            return RelativePose{turn.toRotationMatrix(), 0.25 * along - (0.3 + off) * outward};
+        };
+        const auto here = pair.at(at(0)), before = pair.at(at(-1e-9)), after = pair.at(at(1e-9));
+        REQUIRE(here.pressing > 0);
+        CHECK((here.force - before.force).norm() < 1e-8);
+        CHECK((here.force - after.force).norm() < 1e-8);
+        CHECK(std::abs(pair.potential(at(0)) - pair.potential(at(1e-9))) < 1e-8);
+        checkDescent(pair, at(0), 1e-5);
+    }
+}
+
 TEST_CASE("a small motion changes the force by no more than the stated stiffness") {
     Dice dice(5);
     double most = 0;
@@ -482,13 +502,16 @@ TEST_CASE("the bound of the eigenvalue holds for the stiffness by differences") 
         relative.block<3, 3>(3, 9) = pose.turn * inertia[1].cwiseInverse().cwiseSqrt().asDiagonal();
         const Eigen::Matrix<double, 12, 12> scaled = relative.transpose() * symmetric * relative;
         const double found = Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 12, 12>>(scaled).eigenvalues()[11];
-        const double bound = eigenvalueOfContact(o.touched, 1, mobilityOf(pair.one, mass[0], inertia[0]),
-                                                 mobilityOf(pair.other, mass[1], inertia[1]));
+        const double bound = 2 * std::max(embeddedEigenvalue(pair.one, mass[0], inertia[0], 1, 0),
+                                          embeddedEigenvalue(pair.other, mass[1], inertia[1], 1, 0));
         CHECK(found <= 1.02 * bound); // the force itself, which turns, adds a part of depth over size
         closest = std::max(closest, found / bound);
     }
     MESSAGE("largest eigenvalue over its bound: " << closest);
-    CHECK(closest > 0.2);
+    CHECK(closest > 0.1);
+    // A cube that rests on all sides: two faces along the normal and four along the face for each translation.
+    const double found = embeddedEigenvalue(box(Vector::Ones()), 3, Vector::Constant(1e9), 2, 0.5);
+    CHECK(found == doctest::Approx((2 * 2 + 4 * 0.5) / 3).epsilon(1e-12));
 }
 
 TEST_CASE("the axis that separated two blocks is kept, and never hides an overlap") {
@@ -671,5 +694,36 @@ TEST_CASE("a ratio of damping gives its restitution, and none makes a contact pu
         // The power of force and moment is that which is said.
         const double power = -(d.force * o.normal.dot(motion.velocity) + d.moment.dot(motion.spin));
         CHECK(std::abs(power - d.power) <= 1e-9 * (d.power + std::abs(d.force)));
+    }
+}
+
+TEST_CASE("sweep and prune finds all pairs of boxes that overlap, in order") {
+    Dice dice(12);
+    for (int n = 0; n < 300; ++n) {
+        const int count = std::uniform_int_distribution<>(0, 60)(dice);
+        std::vector<Box> boxes;
+        std::vector<unsigned char> awake;
+        for (int b = 0; b < count; ++b) {
+            // Some share their boundaries, and some are as large as a ground.
+            Box box;
+            for (int d = 0; d < 3; ++d) {
+                const double middle = n % 2 ? between(dice, -1, 1) : 0.1 * std::uniform_int_distribution<>(-9, 9)(dice);
+                const double half = b % 13 == 5 ? 3 : n % 2 ? between(dice, 0, 0.3) : 0.1;
+                box.low[d] = middle - half;
+                box.high[d] = middle + half;
+            }
+            boxes.push_back(box);
+            awake.push_back(n % 3 == 0 || between(dice, 0, 1) < 0.5);
+        }
+        std::vector<std::pair<int, int>> expected;
+        for (int a = 0; a < count; ++a)
+            for (int b = a + 1; b < count; ++b) {
+                bool overlap = awake[std::size_t(a)] || awake[std::size_t(b)];
+                for (int d = 0; d < 3; ++d)
+                    overlap = overlap && boxes[std::size_t(a)].low[d] <= boxes[std::size_t(b)].high[d] &&
+                              boxes[std::size_t(b)].low[d] <= boxes[std::size_t(a)].high[d];
+                if (overlap) expected.emplace_back(a, b);
+            }
+        CHECK(overlappingBoxes(boxes, awake) == expected);
     }
 }

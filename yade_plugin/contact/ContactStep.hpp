@@ -6,15 +6,10 @@
 
 namespace masonry {
 
-// The largest velocity squared that a corner of a block can have for twice its kinetic energy [1/kg]. `inertia` holds
-// the principal moments [kg m²], about the block's own axes.
-double mobilityOf(const ContactBlock&, double mass, const Eigen::Vector3d& inertia);
-
-// What a contact adds to the sum of each of its two blocks [1/s²]. The largest sum of a block bounds the largest
-// eigenvalue. `touched` [m²] is that of the overlap, `stiffness` the larger one of normal and tangential stiffness
-// [Pa/m].
-inline double eigenvalueOfContact(double touched, double stiffness, double mobilityOfOne, double mobilityOfOther) {
-    return stiffness * touched * (mobilityOfOne + mobilityOfOther);
-}
+// The largest eigenvalue [1/s²] of a block all of whose faces rest on rigid bodies. Stiffnesses are those along the
+// normal and along the face [Pa/m]. `inertia` holds the principal moments [kg m²], about the block's own axes. Twice
+// the largest of these numbers in a scene bounds its largest eigenvalue, as long as depths are small beside the blocks.
+double embeddedEigenvalue(const ContactBlock&, double mass, const Eigen::Vector3d& inertia, double normalStiffness,
+                          double tangentialStiffness);
 
 } // namespace masonry
