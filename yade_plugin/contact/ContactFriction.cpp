@@ -18,17 +18,17 @@ Vector follow(const Vector& v, const Vector& from, const Vector& to) {
     return v + first + axis.cross(first) / (1 + from.dot(to));
 }
 
-double energyOf(const FrictionState& s) {
-    const double square = Vector(s.shear[0], s.shear[1], s.shear[2]).squaredNorm() + s.twist * s.twist;
-    return s.stiffness > 0 ? 0.5 * square / s.stiffness : 0;
-}
-
 } // namespace
 
 double leverOfFriction(const Overlap& overlap) { return 0.94 * std::sqrt(overlap.meanSquare); }
 
+double elasticEnergyOf(const FrictionState& s) {
+    const double square = Vector(s.shear[0], s.shear[1], s.shear[2]).squaredNorm() + s.twist * s.twist;
+    return s.stiffness > 0 ? 0.5 * square / s.stiffness : 0;
+}
+
 double endFriction(FrictionState& state) {
-    const double lost = energyOf(state);
+    const double lost = elasticEnergyOf(state);
     state = FrictionState{};
     return lost;
 }
@@ -64,7 +64,7 @@ FrictionStep advanceFriction(FrictionState& state, const Overlap& overlap, const
                 shear *= Vector(state.shear[0], state.shear[1], state.shear[2]).norm() / length;
             // Where the area grows, what comes in is without stress, and the force stays. Where it shrinks, what goes
             // takes its force along.
-            const double energy = energyOf(state), share = std::min(1.0, stiffness / state.stiffness);
+            const double energy = elasticEnergyOf(state), share = std::min(1.0, stiffness / state.stiffness);
             shear *= share;
             twist *= share;
             soft = 0.5 / stiffness;
@@ -103,7 +103,7 @@ FrictionStep advanceFriction(FrictionState& state, const Overlap& overlap, const
     Turn(state.turn) = pose.turn;
     step.force = shear;
     step.moment = twist * lever;
-    step.stored = energyOf(state);
+    step.stored = elasticEnergyOf(state);
     return step;
 }
 

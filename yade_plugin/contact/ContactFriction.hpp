@@ -38,6 +38,8 @@ double leverOfFriction(const Overlap&);
 FrictionStep advanceFriction(FrictionState&, const Overlap&, const RelativePose&, double normalForce, double stiffness,
                              double friction);
 
+double elasticEnergyOf(const FrictionState&); // [J]
+
 // The elastic energy that is lost when the pair parts [J]; the state is then that of a pair that does not touch.
 double endFriction(FrictionState&);
 
