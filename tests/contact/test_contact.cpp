@@ -648,14 +648,27 @@ TEST_CASE("a pair at rest, and one that moves as a rigid whole, keeps its fricti
     CHECK(s.lost < 1e-6 * s.last.stored);
 }
 
-TEST_CASE("when the normal force falls the elastic slip is cut, and is lost when the pair parts") {
+TEST_CASE("the shear force turns by half of what one block turns against the other") {
+    Slider s;
+    s.friction = 1e6; // nothing slides
+    s.act();
+    s.go({1e-7, 0, 0}, 0);
+    for (int i = 0; i < 200; ++i)
+        s.go(Vector::Zero(), 1e-3);
+    CHECK(std::atan2(-s.last.force[1], -s.last.force[0]) == doctest::Approx(0.1).epsilon(0.01));
+}
+
+TEST_CASE("when the normal force falls slip and twist are cut, and they are lost when the pair parts") {
     Slider s;
     s.act();
-    s.go({5e-6, 0, 0}, 0);
-    const double stored = s.last.stored, carried = s.last.force.norm();
+    s.go({3e-6, 0, 0}, 3e-5);
+    const double lever = leverOfFriction(s.pair.at(s.pose));
+    const auto carried = [&] { return std::hypot(s.last.force.norm(), s.last.moment / lever); };
+    const double stored = s.last.stored, before = carried();
+    CHECK(std::abs(s.last.moment / lever) > 0.3 * s.last.force.norm());
     s.act(0.1);
-    CHECK(s.last.force.norm() == doctest::Approx(s.friction * s.normalForce).epsilon(1e-12));
-    CHECK(s.last.force.norm() < carried);
+    CHECK(carried() == doctest::Approx(s.friction * s.normalForce).epsilon(1e-9));
+    CHECK(carried() < before);
     CHECK(s.lost + s.last.stored == doctest::Approx(stored).epsilon(1e-12));
     const double rest = s.last.stored;
     CHECK(endFriction(s.state) == doctest::Approx(rest));

@@ -41,6 +41,11 @@ public:
                           "block that moves. It changes the time of a step, and no result")
                   .atLeast(0));
         visit("bodies", &C::bodies, described("Ids of the blocks; empty: all blocks of the scene"), Given);
+        visit("begun", &C::begun, described("Whether there was a step"), Hidden);
+        visit("given", &C::given,
+              number("J", "Elastic energy that contacts had in the first step, because blocks were put into each "
+                          "other: an input of the energy balance"),
+              ReadOnly);
         visit("lostInFriction", &C::lostInFriction, number("J", "Energy that friction took so far"), ReadOnly);
         visit("lostInDamping", &C::lostInDamping, number("J", "Energy that damping took so far"), ReadOnly);
         visit("memory", computed<Contacts, std::vector<double>>(&C::memory, &C::setMemory),

@@ -48,6 +48,8 @@ MasonryEnergy::Inventory MasonryEnergy::inventory(const SceneStore& store) const
     Inventory all{external + connectors[0], fallen, kinetic, damped, 0, 0, connectors[1], connectors[2],
                   Vector3r::Zero()};
     all.given = givenByChanges(store);
+    for (const auto* contacts : store.allContacts)
+        all.work += contacts->given;
     for (const auto* load : store.allLoads)
         all.work += load->work;
     if (store.loop) all.drag += store.loop->dampingWork;

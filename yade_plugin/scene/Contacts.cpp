@@ -277,6 +277,8 @@ void Contacts::act(SceneContents& contents) {
         sums.torques[pairs_[p].one] += effect.torques[0];
         sums.torques[pairs_[p].other] += effect.torques[1];
     }
+    if (!begun) given = elastic(contents); // blocks that a script has put into each other
+    begun = true;
 }
 
 double Contacts::elastic(const SceneContents& contents) {
@@ -297,6 +299,7 @@ double Contacts::largestEigenvalue(const SceneContents& contents, bool anew) {
     if (!anew && boundRevision_ == contents.revision() && boundStiffness_ == normalStiffness &&
         boundRatio_ == tangentialRatio)
         return bound_;
+    checkBodies(contents);
     double most = 0;
     for (int id : idsOf(contents)) {
         if (isHeld(contents, id)) continue;

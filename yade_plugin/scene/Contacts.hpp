@@ -23,6 +23,8 @@ public:
     double skin = 0;              // by which boxes are larger than their blocks [m]; 0: chosen
     std::vector<int> bodies;      // ids of the blocks; empty: all rigid blocks
 
+    bool begun = false;        // whether there was a step
+    double given = 0;          // elastic energy that contacts had in the first step [J]
     double lostInFriction = 0; // so far [J]
     double lostInDamping = 0;  // so far [J]
 
