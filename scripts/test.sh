@@ -15,7 +15,7 @@ if [[ "${1:-}" == quick ]]; then
     shift
     # for the gates: formats of C++ and Python, unused imports
     bash scripts/setup.sh --tests python3-pytest-xdist clang-format black python3-pyflakes
-    tests=(tests/common tests/law tests/motion tests/blocks tests/files tests/gates tests/host -m "not slow" "$@")
+    tests=(tests/common tests/law tests/motion tests/blocks tests/contact tests/files tests/gates tests/host -m "not slow" "$@")
     workers=$(nproc)
 else
     # For gates, the site of the documentation, fuzz and sanitizers, studies, YADE's 3-D view, the page in 3-D, and notebooks. ParaView is

@@ -22,10 +22,10 @@ from hypothesis import HealthCheck, settings
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 BUILD = os.path.join(ROOT, "build")
-RINGS = ["common", "law", "motion", "blocks", "files", "gates", "host", "package", "sanitizers", "fuzz", "studies", "scenes"]  # fmt: skip
+RINGS = ["common", "law", "motion", "blocks", "contact", "files", "gates", "host", "package", "sanitizers", "fuzz", "studies", "scenes"]  # fmt: skip
 SLOW = ["sanitizers", "fuzz", "studies", "scenes"]  # rings of which every test is slow
 #: Rings, and files of other rings, that need no YADE.
-WITHOUT_YADE = ["common", "law", "motion", "blocks", "files", "gates"] + [
+WITHOUT_YADE = ["common", "law", "motion", "blocks", "contact", "files", "gates"] + [
     f"package/test_{name}.py"
     for name in "accelerograms bilinear bricks bricks_checks bricks_files bricks_vaults capacity compare_loops cycles imports "
     "loops measure measured_loops plain_wall report_content".split()

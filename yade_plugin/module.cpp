@@ -8,6 +8,7 @@
 #include "adapters/Ig2_MasonryBlock_Polyhedra_MasonryJointGeom.hpp"
 #include "adapters/Ig2_Polyhedra_Polyhedra_MasonryJointGeom.hpp"
 #include "adapters/MasonryBlock.hpp"
+#include "adapters/MasonryContacts.hpp"
 #include "adapters/MasonryEnergy.hpp"
 #include "adapters/MasonryIntegrator.hpp"
 #include "adapters/MasonryJointLoop.hpp"
@@ -169,6 +170,7 @@ static void registerAll() {
     enroll<MasonryJointLoop>(names);
     enroll<MasonryTies>(names);
     enroll<MasonrySprings>(names);
+    enroll<MasonryContacts>(names);
     enroll<MasonryLoad>(names);
     enroll<MasonryEnergy>(names);
     enroll<MasonryIntegrator>(names);

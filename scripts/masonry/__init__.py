@@ -116,6 +116,7 @@ if TYPE_CHECKING:  # what is loaded later, for those that check types
         Law2_MasonryJointGeom_MasonryJointPhys_CyclicSoftening,
         Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening,
         MasonryBlock,
+        MasonryContacts,
         MasonryEnergy,
         MasonryIntegrator,
         MasonryJoint,

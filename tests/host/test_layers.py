@@ -10,12 +10,13 @@ import pytest
 PLUGIN = os.path.join(os.path.dirname(__file__), "..", "..", "yade_plugin")
 STANDARD = {"Eigen"}
 ALSO = {"ConvexHull.cpp": {"CGAL"}}  # the one file that knows CGAL
-BELOW_SCENE = {"common", "law", "blocks", "motion", "files", "host"}
+BELOW_SCENE = {"common", "law", "blocks", "motion", "contact", "files", "host"}
 MAY_INCLUDE = {
     "common": {"common"},
     "law": {"common", "law"},
     "blocks": {"common", "motion", "blocks"},
     "motion": {"common", "motion"},
+    "contact": {"common", "blocks", "contact"},
     "files": {"common", "files"},
     "host": {"common", "host"},
     "scene": BELOW_SCENE | {"scene"},

@@ -3,6 +3,7 @@
 #include "scene/BodyCheck.hpp"
 #include "scene/BodyStep.hpp"
 #include "scene/Connectors.hpp"
+#include "scene/Contacts.hpp"
 #include "scene/CriticalTimeStep.hpp"
 #include "scene/EngineTurn.hpp"
 #include "scene/Integrator.hpp"
@@ -32,12 +33,23 @@ Vector3r energiesOfConnectors(const SceneStore& store) {
     return sums;
 }
 
+// Elastic energy of contacts, and energies lost in their friction and damping [J].
+Vector3r energiesOfContacts(const SceneStore& store) {
+    Vector3r sums = Vector3r::Zero();
+    for (auto* contacts : store.allContacts)
+        sums += Vector3r(contacts->elastic(store), contacts->lostInFriction, contacts->lostInDamping);
+    return sums;
+}
+
 } // namespace
 
 MasonryEnergy::Inventory MasonryEnergy::inventory(const SceneStore& store) const {
     const Vector3r connectors = energiesOfConnectors(store);
-    Inventory all{external + connectors[0], fallen, kinetic, damped, 0, 0, connectors[1], connectors[2]};
+    Inventory all{external + connectors[0], fallen, kinetic, damped, 0, 0, connectors[1], connectors[2],
+                  Vector3r::Zero()};
     all.given = givenByChanges(store);
+    for (const auto* contacts : store.allContacts)
+        all.work += contacts->given;
     for (const auto* load : store.allLoads)
         all.work += load->work;
     if (store.loop) all.drag += store.loop->dampingWork;
@@ -121,6 +133,7 @@ void MasonryEnergy::lookAtBalance(const SceneStore& store) {
         all.work += connectorsThen[0] - connectors[0];
         all.inConnectors = connectorsThen[1];
         all.lostInConnectors = connectorsThen[2];
+        all.inContacts = contactsThen;
         all.given = splittingThen; // bricks split, and joints are refined, after the joints were looked at
         warnOfBalance(std::abs(balanceOf(all, storedThen, lostThen).error));
     }
@@ -131,6 +144,7 @@ void MasonryEnergy::lookAtBalance(const SceneStore& store) {
     dampingThen = damping;
     splittingThen = givenByChanges(store);
     connectorsThen = energiesOfConnectors(store);
+    contactsThen = energiesOfContacts(store);
     stepThen = int(scene->iter);
 }
 
@@ -231,14 +245,16 @@ MasonryEnergy::Balance MasonryEnergy::presentBalance(const SceneStore& store) co
         stored += Vector3r(sums.stored.tension, sums.stored.shear, sums.stored.compression);
         lost += Vector3r(sums.dissipated.tension, sums.dissipated.shear, sums.dissipated.compression);
     }
-    return balanceOf(inventory(store), stored, lost);
+    auto all = inventory(store);
+    all.inContacts = energiesOfContacts(store);
+    return balanceOf(all, stored, lost);
 }
 
 MasonryEnergy::Balance MasonryEnergy::balanceOf(const Inventory& all, const Vector3r& stored, const Vector3r& lost) {
-    const auto [work, falls, moving, drag, inUnits, given, inConnectors, lostInConnectors] = all;
+    const auto [work, falls, moving, drag, inUnits, given, inConnectors, lostInConnectors, inContacts] = all;
     const double in = work + falls + given;
-    const double out =
-        moving + drag + inUnits + stored[0] + stored[1] + stored[2] + lost.sum() + inConnectors + lostInConnectors;
+    const double out = moving + drag + inUnits + stored[0] + stored[1] + stored[2] + lost.sum() + inConnectors +
+                       lostInConnectors + inContacts.sum();
     const double size = std::max(std::abs(work) + std::abs(falls), std::abs(out));
     return {all, stored, lost, size, size > 0 ? (in - out) / size : 0};
 }
@@ -248,7 +264,7 @@ py::dict MasonryEnergy::balance() {
     auto& store = SceneStore::present();
     store.update(SceneStore::Look::AtJoints); // a full look would take too long: every row of curve.csv calls this
     const auto [inventory, stored, lost, size, error] = presentBalance(store);
-    const auto [work, falls, moving, drag, inUnits, given, inConnectors, lostInConnectors] = inventory;
+    const auto [work, falls, moving, drag, inUnits, given, inConnectors, lostInConnectors, inContacts] = inventory;
     // Dissipated energies should never fall. They can: where a joint opens or closes within a step, the trapezoidal
     // rule takes the mean of the tractions before and after, and the error is counted as dissipated, also where it is
     // negative. A long undamped series of such steps makes energy. Damping or shorter steps prevent that.
@@ -272,6 +288,11 @@ py::dict MasonryEnergy::balance() {
     if (!store.allConnectors.empty()) {
         all["elastic_connectors"] = inConnectors;
         all["dissipated_connectors"] = lostInConnectors;
+    }
+    if (!store.allContacts.empty()) {
+        all["elastic_contacts"] = inContacts[0];
+        all["friction_contacts"] = inContacts[1];
+        all["damping_contacts"] = inContacts[2];
     }
     all["error"] = error;
     return all;

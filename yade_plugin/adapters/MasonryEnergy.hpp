@@ -45,6 +45,7 @@ public:
     double dampingThen = 0;
     double splittingThen = 0;
     Vector3r connectorsThen = Vector3r::Zero();
+    Vector3r contactsThen = Vector3r::Zero();
     int stepThen = -1;
     bool begun = false;
     double largestError = 0;
@@ -104,6 +105,9 @@ public:
         visit("connectorsThen", &E::connectorsThen,
               number("J", "Work of tightening, and energies stored and dissipated in ties and springs, at that look"),
               Hidden);
+        visit("contactsThen", &E::contactsThen,
+              number("J", "Elastic energy of contacts, and energies lost in their friction and damping, at that look"),
+              Hidden);
         visit("stepThen", &E::stepThen, number("", "Step of the last look at the balance; -1: there was none"), Hidden);
         visit("largestError", &E::largestError,
               number("-", "Largest error of the balance seen by balance(), relative to the work done"), ReadOnly);
@@ -123,7 +127,8 @@ public:
                 "and dissipated_ "
                 "tension, shear, compression; elastic_connectors and dissipated_connectors of ties and springs where "
                 "there are "
-                "some; and error, the balance's error relative to the work done [-].")
+                "some; elastic_contacts, friction_contacts and damping_contacts of MasonryContacts where there is one; "
+                "and error, the balance's error relative to the work done [-].")
             .def("given", &MasonryEnergy::given,
                  "Count the kinetic energy of the present motion as work done from outside. Call this directly after "
                  "setting velocities by hand, if the run has made a step before.");
@@ -143,6 +148,9 @@ private:
                             // they were refined
         double inConnectors = 0;     // elastic energy of ties and springs
         double lostInConnectors = 0; // dissipated by them
+        // Elastic energy of contacts, and what their friction and damping took. Only a balance has them, because the
+        // elastic energy takes longer to find than the forces.
+        Vector3r inContacts = Vector3r::Zero();
     };
     Inventory inventory(const SceneStore&) const;
     struct Balance {

@@ -3,6 +3,7 @@
 #include "BodyCheck.hpp"
 #include "BodyStep.hpp"
 #include "Connectors.hpp"
+#include "Contacts.hpp"
 #include "SceneStore.hpp"
 #include "Zones.hpp"
 #include "motion/LargestEigenvalue.hpp"
@@ -367,9 +368,12 @@ struct Known {
     long revision = -1;
     double damping = 0, zoneDamping = 0, stiffnessDamping = 0, massScaling = 0;
     double connectors = 0; // sum of their stiffness
+    double contacts = 0;   // bound of their eigenvalues [1/s²]
+    double contactDamping = 0;
     bool operator==(const Known& o) const {
         return store == o.store && revision == o.revision && damping == o.damping && zoneDamping == o.zoneDamping &&
-               stiffnessDamping == o.stiffnessDamping && massScaling == o.massScaling && connectors == o.connectors;
+               stiffnessDamping == o.stiffnessDamping && massScaling == o.massScaling && connectors == o.connectors &&
+               contacts == o.contacts && contactDamping == o.contactDamping;
     }
 };
 
@@ -388,6 +392,11 @@ double timeStepLimit(SceneStore& store, bool anew) {
     for (const auto* connectors : store.connectors)
         for (int c = 0; c < connectors->count(); ++c)
             stiffnessOfConnectors += connectors->stiffnessOf(c).sum() + connectors->rotationalStiffnessOf(c).sum();
+    double contacts = 0, contactDamping = 0;
+    for (auto* one : store.contacts) {
+        contacts += one->largestEigenvalue(store, anew);
+        contactDamping = std::max(contactDamping, one->largestDampingRatio());
+    }
     static Known known;
     static double last;
     const Known now{&store,
@@ -396,10 +405,15 @@ double timeStepLimit(SceneStore& store, bool anew) {
                     store.zones ? store.zones->damping : 0,
                     store.stiffnessDamping(),
                     store.zones ? store.zones->massScaling : 0,
-                    stiffnessOfConnectors};
+                    stiffnessOfConnectors,
+                    contacts,
+                    contactDamping};
     if (!anew && now == known) return last;
     const auto limit = [&](Dynamics::Damping damping) {
-        return stepOf(Dynamics(store, damping).highest(), now.stiffnessDamping);
+        // The sum of the largest eigenvalues of joints and of contacts is at least that of both.
+        const double contacts = now.contacts * (1 + now.damping);
+        return (std::sqrt(1 + now.contactDamping * now.contactDamping) - now.contactDamping) *
+               stepOf(Dynamics(store, damping).highest() + contacts, now.stiffnessDamping);
     };
     // A bound that does not depend on which of the bodies are damped is enough if it is kept to.
     double found = anew ? 0 : limit(Dynamics::AsIfAllWereDamped);

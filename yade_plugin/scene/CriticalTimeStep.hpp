@@ -36,6 +36,8 @@ class SceneStore;
 // damping may bring w beyond zero. That such runs are calm below the limit is measured, not proved
 // (validation/stability).
 //
+// Contacts come and go, so what they may bring is counted from the beginning (contact/README.md).
+//
 // The limit of a scene [s]; infinite where nothing can vibrate. It is kept while joints, units and damping are the
 // same; with `anew` it is found again in any case, because changes of masses or blocked axes are not noticed.
 // Without it the value may be lower than the limit, but it is below the scene's time step only if the limit is, too.

@@ -3,6 +3,7 @@
 #include "Blocks.hpp"
 #include "BodyCheck.hpp"
 #include "Connectors.hpp"
+#include "Contacts.hpp"
 #include "JointFunctor.hpp"
 #include "SceneStore.hpp"
 #include "Zones.hpp"
@@ -80,7 +81,9 @@ std::string problemOfEngines(const yade::Scene& scene, bool jointed) {
             continue;
         }
         const bool moves = name == "MasonryIntegrator" || name == "NewtonIntegrator";
-        const bool connects = dynamic_cast<const Connectors*>(engine.get()) != nullptr;
+        const bool touches = dynamic_cast<const Contacts*>(engine.get()) != nullptr;
+        if (touches && !reset) fail("must stand after a ForceResetter");
+        const bool connects = touches || dynamic_cast<const Connectors*>(engine.get()) != nullptr;
         loaded |= name == "MasonryLoad";
         if (connects && loaded) fail("must stand before MasonryLoad");
         const bool loads = connects || name == "MasonryLoad" || name == "MasonryEnergy";
@@ -155,11 +158,18 @@ void checkScene(const SceneStore& store) {
         } catch (const std::invalid_argument& error) {
             wrong.push_back(error.what());
         }
-    for (int id : store.unjoinedBlocks())
+    for (const auto* contacts : store.contacts)
+        try {
+            contacts->checkBodies(store);
+        } catch (const std::invalid_argument& error) {
+            wrong.push_back(error.what());
+        }
+    const bool free = !store.contacts.empty(); // whether blocks may lie on others without a joint
+    for (int id : free ? std::vector<int>() : store.unjoinedBlocks())
         wrong.push_back("body " + std::to_string(id) +
                         " was added after connect() and has no joint, so nothing would hold it: build all blocks "
                         "first, then call connect()");
-    if (!jointed && blocks > 1) wrong.push_back("no joints: call masonry.connect() before the first step");
+    if (!jointed && blocks > 1 && !free) wrong.push_back("no joints: call masonry.connect() before the first step");
     if (const auto problem = problemOfEngines(scene, jointed); !problem.empty()) wrong.push_back(problem);
     if (!wrong.empty()) throw std::invalid_argument(firstOf(wrong));
 }

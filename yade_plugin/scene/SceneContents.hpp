@@ -7,6 +7,7 @@
 namespace masonry {
 
 class Connectors;
+class Contacts;
 class Load;
 
 // What others use of the engine that makes the step of the joints.
@@ -32,6 +33,7 @@ public:
     JointLoop* loop = nullptr;           // null if no engine of the scene makes the step of the joints
     std::vector<Load*> loads;            // those that are not dead
     std::vector<Connectors*> connectors; // those that are not dead
+    std::vector<Contacts*> contacts;     // those that are not dead
     BodyColumns bodies;
     std::vector<JointKind> kinds;
     std::vector<JointView> joints; // of all kinds, in the host's order

@@ -3,6 +3,7 @@
 #include "Blocks.hpp"
 #include "Changes.hpp"
 #include "Connectors.hpp"
+#include "Contacts.hpp"
 #include "Integrator.hpp"
 #include "Load.hpp"
 #include "MonolithicPairs.hpp"
@@ -107,6 +108,8 @@ void SceneStore::readEngines() {
     allLoads.clear();
     connectors.clear();
     allConnectors.clear();
+    contacts.clear();
+    allContacts.clear();
     loop = nullptr;
     zones = nullptr;
     watched = false;
@@ -118,7 +121,9 @@ void SceneStore::readEngines() {
         auto* load = dynamic_cast<Load*>(engine.get());
         auto* connector = dynamic_cast<Connectors*>(engine.get());
         if (load) allLoads.push_back(load);
+        auto* touching = dynamic_cast<Contacts*>(engine.get());
         if (connector) allConnectors.push_back(connector);
+        if (touching) allContacts.push_back(touching);
         if (engine->dead) continue;
         const auto note = [](auto*& place, auto* found) {
             if (!place) place = found;
@@ -128,9 +133,10 @@ void SceneStore::readEngines() {
         const bool watch = name == "MasonryEnergy";
         if (load) loads.push_back(load);
         if (connector) connectors.push_back(connector);
+        if (touching) contacts.push_back(touching);
         if (name == "NewtonIntegrator") hostIntegrator = static_cast<const yade::NewtonIntegrator*>(engine.get());
         watched = watched || watch;
-        if (load || connector || watch || note(loop, dynamic_cast<JointLoop*>(engine.get())) ||
+        if (load || connector || touching || watch || note(loop, dynamic_cast<JointLoop*>(engine.get())) ||
             note(zones, dynamic_cast<Zones*>(engine.get())) ||
             note(integrator, dynamic_cast<Integrator*>(engine.get()))) {
             if (!first) first = engine.get();

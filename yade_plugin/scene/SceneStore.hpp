@@ -47,6 +47,7 @@ public:
     bool watched = false;                   // whether an engine watches over the run: it looks for a collapse itself
     std::vector<Load*> allLoads;            // also those that are dead, whose work so far counts
     std::vector<Connectors*> allConnectors; // likewise
+    std::vector<Contacts*> allContacts;     // likewise
 
     // Looks whether a block has collapsed.
     Collapse findCollapse(const CollapseLimits&);

@@ -1,0 +1,742 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The contact of convex blocks: a force that is the gradient of a potential, friction and damping that only take
+// energy.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include "blocks/BlockShape.hpp"
+#include "contact/BroadPhase.hpp"
+#include "contact/ContactDamping.hpp"
+#include "contact/ContactFriction.hpp"
+#include "contact/ContactStep.hpp"
+#include "contact/Overlap.hpp"
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <doctest/doctest.h>
+#include <functional>
+#include <random>
+#include <string>
+
+using namespace masonry;
+
+namespace {
+
+using Matrix = Eigen::Matrix3d;
+using Vector = Eigen::Vector3d;
+using Turn = Eigen::Quaterniond;
+using Dice = std::mt19937;
+
+double between(Dice& dice, double low, double high) { return std::uniform_real_distribution<>(low, high)(dice); }
+
+Vector inCube(Dice& dice) {
+    const double x = between(dice, -1, 1), y = between(dice, -1, 1), z = between(dice, -1, 1);
+    return {x, y, z};
+}
+
+Turn anyTurn(Dice& dice) {
+    const Vector v = inCube(dice);
+    return Turn(between(dice, -1, 1), v[0], v[1], v[2]).normalized();
+}
+
+ContactBlock blockOf(const std::vector<Vector>& points) {
+    const auto shape = blockAround(points);
+    std::vector<Vector> corners;
+    for (const auto& v : shape.vertices)
+        corners.push_back(shape.orientation * v);
+    return contactBlock(corners, shape.triangles);
+}
+
+ContactBlock box(const Vector& size) {
+    std::vector<Vector> points;
+    for (int i = 0; i < 8; ++i)
+        points.push_back(size.cwiseProduct(Vector((i & 1) - 0.5, ((i >> 1) & 1) - 0.5, (i >> 2) - 0.5)));
+    return blockOf(points);
+}
+
+ContactBlock hull(Dice& dice, int points) {
+    std::vector<Vector> all;
+    while (int(all.size()) < points) {
+        const Vector v = inCube(dice);
+        if (v.norm() < 1 && v.norm() > 0.1) all.push_back(between(dice, 0.08, 0.12) * v.normalized());
+    }
+    try {
+        return blockOf(all);
+    } catch (const std::invalid_argument&) { // four points that are nearly in one plane
+        return hull(dice, points);
+    }
+}
+
+const Vector brick(0.22, 0.102, 0.081);
+
+ContactBlock anyBlock(Dice& dice, int mostPoints = 20) {
+    const int kind = std::uniform_int_distribution<>(0, 3)(dice);
+    if (kind == 0) return box(brick);
+    if (kind == 1) return box(Vector(0.5 * brick[0], brick[1], brick[2]));
+    return hull(dice, std::uniform_int_distribution<>(4, mostPoints)(dice));
+}
+
+struct Pair {
+    ContactBlock one, other;
+    OverlapFinder finder;
+    Pair(ContactBlock a, ContactBlock b) : one(std::move(a)), other(std::move(b)) {
+        finder.provideFor(one);
+        finder.provideFor(other);
+    }
+    double size() const { return std::min(one.radius, other.radius); }
+    // Forces of blocks that do not touch are zero.
+    Overlap at(const RelativePose& pose) {
+        int axis = 0;
+        Overlap found;
+        if (!finder.find(one, other, pose, axis, found))
+            found = {Vector::Zero(), Vector::Zero(), 0, 0, Vector::Zero(), 0, Vector::Zero(), 0,
+                     Vector::Zero(), Matrix::Zero()};
+        return found;
+    }
+    double potential(const RelativePose& pose) { return finder.potential(one, other, pose); }
+    // A scale for forces: no overlap of such a depth has more.
+    double force(double depth) const { return size() * size() * depth; }
+};
+
+Eigen::Matrix<double, 6, 1> wrench(const Overlap& o) {
+    Eigen::Matrix<double, 6, 1> both;
+    both << o.force, o.moment;
+    return both;
+}
+
+RelativePose moved(const RelativePose& pose, const Vector& way, const Vector& turn) {
+    const double angle = turn.norm();
+    const Matrix r = angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Matrix(Matrix::Identity());
+    return {r * pose.turn, r * pose.place + way};
+}
+
+// Derivative of a function at 0, to the fourth order.
+double slope(const std::function<double(double)>& f, double h) {
+    return (8 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h))) / (12 * h);
+}
+
+// The force and moment on the other block that the potential gives.
+Eigen::Matrix<double, 6, 1> descent(Pair& pair, const RelativePose& pose, double step) {
+    Eigen::Matrix<double, 6, 1> found;
+    for (int d = 0; d < 3; ++d) {
+        found[d] = -slope([&](double h) { return pair.potential(moved(pose, h * Vector::Unit(d), Vector::Zero())); },
+                          step * pair.size());
+        found[3 + d] =
+            -slope([&](double h) { return pair.potential(moved(pose, Vector::Zero(), h * Vector::Unit(d))); }, step);
+    }
+    return found;
+}
+
+void checkDescent(Pair& pair, const RelativePose& pose, double tolerance = 1e-6, double step = 1e-5) {
+    const auto o = pair.at(pose);
+    const auto expected = descent(pair, pose, step);
+    // Forces of less than 1e-12 of that of a full overlap are round-off of the potential.
+    const double scale = std::max(o.pressing, 1e-6 * pair.force(pair.size())), size = pair.size();
+    CAPTURE(o.force.transpose());
+    CAPTURE(expected.transpose());
+    CHECK((o.force - expected.head<3>()).norm() <= tolerance * scale);
+    CHECK((o.moment - expected.tail<3>()).norm() <= tolerance * scale * size);
+}
+
+// A pose in which the other block has been brought from afar until it overlaps the one by a depth, along a direction.
+RelativePose pressed(Pair& pair, const Turn& turn, const Vector& direction, const Vector& aside, double depth) {
+    RelativePose pose{turn.toRotationMatrix(), Vector::Zero()};
+    double outside = 2 * (pair.one.radius + pair.other.radius), inside = 0;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (inside + outside);
+        pose.place = aside + middle * direction;
+        (pair.at(pose).pressing > 0 ? inside : outside) = middle;
+    }
+    pose.place = aside + (inside - depth) * direction;
+    return pose;
+}
+
+Turn along(const Vector& from, const Vector& to) { return Turn::FromTwoVectors(from, to); }
+Turn about(double angle, const Vector& axis) { return Turn(Eigen::AngleAxisd(angle, axis.normalized())); }
+
+} // namespace
+
+TEST_CASE("a brick has six faces with outward normals, and its area") {
+    const auto block = box(brick);
+    REQUIRE(block.faceCount() == 6);
+    CHECK(block.edges.size() == 3);
+    for (const auto& face : block.faces) {
+        CHECK(face.beyond - face.first == 4);
+        CHECK(face.offset > 0);
+    }
+    CHECK(block.surface == doctest::Approx(2 * (0.22 * 0.102 + 0.22 * 0.081 + 0.102 * 0.081)).epsilon(1e-12));
+    CHECK(block.largestFace == doctest::Approx(0.22 * 0.102).epsilon(1e-12));
+    CHECK(block.thickness == doctest::Approx(0.081).epsilon(1e-12));
+    CHECK_THROWS_AS(contactBlock({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}), std::invalid_argument);
+    // A block whose triangles wind the wrong way round.
+    auto shape = blockAround({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+    for (auto& t : shape.triangles)
+        std::swap(t[0], t[1]);
+    CHECK_THROWS_AS(contactBlock(shape.vertices, shape.triangles), std::invalid_argument);
+}
+
+TEST_CASE("face on face is stiffness times area times depth, up to the first order of depth over size") {
+    Pair pair(box(Vector(1, 1, 0.5)), box(brick)); // the brick lies inside a face of the slab
+    for (double depth : {1e-3, 1e-5, 1e-7}) {
+        const RelativePose pose{Matrix::Identity(), {0.05, 0.02, 0.25 + 0.5 * brick[2] - depth}};
+        const auto o = pair.at(pose);
+        const double plain = brick[0] * brick[1] * depth, part = depth / brick[1];
+        CHECK(o.force[2] == doctest::Approx(plain).epsilon(part + 1e-9));
+        CHECK(pair.potential(pose) == doctest::Approx(0.5 * plain * depth).epsilon(part + 1e-9));
+        CHECK(o.force.head<2>().norm() < 1e-12 * plain);
+        CHECK(o.area == doctest::Approx(brick[0] * brick[1]).epsilon(1e-9));
+        CHECK((o.centre.head<2>() - Eigen::Vector2d(0.05, 0.02)).norm() < 1e-9);
+        const double meanSquare = (brick[0] * brick[0] + brick[1] * brick[1]) / 12;
+        CHECK(o.meanSquare == doctest::Approx(meanSquare).epsilon(3 * part + 1e-9));
+        CHECK(o.normal[2] == doctest::Approx(1));
+        CHECK(o.firstMoment[0] == doctest::Approx(0.05 * o.area).epsilon(1e-9));
+        const double second = o.area * (brick[0] * brick[0] / 12 + 0.05 * 0.05);
+        CHECK(o.secondMoment(0, 0) == doctest::Approx(second).epsilon(1e-9));
+        CHECK(std::abs(o.secondMoment(0, 1) - 0.05 * 0.02 * o.area) < 1e-9 * second);
+    }
+    // The error falls with the first power of the depth: a strip beside the rim has the next face as the nearest one.
+    const auto error = [&](double depth) {
+        const auto o = pair.at({Matrix::Identity(), {0, 0, 0.25 + 0.5 * brick[2] - depth}});
+        return std::abs(o.force[2] / (brick[0] * brick[1] * depth) - 1);
+    };
+    CHECK(error(2e-3) / error(1e-3) == doctest::Approx(2).epsilon(0.05));
+}
+
+TEST_CASE("a cube in the middle of a large one, and a cube in itself") {
+    // The integral of the depth of a cube of side a is a⁴ / 8: pyramids of volume a³/6 with mean depth a/2/4 each.
+    Pair same(box(Vector::Ones()), box(Vector::Ones()));
+    const RelativePose here{Matrix::Identity(), Vector::Zero()};
+    CHECK(same.potential(here) == doctest::Approx(0.125).epsilon(1e-12));
+    CHECK(same.at(here).force.norm() < 1e-14);
+    Pair nested(box(Vector::Ones()), box(0.5 * Vector::Ones()));
+    // Of the large one: 1/4 below the surface of the small one and more inside; of the small one 1/128.
+    const double expected = 0.5 * (0.125 * 0.25 + 0.0625 * 0.125 + 0.0625 * 0.125);
+    CHECK(nested.potential(here) == doctest::Approx(expected).epsilon(1e-12));
+    // Off the middle towards a face: the force pushes out of it, and is the gradient of the potential.
+    for (const Vector& off : {Vector(0.1, 0, 0), Vector(0.1, 0.1, 0), Vector(0.05, 0.1, -0.2)})
+        checkDescent(nested, {Matrix::Identity(), off});
+}
+
+TEST_CASE("the potential is the integral of both depths over the overlap") {
+    Dice dice(11);
+    for (int n = 0; n < 6; ++n) {
+        Pair pair(anyBlock(dice), anyBlock(dice));
+        const RelativePose pose{anyTurn(dice).toRotationMatrix(), 0.4 * pair.size() * inCube(dice)};
+        const auto depthOf = [](const ContactBlock& block, const Vector& p) {
+            double depth = HUGE_VAL;
+            for (const auto& face : block.faces)
+                depth = std::min(depth, face.offset - face.normal.dot(p));
+            return depth;
+        };
+        double sum = 0, square = 0;
+        const int points = 200000;
+        for (int i = 0; i < points; ++i) {
+            const Vector p = pair.one.radius * inCube(dice);
+            const double one = depthOf(pair.one, p),
+                         other = depthOf(pair.other, pose.turn.transpose() * (p - pose.place));
+            const double value = one > 0 && other > 0 ? 0.5 * (one + other) : 0;
+            sum += value;
+            square += value * value;
+        }
+        const double volume = std::pow(2 * pair.one.radius, 3), mean = sum / points;
+        const double error = std::sqrt((square / points - mean * mean) / points);
+        CHECK(std::abs(pair.potential(pose) - volume * mean) < 5 * volume * error);
+    }
+}
+
+TEST_CASE("the force is the gradient of the potential, in thousands of positions of all kinds") {
+    Dice dice(1);
+    int touching = 0;
+    for (int n = 0; n < 1500; ++n) {
+        Pair pair(anyBlock(dice), anyBlock(dice));
+        const Turn turn = n % 5 == 0 ? about(0.02 * between(dice, -1, 1), inCube(dice)) : anyTurn(dice);
+        const double depth = pair.size() * std::pow(10, between(dice, -2.5, -0.3));
+        const auto pose = pressed(pair, turn, inCube(dice).normalized(), 0.3 * pair.size() * inCube(dice), depth);
+        if (pair.at(pose).pressing == 0) continue;
+        ++touching;
+        checkDescent(pair, pose);
+    }
+    CHECK(touching > 1400);
+}
+
+TEST_CASE("faces, edges and corners against each other follow the gradient, exactly aligned ones too") {
+    Dice dice(2);
+    Pair pair(box(brick), box(brick));
+    const Vector x = Vector::UnitX(), y = Vector::UnitY(), z = Vector::UnitZ();
+    std::vector<std::pair<Turn, Vector>> classes = {
+        {Turn::Identity(), {0.11, 0, 0}},                 // face on face, half over
+        {Turn::Identity(), {0, 0, 0}},                    // all sides in one plane
+        {about(M_PI / 2, z), {0, 0, 0}},                  // header on stretcher
+        {about(0.3, z), {0.01, 0.02, 0}},                 // turned about the normal
+        {about(0.4, y), {0, 0, 0}},                       // edge on face, parallel to two faces
+        {about(0.4, y), {0.0, 0.051, 0}},                 // likewise, over the rim
+        {about(M_PI / 4, x) * about(0.2, z), {0, 0, 0}},  // edge on face, turned
+        {along(brick.normalized(), -z), {0.01, 0.01, 0}}, // corner on face
+        {along(brick.normalized(), -z), {0.11, 0.051, 0}} // corner on corner
+    };
+    for (const auto& [turn, aside] : classes)
+        for (double depth : {1e-2, 1e-3, 1e-4})
+            checkDescent(pair, pressed(pair, turn, z, aside, depth), 1e-5, 1e-2 * depth);
+    // Edge on edge: both stand on an edge, crossed at any angle, also at a right one and parallel.
+    for (double angle : {0.0, 0.3, M_PI / 2}) {
+        const Turn stand = about(M_PI / 4, x);
+        const Turn relative = stand.conjugate() * about(angle, z) * stand;
+        for (double depth : {1e-2, 1e-3})
+            checkDescent(pair, pressed(pair, relative, stand.conjugate() * z, Vector::Zero(), depth), 1e-5,
+                         1e-7 / depth);
+    }
+}
+
+namespace {
+
+// Nodes and weights of Gauss and Kronrod, 7 and 15 points between -1 and 1.
+const double nodes[8] = {0.991455371120812639206854697526329, 0.949107912342758524526189684047851,
+                         0.864864423359769072789712788640926, 0.741531185599394439863864773280788,
+                         0.586087235467691130294144991693823, 0.405845151377397166906606412076961,
+                         0.207784955007898467600689403773245, 0};
+const double kronrodWeights[8] = {0.022935322010529224963732008058970, 0.063092092629978553290700663189204,
+                                  0.104790010322250183839876322541518, 0.140653259715525918745189590510238,
+                                  0.169004726639267902826583426598550, 0.190350578064785409913256402421014,
+                                  0.204432940075298892414161999234649, 0.209482141084727828012999174891714};
+const double gaussWeights[8] = {0, 0.129484966168869693270611432679082, 0, 0.279705391489276667901467771423780,
+                                0, 0.381830050505118944950369775488975, 0, 0.417959183673469387755102040816327};
+
+} // namespace
+
+TEST_CASE("closed paths in six dimensions give back their work") {
+    Dice dice(3);
+    double worst = 0;
+    int kept = 0;
+    for (int path = 0; path < 1000; ++path) {
+        const int mostPoints = path % 10 ? 9 : 20; // corners of a hull: most have few, which is quicker
+        Pair pair(anyBlock(dice, mostPoints), anyBlock(dice, mostPoints));
+        // Two harmonics of place and of the quaternion. The path goes in and out of the block.
+        Vector place[5];
+        Eigen::Vector4d turn[5];
+        const double reach = 0.35 * (pair.one.radius + pair.other.radius);
+        for (int h = 0; h < 5; ++h) {
+            place[h] = reach * (h > 2 ? 0.2 : 1) * inCube(dice);
+            const Vector some = inCube(dice);
+            turn[h] = (h == 0  ? 1
+                       : h > 2 ? 0.1
+                               : 0.3) *
+                      Eigen::Vector4d(between(dice, -1, 1), some[0], some[1], some[2]);
+        }
+        turn[0].normalize();
+        const auto waves = [](double s, auto& of, auto zero) {
+            const double a = 2 * M_PI * s;
+            auto at = zero, by = zero;
+            at = of[0] + of[1] * std::cos(a) + of[2] * std::sin(a) + of[3] * std::cos(2 * a) + of[4] * std::sin(2 * a);
+            by = 2 * M_PI * (of[2] * std::cos(a) - of[1] * std::sin(a)) +
+                 4 * M_PI * (of[4] * std::cos(2 * a) - of[3] * std::sin(2 * a));
+            return std::pair(at, by);
+        };
+        const auto poseAt = [&](double s, Vector& velocity, Vector& spin) {
+            const auto [x, v] = waves(s, place, Vector(Vector::Zero()));
+            const auto [q, dq] = waves(s, turn, Eigen::Vector4d(Eigen::Vector4d::Zero()));
+            const double norm = q.norm();
+            const Eigen::Vector4d unit = q / norm, rate = (dq - unit.dot(dq) * unit) / norm;
+            const Turn now(unit[0], unit[1], unit[2], unit[3]), change(rate[0], rate[1], rate[2], rate[3]);
+            velocity = v;
+            spin = 2 * (change * now.conjugate()).vec();
+            return RelativePose{now.toRotationMatrix(), x};
+        };
+        double most = 0;
+        const auto power = [&](double s) {
+            Vector velocity, spin;
+            const auto pose = poseAt(s, velocity, spin);
+            const auto o = pair.at(pose);
+            // The spin turns the other block about its own origin.
+            return o.force.dot(velocity) + (o.moment - pose.place.cross(o.force)).dot(spin);
+        };
+        // The work by Gauss's formula of 15 points with Kronrod's error, in pieces that are halved where it is large.
+        // `energy` follows the potential along the path.
+        double energy = 0, energyMost = 0, work = 0;
+        int least = 4; // times that the path is halved at least
+        const std::function<void(double, double, int)> add = [&](double a, double b, int deep) {
+            const double middle = 0.5 * (a + b), half = 0.5 * (b - a);
+            double kronrod = 0, gauss = 0;
+            for (int i = 0; i < 8; ++i) {
+                const double f =
+                    i < 7 ? power(middle - half * nodes[i]) + power(middle + half * nodes[i]) : power(middle);
+                kronrod += half * kronrodWeights[i] * f;
+                gauss += half * gaussWeights[i] * f;
+            }
+            if (deep < 16 && (deep < least || std::abs(kronrod - gauss) > 1e-7 * most)) {
+                add(a, middle, deep + 1);
+                add(middle, b, deep + 1);
+                return;
+            }
+            energy -= kronrod;
+            energyMost = std::max(energyMost, energy);
+        };
+        Vector velocity, spin;
+        const double start = pair.potential(poseAt(0, velocity, spin));
+        for (int i = 0; i < 32; ++i)
+            most = std::max(most, pair.potential(poseAt(i / 32.0, velocity, spin)));
+        if (!(most > 0)) continue;
+        ++kept;
+        // A short touch can be between the points of few pieces: then the path is walked again in more pieces.
+        for (; least < 10; least += 2) {
+            energy = start;
+            add(0, 1, 0);
+            work = energy - start;
+            if (std::abs(work) < 3e-7 * most) break;
+        }
+        most = std::max(most, energyMost);
+        worst = std::max(worst, std::abs(work) / most);
+    }
+    MESSAGE("largest work of a closed path over the largest energy on it: " << worst);
+    CHECK(kept > 900);
+    CHECK(worst < 1e-6);
+}
+
+TEST_CASE("the order of the two blocks, and where the pair is, change nothing") {
+    Dice dice(4);
+    for (int n = 0; n < 500; ++n) {
+        Pair pair(anyBlock(dice), anyBlock(dice)), swapped(pair.other, pair.one);
+        const auto pose = pressed(pair, anyTurn(dice), inCube(dice).normalized(), Vector::Zero(), 0.1 * pair.size());
+        const RelativePose back{pose.turn.transpose(), -(pose.turn.transpose() * pose.place)};
+        const auto o = pair.at(pose), b = swapped.at(back);
+        const double scale = o.pressing + 1e-12 * pair.force(pair.size());
+        CHECK((o.force + pose.turn * b.force).norm() < 1e-10 * scale);
+        // The moment of the opposite force about the origin of the one block.
+        const Vector moment = pose.turn * b.moment + pose.place.cross(pose.turn * b.force);
+        CHECK((o.moment + moment).norm() < 1e-10 * scale * pair.size());
+        CHECK(std::abs(o.area - b.area) < 1e-10 * pair.size() * pair.size());
+        CHECK(std::abs(o.meanSquare - b.meanSquare) < 1e-9 * pair.size() * pair.size());
+        CHECK(swapped.potential(back) == doctest::Approx(pair.potential(pose)).epsilon(1e-10).scale(0));
+        // A turn of the one block's axes turns all that is found.
+        const Matrix r = anyTurn(dice).toRotationMatrix();
+        std::vector<Vector> corners;
+        for (int i = 0; i < pair.one.cornerCount(); ++i)
+            corners.push_back(r * Vector(pair.one.corners[0][i], pair.one.corners[1][i], pair.one.corners[2][i]));
+        Pair turned(blockOf(corners), pair.other);
+        // blockOf() moves the origin to the centroid, which is where it was.
+        const auto t = turned.at({r * pose.turn, r * pose.place});
+        CHECK((t.force - r * o.force).norm() < 1e-9 * scale);
+    }
+}
+
+TEST_CASE("a face in the plane between two cells is counted once") {
+    // A face of the other cube stands in the plane between the cells of two faces of the one.
+    Pair pair(box(Vector::Ones()), box(Vector(0.6, 0.4, 0.3)));
+    const Turn turn = about(M_PI / 4, Vector::UnitZ());
+    for (double sign : {-1.0, 1.0}) {
+        const Vector outward = sign * (turn * Vector::UnitX());
+        const auto at = [&](double off) {
+            const Vector along = turn * Vector::UnitY();
+            return RelativePose{turn.toRotationMatrix(), 0.25 * along - (0.3 + off) * outward};
+        };
+        const auto here = pair.at(at(0)), before = pair.at(at(-1e-9)), after = pair.at(at(1e-9));
+        REQUIRE(here.pressing > 0);
+        CHECK((here.force - before.force).norm() < 1e-8);
+        CHECK((here.force - after.force).norm() < 1e-8);
+        CHECK(std::abs(pair.potential(at(0)) - pair.potential(at(1e-9))) < 1e-8);
+        checkDescent(pair, at(0), 1e-5);
+    }
+}
+
+TEST_CASE("a small motion changes the force by no more than the stated stiffness") {
+    Dice dice(5);
+    double most = 0;
+    for (int n = 0; n < 1000; ++n) {
+        Pair pair(anyBlock(dice), anyBlock(dice));
+        const double depth = pair.size() * std::pow(10, between(dice, -4, -0.5));
+        auto pose =
+            pressed(pair, n % 3 ? anyTurn(dice) : Turn::Identity(), inCube(dice).normalized(), Vector::Zero(), depth);
+        const double step = 1e-3 * depth;
+        auto before = pair.at(pose);
+        for (int i = 0; i < 5; ++i) {
+            const Vector way = step * inCube(dice).normalized();
+            pose.place += way;
+            const auto after = pair.at(pose);
+            // The surface inside the other block changes during the motion, by less than a strip along it.
+            const double touched = std::max(before.touched, after.touched) * 1.02 + 20 * step * pair.size();
+            CHECK((after.force - before.force).norm() <= touched * step);
+            most = std::max(most, (after.force - before.force).norm() / (touched * step));
+            before = after;
+        }
+    }
+    CHECK(most > 0.8); // the bound is not far off
+}
+
+TEST_CASE("the bound of the eigenvalue holds for the stiffness by differences") {
+    Dice dice(6);
+    double closest = 0;
+    for (int n = 0; n < 300; ++n) {
+        Pair pair(anyBlock(dice), anyBlock(dice));
+        const auto pose = pressed(pair, n % 2 ? anyTurn(dice) : about(0.001, inCube(dice)), inCube(dice).normalized(),
+                                  Vector::Zero(), 0.003 * pair.size());
+        const auto o = pair.at(pose);
+        if (o.pressing == 0) continue;
+        // Masses with the moments of inertia of an ellipsoid of the block's size; any would do.
+        const double mass[2] = {1, between(dice, 0.2, 5)};
+        const Vector inertia[2] = {mass[0] * pair.one.radius * pair.one.radius * Vector(0.2, 0.3, 0.4),
+                                   mass[1] * pair.other.radius * pair.other.radius * Vector(0.2, 0.3, 0.4)};
+        // Relative motion: columns of translation and rotation of the other block about its origin, in axes of the one.
+        // Of the force and moment on it the derivative is symmetric but for the moment of the force itself.
+        Eigen::Matrix<double, 6, 6> stiffness;
+        for (int d = 0; d < 6; ++d) {
+            const double h = 1e-6 * (d < 3 ? pair.size() : 1);
+            const auto at = [&](double s) {
+                RelativePose p = pose;
+                if (d < 3)
+                    p.place += s * Vector::Unit(d);
+                else
+                    p.turn = Eigen::AngleAxisd(s, Vector::Unit(d - 3)) * pose.turn;
+                auto w = wrench(pair.at(p));
+                w.tail<3>() -= p.place.cross(Vector(w.head<3>()));
+                return w;
+            };
+            stiffness.col(d) = -(at(h) - at(-h)) / (2 * h);
+        }
+        const Eigen::Matrix<double, 6, 6> symmetric = 0.5 * (stiffness + stiffness.transpose());
+        // The same motion by both blocks: velocity of the other relative to the one, in its place.
+        Eigen::Matrix<double, 6, 12> relative = Eigen::Matrix<double, 6, 12>::Zero();
+        Matrix arm;
+        arm << 0, -pose.place[2], pose.place[1], pose.place[2], 0, -pose.place[0], -pose.place[1], pose.place[0], 0;
+        const double roots[2] = {std::sqrt(1 / mass[0]), std::sqrt(1 / mass[1])};
+        relative.block<3, 3>(0, 0) = -roots[0] * Matrix::Identity();
+        relative.block<3, 3>(0, 3) = arm * inertia[0].cwiseInverse().cwiseSqrt().asDiagonal();
+        relative.block<3, 3>(3, 3) = -Matrix(inertia[0].cwiseInverse().cwiseSqrt().asDiagonal());
+        relative.block<3, 3>(0, 6) = roots[1] * Matrix::Identity();
+        relative.block<3, 3>(3, 9) = pose.turn * inertia[1].cwiseInverse().cwiseSqrt().asDiagonal();
+        const Eigen::Matrix<double, 12, 12> scaled = relative.transpose() * symmetric * relative;
+        const double found = Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 12, 12>>(scaled).eigenvalues()[11];
+        const double bound = 2 * std::max(embeddedEigenvalue(pair.one, mass[0], inertia[0], 1, 0),
+                                          embeddedEigenvalue(pair.other, mass[1], inertia[1], 1, 0));
+        CHECK(found <= 1.02 * bound); // the force itself, which turns, adds a part of depth over size
+        closest = std::max(closest, found / bound);
+    }
+    MESSAGE("largest eigenvalue over its bound: " << closest);
+    CHECK(closest > 0.1);
+    // A cube that rests on all sides: two faces along the normal and four along the face for each translation.
+    const double found = embeddedEigenvalue(box(Vector::Ones()), 3, Vector::Constant(1e9), 2, 0.5);
+    CHECK(found == doctest::Approx((2 * 2 + 4 * 0.5) / 3).epsilon(1e-12));
+}
+
+TEST_CASE("the axis that separated two blocks is kept, and never hides an overlap") {
+    Dice dice(7);
+    for (int n = 0; n < 200; ++n) {
+        Pair pair(anyBlock(dice), anyBlock(dice));
+        int axis = 0;
+        RelativePose pose{anyTurn(dice).toRotationMatrix(), (pair.one.radius + pair.other.radius) * inCube(dice)};
+        for (int i = 0; i < 50; ++i) {
+            pose = moved(pose, 0.1 * pair.size() * inCube(dice), 0.1 * inCube(dice));
+            if (pose.place.norm() > pair.one.radius + pair.other.radius) pose.place *= 0.5;
+            Overlap found;
+            const bool touches = pair.finder.find(pair.one, pair.other, pose, axis, found);
+            CHECK(touches == (pair.potential(pose) > 1e-12 * std::pow(pair.size(), 4) || pair.at(pose).pressing > 0));
+        }
+    }
+}
+
+namespace {
+
+// Friction on a brick that lies in a face of a large slab with a normal force, moved by hand.
+struct Slider {
+    Pair pair{box(Vector(2, 2, 0.5)), box(brick)};
+    RelativePose pose{Matrix::Identity(), {0.1, 0, 0.25 + 0.5 * brick[2] - 1e-5}};
+    double normalStiffness = 1e9, ratio = 0.4, friction = 0.6;
+    FrictionState state{};
+    FrictionStep last{Vector::Zero(), 0, 0, 0};
+    double lost = 0, work = 0;
+    double normalForce = 0, tangential = 0;
+    Vector middle = Vector::Zero();
+
+    void act(double forceFactor = 1) {
+        const auto o = pair.at(pose);
+        normalForce = forceFactor * normalStiffness * o.force.norm();
+        tangential = ratio * normalStiffness * o.area;
+        middle = o.centre;
+        last = advanceFriction(state, o, pose, normalForce, tangential, friction);
+        lost += last.lost;
+    }
+    void go(const Vector& way, double turn, double forceFactor = 1) {
+        const auto before = last;
+        pose.turn = Eigen::AngleAxisd(turn, Vector::UnitZ()) * pose.turn;
+        pose.place += way;
+        act(forceFactor);
+        // What the body that is held gets: the opposite of the work of friction on it.
+        const Vector slip = way + turn * Vector::UnitZ().cross(middle - pose.place);
+        work -= 0.5 * (before.force + last.force).dot(slip) + 0.5 * (before.moment + last.moment) * turn;
+    }
+};
+
+} // namespace
+
+TEST_CASE("friction is elastic up to the limit, then slides with friction times normal force") {
+    Slider s;
+    s.act();
+    const double limit = s.friction * s.normalForce;
+    s.go({1e-7, 0, 0}, 0);
+    CHECK(s.last.force[0] == doctest::Approx(-s.tangential * 1e-7).epsilon(1e-8));
+    CHECK(s.lost == 0);
+    for (int i = 0; i < 1000; ++i)
+        s.go({1e-6, 0, 0}, 0);
+    CHECK(s.last.force[0] == doctest::Approx(-limit).epsilon(1e-9));
+    CHECK(std::abs(s.last.force[2]) < 1e-9 * limit);
+    CHECK(s.work == doctest::Approx(s.lost + s.last.stored).epsilon(1e-9));
+    // Back by twice the elastic slip: the force has the opposite direction.
+    for (int i = 0; i < 100; ++i)
+        s.go({-0.02 * limit / s.tangential, 0, 0}, 0);
+    CHECK(s.last.force[0] == doctest::Approx(limit).epsilon(1e-6));
+    CHECK(s.work == doctest::Approx(s.lost + s.last.stored).epsilon(1e-9));
+}
+
+TEST_CASE("a twist alone slides at friction times normal force times lever, and shear takes its share") {
+    Slider s;
+    s.act();
+    for (int i = 0; i < 2000; ++i)
+        s.go(Vector::Zero(), 1e-6);
+    const double lever = leverOfFriction(s.pair.at(s.pose));
+    CHECK(s.last.moment == doctest::Approx(-s.friction * s.normalForce * lever).epsilon(1e-6));
+    for (int i = 0; i < 2000; ++i) {
+        s.go({1e-6, 0, 0}, 1e-6);
+        const double t = s.last.force.norm() / (s.friction * s.normalForce);
+        const double m = s.last.moment / (s.friction * s.normalForce * lever);
+        CHECK(t * t + m * m <= doctest::Approx(1).epsilon(1e-6));
+    }
+    CHECK(s.last.force.norm() > 0.5 * s.friction * s.normalForce);
+    // The lever is the mean distance of an even pressure, which is 0.0644 m for this brick.
+    CHECK(lever == doctest::Approx(0.0644).epsilon(0.03));
+}
+
+TEST_CASE("friction takes energy in every step of any motion, and all of what goes in") {
+    Dice dice(8);
+    for (int n = 0; n < 50; ++n) {
+        Slider s;
+        s.act();
+        double previous = s.last.stored;
+        for (int i = 0; i < 500; ++i) {
+            const double lostBefore = s.lost, workBefore = s.work;
+            const double factor = n % 2 ? 1 : between(dice, 0, 1);
+            const Vector way = 1e-6 * inCube(dice).cwiseProduct(Vector(1, 1, n % 2 ? 0 : 1));
+            s.go(way, 1e-5 * between(dice, -1, 1), factor);
+            CHECK(s.lost >= lostBefore);
+            if (n % 2) { // where the normal force stays, the balance is exact to the second order of the motion
+                const double unaccounted = s.work - workBefore - (s.lost - lostBefore) - (s.last.stored - previous);
+                CHECK(std::abs(unaccounted) < 1e-4 * s.friction * s.normalForce * 1e-6);
+            }
+            previous = s.last.stored;
+        }
+    }
+}
+
+TEST_CASE("a pair at rest, and one that moves as a rigid whole, keeps its friction to the last digits") {
+    Dice dice(9);
+    Slider s;
+    s.act();
+    s.go({1e-7, 5e-8, 0}, 1e-7);
+    const auto first = s.last;
+    for (int i = 0; i < 100000; ++i)
+        s.act();
+    CHECK((s.last.force - first.force).norm() < 1e-9 * first.force.norm());
+    // The relative pose of two bodies that fly together, as it comes from their places.
+    const RelativePose pose = s.pose;
+    Turn turn = Turn::Identity();
+    Vector place = Vector::Zero();
+    for (int i = 0; i < 10000; ++i) {
+        turn = (about(0.01, inCube(dice)) * turn).normalized();
+        place += 0.1 * inCube(dice);
+        const Turn other = (turn * Turn(pose.turn)).normalized();
+        const Vector centre = place + turn * pose.place;
+        s.pose = {(turn.conjugate() * other).toRotationMatrix(), turn.conjugate() * (centre - place)};
+        s.act();
+    }
+    CHECK((s.last.force - first.force).norm() < 1e-6 * first.force.norm());
+    CHECK(std::abs(s.last.moment - first.moment) < 1e-6 * std::abs(first.moment));
+    CHECK(s.lost < 1e-6 * s.last.stored);
+}
+
+TEST_CASE("the shear force turns by half of what one block turns against the other") {
+    Slider s;
+    s.friction = 1e6; // nothing slides
+    s.act();
+    s.go({1e-7, 0, 0}, 0);
+    for (int i = 0; i < 200; ++i)
+        s.go(Vector::Zero(), 1e-3);
+    CHECK(std::atan2(-s.last.force[1], -s.last.force[0]) == doctest::Approx(0.1).epsilon(0.01));
+}
+
+TEST_CASE("when the normal force falls slip and twist are cut, and they are lost when the pair parts") {
+    Slider s;
+    s.act();
+    s.go({3e-6, 0, 0}, 3e-5);
+    const double lever = leverOfFriction(s.pair.at(s.pose));
+    const auto carried = [&] { return std::hypot(s.last.force.norm(), s.last.moment / lever); };
+    const double stored = s.last.stored, before = carried();
+    CHECK(std::abs(s.last.moment / lever) > 0.3 * s.last.force.norm());
+    s.act(0.1);
+    CHECK(carried() == doctest::Approx(s.friction * s.normalForce).epsilon(1e-9));
+    CHECK(carried() < before);
+    CHECK(s.lost + s.last.stored == doctest::Approx(stored).epsilon(1e-12));
+    const double rest = s.last.stored;
+    CHECK(endFriction(s.state) == doctest::Approx(rest));
+    CHECK(s.state.stiffness == 0);
+    CHECK(endFriction(s.state) == 0);
+}
+
+TEST_CASE("a ratio of damping gives its restitution, and none makes a contact pull") {
+    for (double restitution : {0.1, 0.13, 0.14, 0.3, 0.5, 0.8, 0.99, 1.0}) {
+        const double ratio = dampingRatio(restitution);
+        CHECK(restitutionOf(ratio) == doctest::Approx(restitution).epsilon(1e-10));
+        // A mass on a spring and a dashpot, in small steps.
+        double x = 0, v = 1;
+        const double dt = 1e-5;
+        double force = 1;
+        for (int i = 0; i < 3000000 && (i < 10 || force > 0); ++i) {
+            v -= 0.5 * dt * (2 * ratio * v + x);
+            x += dt * v;
+            v -= 0.5 * dt * (2 * ratio * v + x);
+            force = 2 * ratio * v + x;
+        }
+        CHECK(-v == doctest::Approx(restitution).epsilon(1e-3));
+    }
+    CHECK(dampingRatio(1) == 0);
+    Dice dice(10);
+    for (int n = 0; n < 500; ++n) {
+        Pair pair(anyBlock(dice), anyBlock(dice));
+        const auto pose = pressed(pair, anyTurn(dice), inCube(dice).normalized(), Vector::Zero(), 0.05 * pair.size());
+        const auto o = pair.at(pose);
+        if (!(o.area > 0)) continue;
+        const RelativeMotion motion{inCube(dice), 10 * inCube(dice)};
+        const double normalForce = o.force.norm(), coefficient = 0.01 * between(dice, 0, 10);
+        const auto d = dampContact(o, motion, coefficient, normalForce);
+        CHECK(d.power >= 0);
+        CHECK(normalForce + d.force >= -1e-15 * normalForce);
+        // The power of force and moment is that which is said.
+        const double power = -(d.force * o.normal.dot(motion.velocity) + d.moment.dot(motion.spin));
+        CHECK(std::abs(power - d.power) <= 1e-9 * (d.power + std::abs(d.force)));
+    }
+}
+
+TEST_CASE("sweep and prune finds all pairs of boxes that overlap, in order") {
+    Dice dice(12);
+    for (int n = 0; n < 300; ++n) {
+        const int count = std::uniform_int_distribution<>(0, 60)(dice);
+        std::vector<Box> boxes;
+        std::vector<unsigned char> awake;
+        for (int b = 0; b < count; ++b) {
+            // Some share their boundaries, and some are as large as a ground.
+            Box box;
+            for (int d = 0; d < 3; ++d) {
+                const double middle = n % 2 ? between(dice, -1, 1) : 0.1 * std::uniform_int_distribution<>(-9, 9)(dice);
+                const double half = b % 13 == 5 ? 3 : n % 2 ? between(dice, 0, 0.3) : 0.1;
+                box.low[d] = middle - half;
+                box.high[d] = middle + half;
+            }
+            boxes.push_back(box);
+            awake.push_back(n % 3 == 0 || between(dice, 0, 1) < 0.5);
+        }
+        std::vector<std::pair<int, int>> expected;
+        for (int a = 0; a < count; ++a)
+            for (int b = a + 1; b < count; ++b) {
+                bool overlap = awake[std::size_t(a)] || awake[std::size_t(b)];
+                for (int d = 0; d < 3; ++d)
+                    overlap = overlap && boxes[std::size_t(a)].low[d] <= boxes[std::size_t(b)].high[d] &&
+                              boxes[std::size_t(b)].low[d] <= boxes[std::size_t(a)].high[d];
+                if (overlap) expected.emplace_back(a, b);
+            }
+        CHECK(overlappingBoxes(boxes, awake) == expected);
+    }
+}

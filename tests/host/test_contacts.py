@@ -1,0 +1,298 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Rigid blocks that meet without a joint: they fall, rest, slide, collide, rock and lie in heaps."""
+
+import math
+
+import numpy as np
+import pytest
+from masonry import addBlock, criticalTimeStep, loadCheckpoint, saveCheckpoint
+from masonry._masonry import allowThreads
+from yade import O, Quaternion, Vector3
+from yade.wrapper import *
+
+G = 9.81
+BRICK = (0.22, 0.102, 0.081)
+STIFF = 1e10  # Pa/m
+
+
+def box(size, middle=(0, 0, 0), turn=Quaternion.Identity, held=False):
+    corners = [
+        Vector3(*middle) + turn * Vector3(*[size[i] * (c[i] - 0.5) for i in range(3)])
+        for c in [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    ]
+    body = addBlock(corners, MasonryMat(density=1800, young=4.8e9, poisson=0.16))
+    if held:
+        O.bodies[body].state.blockedDOFs = "xyzXYZ"
+    return body
+
+
+def ground(turn=Quaternion.Identity, size=(4, 2, 0.4)):
+    """A slab whose upper face goes through the origin."""
+    return box(size, turn * Vector3(0, 0, -size[2] / 2), turn, held=True)
+
+
+def prepare(step=0.5, gravity=(0, 0, -G), **properties):
+    contacts = MasonryContacts(
+        **{
+            **dict(normalStiffness=STIFF, friction=0.5, restitution=0.5),
+            **properties,
+        }
+    )
+    O.engines = [
+        ForceResetter(),
+        contacts,
+        MasonryEnergy(label="energy"),
+        MasonryIntegrator(damping=0, gravity=gravity),
+    ]
+    O.dt = step * criticalTimeStep()[0]
+    return contacts
+
+
+def balance():
+    return next(e for e in O.engines if e.label == "energy").balance()
+
+
+def until(time):
+    O.run(max(1, math.ceil((time - O.time) / O.dt)), True)
+
+
+def test_a_brick_falls_freely_then_comes_to_rest_and_does_not_sink(scene):
+    ground()
+    brick = box(BRICK, (0.3, 0.1, 0.05 + BRICK[2] / 2))
+    contacts = prepare()
+    s = O.bodies[brick].state
+    start = s.pos[2]
+    while O.time < 0.1 - O.dt:
+        O.run(50, True)
+        n = O.iter
+        # The sum of the steps of the leapfrog scheme, whose velocity begins half a step late.
+        assert abs(s.pos[2] - (start - G * O.dt**2 * n * (n + 1) / 2)) < 1e-9
+    assert contacts.touching() == 0
+    until(1.5)
+    weight = s.mass * G
+    assert contacts.touching() == 1
+    assert contacts.forceOf(0, brick)[2] == pytest.approx(weight, rel=1e-6)
+    assert s.vel.norm() < 1e-9
+    depth = BRICK[2] / 2 - s.pos[2]
+    assert depth == pytest.approx(weight / (STIFF * BRICK[0] * BRICK[1]), rel=1e-3)
+    there = Vector3(s.pos)
+    until(2.5)
+    assert (s.pos - there).norm() < 1e-12
+
+
+@pytest.mark.parametrize("angle", [20, 26])
+def test_a_block_rests_on_an_incline_below_the_angle_of_friction(scene, angle):
+    turn = Quaternion(Vector3(0, 1, 0), math.radians(angle))
+    ground(turn)
+    brick = box(BRICK, turn * Vector3(0, 0, BRICK[2] / 2), turn)
+    prepare()
+    s = O.bodies[brick].state
+    until(0.5)
+    there = Vector3(s.pos)
+    until(2.5)
+    # A creep of 1e-6 m in 60 s would be 3e-8 m here.
+    assert (s.pos - there).norm() < 1e-12
+    assert abs(balance()["error"]) < 0.01
+
+
+@pytest.mark.slow
+def test_a_block_on_an_incline_does_not_creep_in_a_minute(scene):
+    turn = Quaternion(Vector3(0, 1, 0), math.radians(20))
+    ground(turn)
+    brick = box(BRICK, turn * Vector3(0, 0, BRICK[2] / 2), turn)
+    prepare(0.9)
+    s = O.bodies[brick].state
+    until(0.5)
+    there = Vector3(s.pos)
+    until(60)
+    assert (s.pos - there).norm() < 1e-9
+
+
+@pytest.mark.parametrize("angle", [30, 40])
+def test_a_block_slides_down_an_incline_as_friction_says(scene, angle):
+    slope = math.radians(angle)
+    turn = Quaternion(Vector3(0, 1, 0), slope)
+    ground(turn, (8, 2, 0.4))
+    depth = 1800 * BRICK[2] * G * math.cos(slope) / STIFF
+    place = turn * Vector3(-3, 0, BRICK[2] / 2 - depth)
+    s = O.bodies[box(BRICK, place, turn)].state
+    prepare()
+    down = turn * Vector3(1, 0, 0)
+    until(0.05)
+    start, then = s.vel.dot(down), O.time
+    until(0.6)
+    found = (s.vel.dot(down) - start) / (O.time - then)
+    expected = G * (math.sin(slope) - 0.5 * math.cos(slope))
+    assert found == pytest.approx(expected, rel=1e-6)
+    assert abs(balance()["error"]) < 1e-4
+
+
+#: Turn of the second cube, and the error of the energy at the limit of the time step. It falls with its square. Faces meet
+#: all at once: a spring that sets in within a step makes or takes up to (w dt)²/4 of the energy of the relative motion,
+#: which is half of all.
+MEETINGS = {
+    "faces": (Quaternion.Identity, None),
+    "edge": (Quaternion(Vector3(0, 1, 0), math.pi / 4), 1e-5),
+    "corner": (
+        Quaternion(Vector3(0, 1, 0), math.atan(math.sqrt(0.5)))
+        * Quaternion(Vector3(0, 0, 1), math.pi / 4),
+        1e-8,
+    ),
+}
+
+
+@pytest.mark.parametrize("step", [1, 0.1])
+@pytest.mark.parametrize("kind", MEETINGS)
+def test_two_cubes_that_meet_keep_momentum_and_energy(scene, kind, step):
+    turn, error = MEETINGS[kind]
+    one = O.bodies[box((0.1, 0.1, 0.1))].state
+    other = O.bodies[box((0.1, 0.1, 0.1), (0.2, 0, 0), turn)].state
+    contacts = prepare(step, gravity=(0, 0, 0), restitution=1)
+    one.vel = Vector3(1, 0, 0)
+    until(0.2)
+    assert contacts.touching() == 0
+    assert (one.vel + other.vel - Vector3(1, 0, 0)).norm() < 1e-13
+    spin = sum(s.inertia[0] * s.angVel.squaredNorm() for s in (one, other)) / one.mass
+    energy = one.vel.squaredNorm() + other.vel.squaredNorm() + spin
+    if error is None:
+        error = (2 * STIFF * 0.01 / one.mass) * (O.dt / step) ** 2 / 8
+    assert abs(energy - 1) < error * step**2
+    assert abs(balance()["error"] - (1 - energy)) < 1e-4
+
+
+@pytest.mark.parametrize("restitution", [0.3, 0.7])
+def test_faces_that_meet_have_the_given_restitution(scene, restitution):
+    one = O.bodies[box((0.1, 0.1, 0.1))].state
+    other = O.bodies[box((0.1, 0.1, 0.1), (0.105, 0, 0))].state
+    prepare(0.02, gravity=(0, 0, 0), restitution=restitution)
+    one.vel = Vector3(1, 0, 0)
+    until(0.02)
+    assert other.vel[0] - one.vel[0] == pytest.approx(restitution, rel=0.01)
+    assert abs(balance()["error"]) < 1e-3
+
+
+def test_a_block_rocks_in_the_time_of_a_pivot(scene):
+    """A slender block that is let go falls back to its base in the time that the motion about its edge takes."""
+    ground()
+    width, height, tilt = 0.2, 0.8, 0.1
+    slender, reach = math.atan(width / height), math.hypot(width, height) / 2
+    turn, edge = Quaternion(Vector3(0, 1, 0), tilt), Vector3(width / 2, 0, 0)
+    middle = edge + turn * (Vector3(0, 0, height / 2) - edge)
+    s = O.bodies[box((width, 0.3, height), middle, turn)].state
+    prepare(friction=2, restitution=1, normalStiffness=1e12)
+    angle, speed, time, dt = tilt, 0.0, 0.0, 1e-5
+    while angle > 0:
+        speed -= dt * G * math.sin(slender - angle) / (4 / 3 * reach)
+        angle += dt * speed
+        time += dt
+    start = s.ori
+    until(0.9 * time)
+    while 2 * math.acos(min(1, abs((s.ori * start.conjugate())[3]))) < tilt:
+        O.run(50, True)
+        assert O.time < 1.2 * time
+    assert O.time == pytest.approx(time, rel=0.01)
+
+
+def heap(count, seed=3):
+    """Bricks above each other, turned at random, over a ground."""
+    ground()
+    dice = np.random.default_rng(seed)
+    for n in range(count):
+        turn = Quaternion(*dice.normal(size=4))
+        turn.normalize()
+        place = (0.15 * dice.uniform(-1, 1), 0.15 * dice.uniform(-1, 1))
+        box((0.11, 0.102, 0.081), (*place, 0.1 + 0.05 * n * 3.2), turn)
+
+
+def states():
+    return [
+        tuple(s.pos) + tuple(s.vel) + tuple(s.angVel) + tuple(s.ori)
+        for s in (b.state for b in O.bodies)
+    ]
+
+
+@pytest.mark.parametrize("count", [12, pytest.param(200, marks=pytest.mark.slow)])
+def test_a_heap_comes_to_rest_with_a_balance_of_energy(scene, count):
+    heap(count)
+    # The error of the balance falls with the time step: 0.2 % at half of the limit.
+    prepare(0.2, normalStiffness=1e9, restitution=0.3)
+    until(0.25 * math.sqrt(count) + 1.2)
+    found = balance()
+    assert found["kinetic"] < 1e-5 * found["gravity"]
+    assert abs(found["error"]) < 1e-3
+    assert found["friction_contacts"] > 0 and found["damping_contacts"] > 0
+    assert min(b.state.pos[2] for b in O.bodies if b.id) > 0.03
+
+
+def test_threads_and_a_checkpoint_in_flight_change_no_bit(scene, tmp_path):
+    def built():
+        O.reset()
+        heap(12)
+        prepare(0.8, normalStiffness=1e9, restitution=0.3)
+
+    built()
+    allowThreads(1)
+    O.run(6000, True)
+    file = str(tmp_path / "heap.checkpoint")
+    assert next(e for e in O.engines if "Contacts" in type(e).__name__).touching() > 3
+    saveCheckpoint(file)
+    O.run(4000, True)
+    expected = states()
+    loss = balance()
+    built()
+    allowThreads(2, True)
+    try:
+        O.run(10000, True)
+    finally:
+        allowThreads(1)
+    assert states() == expected
+    built()
+    loadCheckpoint(file)
+    O.run(4000, True)
+    assert states() == expected
+    assert balance() == loss
+
+
+def contacts(**properties):
+    return MasonryContacts(
+        **{**dict(normalStiffness=STIFF, friction=0.5), **properties}
+    )
+
+
+@pytest.mark.parametrize(
+    "made, message",
+    [
+        (lambda: contacts(normalStiffness=0), "normalStiffness 0 Pa/m must be given"),
+        (lambda: contacts(friction=-1), "friction -1 must be given"),
+        (lambda: contacts(restitution=1.5), "restitution 1.5 must be 0.1 to 1"),
+        (lambda: contacts(bodies=[0, 7]), "body 7 does not exist"),
+        (lambda: contacts(bodies=[0, 0]), "body 0 stands in bodies twice"),
+    ],
+)
+def test_what_cannot_be_is_refused(scene, made, message):
+    ground()
+    with pytest.raises(ValueError, match=message):
+        O.engines = [ForceResetter(), made(), MasonryIntegrator()]
+        O.step()
+    with pytest.raises(ValueError, match=message):
+        O.engines = [ForceResetter(), made(), MasonryIntegrator()]
+        criticalTimeStep()
+
+
+def test_the_engine_stands_after_the_resetter_and_refuses_deformable_units(scene):
+    ground()
+    brick = box(BRICK, (0, 0, 0.2))
+    O.engines = [contacts(), MasonryIntegrator()]
+    with pytest.raises(ValueError, match="must stand after a ForceResetter"):
+        O.step()
+    O.reset()
+    ground()
+    brick = box(BRICK, (0, 0, 0.2))
+    O.engines = [
+        ForceResetter(),
+        contacts(),
+        MasonryIntegrator(),
+        MasonryZones(bodies=[brick]),
+    ]
+    with pytest.raises(ValueError, match="body 1 is a deformable unit"):
+        O.step()

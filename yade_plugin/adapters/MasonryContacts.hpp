@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+#include "Adapter.hpp"
+#include "scene/Contacts.hpp"
+#include "scene/SceneCheck.hpp"
+
+namespace masonry {
+
+class MasonryContacts : public Adapter<MasonryContacts, yade::GlobalEngine>, public Contacts {
+public:
+    static constexpr const char* className = "MasonryContacts";
+    static constexpr const char* baseName = "GlobalEngine";
+    static constexpr const char* doc =
+        "Contacts of rigid blocks wherever they meet, also after large motions: of all pairs that no joint connects. "
+        "The force comes from a potential of the overlap, with Coulomb friction and viscous damping in compression. "
+        "Ground and platens are blocks whose axes are all blocked. Stands after the loop of the joints, if there is "
+        "one, and before MasonryLoad. normalStiffness and friction must be given.";
+
+    template <class Visit> static void attributes(Visit&& visit) {
+        using C = MasonryContacts;
+        visit("normalStiffness", &C::normalStiffness,
+              number("Pa/m", "Stiffness of two faces per area; must be given, as that of a joint between the blocks")
+                  .atLeast(0));
+        visit("tangentialRatio", &C::tangentialRatio,
+              number("-", "Elastic stiffness along the face over that along the normal")
+                  .above(0)
+                  .atMost(1)
+                  .source("[decided]: G/E of masonry"));
+        visit("friction", &C::friction,
+              number("-", "Coefficient of friction; -1 stands for none given, which the first step refuses")
+                  .atLeast(-1)
+                  .atMost(10));
+        visit("restitution", &C::restitution,
+              number("-", "Speed after a central impact of two faces over that before it; 1: without damping. Measured "
+                          "ones of stone depend on speed, mass and hardness")
+                  .atLeast(0.1)
+                  .atMost(1)
+                  .source("convention, no measured value"));
+        visit("skin", &C::skin,
+              number("m", "By which the boxes of the search are larger than their blocks; 0: a tenth of the thinnest "
+                          "block that moves. It changes the time of a step, and no result")
+                  .atLeast(0));
+        visit("bodies", &C::bodies, described("Ids of the blocks; empty: all blocks of the scene"), Given);
+        visit("begun", &C::begun, described("Whether there was a step"), Hidden);
+        visit("given", &C::given,
+              number("J", "Elastic energy that contacts had in the first step, because blocks were put into each "
+                          "other: an input of the energy balance"),
+              ReadOnly);
+        visit("lostInFriction", &C::lostInFriction, number("J", "Energy that friction took so far"), ReadOnly);
+        visit("lostInDamping", &C::lostInDamping, number("J", "Energy that damping took so far"), ReadOnly);
+        visit("memory", computed<Contacts, std::vector<double>>(&C::memory, &C::setMemory),
+              described("Pairs of blocks that are near each other, and what their friction remembers"), Hidden);
+    }
+
+    template <class PyClass> static void extras(PyClass& cls) {
+        cls.def("touching", &MasonryContacts::countTouching,
+                "Number of pairs that pressed on each other in the last step.")
+            .def("forceOf", &MasonryContacts::forceBetween, py::args("id1", "id2"),
+                 "Force of body id1 on body id2 in the last step [N], global axes; zero if they do not touch.");
+    }
+
+    using Contacts::problems;
+    bool isActivated() override { return standsAlone(*this); }
+    void action() override;
+
+private:
+    int countTouching();
+    Vector3r forceBetween(int id1, int id2);
+};
+
+} // namespace masonry
+
+extern template class masonry::Adapter<masonry::MasonryContacts, yade::GlobalEngine>;
+BOOST_CLASS_EXPORT_KEY(masonry::MasonryContacts)

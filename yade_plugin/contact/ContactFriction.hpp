@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Coulomb friction of two blocks, with the memory of an elastic slip and an elastic twist. The rules are derived in
+// contact/README.md.
+#pragma once
+#include "Overlap.hpp"
+#include <type_traits>
+
+namespace masonry {
+
+// What the friction of a pair remembers from the last step. All is in the axes of the one block.
+struct FrictionState {
+    static constexpr int numbers = 20;
+    double shear[3];  // force on the other block [N]
+    double twist;     // moment about the normal on the other block over the lever of friction [N]
+    double stiffness; // of the elastic slip [N/m]; 0: the pair did not touch
+    double normal[3]; // of the contact
+    double turn[9];   // of the relative pose
+    double place[3];  // of the relative pose [m]
+};
+static_assert(sizeof(FrictionState) == FrictionState::numbers * sizeof(double) &&
+                  std::is_trivially_copyable<FrictionState>::value,
+              "checkpoints hold the state as numbers");
+
+struct FrictionStep {
+    Eigen::Vector3d force; // on the other block, at the centre of pressure [N]
+    double moment;         // on the other block about the normal [N m]
+    double lost;           // energy that friction took in this step [J], never below 0
+    double stored;         // elastic energy of slip and twist [J]
+};
+
+// The lever of friction [m]: the largest moment of friction about the normal, without shear force, over friction times
+// normal force. It is the mean distance of the pressure from its centre; 0.94 of the root of the mean square is that to
+// 1 % for a disc and a square under even pressure, and 9 % above it for a thin strip.
+double leverOfFriction(const Overlap&);
+
+// Friction after the blocks have moved from the pose that the state remembers to this one. `normalForce` [N] is at
+// least 0, `stiffness` [N/m] is that of the elastic slip, above 0.
+FrictionStep advanceFriction(FrictionState&, const Overlap&, const RelativePose&, double normalForce, double stiffness,
+                             double friction);
+
+double elasticEnergyOf(const FrictionState&); // [J]
+
+// The elastic energy that is lost when the pair parts [J]; the state is then that of a pair that does not touch.
+double endFriction(FrictionState&);
+
+} // namespace masonry

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "Overlap.hpp"
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace masonry {
+
+using Matrix = Eigen::Matrix3d;
+using Vector = Eigen::Vector3d;
+
+namespace {
+
+// Depths below this are zero, over the size of both blocks: some fifty times the round-off of a depth.
+constexpr double tiny = 1e-14;
+constexpr int mostEdgePairs = 400;
+
+} // namespace
+
+void OverlapFinder::provideFor(const ContactBlock& block) {
+    const auto corners = std::size_t(block.cornerCount()), faces = std::size_t(block.faceCount());
+    for (auto* side : {&one_, &other_}) {
+        side->corners.resize(std::max(corners, side->corners.size()));
+        side->planes.resize(std::max(faces, side->planes.size()));
+    }
+    for (auto* side : {&one_, &other_})
+        side->depths.resize(side->corners.size() * side->planes.size());
+    // A cut adds at most one corner to a convex polygon. A polygon is cut by the planes of the opposite block, by those
+    // between its cells, and that of a wall between two cells by those of its own block, too.
+    const auto most = one_.corners.size() + 3 * one_.planes.size() + 4;
+    for (auto* polygon : {&polygon_, &spare_, &whole_})
+        polygon->resize(most);
+    signs_.resize(most);
+    least_.resize(one_.planes.size());
+    nearest_.resize(one_.planes.size());
+    patches_.reserve(2 * one_.planes.size());
+}
+
+void OverlapFinder::place(const ContactBlock& one, const ContactBlock& other, const RelativePose& pose) {
+    one_.block = &one;
+    other_.block = &other;
+    tolerance_ = tiny * (one.radius + other.radius);
+    for (int i = 0; i < one.cornerCount(); ++i)
+        one_.corners[std::size_t(i)] = {one.corners[0][i], one.corners[1][i], one.corners[2][i]};
+    for (int f = 0; f < one.faceCount(); ++f) {
+        const auto& face = one.faces[std::size_t(f)];
+        one_.planes[std::size_t(f)] = {face.normal[0], face.normal[1], face.normal[2], face.offset};
+    }
+    const Matrix& r = pose.turn;
+    const Vector& t = pose.place;
+    for (int i = 0; i < other.cornerCount(); ++i) {
+        const double x = other.corners[0][i], y = other.corners[1][i], z = other.corners[2][i];
+        other_.corners[std::size_t(i)] = {t[0] + (r(0, 0) * x + r(0, 1) * y + r(0, 2) * z),
+                                          t[1] + (r(1, 0) * x + r(1, 1) * y + r(1, 2) * z),
+                                          t[2] + (r(2, 0) * x + r(2, 1) * y + r(2, 2) * z)};
+    }
+    for (int f = 0; f < other.faceCount(); ++f) {
+        const auto& face = other.faces[std::size_t(f)];
+        const double x = face.normal[0], y = face.normal[1], z = face.normal[2];
+        const double a = r(0, 0) * x + r(0, 1) * y + r(0, 2) * z, b = r(1, 0) * x + r(1, 1) * y + r(1, 2) * z;
+        const double c = r(2, 0) * x + r(2, 1) * y + r(2, 2) * z;
+        other_.planes[std::size_t(f)] = {a, b, c, face.offset + (a * t[0] + b * t[1] + c * t[2])};
+    }
+}
+
+// Finds the depths of all corners of a block below one face of the opposite block, and whether none is below it.
+bool OverlapFinder::separates(const Side& of, Side& from, int face) {
+    const int count = from.block->cornerCount();
+    const Plane plane = of.planes[std::size_t(face)];
+    double* depths = &from.depths[std::size_t(face * count)];
+    const Corner* corners = from.corners.data();
+    double deepest = -HUGE_VAL;
+    for (int i = 0; i < count; ++i) {
+        depths[i] = plane.depth(corners[i]);
+        deepest = std::max(deepest, depths[i]);
+    }
+    return deepest <= tolerance_;
+}
+
+// Whether the plane along an edge of each block separates them. The numbers of both edges are one number.
+bool OverlapFinder::edgesSeparate(const RelativePose& pose, int edges) const {
+    const auto& others = other_.block->edges;
+    const Vector axis = one_.block->edges[std::size_t(edges) / others.size()].cross(
+        pose.turn * others[std::size_t(edges) % others.size()]);
+    if (axis.squaredNorm() < 1e-12) return false;
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    for (int side = 0; side < 2; ++side) {
+        const Side& s = side ? other_ : one_;
+        for (int i = 0; i < s.block->cornerCount(); ++i) {
+            const auto& p = s.corners[std::size_t(i)];
+            const double along = axis[0] * p.x + axis[1] * p.y + axis[2] * p.z;
+            low[side] = std::min(low[side], along);
+            high[side] = std::max(high[side], along);
+        }
+    }
+    return high[0] <= low[1] || high[1] <= low[0];
+}
+
+bool OverlapFinder::cut(const Plane& plane, bool kept) {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    const Corner* from = polygon_.data();
+    double* signs = signs_.data();
+    for (int i = 0; i < size_; ++i) {
+        signs[i] = plane.depth(from[i]);
+        low = std::min(low, signs[i]);
+        high = std::max(high, signs[i]);
+    }
+    if (low >= -tolerance_) return high > tolerance_ || kept;
+    if (high <= tolerance_) return false;
+    Corner* to = spare_.data();
+    int count = 0;
+    for (int i = 0; i < size_; ++i) {
+        const int next = i + 1 < size_ ? i + 1 : 0;
+        const double s = signs[i], t = signs[next];
+        if (s >= -tolerance_) to[count++] = from[i];
+        if ((s > tolerance_ && t < -tolerance_) || (s < -tolerance_ && t > tolerance_)) {
+            // From the inner corner, so that neighbouring parts have the same point.
+            const Corner &in = s > 0 ? from[i] : from[next], &out = s > 0 ? from[next] : from[i];
+            const double share = (s > 0 ? s : t) / (s > 0 ? s - t : t - s);
+            to[count++] = {in.x + share * (out.x - in.x), in.y + share * (out.y - in.y), in.z + share * (out.z - in.z)};
+        }
+    }
+    polygon_.swap(spare_);
+    size_ = count;
+    return count > 2;
+}
+
+template <class Visit> void OverlapFinder::eachPart(const Side& of, const Side& inside, int face, Visit&& visit) {
+    const auto& outline = of.block->faces[std::size_t(face)];
+    const int* numbers = of.block->outlines.data();
+    const int corners = of.block->cornerCount(), planes = inside.block->faceCount();
+    const double* depths = of.depths.data();
+    double bound = HUGE_VAL; // no point of the face is deeper inside the opposite block
+    int cutting = 0;         // planes that cut the face come first in `nearest_`, from the end of which the others come
+    for (int j = 0; j < planes; ++j, depths += corners) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (int k = outline.first; k < outline.beyond; ++k) {
+            const double depth = depths[numbers[k]];
+            low = std::min(low, depth);
+            high = std::max(high, depth);
+        }
+        if (high <= tolerance_) return;
+        bound = std::min(bound, high);
+        least_[std::size_t(j)] = low;
+        if (low < -tolerance_) nearest_[std::size_t(cutting++)] = j;
+    }
+    size_ = 0;
+    for (int k = outline.first; k < outline.beyond; ++k)
+        corner(size_++) = of.corners[std::size_t(numbers[k])];
+    for (int c = 0; c < cutting; ++c)
+        if (!cut(inside.planes[std::size_t(nearest_[std::size_t(c)])], false)) return;
+    // Which faces of the opposite block can be the nearest one: those below which some point is less deep than all
+    // points are below some other face.
+    int count = 0;
+    for (int j = 0; j < planes; ++j) {
+        if (least_[std::size_t(j)] > bound) continue;
+        const Plane& plane = inside.planes[std::size_t(j)];
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (int i = 0; i < size_; ++i) {
+            const double depth = plane.depth(corner(i));
+            low = std::min(low, depth);
+            high = std::max(high, depth);
+        }
+        bound = std::min(bound, high);
+        least_[std::size_t(j)] = low;
+        nearest_[std::size_t(count++)] = j;
+    }
+    int possible = 0;
+    for (int c = 0; c < count; ++c)
+        if (least_[std::size_t(nearest_[std::size_t(c)])] <= bound)
+            nearest_[std::size_t(possible++)] = nearest_[std::size_t(c)];
+    if (possible == 1) return visit(inside.planes[std::size_t(nearest_[0])]);
+    const int size = size_;
+    std::copy_n(polygon_.begin(), size, whole_.begin());
+    for (int c = 0; c < possible; ++c) {
+        const Plane& nearest = inside.planes[std::size_t(nearest_[std::size_t(c)])];
+        size_ = size;
+        std::copy_n(whole_.begin(), size, polygon_.begin());
+        bool some = true;
+        // Where a part is as deep below two faces, it belongs to the first of them.
+        for (int d = 0; d < possible && some; ++d)
+            if (d != c) some = cut(inside.planes[std::size_t(nearest_[std::size_t(d)])] - nearest, c < d);
+        if (some) visit(nearest);
+    }
+}
+
+// Integrals over the present polygon, exact for triangles with a linear pressure. All terms of one sign are added, so
+// that no digits are lost.
+void OverlapFinder::addUp(const Plane& pressure, const Plane& face, Sums& sums) const {
+    const Corner* p = polygon_.data();
+    const Corner& o = p[0];
+    const double p0 = pressure.depth(o);
+    double p1 = pressure.depth(p[1]);
+    for (int i = 2; i < size_; ++i) {
+        const Corner &s = p[i - 1], &t = p[i];
+        const double sx = s.x - o.x, sy = s.y - o.y, sz = s.z - o.z, tx = t.x - o.x, ty = t.y - o.y, tz = t.z - o.z;
+        const double twice = face.a * (sy * tz - sz * ty) + face.b * (sz * tx - sx * tz) + face.c * (sx * ty - sy * tx);
+        const double p2 = pressure.depth(t), sum = p0 + p1 + p2;
+        const double x = o.x + s.x + t.x, y = o.y + s.y + t.y, z = o.z + s.z + t.z;
+        // With barycentric coordinates l: the mean of l_i l_j is 1/12, of l_i² 1/6; that of l_i l_j l_k 1/60, of l_i²
+        // l_j 1/30, of l_i³ 1/10.
+        const double sixth = twice / 6, part = twice / 24;
+        sums.pressure += sixth * sum;
+        sums.px += part * (sum * x + (p0 * o.x + p1 * s.x + p2 * t.x));
+        sums.py += part * (sum * y + (p0 * o.y + p1 * s.y + p2 * t.y));
+        sums.pz += part * (sum * z + (p0 * o.z + p1 * s.z + p2 * t.z));
+        const double oo = o.x * o.x + o.y * o.y + o.z * o.z, ss = s.x * s.x + s.y * s.y + s.z * s.z;
+        const double tt = t.x * t.x + t.y * t.y + t.z * t.z, all = x * x + y * y + z * z;
+        const double weighted = p0 * (oo + (o.x * x + o.y * y + o.z * z)) + p1 * (ss + (s.x * x + s.y * y + s.z * z)) +
+                                p2 * (tt + (t.x * x + t.y * y + t.z * z));
+        sums.square += twice / 120 * (sum * (all + (oo + ss + tt)) + 2 * weighted);
+        sums.area += 0.5 * twice;
+        sums.ax += sixth * x;
+        sums.ay += sixth * y;
+        sums.az += sixth * z;
+        sums.xx += part * (x * x + (o.x * o.x + s.x * s.x + t.x * t.x));
+        sums.xy += part * (x * y + (o.x * o.y + s.x * s.y + t.x * t.y));
+        sums.xz += part * (x * z + (o.x * o.z + s.x * s.z + t.x * t.z));
+        sums.yy += part * (y * y + (o.y * o.y + s.y * s.y + t.y * t.y));
+        sums.yz += part * (y * z + (o.y * o.z + s.y * s.z + t.y * t.z));
+        sums.zz += part * (z * z + (o.z * o.z + s.z * s.z + t.z * t.z));
+        p1 = p2;
+    }
+}
+
+void OverlapFinder::addPatches(const Side& of, const Side& inside, double sign) {
+    for (int f = 0; f < of.block->faceCount(); ++f) {
+        const Plane& face = of.planes[std::size_t(f)];
+        Patch patch{face.a, face.b, face.c, sign, {}};
+        eachPart(of, inside, f, [&](const Plane& nearest) { addUp(nearest, face, patch.sums); });
+        if (patch.sums.pressure > 0) patches_.push_back(patch);
+    }
+}
+
+bool OverlapFinder::find(const ContactBlock& one, const ContactBlock& other, const RelativePose& pose, int& axis,
+                         Overlap& found) {
+    const double reach = one.radius + other.radius;
+    if (pose.place.squaredNorm() >= reach * reach) return false;
+    place(one, other, pose);
+    const int faces = one.faceCount(), all = faces + other.faceCount();
+    const auto separated = [&](int face) {
+        return face < faces ? separates(one_, other_, face) : separates(other_, one_, face - faces);
+    };
+    const int edges = int(one.edges.size() * other.edges.size());
+    if (axis < all ? separated(axis) : axis < all + edges && edgesSeparate(pose, axis - all)) return false;
+    for (int face = 0; face < all; ++face)
+        if (separated(face)) {
+            axis = face;
+            return false;
+        }
+    patches_.clear();
+    addPatches(other_, one_, -1);
+    addPatches(one_, other_, 1);
+    if (patches_.empty()) {
+        // They do not overlap, but no face separates them: two edges do. For blocks of very many edges the search would
+        // take longer than what it saves.
+        if (edges <= mostEdgePairs)
+            for (int pair = 0; pair < edges; ++pair)
+                if (edgesSeparate(pose, pair)) {
+                    axis = all + pair;
+                    break;
+                }
+        return false;
+    }
+
+    Vector force = Vector::Zero(), moment = Vector::Zero(), first = Vector::Zero();
+    double pressing = 0, square = 0, touched = 0;
+    for (const auto& patch : patches_) {
+        const Vector normal = patch.sign * Vector(patch.a, patch.b, patch.c);
+        const Vector p(patch.sums.px, patch.sums.py, patch.sums.pz);
+        force += patch.sums.pressure * normal;
+        moment += p.cross(normal);
+        first += p;
+        pressing += patch.sums.pressure;
+        square += patch.sums.square;
+        touched += patch.sums.area;
+    }
+    found.force = 0.5 * force;
+    found.moment = 0.5 * moment;
+    found.touched = 0.5 * touched;
+    found.pressing = pressing;
+    found.centre = first / pressing;
+    found.meanSquare = std::max(0.0, square / pressing - found.centre.squaredNorm());
+    found.area = 0;
+    found.firstMoment.setZero();
+    found.secondMoment.setZero();
+    const double size = force.norm();
+    // A force that is round-off of the pressures has no direction.
+    if (!(size > 1e-12 * pressing)) {
+        found.normal.setZero();
+        return true;
+    }
+    found.normal = force / size;
+    for (const auto& patch : patches_) {
+        const auto& s = patch.sums;
+        const double cosine = patch.sign * found.normal.dot(Vector(patch.a, patch.b, patch.c));
+        if (cosine <= 0) continue;
+        const double share = 0.5 * cosine;
+        found.area += share * s.area;
+        found.firstMoment += share * Vector(s.ax, s.ay, s.az);
+        Matrix second;
+        second << s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz;
+        found.secondMoment += share * second;
+    }
+    return true;
+}
+
+// The integral of the square of a depth over the present polygon.
+double OverlapFinder::squareOf(const Plane& depth, const Vector& normal) const {
+    const auto at = [](const Corner& c) { return Vector(c.x, c.y, c.z); };
+    const Vector o = at(polygon_[0]);
+    const double p0 = depth.depth(polygon_[0]);
+    double sum = 0;
+    for (int i = 2; i < size_; ++i) {
+        const auto &s = polygon_[std::size_t(i - 1)], &t = polygon_[std::size_t(i)];
+        const double twice = normal.dot((at(s) - o).cross(at(t) - o)), p1 = depth.depth(s), p2 = depth.depth(t);
+        sum += twice / 12 * (p0 * p0 + p1 * p1 + p2 * p2 + p0 * p1 + p1 * p2 + p2 * p0);
+    }
+    return sum;
+}
+
+// The integral over the overlap of the depth below the nearest face of `inside`. With g the gradient of the depth, the
+// divergence of g depth²/2 is the depth. So the cell of every nearest face has a surface integral: over what it has of
+// the surface of `of`, and over its walls to other cells.
+double OverlapFinder::depthIntegral(const Side& of, const Side& inside) {
+    const auto normalOf = [](const Plane& p) { return Vector(p.a, p.b, p.c); };
+    double sum = 0;
+    for (int f = 0; f < of.block->faceCount(); ++f) {
+        const Vector outward = normalOf(of.planes[std::size_t(f)]);
+        eachPart(of, inside, f, [&](const Plane& nearest) {
+            sum -= 0.5 * normalOf(nearest).dot(outward) * squareOf(nearest, outward);
+        });
+    }
+    const int faces = inside.block->faceCount(), bounds = of.block->faceCount();
+    for (int i = 0; i < faces; ++i)
+        for (int j = i + 1; j < faces; ++j) {
+            const Plane& mine = inside.planes[std::size_t(i)];
+            const Plane wall = inside.planes[std::size_t(j)] - mine;
+            const Vector across = normalOf(wall); // from cell i to cell j the difference of depths falls along this
+            const double steep = across.norm();
+            if (!(steep > 0)) continue;
+            const Vector n = across / steep, e1 = n.unitOrthogonal(), e2 = n.cross(e1);
+            const Vector middle = wall.offset / steep * n;
+            const double wide = 2 * (of.block->radius + inside.block->radius);
+            if (middle.norm() > wide) continue;
+            size_ = 0;
+            for (const auto& [u, v] : {std::pair(1, 1), std::pair(-1, 1), std::pair(-1, -1), std::pair(1, -1)}) {
+                const Vector at = middle + wide * (u * e1 + v * e2);
+                corner(size_++) = {at[0], at[1], at[2]};
+            }
+            bool some = cut(mine, true);
+            for (int k = 0; k < faces && some; ++k)
+                if (k != i && k != j) some = cut(inside.planes[std::size_t(k)] - mine, true);
+            for (int k = 0; k < bounds && some; ++k) {
+                // A wall in a face of the block bounds the overlap. It is counted where that face was given to the cell
+                // outside, which is cell i, the first, if the overlap lies in cell j.
+                const Plane& face = of.planes[std::size_t(k)];
+                some = cut(face, normalOf(face).dot(across) < 0);
+            }
+            if (some) sum += 0.5 * steep * squareOf(mine, n);
+        }
+    return sum;
+}
+
+double OverlapFinder::potential(const ContactBlock& one, const ContactBlock& other, const RelativePose& pose) {
+    const double reach = one.radius + other.radius;
+    if (pose.place.squaredNorm() >= reach * reach) return 0;
+    place(one, other, pose);
+    for (int face = 0; face < one.faceCount(); ++face)
+        if (separates(one_, other_, face)) return 0;
+    for (int face = 0; face < other.faceCount(); ++face)
+        if (separates(other_, one_, face)) return 0;
+    return 0.5 * (depthIntegral(other_, one_) + depthIntegral(one_, other_));
+}
+
+} // namespace masonry

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The overlap of two convex blocks: the force between them, its potential, and the area on which they press. The
+// equations are derived in contact/README.md.
+#pragma once
+#include "ContactBlock.hpp"
+
+namespace masonry {
+
+// Place and orientation of the other block in the axes of the one block.
+struct RelativePose {
+    Eigen::Matrix3d turn;  // from the axes of the other block to those of the one
+    Eigen::Vector3d place; // origin of the other block [m]
+};
+
+// What two blocks do to each other, for a stiffness of 1 Pa/m. All is in the axes of the one block. Moments are about
+// its origin.
+struct Overlap {
+    Eigen::Vector3d force;  // on the other block [m³]; the one block has the opposite
+    Eigen::Vector3d moment; // on the other block about the origin of the one [m⁴]; the one block has the opposite
+    double touched;         // half of the area of both surfaces inside the other block [m²]
+    // Where the two press: the force without direction. Zero where nothing presses.
+    double pressing;        // integral of the pressure over both surfaces [m³]
+    Eigen::Vector3d centre; // centre of pressure [m]
+    double meanSquare;      // mean square of the distance from the centre, weighted with the pressure [m²]
+    // The contact area: both surfaces inside the other block, as far as they look against the force, projected along
+    // it, and their mean. Zero where the force is.
+    Eigen::Vector3d normal;       // direction of `force`
+    double area;                  // [m²]
+    Eigen::Vector3d firstMoment;  // of that area [m³]
+    Eigen::Matrix3d secondMoment; // of that area [m⁴]
+};
+
+// Finds overlaps. It owns the buffers, so that finding one allocates nothing.
+class OverlapFinder {
+public:
+    // To be called once for every block before it is used.
+    void provideFor(const ContactBlock&);
+
+    // The overlap of two blocks; false if they do not press on each other. `axis` is a number that the caller keeps for
+    // each pair, at first 0: the face, or the two edges, whose plane separated the two when they were last looked at.
+    bool find(const ContactBlock& one, const ContactBlock& other, const RelativePose&, int& axis, Overlap&);
+
+    // The potential, for a stiffness of 1 Pa/m [m⁴].
+    double potential(const ContactBlock& one, const ContactBlock& other, const RelativePose&);
+
+private:
+    struct Corner {
+        double x, y, z;
+    };
+    struct Plane { // depth of a point below a face: offset - (a x + b y + c z)
+        double a, b, c, offset;
+        double depth(const Corner& p) const { return offset - (a * p.x + b * p.y + c * p.z); }
+        Plane operator-(const Plane& o) const { return {a - o.a, b - o.b, c - o.c, offset - o.offset}; }
+    };
+    struct Side { // a block in the axes of the one block
+        const ContactBlock* block;
+        std::vector<Corner> corners;
+        std::vector<Plane> planes;
+        std::vector<double> depths; // of its corners below all faces of the opposite block, face by face
+    };
+    struct Sums {            // of a part of a face
+        double pressure = 0; // integral of the depth [m³]
+        double square = 0;   // integral of the depth times the square of the distance from the origin
+        double px = 0, py = 0, pz = 0;
+        double area = 0, ax = 0, ay = 0, az = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+    };
+    struct Patch { // a face of a block inside the other block
+        double a, b, c;
+        double sign; // 1 for the one block, -1 for the other
+        Sums sums;
+    };
+
+    void place(const ContactBlock& one, const ContactBlock& other, const RelativePose&);
+    bool separates(const Side& of, Side& from, int face);
+    bool edgesSeparate(const RelativePose&, int edges) const;
+    // Cuts the present polygon; false if nothing remains. `kept` is what becomes of a polygon that lies in the plane.
+    bool cut(const Plane&, bool kept);
+    // Calls visit(plane of the nearest face of the opposite block) for the parts of a face that lie inside the opposite
+    // block; the part is then the present polygon.
+    template <class Visit> void eachPart(const Side& of, const Side& inside, int face, Visit&& visit);
+    void addPatches(const Side& of, const Side& inside, double sign);
+    void addUp(const Plane& pressure, const Plane& face, Sums&) const;
+    double squareOf(const Plane& depth, const Eigen::Vector3d& normal) const;
+    Corner& corner(int number) { return polygon_[std::size_t(number)]; }
+    double depthIntegral(const Side& of, const Side& inside);
+
+    Side one_, other_;
+    std::vector<Corner> polygon_, spare_, whole_;
+    std::vector<double> signs_, least_;
+    std::vector<int> nearest_;
+    std::vector<Patch> patches_;
+    int size_ = 0;         // corners of the present polygon
+    double tolerance_ = 0; // depths below this are zero [m]
+};
+
+} // namespace masonry

@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "Contacts.hpp"
+#include "Blocks.hpp"
+#include "BodyCheck.hpp"
+#include "common/Parallel.hpp"
+#include "contact/ContactStep.hpp"
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace masonry {
+
+namespace {
+
+constexpr unsigned allAxes = 63;
+
+bool isHeld(const SceneContents& contents, int body) { return contents.bodies.blockedAxes(body) == allAxes; }
+
+Vector3r columnOf(const std::vector<double>* columns, int body) {
+    return {columns[0][std::size_t(body)], columns[1][std::size_t(body)], columns[2][std::size_t(body)]};
+}
+
+} // namespace
+
+std::vector<std::string> Contacts::problems() const {
+    auto sorted = bodies;
+    std::sort(sorted.begin(), sorted.end());
+    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    if (twice != sorted.end()) return {"body " + std::to_string(*twice) + " stands in bodies twice"};
+    return {};
+}
+
+std::vector<int> Contacts::idsOf(const SceneContents& contents) const {
+    if (!bodies.empty()) {
+        auto sorted = bodies;
+        std::sort(sorted.begin(), sorted.end());
+        return sorted;
+    }
+    std::vector<int> all;
+    for (const auto& body : contents.scene().bodies->body)
+        if (body && body->state && isBlock(body->shape.get())) all.push_back(body->id);
+    return all;
+}
+
+void Contacts::checkBodies(const SceneContents& contents) const {
+    if (!(normalStiffness > 0))
+        throw std::invalid_argument("MasonryContacts.normalStiffness " + text(normalStiffness) +
+                                    " Pa/m must be given, above 0");
+    if (!(friction >= 0))
+        throw std::invalid_argument("MasonryContacts.friction " + text(friction) + " must be given, at least 0");
+    for (int id : idsOf(contents)) {
+        const auto& body = bodyAt(contents.scene(), id, "MasonryContacts: body");
+        const auto name = "MasonryContacts: body " + std::to_string(id);
+        if (!isBlock(body.shape.get())) throw std::invalid_argument(name + " is no block");
+        if (contents.bodies.isUnit[id])
+            throw std::invalid_argument(name + " is a deformable unit, which has no contacts: give the ids of rigid "
+                                               "blocks in MasonryContacts.bodies");
+        if (contents.bodies.isHalf[id])
+            throw std::invalid_argument(name + " is half of a whole brick, which has no contacts: give the ids of "
+                                               "other blocks in MasonryContacts.bodies");
+    }
+}
+
+void Contacts::prepare(const SceneContents& contents) {
+    if (revision_ == contents.revision()) return;
+    ids_ = idsOf(contents);
+    const auto count = std::size_t(contents.bodies.size());
+    blocks_.assign(count, ContactBlock{});
+    turns_.assign(count, Matrix3r::Identity());
+    double thinnest = HUGE_VAL;
+    finders_.clear();
+    OverlapFinder finder;
+    for (int id : ids_) {
+        const auto surface = blockOf(*contents.scene().bodies->body[std::size_t(id)]->shape);
+        auto& block = blocks_[std::size_t(id)];
+        try {
+            block = contactBlock(surface.vertices, surface.triangles);
+        } catch (const std::invalid_argument& error) {
+            throw std::invalid_argument("MasonryContacts: body " + std::to_string(id) + ": " + error.what());
+        }
+        if (!isHeld(contents, id)) thinnest = std::min(thinnest, block.thickness);
+        finder.provideFor(block);
+    }
+    finders_.push_back(finder);
+    // A tenth of the thinnest block that moves: few blocks are that near without touching, and it takes some time to go
+    // so far.
+    usedSkin_ = skin > 0 ? skin : thinnest < HUGE_VAL ? 0.1 * thinnest : 0.01;
+    joined_.clear();
+    for (const auto& joint : contents.joints)
+        joined_.emplace_back(std::minmax(joint.interaction->id1, joint.interaction->id2));
+    std::sort(joined_.begin(), joined_.end());
+    stale_ = true;
+    revision_ = contents.revision();
+}
+
+// Whether a body has left its box. A point of a block is moved by a rotation of the angle a by at most a times its
+// distance from the centre, and a is at most 2.3 times the distance of the two unit quaternions up to a quarter turn.
+bool Contacts::moved(const SceneContents& contents) const {
+    const auto& all = contents.bodies;
+    for (std::size_t i = 0; i < ids_.size(); ++i) {
+        const int id = ids_[i];
+        const auto& then = placed_[i];
+        const double way = (columnOf(all.position, id) - then.position).norm();
+        double same = 0, opposite = 0;
+        for (int d = 0; d < 4; ++d) {
+            same += std::pow(all.orientation[d][std::size_t(id)] - then.orientation[d], 2);
+            opposite += std::pow(all.orientation[d][std::size_t(id)] + then.orientation[d], 2);
+        }
+        const double turn = 2.3 * std::sqrt(std::min(same, opposite));
+        if (!(way + turn * blocks_[std::size_t(id)].radius <= 0.5 * usedSkin_)) return true;
+    }
+    return false;
+}
+
+void Contacts::findPairs(const SceneContents& contents) {
+    const auto& all = contents.bodies;
+    std::vector<Box> boxes;
+    std::vector<unsigned char> awake;
+    placed_.clear();
+    for (int id : ids_) {
+        const auto& block = blocks_[std::size_t(id)];
+        Box box;
+        for (int d = 0; d < 3; ++d) {
+            const Vector3r row = turns_[std::size_t(id)].row(d).transpose();
+            double low = HUGE_VAL, high = -HUGE_VAL;
+            for (std::size_t c = 0; c < block.corners[0].size(); ++c) {
+                const double x =
+                    row[0] * block.corners[0][c] + row[1] * block.corners[1][c] + row[2] * block.corners[2][c];
+                low = std::min(low, x);
+                high = std::max(high, x);
+            }
+            box.low[d] = all.position[d][std::size_t(id)] + low - 0.5 * usedSkin_;
+            box.high[d] = all.position[d][std::size_t(id)] + high + 0.5 * usedSkin_;
+        }
+        boxes.push_back(box);
+        awake.push_back(!isHeld(contents, id));
+        Placed placed{columnOf(all.position, id), {}};
+        for (int d = 0; d < 4; ++d)
+            placed.orientation[d] = all.orientation[d][std::size_t(id)];
+        placed_.push_back(placed);
+    }
+    // Ids are sorted, so pairs of ids are, too.
+    std::vector<Pair> found;
+    auto known = pairs_.begin();
+    const auto precedes = [](const Pair& a, const std::pair<int, int>& b) {
+        return a.one != b.first ? a.one < b.first : a.other < b.second;
+    };
+    for (const auto& [i, j] : overlappingBoxes(boxes, awake)) {
+        const std::pair<int, int> ids(ids_[std::size_t(i)], ids_[std::size_t(j)]);
+        while (known != pairs_.end() && precedes(*known, ids))
+            lostInFriction += endFriction((known++)->friction);
+        const bool same = known != pairs_.end() && known->one == ids.first && known->other == ids.second;
+        if (std::binary_search(joined_.begin(), joined_.end(), ids)) continue;
+        found.push_back(same ? *known++ : Pair{ids.first, ids.second, 0, {}, {}});
+    }
+    for (; known != pairs_.end(); ++known)
+        lostInFriction += endFriction(known->friction);
+    pairs_ = std::move(found);
+    effects_.assign(pairs_.size(), Effect{false, Vector3r::Zero(), {Vector3r::Zero(), Vector3r::Zero()}, 0, 0});
+    finders_.resize(std::max<std::size_t>(1, (pairs_.size() + piece - 1) / piece), finders_.front());
+    stale_ = false;
+}
+
+RelativePose Contacts::poseOf(const SceneContents& contents, const Pair& pair) const {
+    const Matrix3r back = turns_[std::size_t(pair.one)].transpose();
+    const auto& position = contents.bodies.position;
+    return {back * turns_[std::size_t(pair.other)],
+            back * (columnOf(position, pair.other) - columnOf(position, pair.one))};
+}
+
+// The mass with which the two bodies of a pair meet at a point along a normal [kg]: the inverse of how fast the point
+// of each would be after an impulse of 1.
+double Contacts::massAlong(const SceneContents& contents, const Pair& pair, const Vector3r& point,
+                           const Vector3r& normal) const {
+    const auto& all = contents.bodies;
+    double inverse = 0;
+    for (int id : {pair.one, pair.other}) {
+        const auto b = std::size_t(id);
+        const bool spins = all.spins(id);
+        Vector3r turning = (point - columnOf(all.position, id)).cross(normal);
+        if (spins) turning = (turns_[b].transpose() * turning).eval(); // moments of inertia are those of its own axes
+        for (int d = 0; d < 3; ++d) {
+            if (!all.isBlocked(id, d)) inverse += normal[d] * normal[d] / all.mass[b];
+            if (spins || !all.isBlocked(id, 3 + d)) inverse += turning[d] * turning[d] / all.inertia[d][b];
+        }
+    }
+    return inverse > 0 ? 1 / inverse : 0;
+}
+
+void Contacts::actOn(const SceneContents& contents, double dampingRatio, OverlapFinder& finder, Pair& pair,
+                     Effect& effect) const {
+    const auto& all = contents.bodies;
+    const auto pose = poseOf(contents, pair);
+    Overlap overlap;
+    effect.touches =
+        finder.find(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], pose, pair.axis, overlap);
+    effect.damped = 0;
+    if (!effect.touches) {
+        effect.force.setZero();
+        effect.torques[0].setZero();
+        effect.torques[1].setZero();
+        overlap.force.setZero();
+        overlap.moment.setZero();
+        overlap.area = 0;
+        // Most pairs are only near each other.
+        if (pair.friction.stiffness == 0 && pair.dashpot[0] == 0 && pair.dashpot[1] == 0 && pair.dashpot[2] == 0) {
+            effect.lost = 0;
+            return;
+        }
+    }
+    if (!(overlap.area > 0)) effect.lost = endFriction(pair.friction);
+    Vector3r force = normalStiffness * overlap.force, moment = normalStiffness * overlap.moment;
+    const Matrix3r& turn = turns_[std::size_t(pair.one)];
+    const Vector3r place = columnOf(all.position, pair.one);
+    Eigen::Map<Vector3r> lastForce(pair.dashpot), lastMoment(pair.dashpot + 3);
+    RelativeMotion motion{Vector3r::Zero(), Vector3r::Zero()};
+    if (dampingRatio > 0) {
+        const Vector3r arm = columnOf(all.position, pair.other) - place;
+        const Vector3r spin = columnOf(all.velocity + 3, pair.other), ownSpin = columnOf(all.velocity + 3, pair.one);
+        motion.velocity = turn.transpose() *
+                          (columnOf(all.velocity, pair.other) - spin.cross(arm) - columnOf(all.velocity, pair.one));
+        motion.spin = turn.transpose() * (spin - ownSpin);
+        // A force works over a step with its mean over both ends, as all forces of a scene do (scene/BodyStep).
+        effect.damped = -0.5 * contents.scene().dt * (lastForce.dot(motion.velocity) + lastMoment.dot(motion.spin));
+    }
+    lastForce.setZero();
+    lastMoment.setZero();
+    if (overlap.area > 0) {
+        double normalForce = force.norm();
+        if (dampingRatio > 0) {
+            const double mass = massAlong(contents, pair, place + turn * overlap.centre, turn * overlap.normal);
+            const double coefficient = 2 * dampingRatio * std::sqrt(normalStiffness * mass / overlap.area);
+            const auto damped = dampContact(overlap, motion, coefficient, normalForce);
+            lastForce = damped.force * overlap.normal;
+            lastMoment = damped.moment;
+            force += lastForce;
+            moment += lastMoment;
+            normalForce = std::max(0.0, normalForce + damped.force);
+            effect.damped += 0.5 * damped.power * contents.scene().dt;
+        }
+        const auto step = advanceFriction(pair.friction, overlap, pose, normalForce,
+                                          tangentialRatio * normalStiffness * overlap.area, friction);
+        effect.lost = step.lost;
+        force += step.force;
+        moment += overlap.centre.cross(step.force) + step.moment * overlap.normal;
+    }
+    effect.force = turn * force;
+    effect.torques[0] = -(turn * moment);
+    effect.torques[1] = turn * (moment - pose.place.cross(force));
+}
+
+void Contacts::act(SceneContents& contents) {
+    prepare(contents);
+    auto& all = contents.bodies;
+    for (int id : ids_) {
+        if (!contents.loop) all.notice(id); // that engine has looked whether scripts have moved bodies
+        const auto b = std::size_t(id);
+        turns_[b] = Eigen::Quaterniond(all.orientation[0][b], all.orientation[1][b], all.orientation[2][b],
+                                       all.orientation[3][b])
+                        .toRotationMatrix();
+    }
+    if (stale_ || moved(contents)) findPairs(contents);
+    const double ratio = dampingRatio(restitution);
+    const int count = int(pairs_.size());
+    Parallel::instance().overPieces((count + piece - 1) / piece, 1, [&](int first, int beyond) {
+        for (int n = first; n < beyond; ++n)
+            for (int p = n * piece; p < std::min(count, (n + 1) * piece); ++p)
+                actOn(contents, ratio, finders_[std::size_t(n)], pairs_[std::size_t(p)], effects_[std::size_t(p)]);
+    });
+    const auto sums = contents.scene().forces().sums(all.size());
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        const auto& effect = effects_[p];
+        lostInFriction += effect.lost;
+        lostInDamping += effect.damped;
+        if (!effect.touches) continue;
+        sums.forces[pairs_[p].one] -= effect.force;
+        sums.forces[pairs_[p].other] += effect.force;
+        sums.torques[pairs_[p].one] += effect.torques[0];
+        sums.torques[pairs_[p].other] += effect.torques[1];
+    }
+    if (!begun) given = elastic(contents); // blocks that a script has put into each other
+    begun = true;
+}
+
+double Contacts::elastic(const SceneContents& contents) {
+    prepare(contents);
+    double sum = 0;
+    for (const auto& pair : pairs_) {
+        const auto& s = pair.friction;
+        if (!(s.stiffness > 0)) continue;
+        const RelativePose pose{Eigen::Map<const Matrix3r>(s.turn), Eigen::Map<const Vector3r>(s.place)};
+        sum += normalStiffness *
+               finders_.front().potential(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], pose);
+        sum += elasticEnergyOf(s);
+    }
+    return sum;
+}
+
+double Contacts::largestEigenvalue(const SceneContents& contents, bool anew) {
+    if (!anew && boundRevision_ == contents.revision() && boundStiffness_ == normalStiffness &&
+        boundRatio_ == tangentialRatio)
+        return bound_;
+    checkBodies(contents);
+    double most = 0;
+    for (int id : idsOf(contents)) {
+        if (isHeld(contents, id)) continue;
+        const auto surface = blockOf(*contents.scene().bodies->body[std::size_t(id)]->shape);
+        const auto& s = contents.bodies.state(id);
+        most = std::max(most, embeddedEigenvalue(contactBlock(surface.vertices, surface.triangles), s.mass, s.inertia,
+                                                 normalStiffness, tangentialRatio * normalStiffness));
+    }
+    boundRevision_ = contents.revision();
+    boundStiffness_ = normalStiffness;
+    boundRatio_ = tangentialRatio;
+    bound_ = 2 * most;
+    return bound_;
+}
+
+double Contacts::largestDampingRatio() const { return std::sqrt(6) * dampingRatio(restitution); }
+
+int Contacts::touching() const {
+    return int(std::count_if(effects_.begin(), effects_.end(), [](const auto& effect) { return effect.touches; }));
+}
+
+Vector3r Contacts::forceOf(int id1, int id2) const {
+    for (std::size_t p = 0; p < pairs_.size() && p < effects_.size(); ++p)
+        if (effects_[p].touches && std::minmax(id1, id2) == std::minmax(pairs_[p].one, pairs_[p].other))
+            return pairs_[p].other == id2 ? effects_[p].force : Vector3r(-effects_[p].force);
+    return Vector3r::Zero();
+}
+
+std::vector<double> Contacts::memory() {
+    std::vector<double> all;
+    for (const auto& pair : pairs_) {
+        all.insert(all.end(), {double(pair.one), double(pair.other), double(pair.axis)});
+        const auto* first = reinterpret_cast<const double*>(&pair.friction);
+        all.insert(all.end(), first, first + FrictionState::numbers);
+        all.insert(all.end(), std::begin(pair.dashpot), std::end(pair.dashpot));
+    }
+    return all;
+}
+
+void Contacts::setMemory(const std::vector<double>& all) {
+    constexpr std::size_t width = 3 + FrictionState::numbers + 6;
+    if (all.size() % width != 0)
+        throw std::invalid_argument("MasonryContacts.memory must have " + std::to_string(width) + " numbers a pair");
+    pairs_.clear();
+    for (std::size_t at = 0; at < all.size(); at += width) {
+        Pair pair{int(all[at]), int(all[at + 1]), int(all[at + 2]), {}, {}};
+        std::copy_n(&all[at + 3], FrictionState::numbers, reinterpret_cast<double*>(&pair.friction));
+        std::copy_n(&all[at + 3 + FrictionState::numbers], 6, pair.dashpot);
+        pairs_.push_back(pair);
+    }
+    effects_.clear();
+    stale_ = true;
+}
+
+} // namespace masonry

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Contacts of rigid blocks that no joint connects, wherever they meet. An engine derives from it.
+#pragma once
+#include "SceneContents.hpp"
+#include "common/Property.hpp"
+#include "contact/BroadPhase.hpp"
+#include "contact/ContactDamping.hpp"
+#include "contact/ContactFriction.hpp"
+
+namespace masonry {
+
+using yade::Matrix3r;
+using yade::Vector3r;
+
+class Contacts {
+public:
+    virtual ~Contacts() = default;
+
+    double normalStiffness = 0;   // per area [Pa/m]
+    double tangentialRatio = 0.4; // stiffness along the face over that along the normal [-]
+    double friction = -1;         // coefficient [-]
+    double restitution = 0.5;     // of a central impact of two faces [-]
+    double skin = 0;              // by which boxes are larger than their blocks [m]; 0: chosen
+    std::vector<int> bodies;      // ids of the blocks; empty: all rigid blocks
+
+    bool begun = false;        // whether there was a step
+    double given = 0;          // elastic energy that contacts had in the first step [J]
+    double lostInFriction = 0; // so far [J]
+    double lostInDamping = 0;  // so far [J]
+
+    std::vector<std::string> problems() const;
+    // Throws std::invalid_argument if a body is not there, is no block, or is a deformable unit.
+    void checkBodies(const SceneContents&) const;
+
+    // Adds the forces of all contacts to those of the present step, and counts their energies.
+    void act(SceneContents&);
+    // Elastic energy of all contacts in the last step [J].
+    double elastic(const SceneContents&);
+    // Bound of the largest eigenvalue of stiffness over mass that contacts bring, now and later [1/s²].
+    double largestEigenvalue(const SceneContents&, bool anew);
+    // Of the damping of all contacts of a block: its largest ratio to the critical one [-].
+    double largestDampingRatio() const;
+    int touching() const; // number of pairs that pressed on each other in the last step
+
+    // In saved files and checkpoints: for every pair the two ids, the separating axis, the state of friction and
+    // the damping of the last step.
+    std::vector<double> memory();
+    void setMemory(const std::vector<double>&);
+
+protected:
+    // Force on the second body of a pair in the last step [N], global axes; zero if they do not touch.
+    Vector3r forceOf(int id1, int id2) const;
+
+private:
+    struct Pair {
+        int one, other;
+        int axis;
+        FrictionState friction;
+        // Of damping in the last step, in the axes of the one body: force [N] on the other body and moment [N m] about
+        // the centre of the one.
+        double dashpot[6];
+    };
+    struct Effect { // of a pair in the present step, global axes
+        bool touches;
+        Vector3r force;      // on the other body [N]
+        Vector3r torques[2]; // on the one and on the other body, about their centres [N m]
+        double lost, damped;
+    };
+    struct Placed { // a body when the pairs were last looked for
+        Vector3r position;
+        double orientation[4];
+    };
+    std::vector<int> idsOf(const SceneContents&) const;
+    void prepare(const SceneContents&);
+    bool moved(const SceneContents&) const;
+    void findPairs(const SceneContents&);
+    RelativePose poseOf(const SceneContents&, const Pair&) const;
+    double massAlong(const SceneContents&, const Pair&, const Vector3r& point, const Vector3r& normal) const;
+    void actOn(const SceneContents&, double dampingRatio, OverlapFinder&, Pair&, Effect&) const;
+
+    static constexpr int piece = 16; // pairs that a thread takes at a time
+
+    std::vector<ContactBlock> blocks_; // of a body, by its id; without faces where it is none of `ids_`
+    std::vector<int> ids_;             // of all blocks that can touch
+    std::vector<Matrix3r> turns_;      // from the axes of a body to the global ones, by its id
+    std::vector<Pair> pairs_;
+    std::vector<Effect> effects_; // of `pairs_`
+    std::vector<OverlapFinder> finders_;
+    std::vector<Placed> placed_;              // of `ids_`
+    std::vector<std::pair<int, int>> joined_; // bodies that have a joint, sorted
+    double usedSkin_ = 0;
+    double bound_ = 0, boundStiffness_ = -1, boundRatio_ = -1; // largestEigenvalue(), and what it was found for
+    long boundRevision_ = -1;
+    bool stale_ = true;  // whether the pairs must be looked for
+    long revision_ = -1; // SceneContents::revision() of all that
+};
+
+} // namespace masonry
