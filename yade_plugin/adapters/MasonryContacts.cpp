@@ -10,6 +10,7 @@ namespace masonry {
 void MasonryContacts::action() {
     const EngineTurn turn(*scene, *this);
     act(turn.store());
+    handOver(turn.store());
     turn.end();
 }
 

@@ -40,6 +40,22 @@ public:
               number("m", "By which the boxes of the search are larger than their blocks; 0: a tenth of the thinnest "
                           "block that moves. It changes the time of a step, and no result")
                   .atLeast(0));
+        visit("takesJoints", &C::takesJoints,
+              described("Whether joints are handed over to contact: those whose bond is gone at every point and whose "
+                        "blocks have slid by 2 % of the joint or turned by 1° against each other, and those that are "
+                        "open by 2 % of their size everywhere. Blocks that have kept their joints and their places are "
+                        "then left out of the search"));
+        visit("handing", &C::handing,
+              number("J", "Elastic energy that joints got so far when they were handed over: an input of the energy "
+                          "balance"),
+              ReadOnly);
+        visit("handed", &C::handed, number("", "Number of joints that were handed over so far"), ReadOnly);
+        visit("awake", computed<Contacts, std::vector<int>>(&C::awake, &C::setAwake),
+              described("Ids of the blocks that are looked for, where joints are handed over"), Hidden);
+        visit("changes", computed<Contacts, std::vector<double>>(&C::changes, &C::setChanges),
+              described("What joints that were handed over in the last step did to their bodies, less what their "
+                        "contacts do"),
+              Hidden);
         visit("bodies", &C::bodies, described("Ids of the blocks; empty: all blocks of the scene"), Given);
         visit("begun", &C::begun, described("Whether there was a step"), Hidden);
         visit("given", &C::given,

@@ -22,7 +22,11 @@ namespace {
 
 // Elastic energy [J] that joints got so far when bricks split and when joints were refined.
 double givenByChanges(const SceneStore& store) {
-    return (store.integrator ? store.integrator->bricks.energy : 0) + (store.loop ? store.loop->refiningEnergy : 0);
+    double all =
+        (store.integrator ? store.integrator->bricks.energy : 0) + (store.loop ? store.loop->refiningEnergy : 0);
+    for (const auto* contacts : store.allContacts)
+        all += contacts->handing;
+    return all;
 }
 
 // Work of tightening, energy stored and energy dissipated in the ties and springs [J].
@@ -275,7 +279,10 @@ py::dict MasonryEnergy::balance() {
     all["external"] = work;
     all["gravity"] = falls;
     all["refining"] = store.loop ? store.loop->refiningEnergy : 0;
-    all["splitting"] = given - (store.loop ? store.loop->refiningEnergy : 0);
+    double handing = 0;
+    for (const auto* contacts : store.allContacts)
+        handing += contacts->handing;
+    all["splitting"] = given - handing - (store.loop ? store.loop->refiningEnergy : 0);
     all["kinetic"] = moving;
     all["damping"] = drag;
     all["elastic_units"] = inUnits;
@@ -290,6 +297,7 @@ py::dict MasonryEnergy::balance() {
         all["dissipated_connectors"] = lostInConnectors;
     }
     if (!store.allContacts.empty()) {
+        all["handing"] = handing;
         all["elastic_contacts"] = inContacts[0];
         all["friction_contacts"] = inContacts[1];
         all["damping_contacts"] = inContacts[2];

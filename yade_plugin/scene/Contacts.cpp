@@ -2,6 +2,7 @@
 #include "Contacts.hpp"
 #include "Blocks.hpp"
 #include "BodyCheck.hpp"
+#include "Resultant.hpp"
 #include "common/Parallel.hpp"
 #include "contact/ContactStep.hpp"
 #include <Eigen/Geometry>
@@ -47,6 +48,10 @@ void Contacts::checkBodies(const SceneContents& contents) const {
                                     " Pa/m must be given, above 0");
     if (!(friction >= 0))
         throw std::invalid_argument("MasonryContacts.friction " + text(friction) + " must be given, at least 0");
+    if (takesJoints && !contents.loop && !contents.joints.empty())
+        throw std::invalid_argument(
+            "MasonryContacts.takesJoints needs MasonryJointLoop: the functors go on with joints "
+            "that were handed over");
     for (int id : idsOf(contents)) {
         const auto& body = bodyAt(contents.scene(), id, "MasonryContacts: body");
         const auto name = "MasonryContacts: body " + std::to_string(id);
@@ -86,7 +91,8 @@ void Contacts::prepare(const SceneContents& contents) {
     usedSkin_ = skin > 0 ? skin : thinnest < HUGE_VAL ? 0.1 * thinnest : 0.01;
     joined_.clear();
     for (const auto& joint : contents.joints)
-        joined_.emplace_back(std::minmax(joint.interaction->id1, joint.interaction->id2));
+        if (!joint.geom->reference().handed)
+            joined_.emplace_back(std::minmax(joint.interaction->id1, joint.interaction->id2));
     std::sort(joined_.begin(), joined_.end());
     stale_ = true;
     revision_ = contents.revision();
@@ -132,7 +138,7 @@ void Contacts::findPairs(const SceneContents& contents) {
             box.high[d] = all.position[d][std::size_t(id)] + high + 0.5 * usedSkin_;
         }
         boxes.push_back(box);
-        awake.push_back(!isHeld(contents, id));
+        awake.push_back(isAwake(contents, id));
         Placed placed{columnOf(all.position, id), {}};
         for (int d = 0; d < 4; ++d)
             placed.orientation[d] = all.orientation[d][std::size_t(id)];
@@ -150,7 +156,7 @@ void Contacts::findPairs(const SceneContents& contents) {
             lostInFriction += endFriction((known++)->friction);
         const bool same = known != pairs_.end() && known->one == ids.first && known->other == ids.second;
         if (std::binary_search(joined_.begin(), joined_.end(), ids)) continue;
-        found.push_back(same ? *known++ : Pair{ids.first, ids.second, 0, {}, {}});
+        found.push_back(same ? *known++ : Pair{ids.first, ids.second, 0, {}, {}, {}});
     }
     for (; known != pairs_.end(); ++known)
         lostInFriction += endFriction(known->friction);
@@ -164,7 +170,8 @@ RelativePose Contacts::poseOf(const SceneContents& contents, const Pair& pair) c
     const Matrix3r back = turns_[std::size_t(pair.one)].transpose();
     const auto& position = contents.bodies.position;
     return {back * turns_[std::size_t(pair.other)],
-            back * (columnOf(position, pair.other) - columnOf(position, pair.one))};
+            back * (columnOf(position, pair.other) - columnOf(position, pair.one)) +
+                Eigen::Map<const Vector3r>(pair.gap)};
 }
 
 // The mass with which the two bodies of a pair meet at a point along a normal [kg]: the inverse of how fast the point
@@ -194,7 +201,15 @@ void Contacts::actOn(const SceneContents& contents, double dampingRatio, Overlap
     effect.touches =
         finder.find(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], pose, pair.axis, overlap);
     effect.damped = 0;
+    const Vector3r gap(pair.gap[0], pair.gap[1], pair.gap[2]);
     if (!effect.touches) {
+        if (!gap.isZero(0)) { // once the blocks are apart as they stand, nothing is left of the joint
+            Overlap without;
+            const RelativePose stands{pose.turn, pose.place - gap};
+            if (!finder.find(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], stands, pair.axis,
+                             without))
+                std::fill(std::begin(pair.gap), std::end(pair.gap), 0.0);
+        }
         effect.force.setZero();
         effect.torques[0].setZero();
         effect.torques[1].setZero();
@@ -244,21 +259,29 @@ void Contacts::actOn(const SceneContents& contents, double dampingRatio, Overlap
         moment += overlap.centre.cross(step.force) + step.moment * overlap.normal;
     }
     effect.force = turn * force;
-    effect.torques[0] = -(turn * moment);
+    effect.torques[0] = turn * (gap.cross(force) - moment);
     effect.torques[1] = turn * (moment - pose.place.cross(force));
 }
 
-void Contacts::act(SceneContents& contents) {
-    prepare(contents);
-    auto& all = contents.bodies;
+void Contacts::turnBlocks(const SceneContents& contents) {
+    const auto& all = contents.bodies;
     for (int id : ids_) {
-        if (!contents.loop) all.notice(id); // that engine has looked whether scripts have moved bodies
         const auto b = std::size_t(id);
         turns_[b] = Eigen::Quaterniond(all.orientation[0][b], all.orientation[1][b], all.orientation[2][b],
                                        all.orientation[3][b])
                         .toRotationMatrix();
     }
+}
+
+void Contacts::act(SceneContents& contents) {
+    prepare(contents);
+    auto& all = contents.bodies;
+    for (int id : ids_)
+        if (!contents.loop) all.notice(id); // that engine has looked whether scripts have moved bodies
+    turnBlocks(contents);
+    if (takesJoints && contents.scene().iter % HandOver::every == 0) wake(contents);
     if (stale_ || moved(contents)) findPairs(contents);
+    countChanges(contents);
     const double ratio = dampingRatio(restitution);
     const int count = int(pairs_.size());
     Parallel::instance().overPieces((count + piece - 1) / piece, 1, [&](int first, int beyond) {
@@ -279,6 +302,181 @@ void Contacts::act(SceneContents& contents) {
     }
     if (!begun) given = elastic(contents); // blocks that a script has put into each other
     begun = true;
+}
+
+// ---- joints that are handed over --------------------------------------------------------------------------------
+
+// Whether a body may come near blocks that it has no joint with. Where no joints are handed over, all may that can
+// move.
+bool Contacts::isAwake(const SceneContents& contents, int body) const {
+    return !isHeld(contents, body) && (!takesJoints || awake_.count(body));
+}
+
+// A body is awake from when one of its joints is handed over, or if it has none, or when it has moved from its
+// reference place by half of the skin. Where it overlaps a block then that it has no joint with, the gap of the pair is
+// as wide: neighbours that share an edge only are pressed a little into each other by the stress of the joints around.
+void Contacts::wake(const SceneContents& contents) {
+    std::set<int> jointed, found;
+    for (const auto& joint : contents.joints) {
+        const auto& r = joint.geom->reference();
+        for (const auto& side : r.sides)
+            (r.handed ? found : jointed).insert(side.body);
+    }
+    for (int id : ids_) {
+        if (awake_.count(id) || isHeld(contents, id)) continue;
+        const auto& s = contents.bodies.state(id);
+        const double way = (columnOf(contents.bodies.position, id) - s.refPos).norm();
+        const double turn = (turns_[std::size_t(id)] - s.refOri.toRotationMatrix()).norm();
+        if (!jointed.count(id) || way + turn * blocks_[std::size_t(id)].radius > 0.5 * usedSkin_) found.insert(id);
+    }
+    const auto before = awake_.size();
+    awake_.insert(found.begin(), found.end());
+    if (awake_.size() == before) return;
+    std::vector<std::pair<int, int>> known;
+    for (const auto& pair : pairs_)
+        known.emplace_back(pair.one, pair.other);
+    findPairs(contents);
+    for (auto& pair : pairs_)
+        if (begun && !std::binary_search(known.begin(), known.end(), std::pair(pair.one, pair.other)))
+            settle(contents, pair, Vector3r::Zero(), Vector3r::Zero());
+}
+
+Contacts::Pair* Contacts::pairOf(int one, int other) {
+    for (auto& pair : pairs_)
+        if (std::minmax(pair.one, pair.other) == std::minmax(one, other)) return &pair;
+    return nullptr;
+}
+
+// Sets the gap of a pair so that its elastic force along a normal, which points from the one to the other body, is that
+// of `onOther` [N], and gives its friction what the limit allows of the tangential part; both in global axes. Without a
+// normal the gap goes along the present force, and the blocks just touch. Returns the elastic energy of the pair [J].
+double Contacts::settle(const SceneContents& contents, Pair& pair, const Vector3r& normal, const Vector3r& onOther) {
+    auto& finder = finders_.front();
+    const auto &one = blocks_[std::size_t(pair.one)], &other = blocks_[std::size_t(pair.other)];
+    const Matrix3r back = turns_[std::size_t(pair.one)].transpose();
+    std::fill(std::begin(pair.gap), std::end(pair.gap), 0.0);
+    pair.friction = FrictionState{};
+    const RelativePose stands = poseOf(contents, pair);
+    Overlap overlap;
+    Vector3r axis = back * normal;
+    const double wanted = std::max(0.0, onOther.dot(normal));
+    const auto pressAt = [&](double gap) {
+        const RelativePose pose{stands.turn, stands.place + gap * axis};
+        return finder.find(one, other, pose, pair.axis, overlap) ? normalStiffness * overlap.force.norm() : 0.0;
+    };
+    const double present = pressAt(0);
+    if (normal.isZero(0)) {
+        if (present == 0) return 0;
+        axis = overlap.normal;
+    }
+    // The force falls as the gap grows: two gaps that enclose the one that is wanted, then the middle between them.
+    const double size = std::min(one.thickness, other.thickness);
+    double low = 0, high = 0;
+    if (present > wanted)
+        for (high = 1e-6 * size; high < size && pressAt(high) > wanted; high *= 2)
+            low = high;
+    else if (present < wanted)
+        for (low = -1e-6 * size; - low < size && pressAt(low) < wanted; low *= 2)
+            high = low;
+    for (int n = 0; n < 60 && low < high; ++n) {
+        const double middle = 0.5 * (low + high);
+        (pressAt(middle) > wanted ? low : high) = middle;
+    }
+    const Vector3r gap = high * axis;
+    for (int d = 0; d < 3; ++d)
+        pair.gap[d] = gap[d];
+    const double press = pressAt(high);
+    if (press == 0) return 0;
+    const RelativePose pose = poseOf(contents, pair);
+    const double energy = normalStiffness * finder.potential(one, other, pose);
+    if (!(overlap.area > 0)) return energy;
+    Vector3r shear = back * onOther;
+    shear -= shear.dot(overlap.normal) * overlap.normal;
+    const double limit = friction * press;
+    if (shear.norm() > limit) shear *= limit / shear.norm();
+    auto& s = pair.friction;
+    s.stiffness = tangentialRatio * normalStiffness * overlap.area;
+    for (int d = 0; d < 3; ++d) {
+        s.shear[d] = shear[d];
+        s.normal[d] = overlap.normal[d];
+        s.place[d] = pose.place[d];
+    }
+    Eigen::Map<Matrix3r>(s.turn) = pose.turn;
+    return energy + elasticEnergyOf(s);
+}
+
+// The force of a joint goes on as that of a contact: along the normal it is the same, and along the face it is cut to
+// friction. What remains are moments, and what is not the same counts as given: the difference of the elastic energies
+// here, and the work of the difference of both forces in the half step that follows (countChanges).
+void Contacts::handOver(SceneStore& store) {
+    if (!takesJoints || store.scene().iter % HandOver::every != 0) return;
+    const auto due = due_.due(store);
+    if (due.empty()) return;
+    struct Joint {
+        int body1, body2;
+        Vector3r normal, force; // from body 1 to body 2; on body 1 [N]
+    };
+    std::vector<Joint> all;
+    for (const auto& joint : due) {
+        const auto& r = joint.geom->reference();
+        const int body1 = r.sides[0].body, body2 = r.sides[1].body;
+        const auto at1 = resultantOf(store.scene(), *joint.interaction, columnOf(store.bodies.position, body1));
+        const auto at2 = resultantOf(store.scene(), *joint.interaction, columnOf(store.bodies.position, body2));
+        const Vector3r normal = turns_[std::size_t(body1)] * (r.sides[0].orientation.conjugate() * r.normal) +
+                                turns_[std::size_t(body2)] * (r.sides[1].orientation.conjugate() * r.normal);
+        all.push_back({body1, body2, normal.normalized(), at1.force});
+        changes_.push_back({body1, at1.force, at1.moment});
+        changes_.push_back({body2, -at1.force, -at2.moment});
+        handing -= HandOver::release(joint);
+        for (int body : {body1, body2})
+            awake_.insert(body);
+        ++handed;
+    }
+    store.jointsHanded();
+    prepare(store);
+    turnBlocks(store);
+    findPairs(store);
+    for (const auto& joint : all) {
+        auto* pair = pairOf(joint.body1, joint.body2);
+        if (!pair) continue;
+        const double sign = pair->one == joint.body1 ? 1 : -1;
+        handing += settle(store, *pair, sign * joint.normal, -sign * joint.force);
+        const auto pose = poseOf(store, *pair);
+        Overlap overlap;
+        if (!finders_.front().find(blocks_[std::size_t(pair->one)], blocks_[std::size_t(pair->other)], pose, pair->axis,
+                                   overlap))
+            continue;
+        const Matrix3r& turn = turns_[std::size_t(pair->one)];
+        const Vector3r shear(pair->friction.shear[0], pair->friction.shear[1], pair->friction.shear[2]);
+        const Vector3r gap(pair->gap[0], pair->gap[1], pair->gap[2]);
+        const Vector3r force = normalStiffness * overlap.force + shear;
+        const Vector3r moment = normalStiffness * overlap.moment + overlap.centre.cross(shear);
+        changes_.push_back({pair->one, turn * force, turn * (moment - gap.cross(force))});
+        changes_.push_back({pair->other, -(turn * force), -(turn * (moment - pose.place.cross(force)))});
+    }
+}
+
+void Contacts::countChanges(const SceneContents& contents) {
+    const double half = 0.5 * contents.scene().dt;
+    for (const auto& change : changes_)
+        handing += half * (change.force.dot(columnOf(contents.bodies.velocity, change.body)) +
+                           change.torque.dot(columnOf(contents.bodies.velocity + 3, change.body)));
+    changes_.clear();
+}
+
+std::vector<double> Contacts::changes() {
+    std::vector<double> all;
+    for (const auto& [body, force, torque] : changes_)
+        all.insert(all.end(), {double(body), force[0], force[1], force[2], torque[0], torque[1], torque[2]});
+    return all;
+}
+
+void Contacts::setChanges(const std::vector<double>& all) {
+    if (all.size() % 7 != 0) throw std::invalid_argument("MasonryContacts.changes must have 7 numbers a body");
+    changes_.clear();
+    for (std::size_t at = 0; at < all.size(); at += 7)
+        changes_.push_back(
+            {int(all[at]), {all[at + 1], all[at + 2], all[at + 3]}, {all[at + 4], all[at + 5], all[at + 6]}});
 }
 
 double Contacts::elastic(const SceneContents& contents) {
@@ -332,6 +530,7 @@ std::vector<double> Contacts::memory() {
     std::vector<double> all;
     for (const auto& pair : pairs_) {
         all.insert(all.end(), {double(pair.one), double(pair.other), double(pair.axis)});
+        all.insert(all.end(), std::begin(pair.gap), std::end(pair.gap));
         const auto* first = reinterpret_cast<const double*>(&pair.friction);
         all.insert(all.end(), first, first + FrictionState::numbers);
         all.insert(all.end(), std::begin(pair.dashpot), std::end(pair.dashpot));
@@ -340,14 +539,15 @@ std::vector<double> Contacts::memory() {
 }
 
 void Contacts::setMemory(const std::vector<double>& all) {
-    constexpr std::size_t width = 3 + FrictionState::numbers + 6;
+    constexpr std::size_t width = 6 + FrictionState::numbers + 6;
     if (all.size() % width != 0)
         throw std::invalid_argument("MasonryContacts.memory must have " + std::to_string(width) + " numbers a pair");
     pairs_.clear();
     for (std::size_t at = 0; at < all.size(); at += width) {
-        Pair pair{int(all[at]), int(all[at + 1]), int(all[at + 2]), {}, {}};
-        std::copy_n(&all[at + 3], FrictionState::numbers, reinterpret_cast<double*>(&pair.friction));
-        std::copy_n(&all[at + 3 + FrictionState::numbers], 6, pair.dashpot);
+        Pair pair{int(all[at]), int(all[at + 1]), int(all[at + 2]), {}, {}, {}};
+        std::copy_n(&all[at + 3], 3, pair.gap);
+        std::copy_n(&all[at + 6], FrictionState::numbers, reinterpret_cast<double*>(&pair.friction));
+        std::copy_n(&all[at + 6 + FrictionState::numbers], 6, pair.dashpot);
         pairs_.push_back(pair);
     }
     effects_.clear();

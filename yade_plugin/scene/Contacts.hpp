@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Contacts of rigid blocks that no joint connects, wherever they meet. An engine derives from it.
 #pragma once
-#include "SceneContents.hpp"
+#include "HandOver.hpp"
 #include "common/Property.hpp"
 #include "contact/BroadPhase.hpp"
 #include "contact/ContactDamping.hpp"
 #include "contact/ContactFriction.hpp"
+#include <set>
 
 namespace masonry {
 
@@ -23,8 +24,11 @@ public:
     double skin = 0;              // by which boxes are larger than their blocks [m]; 0: chosen
     std::vector<int> bodies;      // ids of the blocks; empty: all rigid blocks
 
+    bool takesJoints = false;  // whether joints without bond whose blocks have moved far are handed over to contact
     bool begun = false;        // whether there was a step
     double given = 0;          // elastic energy that contacts had in the first step [J]
+    double handing = 0;        // elastic energy that joints got so far when they were handed over [J]
+    int handed = 0;            // how many joints were handed over so far
     double lostInFriction = 0; // so far [J]
     double lostInDamping = 0;  // so far [J]
 
@@ -34,6 +38,8 @@ public:
 
     // Adds the forces of all contacts to those of the present step, and counts their energies.
     void act(SceneContents&);
+    // Hands over the joints that are due, when all forces of the step are there.
+    void handOver(SceneStore&);
     // Elastic energy of all contacts in the last step [J].
     double elastic(const SceneContents&);
     // Bound of the largest eigenvalue of stiffness over mass that contacts bring, now and later [1/s²].
@@ -42,10 +48,19 @@ public:
     double largestDampingRatio() const;
     int touching() const; // number of pairs that pressed on each other in the last step
 
-    // In saved files and checkpoints: for every pair the two ids, the separating axis, the state of friction and
-    // the damping of the last step.
+    // In saved files and checkpoints: for every pair the two ids, the separating axis, the gap, the state of friction
+    // and the damping of the last step.
     std::vector<double> memory();
     void setMemory(const std::vector<double>&);
+    std::vector<int> awake() { return {awake_.begin(), awake_.end()}; }
+    void setAwake(const std::vector<int>& ids) {
+        awake_ = {ids.begin(), ids.end()};
+        stale_ = true;
+    }
+    // What joints that were handed over in the last step did to their bodies, less what their contacts do: for each
+    // the id, force [N] and torque [N m].
+    std::vector<double> changes();
+    void setChanges(const std::vector<double>&);
 
 protected:
     // Force on the second body of a pair in the last step [N], global axes; zero if they do not touch.
@@ -55,6 +70,9 @@ private:
     struct Pair {
         int one, other;
         int axis;
+        // By which the other body stands farther away than it does, in the axes of the one [m]: what crushing and
+        // dilatancy left of a joint that was handed over, so that its force goes on.
+        double gap[3];
         FrictionState friction;
         // Of damping in the last step, in the axes of the one body: force [N] on the other body and moment [N m] about
         // the centre of the one.
@@ -70,7 +88,17 @@ private:
         Vector3r position;
         double orientation[4];
     };
+    struct Change { // of what acts on a body
+        int body;
+        Vector3r force, torque; // [N], [N m]
+    };
     std::vector<int> idsOf(const SceneContents&) const;
+    void turnBlocks(const SceneContents&);
+    bool isAwake(const SceneContents&, int body) const;
+    void wake(const SceneContents&);
+    void countChanges(const SceneContents&);
+    Pair* pairOf(int one, int other);
+    double settle(const SceneContents&, Pair&, const Vector3r& normal, const Vector3r& onOther);
     void prepare(const SceneContents&);
     bool moved(const SceneContents&) const;
     void findPairs(const SceneContents&);
@@ -88,6 +116,9 @@ private:
     std::vector<OverlapFinder> finders_;
     std::vector<Placed> placed_;              // of `ids_`
     std::vector<std::pair<int, int>> joined_; // bodies that have a joint, sorted
+    std::set<int> awake_;                     // where joints are handed over: bodies that may come near others
+    std::vector<Change> changes_;
+    HandOver due_;
     double usedSkin_ = 0;
     double bound_ = 0, boundStiffness_ = -1, boundRatio_ = -1; // largestEigenvalue(), and what it was found for
     long boundRevision_ = -1;

@@ -71,8 +71,7 @@ bool HandOver::isDue(const SceneStore& store, const JointView& joint, const Size
         return Quaternionr(bodies.orientation[0][body], bodies.orientation[1][body], bodies.orientation[2][body],
                            bodies.orientation[3][body]);
     };
-    const double w =
-        std::abs((turnOf(r.sides[0].body).conjugate() * turnOf(r.sides[1].body) * size.back).w());
+    const double w = std::abs((turnOf(r.sides[0].body).conjugate() * turnOf(r.sides[1].body) * size.back).w());
     return w < std::cos(0.5 * turn);
 }
 

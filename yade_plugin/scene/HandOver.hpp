@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Which joints are handed over to contact, and what they leave behind. A joint is for small displacements: it acts at
-// points of the reference state. Where its bond is gone and its blocks have moved far against each other, the contact of
-// the two blocks takes its place (scene/Contacts), and the joint has no forces any more.
+// points of the reference state. Where its bond is gone and its blocks have moved far against each other, the contact
+// of the two blocks takes its place (scene/Contacts), and the joint has no forces any more.
 #pragma once
 #include "SceneStore.hpp"
 
@@ -12,7 +12,7 @@ public:
     static constexpr int every = 10; // steps between two looks
 
     // How far the blocks of a joint without bond may move before it is handed over.
-    double slide = 0.02; // mean slide over the size of the joint in that direction [-]
+    double slide = 0.02;                // mean slide over the size of the joint in that direction [-]
     double turn = 0.017453292519943295; // rotation of both blocks against each other since the reference state [rad]
     double opening = 0.02; // smallest opening over the larger size of the joint [-]: beyond it a bond does not count
 

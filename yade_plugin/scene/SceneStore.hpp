@@ -28,6 +28,8 @@ public:
     void update(Look look = Look::AtAll);
     // Reads the joints again of which some were given other points, without a change of stiffness.
     void jointsRefined();
+    // The same of joints that were handed over to contact, whose stiffness stays in the time step.
+    void jointsHanded() { jointsRefined(); }
     // masonry.connect() calls this when all blocks have their joints. Blocks that are added later are then reported by
     // unjoinedBlocks().
     void connected();
