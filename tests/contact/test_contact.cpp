@@ -102,10 +102,10 @@ Eigen::Matrix<double, 6, 1> wrench(const Overlap& o) {
     return both;
 }
 
-RelativePose moved(const RelativePose& pose, const Vector& way, const Vector& turn) {
+RelativePose moved(const RelativePose& pose, const Vector& shift, const Vector& turn) {
     const double angle = turn.norm();
     const Matrix r = angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Matrix(Matrix::Identity());
-    return {r * pose.turn, r * pose.place + way};
+    return {r * pose.turn, r * pose.place + shift};
 }
 
 // Derivative of a function at 0, to the fourth order.
@@ -446,8 +446,8 @@ TEST_CASE("a small motion changes the force by no more than the stated stiffness
         const double step = 1e-3 * depth;
         auto before = pair.at(pose);
         for (int i = 0; i < 5; ++i) {
-            const Vector way = step * inCube(dice).normalized();
-            pose.place += way;
+            const Vector shift = step * inCube(dice).normalized();
+            pose.place += shift;
             const auto after = pair.at(pose);
             // The surface inside the other block changes during the motion, by less than a strip along it.
             const double touched = std::max(before.touched, after.touched) * 1.02 + 20 * step * pair.size();
@@ -551,13 +551,13 @@ struct Slider {
         last = advanceFriction(state, o, pose, normalForce, tangential, friction);
         lost += last.lost;
     }
-    void go(const Vector& way, double turn, double forceFactor = 1) {
+    void go(const Vector& shift, double turn, double forceFactor = 1) {
         const auto before = last;
         pose.turn = Eigen::AngleAxisd(turn, Vector::UnitZ()) * pose.turn;
-        pose.place += way;
+        pose.place += shift;
         act(forceFactor);
         // What the body that is held gets: the opposite of the work of friction on it.
-        const Vector slip = way + turn * Vector::UnitZ().cross(middle - pose.place);
+        const Vector slip = shift + turn * Vector::UnitZ().cross(middle - pose.place);
         work -= 0.5 * (before.force + last.force).dot(slip) + 0.5 * (before.moment + last.moment) * turn;
     }
 };
@@ -610,8 +610,8 @@ TEST_CASE("friction takes energy in every step of any motion, and all of what go
         for (int i = 0; i < 500; ++i) {
             const double lostBefore = s.lost, workBefore = s.work;
             const double factor = n % 2 ? 1 : between(dice, 0, 1);
-            const Vector way = 1e-6 * inCube(dice).cwiseProduct(Vector(1, 1, n % 2 ? 0 : 1));
-            s.go(way, 1e-5 * between(dice, -1, 1), factor);
+            const Vector shift = 1e-6 * inCube(dice).cwiseProduct(Vector(1, 1, n % 2 ? 0 : 1));
+            s.go(shift, 1e-5 * between(dice, -1, 1), factor);
             CHECK(s.lost >= lostBefore);
             if (n % 2) { // where the normal force stays, the balance is exact to the second order of the motion
                 const double unaccounted = s.work - workBefore - (s.lost - lostBefore) - (s.last.stored - previous);

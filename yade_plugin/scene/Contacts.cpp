@@ -105,14 +105,14 @@ bool Contacts::moved(const SceneContents& contents) const {
     for (std::size_t i = 0; i < ids_.size(); ++i) {
         const int id = ids_[i];
         const auto& then = placed_[i];
-        const double way = (columnOf(all.position, id) - then.position).norm();
+        const double shift = (columnOf(all.position, id) - then.position).norm();
         double same = 0, opposite = 0;
         for (int d = 0; d < 4; ++d) {
             same += std::pow(all.orientation[d][std::size_t(id)] - then.orientation[d], 2);
             opposite += std::pow(all.orientation[d][std::size_t(id)] + then.orientation[d], 2);
         }
         const double turn = 2.3 * std::sqrt(std::min(same, opposite));
-        if (!(way + turn * blocks_[std::size_t(id)].radius <= 0.5 * usedSkin_)) return true;
+        if (!(shift + turn * blocks_[std::size_t(id)].radius <= 0.5 * usedSkin_)) return true;
     }
     return false;
 }
