@@ -117,6 +117,11 @@ class Description:
             ]
         return []
 
+    def connectors(self):
+        """Ties, springs and fibre layers by name, which ``--set`` and ``--field`` can change."""
+        own = [one for one in self.ties if not one.overlay]
+        return {one.name: one for one in (*own, *self.springs, *self.overlays)}
+
     def connectedBricks(self):
         """Indices of the bricks at the ends of ties and springs."""
         ends = [end for one in (*self.ties, *self.springs) for end in one.ends]

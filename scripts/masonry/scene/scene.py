@@ -347,12 +347,13 @@ class Scene:
     @functools.cached_property
     def masonry(self) -> Masonry:
         """The materials for the options of this run: :class:`masonry.scene.materials.Masonry`. Raises Refused."""
-        masonry = self.description.materials.variant(self.args)
+        connectors = self.description.connectors()
+        masonry = self.description.materials.variant(self.args, [*connectors])
         problems = self.description.problems(masonry)
         if self.args.refine and self.description.functors:
             problems.append(f"--refine {self.args.refine}: the functors keep the points of joints; leave functors=False")  # fmt: skip
         problems += self._wrongRecord()
-        options.check(self.args, masonry, problems, self.description.plane)
+        options.check(self.args, masonry, problems, self.description.plane, connectors)
         self.assumed = masonry.assumed()
         return masonry
 
