@@ -359,7 +359,7 @@ class Run:
         began = time.perf_counter()
         reading = self.model.read()
         for sentence in self.model.news():
-            say(sentence)
+            say(f"note: {sentence}")
         self._readings.append([value(reading) for value in self._values])
         self._recordedTime = reading.time
         now = time.perf_counter()
