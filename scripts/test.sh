@@ -18,13 +18,14 @@ if [[ "${1:-}" == quick ]]; then
     tests=(tests/common tests/law tests/motion tests/blocks tests/contact tests/files tests/gates tests/host -m "not slow" "$@")
     workers=$(nproc)
 else
-    # For gates, the site of the documentation, fuzz and sanitizers, studies, YADE's 3-D view, the page in 3-D, and notebooks. ParaView is
-    # not among them: it is 77 MB, and its thirteen tests take two of fourteen minutes; where it is installed as
+    # For gates, sanitizers, studies, YADE's 3-D view, the page in 3-D, and notebooks; for all tests also the site of the documentation
+    # and fuzz. ParaView is not among them: it is 77 MB, and its thirteen tests take two of fourteen minutes; where it is installed as
     # scripts/README.md says under "Pictures", they run. Nor is Chromium, which is larger: apt-get install
     # --no-install-recommends chromium lets the page's tests in it run.
-    bash scripts/setup.sh --tests python3-pytest-xdist clang-format black python3-pyflakes mypy clang libclang-rt-dev \
-        python3-sphinx python3-myst-parser furo libjs-mathjax python3-yaml slurm-wlm munge xvfb xauth libjs-three \
-        jupyter-nbconvert python3-ipykernel python3-pandas
+    longest=()
+    [[ "${1:-}" == "" ]] || longest=(clang libclang-rt-dev python3-sphinx python3-myst-parser furo libjs-mathjax)
+    bash scripts/setup.sh --tests python3-pytest-xdist clang-format black python3-pyflakes mypy python3-yaml slurm-wlm munge \
+        xvfb xauth libjs-three jupyter-nbconvert python3-ipykernel python3-pandas "${longest[@]}"
     workers=$(nproc)
     case "${1:-}" in
         "") tests=(tests --ignore tests/sanitizers -m "not long") ;;

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What every part of the package shares: gravity, how a run can end before its time, and what is said on the terminal."""
 
+import collections
 import contextlib
 import gc
 import re
 import sys
-from typing import Iterator
+from typing import Callable, Iterator
 
 GRAVITY = 9.81  # [m/s²]
 #: Units in which accelerations may be given, in m/s².
@@ -30,10 +31,36 @@ def plain(text):
     return _CONTROL.sub(lambda found: ascii(found[0])[1:-1], str(text))
 
 
-def say(text, stream=None):
-    """Print a text, as :func:`plain` writes it. A terminal that is gone or a log that is full is no reason to stop a run."""
+NOTED = ("note: ", "warning: ")  # how texts begin that a run keeps
+_pending = collections.deque(maxlen=100)  # notes since the last run ended
+_listeners = []  # of the present run
+
+
+def say(text, stream=None, noted=True):
+    """Print a text, as :func:`plain` writes it. A terminal that is gone or a log that is full is no reason to stop a run.
+
+    Notes and warnings are kept: the run that hears them writes them to run.json, also those that were said before it began.
+
+    :param noted: False: a note that is kept elsewhere
+    """
+    text = plain(text)
+    if noted and text.startswith(NOTED):
+        for listener in _listeners or [_pending.append]:
+            listener(text)
     with contextlib.suppress(OSError):
-        print(plain(text), file=stream, flush=True)
+        print(text, file=stream, flush=True)
+
+
+def listen(listener: Callable[[str], None]) -> None:
+    """From now on a function gets all notes, first those that nobody has heard. Another listener hears no more."""
+    _listeners[:] = [listener]
+    while _pending:
+        listener(_pending.popleft())
+
+
+def stopListening(listener: Callable[[str], None]) -> None:
+    """A function gets no more notes."""
+    _listeners[:] = [one for one in _listeners if one != listener]
 
 
 @contextlib.contextmanager

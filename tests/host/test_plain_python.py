@@ -243,7 +243,7 @@ def lines(run, folder):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["couplet", "arch", "wall_comp1"])
+@pytest.mark.parametrize("name", ["couplet", "arch", pytest.param("wall_comp1", marks=pytest.mark.long)])  # fmt: skip
 def test_a_scene_is_the_same_in_plain_python(tmp_path, name):
     (one, first), (two, second) = both(tmp_path, name, "--out", "out", "--quick")
     assert one.returncode == two.returncode == 0, one.stderr + two.stderr

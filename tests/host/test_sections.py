@@ -269,3 +269,59 @@ def test_sections_that_cannot_be_are_refused(tmp_path, scene, act, message):
     assert message in str(refused.value)
     wall.running.release()
     wall.finished = True
+
+
+def test_every_run_on_a_platen_records_its_base(tmp_path, scene):
+    """At rest N + weight + load = 0; in a push V is the push, and M its lever arm and what leans; both are the reaction."""
+    wall = made(tmp_path, bricks.Wall(0.66, 0.486), "--rate", "2.5")
+    wall.platen("bottom")
+    top = wall.platen("top", rotation="free", height=0.1)
+    wall.press(top, 0.3e6)
+    wall.settle()
+    pressed, weight = 0.3e6 * 0.66 * 0.102, weightAbove(wall, 0)
+    assert 1e3 * column(wall, "base_N_kN")[-1] == pytest.approx(-(pressed + weight), rel=1e-3)  # fmt: skip
+    wall.push(top, 0.1)
+    pushed = 1e3 * column(wall, "top_shear_kN")[-1]
+    assert 1e3 * column(wall, "base_V_x_kN")[-1] == pytest.approx(pushed, rel=0.008)
+    expected = pushed * 0.586 + pressed * 1e-3 * column(wall, "top_x_mm")[-1]
+    assert 1e3 * column(wall, "base_M_y_kNm")[-1] == pytest.approx(expected, rel=0.003)
+    for head, other in (("base_V_x_kN", "x"), ("base_N_kN", "z")):
+        reaction = column(wall, f"base_force_{other}_kN")[-1]
+        assert column(wall, head)[-1] == pytest.approx(reaction, rel=1e-5)
+    wall.finish()
+    recorded = dict(readRun(str(tmp_path)).get("held_and_loaded") or [])
+    assert "recorded, too" not in recorded
+
+
+def test_a_block_that_leans_has_its_moment_at_the_base(tmp_path, scene):
+    """Under a W its base carries V = a W and M = a W h / 2, and no normal force but its weight; ``run.json`` says what they are."""
+    block = made(tmp_path, bricks.stack(1, (0.4, 0.3, 0.6)), masonry=materials.dry(0.9, normalStiffness=1e11), plane=False)  # fmt: skip
+    block.platen("bottom")
+    block.settle()
+    weight = weightAbove(block, 0)
+    block.lean(0.2, towards=(0, 1, 0))
+    last = {n: 1e3 * column(block, f"base_{n}")[-1] for n in ("N_kN", "V_x_kN", "V_y_kN", "M_x_kNm", "M_y_kNm")}  # fmt: skip
+    assert last["N_kN"] == pytest.approx(-weight, rel=2e-3)
+    assert last["V_y_kN"] == pytest.approx(0.2 * weight, rel=5e-3)
+    assert last["M_x_kNm"] == pytest.approx(-0.2 * weight * 0.3, rel=5e-3)
+    assert abs(last["V_x_kN"]) < 1e-3 * weight and abs(last["M_y_kNm"]) < 1e-3 * weight
+    block.finish()
+
+
+@pytest.mark.parametrize(
+    "act, present, missing",
+    [
+        (lambda s: s.platen("bottom"), "base_N_kN", "section0_N_kN"),
+        (lambda s: (s.platen("bottom"), s.section(0)), "section0_N_kN", "base_N_kN"),
+        (lambda s: (s.platen("bottom"), s.section(0, name="base")), "base_N_kN", "base2_N_kN"),
+        (lambda s: (s.platen("bottom"), s.section(0.2, name="base")), "base2_N_kN", "base3_N_kN"),
+        (lambda s: (s.platen("bottom"), s.column("base_N", "mine", lambda: 1.0)), "base2_N_kN", "base3_N_kN"),
+        (lambda s: s.hold(0, name="foot"), "foot_force_z_kN", "base_N_kN"),
+    ],
+)  # fmt: skip
+def test_the_base_is_recorded_once(tmp_path, scene, act, present, missing):
+    stack = made(tmp_path, bricks.stack(3, (0.4, 0.3, 0.2)), masonry=materials.dry(0.6))
+    act(stack)
+    stack.begin()
+    heads = [one.head for one in stack.columns]
+    assert present in heads and missing not in heads

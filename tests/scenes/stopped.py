@@ -17,6 +17,7 @@ import sys
 
 from yade import O
 
+from masonry import basics
 from masonry.read.files import readRun
 from masonry.run import checkpoints
 from masonry.run.run import Run
@@ -271,6 +272,9 @@ def carryOut(script, *words, stop=None):
     :param stop: function of the run and the number of steps that were taken, which is called after each of them
     """
     folder, before, take = os.getcwd(), sys.argv, Run._take
+    forget = lambda text: None  # notes of scenes that were refused before
+    basics.listen(forget)
+    basics.stopListening(forget)
     taken = [0]
 
     def counted(run, steps, one):

@@ -330,7 +330,9 @@ def test_frames_have_ties_and_springs(tmp_path):
     (spring,) = scene.description.springs
     assert frame["force"][0] == pytest.approx(spring.force, rel=1e-12)
     one, other = frame["points"][frame["cells"][1]] + frame["displacement"][frame["cells"][1]]  # fmt: skip
-    after = np.linalg.norm(other - one) - tie.length  # bodies have moved on by half a step
+    after = (
+        np.linalg.norm(other - one) - tie.length
+    )  # bodies have moved on by half a step
     assert after == pytest.approx(tie.elongation, rel=0.005)
     head, _ = dataOf(str(tmp_path))
     arrays = head["arrays"]

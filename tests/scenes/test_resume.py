@@ -28,7 +28,7 @@ def here(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     "seed",
     [
-        pytest.param(SEED + n, marks=[pytest.mark.long] if n >= SCRIPTS // 2 else [])
+        pytest.param(SEED + n, marks=[pytest.mark.long] if n >= SCRIPTS // 4 else [])
         for n in range(SCRIPTS)
     ],
 )

@@ -201,3 +201,58 @@ def overlay_moment(quick):
         force = np.array(s.results.column("top_shear_kN"))
         swings = force[moved > 1]  # about its mean
         return weight * depth / 2 + strength * width * depth, 1e3 * swings.mean() * height  # fmt: skip
+
+
+@case(
+    PARTS,
+    "stiffness [N/m] of a portal of beams that is fixed at its feet",
+    "slope deflection: 24 E I / h³ (6 k + 1) / (6 k + 4), k = h / L",
+    aim=0.01,
+    quick=True,
+)
+def portal(quick):
+    span, height, deep, pieces = 3.0, 2.0, 0.05, 16
+    column = bricks.Beam((0, 0, 0), height, WIDE, deep, pieces=pieces, name="frame").turned(-90, "y")  # fmt: skip
+    beam = bricks.Beam((-deep, 0, height), span + deep, WIDE, deep, pieces=61, name="frame")  # fmt: skip
+    frame = column + column.moved(dx=span) + beam
+    stones = materials.dry(0.6).withBeam(frame, young=YOUNG, density=500)
+    with sceneOf(frame, stones, gravity=0.0) as s:
+        s.hold(0, name="left")
+        s.hold(pieces, name="right")
+        pushed = s.handle(2 * pieces + 30, "pushed")
+        s.load(pushed, (10.0, 0, 0))
+        s.settle(longest=20)
+        # from the middle of the piece that is held to the axis of the beam
+        clear = height - height / pieces / 2 + deep / 2
+        k, rigidity = clear / span, YOUNG * WIDE * deep**3 / 12
+        expected = 24 * rigidity / clear**3 * (6 * k + 1) / (6 * k + 4)
+        return expected, 10.0 / s.model.moved(pushed)[0][0]
+
+
+@case(
+    PARTS,
+    "stiffness [N/m] of a hinged frame with an infill that touches it without bond, μ = 0",
+    STATICS + ": t h / 12 · k1 k2 L³ / (k1 h³ + k2 L³), infill against columns (k1) and beams (k2) over half a side each",
+    aim=0.01,
+    quick=True,
+)  # fmt: skip
+def infill(quick):
+    length, height, thick, bar, force = 2.0, 1.5, 0.2, 0.2, 1e3
+    block = lambda low, high: bricks.block((low[0], 0, low[1]), (high[0], thick, high[1]))  # fmt: skip
+    panel = block((0, 0), (length, height))
+    beams = block((0, -bar), (length, 0)) + block((0, height), (length, height + bar))
+    columns = block((-bar, 0), (0, height)) + block((length, 0), (length + bar, height))
+    with sceneOf(panel + beams + columns, rigidlike(0.0, 1e9), gravity=0.0) as s:
+        s.hold(1, name="foot")
+        for x in (0, length):
+            for z, beam in ((0, 1), (height, 2)):  # a hinge of a column and a beam
+                s.spring((x, thick / 2, z), beam, stiffness=(1e12, 0, 1e12))
+        top = s.handle(2, "top")
+        s.load(top, (force, 0, 0))
+        s.settle(longest=20)
+        found = {}
+        for one in s.model.interactions:
+            found[sum(body in s.model.ids[1:3] for body in (one.id1, one.id2))] = one.phys.normalStiffness  # fmt: skip
+        k1, k2 = found[0], found[1]
+        expected = thick * height / 12 * k1 * k2 * length**3 / (k1 * height**3 + k2 * length**3)  # fmt: skip
+        return expected, force / s.model.moved(top)[0][0]

@@ -21,6 +21,7 @@ from yade.wrapper import (
 from .. import _masonry
 from .._masonry import connected, dropFaces, gather, lumpBricks, neighbours
 from ..arguments import anything, flag, number, shown, takes
+from ..basics import say
 from .blocks import properties, refuse
 from .engines import LAWS, functorLoop
 
@@ -257,4 +258,4 @@ def _warn(pairs, joints, sizes, engines):
                     f"MasonryZones: divisions do not apply to bodies {stars[:10]}, which are no hexahedra"
                 )
     for hint in hints:
-        print("warning: " + hint)
+        say("warning: " + hint)

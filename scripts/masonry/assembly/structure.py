@@ -563,6 +563,8 @@ class Structure:
             "held": {target.name: target.freedom for target in self.held},
             "freeMass": self._freeMass,
             "limit": self.limit,
+            "newsFrom": self._newsFrom,
+            "news": {what: sorted(names) for what, names in self._news.items()},
         }
 
     def putState(self, state):
@@ -577,7 +579,8 @@ class Structure:
         self.pushing, self.grown = state["pushing"], state["grown"]
         self.goal, self.loadFactor = tuple(state["goal"]), state["loadFactor"]
         self._freeMass, self.limit = state["freeMass"], state["limit"]
-        self._newsFrom = O.iter
+        self._newsFrom = state["newsFrom"]
+        self._news = {what: set(names) for what, names in state["news"].items()}
         self.held = [targets[name] for name in state["held"]]
         for name, freedom in state["held"].items():
             targets[name].freedom = freedom

@@ -252,6 +252,7 @@ def _describe(run, scene):
         entries["nanoseconds_per_subcontact_step"] = (
             1e9 * perStep / scene.model.subcontacts
         )
+    entries["notes"] = at.notes
     entries["warnings"] = [w.removeprefix("warning: ") for w in _warnings(run, scene)]
 
 

@@ -48,6 +48,7 @@ class Place:
     atRest: str = ""  # the last state at rest, as text, for stepBack()
     places: list = field(default_factory=list)  # of masonry.assembly.motion.Motion
     answers: dict = field(default_factory=dict)  # of the stages, by their number
+    notes: list = field(default_factory=list)  # what the run said, as of run.json
     supportsMoved: bool = False  # whether a stage has moved supports
     resumed: list = field(default_factory=list)  # times at which it was taken up [s]
 
@@ -80,6 +81,19 @@ def _isAnswers(entry):
     return number.isdecimal() and all(
         isinstance(one, dict) and one.keys() == ANSWER
         for one in (found if isinstance(found, list) else [None])
+    )
+
+
+#: What a note has, and of which kind.
+NOTE = {"stage": "", "number": 0, "time_s": 0.0, "text": ""}
+
+
+def _isNote(note):
+    """Whether a note is of the form that :meth:`masonry.run.run.Run.hear` gives it."""
+    return (
+        isinstance(note, dict)
+        and note.keys() == NOTE.keys()
+        and all(alike(note[name], NOTE[name]) for name in NOTE)
     )
 
 
@@ -123,6 +137,7 @@ class Saved:
             and all(alike(seconds, 0.0) for seconds in at.seconds.values())
             and all(alike(stage, ["", 0, 0.0, 0]) for stage in at.stages)
             and all(map(_isAnswers, at.answers.items()))
+            and all(map(_isNote, at.notes))
             and alike(list(at.held.values()), None)
             and all(alike(swing, [0.0] * 3) for swing in at.swings.values())
             and all(alike(ended, ["", 0]) for ended in at.ended.values())

@@ -23,6 +23,7 @@ from .. import notebook
 from .._masonry import commit, loadScene, version
 from ..assembly import threads
 from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
+from ..basics import listen, stopListening
 from . import batch, plausible
 from .beside import Failed, Job
 from .checkpoints import NAME, saveCheckpoint
@@ -38,6 +39,7 @@ SHOW_EVERY = 0.05  # [s] of wall-clock time: what is shown on the terminal is no
 LOOK_EVERY = 0.5  # [s] of wall-clock time: within slow steps a checkpoint that is due is made no later
 #: A frame that takes longer is written beside the run [s]; the copy of the process that does it takes some milliseconds.
 SLOW_FRAME = 0.02
+MOST_NOTES = 1000  # that a run keeps
 #: Options that say where results are, and are no part of what was run.
 ASIDE = ("resume", "out", "saved")
 
@@ -121,6 +123,7 @@ class Run:
             self.at = self._saved.place()
             plausible.check(self._saved, self.at)
         self._takeSignals()
+        listen(self.hear)
         self.preset = presetOf(args, self.name)
         if self.preset:
             say(presetNote(self.preset, self.name))
@@ -173,6 +176,19 @@ class Run:
     def optionsBefore(self):
         """The options of the run that is resumed, as data."""
         return self._saved.options
+
+    def hear(self, text):
+        """Keep a note or a warning with the stage and the time in the scene in which it was said first. A run that is resumed
+        says again what it said."""
+        stages = self.at.stages
+        stage = stages[self.entered - 1][0] if 0 < self.entered <= len(stages) else ""
+        time_s = (
+            O.time if self.entered else 0.0
+        )  # before, another scene may stand in YADE
+        note = dict(stage=stage, number=self.entered, time_s=time_s, text=text)
+        known = {one["text"] for one in self.at.notes}
+        if text not in known and len(self.at.notes) < MOST_NOTES:
+            self.at.notes = [*self.at.notes, note]
 
     def note(self, kind, name, opposite=""):
         """Note what the next stage loads, as of :class:`masonry.run.place.Place`."""
@@ -343,7 +359,7 @@ class Run:
         began = time.perf_counter()
         reading = self.model.read()
         for sentence in self.model.news():
-            say(sentence)
+            say(f"note: {sentence}")
         self._readings.append([value(reading) for value in self._values])
         self._recordedTime = reading.time
         now = time.perf_counter()
@@ -519,6 +535,7 @@ class Run:
 
     def release(self):
         """Let other runs have the folder, and others the signals."""
+        stopListening(self.hear)
         if self._frame:
             self._frame.end()
         if self.results:

@@ -248,8 +248,10 @@ class Bounds:
     def _note(self, what, found, lines, endless, bound):
         """Keep what :meth:`_found` returned."""
         self.entries[what].update(found)
-        for line in lines:
-            say(line)
+        for (
+            line
+        ) in lines:  # the entry has them; when they are found depends on the machine
+            say(line, noted=False)
         if endless:
             self.endless.add(what)
         if bound:

@@ -16,7 +16,7 @@ from ..bricks import Block, Bricks
 from .supports import POINT
 from .targets import Target, brick
 from .targets import part as partName
-from .ties import MOST, End, Overlay, Spring, Tie
+from .ties import MOST, OF_OVERLAY, OF_TIE, End, Overlay, Spring, Tie
 from .words import describes
 
 
@@ -47,20 +47,16 @@ def _inPlane(description, ends):
             one.point = (one.point[0], level, one.point[2])
 
 
-STIFFNESS = number("N/m", 0, MOST, above=True)
-FORCE = number("N", 0, MOST)
-
-
 @describes
 @takes(
     one=end,
     other=orNone(end),
     anchor=orNone(POINT),
-    stiffness=STIFFNESS,
-    strength=orNone(number("N", 0, MOST, above=True)),
-    prestress=FORCE,
-    slack=number("m", 0, 1e3),
-    breaking=orNone(number("", 0, 10, above=True)),
+    stiffness=OF_TIE["stiffness"].kind,
+    strength=orNone(OF_TIE["strength"].kind),
+    prestress=OF_TIE["prestress"].kind,
+    slack=OF_TIE["slack"].kind,
+    breaking=orNone(OF_TIE["breaking"].kind),
     compression=flag,
     name=orNone(nameOf),
 )
@@ -98,15 +94,8 @@ def tie(
     :param name: of its columns; None: ``tie`` and a number
     :returns: a :class:`Tie`, whose ``force`` and ``elongation`` can be read between stages
     """
-    problems = []
     if (other is None) == (anchor is None):
-        problems.append("tie: give either other or anchor")
-    if prestress and slack:
-        problems.append(f"tie: a prestress of {prestress:g} N and a slack of {slack:g} m exclude each other")  # fmt: skip
-    if strength is not None and prestress >= strength:
-        problems.append(f"tie: prestress {prestress:g} N must be below its strength, {strength:g} N")  # fmt: skip
-    if problems:
-        raise Refused("\n".join(problems))
+        raise Refused("tie: give either other or anchor")
     far = (
         End(tuple(vector(anchor, "tie: anchor [m]")))
         if other is None
@@ -120,8 +109,9 @@ def tie(
     made = Tie(name or f"tie{number}", ends, stiffness, strength, prestress, slack, breaking, compression, number=number)  # fmt: skip
     if not made.length > 0:
         raise Refused(f"tie: its ends are both at {ends[0].point} m")
-    if breaking is not None and prestress >= breaking * made.length * stiffness:
-        raise Refused(f"tie: prestress {prestress:g} N must be below the force at which it breaks, {breaking * made.length * stiffness:g} N")  # fmt: skip
+    problems = made.problems()
+    if problems:
+        raise Refused("\n".join(f"tie: {one}" for one in problems))
     _checkName(description, made.name, "tie")
     description.ties.append(made)
     return made
@@ -192,10 +182,10 @@ NEAR = (
 @describes
 @takes(
     side=direction(),
-    stiffness=STIFFNESS,
-    strength=number("N/m", 0, MOST, above=True),
+    stiffness=OF_OVERLAY["stiffness"].kind,
+    strength=OF_OVERLAY["strength"].kind,
     gauge=number("m", 0, 10, above=True),
-    strain=orNone(number("", 0, 10, above=True)),
+    strain=orNone(OF_OVERLAY["strain"].kind),
     fibres=oneOf("both", "vertical", "horizontal"),
     part=orNone(partName),
     name=orNone(nameOf),
@@ -265,7 +255,7 @@ def overlay(
     if not made:
         raise Refused(f"overlay: no joint ends at a face that looks along {tuple(side)}")  # fmt: skip
     description.ties += made
-    description.overlays.append(Overlay(name, made))
+    description.overlays.append(Overlay(name, made, stiffness, strength, gauge, strain))
     return description.overlays[-1]
 
 
@@ -277,5 +267,9 @@ def _samePlace(one, other):
 
 def _checkName(description, name, word):
     known = {one.name for one in (*description.ties, *description.springs, *description.overlays)}  # fmt: skip
-    if name in known or name in description.targets:
+    if (
+        name in known
+        or name in description.targets
+        or name in description.materials.joints
+    ):
         raise Refused(f"{word}: there is a {name!r} already; give one of them another name")  # fmt: skip

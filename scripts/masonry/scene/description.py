@@ -117,6 +117,11 @@ class Description:
             ]
         return []
 
+    def connectors(self):
+        """Ties, springs and fibre layers by name, which ``--set`` and ``--field`` can change."""
+        own = [one for one in self.ties if not one.overlay]
+        return {one.name: one for one in (*own, *self.springs, *self.overlays)}
+
     def connectedBricks(self):
         """Indices of the bricks at the ends of ties and springs."""
         ends = [end for one in (*self.ties, *self.springs) for end in one.ends]
@@ -187,7 +192,8 @@ class Description:
             raise Refused(
                 f"no column {', '.join(unknown)}; there are {', '.join(heads)}"
             )
-        always = columns.heads(balance + columns.HISTORY)
+        usual = [c for one in self.sections if one.usual for c in one.columns(self.plane)]  # fmt: skip
+        always = columns.heads(usual + balance + columns.HISTORY)
         chosen = [found[heads.index(n)] for n in self.choice if n not in always]
         return chosen + [c for c in found if c.head in always]
 

@@ -50,7 +50,7 @@ def held(description):
     if description.winds:
         force = [sum(w[1][i] for w in description.winds) for i in range(3)]
         yield "wind", "({:.4g}, {:.4g}, {:.4g}) N in all".format(*force)
-    recorded = [thing.name for thing in (*description.joints, *description.drifts, *description.sections)]  # fmt: skip
+    recorded = [thing.name for thing in (*description.joints, *description.drifts, *[one for one in description.sections if not one.usual])]  # fmt: skip
     if recorded:
         yield "recorded, too", ", ".join(recorded)
 

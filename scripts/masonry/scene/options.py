@@ -24,7 +24,8 @@ from .parsing import (
     pathOf,
     refinement,
 )
-from .settings import setting
+from .fields import read as readField
+from .settings import scatterAll, setting
 
 #: The largest half-width that --accuracy takes [%]: what is less certain is no number.
 MOST_PERCENT = 50
@@ -212,16 +213,17 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     )
     p.add_argument(
         "--set",
-        metavar="JOINT.PROPERTY=VALUE",
+        metavar="NAME.PROPERTY=VALUE",
         type=setting,
         action="append",
         default=[],
         help="change a property of the bed, head, crack or support joints, in SI units; repeatable "
-        "(help(masonry.MasonryJoint) lists them); where friction and residual friction are one value, they stay one",
+        "(help(masonry.MasonryJoint) lists them); where friction and residual friction are one value, they stay one. NAME can "
+        "be a tie, springs, a fibre layer or a beam, too, as in wire.strength=2e3",
     )
     p.add_argument(
         "--field",
-        metavar="JOINT.PROPERTY=FIELD",
+        metavar="NAME.PROPERTY=FIELD",
         type=field,
         action="append",
         default=[],
@@ -303,13 +305,14 @@ def ofScene(name, arguments, usual):
     return arguments
 
 
-def check(args, masonry, more=(), plane=False):
-    """Apply ``--set`` to the joints of a scene, and refuse options that do not go together and materials that lack something.
+def check(args, masonry, more=(), plane=False, connectors=None):
+    """Apply ``--set`` to what is in a scene, and ``--field`` to ties, springs and fibre layers, and refuse options that do not go together and materials that lack something.
 
     :param args: the parsed options
     :param masonry: :class:`masonry.scene.materials.Masonry` for these options
     :param plane: whether blocks move in the x-z plane only
     :param more: problems that the caller has found, to be named with the others
+    :param connectors: ties, springs and fibre layers by name
     :raises Refused: with all problems at once
     """
     problems = list(more)
@@ -341,10 +344,16 @@ def check(args, masonry, more=(), plane=False):
             f"--refine {args.refine}: it must be above --subcontacts, which is {args.subcontacts}, and that at least {FEWEST}, "
             "so that a joint keeps its stiffness"
         )
+    connectors = connectors or {}
     try:
-        masonry.apply(args.set)
+        masonry.apply(args.set, connectors)
     except Refused as refused:
         problems.append(str(refused))
+    for text in args.field:
+        try:
+            scatterAll(connectors, *readField(text))
+        except ValueError as error:
+            problems.append(f"--field {text}: {error}")
     problems += masonry.missing()
     if problems:
         raise Refused("\n".join(problems))

@@ -17,6 +17,7 @@ from ..basics import Refused, say
 from .materials import withResidual
 from .options import check
 from .parsing import Parser
+from .settings import copiedAll, valuesOf
 from ..assembly.blocks import properties
 
 #: How far a random field is looked at to either side, in standard deviations of its normal: beyond lies one joint in a
@@ -37,7 +38,8 @@ def probe(scene, stage, traits, arguments):
     - ``options``: names of its options, without those that say where results go
     - ``unused``: options that the scene does not use, with the reason; ``doubtful``: those that it may not use
     - ``joints``: properties of every kind of joint; ``counts``: how many joints there are of each kind
-    - ``bounds``: of the properties of a joint: ``low``, ``high``, ``unit``
+    - ``bounds``: of the properties of a joint: ``low``, ``high``, ``unit``; ``connectors``: of every tie, spring and fibre layer the
+      same by property
     - ``room``: bytes that a run will probably write
     - ``problems``: sentences on rows of the table that cannot be run
 
@@ -59,6 +61,7 @@ def probe(scene, stage, traits, arguments):
         "joints": {name: _plain(joint.dict()) for name, joint in model.joints.items()},
         "counts": _counts(scene),
         "bounds": {p["name"]: _bounds(p) for p in properties(MasonryJoint)},
+        "connectors": _ofConnectors(scene),
         "problems": _rows(scene, parser) if heard else [],
         "room": scene.outcome.space()[1],
     }
@@ -95,6 +98,13 @@ def _counts(scene):
 
 def _plain(values):
     return {n: v for n, v in values.items() if isinstance(v, (bool, int, float, str))}
+
+
+def _ofConnectors(scene):
+    """Bounds of the properties of ties, springs and fibre layers, by name and property."""
+    of = lambda p: {"low": p.low, "high": p.high, "unit": p.unit}
+    connectors = scene.description.connectors()
+    return {name: {n: of(p) for n, p in one.known().items()} for name, one in connectors.items()}  # fmt: skip
 
 
 def _bounds(p):
@@ -134,27 +144,29 @@ def _refused(scene, parser, words):
         text = errors.getvalue()
         return (text.partition("error: ")[2] or text).strip().splitlines()
     try:
-        masonry = scene.description.materials.variant(args)
-        check(args, masonry)
+        connectors = copiedAll(scene.description.connectors())
+        masonry = scene.description.materials.variant(args, [*connectors])
+        check(args, masonry, connectors=connectors)
         for text in args.field:
-            _far(text, masonry.joints)
+            _far(text, masonry.joints, connectors)
     except ValueError as refused:
         return str(refused).splitlines()
     return []
 
 
-def _far(text, joints):
+def _far(text, joints, connectors):
     names, kind, cov, length, seed = fields.parts(text)
     names = withResidual(names, joints)
+    joints = {**joints, **connectors}
     ends = fields.ends(kind, cov, FAR)
     for factor in ends:
         changes = {}
         for name in names:
             joint, _, attribute = name.partition(".")
-            value = factor * getattr(joints[joint], attribute)
+            value = factor * valuesOf(joints[joint])[attribute]
             changes.setdefault(joint, {})[attribute] = value
         for joint, values in changes.items():
-            before = {a: getattr(joints[joint], a) for a in values}
+            before = {a: valuesOf(joints[joint])[a] for a in values}
             try:
                 joints[joint].updateAttrs(values)
             except ValueError as error:

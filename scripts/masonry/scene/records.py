@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any, Callable
 
 from ..bricks import Block
@@ -11,7 +12,7 @@ from ..arguments import function, orNone, shown, takes, text
 from ..arguments import name as nameOf
 from ..assembly.blocks import vector
 from ..assembly.columns import Column
-from .sections import Section
+from .sections import BASE, ENDS, Section
 from .supports import COORDINATE
 from .targets import ANY, Drift, JointRecord, Target, brick
 from .targets import part as partName
@@ -107,6 +108,8 @@ def section(
     The middle is that of the box around the bricks that reach ``z``, at the height ``z``, as they are built; it stays in
     space, while the forces act where the blocks are, so eccentric weight of a wall that leans counts.
 
+    Every run of a structure on platens at its bottom records that at its base, ``base``, unless the scene has one there.
+
     :param z: height [m]
     :param part: name of a part of the bricks: the joints whose upper brick is of it (under a platen, the lower one), so
         that what several parts transmit adds up to the whole; None: all joints
@@ -114,6 +117,13 @@ def section(
     :returns: a :class:`masonry.scene.sections.Section`, whose ``forces()`` can be read between stages, too
     """
     name = f"section{len(description.sections)}" if name is None else name
+    found = Section(name, float(z), part, _middleAt(description, z, part, name))
+    description.sections.append(found)
+    return found
+
+
+def _middleAt(description, z, part, name):
+    """The middle of the box around the bricks that reach a height [m]. Raises ValueError if there is none."""
     points = [
         block.corners for block in description.bricks if part in (None, block.part)
     ]
@@ -131,9 +141,24 @@ def section(
             f"{min(heights):g} to {max(heights):g} m"
         )
     middle = [(min(c[i] for c in cut) + max(c[i] for c in cut)) / 2 for i in range(2)]
-    found = Section(name, float(z), part, (*middle, float(z)))
-    description.sections.append(found)
-    return found
+    return (*middle, float(z))
+
+
+def recordBase(description: Any) -> None:
+    """Record the section at the base of a structure that stands on platens, as :func:`section` does, unless the scene has one
+    there."""
+    z = float(description.low[2])
+    platens = [one for one in description.targets.values() if one.box and one.fixed]
+    near = 1e-6 * (1 + abs(z))
+    own = [one for one in description.sections if one.part is None and abs(one.z - z) < near]  # fmt: skip
+    if not platens or own:
+        return
+    taken = {one.name for one in (*description.sections, *description.extra)}
+    free = lambda name: not {name, *(f"{name}_{end}" for end in ENDS)} & taken
+    names = itertools.chain([BASE], (f"{BASE}{k}" for k in itertools.count(2)))
+    name = next(filter(free, names))
+    middle = _middleAt(description, z, None, name)
+    description.sections.append(Section(name, z, None, middle, usual=True))
 
 
 @describes

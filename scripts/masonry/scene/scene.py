@@ -138,7 +138,8 @@ class Scene:
     :param title: of the figures; None: the name
     :param plane: whether blocks move in the x-z plane only, which is faster; None: if all bricks are one leaf in it
     :param gravity: [m/s²], downwards
-    :param columns: names of the columns of curve.csv, beside the energies; None: all that there are
+    :param columns: names of the columns of curve.csv, beside the energies and the section at the base; None: all that there
+        are
     :param functors: as of :func:`masonry.assembly.engines.engines`
     :param arguments: options as :func:`masonry.scene.options.parser` gives them, or a list of words; None: those of the
         command line
@@ -347,12 +348,13 @@ class Scene:
     @functools.cached_property
     def masonry(self) -> Masonry:
         """The materials for the options of this run: :class:`masonry.scene.materials.Masonry`. Raises Refused."""
-        masonry = self.description.materials.variant(self.args)
+        connectors = self.description.connectors()
+        masonry = self.description.materials.variant(self.args, [*connectors])
         problems = self.description.problems(masonry)
         if self.args.refine and self.description.functors:
             problems.append(f"--refine {self.args.refine}: the functors keep the points of joints; leave functors=False")  # fmt: skip
         problems += self._wrongRecord()
-        options.check(self.args, masonry, problems, self.description.plane)
+        options.check(self.args, masonry, problems, self.description.plane, connectors)
         self.assumed = masonry.assumed()
         return masonry
 
@@ -374,6 +376,7 @@ class Scene:
         model = Structure(description, self.masonry, args)
         for line in linesOf(self.assumed, self.masonry.brief):
             say(line)
+        records.recordBase(description)
         self.columns = description.columns(model, bool(args.history))
         self.model = model
         self.running.open(self.columns)

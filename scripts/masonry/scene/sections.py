@@ -14,6 +14,8 @@ from .._masonry import resultant
 from ..assembly.columns import Column
 from ..basics import Refused
 
+BASE = "base"  # name of the section that every run on a platen records
+ENDS = "N", "V_x", "V_y", "M_x", "M_y"  # of names of columns
 LEVEL = 1e-9  # of the height of a structure: centroids so near to z do not lie above it
 
 
@@ -38,6 +40,7 @@ class Section:
     connections: list = field(
         default_factory=list
     )  # ties and springs that cross it, each with its upper end
+    usual: bool = False  # whether nobody said it: the base, which every run records
     _structure: object = None
     _read: tuple = (None, None)  # the last reading, and what was found then
 

@@ -15,6 +15,7 @@ from ..read import block_figure, drawing
 from ..read.frames import readFrame
 from ..read.shown import DPI, RunFolder, Curve, cracksOf, curveOf, resultsOf
 from .facts import held, sizes
+from .settings import copiedAll
 
 MOST_COUNTED = 20_000  # blocks whose joints are counted before the scene is built
 #: Properties of joints and units that the table shows.
@@ -149,9 +150,10 @@ def _counted(description):
 
 def _materials(scene):
     """Tables of the joints and units, with the options of this run."""
-    masonry = scene.description.materials.variant(scene.args)
+    connectors = copiedAll(scene.description.connectors())
+    masonry = scene.description.materials.variant(scene.args, [*connectors])
     try:
-        masonry.apply(scene.args.set)
+        masonry.apply(scene.args.set, connectors)
     except Refused as refused:
         return notebook.table([("refused", str(refused))])
     joints, blocks = masonry.joints, {"brick": masonry.unit, **masonry.units}

@@ -3,16 +3,31 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Iterator
+import copy
+from dataclasses import dataclass, replace
+from typing import Any, Callable, Iterator
 
 from yade import Vector3
 
 from ..assembly.columns import Column
+from .settings import Property, Settable
 from .targets import Target
 
-GROUND = -1  # in place of the id of a body
 MOST = 1e15  # of stiffness [N/m], [N m] and force [N]: more has no structure
+#: What ``--set`` and ``--field`` can change of a tie and of a fibre layer.
+OF_TIE = {
+    "stiffness": Property("N/m", 0, MOST, True),
+    "strength": Property("N", 0, MOST, True),
+    "prestress": Property("N", 0, MOST),
+    "slack": Property("m", 0, 1e3),
+    "breaking": Property("", 0, 10, True),
+}
+OF_OVERLAY = {
+    "stiffness": Property("N/m", 0, MOST, True),
+    "strength": Property("N/m", 0, MOST, True),
+    "strain": Property("", 0, 10, True),
+}
+GROUND = -1  # in place of the id of a body
 
 
 @dataclass
@@ -53,7 +68,7 @@ class End:
 
 
 @dataclass
-class Tie:
+class Tie(Settable):
     """A bar between two points; ``scene.tie`` makes it and says what the values mean."""
 
     name: str
@@ -67,6 +82,33 @@ class Tie:
     engine: Any = None  # YADE's, when the scene is built
     number: int = 0  # among the ties of the engine
     overlay: str = ""  # name of the overlay of which it is a fibre; then it has no columns of its own
+
+    WORD = "tie"
+
+    def known(self) -> dict[str, Property]:
+        """As of :class:`Settable`, and so are those that follow."""
+        return OF_TIE
+
+    def values(self) -> dict[str, float | None]:
+        return {name: getattr(self, name) for name in OF_TIE}
+
+    def copied(self) -> Tie:
+        return copy.copy(self)
+
+    def place(self) -> tuple[float, ...]:
+        a, b = (end.point for end in self.ends)
+        return tuple(0.5 * (x + y) for x, y in zip(a, b))
+
+    def problems(self) -> list[str]:
+        found = []
+        if self.prestress and self.slack:
+            found.append(f"a prestress of {self.prestress:g} N and a slack of {self.slack:g} m exclude each other")  # fmt: skip
+        if self.strength is not None and self.prestress >= self.strength:
+            found.append(f"prestress {self.prestress:g} N must be below its strength, {self.strength:g} N")  # fmt: skip
+        breaks = None if self.breaking is None else self.breaking * self.length * self.stiffness  # fmt: skip
+        if breaks is not None and self.prestress >= breaks > 0:
+            found.append(f"prestress {self.prestress:g} N must be below the force at which it breaks, {breaks:g} N")  # fmt: skip
+        return found
 
     @property
     def bodies(self) -> tuple[int, int]:
@@ -142,7 +184,7 @@ class Tie:
 
 
 @dataclass
-class Spring:
+class Spring(Settable):
     """Springs at a point; ``scene.spring`` makes them and says what the values mean."""
 
     name: str
@@ -151,6 +193,33 @@ class Spring:
     rotation: tuple  # about x, y and z [N m]
     engine: Any = None  # YADE's, when the scene is built
     number: int = 0  # among the springs of the engine
+
+    WORD = "spring"
+
+    def known(self) -> dict[str, Property]:
+        """As of :class:`Settable`, and so are those that follow. A direction without a spring gets none."""
+        units = (("stiffness", "N/m"), ("rotation", "N m/rad"))
+        return {
+            f"{what}_{axis}": Property(unit, 0, MOST, True)
+            for what, unit in units
+            for axis, value in zip("xyz", getattr(self, what))
+            if value > 0
+        }
+
+    def values(self) -> dict[str, float | None]:
+        return {n: getattr(self, n[:-2])["xyz".index(n[-1])] for n in self.known()}
+
+    def copied(self) -> Spring:
+        return copy.copy(self)
+
+    def place(self) -> tuple[float, ...]:
+        return self.ends[0].point
+
+    def take(self, values: dict[str, float]) -> None:
+        for name, value in values.items():
+            what, axis = name.split("_")
+            present = dict(zip("xyz", getattr(self, what))) | {axis: value}
+            setattr(self, what, tuple(present.values()))
 
     @property
     def force(self) -> Any:
@@ -191,11 +260,46 @@ class Spring:
 
 
 @dataclass
-class Overlay:
+class Overlay(Settable):
     """Fibres over the joints of a face; ``scene.overlay`` makes them and says what the values mean."""
 
     name: str
     ties: list[Tie]
+    stiffness: float  # E t of the fibres [N/m]
+    strength: float  # [N/m]
+    gauge: float  # [m]
+    strain: float | None  # at which they break [-]
+
+    WORD = "fibre layer"
+
+    def known(self) -> dict[str, Property]:
+        """As of :class:`Settable`, and so are those that follow."""
+        return OF_OVERLAY
+
+    def values(self) -> dict[str, float | None]:
+        return {name: getattr(self, name) for name in OF_OVERLAY}
+
+    def copied(self) -> Overlay:
+        return replace(self, ties=[one.copied() for one in self.ties])
+
+    def take(self, values: dict[str, float]) -> None:
+        for name, value in values.items():
+            for one in self.ties:
+                if name == "strain":
+                    one.breaking = value
+                else:
+                    share = value / getattr(self, name)
+                    setattr(one, name, getattr(one, name) * share)
+            setattr(self, name, value)
+
+    def scatter(
+        self, name: str, factor: Callable[[float, float, float], float]
+    ) -> None:
+        """Every bundle has the value of the field at its own place; the layer keeps the mean."""
+        if getattr(self, name) is None:
+            raise ValueError(f"{self.name}: {name} was not given, so nothing can vary about it")  # fmt: skip
+        for one in self.ties:
+            one.scatter("breaking" if name == "strain" else name, factor)
 
     def columns(self, plane: bool) -> Iterator[Column]:
         """What is recorded of it."""
@@ -216,4 +320,13 @@ class Overlay:
     def entry(self) -> dict[str, Any]:
         """What run.json says of it."""
         yielded, broken = self._count()
-        return {"name": self.name, "bundles": len(self.ties), "yielded": yielded, "broken": broken}  # fmt: skip
+        return {
+            "name": self.name,
+            "stiffness_N_per_m": self.stiffness,
+            "strength_N_per_m": self.strength,
+            "gauge_m": self.gauge,
+            "breaking_strain": self.strain,
+            "bundles": len(self.ties),
+            "yielded": yielded,
+            "broken": broken,
+        }

@@ -259,7 +259,8 @@ def _ranges(study, found):
         if not isinstance(what, Distribution):
             continue
         for name in column.split("+"):
-            bounds = found["bounds"].get(name.partition(".")[2])
+            of, _, attribute = name.partition(".")
+            bounds = found["connectors"].get(of, found["bounds"]).get(attribute)
             if not bounds or bounds["low"] is None and bounds["high"] is None:
                 continue
             share = what.beyond(bounds["low"], bounds["high"])

@@ -8,7 +8,7 @@ from typing import Any, Iterator
 from ..escaping import Html
 from ..page import fragmentOf
 
-from .pieces import Number, figure, isNumber, listed, note, numbers, table, tag, written  # fmt: skip
+from .pieces import UNKNOWN, Number, figure, isNumber, listed, note, numbers, table, tag, withUnit, written  # fmt: skip
 from .record import Record
 
 
@@ -48,6 +48,7 @@ def trust(record: Record) -> Iterator[Any]:
         yield note("run.json of this older version does not list the warnings of the run.", kind="missing")  # fmt: skip
     else:
         yield note("The run has no warnings. Source: run.json: warnings.")
+    yield from _said(run)
     rows = [
         Number(what, factor * run[key], unit, meaning, f"run.json: {key}")
         for key, what, factor, unit, meaning in MEASURES
@@ -78,6 +79,16 @@ def trust(record: Record) -> Iterator[Any]:
         unknown.append("What the properties change that were assumed; the table of what was built lists them.")  # fmt: skip
     yield tag("h3", "What is not known from this run")
     yield listed(unknown)
+
+
+def _said(run):
+    """What the run said while it went on."""
+    notes = run.get("notes")
+    lines = [one for one in notes if isinstance(one, dict)] if isinstance(notes, list) else []  # fmt: skip
+    if lines:
+        when = lambda one: (str(one.get("stage") or "before the first stage"), withUnit(one["time_s"], "s") if isNumber(one.get("time_s")) else UNKNOWN)  # fmt: skip
+        rows = [(*when(one), str(one.get("text", UNKNOWN))) for one in lines]
+        yield table(("stage", "time in the scene", "text"), rows, "What the run said. Source: run.json: notes", "notes")  # fmt: skip
 
 
 def _accuracy(run):

@@ -23,6 +23,7 @@ from ...arguments import (
     nearest,
     number,
     orNone,
+    plainly,
     shown,
     takes,
 )
@@ -30,7 +31,7 @@ from ...assembly.engines import LAWS
 from ...bricks import Bricks
 from ...assembly.given import assumed, copied, isDefault, state
 from ...basics import Refused
-from ..settings import applySettings
+from ..settings import Property, Settable, applySettings
 from .assumptions import AS_BED, entriesOf, missing
 
 FACTOR = number("", 0, above=True)  # the kind of what a variation gives
@@ -170,12 +171,16 @@ class Masonry:
             support.updateAttrs(values)
             state(support, **sources)
 
-    def apply(self, settings: Iterable[tuple[str, str, str]]) -> None:
-        """Give joints the values of ``--set``. Raises Refused with all problems at once.
+    def apply(
+        self, settings: Iterable[tuple[str, str, str]], connectors: Any = None
+    ) -> None:
+        """Give joints, beams and connectors the values of ``--set``. Raises Refused with all problems at once.
 
-        :param settings: list of (joint, property, text of the value)
+        :param settings: list of (name, property, text of the value)
+        :param connectors: ties, springs and fibre layers of the scene by name, or None
         """
-        applySettings(self.joints, settings)
+        beams = {name: _OfBeam(name, self) for name in self.stiff if self._isBeam(name)}
+        applySettings({**self.joints, **beams, **(connectors or {})}, settings)
         try:
             self._follow()
         except ValueError as error:
@@ -213,6 +218,9 @@ class Masonry:
             if attribute in numbers:
                 found.append((joint, attribute, value, step))
             else:
+                if self._isBeam(joint):
+                    problems.append(f"vary: {one!r}: a beam has its young and its density all over, which --set {joint}.young=... changes")  # fmt: skip
+                    continue
                 close = nearest(one, [f"{joint}.{n}" for n in numbers])
                 problems.append(
                     f"vary: no property {one!r}; joints are {', '.join(self.joints)}, help(masonry.MasonryJoint) lists "
@@ -312,14 +320,25 @@ class Masonry:
             self.joints[f"{name}_bearing"] = MasonryJoint(**values)
         return self
 
+    def _isBeam(self, name):
+        """Whether a name is that of a beam: pieces of a floor do not deform."""
+        return name in self.stiff and self.units[name].young < RIGID
+
     def _numbersOf(self, joint):
-        """Names of the properties of a joint that are numbers, or none if there is no such joint."""
+        """Names of the properties of a joint that are numbers, or none if there is no such joint, or if it is that of a beam,
+        whose stiffness is that of its pieces."""
+        if self._isBeam(joint):
+            return []
         values = self.joints[joint].dict() if joint in self.joints else {}
         return [n for n, v in values.items() if isNumber(v)]
 
-    @takes(args=_options)
-    def variant(self, args: Any) -> Masonry:
-        """A copy for the options ``--joints``, ``--joint-stiffness`` and ``--crack-surfaces``; this one stays as it is."""
+    @takes(args=_options, connectors=plainly)
+    def variant(self, args: Any, connectors: Any = None) -> Masonry:
+        """A copy for the options ``--joints``, ``--joint-stiffness``, ``--crack-surfaces`` and ``--field``; this one stays as it
+        is.
+
+        :param connectors: names of ties, springs and fibre layers of the scene, whose fields are none of the joints, or None
+        """
         source = self
         if args.joint_stiffness != "joint":
             if not self.softer:
@@ -353,11 +372,14 @@ class Masonry:
         own._follow()
         for text in args.field:
             names, function = fields.read(text)
-            names = withResidual(names, copies)
+            known = list(connectors or ())
+            names = [n for n in names if n.partition(".")[0] not in known]
             try:
-                own.vary(names, function)
+                if names:
+                    own.vary(withResidual(names, copies), function)
             except ValueError as error:
-                raise Refused(f"--field {text}: {error}") from None
+                also = f"; ties, springs and fibre layers are {', '.join(known)}" if known else ""  # fmt: skip
+                raise Refused(f"--field {text}: {error}{also}") from None
         return own
 
     def rule(self, blocks: dict[int, Any]) -> Callable[..., MasonryJoint | None]:
@@ -442,6 +464,31 @@ class Masonry:
         return self._made[key]
 
     _made = property(lambda self: self.__dict__.setdefault("_kept", {}))
+
+
+class _OfBeam(Settable):
+    """What ``--set`` changes of a beam: its material. The stiffness of its joints follows."""
+
+    WORD = "beam"
+
+    def __init__(self, name, masonry):
+        self.name = name
+        self.unit, self.joint = masonry.units[name], masonry.joints[name]
+
+    def known(self) -> dict[str, Property]:
+        return {
+            "young": Property("Pa", 0, RIGID, True),
+            "density": Property("kg/m³", 0, 1e6, True),
+        }
+
+    def values(self) -> dict[str, float | None]:
+        return {name: getattr(self.unit, name) for name in self.known()}
+
+    def take(self, values: dict[str, float]) -> None:
+        share = values.get("young", self.unit.young) / self.unit.young
+        names = ("normalStiffness", "shearStiffness")
+        self.joint.updateAttrs({n: share * getattr(self.joint, n) for n in names})
+        self.unit.updateAttrs(values)
 
 
 def byName(joints: Iterable[MasonryJoint], brittle: bool) -> dict[str, MasonryJoint]:

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a run says while it goes on stands in run.json and in the report, with the stage in which it was said."""
+
+import os
+
+import pytest
+from masonry import Scene, basics, bricks, materials
+from masonry.basics import Refused
+from masonry.read import report
+from masonry.read.files import readCurve, readRun
+from masonry.run.place import Place, Saved
+from masonry.run.run import Run
+
+UNREST = "note: the structure is not at rest after"
+PRESSED = "warning: press: 0.3 Pa: is it in Pa, not MPa?"
+
+
+def carried(folder, *words):
+    """A block on a platen that is pushed, and has no time to come to rest: its run.json."""
+    stack = bricks.stack(1, (0.4, 0.3, 0.6))
+    stones = materials.dry(5.0, normalStiffness=1e11)
+    arguments = ["--lean", "--rate", "10", *(words or ("--out", str(folder)))]
+    scene = Scene("pushed", stack, stones, arguments=arguments)
+    scene.platen("bottom")
+    top = scene.platen("top", rotation="free")
+    scene.press(top, 0.3)  # which looks like MPa
+    pushed = scene.handle(0, "pushed")
+    scene.settle()
+    scene.push(pushed, 0.1)
+    scene.load(top, (0, 0, -5e3), longest=0.002)
+    scene.push(pushed, 0.1)
+    scene.finish()
+    return readRun(str(folder))
+
+
+def test_notes_stand_in_run_json_with_their_stage(tmp_path):
+    run = carried(tmp_path / "one")
+    notes = run["notes"]
+    (warned,) = [one for one in notes if one["text"].startswith(PRESSED)]
+    assert (warned["stage"], warned["number"], warned["time_s"]) == ("", 0, 0)
+    (moving,) = [one for one in notes if UNREST in one["text"]]
+    assert (moving["stage"], moving["number"]) == ("load", 3)
+    times = readCurve(str(tmp_path / "one"))["time_s"]
+    assert times[run["stages"][2]["first_row"]] < moving["time_s"] < times[-1]
+    assert len({one["text"] for one in notes}) == len(notes)
+
+
+def test_the_report_says_what_the_run_said(tmp_path):
+    carried(tmp_path / "one")
+    page = report.page(report.read(str(tmp_path / "one")))
+    assert "What the run said" in page and PRESSED in page and UNREST in page
+    assert page.index("What the run said") < page.index(UNREST)
+
+
+def test_a_scene_does_not_have_the_notes_of_the_one_before(tmp_path):
+    basics.say("note: of nobody")
+    first = carried(tmp_path / "one")
+    assert any(one["text"] == "note: of nobody" for one in first["notes"])
+    second = carried(tmp_path / "two")
+    assert [one["text"] for one in second["notes"]] == [one["text"] for one in first["notes"] if one["text"] != "note: of nobody"]  # fmt: skip
+
+
+def test_a_run_that_is_resumed_has_the_same_notes(tmp_path, monkeypatch):
+    """It is interrupted in the middle of its second push, after the note."""
+    whole = carried(tmp_path / "whole")["notes"]
+    record = Run.record
+
+    def interrupting(self):
+        reading = record(self)
+        if reading.time > whole[-1]["time_s"] + 2e-3:  # fmt: skip
+            self.interrupted = True
+        return reading
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Run, "record", interrupting)
+        with pytest.raises(SystemExit):
+            carried(tmp_path / "part")
+    part = str(tmp_path / "part")
+    assert readRun(part)["interrupted"] and os.path.exists(os.path.join(part, "run.checkpoint"))  # fmt: skip
+    assert carried(part, "--resume", part)["notes"] == whole
+
+
+@pytest.mark.parametrize("notes", [[{"text": 1}], ["a"], [{"stage": "", "number": -1, "time_s": 0.0, "text": "a"}]])  # fmt: skip
+def test_notes_of_a_checkpoint_that_are_none_are_refused(notes):
+    saved = Saved.__new__(Saved)
+    saved.at, saved.rows = {**vars(Place()), "notes": notes}, []
+    with pytest.raises(Refused):
+        saved.place()

@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""``--set`` and ``--field`` of ties, springs, fibre layers, beams and floors: what they change, and what is refused."""
+
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+from masonry import Scene, bricks, materials
+from masonry.basics import GRAVITY, Refused
+from masonry.read.files import readRun
+from masonry.scene import fields
+from yade import O
+
+WIDTH, DEPTH, HEIGHT = 0.4, 0.3, 1.6  # of a block [m]
+WEIGHT = WIDTH * DEPTH * HEIGHT * 2600 * GRAVITY  # [N]
+LEVEL = 1.2  # of the tie [m]
+LEAN = ["--lean", "--checkpoint-every", "0"]
+
+
+def tied(tmp_path, *words):
+    """A tall block on a platen on springs, with a tie, and a wall of two bricks with a fibre layer beside it."""
+    stack = bricks.stack(1, (WIDTH, DEPTH, HEIGHT)) + bricks.stack(3, (0.4, 0.3, 0.2)).moved(2)  # fmt: skip
+    stones = materials.dry(5.0, normalStiffness=1e11)
+    arguments = [*LEAN, "--out", str(tmp_path / "results"), *words]
+    scene = Scene("block", stack, stones, plane=False, arguments=arguments)
+    base = scene.platen("bottom", springs={"x": 5e7})
+    at = lambda x: (x, DEPTH / 2, LEVEL)
+    tie = scene.tie(at(0.2), anchor=at(-3.0), stiffness=1e7, strength=500.0, name="wire")  # fmt: skip
+    soil = scene.spring((2.2, 0.15, 0.5), stiffness=(0, 3e6, 0), name="soil")
+    layer = scene.overlay((0, -1, 0), stiffness=4e6, strength=40e3, gauge=0.2, strain=0.02, name="textile")  # fmt: skip
+    return scene, base, tie, soil, layer
+
+
+def test_values_of_the_command_line_replace_those_of_the_scene(tmp_path):
+    words = ["wire.strength=1e3", "wire.stiffness=2e7", "wire.prestress=100", "soil.stiffness_y=4e6"]  # fmt: skip
+    words += ["base_spring.stiffness_x=6e7", "textile.stiffness=8e6", "textile.strain=0.01"]  # fmt: skip
+    scene, _, tie, soil, layer = tied(tmp_path, *(f"--set={w}" for w in words))
+    before = layer.ties[0].stiffness
+    scene.settle()
+    assert (tie.strength, tie.stiffness, tie.prestress) == (1e3, 2e7, 100)
+    assert soil.stiffness == (0, 4e6, 0)
+    assert layer.ties[0].stiffness == pytest.approx(2 * before, rel=1e-12)
+    assert {one.breaking for one in layer.ties} == {0.01}
+    (ties,) = [e for e in O.engines if type(e).__name__ == "MasonryTies"]
+    assert ties.strength[0] == 1e3 and ties.stiffness[0] == 2e7
+    assert ties.rest[0] == pytest.approx(-100 / 2e7)
+    scene.finish()
+    run = readRun(str(tmp_path / "results"))
+    assert run["ties"][0]["strength_N"] == 1e3
+    assert run["overlays"][0]["stiffness_N_per_m"] == 8e6
+    stiffness = {one["name"]: one["stiffness_N_per_m"] for one in run["springs"]}
+    assert stiffness == {"base_spring": [6e7, 0, 0], "soil": [0, 4e6, 0]}
+
+
+def test_a_stronger_tie_holds_what_statics_say(tmp_path):
+    """a W h / 2 = W b / 2 + T t, by limit analysis."""
+    stones = materials.dry(5.0, normalStiffness=1e11)
+    words = ["--preset", "bound", "--set", "wire.strength=800", *LEAN, "--out", str(tmp_path / "r")]  # fmt: skip
+    scene = Scene("block", bricks.stack(1, (WIDTH, DEPTH, HEIGHT)), stones, arguments=words)  # fmt: skip
+    scene.platen("bottom")
+    at = lambda x: (x, DEPTH / 2, LEVEL)
+    scene.tie(at(0.2), anchor=at(-3.0), stiffness=1e7, strength=500.0, name="wire")
+    found = scene.bound(towards=(1, 0, 0))
+    expected = (WEIGHT * WIDTH / 2 + 800.0 * LEVEL) / (WEIGHT * HEIGHT / 2)
+    assert found["factor"] == pytest.approx(expected, rel=1e-4)
+    scene.finish()
+
+
+def test_a_field_gives_each_bundle_and_each_tie_its_own_value(tmp_path):
+    field = (
+        "textile.strength+wire.strength+bed.friction=lognormal(cov=0.3,length=0,seed=4)"
+    )
+    scene, _, tie, _, layer = tied(tmp_path, f"--field={field}")
+    before = [one.strength for one in layer.ties]
+    scene.settle()
+    shares = [one.strength / b for one, b in zip(layer.ties, before)]
+    assert len(set(shares)) == len(shares) and tie.strength != 500
+    factor = fields.lognormal(0.3, 0, 4)
+    assert tie.strength == pytest.approx(500 * factor(-1.4, DEPTH / 2, LEVEL))
+    assert shares[0] == pytest.approx(factor(*layer.ties[0].place()))
+    scene.finish()
+
+
+@pytest.mark.parametrize(
+    "word, text",
+    [
+        ("--set=wyre.strength=1", "no joint, beam, tie, spring or fibre layer 'wyre', there are bed, support, base_spring, soil, textile, wire"),
+        ("--set=wire.stength=1", "a tie has no such property, there are stiffness, strength, prestress, slack, breaking, did you mean 'strength'?"),
+        ("--set=wire.strength=-2", "wire: strength -2.0 N must be above 0"),
+        ("--set=wire.strength=much", "--set wire.strength=much: must be a number"),
+        ("--set=wire.prestress=600", "wire: prestress 600 N must be below its strength, 500 N"),
+        ("--set=soil.stiffness_x=1", "a spring has no such property, there are stiffness_y"),
+        ("--set=soil.stiffness=1", "did you mean 'stiffness_y'?"),
+        ("--set=textile.gauge=1", "a fibre layer has no such property, there are stiffness, strength, strain"),
+        ("--field=wyre.strength=lognormal(cov=0.3,length=0,seed=4)", "no property 'wyre.strength'"),
+        ("--field=wire.length=lognormal(cov=0.3,length=0,seed=4)", "wire.length: a tie has no such property"),
+        ("--field=wire.breaking=lognormal(cov=0.3,length=0,seed=4)", "wire: breaking was not given, so nothing can vary about it"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_set_is_refused(tmp_path, capsys, word, text):
+    scene, *_ = tied(tmp_path, word)
+    with pytest.raises(SystemExit):
+        scene.settle()
+    said = capsys.readouterr().err.strip()
+    assert len(said.splitlines()) == 1
+    if "there are bed" in text:
+        names = re.search(r"there are (.*)", said)[1].split(", ")
+        assert sorted(names) == sorted(text.split("there are ")[1].split(", "))
+        text = text.split(", there")[0]
+    assert text in said
+
+
+def test_a_tie_with_the_name_of_a_joint_is_refused(tmp_path):
+    scene, *_ = tied(tmp_path)
+    with pytest.raises(Refused, match="there is a 'bed' already"):
+        scene.tie((0.2, 0.1, 1), anchor=(5, 0.1, 1), stiffness=1e6, name="bed")
+
+
+def sag(tmp_path, *words):
+    """Sag of a cantilever [m]."""
+    made = bricks.Beam((0, 0, 0), 2.0, 0.1, 0.2, pieces=9, name="ring")
+    stones = materials.dry(0.6).withBeam(made, young=10e9, density=500)
+    scene = Scene("beam", made, stones, gravity=0.0, arguments=[*LEAN, "--out", str(tmp_path / "r"), *words])  # fmt: skip
+    scene.hold(0, name="end", axes="xyzXYZ")
+    tip = scene.handle(8, "tip")
+    scene.load(tip, (0, 0, -1e3))
+    scene.settle()
+    return -scene.model.moved(tip)[0][2]
+
+
+def test_a_beam_twice_as_stiff_sags_half_as_much(tmp_path):
+    # settle() ends within 1 % of rest
+    assert sag(tmp_path, "--set", "ring.young=20e9") == pytest.approx(sag(tmp_path) / 2, rel=0.01)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "word, text",
+    [
+        ("--set=ring.normalStiffness=1e9", "a beam has no such property, there are young, density"),
+        ("--set=ring.young=0", "ring: young 0.0 Pa must be above 0"),
+        ("--field=ring.young=lognormal(cov=0.3,length=0,seed=4)", "a beam has its young and its density all over"),
+        ("--field=ring.normalStiffness=lognormal(cov=0.3,length=0,seed=4)", "a beam has its young and its density all over"),
+    ],
+)  # fmt: skip
+def test_what_has_no_effect_on_a_beam_is_refused(tmp_path, capsys, word, text):
+    with pytest.raises(SystemExit):
+        sag(tmp_path, word)
+    assert text in capsys.readouterr().err
+
+
+def test_a_floor_shears_by_the_stiffness_of_its_joints(tmp_path):
+    """A strip that is pushed between two that are held moves by F w / (2 G t l), and half as far with twice the stiffness."""
+
+    def moved(*words):
+        floor = bricks.Floor((0, 0, 3), 4.0, 1.5, 0.2, strips=3)
+        stones = materials.dry(0.6).withFloor(floor, shear=2e6, mass=100)
+        scene = Scene("floor", floor, stones, plane=False, gravity=0.0, arguments=[*LEAN, "--out", str(tmp_path / "r"), *words])  # fmt: skip
+        scene.hold(0, name="one"), scene.hold(2, name="other")
+        middle = scene.handle(1, "middle")
+        scene.load(middle, (1e3, 0, 0))
+        scene.settle(longest=20)
+        return scene.model.moved(middle)[0][0]
+
+    expected = 1e3 * 0.5 / (2 * 2e6 * 4.0)
+    assert moved() == pytest.approx(expected, rel=1e-3)
+    twice = (
+        2 * 2e6 / (0.5 * 0.2)
+    )  # [Pa/m] of a joint: G t over the distance of strips and their height
+    assert moved(f"--set=floor.shearStiffness={twice}") == pytest.approx(expected / 2, rel=1e-3)  # fmt: skip
+
+
+STUDY = """
+from masonry.study import Study, field, lognormal, normal
+
+study = Study(scene="scene.py", runs=3, seed=1, vary={vary})
+"""
+SCENE = """
+from masonry import Scene, bricks, materials
+
+stack = bricks.stack(1, (0.4, 0.3, 1.6))
+scene = Scene("tied", stack, materials.dry(5.0, normalStiffness=1e11))
+scene.platen("bottom")
+scene.tie((0.2, 0.15, 1.2), anchor=(-3, 0.15, 1.2), stiffness=1e7, strength=500.0, name="wire")
+scene.settle()
+scene.accelerate(0.5, towards=(1, 0, 0))
+scene.finish()
+"""
+
+
+def prepared(tmp_path, vary):
+    """The process that prepares a study of a block with a tie, and its table."""
+    (tmp_path / "scene.py").write_text(SCENE)
+    (tmp_path / "study.py").write_text(STUDY.replace("{vary}", vary))
+    out = str(tmp_path / "out")
+    done = subprocess.run([sys.executable, "-m", "masonry.study", "study.py", "--out", out, "--prepare"], cwd=tmp_path, capture_output=True, text=True)  # fmt: skip
+    table = os.path.join(out, "table.txt")
+    return done, open(table).read() if os.path.exists(table) else ""
+
+
+def test_studies_vary_ties(tmp_path):
+    done, table = prepared(tmp_path, '{"wire.strength": lognormal(500, 0.2), "wire.stiffness": field(cov=0.1)}')  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    head = table.splitlines()[0]
+    assert "wire.strength" in head and "field:wire.stiffness" in head.replace("!", "")
+
+
+@pytest.mark.parametrize(
+    "vary, text",
+    [
+        ('{"wire.strength": normal(500, 0.5)}', "gives impossible values in 2.3 % of all rows: it must be at least 0 and at most 1e+15 N"),
+        ('{"wyre.strength": lognormal(500, 0.2)}', "no joint, beam, tie, spring or fibre layer 'wyre', there are bed, support, wire"),
+    ],
+)  # fmt: skip
+def test_studies_name_what_a_tie_cannot_have(tmp_path, vary, text):
+    done, table = prepared(tmp_path, vary)
+    assert done.returncode != 0 and not table
+    assert text in " ".join(done.stderr.split())
