@@ -10,7 +10,7 @@ namespace masonry {
 void MasonryContacts::action() {
     const EngineTurn turn(*scene, *this);
     act(turn.store());
-    handOver(turn.store());
+    handOver_.act(turn.store(), *this);
     turn.end();
 }
 

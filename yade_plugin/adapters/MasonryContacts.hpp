@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
-#include "scene/Contacts.hpp"
+#include "scene/HandOver.hpp"
 #include "scene/SceneCheck.hpp"
 
 namespace masonry {
@@ -82,6 +82,8 @@ public:
 private:
     int countTouching();
     Vector3r forceBetween(int id1, int id2);
+
+    HandOver handOver_; // holds no state: what it keeps follows from the scene
 };
 
 } // namespace masonry

@@ -2,7 +2,6 @@
 #include "Contacts.hpp"
 #include "Blocks.hpp"
 #include "BodyCheck.hpp"
-#include "Resultant.hpp"
 #include "common/Parallel.hpp"
 #include "contact/ContactStep.hpp"
 #include <Eigen/Geometry>
@@ -279,7 +278,7 @@ void Contacts::act(SceneContents& contents) {
     for (int id : ids_)
         if (!contents.loop) all.notice(id); // that engine has looked whether scripts have moved bodies
     turnBlocks(contents);
-    if (takesJoints && contents.scene().iter % HandOver::every == 0) wake(contents);
+    if (takesJoints && contents.scene().iter % lookEvery == 0) wake(contents);
     if (stale_ || moved(contents)) findPairs(contents);
     countChanges(contents);
     const double ratio = dampingRatio(restitution);
@@ -325,9 +324,9 @@ void Contacts::wake(const SceneContents& contents) {
     for (int id : ids_) {
         if (awake_.count(id) || isHeld(contents, id)) continue;
         const auto& s = contents.bodies.state(id);
-        const double way = (columnOf(contents.bodies.position, id) - s.refPos).norm();
+        const double moved = (columnOf(contents.bodies.position, id) - s.refPos).norm();
         const double turn = (turns_[std::size_t(id)] - s.refOri.toRotationMatrix()).norm();
-        if (!jointed.count(id) || way + turn * blocks_[std::size_t(id)].radius > 0.5 * usedSkin_) found.insert(id);
+        if (!jointed.count(id) || moved + turn * blocks_[std::size_t(id)].radius > 0.5 * usedSkin_) found.insert(id);
     }
     const auto before = awake_.size();
     awake_.insert(found.begin(), found.end());
@@ -408,40 +407,23 @@ double Contacts::settle(const SceneContents& contents, Pair& pair, const Vector3
 // The force of a joint goes on as that of a contact: along the normal it is the same, and along the face it is cut to
 // friction. What remains are moments, and what is not the same counts as given: the difference of the elastic energies
 // here, and the work of the difference of both forces in the half step that follows (countChanges).
-void Contacts::handOver(SceneStore& store) {
-    if (!takesJoints || store.scene().iter % HandOver::every != 0) return;
-    const auto due = due_.due(store);
-    if (due.empty()) return;
-    struct Joint {
-        int body1, body2;
-        Vector3r normal, force; // from body 1 to body 2; on body 1 [N]
-    };
-    std::vector<Joint> all;
-    for (const auto& joint : due) {
-        const auto& r = joint.geom->reference();
-        const int body1 = r.sides[0].body, body2 = r.sides[1].body;
-        const auto at1 = resultantOf(store.scene(), *joint.interaction, columnOf(store.bodies.position, body1));
-        const auto at2 = resultantOf(store.scene(), *joint.interaction, columnOf(store.bodies.position, body2));
-        const Vector3r normal = turns_[std::size_t(body1)] * (r.sides[0].orientation.conjugate() * r.normal) +
-                                turns_[std::size_t(body2)] * (r.sides[1].orientation.conjugate() * r.normal);
-        all.push_back({body1, body2, normal.normalized(), at1.force});
-        changes_.push_back({body1, at1.force, at1.moment});
-        changes_.push_back({body2, -at1.force, -at2.moment});
-        handing -= HandOver::release(joint);
-        for (int body : {body1, body2})
-            awake_.insert(body);
-        ++handed;
+void Contacts::takeOver(const SceneContents& contents, const std::vector<Joint>& joints) {
+    for (const auto& joint : joints) {
+        changes_.push_back({joint.body1, joint.force, joint.torque1});
+        changes_.push_back({joint.body2, -joint.force, joint.torque2});
+        awake_.insert(joint.body1);
+        awake_.insert(joint.body2);
     }
-    store.jointsHanded();
-    prepare(store);
-    turnBlocks(store);
-    findPairs(store);
-    for (const auto& joint : all) {
+    handed += int(joints.size());
+    prepare(contents);
+    turnBlocks(contents);
+    findPairs(contents);
+    for (const auto& joint : joints) {
         auto* pair = pairOf(joint.body1, joint.body2);
         if (!pair) continue;
         const double sign = pair->one == joint.body1 ? 1 : -1;
-        handing += settle(store, *pair, sign * joint.normal, -sign * joint.force);
-        const auto pose = poseOf(store, *pair);
+        handing += settle(contents, *pair, sign * joint.normal, -sign * joint.force);
+        const auto pose = poseOf(contents, *pair);
         Overlap overlap;
         if (!finders_.front().find(blocks_[std::size_t(pair->one)], blocks_[std::size_t(pair->other)], pose, pair->axis,
                                    overlap))

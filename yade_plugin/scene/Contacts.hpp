@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Contacts of rigid blocks that no joint connects, wherever they meet. An engine derives from it.
 #pragma once
-#include "HandOver.hpp"
+#include "SceneContents.hpp"
 #include "common/Property.hpp"
 #include "contact/BroadPhase.hpp"
 #include "contact/ContactDamping.hpp"
@@ -38,8 +38,16 @@ public:
 
     // Adds the forces of all contacts to those of the present step, and counts their energies.
     void act(SceneContents&);
-    // Hands over the joints that are due, when all forces of the step are there.
-    void handOver(SceneStore&);
+    // What a joint did to its bodies in this step, when it was handed over.
+    struct Joint {
+        int body1, body2;
+        Vector3r normal, force;    // from body 1 to body 2; on body 1 [N]
+        Vector3r torque1, torque2; // about the centres of both bodies [N m]
+    };
+    static constexpr int lookEvery = 10; // steps between two looks at joints and at bodies that wake
+    // Goes on from the next step where these joints stood, which have no forces any more (HandOver). To be called when
+    // the scene has been read again.
+    void takeOver(const SceneContents&, const std::vector<Joint>&);
     // Elastic energy of all contacts in the last step [J].
     double elastic(const SceneContents&);
     // Bound of the largest eigenvalue of stiffness over mass that contacts bring, now and later [1/s²].
@@ -118,7 +126,6 @@ private:
     std::vector<std::pair<int, int>> joined_; // bodies that have a joint, sorted
     std::set<int> awake_;                     // where joints are handed over: bodies that may come near others
     std::vector<Change> changes_;
-    HandOver due_;
     double usedSkin_ = 0;
     double bound_ = 0, boundStiffness_ = -1, boundRatio_ = -1; // largestEigenvalue(), and what it was found for
     long boundRevision_ = -1;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "HandOver.hpp"
+#include "Resultant.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -17,6 +18,16 @@ double extent(const Polygon& points, const Vector3r& direction) {
         most = std::max(most, direction.dot(p));
     }
     return most - least;
+}
+
+Quaternionr turnOf(const SceneStore& store, int body) {
+    const auto& q = store.bodies.orientation;
+    return {q[0][body], q[1][body], q[2][body], q[3][body]};
+}
+
+Vector3r placeOf(const SceneStore& store, int body) {
+    const auto& x = store.bodies.position;
+    return {x[0][body], x[1][body], x[2][body]};
 }
 
 // Elastic energy of a joint [J].
@@ -66,12 +77,8 @@ bool HandOver::isDue(const SceneStore& store, const JointView& joint, const Size
     if (bond) return false;
     const double n = shapes.points;
     if (std::abs(along) / n > slide * size.along || std::abs(across) / n > slide * size.across) return true;
-    const auto& bodies = store.bodies;
-    const auto turnOf = [&](int body) {
-        return Quaternionr(bodies.orientation[0][body], bodies.orientation[1][body], bodies.orientation[2][body],
-                           bodies.orientation[3][body]);
-    };
-    const double w = std::abs((turnOf(r.sides[0].body).conjugate() * turnOf(r.sides[1].body) * size.back).w());
+    const double w =
+        std::abs((turnOf(store, r.sides[0].body).conjugate() * turnOf(store, r.sides[1].body) * size.back).w());
     return w < std::cos(0.5 * turn);
 }
 
@@ -104,6 +111,25 @@ double HandOver::release(const JointView& joint) {
         geom.group->setViscous(p, j, Vector3r::Zero());
     geom.group->joints[j].handed = true;
     return before - stored(joint);
+}
+
+void HandOver::act(SceneStore& store, Contacts& contacts) {
+    if (!contacts.takesJoints || store.scene().iter % Contacts::lookEvery != 0) return;
+    std::vector<Contacts::Joint> all;
+    for (const auto& joint : due(store)) {
+        const auto& r = joint.geom->reference();
+        const int body1 = r.sides[0].body, body2 = r.sides[1].body;
+        const auto normalBy = [&](int side) {
+            return Vector3r(turnOf(store, r.sides[side].body) * (r.sides[side].orientation.conjugate() * r.normal));
+        };
+        const auto at1 = resultantOf(store.scene(), *joint.interaction, placeOf(store, body1));
+        const auto at2 = resultantOf(store.scene(), *joint.interaction, placeOf(store, body2));
+        all.push_back({body1, body2, (normalBy(0) + normalBy(1)).normalized(), at1.force, at1.moment, -at2.moment});
+        contacts.handing -= release(joint);
+    }
+    if (all.empty()) return;
+    store.jointsHanded();
+    contacts.takeOver(store, all);
 }
 
 } // namespace masonry

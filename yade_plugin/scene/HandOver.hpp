@@ -3,25 +3,20 @@
 // points of the reference state. Where its bond is gone and its blocks have moved far against each other, the contact
 // of the two blocks takes its place (scene/Contacts), and the joint has no forces any more.
 #pragma once
+#include "Contacts.hpp"
 #include "SceneStore.hpp"
 
 namespace masonry {
 
 class HandOver {
 public:
-    static constexpr int every = 10; // steps between two looks
-
     // How far the blocks of a joint without bond may move before it is handed over.
     double slide = 0.02;                // mean slide over the size of the joint in that direction [-]
     double turn = 0.017453292519943295; // rotation of both blocks against each other since the reference state [rad]
     double opening = 0.02; // smallest opening over the larger size of the joint [-]: beyond it a bond does not count
 
-    // The joints between rigid blocks that are due, in the host's order.
-    std::vector<JointView> due(const SceneStore&);
-
-    // Takes the forces from a joint: what is pressed or sheared is at rest from now on, and what is open stays as it is
-    // for files. Returns the elastic energy that it had [J].
-    static double release(const JointView&);
+    // Hands over the joints between rigid blocks that are due, when all forces of the step are there.
+    void act(SceneStore&, Contacts&);
 
 private:
     struct Size {
@@ -30,6 +25,10 @@ private:
         bool bonded;            // whether the law has a bond at all
     };
     void measure(const SceneStore&);
+    std::vector<JointView> due(const SceneStore&); // in the host's order
+    // Takes the forces from a joint: what is pressed or sheared is at rest from now on, and what is open stays as it is
+    // for files. Returns the elastic energy that it had [J].
+    static double release(const JointView&);
     bool isDue(const SceneStore&, const JointView&, const Size&) const;
 
     long revision_ = -1;

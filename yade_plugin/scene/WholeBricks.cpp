@@ -17,7 +17,7 @@ using yade::Vector3r;
 namespace {
 
 constexpr int piece = RigidMotion::most; // number of bricks that a thread takes at a time
-constexpr double flatness = 1e-9;            // of a brick's length: its halves are where they were by this much at least
+constexpr double flatness = 1e-9;        // of a brick's length: its halves are where they were by this much at least
 constexpr double slow = 1e-3;            // the same of velocities
 constexpr unsigned allAxes = 63;
 

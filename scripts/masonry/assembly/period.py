@@ -38,6 +38,8 @@ def firstPeriod(structure, direction, longest):
     before = saveScene("null")
     every = max(1, int(SAMPLE * structure.args.density_scaling**0.5 / O.dt))
     most = int(0.5 * longest / (every * O.dt))
+    if most < FEWEST:
+        return None
     push = SHARE * GRAVITY / structure.args.density_scaling * direction
     try:
         for beyond in BEYOND:
@@ -51,7 +53,7 @@ def firstPeriod(structure, direction, longest):
             loadScene(before)
             for momentum in _momenta(structure, direction, -push, every):
                 back.append(there[len(back)] - momentum)
-                if not back[-1] > 0 or len(back) == min(most, len(there)):
+                if not back[-1] > 0 or len(back) >= min(most, len(there)):
                     break
             loadScene(before)
             if back[-1] <= 0 or len(back) >= most:

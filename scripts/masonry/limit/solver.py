@@ -21,6 +21,7 @@ INTS = 2  # so many of the arrays of a programme, the first ones, are of 32-bit 
 INTERIOR_POINT = 4  # a method of Clp, as its ClpSolve.hpp counts them
 NO_PRESOLVE = 1  # so, too
 FOREVER = 1e9  # time that is none for Clp [s]
+MISSED = 1e-7  # by so much a row may be missed
 STOPPED = 3  # the status of Clp after its longest time
 SIMPLEX = 1500  # from so many variables on HiGHS uses its interior-point method
 PARENT_ENDS = 1  # PR_SET_PDEATHSIG of Linux
@@ -37,7 +38,7 @@ def withClp(clp, head, arrays):
     rows, equations, columns = (head[name] for name in HEAD[:3])
     numbers = ctypes.POINTER(ctypes.c_double)
     clp.Clp_newModel.restype = clp.ClpSolve_new.restype = ctypes.c_void_p
-    for name in ("Clp_primalColumnSolution", "Clp_dualRowSolution"):
+    for name in ("Clp_primalColumnSolution", "Clp_primalRowSolution", "Clp_dualRowSolution"):  # fmt: skip
         getattr(clp, name).restype = numbers
     model = ctypes.c_void_p(clp.Clp_newModel())
     try:
@@ -51,6 +52,13 @@ def withClp(clp, head, arrays):
         clp.ClpSolve_setPresolveType(how, NO_PRESOLVE, -1)
         clp.Clp_initialSolveWithOptions(model, how)
         clp.ClpSolve_delete(how)
+        if not clp.Clp_status(model):
+            # Without its scaling, the solution may miss rows by more than the tolerance. The simplex method mends that.
+            found = clp.Clp_primalRowSolution(model)[:rows]
+            if any(not a - MISSED <= v <= b + MISSED for a, v, b in zip(arrays[-2], found, arrays[-1])):  # fmt: skip
+                clp.Clp_scaling(model, 0)
+                clp.Clp_setPrimalTolerance(model, ctypes.c_double(0.01 * MISSED))
+                clp.Clp_primal(model, 0)
         status = clp.Clp_status(model)
         if status == STOPPED:
             return "late", "", b""

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Joints that are handed over to contact: blocks that tip over or slide off go on, land and come to rest."""
+
+import hashlib
+import math
+
+import numpy as np
+import pytest
+from masonry import (
+    MasonryJoint,
+    addBlock,
+    connect,
+    criticalTimeStep,
+    engine,
+    engines,
+    loadCheckpoint,
+    saveCheckpoint,
+)
+from masonry._masonry import allowThreads
+from masonry.bricks import boxCorners as corners
+from yade import O
+from yade.wrapper import *
+
+G = 9.81
+B, H = 0.25, 1.0  # of what stands on the ground [m]
+STIFF = 1e10  # [Pa/m]
+
+
+def joint(**other):
+    return MasonryJoint(
+        **{
+            **dict(name="dry", tensileStrength=0, cohesion=0, cap=False),
+            **dict(friction=0.7, residualFriction=0.7),
+            **dict(normalStiffness=STIFF, shearStiffness=0.5 * STIFF),
+            **other,
+        }
+    )
+
+
+def standing(count=1, push=1.2, step=0.5, joint=joint, follow=True, **around):
+    """Blocks on top of each other, on the ground, under a horizontal gravity that is `push` times the one that tips them."""
+    O.reset()
+    mat = MasonryMat(density=1800, young=1e12, poisson=0.16)
+    addBlock(corners((-3, -1, -0.4), (3, 1, 0)), mat)
+    for i in range(count):
+        addBlock(corners((0, 0, i * H / count), (B, B, (i + 1) * H / count)), mat)
+    O.bodies[0].state.blockedDOFs = "xyzXYZ"
+    gravity = push * G * B / H, 0, -G
+    engines([joint()], gravity=gravity, **{"damping": 0, **around})
+    contacts = MasonryContacts(
+        normalStiffness=STIFF,
+        tangentialRatio=0.5,
+        friction=0.7,
+        takesJoints=follow,
+    )
+    all = list(O.engines)
+    loop = next(
+        n
+        for n, e in enumerate(all)
+        if isinstance(e, (MasonryJointLoop, InteractionLoop))
+    )
+    O.engines = [*all[: loop + 1], contacts, *all[loop + 1 :]]
+    connect()
+    O.dt = step * criticalTimeStep()[0]
+    return contacts
+
+
+def balance():
+    return engine("energy").balance()
+
+
+def until(time):
+    O.run(max(1, math.ceil((time - O.time) / O.dt)), True)
+
+
+def bits():
+    states = [[*b.state.pos, *b.state.ori, *b.state.vel, *b.state.angVel] for b in O.bodies]  # fmt: skip
+    return hashlib.sha256(np.array([*states[0], *states[-1], *balance().values()]).tobytes()).hexdigest()  # fmt: skip
+
+
+def test_a_block_tips_over_lands_on_its_side_and_rests(scene):
+    contacts = standing()
+    until(0.6)
+    assert contacts.handed == 1 and contacts.touching() == 1
+    assert abs(balance()["error"]) < 1e-6
+    until(1.0)
+    mover = next(e for e in O.engines if isinstance(e, MasonryIntegrator))
+    mover.gravity = (0, 0, -G)
+    until(2.5)
+    s = O.bodies[1].state
+    assert s.pos[2] == pytest.approx(B / 2, abs=1e-6)
+    assert abs((s.ori * s.refOri.conjugate()).toRotationMatrix()[2, 0]) == pytest.approx(1, abs=1e-6)  # fmt: skip
+    assert s.vel.norm() < 1e-9
+    weight = s.mass * G
+    assert contacts.forceOf(0, 1)[2] == pytest.approx(weight, rel=1e-6)
+    assert abs(balance()["error"]) < 0.02  # of the impact of two faces
+
+
+def test_the_force_of_a_joint_goes_on_when_it_is_handed_over(scene):
+    """Force on the ground in the last step of the joint and in the first of the contact, of a block that does not swing."""
+    contacts = standing(damping=0.3)
+    while contacts.handed == 0:
+        O.step()
+    force = O.forces.f(0)  # of the joint, which was handed over at the end of this step
+    O.step()
+    after = O.forces.f(0)
+    assert after[2] == pytest.approx(force[2], rel=0.02) and force[2] < 0
+    assert after[0] == pytest.approx(force[0], abs=0.02 * abs(force[2]))
+    now = balance()
+    assert now["elastic_shear"] == now["elastic_compression"] == 0
+    assert abs(now["error"]) < 1e-5
+    assert now["handing"] > 0
+
+
+def test_a_joint_that_is_not_due_is_not_handed_over(scene):
+    """A block that stands, and one whose bond holds."""
+    contacts = standing(push=0.5)
+    until(0.2)
+    assert contacts.handed == 0 and contacts.touching() == 0
+    bonded = lambda: joint(tensileStrength=1e6, cohesion=2e6, modeIFractureEnergy=100, modeIIFractureEnergy=1000)  # fmt: skip
+    contacts = standing(joint=bonded)
+    until(0.2)
+    assert contacts.handed == 0
+
+
+def test_without_hand_over_the_run_ends_as_ever(scene):
+    contacts = standing(follow=False)
+    with pytest.raises(RuntimeError, match="^collapsed: block 1 has turned by"):
+        until(2)
+    assert contacts.handed == 0
+
+
+def test_a_stack_that_falls_has_the_same_bits_with_threads_and_from_a_checkpoint(scene, tmp_path):  # fmt: skip
+    found = []
+    for threads in (1, 2):
+        contacts = standing(3)
+        allowThreads(threads)
+        until(0.8)
+        saveCheckpoint(str(tmp_path / "now"))
+        until(1.3)
+        assert contacts.handed >= 2
+        found.append(bits())
+    allowThreads(1)
+    assert found[0] == found[1]
+    contacts = standing(3)
+    loadCheckpoint(str(tmp_path / "now"))
+    assert contacts.handed > 0
+    until(1.3)
+    assert bits() == found[0]
+
+
+def test_hand_over_with_functors_is_refused(scene):
+    with pytest.raises(ValueError, match="takesJoints needs MasonryJointLoop"):
+        standing(functors=True)
