@@ -146,8 +146,8 @@ def ofStudies():
         Result("sensitivity/tornado", (program("sensitivity/tornado.py"),), ("sensitivity/tornado.png",), ("validation/sensitivity/tornado.py", "validation/sensitivity/ranges.py", *walls, *RIGID), 45, ("validation/sensitivity/wall*",)),
         Result("sensitivity/comp4", study("sensitivity/comp4"), ("sensitivity/comp4_*.png",), ("validation/sensitivity/comp4.py", "validation/sensitivity/ranges.py", *RIGID), 24, ("validation/sensitivity/comp4",)),
         Result("sensitivity/comp1", study("sensitivity/comp1"), ("sensitivity/comp1_*.png",), ("validation/sensitivity/comp1.py", "validation/sensitivity/ranges.py", *RIGID), 16, ("validation/sensitivity/comp1",)),
-        Result("random_fields/one_metre", study("random_fields/one_metre"), ("random_fields/*_one_metre.png",), ("validation/random_fields/*.py", *RIGID), 60, ("validation/random_fields/one_metre",)),
-        Result("random_fields/one_brick", study("random_fields/one_brick"), ("random_fields/*_one_brick.png",), ("validation/random_fields/*.py", *RIGID), 60, ("validation/random_fields/one_brick",)),
+        Result("random_fields/one_metre", study("random_fields/one_metre"), ("random_fields/*_one_metre.png",), ("validation/random_fields/*.py", *RIGID), 20, ("validation/random_fields/one_metre",)),
+        Result("random_fields/one_brick", study("random_fields/one_brick"), ("random_fields/*_one_brick.png",), ("validation/random_fields/*.py", *RIGID), 20, ("validation/random_fields/one_brick",)),
         Result("multifidelity", (program("multifidelity/multifidelity.py", "--jobs", "2"),), ("multifidelity/multifidelity.png",), (*own("multifidelity"), *RIGID, *DEFORMABLE), 120, ("validation/multifidelity",)),
         Result("benchmark", (inYade("benchmark/benchmark.py"), program("benchmark/threads.py"), program("benchmark/plain.py"), inYade("benchmark/shaken_facade.py", "--lean", "--preset", "fast")), (), ("validation/benchmark/*.py", *ALL), 15, ("benchmark",)),
     ]  # fmt: skip

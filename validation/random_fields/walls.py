@@ -13,14 +13,14 @@ BONDS = (
 
 
 def walls(length):
-    """1,000 walls COMP-4 with a lognormal field of bond strengths about those of the scene.
+    """300 walls COMP-4 with a lognormal field of bond strengths about those of the scene.
 
     :param length: correlation length [m]
     """
     return Study(
         "wall_comp4",
         options={"preset": "fast", "until": 6},
-        runs=1000,
+        runs=300,
         seed=1,
         vary={BONDS: field(cov=0.3, length=length)},
     )
