@@ -122,14 +122,14 @@ def ofStudies():
     )  # fmt: skip
     loops = [(law, "softening" if law == "softening" else "cyclic") for law in ("cyclic", "softening")]  # fmt: skip
     return [
-        Result("closed_forms", (inYade("closed_forms/closed_forms.py"),), (), (*own("closed_forms"), *ALL), 3),
+        Result("closed_forms", (inYade("closed_forms/closed_forms.py"),), (), (*own("closed_forms"), *ALL), 3, limits=True),
         Result("closed_forms/convergence", (inYade("closed_forms/convergence.py"),), (), (*own("closed_forms"), *RIGID), 3),
         Result("statics", (inYade("statics/statics.py", "--sample", "500", "--seed", "31"),), (), (*own("statics"), *ALL), 10),
-        Result("held_loads", (inYade("held_loads/held_loads.py"),), (), (*own("held_loads"), *RIGID), 6),
-        Result("stability/map", (inYade("stability/stability.py"),), ("stability/map.png",), ("validation/stability/stability.py", *ALL), 9),
-        Result("stability/onset", (inYade("stability/onset.py"),), (), ("validation/stability/onset.py", *ALL), 2),
-        Result("stability/invariance", (inYade("stability/invariance.py"),), (), ("validation/stability/invariance.py", *RIGID), 0.5),
-        Result("stability/extremes", (inYade("stability/extremes.py"), inYade("stability/extremes.py", "--falls", "40")), (), ("validation/stability/extremes.py", *ALL), 8),
+        Result("held_loads", (inYade("held_loads/held_loads.py"),), (), (*own("held_loads"), *RIGID), 6, limits=True),
+        Result("stability/map", (inYade("stability/stability.py"),), ("stability/map.png",), ("validation/stability/stability.py", *ALL), 9, limits=True),
+        Result("stability/onset", (inYade("stability/onset.py"),), (), ("validation/stability/onset.py", *ALL), 2, limits=True),
+        Result("stability/invariance", (inYade("stability/invariance.py"),), (), ("validation/stability/invariance.py", *RIGID), 0.5, limits=True),
+        Result("stability/extremes", (inYade("stability/extremes.py"), inYade("stability/extremes.py", "--falls", "40")), (), ("validation/stability/extremes.py", *ALL), 8, limits=True),
         Result("stability/soak", (inYade("stability/soak.py"),), (), ("validation/stability/soak.py", *RIGID), 5),
         *(
             Result(f"dry_joint_walls/loops_{law}", (program("dry_joint_walls/compare_loops.py", "--joints", joints),), (f"dry_joint_walls/loops_{law}*",),
