@@ -193,15 +193,16 @@ def test_a_block_rocks_in_the_time_of_a_pivot(scene):
     assert O.time == pytest.approx(time, rel=0.01)
 
 
-def heap(count, seed=3):
-    """Bricks above each other, turned at random, over a ground."""
-    ground()
+def heap(count, seed=3, abreast=1):
+    """Bricks above each other, so many abreast, turned at random, over a ground."""
+    ground(size=(20, 20, 0.4))
     dice = np.random.default_rng(seed)
     for n in range(count):
         turn = Quaternion(*dice.normal(size=4))
         turn.normalize()
         place = (0.15 * dice.uniform(-1, 1), 0.15 * dice.uniform(-1, 1))
-        box((0.11, 0.102, 0.081), (*place, 0.1 + 0.05 * n * 3.2), turn)
+        level, column = divmod(n, abreast)
+        box((0.11, 0.102, 0.081), (place[0] + 0.5 * column, place[1], 0.1 + 0.16 * level), turn)  # fmt: skip
 
 
 def states():
@@ -211,12 +212,12 @@ def states():
     ]
 
 
-@pytest.mark.parametrize("count", [12, pytest.param(200, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [12, pytest.param(200, marks=pytest.mark.long)])
 def test_a_heap_comes_to_rest_with_a_balance_of_energy(scene, count):
-    heap(count)
+    heap(count, abreast=1 if count < 20 else 10)
     # The error of the balance falls with the time step: 0.2 % at half of the limit.
     prepare(0.2, normalStiffness=1e9, restitution=0.3)
-    until(0.25 * math.sqrt(count) + 1.2)
+    until(2.1 if count < 20 else 3)
     found = balance()
     assert found["kinetic"] < 1e-5 * found["gravity"]
     assert abs(found["error"]) < 1e-3

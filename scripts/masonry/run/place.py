@@ -37,7 +37,7 @@ class Place:
     bounds: dict = field(default_factory=dict)  # what limit analysis found, by the load
     #: Load factors under which the structure came to rest, by the names of their bounds.
     held: dict = field(default_factory=dict)
-    #: What stages pushed or put on, by their numbers: the kind (``push``, ``lean`` or ``growth``), the name of the load and
+    #: What stages pushed or put on, by their numbers: the kind, of LOADS, the name of the load and
     #: that of the opposite one.
     loads: dict = field(default_factory=dict)
     #: How stages ended, by their numbers, and the number of the last stage then: a stage may consist of several.
@@ -71,6 +71,8 @@ def restored(example, values):
     return type(example)(**{**before, **values})
 
 
+#: Kinds of loads of :attr:`Place.loads`.
+LOADS = "push", "lean", "growth"
 #: What an answer of a stage has, as of masonry.scene.stages.stage.
 ANSWER = {"stage", "number", "name", "unit", "value", "how", "uncertainty"}
 
@@ -145,7 +147,10 @@ class Saved:
             and at.frameCount <= len(at.frames)
             and at.number <= len(at.stages)
             and alike(at.places, None)
-            and all(alike(load, ["", "", ""]) for load in at.loads.values())
+            and all(
+                alike(load, ["", "", ""]) and load[0] in LOADS
+                for load in at.loads.values()
+            )
             and alike(at.frames + at.resumed, None)
         ):
             raise otherVersion("the counters of the run")
