@@ -6,7 +6,6 @@
 
 import os
 import shutil
-import subprocess
 import sys
 
 import matplotlib
@@ -15,7 +14,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from masonry.read.files import readCurve
-from studies import HERE, RESULTS, ROOT, readCase
+from studies import HERE, RESULTS, readCase
 
 STYLES = {"rigid": "-", "deformable": "--"}
 
@@ -50,14 +49,6 @@ def wall(case):
     axes.grid(alpha=0.3)
     axes.legend()
     save(figure, case, "curve.png")
-
-
-def dryWall(case):
-    """cracks.png: the crack pattern of the scene at 3 mm."""
-    folder = os.path.join(RESULTS, "validation", case, "pattern")
-    scene = os.path.join(ROOT, "scripts", "wall_dry.py")
-    subprocess.run(["yade", "-n", "-x", scene, "--until", "3", "--out", folder], check=True)  # fmt: skip
-    shutil.copy(os.path.join(folder, "cracks.png"), os.path.join(HERE, case, "cracks.png"))  # fmt: skip
 
 
 def couplet(case):
@@ -124,4 +115,4 @@ def couplet(case):
 
 if __name__ == "__main__":
     case = sys.argv[1]
-    {"couplet": couplet, "dry_joint_walls": dryWall}.get(case, wall)(case)
+    couplet(case) if case == "couplet" else wall(case)

@@ -106,6 +106,8 @@ def ofCases():
             )  # fmt: skip
         if case == "dry_joint_walls":
             yield Result(f"{case}/envelopes", ((PYTHON, f"validation/{case}/compare.py"),), (f"{case}/envelopes.png",), ("validation/dry_joint_walls/compare.py",), 0.2, needs=tuple(names))  # fmt: skip
+            yield Result(f"{case}/figures", ((PYTHON, f"validation/{case}/pattern.py"),), (f"{case}/cracks.png",), (f"validation/{case}/pattern.py", "scripts/wall_dry.py", *RIGID), 0.3)  # fmt: skip
+            continue
         figures = (f"{case}/curve*.png", f"{case}/cracks*.png")
         yield Result(f"{case}/figures", ((PYTHON, "validation/figures.py", case),), figures, ("validation/figures.py",), 0.3, needs=tuple(names))  # fmt: skip
 
