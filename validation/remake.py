@@ -131,7 +131,7 @@ def ofStudies():
         Result("stability/map", (inYade("stability/stability.py"),), ("stability/map.png",), ("validation/stability/stability.py", *ALL), 9, limits=True),
         Result("stability/onset", (inYade("stability/onset.py"),), (), ("validation/stability/onset.py", *ALL), 2, limits=True),
         Result("stability/invariance", (inYade("stability/invariance.py"),), (), ("validation/stability/invariance.py", *RIGID), 0.5, limits=True),
-        Result("stability/extremes", (inYade("stability/extremes.py"), inYade("stability/extremes.py", "--falls", "40")), (), ("validation/stability/extremes.py", *ALL), 8, limits=True),
+        Result("stability/extremes", (inYade("stability/extremes.py"), inYade("stability/extremes.py", "--falls", "--scenes", "40")), (), ("validation/stability/extremes.py", *ALL), 8, limits=True),
         Result("stability/soak", (inYade("stability/soak.py"),), (), ("validation/stability/soak.py", *RIGID), 5),
         *(
             Result(f"dry_joint_walls/loops_{law}", (program("dry_joint_walls/compare_loops.py", "--joints", joints),), (f"dry_joint_walls/loops_{law}*",),
