@@ -3,7 +3,7 @@
 # Sets up what is missing and runs tests, fastest ring first.
 #
 #   bash scripts/test.sh                   the tests but those with sanitizers and the longest, on all cores side by side
-#   bash scripts/test.sh all               the longest, too, among them the site of the documentation: five minutes more
+#   bash scripts/test.sh all               the longest, too, among them the site of the documentation and fuzz
 #   bash scripts/test.sh quick             C++ of each layer, the gates, and the fast part of the host: under a minute
 #   bash scripts/test.sh tests/law ...     these tests alone, one after the other; all arguments go to pytest
 #   bash scripts/test.sh tests/sanitizers  memory, arithmetic, and races between threads, for which the plugin is built twice
@@ -19,7 +19,7 @@ if [[ "${1:-}" == quick ]]; then
     workers=$(nproc)
 else
     # For gates, sanitizers, studies, YADE's 3-D view, the page in 3-D, and notebooks; for all tests also the site of the documentation
-    # and fuzz. ParaView is not among them: it is 77 MB, and its thirteen tests take two of fourteen minutes; where it is installed as
+    # and fuzz. ParaView is not among them: it is 77 MB, and its thirteen tests take two minutes; where it is installed as
     # scripts/README.md says under "Pictures", they run. Nor is Chromium, which is larger: apt-get install
     # --no-install-recommends chromium lets the page's tests in it run.
     longest=()

@@ -38,7 +38,7 @@ TOGETHER = [
     "site",
 ]  # fixtures that many tests share
 
-#: Tests that take ten seconds to a minute each, and of which others try a part: ``scripts/test.sh`` leaves them out, and
+#: Tests that take some seconds to a minute each, and of which others try a part: ``scripts/test.sh`` leaves them out, and
 #: ``scripts/test.sh all`` runs them.
 LONG = [
     "test_companions_end_with_the_run_and_the_same_command_goes_on",

@@ -123,6 +123,15 @@ def test_a_joint_that_is_not_due_is_not_handed_over(scene):
     assert contacts.handed == 0
 
 
+def test_a_joint_of_a_block_without_contacts_is_not_handed_over(scene):
+    """Nothing would take its place, so the run ends where the joint does."""
+    contacts = standing()
+    contacts.bodies = [0]
+    with pytest.raises(RuntimeError, match="^collapsed: block 1 has turned by"):
+        until(2)
+    assert contacts.handed == 0
+
+
 def test_without_hand_over_the_run_ends_as_ever(scene):
     contacts = standing(follow=False)
     with pytest.raises(RuntimeError, match="^collapsed: block 1 has turned by"):

@@ -20,7 +20,7 @@ using yade::State;
 
 namespace {
 
-// Elastic energy [J] that joints got so far when bricks split and when joints were refined.
+// Elastic energy [J] that joints got so far when bricks split, when joints were refined and when they were handed over.
 double givenByChanges(const SceneStore& store) {
     double all =
         (store.integrator ? store.integrator->bricks.energy : 0) + (store.loop ? store.loop->refiningEnergy : 0);

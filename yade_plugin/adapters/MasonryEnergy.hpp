@@ -127,7 +127,8 @@ public:
                 "and dissipated_ "
                 "tension, shear, compression; elastic_connectors and dissipated_connectors of ties and springs where "
                 "there are "
-                "some; elastic_contacts, friction_contacts and damping_contacts of MasonryContacts where there is one; "
+                "some; handing, elastic_contacts, friction_contacts and damping_contacts of MasonryContacts where "
+                "there is one; "
                 "and error, the balance's error relative to the work done [-].")
             .def("given", &MasonryEnergy::given,
                  "Count the kinetic energy of the present motion as work done from outside. Call this directly after "

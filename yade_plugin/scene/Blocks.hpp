@@ -24,4 +24,15 @@ ConvexBlock blockOf(yade::Shape&);
 // The same block at a position and orientation, in global axes.
 ConvexBlock blockOf(yade::Shape&, const yade::Vector3r& position, const yade::Quaternionr& orientation);
 
+// Extent of points along a direction [m].
+template <class Points> double extent(const Points& points, const yade::Vector3r& direction) {
+    double least = HUGE_VAL, most = -HUGE_VAL;
+    for (const auto& p : points) {
+        const double at = direction.dot(p);
+        least = std::min(least, at);
+        most = std::max(most, at);
+    }
+    return most - least;
+}
+
 } // namespace masonry

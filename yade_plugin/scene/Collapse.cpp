@@ -12,17 +12,6 @@ using yade::State;
 
 namespace {
 
-// Extent of points along a direction [m].
-template <class Points> double extent(const Points& points, const Vector3r& direction) {
-    double least = HUGE_VAL, most = -HUGE_VAL;
-    for (const auto& p : points) {
-        const double at = direction.dot(p);
-        least = std::min(least, at);
-        most = std::max(most, at);
-    }
-    return most - least;
-}
-
 // Largest distance of two corners [m].
 double diameter(const std::vector<Vector3r>& corners) {
     double most = 0;

@@ -315,22 +315,28 @@ bool Contacts::isAwake(const SceneContents& contents, int body) const {
 // reference place by half of the skin. Where it overlaps a block then that it has no joint with, the gap of the pair is
 // as wide: neighbours that share an edge only are pressed a little into each other by the stress of the joints around.
 void Contacts::wake(const SceneContents& contents) {
-    std::set<int> jointed, found;
+    std::vector<unsigned char> jointed(std::size_t(contents.bodies.size()), 0);
     for (const auto& joint : contents.joints) {
         const auto& r = joint.geom->reference();
-        for (const auto& side : r.sides)
-            (r.handed ? found : jointed).insert(side.body);
+        if (!r.handed)
+            for (const auto& side : r.sides)
+                jointed[std::size_t(side.body)] = 1;
     }
+    const auto before = awake_.size();
     for (int id : ids_) {
         if (awake_.count(id) || isHeld(contents, id)) continue;
         const auto& s = contents.bodies.state(id);
         const double moved = (columnOf(contents.bodies.position, id) - s.refPos).norm();
         const double turn = (turns_[std::size_t(id)] - s.refOri.toRotationMatrix()).norm();
-        if (!jointed.count(id) || moved + turn * blocks_[std::size_t(id)].radius > 0.5 * usedSkin_) found.insert(id);
+        if (!jointed[std::size_t(id)] || moved + turn * blocks_[std::size_t(id)].radius > 0.5 * usedSkin_)
+            awake_.insert(id);
     }
-    const auto before = awake_.size();
-    awake_.insert(found.begin(), found.end());
-    if (awake_.size() == before) return;
+    if (awake_.size() > before) findPairsOfWoken(contents);
+}
+
+// Finds the pairs anew, and gives those that there were not before a gap as wide as they overlap. In the first step
+// there are none before: what overlaps then was built so, and presses.
+void Contacts::findPairsOfWoken(const SceneContents& contents) {
     std::vector<std::pair<int, int>> known;
     for (const auto& pair : pairs_)
         known.emplace_back(pair.one, pair.other);
@@ -417,7 +423,7 @@ void Contacts::takeOver(const SceneContents& contents, const std::vector<Joint>&
     handed += int(joints.size());
     prepare(contents);
     turnBlocks(contents);
-    findPairs(contents);
+    findPairsOfWoken(contents);
     for (const auto& joint : joints) {
         auto* pair = pairOf(joint.body1, joint.body2);
         if (!pair) continue;

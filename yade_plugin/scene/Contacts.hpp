@@ -6,6 +6,7 @@
 #include "contact/BroadPhase.hpp"
 #include "contact/ContactDamping.hpp"
 #include "contact/ContactFriction.hpp"
+#include <algorithm>
 #include <set>
 
 namespace masonry {
@@ -45,6 +46,8 @@ public:
         Vector3r torque1, torque2; // about the centres of both bodies [N m]
     };
     static constexpr int lookEvery = 10; // steps between two looks at joints and at bodies that wake
+    // Whether a body is one of the blocks that can touch. It is known from the first step on.
+    bool covers(int body) const { return std::binary_search(ids_.begin(), ids_.end(), body); }
     // Goes on from the next step where these joints stood, which have no forces any more (HandOver). To be called when
     // the scene has been read again.
     void takeOver(const SceneContents&, const std::vector<Joint>&);
@@ -104,6 +107,7 @@ private:
     void turnBlocks(const SceneContents&);
     bool isAwake(const SceneContents&, int body) const;
     void wake(const SceneContents&);
+    void findPairsOfWoken(const SceneContents&);
     void countChanges(const SceneContents&);
     Pair* pairOf(int one, int other);
     double settle(const SceneContents&, Pair&, const Vector3r& normal, const Vector3r& onOther);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "HandOver.hpp"
+#include "Blocks.hpp"
 #include "Resultant.hpp"
 #include <algorithm>
 #include <cmath>
@@ -10,15 +11,6 @@ namespace masonry {
 namespace {
 
 constexpr double gone = 1 - 1e-9; // damage of a bond that is gone
-
-double extent(const Polygon& points, const Vector3r& direction) {
-    double least = HUGE_VAL, most = -HUGE_VAL;
-    for (const auto& p : points) {
-        least = std::min(least, direction.dot(p));
-        most = std::max(most, direction.dot(p));
-    }
-    return most - least;
-}
 
 Quaternionr turnOf(const SceneStore& store, int body) {
     const auto& q = store.bodies.orientation;
@@ -119,6 +111,7 @@ void HandOver::act(SceneStore& store, Contacts& contacts) {
     for (const auto& joint : due(store)) {
         const auto& r = joint.geom->reference();
         const int body1 = r.sides[0].body, body2 = r.sides[1].body;
+        if (!contacts.covers(body1) || !contacts.covers(body2)) continue; // nothing would take its place
         const auto normalBy = [&](int side) {
             return Vector3r(turnOf(store, r.sides[side].body) * (r.sides[side].orientation.conjugate() * r.normal));
         };
@@ -128,7 +121,7 @@ void HandOver::act(SceneStore& store, Contacts& contacts) {
         contacts.handing -= release(joint);
     }
     if (all.empty()) return;
-    store.jointsHanded();
+    store.jointsChanged();
     contacts.takeOver(store, all);
 }
 

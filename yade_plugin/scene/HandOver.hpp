@@ -11,9 +11,11 @@ namespace masonry {
 class HandOver {
 public:
     // How far the blocks of a joint without bond may move before it is handed over.
-    double slide = 0.02;                // mean slide over the size of the joint in that direction [-]
-    double turn = 0.017453292519943295; // rotation of both blocks against each other since the reference state [rad]
-    double opening = 0.02; // smallest opening over the larger size of the joint [-]: beyond it a bond does not count
+    static constexpr double slide = 0.02; // mean slide over the size of the joint in that direction [-]
+    // Rotation of both blocks against each other since the reference state: 1° [rad].
+    static constexpr double turn = 0.017453292519943295;
+    static constexpr double opening =
+        0.02; // smallest opening over the larger size of the joint [-]: beyond it a bond does not count
 
     // Hands over the joints between rigid blocks that are due, when all forces of the step are there.
     void act(SceneStore&, Contacts&);

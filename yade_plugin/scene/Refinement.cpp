@@ -339,7 +339,7 @@ void Refinement::look(SceneStore& store) {
                 change.jumps.push_back(joint.geom->jump(p));
             changed_.push_back(std::move(change));
         }
-    store.jointsRefined();
+    store.jointsChanged();
     readLimits(store);
 }
 
@@ -377,7 +377,7 @@ bool Refinement::setPoints(SceneStore& store, const std::vector<double>& refined
         fresh.shapes->joints[0].coarse = count ? std::make_shared<const Points>(first) : nullptr;
         fresh.giveTo(*joint);
     }
-    store.jointsRefined();
+    store.jointsChanged();
     return true;
 }
 

@@ -80,9 +80,6 @@ void transferBodies(yade::Scene& scene, Transfer& to) {
     forces.sync();
 }
 
-// A record of a joint holds the numbers of JointShapes::readFields(). A record of a subcontact holds its jump [m], the
-// stress of damping in the last step [Pa], the energies dissipated in tension, shear and compression [J/m²], and the
-// numbers of its law.
 // How many points the joints have that were refined. It comes first, because all other records of joints follow it.
 void transferPoints(SceneStore& store, Transfer& to) {
     std::vector<double> refined;
@@ -107,6 +104,9 @@ void transferHanded(SceneStore& store, Transfer& to) {
     store.update();
 }
 
+// A record of a joint holds the numbers of JointShapes::readFields(). A record of a subcontact holds its jump [m], the
+// stress of damping in the last step [Pa], the energies dissipated in tension, shear and compression [J/m²], and the
+// numbers of its law.
 void transferJoints(const SceneStore& store, Transfer& to) {
     std::vector<double> records;
     const auto add = [&](double x, double y, double z) { records.insert(records.end(), {x, y, z}); };

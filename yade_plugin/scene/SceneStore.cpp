@@ -177,7 +177,7 @@ void SceneStore::update(Look look) {
     seenInteractions_ = scene_.interactions->currSize;
 }
 
-void SceneStore::jointsRefined() {
+void SceneStore::jointsChanged() {
     const bool same = sameJoints();
     const long before = stiffnessRevision_;
     ++changes;

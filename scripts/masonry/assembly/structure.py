@@ -65,8 +65,8 @@ class Structure:
         }  # overlays of which that was said
         self._newsFrom = 0  # step from which ties that yield or break are news
         self.bricks, self.loads, self.zones = {}, {}, None
+        self._stiff = masonry.stiff  # kinds of blocks that are rigid in themselves
         #: Indices of blocks that are rigid also where bricks are deformable.
-        self._stiff = masonry.stiff
         self._rigid = description.connectedBricks() | {
             n for n, b in enumerate(description.bricks) if b.kind in self._stiff
         }

@@ -37,8 +37,8 @@ class Place:
     bounds: dict = field(default_factory=dict)  # what limit analysis found, by the load
     #: Load factors under which the structure came to rest, by the names of their bounds.
     held: dict = field(default_factory=dict)
-    #: What stages pushed or put on, by their numbers: the kind, of LOADS, the name of the load and
-    #: that of the opposite one.
+    #: What stages pushed or put on, by their numbers: the kind, one of LOADS, the name of the load
+    #: and that of the opposite one.
     loads: dict = field(default_factory=dict)
     #: How stages ended, by their numbers, and the number of the last stage then: a stage may consist of several.
     ended: dict = field(default_factory=dict)

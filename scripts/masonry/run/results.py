@@ -30,9 +30,8 @@
 - ``built``, ``held_and_loaded``: what is built, and what is held and loaded before the first stage, pairs of texts; not with --lean
 - ``warnings``: sentences on what the numbers of the run suffer from
 - ``notes``: warnings and notes that the run said while it went on, but for those of ``bounds``: a list of dicts with ``text``,
-  the ``stage`` in which it was said and its ``number``, empty and 0 before the first one (since the run before it in the
-  process), and ``time_s`` in the scene. Each text
-  stands there once, when it was said first
+  the ``stage`` in which it was said and its ``number``, and ``time_s`` in the scene. Before the first stage these are empty and
+  0; what the process said before the run began stands there, too. Each text stands there once, when it was said first
 - ``seconds``: wall-clock time of ``setup``, ``steps``, ``rows`` and ``frames`` [s]; ``wall_clock_s``: of all
 - ``energy_balance_error``: largest error of the energy balance, relative to the work done [-]
 - ``energy_made``: most energy that joints made by opening or closing within a step, relative to the work done [-]

@@ -22,8 +22,8 @@ from yade.wrapper import MasonryVtkRecorder
 from .. import notebook
 from .._masonry import commit, loadScene, version
 from ..assembly import threads
-from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
-from ..basics import listen, stopListening
+
+from ..basics import Collapsed, Interrupted, Refused, Unwritable, listen, say, stopListening  # fmt: skip
 from . import batch, plausible
 from .beside import Failed, Job
 from .checkpoints import NAME, saveCheckpoint
@@ -182,9 +182,8 @@ class Run:
         says again what it said."""
         stages = self.at.stages
         stage = stages[self.entered - 1][0] if 0 < self.entered <= len(stages) else ""
-        time_s = (
-            O.time if self.entered else 0.0
-        )  # before, another scene may stand in YADE
+        # before the first stage, another scene may stand in YADE
+        time_s = O.time if self.entered else 0.0
         note = dict(stage=stage, number=self.entered, time_s=time_s, text=text)
         known = {one["text"] for one in self.at.notes}
         if text not in known and len(self.at.notes) < MOST_NOTES:

@@ -248,9 +248,8 @@ class Bounds:
     def _note(self, what, found, lines, endless, bound):
         """Keep what :meth:`_found` returned."""
         self.entries[what].update(found)
-        for (
-            line
-        ) in lines:  # the entry has them; when they are found depends on the machine
+        for line in lines:
+            # no notes: the entry has them, and when they are found depends on the machine
             say(line, noted=False)
         if endless:
             self.endless.add(what)

@@ -306,7 +306,8 @@ def ofScene(name, arguments, usual):
 
 
 def check(args, masonry, more=(), plane=False, connectors=None):
-    """Apply ``--set`` to what is in a scene, and ``--field`` to ties, springs and fibre layers, and refuse options that do not go together and materials that lack something.
+    """Apply ``--set`` to what is in a scene, and ``--field`` to ties, springs and fibre layers. Refuse options that do not go
+    together, and materials that lack something.
 
     :param args: the parsed options
     :param masonry: :class:`masonry.scene.materials.Masonry` for these options
