@@ -145,7 +145,7 @@ def ofStudies():
         Result("convergence", (program("convergence/converge.py"),), ("convergence/curves.png",), (*own("convergence"), *walls, *DEFORMABLE), 60, ("validation/convergence",)),
         Result("trade", (program("trade/trade.py"),), ("trade/*.png", "trade/table.md", "trade/trade.json"), (*own("trade"), *walls, *RIGID, *DEFORMABLE), 300, ("trade",)),
         Result("accuracy", (program("accuracy/accuracy.py"),), ("accuracy/table.md", "accuracy/accuracy.json"), (*own("accuracy"), "scripts/masonry/run/accuracy.py", *RIGID, *DEFORMABLE), 50, ("accuracy",), ("trade",)),
-        Result("sensitivity/tornado", (program("sensitivity/tornado.py"),), ("sensitivity/tornado.png",), ("validation/sensitivity/tornado.py", "validation/sensitivity/ranges.py", *walls, *RIGID), 45, ("validation/sensitivity/wall*",)),
+        Result("sensitivity/tornado", (program("sensitivity/tornado.py"),), ("sensitivity/tornado.png",), ("validation/sensitivity/tornado.py", "validation/sensitivity/ranges.py", *walls, *RIGID), 45, ("validation/sensitivity/COMP-*",)),
         Result("sensitivity/comp4", study("sensitivity/comp4"), ("sensitivity/comp4_*.png",), ("validation/sensitivity/comp4.py", "validation/sensitivity/ranges.py", *RIGID), 24, ("validation/sensitivity/comp4",)),
         Result("sensitivity/comp1", study("sensitivity/comp1"), ("sensitivity/comp1_*.png",), ("validation/sensitivity/comp1.py", "validation/sensitivity/ranges.py", *RIGID), 16, ("validation/sensitivity/comp1",)),
         Result("random_fields/one_metre", study("random_fields/one_metre"), ("random_fields/*_one_metre.png",), ("validation/random_fields/*.py", *RIGID), 20, ("validation/random_fields/one_metre",)),
