@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
+#include "scene/Falls.hpp"
 #include "scene/HandOver.hpp"
 #include "scene/SceneCheck.hpp"
 
@@ -45,6 +46,10 @@ public:
                         "blocks have slid by 2 % of the joint or turned by 1° against each other, and those that are "
                         "open by 2 % of their size everywhere. Blocks that have kept their joints and their places are "
                         "then left out of the search"));
+        visit(
+            "dampsLoose", &MasonryContacts::dampsLoose,
+            described("Whether numerical damping acts on blocks that no joints hold any more, where joints are handed "
+                      "over. It would brake their fall"));
         visit("handing", &C::handing,
               number("J", "Elastic energy that joints got so far when they were handed over: an input of the energy "
                           "balance"),
@@ -52,6 +57,15 @@ public:
         visit("handed", &C::handed, number("", "Number of joints that were handed over so far"), ReadOnly);
         visit("awake", computed<Contacts, std::vector<int>>(&C::awake, &C::setAwake),
               described("Ids of the blocks that are looked for, where joints are handed over"), Hidden);
+        visit("falls",
+              computed<MasonryContacts, std::vector<double>>(&MasonryContacts::fallNumbers,
+                                                             &MasonryContacts::setFallNumbers),
+              described(
+                  "What no joints hold any more, where joints are handed over, five numbers a block: its id; when it "
+                  "came loose [s]; when it had fallen [s], that is, turned by 60° or moved by its diameter since the "
+                  "reference state, -1 if it has not; its largest kinetic energy since it was loose [J], and when it "
+                  "had that [s]"),
+              Hidden);
         visit("changes", computed<Contacts, std::vector<double>>(&C::changes, &C::setChanges),
               described("What joints that were handed over in the last step did to their bodies, less what their "
                         "contacts do"),
@@ -72,8 +86,18 @@ public:
         cls.def("touching", &MasonryContacts::countTouching,
                 "Number of pairs that pressed on each other in the last step.")
             .def("forceOf", &MasonryContacts::forceBetween, py::args("id1", "id2"),
-                 "Force of body id1 on body id2 in the last step [N], global axes; zero if they do not touch.");
+                 "Force of body id1 on body id2 in the last step [N], global axes; zero if they do not touch.")
+            .def("fallen", &MasonryContacts::fallen,
+                 "Blocks that have come loose where joints are handed over, by their ids: a dict of id -> dict with "
+                 "since, "
+                 "when that was [s]; fell, when the block had turned by 60° or moved by its diameter since the "
+                 "reference "
+                 "state [s], None if it has not; most, its largest kinetic energy since then [J]; and at, when it had "
+                 "that "
+                 "[s]. Looked at every tenth step.");
     }
+
+    bool dampsLoose = true;
 
     using Contacts::problems;
     bool isActivated() override { return standsAlone(*this); }
@@ -82,8 +106,15 @@ public:
 private:
     int countTouching();
     Vector3r forceBetween(int id1, int id2);
+    py::dict fallen();
+    void lookAtFalls(SceneStore&);
+    std::vector<double> fallNumbers() { return falls_.numbers(); }
+    void setFallNumbers(const std::vector<double>& numbers) { falls_.setNumbers(numbers); }
 
     HandOver handOver_; // holds no state: what it keeps follows from the scene
+    Falls falls_;
+    std::vector<unsigned char> held_; // heldByJoints(), at SceneStore::revision()
+    long heldRevision_ = -1;
 };
 
 } // namespace masonry

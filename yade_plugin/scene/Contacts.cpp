@@ -503,6 +503,13 @@ double Contacts::largestEigenvalue(const SceneContents& contents, bool anew) {
 
 double Contacts::largestDampingRatio() const { return std::sqrt(6) * dampingRatio(restitution); }
 
+std::vector<double> Contacts::diameters() const {
+    std::vector<double> found;
+    for (const auto& block : blocks_)
+        found.push_back(2 * block.radius);
+    return found;
+}
+
 int Contacts::touching() const {
     return int(std::count_if(effects_.begin(), effects_.end(), [](const auto& effect) { return effect.touches; }));
 }

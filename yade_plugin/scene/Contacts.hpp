@@ -48,6 +48,8 @@ public:
     static constexpr int lookEvery = 10; // steps between two looks at joints and at bodies that wake
     // Whether a body is one of the blocks that can touch. It is known from the first step on.
     bool covers(int body) const { return std::binary_search(ids_.begin(), ids_.end(), body); }
+    // Twice the largest distance of a corner of a block from its centre [m]; 0 where it cannot touch. By id.
+    std::vector<double> diameters() const;
     // Goes on from the next step where these joints stood, which have no forces any more (HandOver). To be called when
     // the scene has been read again.
     void takeOver(const SceneContents&, const std::vector<Joint>&);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Lumping.hpp"
+#include "SceneStore.hpp"
 #include "MonolithicPairs.hpp"
 #include "common/Text.hpp"
 #include <cmath>

@@ -183,6 +183,15 @@ def bracket(
         raise ValueError(f"bracket: low {low} must be below high {high}")
     if scene.collapsed:
         scene.stepBack()
+    scene.bracketing = True
+    try:
+        return _halve(scene, carries, low, high, within)
+    finally:
+        scene.bracketing = False
+
+
+def _halve(scene, carries, low, high, within):
+    """As :func:`bracket`."""
     if not carries(low):
         scene.stepBack()
         raise ValueError(

@@ -24,6 +24,7 @@ Stage = Callable[Concatenate[Any, P], str]
 
 #: How a stage ends.
 AT_REST, MOVING, DONE, COLLAPSED = "at rest", "moving", "done", "collapsed"
+FALL = "fall"  # the stage in which a collapse is followed: masonry.scene.stages.falling
 
 
 @dataclass(frozen=True)
@@ -94,16 +95,17 @@ class Rows:
 
     :param results: of the run
     :param first: number of the first of them, from 0
+    :param beyond: number of the first row after them; None: there is none
     """
 
-    def __init__(self, results, first):
-        self._results, self._first = results, first
+    def __init__(self, results, first, beyond=None):
+        self._results, self._first, self._beyond = results, first, beyond
 
     def column(self, head):
         """The values of a column, or an empty list if curve.csv does not have it."""
         if head not in self._results.columns:
             return []
-        return self._results.column(head)[self._first :]
+        return self._results.column(head)[self._first : self._beyond]
 
 
 def nothing(scene, rows):
@@ -119,6 +121,7 @@ class Traits:
     :param farther: names of the arguments that say how far it goes: a run that is resumed in this stage may change them
     :param options: options of the command line that the stage uses, by the names of their values
     :param grows: whether presses, dead loads and wind grow in it
+    :param real: whether it runs in real time, whatever falls, in a scene whose collapse is followed
     :param check: function of the scene and what the user says, which raises Refused before the scene is built
     :param answers: function of the scene and the :class:`Rows` of the stage that gives a list of :class:`Answer`
     """
@@ -127,6 +130,7 @@ class Traits:
     farther: tuple = ()
     options: tuple = ()
     grows: bool = False
+    real: bool = False
     check: Callable | None = None
     answers: Callable = nothing
 
@@ -205,7 +209,13 @@ def _carryOut(scene, act, traits, args, settings):
             return _asBefore(scene, over)
         running.loading = traits.grows and not scene.grown
         scene.model.dampByOptions()
+        follows = scene.description.contact is not None
+        if follows and running.redoes and running.at.stage == FALL:
+            return _follow(scene, name)
+        running.endsAtFall = follows and not traits.real
         ended = act(scene, *args, **settings)
+        if follows:
+            scene.model.checkFallen()
         _noteEnd(running, before, ended)
         if not traits.farther:
             running.mark()
@@ -215,14 +225,47 @@ def _carryOut(scene, act, traits, args, settings):
         scene.ended = COLLAPSED
         _noteEnd(running, before, COLLAPSED)
         running.fall(str(collapse))
+        finite = True
         try:
             if running.recordedAt() != O.time:
                 running.record()
             running.flush()
             running.markFall()
         except FloatingPointError:
-            pass  # what has fallen may have left finite numbers
+            finite = False  # what has fallen may have left finite numbers
         _answer(scene, name, traits, before)
+        if finite and scene.description.contact and not scene.bracketing:
+            return _follow(scene, name)
+        return COLLAPSED
+    except BaseException as error:
+        return scene.failed(error)
+
+
+def _follow(scene, name):
+    """Go on with a structure that has fallen until it is at rest, in a stage or in a run that is resumed while it falls.
+
+    :param name: of the stage
+    """
+    from . import falling  # which needs this module
+
+    running, begun = scene.running, scene.running.at.begun
+    try:
+        running.endsAtFall = False
+        if running.redoes and not running.advanced:  # all before the fall is over
+            running.entered = running.at.number - 1
+            running.fall(running.at.fall)
+        scene.ended = COLLAPSED
+        try:
+            scene.ended = falling.followFall(scene, tilted=name == "tilt")
+        except Collapsed as collapse:
+            say(f"note: the fall is followed no farther: {collapse}")
+        number = running.entered
+        found = falling.answers(scene, scene.ended, running.memory.begun)
+        kept = [{"stage": FALL, "number": number, **vars(one)} for one in found]
+        running.at.answers = {**running.at.answers, str(number): kept}
+        falling.writeTable(scene)
+        _noteEnd(running, begun - 1, scene.ended)
+        running.mark()
         return COLLAPSED
     except BaseException as error:
         return scene.failed(error)
@@ -236,10 +279,10 @@ def _noteEnd(running, before, ended):
 def _asBefore(scene, ended):
     """What a stage returns that was over before the run was resumed: how it ended then."""
     running = scene.running
-    if ended == COLLAPSED:
+    if ended.startswith(COLLAPSED):
         running.collapsed, running.results.run["collapse"] = True, running.at.fall
     scene.ended = ended
-    return ended
+    return COLLAPSED if running.collapsed else ended
 
 
 def _answer(scene, name, traits, before):
