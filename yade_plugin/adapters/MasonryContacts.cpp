@@ -45,6 +45,14 @@ py::dict MasonryContacts::fallen() {
     return found;
 }
 
+py::list MasonryContacts::pairs() {
+    const BetweenSteps still;
+    py::list found;
+    for (const auto& touch : touches())
+        found.append(py::make_tuple(touch.one, touch.other, touch.force, touch.torque));
+    return found;
+}
+
 int MasonryContacts::countTouching() {
     const BetweenSteps still;
     return touching();

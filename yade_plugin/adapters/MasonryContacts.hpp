@@ -87,6 +87,10 @@ public:
                 "Number of pairs that pressed on each other in the last step.")
             .def("forceOf", &MasonryContacts::forceBetween, py::args("id1", "id2"),
                  "Force of body id1 on body id2 in the last step [N], global axes; zero if they do not touch.")
+            .def("pairs", &MasonryContacts::pairs,
+                 "Pairs of blocks that pressed on each other in the last step: a list of tuples of the ids of both, "
+                 "and the "
+                 "force [N] and the torque about its centre [N m] on the second, global axes.")
             .def("fallen", &MasonryContacts::fallen,
                  "Blocks that have come loose where joints are handed over, by their ids: a dict of id -> dict with "
                  "since, "
@@ -107,6 +111,7 @@ private:
     int countTouching();
     Vector3r forceBetween(int id1, int id2);
     py::dict fallen();
+    py::list pairs();
     void lookAtFalls(SceneStore&);
     std::vector<double> fallNumbers() { return falls_.numbers(); }
     void setFallNumbers(const std::vector<double>& numbers) { falls_.setNumbers(numbers); }

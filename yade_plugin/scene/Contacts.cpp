@@ -510,6 +510,14 @@ std::vector<double> Contacts::diameters() const {
     return found;
 }
 
+std::vector<Contacts::Touch> Contacts::touches() const {
+    std::vector<Touch> found;
+    for (std::size_t p = 0; p < pairs_.size() && p < effects_.size(); ++p)
+        if (effects_[p].touches)
+            found.push_back({pairs_[p].one, pairs_[p].other, effects_[p].force, effects_[p].torques[1]});
+    return found;
+}
+
 int Contacts::touching() const {
     return int(std::count_if(effects_.begin(), effects_.end(), [](const auto& effect) { return effect.touches; }));
 }

@@ -59,6 +59,13 @@ public:
     double largestEigenvalue(const SceneContents&, bool anew);
     // Of the damping of all contacts of a block: its largest ratio to the critical one [-].
     double largestDampingRatio() const;
+    // What touched in the last step: two bodies, and force [N] and torque about its centre [N m] on the second of them,
+    // global axes.
+    struct Touch {
+        int one, other;
+        Vector3r force, torque;
+    };
+    std::vector<Touch> touches() const;
     int touching() const; // number of pairs that pressed on each other in the last step
 
     // In saved files and checkpoints: for every pair the two ids, the separating axis, the gap, the state of friction

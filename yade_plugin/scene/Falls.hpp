@@ -20,7 +20,7 @@ class Falls {
 public:
     // A block has fallen when it has turned by so much since the reference state [rad], ...
     static constexpr double turn = 1.0471975511965976; // 60°
-    static constexpr double way = 1; // ... or when its centre has moved by so many of its diameters [-]
+    static constexpr double travel = 1; // ... or when its centre has moved by so many of its diameters [-]
 
     // Looks at bodies, sorted by their ids, whose diameters are given by id [m].
     void look(const SceneContents&, const std::vector<int>& loose, const std::vector<double>& diameters);

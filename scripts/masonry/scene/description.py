@@ -10,7 +10,17 @@ from numbers import Integral
 
 import numpy as np
 
-from ..arguments import flag, listOf, misfits, number, oneOf, orNone, shown, text, vector
+from ..arguments import (
+    flag,
+    listOf,
+    misfits,
+    number,
+    oneOf,
+    orNone,
+    shown,
+    text,
+    vector,
+)
 from ..assembly import columns
 from ..basics import GRAVITY, Refused
 from .contact import Contact

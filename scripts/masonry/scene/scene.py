@@ -57,7 +57,17 @@ from ..run.ending import end
 from ..run.presets import BOUND
 from ..run.results import Results
 from ..run.run import Run
-from . import connections, contact, loads, options, probing, records, showing, stages, supports
+from . import (
+    connections,
+    contact,
+    loads,
+    options,
+    probing,
+    records,
+    showing,
+    stages,
+    supports,
+)
 from .bounds import EVERY, GIVEN_UP, SMALL, Bounds, nameInDomain, nameOfLean, nameOfPush
 from .description import Description
 from .ground import readRecord
@@ -202,7 +212,9 @@ class Scene:
         self.script = Script()
         self.calls = []  # every word that was said
         self.staging = False  # whether a stage is being carried out
-        self.bracketing = False  # whether bracket() looks for a load, so that no collapse is followed
+        self.bracketing = (
+            False  # whether bracket() looks for a load, so that no collapse is followed
+        )
         self.running = Run(name, arguments, self.script.words)
         # when it is built
         self.model: Any = None

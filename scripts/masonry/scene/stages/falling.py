@@ -21,7 +21,9 @@ LOOK = 0.05  # time between two looks and rows, over √(side/g) of the largest 
 FRAME = 4  # looks from one frame to the next
 CALM = 0.02  # speed of the fastest block of rubble at rest, over that of one that falls [-]: see Motion.fastest()
 LOOKS = 20  # so many looks one after the other find the rubble at rest before it is said to be
-LONGEST = 20.0  # after which it is given up, over √(2h/g) of the height of what is built [-]
+LONGEST = (
+    20.0  # after which it is given up, over √(2h/g) of the height of what is built [-]
+)
 TABLE = "fallen.csv"
 
 
@@ -43,7 +45,10 @@ def followFall(scene: Any, tilted: bool) -> str:
     """
     model, running, box = scene.model, scene.running, scene.description
     at = running.stage(FALL, Falling())
-    at.begun = O.time if at.begun < 0 else at.begun
+    if at.begun < 0:
+        at.begun = O.time
+        if not running.takesUp:
+            running.frame()  # whose cracks are drawn
     model.letFall()
     gravity = abs(box.gravity) or GRAVITY
     size = max(box.size(index) for index in range(len(box.bricks)))
@@ -112,8 +117,10 @@ def answers(scene: Any, ended: str, begun: float) -> list[Answer]:
         Answer("fallen_blocks", "-", count, f"{when}{what}, of {len(masses)}"),
         Answer("fallen_share", "-", share, f"{when}mass of these over that of all blocks"),
     ]  # fmt: skip
+    how = "when the collapse was noticed, since the scene was built"
+    found.append(Answer("noticed_at", "s", begun, how))
     rest = O.time - begun if ended == AT_REST else None
-    how = "from when the collapse was noticed until all was at rest"
+    how = "from then on until all was at rest"
     found.append(Answer("time_to_rest", "s", rest, how))
     if not fallen:
         return found

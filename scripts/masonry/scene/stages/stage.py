@@ -223,18 +223,20 @@ def _carryOut(scene, act, traits, args, settings):
         return ended
     except Collapsed as collapse:
         scene.ended = COLLAPSED
-        _noteEnd(running, before, COLLAPSED)
+        follows = scene.description.contact is not None and not scene.bracketing
+        if not follows:  # else it ends with the fall
+            _noteEnd(running, before, COLLAPSED)
         running.fall(str(collapse))
-        finite = True
         try:
             if running.recordedAt() != O.time:
                 running.record()
             running.flush()
             running.markFall()
         except FloatingPointError:
-            finite = False  # what has fallen may have left finite numbers
+            follows = False  # what has fallen may have left finite numbers
+            _noteEnd(running, before, COLLAPSED)
         _answer(scene, name, traits, before)
-        if finite and scene.description.contact and not scene.bracketing:
+        if follows:
             return _follow(scene, name)
         return COLLAPSED
     except BaseException as error:
