@@ -219,6 +219,38 @@ def test_contact_takes_the_bed_joint_and_what_set_says(tmp_path, capsys):
     )
 
 
+def test_a_support_that_moved_stands_still_in_the_fall(tmp_path):
+    """The right one of two stones on which a third one lies is drawn from under it."""
+    words = [*LEAN, "--out", str(tmp_path / "results")]
+    sides = bricks.block((0, 0, 0), (SIDE, SIDE, SIDE)) + bricks.block((1.5 * SIDE, 0, 0), (2.5 * SIDE, SIDE, SIDE))  # fmt: skip
+    lintel = bricks.block((0.8 * SIDE, 0, SIDE), (1.7 * SIDE, SIDE, 1.5 * SIDE))
+    scene = Scene("lintel", sides + lintel, materials.dry(0.3, 1e8, density=DENSITY), plane=False, collapse="follow", allowGaps=True, arguments=words)  # fmt: skip
+    scene.hold(0, name="still")
+    moved = scene.hold(1, name="ground")  # a name that the ground itself would have
+    scene.settle()
+    assert scene.move(moved, x=300, rate=500) == COLLAPSED
+    assert scene.ended == "collapsed and at rest"
+    column = scene.results.column
+    rows = [n for n, t in enumerate(column("time_s")) if t > answer(scene, "noticed_at") + 0.01]  # fmt: skip
+    assert np.ptp([column("ground_x_mm")[n] for n in rows]) == 0
+    assert column("ground2_force_z_kN")[-1] < 0 and answer(scene, "fallen_blocks") == 1
+    scene.finish()
+
+
+def test_the_ground_where_the_scene_has_it(tmp_path):
+    scene = column(tmp_path)
+    scene.ground(level=-1.0)
+    scene.settle()
+    scene.lean(0.4, towards=(0, 1, 0))
+    lowest = min(O.bodies[b].state.pos[2] for b in scene.model.ids)
+    assert lowest == pytest.approx(-1 + SIDE / 2, abs=0.01)
+    scene.finish()
+    with pytest.raises(Refused, match="ground: level 1 m must be at most -0.2 m"):
+        column(tmp_path).ground(1.0)
+    with pytest.raises(Refused, match="only a scene with collapse='follow'"):
+        column(tmp_path, collapse="end").ground(-1.0)
+
+
 def test_without_follow_the_run_ends_where_it_fell(tmp_path):
     scene = column(tmp_path, collapse="end")
     scene.settle()

@@ -755,7 +755,10 @@ class Structure:
             )
 
     def letFall(self):
-        """From now on no drive moves, and no numerical damping brakes blocks that have come loose."""
+        """From now on no drive and no support moves, and no numerical damping brakes blocks that have come loose."""
+        for target in self.held:
+            if target.fixed:
+                O.bodies[target.body].state.vel = Vector3.Zero
         for label, load in self.loads.items():
             if "_drive" in label:
                 load.velocity = load.ramp = 0

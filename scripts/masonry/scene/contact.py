@@ -3,11 +3,15 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any, Callable
 
+from ..arguments import name as nameOf
+from ..arguments import number, orNone, takes
 from ..basics import Refused
 from .settings import Property, Settable
 from .targets import Target
+from .words import describes
 
 #: Speed after over before a central impact of two faces, as of MasonryContacts [-].
 RESTITUTION = 0.5
@@ -93,16 +97,38 @@ def problems(description: Any, args: Any, masonry: Any) -> list[str]:
     return found
 
 
-def addGround(description: Any, level: float | None = None) -> Target:
-    """Add the ground on which blocks fall: a block that is held, below everything else.
+@describes
+@takes(level=number("m", -1e6, 1e6), name=orNone(nameOf))
+def ground(description: Any, level: float, name: str | None = None) -> Target:
+    """The ground on which blocks fall in a scene with ``collapse="follow"``: a block that is held and reaches far out, without
+    joints. A scene that does not say this has it just below everything else.
 
-    :param level: z of its upper side [m]; None: just below what is held at the bottom, or below the bricks
+    :param level: z of its upper side [m], at or below the lowest of the bricks and of what is held
+    :param name: in curve.csv; None: ground
     """
+    if not description.contact:
+        raise Refused("ground: only a scene with collapse='follow' has a ground")
+    if description.ground():
+        raise Refused("ground: the scene has its ground already")
+    return addGround(description, level, name or "ground")
+
+
+def addGround(
+    description: Any, level: float | None = None, name: str | None = None
+) -> Target:
+    """Add the ground on which blocks fall.
+
+    :param level: as of :func:`ground`; None: just below everything else
+    :param name: in curve.csv; None: ground, or another one if a target has that name
+    """
+    taken = {target.name for target in description.targets.values()}
+    names = itertools.chain(["ground"], (f"ground{k}" for k in itertools.count(2)))
+    free = (one for one in names if one not in taken)
     boxes = [target.box for target in description.targets.values() if target.box]
     lowest = min([description.low[2], *(box[0][2] for box in boxes)])
     height = description.high[2] - description.low[2]
     top = lowest - BELOW * height if level is None else level
-    if top > lowest:
+    if not top <= lowest:
         raise Refused(
             f"ground: level {top:g} m must be at most {lowest:g} m, where the lowest of what is built ends"
         )
@@ -111,7 +137,7 @@ def addGround(description: Any, level: float | None = None) -> Target:
     high = [description.high[i] + reach for i in range(2)]
     return description.add(
         Target(
-            "ground",
+            name or next(free),
             fixed=True,
             point=(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), top),
             recorded=(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), top),

@@ -143,6 +143,10 @@ class Description:
         ends = [end for one in (*self.ties, *self.springs) for end in one.ends]
         return {end.brick for end in ends if end.brick is not None}
 
+    def ground(self):
+        """The target on which blocks fall in a scene whose collapse is followed, or None."""
+        return next((t for t in self.targets.values() if not t.joined), None)
+
     def followed(self):
         """The target whose displacement is drawn under a load that grows: the first that is watched, else the first that
         moves, or None."""

@@ -170,8 +170,8 @@ class Outcome:
 
     def _ground(self):
         """The entry for the ground on which blocks fall, if there is one."""
-        ground = [t.body for t in self.description.targets.values() if not t.joined]
-        return {"ground_body": ground[0]} if ground else {}
+        ground = self.description.ground()
+        return {"ground_body": ground.body} if ground else {}
 
     def summary(self):
         """Entries of run.json that follow from the rows."""

@@ -258,6 +258,7 @@ class Scene:
     drift, column = records.drift, records.column
     joint, section, view = records.joint, records.section, records.view
     tie, spring = connections.tie, connections.spring
+    ground = contact.ground
     overlay = connections.overlay
     # Their names are those of stages, too, which are meant after the first stage.
     hold = _either(supports.hold, stages.hold)
@@ -395,7 +396,7 @@ class Scene:
         if self.model:
             return
         description, args = self.description, self.args
-        if description.contact and "ground" not in self.targets:
+        if description.contact and not description.ground():
             contact.addGround(description)
         model = Structure(description, self.masonry, args)
         for line in linesOf(self.assumed, self.masonry.brief):

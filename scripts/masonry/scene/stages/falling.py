@@ -128,7 +128,7 @@ def answers(scene: Any, ended: str, begun: float) -> list[Answer]:
     energy = sum(one["most"] for one in fallen.values())
     corners = [c for index in fallen for c in cornersNow(model, index)]
     low, high = ([f(c[i] for c in corners) for i in range(3)] for f in (min, max))
-    ground = box.targets["ground"].box[1][2]
+    ground = box.ground().box[1][2]
     beyond = [max(0.0, box.low[i] - low[i], high[i] - box.high[i]) for i in range(2)]
     lies = f"{when}of the corners of the fallen blocks"
     return [
