@@ -20,11 +20,11 @@ wall = bricks.Wall(LENGTH, EAVES, unit=(0.45, 2 * THICK, COURSE), halves=False)
 wall += gable.where(inside).moved(0, THICK / 2, EAVES).named("gable")
 
 stone = materials.masonry(
-    E=2e9, unit_E=1e10, fm=3e6, fv0=0.05e6, friction=0.6, bond_wrench=0.04e6, unit=(0.45, THICK, 0.14), joint=0.01, density=2000
+    E=1e9, unit_E=5e9, fm=3e6, fv0=0.05e6, friction=0.6, bond_wrench=0.04e6, unit=(0.45, THICK, 0.14), joint=0.01, density=2000
 )  # fmt: skip
-# pulses of one second, a whole sine each, with a peak of 1, 2, 3, ... m/s²
+# pulses of one second, a whole sine each, with a peak of 3, 4 and 5 m/s²
 pulses = [
-    (1 + n) * math.sin(2 * math.pi * EVERY * i) for n in range(5) for i in range(100)
+    peak * math.sin(2 * math.pi * EVERY * i) for peak in (3, 4, 5) for i in range(100)
 ]
 
 scene = Scene("falling_gable", wall, stone, plane=False, title="Gable under growing pulses", collapse="follow")  # fmt: skip

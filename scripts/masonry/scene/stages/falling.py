@@ -19,8 +19,8 @@ from .stage import COLLAPSED, FALL, Answer
 AT_REST, MOVING = f"{COLLAPSED} and at rest", f"{COLLAPSED} and moving"
 LOOK = 0.05  # time between two looks and rows, over √(side/g) of the largest block [-]
 FRAME = 4  # looks from one frame to the next
-CALM = 0.02  # speed of the fastest block of rubble at rest, over that of one that falls [-]: see Motion.fastest()
-LOOKS = 20  # so many looks one after the other find the rubble at rest before it is said to be
+CALM = 0.1  # speed of the fastest block of rubble at rest, over that of one that falls [-]: see Motion.fastest()
+LOOKS = 40  # so many looks one after the other find the rubble at rest before it is said to be
 LONGEST = (
     20.0  # after which it is given up, over √(2h/g) of the height of what is built [-]
 )
