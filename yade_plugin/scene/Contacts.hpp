@@ -4,8 +4,7 @@
 #include "SceneContents.hpp"
 #include "common/Property.hpp"
 #include "contact/BroadPhase.hpp"
-#include "contact/ContactDamping.hpp"
-#include "contact/ContactFriction.hpp"
+#include "contact/ContactPair.hpp"
 #include <algorithm>
 #include <set>
 
@@ -89,13 +88,8 @@ private:
         // the centre of the one.
         double dashpot[6];
     };
-    struct Effect { // of a pair in the present step, global axes
-        bool touches;
-        Vector3r force;      // on the other body [N]
-        Vector3r torques[2]; // on the one and on the other body, about their centres [N m]
-        double lost, damped;
-    };
-    struct Placed { // a body when the pairs were last looked for
+    using Effect = ContactEffect; // of a pair in the present step
+    struct Placed {               // a body when the pairs were last looked for
         Vector3r position;
         double orientation[4];
     };
@@ -115,7 +109,7 @@ private:
     bool moved(const SceneContents&) const;
     void findPairs(const SceneContents&);
     RelativePose poseOf(const SceneContents&, const Pair&) const;
-    double massAlong(const SceneContents&, const Pair&, const Vector3r& point, const Vector3r& normal) const;
+    ContactBody bodyOf(const SceneContents&, int body) const;
     void actOn(const SceneContents&, double dampingRatio, OverlapFinder&, Pair&, Effect&) const;
 
     static constexpr int piece = 16; // pairs that a thread takes at a time
