@@ -8,10 +8,10 @@
 namespace masonry {
 
 struct ContactProperties {
-    double normalStiffness; // per area [Pa/m]
-    double tangentialRatio; // stiffness along the face over that along the normal [-]
-    double friction;        // coefficient [-]
-    double dampingRatio;    // of ContactDamping [-]
+    double normalStiffness = 0;   // per area [Pa/m]
+    double tangentialRatio = 0.4; // stiffness along the face over that along the normal [-]
+    double friction = 0;          // coefficient [-]
+    double dampingRatio = 0;      // of ContactDamping [-]
 };
 
 // A block in the present step, global axes.
