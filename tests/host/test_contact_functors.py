@@ -2,6 +2,9 @@
 """Contacts of blocks by functors in YADE's InteractionLoop: as the engine, in YADE's files, and what they refuse."""
 
 import math
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -383,3 +386,22 @@ def test_scenes_with_joints_take_the_engine(scene, tmp_path):
     refused(
         "bodies 0 and 1 have a MasonryJointGeom, which functors of contacts do not know"
     )
+
+
+def test_the_program_of_the_benchmark_prints_its_table():
+    """validation/benchmark/heap.py, of two bricks that fall freely."""
+    root = os.path.join(os.path.dirname(__file__), "..", "..")
+    program = os.path.join(root, "validation", "benchmark", "heap.py")
+    words = ["--blocks", "2", "--seconds", "0.02", "--only", "engine", "--only", "functors"]  # fmt: skip
+    run = subprocess.run([sys.executable, program, *words], capture_output=True, text=True, timeout=60)  # fmt: skip
+    rows = dict(
+        (cells[0], cells[1:])
+        for cells in (
+            [c.strip() for c in line.strip("|").split("|")]
+            for line in run.stdout.splitlines()
+            if line.startswith("| ")
+        )
+    )
+    assert rows["time reached, s"] == ["0.02", "0.02"], run.stderr
+    # Two bricks of 3.27 kg that have fallen by 2 mm
+    assert rows["potential energy lost, J"] == ["0.1", "0.1"]

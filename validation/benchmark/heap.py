@@ -172,14 +172,14 @@ class Heap:
         return self.energies.touching() if self.given.child == "engine" else sum(1 for _ in self.O.interactions)  # fmt: skip
 
     def lost(self):
-        """Energy that friction and damping took, and elastic energy as far as the law knows it [J]."""
+        """Energy that friction and damping took, and elastic energy where it can be read [J]."""
         law, O = self.energies, self.O
         if self.given.child == "engine":
             return law.lostInFriction + law.lostInDamping, math.nan
         if self.given.child == "functors":
             return law.lostInFriction + law.lostInDamping, law.stored()
-        parts = dict(O.energy.items())
-        return sum(v for k, v in parts.items() if k in ("nonviscDamp", "plastDissip")), math.nan  # fmt: skip
+        # The law's elasticEnergy() is the square of the force over kn, which is no energy where kn is in N/m³.
+        return dict(O.energy.items()).get("nonviscDamp", 0) + law.plasticDissipation(), math.nan  # fmt: skip
 
     def sunk(self):
         """How far the lowest corner is below the slab's face, and the least distance of two middles [m]."""
