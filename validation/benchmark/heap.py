@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A heap of boxes that fall on a slab: contacts of the plugin beside YADE's own polyhedra.
 
-/usr/bin/python3 validation/benchmark/heap.py [--blocks 60] [--seconds 1.5] [--stiffness 1e8] [--damping 0.2] [--step 0.5] [--minutes 60]
+/usr/bin/python3 validation/benchmark/heap.py [--blocks 60] [--seconds 1.5] [--stiffness 1e8] [--damping 0.2] [--friction 0.5]
+    [--step 0.5] [--stock-step SECONDS] [--minutes 60] [--only engine|functors|stock ...]
 
 drops the same bricks, turned at random, in three processes that step in turns of a hundredth of a second of the heap: with the
 engine MasonryContacts, with the functors of the same contacts in YADE's InteractionLoop, and with YADE's polyhedra and their
@@ -27,7 +28,7 @@ import time
 
 BRICK = (0.22, 0.102, 0.081)
 KINDS = ("engine", "functors", "stock")
-FRICTION, RATIO, DENSITY, G = 0.5, 0.4, 1800, 9.81
+RATIO, DENSITY, G = 0.4, 1800, 9.81
 WINDOW = 0.01  # of the time of the heap, between two rows [s]
 RESTS = (
     1e-6  # kinetic energy of a heap at rest, over the potential energy that it has lost
@@ -40,6 +41,7 @@ def options():
     parser.add_argument("--seconds", type=float, default=1.5)
     parser.add_argument("--stiffness", type=float, default=1e8)
     parser.add_argument("--damping", type=float, default=0.2)
+    parser.add_argument("--friction", type=float, default=0.5)
     parser.add_argument("--step", type=float, default=0.5)
     parser.add_argument("--stock-step", type=float, default=0)
     parser.add_argument("--minutes", type=float, default=60)
@@ -103,7 +105,7 @@ def build(given):
 
         # Two equal materials: kn is half of `young`, ks that times `poisson`.
         shear = RATIO * BRICK[0] * BRICK[1]
-        mat = PolyhedraMat(density=DENSITY, young=2 * given.stiffness, poisson=shear, frictionAngle=math.atan(FRICTION))  # fmt: skip
+        mat = PolyhedraMat(density=DENSITY, young=2 * given.stiffness, poisson=shear, frictionAngle=math.atan(given.friction))  # fmt: skip
         O.materials.append(mat)
     else:
         mat = MasonryMat(density=DENSITY, young=4.8e9, poisson=0.16)
@@ -115,7 +117,7 @@ def build(given):
         else:
             O.bodies[addBlock(points, mat)].bounded = True
     O.bodies[0].state.blockedDOFs = "xyzXYZ"
-    law = dict(normalStiffness=given.stiffness, friction=FRICTION, restitution=0.3, tangentialRatio=RATIO)  # fmt: skip
+    law = dict(normalStiffness=given.stiffness, friction=given.friction, restitution=0.3, tangentialRatio=RATIO)  # fmt: skip
     physics = Ip2_MasonryMat_MasonryMat_MasonryContactPhys(**law)
     if kind == "engine":
         energies = MasonryContacts(**law)
@@ -225,7 +227,8 @@ def child(given):
 class Process:
     def __init__(self, kind, given):
         words = [
-            f"--{k}={getattr(given, k)}" for k in ("blocks", "stiffness", "damping")
+            f"--{k}={getattr(given, k)}"
+            for k in ("blocks", "stiffness", "damping", "friction")
         ]
         command = [
             "yade",
