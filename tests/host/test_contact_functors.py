@@ -222,6 +222,7 @@ def test_a_saved_scene_goes_on_to_the_bit(scene, tmp_path, kind):
     box((0.1, 0.09, 0.05), TILTED * Vector3(0, 0, BRICK[2] + 0.025), TILTED)
     prepare(loop(), newton())
     O.dt = 0.5 * O.engines[2].physDispatcher.functors[0].timeStep()
+    O.engines[2].ompThreads = 1
     O.run(500, True)
     file = str(tmp_path / f"slide{kind}")
     O.save(file)
@@ -248,6 +249,15 @@ def test_a_checkpoint_does_not_hold_them_and_says_so(scene, tmp_path):
         saveCheckpoint(str(tmp_path / "rest.checkpoint"))
 
 
+def test_a_process_with_two_threads():
+    """The next test, where it is not skipped."""
+    name = "test_two_threads_change_round_off_only"
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", f"{__file__}::{name}"]  # fmt: skip
+    run = subprocess.run(command, env={**os.environ, "OMP_NUM_THREADS": "2"}, capture_output=True, text=True, timeout=60)  # fmt: skip
+    assert "1 passed" in run.stdout, run.stdout
+
+
+@pytest.mark.skipif(os.environ.get("OMP_NUM_THREADS") == "1", reason="needs two threads")  # fmt: skip
 def test_two_threads_change_round_off_only(scene):
     """YADE adds up the forces on a body thread by thread."""
     resting()
