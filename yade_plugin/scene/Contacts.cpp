@@ -42,11 +42,7 @@ std::vector<int> Contacts::idsOf(const SceneContents& contents) const {
 }
 
 void Contacts::checkBodies(const SceneContents& contents) const {
-    if (!(normalStiffness > 0))
-        throw std::invalid_argument("MasonryContacts.normalStiffness " + text(normalStiffness) +
-                                    " Pa/m must be given, above 0");
-    if (!(friction >= 0))
-        throw std::invalid_argument("MasonryContacts.friction " + text(friction) + " must be given, at least 0");
+    if (const auto problem = missing("MasonryContacts"); !problem.empty()) throw std::invalid_argument(problem);
     if (takesJoints && !contents.loop && !contents.joints.empty())
         throw std::invalid_argument(
             "MasonryContacts.takesJoints needs MasonryJointLoop: the functors go on with joints "
@@ -166,40 +162,27 @@ void Contacts::findPairs(const SceneContents& contents) {
 }
 
 RelativePose Contacts::poseOf(const SceneContents& contents, const Pair& pair) const {
-    const Matrix3r back = turns_[std::size_t(pair.one)].transpose();
     const auto& position = contents.bodies.position;
-    return {back * turns_[std::size_t(pair.other)],
-            back * (columnOf(position, pair.other) - columnOf(position, pair.one)) +
-                Eigen::Map<const Vector3r>(pair.gap)};
+    auto pose = relativePose(turns_[std::size_t(pair.one)], columnOf(position, pair.one),
+                             turns_[std::size_t(pair.other)], columnOf(position, pair.other));
+    pose.place += Eigen::Map<const Vector3r>(pair.gap);
+    return pose;
 }
 
-// The mass with which the two bodies of a pair meet at a point along a normal [kg]: the inverse of how fast the point
-// of each would be after an impulse of 1.
-double Contacts::massAlong(const SceneContents& contents, const Pair& pair, const Vector3r& point,
-                           const Vector3r& normal) const {
+ContactBody Contacts::bodyOf(const SceneContents& contents, int body) const {
     const auto& all = contents.bodies;
-    double inverse = 0;
-    for (int id : {pair.one, pair.other}) {
-        const auto b = std::size_t(id);
-        const bool spins = all.spins(id);
-        Vector3r turning = (point - columnOf(all.position, id)).cross(normal);
-        if (spins) turning = (turns_[b].transpose() * turning).eval(); // moments of inertia are those of its own axes
-        for (int d = 0; d < 3; ++d) {
-            if (!all.isBlocked(id, d)) inverse += normal[d] * normal[d] / all.mass[b];
-            if (spins || !all.isBlocked(id, 3 + d)) inverse += turning[d] * turning[d] / all.inertia[d][b];
-        }
-    }
-    return inverse > 0 ? 1 / inverse : 0;
+    return {turns_[std::size_t(body)],    columnOf(all.position, body),
+            columnOf(all.velocity, body), columnOf(all.velocity + 3, body),
+            all.mass[std::size_t(body)],  columnOf(all.inertia, body),
+            all.blockedAxes(body)};
 }
 
 void Contacts::actOn(const SceneContents& contents, double dampingRatio, OverlapFinder& finder, Pair& pair,
                      Effect& effect) const {
-    const auto& all = contents.bodies;
     const auto pose = poseOf(contents, pair);
     Overlap overlap;
     effect.touches =
         finder.find(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], pose, pair.axis, overlap);
-    effect.damped = 0;
     const Vector3r gap(pair.gap[0], pair.gap[1], pair.gap[2]);
     if (!effect.touches) {
         if (!gap.isZero(0)) { // once the blocks are apart as they stand, nothing is left of the joint
@@ -209,57 +192,15 @@ void Contacts::actOn(const SceneContents& contents, double dampingRatio, Overlap
                              without))
                 std::fill(std::begin(pair.gap), std::end(pair.gap), 0.0);
         }
-        effect.force.setZero();
-        effect.torques[0].setZero();
-        effect.torques[1].setZero();
-        overlap.force.setZero();
-        overlap.moment.setZero();
-        overlap.area = 0;
         // Most pairs are only near each other.
         if (pair.friction.stiffness == 0 && pair.dashpot[0] == 0 && pair.dashpot[1] == 0 && pair.dashpot[2] == 0) {
-            effect.lost = 0;
+            effect = {false, Vector3r::Zero(), {Vector3r::Zero(), Vector3r::Zero()}, 0, 0};
             return;
         }
     }
-    if (!(overlap.area > 0)) effect.lost = endFriction(pair.friction);
-    Vector3r force = normalStiffness * overlap.force, moment = normalStiffness * overlap.moment;
-    const Matrix3r& turn = turns_[std::size_t(pair.one)];
-    const Vector3r place = columnOf(all.position, pair.one);
-    Eigen::Map<Vector3r> lastForce(pair.dashpot), lastMoment(pair.dashpot + 3);
-    RelativeMotion motion{Vector3r::Zero(), Vector3r::Zero()};
-    if (dampingRatio > 0) {
-        const Vector3r arm = columnOf(all.position, pair.other) - place;
-        const Vector3r spin = columnOf(all.velocity + 3, pair.other), ownSpin = columnOf(all.velocity + 3, pair.one);
-        motion.velocity = turn.transpose() *
-                          (columnOf(all.velocity, pair.other) - spin.cross(arm) - columnOf(all.velocity, pair.one));
-        motion.spin = turn.transpose() * (spin - ownSpin);
-        // A force works over a step with its mean over both ends, as all forces of a scene do (scene/BodyStep).
-        effect.damped = -0.5 * contents.scene().dt * (lastForce.dot(motion.velocity) + lastMoment.dot(motion.spin));
-    }
-    lastForce.setZero();
-    lastMoment.setZero();
-    if (overlap.area > 0) {
-        double normalForce = force.norm();
-        if (dampingRatio > 0) {
-            const double mass = massAlong(contents, pair, place + turn * overlap.centre, turn * overlap.normal);
-            const double coefficient = 2 * dampingRatio * std::sqrt(normalStiffness * mass / overlap.area);
-            const auto damped = dampContact(overlap, motion, coefficient, normalForce);
-            lastForce = damped.force * overlap.normal;
-            lastMoment = damped.moment;
-            force += lastForce;
-            moment += lastMoment;
-            normalForce = std::max(0.0, normalForce + damped.force);
-            effect.damped += 0.5 * damped.power * contents.scene().dt;
-        }
-        const auto step = advanceFriction(pair.friction, overlap, pose, normalForce,
-                                          tangentialRatio * normalStiffness * overlap.area, friction);
-        effect.lost = step.lost;
-        force += step.force;
-        moment += overlap.centre.cross(step.force) + step.moment * overlap.normal;
-    }
-    effect.force = turn * force;
-    effect.torques[0] = turn * (gap.cross(force) - moment);
-    effect.torques[1] = turn * (moment - pose.place.cross(force));
+    actOnPair({normalStiffness, tangentialRatio, friction, dampingRatio}, bodyOf(contents, pair.one),
+              bodyOf(contents, pair.other), pose, gap, contents.scene().dt, overlap, pair.friction, pair.dashpot,
+              effect);
 }
 
 void Contacts::turnBlocks(const SceneContents& contents) {

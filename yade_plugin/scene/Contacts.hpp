@@ -2,10 +2,8 @@
 // Contacts of rigid blocks that no joint connects, wherever they meet. An engine derives from it.
 #pragma once
 #include "SceneContents.hpp"
-#include "common/Property.hpp"
 #include "contact/BroadPhase.hpp"
-#include "contact/ContactDamping.hpp"
-#include "contact/ContactFriction.hpp"
+#include "contact/ContactParameters.hpp"
 #include <algorithm>
 #include <set>
 
@@ -14,16 +12,12 @@ namespace masonry {
 using yade::Matrix3r;
 using yade::Vector3r;
 
-class Contacts {
+class Contacts : public ContactParameters {
 public:
     virtual ~Contacts() = default;
 
-    double normalStiffness = 0;   // per area [Pa/m]
-    double tangentialRatio = 0.4; // stiffness along the face over that along the normal [-]
-    double friction = -1;         // coefficient [-]
-    double restitution = 0.5;     // of a central impact of two faces [-]
-    double skin = 0;              // by which boxes are larger than their blocks [m]; 0: chosen
-    std::vector<int> bodies;      // ids of the blocks; empty: all rigid blocks
+    double skin = 0;         // by which boxes are larger than their blocks [m]; 0: chosen
+    std::vector<int> bodies; // ids of the blocks; empty: all rigid blocks
 
     bool takesJoints = false;  // whether joints without bond whose blocks have moved far are handed over to contact
     bool begun = false;        // whether there was a step
@@ -98,13 +92,8 @@ private:
         // the centre of the one.
         double dashpot[6];
     };
-    struct Effect { // of a pair in the present step, global axes
-        bool touches;
-        Vector3r force;      // on the other body [N]
-        Vector3r torques[2]; // on the one and on the other body, about their centres [N m]
-        double lost, damped;
-    };
-    struct Placed { // a body when the pairs were last looked for
+    using Effect = ContactEffect; // of a pair in the present step
+    struct Placed {               // a body when the pairs were last looked for
         Vector3r position;
         double orientation[4];
     };
@@ -124,7 +113,7 @@ private:
     bool moved(const SceneContents&) const;
     void findPairs(const SceneContents&);
     RelativePose poseOf(const SceneContents&, const Pair&) const;
-    double massAlong(const SceneContents&, const Pair&, const Vector3r& point, const Vector3r& normal) const;
+    ContactBody bodyOf(const SceneContents&, int body) const;
     void actOn(const SceneContents&, double dampingRatio, OverlapFinder&, Pair&, Effect&) const;
 
     static constexpr int piece = 16; // pairs that a thread takes at a time
