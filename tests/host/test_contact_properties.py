@@ -325,20 +325,24 @@ def test_a_closed_path_gives_back_its_work(pair, seed, wide):
     assert abs(total) <= 1e-6 * largest
 
 
-@settings(max_examples=30)
+@settings(max_examples=25)
 @given(pairs(depths=(-3, -1)), some.integers(0, 2**32 - 1), some.floats(0.05, 2))
 def test_friction_only_takes_energy(pair, seed, friction):
     """Both blocks come from afar, meet, slide and turn on each other, and part. What was put in is what friction has taken."""
-    rig, path = Rig(pair, friction=friction), Path(pair, seed, 2, 30)
-    steps, lost, works, before = 2000, 0.0, [0.0], 0.0
-    for n in range(steps + 1):
-        place, turn, velocity, spin = path.at(n / steps)
-        force, moment = rig.at(place, turn)
-        power = -(force.dot(velocity) + moment.dot(spin))
-        works.append(works[-1] + 0.5 * (before + power) / steps)
-        before = power
-        assert rig.contacts.lostInFriction >= lost
-        lost = rig.contacts.lostInFriction
-    assume(rig.contacts.touching() == 0 and max(works) > 0)
-    assert works[-1] >= -1e-3 * max(works)
-    assert works[-1] == pytest.approx(lost, abs=0.01 * max(works))
+    path, missing = Path(pair, seed, 2, 30), []
+    for steps in (700, 1400):
+        rig, lost, works, before = Rig(pair, friction=friction), 0.0, [0.0], 0.0
+        for n in range(steps + 1):
+            place, turn, velocity, spin = path.at(n / steps)
+            force, moment = rig.at(place, turn)
+            power = -(force.dot(velocity) + moment.dot(spin))
+            works.append(works[-1] + 0.5 * (before + power) / steps)
+            before = power
+            assert rig.contacts.lostInFriction >= lost
+            lost = rig.contacts.lostInFriction
+        assume(rig.contacts.touching() == 0 and max(works) > 0)
+        missing.append((works[-1] - lost) / max(works))
+    assert works[-1] >= 0
+    # what is missing falls with the step, and nothing remains where it is extrapolated to none
+    assert abs(missing[1]) < 0.03
+    assert abs(2 * missing[1] - missing[0]) < 3e-3
