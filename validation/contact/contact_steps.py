@@ -19,7 +19,8 @@ MEETINGS = {
     "corner": Quaternion(Vector3(0, 1, 0), math.atan(math.sqrt(0.5))) * Quaternion(Vector3(0, 0, 1), math.pi / 4),
 }  # fmt: skip
 #: Axes of the map of two blocks: sides of both [m], densities [kg/m³], stiffnesses [Pa/m], speeds [m/s].
-SIZES, DENSITIES, STIFFNESSES, SPEEDS = (0.01, 0.1, 1, 10), (200, 2700), (1e9, 1e10, 1e12), (0.01, 1, 10)  # fmt: skip
+SIZES = ((0.01, 0.01), (0.01, 10), (10, 0.01), (0.1, 1), (1, 0.1), (10, 10))
+DENSITIES, STIFFNESSES, SPEEDS = (200, 2700), (1e9, 1e10, 1e12), (0.01, 1, 10)
 
 
 def collide(step, meeting, sizes, density, stiffness, speed, restitution, phase):
@@ -28,8 +29,8 @@ def collide(step, meeting, sizes, density, stiffness, speed, restitution, phase)
     :param step: over the critical time step
     :param sizes: sides of both [m]
     :param phase: share of a step at which they meet
-    :returns: kinetic energy after they have parted over that before
-    :raises RuntimeError: if the engine refuses the time step, or if they do not part
+    :returns: energy over that before, when they have parted, or after 20000 steps: a small block may cling to a large one
+    :raises RuntimeError: if the engine refuses the time step
     """
     O.reset()
     one = O.bodies[box((sizes[0],) * 3, density=density)].state
@@ -40,13 +41,14 @@ def collide(step, meeting, sizes, density, stiffness, speed, restitution, phase)
     one.pos -= Vector3((2 + phase) * speed * O.dt, 0, 0)
     one.vel = Vector3(speed, 0, 0)
     met, before = False, energy()
-    for n in range(100000):
+    for _ in range(20000):
         O.step()
         touching = contacts.touching() > 0
         met = met or touching
         if met and not touching:
-            return energy() / before
-    raise RuntimeError("the blocks have not parted after 100000 steps")
+            break
+    assert met
+    return (energy() + balance()["elastic_contacts"]) / before
 
 
 def energy():
@@ -64,7 +66,7 @@ def energy():
 def two_blocks(quick):
     """Collisions of two blocks over the whole map, at shares of the critical time step."""
     rows, dice = [], np.random.default_rng(1)
-    points = list(itertools.product(itertools.product(SIZES, SIZES), DENSITIES, STIFFNESSES, SPEEDS))  # fmt: skip
+    points = list(itertools.product(SIZES, DENSITIES, STIFFNESSES, SPEEDS))  # fmt: skip
     if quick:
         points = points[:: len(points) // 8]
     for meeting, restitution in itertools.product(MEETINGS, (1, 0.5)):
