@@ -198,7 +198,7 @@ def tolerance(pair):
     return ROUND * STIFF * pair.surface * pair.reach
 
 
-@settings(max_examples=200)
+@settings(max_examples=120)
 @given(pairs(), some.sampled_from([-1, 1]))
 def test_blocks_press_when_they_overlap_with_forces_and_moments_that_are_opposite(pair, sign):  # fmt: skip
     rig = Rig(pair)
@@ -218,7 +218,7 @@ def test_blocks_press_when_they_overlap_with_forces_and_moments_that_are_opposit
     assert rest.norm() <= 1e-13 * pressing * (between.norm() + pair.reach)
 
 
-@settings(max_examples=150)
+@settings(max_examples=100)
 @given(
     pairs(depths=(-3, -1)),
     some.tuples(*[some.floats(-1, 1)] * 3),
@@ -235,7 +235,7 @@ def test_where_the_pair_stands_and_which_block_comes_first_changes_nothing(pair,
         assert (momentAgain - moment).norm() <= allowed * pair.reach
 
 
-@settings(max_examples=150)
+@settings(max_examples=100)
 @given(pairs(depths=(-4, -1)), some.integers(0, 2**32 - 1))
 def test_the_force_does_not_jump(pair, seed):
     """Of 64 parts of a way, the one in whose middle the force is farthest from the mean of its ends is halved again and again by

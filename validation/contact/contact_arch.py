@@ -14,49 +14,73 @@ from yade.wrapper import *
 
 STONES, THICK, DEPTH, DENSITY, FRICTION = 21, 0.12, 0.3, 2600.0, 0.6  # mean radius 1 m
 STIFF = 1e11  # [Pa/m]
+SOFT = "edges give way, so that hinges lie inside of them and the thrust is larger by a part of what is between rest and fall"
+EDGES = (
+    "a block that stands on its edge is softer in contact than on the points of a joint"
+)
 BELOW = 0.4  # of the springings, to the ground [m]
 
 
 # -- statics of rigid stones ------------------------------------------------------------------------------------------
 
 
-def statics(spread, hinge):
-    """Equilibrium of the arch after its supports have moved apart, by statics of rigid stones in the displaced position.
+def statics(spread, hinges=(4, 10, 17)):
+    """Equilibrium of the arch after its right support has moved away, by statics of rigid stones in the displaced position.
 
-    Both halves move alike. The keystone goes down. The stones between it and the hinge turn as one about an edge at their inner
-    side, and touch the keystone with an edge at the outer side. Those below the hinge move with the support.
+    Three hinges: two parts turn about an edge at the inner side, each at its foot, and touch each other with an edge at the outer
+    side, beside the keystone. What is below the hinges stays with its support.
 
     :param spread: by how much the supports have moved apart [m]
-    :param hinge: number of the joint about which a half turns, counted from the springing
-    :returns: thrust [N], and where it goes through each joint from the springing on: 0 at the inner, 1 at the outer side
+    :param hinges: numbers of these joints, counted from the right springing
+    :returns: thrust [N], and where it goes through each joint from the right to the left springing: 0 at the inner, 1 at the outer
+        side
     """
     along = [np.array([math.cos(k * math.pi / STONES), math.sin(k * math.pi / STONES)]) for k in range(STONES + 1)]  # fmt: skip
     inner, outer = [(1 - THICK / 2) * a for a in along], [(1 + THICK / 2) * a for a in along]  # fmt: skip
-    key = STONES // 2
-    aside = np.array([spread / 2, 0])
+    right, top, left = hinges
+    aside = np.array([spread, 0])
+    feet = inner[right] + aside, inner[left]
+    lengths = [np.linalg.norm(outer[top] - inner[k]) for k in (right, left)]
+    apart = np.linalg.norm(feet[0] - feet[1])
+    line = (feet[0] - feet[1]) / apart
+    x = (lengths[1] ** 2 - lengths[0] ** 2 + apart**2) / (2 * apart)
+    up = np.array([-line[1], line[0]]) * math.sqrt(lengths[1] ** 2 - x**2)
+    crown = feet[1] + x * line + up
 
-    def turned(angle):
+    def turned(p, k, foot):
+        new, old = crown - foot, outer[top] - inner[k]
+        angle = math.atan2(new[1], new[0]) - math.atan2(old[1], old[0])
         c, s = math.cos(angle), math.sin(angle)
-        return lambda p: inner[hinge] + aside + np.array([[c, -s], [s, c]]) @ (p - inner[hinge])  # fmt: skip
+        return foot + np.array([[c, -s], [s, c]]) @ (p - inner[k])
 
-    angle = brentq(lambda a: turned(a)(outer[key])[0] - outer[key][0], -0.3, 0.3)
-    move = lambda p, k: turned(angle)(p) if k >= hinge else p + aside
+    def move(p, stone):
+        if stone < right:
+            return p + aside
+        if stone < top:
+            return turned(p, right, feet[0])
+        return turned(p, left, feet[1]) if stone < left else p
+
+    cross = lambda a, b: a[0] * b[1] - a[1] * b[0]
     weights, middles = [], []
-    for k in range(key + 1):
+    for k in range(STONES):
         area, middle = _middle([inner[k], outer[k], outer[k + 1], inner[k + 1]])
-        weights.append(area * DEPTH * DENSITY * G * (1 if k < key else 0.5))
+        weights.append(np.array([0, -area * DEPTH * DENSITY * G]))
         middles.append(move(middle, k))
-    top, foot = move(outer[key], key), move(inner[hinge], hinge)
-    middles[key] = top  # by symmetry half of the keystone hangs there
-    above = range(hinge, key + 1)
-    thrust = sum(weights[k] * (foot[0] - middles[k][0]) for k in above) / (top[1] - foot[1])  # fmt: skip
+    moment = lambda at, stones: sum(cross(middles[k] - at, weights[k]) for k in stones)
+    arms = [crown - foot for foot in feet]
+    known = [-moment(feet[0], range(right, top)), -moment(feet[1], range(top, left))]
+    force = np.linalg.solve([[-arms[0][1], arms[0][0]], [arms[1][1], -arms[1][0]]], known)  # fmt: skip
 
     def share(k):
-        ends = [move(p[k], k if k > hinge else hinge - 1) for p in (inner, outer)]
-        moment = [sum(weights[n] * (x - middles[n][0]) for n in range(k, key + 1)) - thrust * (top[1] - z) for x, z in ends]  # fmt: skip
-        return moment[0] / (moment[0] - moment[1])
+        stone = (
+            k if right < k < top or k > left else k - 1
+        )  # any that the joint moves with
+        side, stones = (1, range(k, top)) if k <= top else (-1, range(top, k))
+        ends = [move(p[k], stone) for p in (inner, outer)]
+        at = [side * cross(crown - end, force) + moment(end, stones) for end in ends]
+        return at[0] / (at[0] - at[1])
 
-    return thrust, [share(k) for k in range(key)]
+    return force[0], [1.0 if k == top else share(k) for k in range(STONES + 1)]
 
 
 def _middle(corners):
@@ -67,14 +91,9 @@ def _middle(corners):
     return cross.sum() / 2, ((one + other) * cross[:, None]).sum(axis=0) / (3 * cross.sum())  # fmt: skip
 
 
-def leastThrust(spread):
-    """The least thrust after a spread [N]: of the hinge that gives the largest, and where it goes through the joints."""
-    return max((statics(spread, hinge) for hinge in range(2, STONES // 2 - 2)), key=lambda found: found[0])  # fmt: skip
-
-
 def largestSpread():
-    """Spread at which the thrust reaches the outer side of the springing, so that one hinge too many opens [m]."""
-    return brentq(lambda s: leastThrust(s)[1][0] - 1, 0.01, 0.05, xtol=1e-6)
+    """Spread at which the thrust reaches the outer side of a springing, so that one hinge too many opens [m]."""
+    return brentq(lambda s: statics(s)[1][0] - 1, 0.01, 0.05, xtol=1e-6)
 
 
 # -- the engine -------------------------------------------------------------------------------------------------------
@@ -157,22 +176,22 @@ def arch_spread(quick):
         arch.moveTo(spread, **hurry)
         if not arch.stands():
             raise RuntimeError(f"the arch falls at {1e3 * spread:g} mm already")
-        rows.append(Row(f"thrust at a spread of {1e3 * spread:g} mm [N]", source, -arch.drive.reaction, leastThrust(spread)[0], 0.01))  # fmt: skip
+        rows.append(Row(f"thrust at a spread of {1e3 * spread:g} mm [N]", source, -arch.drive.reaction, statics(spread)[0], 0.01))  # fmt: skip
     handed, last = arch.contacts.handed, arch.spread
     if quick:
         arch.moveTo(0.041, **hurry)
         if arch.stands():
             raise RuntimeError("the arch stands at 41 mm")
     else:
-        for spread in np.arange(0.0365, 0.041, 0.25e-3):
+        for spread in np.arange(0.03525, 0.041, 0.25e-3):
             arch.moveTo(spread)
             if not arch.stands():
                 break
             last = arch.spread
         rows += [
-            Row("spread at which it falls, supports at rest [mm]", f"{source}: it falls at {1e3 * expected:.2f} mm if edges are rigid", 500 * (last + arch.spread), (37.0, 38.5)),
+            Row("spread at which it falls, supports at rest [mm]", f"{source}: {1e3 * expected:.2f} mm with rigid edges", 500 * (last + arch.spread), (37.0, 38.5), misses=SOFT),
             Row("largest spread at which it came to rest [mm]", source, 1e3 * last, 1e3 * expected),
-            Row("joints that are contacts before it falls [-]", "reported; statics has 4 hinges", handed),
+            Row("joints that are contacts before it falls [-]", "statics: three hinges", handed, 3),
         ]  # fmt: skip
     arch.mover.damping = 0  # real time
     began = O.time
@@ -184,6 +203,6 @@ def arch_spread(quick):
         Row("lowest middle of a stone above the ground [m]", "none goes through it", min(s.pos[2] for s in states) + BELOW, (0.05, 1)),
         Row("kinetic energy at the end over the work of gravity [-]", "0: at rest", found["kinetic"] / found["gravity"], limit=None if quick else 1e-5),
         Row("error of the energy balance, over the work done [-]", "0", abs(found["error"]), limit=None if quick else 1e-3),
-        Row("what the hand-overs have given, over the work of gravity [-]", "0", abs(found["handing"] / found["gravity"]), limit=None if quick else 1e-6),
+        Row("what the hand-overs have given, over the work of gravity [-]", "0", abs(found["handing"] / found["gravity"]), limit=None if quick else 1e-6, misses=EDGES),
     ]  # fmt: skip
     return rows
