@@ -15,6 +15,7 @@ from yade.wrapper import *
 STONES, THICK, DEPTH, DENSITY, FRICTION = 21, 0.12, 0.3, 2600.0, 0.6  # mean radius 1 m
 STIFF = 1e11  # [Pa/m]
 SOFT = "edges give way, so that hinges lie inside of them and the thrust is larger by a part of what is between rest and fall"
+STEP = "stones meet face on face at 0.8 of the critical time step: see the cases heaps and two-blocks"
 EDGES = (
     "a block that stands on its edge is softer in contact than on the points of a joint"
 )
@@ -202,7 +203,7 @@ def arch_spread(quick):
         Row("stones that lie above the springings at the end, on the feet [-]", "", sum(s.pos[2] > 0 for s in states)),
         Row("lowest middle of a stone above the ground [m]", "none goes through it", min(s.pos[2] for s in states) + BELOW, (0.05, 1)),
         Row("kinetic energy at the end over the work of gravity [-]", "0: at rest", found["kinetic"] / found["gravity"], limit=None if quick else 1e-5),
-        Row("error of the energy balance, over the work done [-]", "0", abs(found["error"]), limit=None if quick else 1e-3),
+        Row("error of the energy balance, over the work done [-]", "0", abs(found["error"]), limit=None if quick else 1e-3, misses=STEP),
         Row("what the hand-overs have given, over the work of gravity [-]", "0", abs(found["handing"] / found["gravity"]), limit=None if quick else 1e-6, misses=EDGES),
     ]  # fmt: skip
     return rows
