@@ -12,6 +12,7 @@
 
 namespace masonry {
 
+using boost::shared_ptr;
 using yade::Matrix3r;
 using yade::Vector3r;
 

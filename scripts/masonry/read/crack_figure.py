@@ -247,15 +247,16 @@ def magnificationOf(size, moved):
 
 def frameOfCracks(run: dict[str, Any], directory: FilePath) -> int:
     """Number of the frame whose cracks are drawn, from 0: the last one, or, of a run that followed a collapse to the ground, that
-    when the collapse was noticed.
+    when the collapse was noticed or the first block had fallen.
 
     :param run: entries of run.json
     """
     times = frameTimes(directory)
-    found = [a["value"] for a in run.get("answers") or [] if a["name"] == "noticed_at"]
+    answers = {a["name"]: a["value"] for a in run.get("answers") or [] if a["stage"] == "fall"}  # fmt: skip
+    found = [answers[n] for n in ("noticed_at", "first_fall") if n in answers]
     if not found:
         return len(times) - 1
-    return int(np.argmin(np.abs(np.asarray(times) - found[-1])))
+    return int(np.argmin(np.abs(np.asarray(times) - min(found))))
 
 
 def cracks(directory: FilePath, number: int | None = None) -> None:

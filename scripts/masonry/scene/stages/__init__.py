@@ -13,6 +13,7 @@ A new stage is such a function (:func:`masonry.scene.stages.stage.stage`) and it
 - :mod:`masonry.scene.stages.growing`: how a load grows, and the search for the one that is held;
   :mod:`masonry.scene.stages.acting`: what acts and can be changed
 - :mod:`masonry.scene.stages.shake`: ``shake`` and ``run``
+- :mod:`masonry.scene.stages.falling`: ``fall``, which follows a collapse where the scene says so
 - :mod:`masonry.scene.stages.stage`: what all share; :mod:`masonry.scene.stages.timed`: what those share that last for a time
 """
 

@@ -39,7 +39,8 @@ class Falling:
 
 def followFall(scene: Any, tilted: bool) -> str:
     """Go on with what falls until it is at rest. Loads stay, but for a horizontal acceleration, which ends when the first block
-    has fallen; drives stand still, and no numerical damping brakes what no joint holds. Returns how that ended.
+    has fallen; drives and supports stand still, and the numerical damping of the options acts on what stands, not on what no
+    joint holds. Returns how that ended.
 
     :param tilted: whether gravity is that of a ground that is tilted, which stays
     """
@@ -49,6 +50,7 @@ def followFall(scene: Any, tilted: bool) -> str:
         at.begun = O.time
         if not running.takesUp:
             running.frame()  # whose cracks are drawn
+    model.dampByOptions()  # what stands comes to rest; blocks that are loose are not damped so
     model.letFall()
     gravity = abs(box.gravity) or GRAVITY
     size = max(box.size(index) for index in range(len(box.bricks)))
