@@ -12,6 +12,7 @@ namespace masonry {
 namespace {
 
 constexpr unsigned allAxes = 63;
+constexpr double noticed = 0.05; // change of a contact area in a step, over the area, from which on energy is looked at
 
 bool isHeld(const SceneContents& contents, int body) { return contents.bodies.blockedAxes(body) == allAxes; }
 
@@ -155,12 +156,13 @@ void Contacts::findPairs(const SceneContents& contents) {
             lostInFriction += endFriction((known++)->friction);
         const bool same = known != pairs_.end() && known->one == ids.first && known->other == ids.second;
         if (std::binary_search(joined_.begin(), joined_.end(), ids)) continue;
-        found.push_back(same ? *known++ : Pair{ids.first, ids.second, 0, {}, {}, {}});
+        found.push_back(same ? *known++ : Pair{ids.first, ids.second, 0, {}, {}, {}, {}, 0, 0});
     }
     for (; known != pairs_.end(); ++known)
         lostInFriction += endFriction(known->friction);
     pairs_ = std::move(found);
-    effects_.assign(pairs_.size(), Effect{false, Vector3r::Zero(), {Vector3r::Zero(), Vector3r::Zero()}, 0, 0});
+    const Wrench none{Vector3r::Zero(), {Vector3r::Zero(), Vector3r::Zero()}};
+    effects_.assign(pairs_.size(), Effect{false, false, none, 0, 0});
     finders_.resize(std::max<std::size_t>(1, (pairs_.size() + piece - 1) / piece), finders_.front());
     stale_ = false;
 }
@@ -173,93 +175,182 @@ RelativePose Contacts::poseOf(const SceneContents& contents, const Pair& pair) c
                 Eigen::Map<const Vector3r>(pair.gap)};
 }
 
-// The mass with which the two bodies of a pair meet at a point along a normal [kg]: the inverse of how fast the point
-// of each would be after an impulse of 1.
-double Contacts::massAlong(const SceneContents& contents, const Pair& pair, const Vector3r& point,
-                           const Vector3r& normal) const {
+Contacts::Wrench Contacts::sum(const Wrench& a, double share, const Wrench& b) {
+    return {a.force + share * b.force, {a.torques[0] + share * b.torques[0], a.torques[1] + share * b.torques[1]}};
+}
+
+// Of a force on the other body and a moment about the place of the one, both in the axes of the one.
+Contacts::Wrench Contacts::wrenchOf(const Pair& pair, const RelativePose& pose, const Vector3r& force,
+                                    const Vector3r& moment) const {
+    const Matrix3r& turn = turns_[std::size_t(pair.one)];
+    const Vector3r gap(pair.gap[0], pair.gap[1], pair.gap[2]);
+    return {turn * force, {turn * (gap.cross(force) - moment), turn * (moment - pose.place.cross(force))}};
+}
+
+// What a wrench gives to both bodies, with their velocities before this step [W].
+double Contacts::powerOf(const SceneContents& contents, const Pair& pair, const Wrench& wrench) const {
+    const auto* v = contents.bodies.velocity;
+    return wrench.force.dot(columnOf(v, pair.other) - columnOf(v, pair.one)) +
+           wrench.torques[0].dot(columnOf(v + 3, pair.one)) + wrench.torques[1].dot(columnOf(v + 3, pair.other));
+}
+
+// What a wrench gives with the velocities that an impulse of another one causes [N²/kg].
+double Contacts::response(const SceneContents& contents, const Pair& pair, const Wrench& wrench,
+                          const Wrench& to) const {
     const auto& all = contents.bodies;
-    double inverse = 0;
-    for (int id : {pair.one, pair.other}) {
+    double sum = 0;
+    for (int side = 0; side < 2; ++side) {
+        const int id = side ? pair.other : pair.one;
         const auto b = std::size_t(id);
         const bool spins = all.spins(id);
-        Vector3r turning = (point - columnOf(all.position, id)).cross(normal);
-        if (spins) turning = (turns_[b].transpose() * turning).eval(); // moments of inertia are those of its own axes
+        Vector3r turning = wrench.torques[side], by = to.torques[side];
+        if (spins) { // moments of inertia are those of its own axes
+            turning = (turns_[b].transpose() * turning).eval();
+            by = (turns_[b].transpose() * by).eval();
+        }
         for (int d = 0; d < 3; ++d) {
-            if (!all.isBlocked(id, d)) inverse += normal[d] * normal[d] / all.mass[b];
-            if (spins || !all.isBlocked(id, 3 + d)) inverse += turning[d] * turning[d] / all.inertia[d][b];
+            if (!all.isBlocked(id, d)) sum += wrench.force[d] * to.force[d] / all.mass[b];
+            if (spins || !all.isBlocked(id, 3 + d)) sum += turning[d] * by[d] / all.inertia[d][b];
         }
     }
+    return sum;
+}
+
+// The mass with which the two bodies of a pair meet at a point along a normal [kg].
+double Contacts::massAlong(const SceneContents& contents, const Pair& pair, const Vector3r& point,
+                           const Vector3r& normal) const {
+    const auto& x = contents.bodies.position;
+    const Wrench unit{normal,
+                      {(columnOf(x, pair.one) - point).cross(normal), (point - columnOf(x, pair.other)).cross(normal)}};
+    const double inverse = response(contents, pair, unit, unit);
     return inverse > 0 ? 1 / inverse : 0;
+}
+
+// The wrench with the same force along the same line at the one body, which gives no angular momentum where both bodies
+// stand now.
+Contacts::Wrench Contacts::standing(const SceneContents& contents, const Pair& pair, const Wrench& wrench) const {
+    const auto& x = contents.bodies.position;
+    const Vector3r arm = columnOf(x, pair.other) - columnOf(x, pair.one);
+    return {wrench.force, {wrench.torques[0], -wrench.torques[0] - arm.cross(wrench.force)}};
+}
+
+Contacts::Wrench Contacts::lastPush(const Pair& pair) const {
+    using Numbers = Eigen::Map<const Vector3r>;
+    return {Numbers(pair.push), {Numbers(pair.push + 3), Numbers(pair.push + 6)}};
+}
+
+// The elastic force of a step, which keeps the energy where the contact area becomes another one. Where it grows, the
+// force itself is scaled. Where it shrinks, that of the last step is added in part, because that acted on what has gone
+// as if it stayed to the end of the step. `change` is that of the area over the area.
+Contacts::Wrench Contacts::keepEnergy(const SceneContents& contents, OverlapFinder& finder, Pair& pair,
+                                      const RelativePose& pose, double change, const Wrench& elastic,
+                                      const Wrench& dashpot) const {
+    const double dt = contents.scene().dt, work = dt * powerOf(contents, pair, elastic);
+    const bool begins = !(pair.friction.stiffness > 0), unknown = !begins && lastPush(pair).force.isZero(0);
+    if (!begins && !unknown && std::abs(change) <= noticed) {
+        pair.given -= 0.5 * work;
+        return elastic;
+    }
+    const double potential =
+        normalStiffness * finder.potential(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], pose);
+    const double missing = potential + 0.5 * work - pair.given;
+    if (unknown || (begins && missing >= 0)) { // they were in each other before they came under this law
+        pair.given = potential;
+        return elastic;
+    }
+    const auto added = begins || change > 0 ? elastic : standing(contents, pair, lastPush(pair));
+    const double share =
+        shareThatTakes({dt * powerOf(contents, pair, added), dt * dt * response(contents, pair, added, added),
+                        dt * dt * response(contents, pair, added, sum(elastic, 1, dashpot))},
+                       missing);
+    const auto all = sum(elastic, share, added);
+    pair.given -= 0.5 * dt * powerOf(contents, pair, all);
+    pair.excess = share != 0 ? pair.given - potential : 0;
+    return all;
+}
+
+// In the first step after a contact: the blocks get what they gave and did not get back, or lose what they got.
+void Contacts::endOn(const SceneContents& contents, Pair& pair, Effect& effect) const {
+    const auto last = standing(contents, pair, lastPush(pair));
+    const double dt = contents.scene().dt, work = dt * powerOf(contents, pair, last);
+    const Vector3r normal = turns_[std::size_t(pair.one)] * Eigen::Map<const Vector3r>(pair.friction.normal);
+    if (!(work * last.force.dot(normal) > 0)) return; // they do not part along the force
+    const double share = shareThatTakes({work, dt * dt * response(contents, pair, last, last), 0}, -pair.given);
+    effect.acts = share != 0;
+    effect.wrench = sum(last, share - 1, last);
+    pair.excess = effect.acts ? pair.given - 0.5 * share * work : 0;
 }
 
 void Contacts::actOn(const SceneContents& contents, double dampingRatio, OverlapFinder& finder, Pair& pair,
                      Effect& effect) const {
     const auto& all = contents.bodies;
+    const auto &one = blocks_[std::size_t(pair.one)], &other = blocks_[std::size_t(pair.other)];
     const auto pose = poseOf(contents, pair);
     Overlap overlap;
-    effect.touches =
-        finder.find(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], pose, pair.axis, overlap);
-    effect.damped = 0;
-    const Vector3r gap(pair.gap[0], pair.gap[1], pair.gap[2]);
+    effect.touches = effect.acts = finder.find(one, other, pose, pair.axis, overlap);
+    effect.damped = effect.lost = 0;
+    pair.excess = 0;
+    const bool touched = pair.friction.stiffness > 0;
     if (!effect.touches) {
+        const Vector3r gap(pair.gap[0], pair.gap[1], pair.gap[2]);
         if (!gap.isZero(0)) { // once the blocks are apart as they stand, nothing is left of the joint
             Overlap without;
             const RelativePose stands{pose.turn, pose.place - gap};
-            if (!finder.find(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], stands, pair.axis,
-                             without))
+            if (!finder.find(one, other, stands, pair.axis, without))
                 std::fill(std::begin(pair.gap), std::end(pair.gap), 0.0);
         }
-        effect.force.setZero();
-        effect.torques[0].setZero();
-        effect.torques[1].setZero();
-        overlap.force.setZero();
-        overlap.moment.setZero();
+        if (!touched) return; // most pairs are only near each other
         overlap.area = 0;
-        // Most pairs are only near each other.
-        if (pair.friction.stiffness == 0 && pair.dashpot[0] == 0 && pair.dashpot[1] == 0 && pair.dashpot[2] == 0) {
-            effect.lost = 0;
-            return;
-        }
     }
-    if (!(overlap.area > 0)) effect.lost = endFriction(pair.friction);
-    Vector3r force = normalStiffness * overlap.force, moment = normalStiffness * overlap.moment;
+    // How the other body moves where it counts as standing, at the place of the one, in the axes of the one.
     const Matrix3r& turn = turns_[std::size_t(pair.one)];
     const Vector3r place = columnOf(all.position, pair.one);
+    const Vector3r spin = turn.transpose() * (columnOf(all.velocity + 3, pair.other));
+    RelativeMotion motion;
+    motion.spin = spin - turn.transpose() * columnOf(all.velocity + 3, pair.one);
+    const Vector3r gap(pair.gap[0], pair.gap[1], pair.gap[2]);
+    motion.velocity = turn.transpose() * (columnOf(all.velocity, pair.other) - columnOf(all.velocity, pair.one)) -
+                      spin.cross(pose.place - gap) - motion.spin.cross(gap);
+    // A force works over a step with its mean over both ends, as all forces of a scene do (scene/BodyStep).
+    const double dt = contents.scene().dt, half = 0.5 * dt;
     Eigen::Map<Vector3r> lastForce(pair.dashpot), lastMoment(pair.dashpot + 3);
-    RelativeMotion motion{Vector3r::Zero(), Vector3r::Zero()};
-    if (dampingRatio > 0) {
-        const Vector3r arm = columnOf(all.position, pair.other) - place;
-        const Vector3r spin = columnOf(all.velocity + 3, pair.other), ownSpin = columnOf(all.velocity + 3, pair.one);
-        motion.velocity = turn.transpose() *
-                          (columnOf(all.velocity, pair.other) - spin.cross(arm) - columnOf(all.velocity, pair.one));
-        motion.spin = turn.transpose() * (spin - ownSpin);
-        // A force works over a step with its mean over both ends, as all forces of a scene do (scene/BodyStep).
-        effect.damped = -0.5 * contents.scene().dt * (lastForce.dot(motion.velocity) + lastMoment.dot(motion.spin));
-    }
+    effect.damped = -half * (lastForce.dot(motion.velocity) + lastMoment.dot(motion.spin));
+    if (touched) pair.given -= half * powerOf(contents, pair, lastPush(pair));
     lastForce.setZero();
     lastMoment.setZero();
-    if (overlap.area > 0) {
-        double normalForce = force.norm();
-        if (dampingRatio > 0) {
-            const double mass = massAlong(contents, pair, place + turn * overlap.centre, turn * overlap.normal);
-            const double coefficient = 2 * dampingRatio * std::sqrt(normalStiffness * mass / overlap.area);
-            const auto damped = dampContact(overlap, motion, coefficient, normalForce);
-            lastForce = damped.force * overlap.normal;
-            lastMoment = damped.moment;
-            force += lastForce;
-            moment += lastMoment;
-            normalForce = std::max(0.0, normalForce + damped.force);
-            effect.damped += 0.5 * damped.power * contents.scene().dt;
-        }
-        const auto step = advanceFriction(pair.friction, overlap, pose, normalForce,
-                                          tangentialRatio * normalStiffness * overlap.area, friction);
-        effect.lost = step.lost;
-        force += step.force;
-        moment += overlap.centre.cross(step.force) + step.moment * overlap.normal;
+    if (!(overlap.area > 0)) {
+        if (!effect.touches) endOn(contents, pair, effect);
+        effect.lost = endFriction(pair.friction);
+        std::fill(std::begin(pair.push), std::end(pair.push), 0.0);
+        pair.given = 0;
     }
-    effect.force = turn * force;
-    effect.torques[0] = turn * (gap.cross(force) - moment);
-    effect.torques[1] = turn * (moment - pose.place.cross(force));
+    if (!effect.touches) return;
+    auto& wrench = effect.wrench;
+    wrench = wrenchOf(pair, pose, normalStiffness * overlap.force, normalStiffness * overlap.moment);
+    if (!(overlap.area > 0)) return;
+    const double elastic = normalStiffness * overlap.force.norm();
+    if (dampingRatio > 0) {
+        const double mass = massAlong(contents, pair, place + turn * overlap.centre, turn * overlap.normal);
+        const double coefficient = 2 * dampingRatio * std::sqrt(normalStiffness * mass / overlap.area);
+        const auto damped = dampContact(overlap, motion, coefficient, elastic);
+        lastForce = damped.force * overlap.normal;
+        lastMoment = damped.moment;
+        effect.damped += half * damped.power;
+    }
+    const auto dashpot = wrenchOf(pair, pose, lastForce, lastMoment);
+    const double tangential = tangentialRatio * normalStiffness * overlap.area;
+    wrench = keepEnergy(contents, finder, pair, pose, 1 - pair.friction.stiffness / tangential, wrench, dashpot);
+    for (int d = 0; d < 3; ++d) {
+        pair.push[d] = wrench.force[d];
+        pair.push[3 + d] = wrench.torques[0][d];
+        pair.push[6 + d] = wrench.torques[1][d];
+    }
+    const double normalForce = std::max(0.0, wrench.force.dot(turn * overlap.normal) + lastForce.dot(overlap.normal));
+    const auto step = advanceFriction(pair.friction, overlap, pose, normalForce, tangential, friction);
+    effect.lost = step.lost;
+    const auto along =
+        wrenchOf(pair, pose, step.force, overlap.centre.cross(step.force) + step.moment * overlap.normal);
+    wrench = sum(sum(wrench, 1, dashpot), 1, along);
 }
 
 void Contacts::turnBlocks(const SceneContents& contents) {
@@ -293,11 +384,12 @@ void Contacts::act(SceneContents& contents) {
         const auto& effect = effects_[p];
         lostInFriction += effect.lost;
         lostInDamping += effect.damped;
-        if (!effect.touches) continue;
-        sums.forces[pairs_[p].one] -= effect.force;
-        sums.forces[pairs_[p].other] += effect.force;
-        sums.torques[pairs_[p].one] += effect.torques[0];
-        sums.torques[pairs_[p].other] += effect.torques[1];
+        if (!effect.acts) continue;
+        const auto& [force, torques] = effect.wrench;
+        sums.forces[pairs_[p].one] -= force;
+        sums.forces[pairs_[p].other] += force;
+        sums.torques[pairs_[p].one] += torques[0];
+        sums.torques[pairs_[p].other] += torques[1];
     }
     if (!begun) given = elastic(contents); // blocks that a script has put into each other
     begun = true;
@@ -361,6 +453,8 @@ double Contacts::settle(const SceneContents& contents, Pair& pair, const Vector3
     const Matrix3r back = turns_[std::size_t(pair.one)].transpose();
     std::fill(std::begin(pair.gap), std::end(pair.gap), 0.0);
     pair.friction = FrictionState{};
+    std::fill(std::begin(pair.push), std::end(pair.push), 0.0);
+    pair.given = pair.excess = 0;
     const RelativePose stands = poseOf(contents, pair);
     Overlap overlap;
     Vector3r axis = back * normal;
@@ -472,6 +566,7 @@ double Contacts::elastic(const SceneContents& contents) {
     double sum = 0;
     for (const auto& pair : pairs_) {
         const auto& s = pair.friction;
+        sum += pair.excess;
         if (!(s.stiffness > 0)) continue;
         const RelativePose pose{Eigen::Map<const Matrix3r>(s.turn), Eigen::Map<const Vector3r>(s.place)};
         sum += normalStiffness *
@@ -509,8 +604,8 @@ int Contacts::touching() const {
 
 Vector3r Contacts::forceOf(int id1, int id2) const {
     for (std::size_t p = 0; p < pairs_.size() && p < effects_.size(); ++p)
-        if (effects_[p].touches && std::minmax(id1, id2) == std::minmax(pairs_[p].one, pairs_[p].other))
-            return pairs_[p].other == id2 ? effects_[p].force : Vector3r(-effects_[p].force);
+        if (effects_[p].acts && std::minmax(id1, id2) == std::minmax(pairs_[p].one, pairs_[p].other))
+            return (pairs_[p].other == id2 ? 1 : -1) * effects_[p].wrench.force;
     return Vector3r::Zero();
 }
 
@@ -522,20 +617,26 @@ std::vector<double> Contacts::memory() {
         const auto* first = reinterpret_cast<const double*>(&pair.friction);
         all.insert(all.end(), first, first + FrictionState::numbers);
         all.insert(all.end(), std::begin(pair.dashpot), std::end(pair.dashpot));
+        all.insert(all.end(), std::begin(pair.push), std::end(pair.push));
+        all.insert(all.end(), {pair.given, pair.excess});
     }
     return all;
 }
 
 void Contacts::setMemory(const std::vector<double>& all) {
-    constexpr std::size_t width = 6 + FrictionState::numbers + 6;
+    constexpr std::size_t width = 6 + FrictionState::numbers + 17;
     if (all.size() % width != 0)
         throw std::invalid_argument("MasonryContacts.memory must have " + std::to_string(width) + " numbers a pair");
     pairs_.clear();
     for (std::size_t at = 0; at < all.size(); at += width) {
-        Pair pair{int(all[at]), int(all[at + 1]), int(all[at + 2]), {}, {}, {}};
+        Pair pair{int(all[at]), int(all[at + 1]), int(all[at + 2]), {}, {}, {}, {}, 0, 0};
         std::copy_n(&all[at + 3], 3, pair.gap);
         std::copy_n(&all[at + 6], FrictionState::numbers, reinterpret_cast<double*>(&pair.friction));
-        std::copy_n(&all[at + 6 + FrictionState::numbers], 6, pair.dashpot);
+        const double* rest = &all[at + 6 + FrictionState::numbers];
+        std::copy_n(rest, 6, pair.dashpot);
+        std::copy_n(rest + 6, 9, pair.push);
+        pair.given = rest[15];
+        pair.excess = rest[16];
         pairs_.push_back(pair);
     }
     effects_.clear();

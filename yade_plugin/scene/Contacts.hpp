@@ -5,6 +5,7 @@
 #include "common/Property.hpp"
 #include "contact/BroadPhase.hpp"
 #include "contact/ContactDamping.hpp"
+#include "contact/ContactEnds.hpp"
 #include "contact/ContactFriction.hpp"
 #include <algorithm>
 #include <set>
@@ -59,8 +60,8 @@ public:
     double largestDampingRatio() const;
     int touching() const; // number of pairs that pressed on each other in the last step
 
-    // In saved files and checkpoints: for every pair the two ids, the separating axis, the gap, the state of friction
-    // and the damping of the last step.
+    // In saved files and checkpoints: for every pair the two ids, the separating axis, the gap, the state of friction,
+    // damping and elastic force of the last step, what the blocks gave and the elastic energy beside the potential.
     std::vector<double> memory();
     void setMemory(const std::vector<double>&);
     std::vector<int> awake() { return {awake_.begin(), awake_.end()}; }
@@ -88,11 +89,19 @@ private:
         // Of damping in the last step, in the axes of the one body: force [N] on the other body and moment [N m] about
         // the centre of the one.
         double dashpot[6];
+        // The elastic force of the last step, a Wrench, and what the blocks have given to it since the contact began
+        // [J], up to the place of the last step.
+        double push[9];
+        double given;
+        double excess; // elastic energy less the potential [J]: in a step that a contact begins or ends in, else 0
     };
-    struct Effect { // of a pair in the present step, global axes
-        bool touches;
-        Vector3r force;      // on the other body [N]
+    struct Wrench {          // of a pair, global axes
+        Vector3r force;      // on the other body [N]; the one has the opposite
         Vector3r torques[2]; // on the one and on the other body, about their centres [N m]
+    };
+    struct Effect {         // of a pair in the present step
+        bool touches, acts; // they press on each other; there is a force, which the step after the end has, too
+        Wrench wrench;
         double lost, damped;
     };
     struct Placed { // a body when the pairs were last looked for
@@ -115,7 +124,16 @@ private:
     bool moved(const SceneContents&) const;
     void findPairs(const SceneContents&);
     RelativePose poseOf(const SceneContents&, const Pair&) const;
+    Wrench wrenchOf(const Pair&, const RelativePose&, const Vector3r& force, const Vector3r& moment) const;
+    double powerOf(const SceneContents&, const Pair&, const Wrench&) const;
+    double response(const SceneContents&, const Pair&, const Wrench&, const Wrench& to) const;
     double massAlong(const SceneContents&, const Pair&, const Vector3r& point, const Vector3r& normal) const;
+    static Wrench sum(const Wrench&, double share, const Wrench&);
+    Wrench standing(const SceneContents&, const Pair&, const Wrench&) const;
+    Wrench lastPush(const Pair&) const;
+    Wrench keepEnergy(const SceneContents&, OverlapFinder&, Pair&, const RelativePose&, double change,
+                      const Wrench& elastic, const Wrench& dashpot) const;
+    void endOn(const SceneContents&, Pair&, Effect&) const;
     void actOn(const SceneContents&, double dampingRatio, OverlapFinder&, Pair&, Effect&) const;
 
     static constexpr int piece = 16; // pairs that a thread takes at a time
