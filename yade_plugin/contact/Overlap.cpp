@@ -161,7 +161,9 @@ int OverlapFinder::clip(const Side& of, const Side& inside, int face) {
         if (!cut(inside.planes[std::size_t(nearest_[std::size_t(c)])], false)) return 0;
     // Which faces of the opposite block can be the nearest one: those below which some point is less deep than all
     // points are below some other face.
+    // Of two that are equally deep everywhere it is the first.
     int count = 0, first = 0;
+    double highest = HUGE_VAL;
     for (int j = 0; j < planes; ++j) {
         if (least_[std::size_t(j)] > bound) continue;
         const Plane& plane = inside.planes[std::size_t(j)];
@@ -172,8 +174,9 @@ int OverlapFinder::clip(const Side& of, const Side& inside, int face) {
             high = std::max(high, depth);
         }
         if (low > bound) continue;
-        if (high <= bound) {
-            bound = high;
+        bound = std::min(bound, high);
+        if (high < highest - tolerance_) {
+            highest = high;
             first = count;
         }
         least_[std::size_t(j)] = low;
@@ -204,7 +207,8 @@ bool OverlapFinder::cell(const Side& inside, int number, int count) {
     std::copy_n(whole_.begin(), wholeSize_, polygon_.begin());
     // Where a part is as deep below two faces, it belongs to the first of them.
     for (int d = 0; d < count; ++d)
-        if (d != number && !cut(inside.planes[std::size_t(nearest_[std::size_t(d)])] - nearest, number < d))
+        if (d != number && !cut(inside.planes[std::size_t(nearest_[std::size_t(d)])] - nearest,
+                                nearest_[std::size_t(number)] < nearest_[std::size_t(d)]))
             return false;
     return true;
 }
