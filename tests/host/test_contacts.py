@@ -138,8 +138,8 @@ MEETINGS = {
         1e-3,
     ),
     # Faces that are turned by so little that the whole face comes within few steps.
-    "tilted by 0.1°": (Quaternion(ABOUT_Y, math.radians(0.1)), 2e-3),
-    "tilted by 1°": (Quaternion(ABOUT_Y, math.radians(1)), 2e-3),
+    "tilted by 0.1°": (Quaternion(ABOUT_Y, math.radians(0.1)), 3e-3),
+    "tilted by 1°": (Quaternion(ABOUT_Y, math.radians(1)), 3e-3),
 }
 
 #: Speed [m/s], share of it along the face, offset along the face [m] and density of the second cube [kg/m³].
