@@ -126,6 +126,7 @@ def ofStudies():
     return [
         Result("closed_forms", (inYade("closed_forms/closed_forms.py"),), (), (*own("closed_forms"), *ALL), 3, limits=True),
         Result("closed_forms/convergence", (inYade("closed_forms/convergence.py"),), (), (*own("closed_forms"), *RIGID), 3),
+        Result("contact", (inYade("contact/contact.py"),), (), (*own("contact"), *RIGID, *FLYING), 5, limits=True),
         Result("statics", (inYade("statics/statics.py", "--sample", "500", "--seed", "31"),), (), (*own("statics"), *ALL), 10),
         Result("held_loads", (inYade("held_loads/held_loads.py"),), (), (*own("held_loads"), *RIGID), 6, limits=True),
         Result("stability/map", (inYade("stability/stability.py"),), ("stability/map.png",), ("validation/stability/stability.py", *ALL), 9, limits=True),
