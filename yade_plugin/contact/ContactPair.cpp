@@ -18,6 +18,22 @@ RelativeMotion motionOf(const NearBlocks& blocks) {
     return {back * (other.velocity - other.spin.cross(arm) - one.velocity) - spin.cross(blocks.gap), spin};
 }
 
+// Whether the blocks have come from their last pose with the velocities that they have. Where a script has put a block
+// elsewhere, nothing has given that change of elastic energy.
+bool cameByThemselves(const NearBlocks& blocks, double dt, const FrictionState& last) {
+    const auto &one = blocks.one, &other = blocks.other;
+    const Eigen::Matrix3d back = one.turn.transpose();
+    const Vector arm = other.position - one.position, velocity = other.velocity - one.velocity,
+                 spin = other.spin - one.spin, turning = one.spin.cross(arm);
+    const double reach = blocks.otherBlock.radius;
+    const double allowed = 0.1 * dt * (velocity.norm() + turning.norm() + reach * spin.norm()) +
+                           1e-12 * (one.position.norm() + arm.norm() + reach);
+    const Vector shift = blocks.pose.place - Vector(last.place) - dt * (back * (velocity - turning));
+    const Eigen::Matrix3d turned = blocks.pose.turn * Eigen::Map<const Eigen::Matrix3d>(last.turn).transpose();
+    const Vector turn(turned(2, 1) - turned(1, 2), turned(0, 2) - turned(2, 0), turned(1, 0) - turned(0, 1));
+    return shift.norm() + reach * (0.5 * turn - dt * (back * spin)).norm() <= allowed;
+}
+
 // The wrench of damping [N, N m] and the power that it takes [W].
 Wrench damp(const ContactProperties& law, const NearBlocks& blocks, const Overlap& overlap, double& power) {
     power = 0;
@@ -53,6 +69,7 @@ void actOnPair(const ContactProperties& law, const NearBlocks& blocks, double dt
     if (memory.touched()) {
         effect.damped -= 0.5 * dt * powerOf(blocks, Wrench::of(memory.dashpot));
         countLastPush(blocks, dt, account);
+        if (!cameByThemselves(blocks, dt, memory.friction)) Wrench::none().store(account.push);
     }
     if (!(effect.touches && overlap.area > 0)) {
         effect.wrench =
