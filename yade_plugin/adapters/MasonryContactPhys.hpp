@@ -9,9 +9,9 @@ class MasonryContactPhys : public Adapter<MasonryContactPhys, yade::IPhys>, publ
     MASONRY_DISPATCHED(MasonryContactPhys, yade::IPhys)
     static constexpr const char* className = "MasonryContactPhys";
     static constexpr const char* baseName = "IPhys";
-    static constexpr const char* doc = "The law of a contact of two blocks, what its friction remembers, and its "
-                                       "force. A contact that ends loses all of "
-                                       "it.";
+    static constexpr const char* doc =
+        "The law of a contact of two blocks, what it remembers, and its force.  A contact that ends loses all of "
+        "it.";
 
     template <class Visit> static void attributes(Visit&& visit) {
         using P = MasonryContactPhys;
@@ -25,9 +25,12 @@ class MasonryContactPhys : public Adapter<MasonryContactPhys, yade::IPhys>, publ
                   .atMost(10)
                   .source("of the restitution, yade_plugin/contact/README.md"));
         visit("force", computed(&P::force), number("N", "Force on body 2 in the last step, global axes"), Shown);
-        visit("stored", computed(&P::stored), number("J", "Elastic energy of slip and twist"), Shown);
+        visit("stored", computed(&P::stored),
+              number("J", "Elastic energy beside the potential: of slip and twist, and what is "
+                          "kept where a contact begins within the step"),
+              Shown);
         visit("record", computed<ContactPhysics, std::vector<double>>(&P::record, &P::setRecord),
-              described("What friction and damping remember"), Hidden);
+              described("What friction, damping and the elastic force remember"), Hidden);
     }
 
     MasonryContactPhys() { createIndex(); }

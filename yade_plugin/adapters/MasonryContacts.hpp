@@ -62,18 +62,21 @@ public:
         visit("lostInFriction", &C::lostInFriction, number("J", "Energy that friction took so far"), ReadOnly);
         visit("lostInDamping", &C::lostInDamping, number("J", "Energy that damping took so far"), ReadOnly);
         visit("memory", computed<Contacts, std::vector<double>>(&C::memory, &C::setMemory),
-              described("Pairs of blocks that are near each other, and what their friction remembers"), Hidden);
+              described("Pairs of blocks that are near each other, and what they remember"), Hidden);
     }
 
     template <class PyClass> static void extras(PyClass& cls) {
         cls.def("touching", &MasonryContacts::countTouching,
                 "Number of pairs that pressed on each other in the last step.")
             .def("forceOf", &MasonryContacts::forceBetween, py::args("id1", "id2"),
-                 "Force of body id1 on body id2 in the last step [N], global axes; zero if they do not touch.")
+                 "Force of body id1 on body id2 in the last step [N], global axes. It is zero if they do not touch, "
+                 "but for "
+                 "the first step after a contact, in which they may get energy back.")
             .def("pairs", &MasonryContacts::pairs,
-                 "Pairs of blocks that pressed on each other in the last step: a list of tuples of the ids of both, "
-                 "and the "
-                 "force [N] and the torque about its centre [N m] on the second, global axes.")
+                 "Pairs of blocks between which a force acted in the last step, that is, which touch or have just "
+                 "parted: a "
+                 "list of tuples of the ids of both, and the force [N] and the torque about its centre [N m] on the "
+                 "second, global axes.")
             .def("fallen", &MasonryContacts::fallen,
                  "Blocks that have come loose where joints are handed over, by their ids: a dict of id -> dict with "
                  "since, "

@@ -10,20 +10,40 @@ using Vector = Eigen::Vector3d;
 
 namespace {
 
-// The mass with which two blocks meet at a point along a normal [kg]: the inverse of how fast the point of each would
-// be after an impulse of 1.
-double massAlong(const ContactBody& one, const ContactBody& other, const Vector& point, const Vector& normal) {
-    double inverse = 0;
-    for (const auto* body : {&one, &other}) {
-        const bool spins = body->blocked >> 3 == 0;
-        Vector turning = (point - body->position).cross(normal);
-        if (spins) turning = (body->turn.transpose() * turning).eval(); // moments of inertia are those of its own axes
-        for (int d = 0; d < 3; ++d) {
-            if (!(body->blocked >> d & 1)) inverse += normal[d] * normal[d] / body->mass;
-            if (spins || !(body->blocked >> (3 + d) & 1)) inverse += turning[d] * turning[d] / body->inertia[d];
-        }
-    }
-    return inverse > 0 ? 1 / inverse : 0;
+// How the other block moves where it counts as standing, at the centre of the one, in the axes of the one.
+RelativeMotion motionOf(const NearBlocks& blocks) {
+    const auto &one = blocks.one, &other = blocks.other;
+    const Eigen::Matrix3d back = one.turn.transpose();
+    const Vector arm = other.position - one.position, spin = back * (other.spin - one.spin);
+    return {back * (other.velocity - other.spin.cross(arm) - one.velocity) - spin.cross(blocks.gap), spin};
+}
+
+// Whether the blocks have come from their last pose with the velocities that they have. Where a script has put a block
+// elsewhere, nothing has given that change of elastic energy.
+bool cameByThemselves(const NearBlocks& blocks, double dt, const FrictionState& last) {
+    const auto &one = blocks.one, &other = blocks.other;
+    const Eigen::Matrix3d back = one.turn.transpose();
+    const Vector arm = other.position - one.position, velocity = other.velocity - one.velocity,
+                 spin = other.spin - one.spin, turning = one.spin.cross(arm);
+    const double reach = blocks.otherBlock.radius;
+    const double allowed = 0.1 * dt * (velocity.norm() + turning.norm() + reach * spin.norm()) +
+                           1e-12 * (one.position.norm() + arm.norm() + reach);
+    const Vector shift = blocks.pose.place - Vector(last.place) - dt * (back * (velocity - turning));
+    const Eigen::Matrix3d turned = blocks.pose.turn * Eigen::Map<const Eigen::Matrix3d>(last.turn).transpose();
+    const Vector turn(turned(2, 1) - turned(1, 2), turned(0, 2) - turned(2, 0), turned(1, 0) - turned(0, 1));
+    return shift.norm() + reach * (0.5 * turn - dt * (back * spin)).norm() <= allowed;
+}
+
+// The wrench of damping [N, N m] and the power that it takes [W].
+Wrench damp(const ContactProperties& law, const NearBlocks& blocks, const Overlap& overlap, double& power) {
+    power = 0;
+    if (!(law.dampingRatio > 0)) return Wrench::none();
+    const auto& one = blocks.one;
+    const double mass = massAlong(blocks, one.position + one.turn * overlap.centre, one.turn * overlap.normal);
+    const double coefficient = 2 * law.dampingRatio * std::sqrt(law.normalStiffness * mass / overlap.area);
+    const auto step = dampContact(overlap, motionOf(blocks), coefficient, law.normalStiffness * overlap.force.norm());
+    power = step.power;
+    return wrenchOf(blocks, step.force * overlap.normal, step.moment);
 }
 
 } // namespace
@@ -34,51 +54,48 @@ RelativePose relativePose(const Eigen::Matrix3d& turn, const Vector& position, c
     return {back * otherTurn, back * (otherPosition - position)};
 }
 
-void actOnPair(const ContactProperties& law, const ContactBody& one, const ContactBody& other, const RelativePose& pose,
-               const Vector& gap, double dt, Overlap& overlap, FrictionState& state, double (&dashpot)[6],
-               ContactEffect& effect) {
-    if (!effect.touches) {
-        overlap.force.setZero();
-        overlap.moment.setZero();
-        overlap.area = 0;
+double energyBesidePotential(const PairMemory& memory) {
+    return elasticEnergyOf(memory.friction) + memory.elastic.excess;
+}
+
+// A force works over a step with its mean over both ends, as all forces of a scene do (scene/BodyStep): what the forces
+// of the last step did in the half step since then is counted first.
+void actOnPair(const ContactProperties& law, const NearBlocks& blocks, double dt, const Overlap& overlap,
+               OverlapFinder& finder, PairMemory& memory, ContactEffect& effect) {
+    effect.acts = effect.touches;
+    effect.damped = effect.lost = 0;
+    auto& account = memory.elastic;
+    account.excess = 0;
+    if (memory.touched()) {
+        effect.damped -= 0.5 * dt * powerOf(blocks, Wrench::of(memory.dashpot));
+        countLastPush(blocks, dt, account);
+        if (!cameByThemselves(blocks, dt, memory.friction)) Wrench::none().store(account.push);
     }
-    effect.damped = 0;
-    if (!(overlap.area > 0)) effect.lost = endFriction(state);
-    Vector force = law.normalStiffness * overlap.force, moment = law.normalStiffness * overlap.moment;
-    Eigen::Map<Vector> lastForce(dashpot), lastMoment(dashpot + 3);
-    RelativeMotion motion{Vector::Zero(), Vector::Zero()};
-    if (law.dampingRatio > 0) {
-        const Vector arm = other.position - one.position;
-        motion.velocity = one.turn.transpose() * (other.velocity - other.spin.cross(arm) - one.velocity);
-        motion.spin = one.turn.transpose() * (other.spin - one.spin);
-        // A force works over a step with its mean over both ends, as all forces of a scene do (scene/BodyStep).
-        effect.damped = -0.5 * dt * (lastForce.dot(motion.velocity) + lastMoment.dot(motion.spin));
+    if (!(effect.touches && overlap.area > 0)) {
+        effect.wrench =
+            effect.touches ? wrenchOf(blocks, law.normalStiffness * overlap.force, law.normalStiffness * overlap.moment)
+                           : Wrench::none();
+        if (!effect.touches && memory.touched())
+            effect.acts = endOn(blocks, Vector(memory.friction.normal), dt, account, effect.wrench);
+        effect.lost += endFriction(memory.friction);
+        const double excess = account.excess;
+        memory = PairMemory{};
+        account.excess = excess;
+        return;
     }
-    lastForce.setZero();
-    lastMoment.setZero();
-    if (overlap.area > 0) {
-        double normalForce = force.norm();
-        if (law.dampingRatio > 0) {
-            const double mass =
-                massAlong(one, other, one.position + one.turn * overlap.centre, one.turn * overlap.normal);
-            const double coefficient = 2 * law.dampingRatio * std::sqrt(law.normalStiffness * mass / overlap.area);
-            const auto damped = dampContact(overlap, motion, coefficient, normalForce);
-            lastForce = damped.force * overlap.normal;
-            lastMoment = damped.moment;
-            force += lastForce;
-            moment += lastMoment;
-            normalForce = std::max(0.0, normalForce + damped.force);
-            effect.damped += 0.5 * damped.power * dt;
-        }
-        const auto step = advanceFriction(state, overlap, pose, normalForce,
-                                          law.tangentialRatio * law.normalStiffness * overlap.area, law.friction);
-        effect.lost = step.lost;
-        force += step.force;
-        moment += overlap.centre.cross(step.force) + step.moment * overlap.normal;
-    }
-    effect.force = one.turn * force;
-    effect.torques[0] = one.turn * (gap.cross(force) - moment);
-    effect.torques[1] = one.turn * (moment - pose.place.cross(force));
+    const auto potential = wrenchOf(blocks, law.normalStiffness * overlap.force, law.normalStiffness * overlap.moment);
+    double power;
+    const auto dashpot = damp(law, blocks, overlap, power);
+    dashpot.store(memory.dashpot);
+    effect.damped += 0.5 * dt * power;
+    const double tangential = law.tangentialRatio * law.normalStiffness * overlap.area;
+    const ContactChange change{!memory.touched(), 1 - memory.friction.stiffness / tangential};
+    effect.wrench =
+        keepEnergy(blocks, law.normalStiffness, dt, change, potential, dashpot, finder, account).add(1, dashpot);
+    const double normalForce = std::max(0.0, effect.wrench.force.dot(blocks.one.turn * overlap.normal));
+    const auto step = advanceFriction(memory.friction, overlap, blocks.pose, normalForce, tangential, law.friction);
+    effect.lost += step.lost;
+    effect.wrench.add(1, wrenchOf(blocks, step.force, overlap.centre.cross(step.force) + step.moment * overlap.normal));
 }
 
 } // namespace masonry

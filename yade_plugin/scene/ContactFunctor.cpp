@@ -93,19 +93,16 @@ void ContactGeometry::setRecord(const std::vector<double>& all) {
 // ---- physics ------------------------------------------------------------------------------------------------------
 
 std::vector<double> ContactPhysics::record() {
-    const auto* first = reinterpret_cast<const double*>(&state);
-    std::vector<double> all(first, first + FrictionState::numbers);
-    all.insert(all.end(), std::begin(dashpot), std::end(dashpot));
-    all.insert(all.end(), effect.force.data(), effect.force.data() + 3);
+    std::vector<double> all(memory.begin(), memory.end());
+    all.insert(all.end(), effect.wrench.force.data(), effect.wrench.force.data() + 3);
     return all;
 }
 
 void ContactPhysics::setRecord(const std::vector<double>& all) {
-    if (all.size() != FrictionState::numbers + 9)
+    if (all.size() != PairMemory::numbers + 3)
         throw std::runtime_error("saved file is damaged at the state of a contact");
-    std::copy_n(all.begin(), FrictionState::numbers, reinterpret_cast<double*>(&state));
-    std::copy_n(all.begin() + FrictionState::numbers, 6, dashpot);
-    std::copy_n(all.begin() + FrictionState::numbers + 6, 3, effect.force.data());
+    std::copy_n(all.begin(), PairMemory::numbers, memory.begin());
+    std::copy_n(all.begin() + PairMemory::numbers, 3, effect.wrench.force.data());
 }
 
 // ---- what is refused ----------------------------------------------------------------------------------------------
@@ -184,6 +181,22 @@ bool isSame(const boost::weak_ptr<yade::Shape>& known, const shared_ptr<yade::Sh
     return !known.owner_before(shape) && !shape.owner_before(known);
 }
 
+// The finder of this thread, with memory for these blocks.
+OverlapFinder& finderFor(const ContactBlock& one, const ContactBlock& other) {
+    struct Finder {
+        OverlapFinder finder;
+        int corners = 0, faces = 0;
+    };
+    static thread_local Finder own;
+    for (const auto* block : {&one, &other})
+        if (block->cornerCount() > own.corners || block->faceCount() > own.faces) {
+            own.finder.provideFor(*block);
+            own.corners = std::max(own.corners, block->cornerCount());
+            own.faces = std::max(own.faces, block->faceCount());
+        }
+    return own.finder;
+}
+
 } // namespace
 
 std::shared_ptr<const ContactBlock> ContactSearch::blockOf(const yade::Scene& scene, int id,
@@ -198,11 +211,6 @@ std::shared_ptr<const ContactBlock> ContactSearch::blockOf(const yade::Scene& sc
 bool ContactSearch::find(yade::Scene& scene, const yade::Interaction& interaction,
                          const shared_ptr<yade::Shape>& shape1, const shared_ptr<yade::Shape>& shape2,
                          const yade::State& state1, const yade::State& state2, ContactGeometry& g) {
-    struct Finder { // of a thread
-        OverlapFinder finder;
-        int corners = 0, faces = 0; // for which it has memory
-    };
-    static thread_local Finder own;
     if (begunStep_ != scene.iter) beginStep(scene);
     if (!isSame(g.shapes[0], shape1) || !isSame(g.shapes[1], shape2)) {
         try {
@@ -215,19 +223,13 @@ bool ContactSearch::find(yade::Scene& scene, const yade::Interaction& interactio
         g.shapes[0] = shape1;
         g.shapes[1] = shape2;
     }
-    for (const auto& block : g.blocks)
-        if (block->cornerCount() > own.corners || block->faceCount() > own.faces) {
-            own.finder.provideFor(*block);
-            own.corners = std::max(own.corners, block->cornerCount());
-            own.faces = std::max(own.faces, block->faceCount());
-        }
     g.id1 = interaction.id1;
     g.id2 = interaction.id2;
     g.turns[0] = state1.ori.toRotationMatrix();
     g.turns[1] = state2.ori.toRotationMatrix();
     g.place = state1.pos;
     g.pose = relativePose(g.turns[0], state1.pos, g.turns[1], state2.pos);
-    g.touches = own.finder.find(*g.blocks[0], *g.blocks[1], g.pose, g.axis, g.overlap);
+    g.touches = finderFor(*g.blocks[0], *g.blocks[1]).find(*g.blocks[0], *g.blocks[1], g.pose, g.axis, g.overlap);
     if (!g.touches) g.overlap.area = 0;
     return true;
 }
@@ -257,18 +259,21 @@ bool ContactStepper::act(yade::Scene& scene, const yade::Interaction& interactio
     if (!(phys.normalStiffness > 0)) return true; // the scene has been refused
     auto& effect = phys.effect;
     effect.touches = geom.touches;
-    actOnPair(phys, bodyOf(state1, geom.turns[0]), bodyOf(state2, geom.turns[1]), geom.pose, Vector3r::Zero(), scene.dt,
-              geom.overlap, phys.state, phys.dashpot, effect);
+    const auto one = bodyOf(state1, geom.turns[0]), other = bodyOf(state2, geom.turns[1]);
+    actOnPair(phys, {*geom.blocks[0], *geom.blocks[1], one, other, geom.pose, Vector3r::Zero()}, scene.dt, geom.overlap,
+              finderFor(*geom.blocks[0], *geom.blocks[1]), phys.memory, effect);
     auto& sums = sums_[std::size_t(omp_get_thread_num() % mostThreads)];
     sums.friction += effect.lost;
     sums.damping += effect.damped;
-    if (!effect.touches) return false;
-    auto& forces = scene.forces();
-    forces.addForce(interaction.id1, -effect.force);
-    forces.addForce(interaction.id2, effect.force);
-    forces.addTorque(interaction.id1, effect.torques[0]);
-    forces.addTorque(interaction.id2, effect.torques[1]);
-    return true;
+    if (effect.acts) {
+        const auto& [force, torques] = effect.wrench;
+        auto& forces = scene.forces();
+        forces.addForce(interaction.id1, -force);
+        forces.addForce(interaction.id2, force);
+        forces.addTorque(interaction.id1, torques[0]);
+        forces.addTorque(interaction.id2, torques[1]);
+    }
+    return effect.touches;
 }
 
 double ContactStepper::sumOf(double Sums::*which) const {
@@ -291,7 +296,7 @@ double ContactStepper::stored(yade::Scene& scene) {
         auto* geom = dynamic_cast<ContactGeometry*>(i.geom.get());
         const auto* phys = dynamic_cast<const ContactPhysics*>(i.phys.get());
         if (!geom || !phys || !geom->touches) continue;
-        sum += phys->normalStiffness * geom->potential() + elasticEnergyOf(phys->state);
+        sum += phys->normalStiffness * geom->potential() + energyBesidePotential(phys->memory);
     }
     return sum;
 }

@@ -44,12 +44,11 @@ public:
 // The law of a pair that touches, and its memory. The host's IPhys of a contact derives from it.
 class ContactPhysics : public ContactProperties {
 public:
-    FrictionState state{};
-    double dashpot[6] = {};                                                                    // of actOnPair()
-    ContactEffect effect{false, Vector3r::Zero(), {Vector3r::Zero(), Vector3r::Zero()}, 0, 0}; // of the last step
+    PairMemory memory{};
+    ContactEffect effect = ContactEffect::none(); // of the last step
 
-    Vector3r force() { return effect.force; }
-    double stored() { return elasticEnergyOf(state); }
+    Vector3r force() { return effect.wrench.force; }
+    double stored() { return energyBesidePotential(memory); }
     std::vector<double> record();
     void setRecord(const std::vector<double>&);
 };

@@ -148,15 +148,15 @@ void Contacts::findPairs(const SceneContents& contents) {
     for (const auto& [i, j] : overlappingBoxes(boxes, awake)) {
         const std::pair<int, int> ids(ids_[std::size_t(i)], ids_[std::size_t(j)]);
         while (known != pairs_.end() && precedes(*known, ids))
-            lostInFriction += endFriction((known++)->friction);
+            lostInFriction += endFriction((known++)->memory.friction);
         const bool same = known != pairs_.end() && known->one == ids.first && known->other == ids.second;
         if (std::binary_search(joined_.begin(), joined_.end(), ids)) continue;
-        found.push_back(same ? *known++ : Pair{ids.first, ids.second, 0, {}, {}, {}});
+        found.push_back(same ? *known++ : Pair{ids.first, ids.second, 0, {}, {}});
     }
     for (; known != pairs_.end(); ++known)
-        lostInFriction += endFriction(known->friction);
+        lostInFriction += endFriction(known->memory.friction);
     pairs_ = std::move(found);
-    effects_.assign(pairs_.size(), Effect{false, Vector3r::Zero(), {Vector3r::Zero(), Vector3r::Zero()}, 0, 0});
+    effects_.assign(pairs_.size(), Effect::none());
     finders_.resize(std::max<std::size_t>(1, (pairs_.size() + piece - 1) / piece), finders_.front());
     stale_ = false;
 }
@@ -193,14 +193,16 @@ void Contacts::actOn(const SceneContents& contents, double dampingRatio, Overlap
                 std::fill(std::begin(pair.gap), std::end(pair.gap), 0.0);
         }
         // Most pairs are only near each other.
-        if (pair.friction.stiffness == 0 && pair.dashpot[0] == 0 && pair.dashpot[1] == 0 && pair.dashpot[2] == 0) {
-            effect = {false, Vector3r::Zero(), {Vector3r::Zero(), Vector3r::Zero()}, 0, 0};
+        if (!pair.memory.touched()) {
+            effect = Effect::none();
+            pair.memory.elastic.excess = 0;
             return;
         }
     }
-    actOnPair({normalStiffness, tangentialRatio, friction, dampingRatio}, bodyOf(contents, pair.one),
-              bodyOf(contents, pair.other), pose, gap, contents.scene().dt, overlap, pair.friction, pair.dashpot,
-              effect);
+    const auto one = bodyOf(contents, pair.one), other = bodyOf(contents, pair.other);
+    actOnPair({normalStiffness, tangentialRatio, friction, dampingRatio},
+              {blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], one, other, pose, gap},
+              contents.scene().dt, overlap, finder, pair.memory, effect);
 }
 
 void Contacts::turnBlocks(const SceneContents& contents) {
@@ -234,11 +236,12 @@ void Contacts::act(SceneContents& contents) {
         const auto& effect = effects_[p];
         lostInFriction += effect.lost;
         lostInDamping += effect.damped;
-        if (!effect.touches) continue;
-        sums.forces[pairs_[p].one] -= effect.force;
-        sums.forces[pairs_[p].other] += effect.force;
-        sums.torques[pairs_[p].one] += effect.torques[0];
-        sums.torques[pairs_[p].other] += effect.torques[1];
+        if (!effect.acts) continue;
+        const auto& [force, torques] = effect.wrench;
+        sums.forces[pairs_[p].one] -= force;
+        sums.forces[pairs_[p].other] += force;
+        sums.torques[pairs_[p].one] += torques[0];
+        sums.torques[pairs_[p].other] += torques[1];
     }
     if (!begun) given = elastic(contents); // blocks that a script has put into each other
     begun = true;
@@ -301,7 +304,7 @@ double Contacts::settle(const SceneContents& contents, Pair& pair, const Vector3
     const auto &one = blocks_[std::size_t(pair.one)], &other = blocks_[std::size_t(pair.other)];
     const Matrix3r back = turns_[std::size_t(pair.one)].transpose();
     std::fill(std::begin(pair.gap), std::end(pair.gap), 0.0);
-    pair.friction = FrictionState{};
+    pair.memory = PairMemory{};
     const RelativePose stands = poseOf(contents, pair);
     Overlap overlap;
     Vector3r axis = back * normal;
@@ -340,7 +343,7 @@ double Contacts::settle(const SceneContents& contents, Pair& pair, const Vector3
     shear -= shear.dot(overlap.normal) * overlap.normal;
     const double limit = friction * press;
     if (shear.norm() > limit) shear *= limit / shear.norm();
-    auto& s = pair.friction;
+    auto& s = pair.memory.friction;
     s.stiffness = tangentialRatio * normalStiffness * overlap.area;
     for (int d = 0; d < 3; ++d) {
         s.shear[d] = shear[d];
@@ -376,7 +379,7 @@ void Contacts::takeOver(const SceneContents& contents, const std::vector<Joint>&
                                    overlap))
             continue;
         const Matrix3r& turn = turns_[std::size_t(pair->one)];
-        const Vector3r shear(pair->friction.shear[0], pair->friction.shear[1], pair->friction.shear[2]);
+        const Vector3r shear(pair->memory.friction.shear);
         const Vector3r gap(pair->gap[0], pair->gap[1], pair->gap[2]);
         const Vector3r force = normalStiffness * overlap.force + shear;
         const Vector3r moment = normalStiffness * overlap.moment + overlap.centre.cross(shear);
@@ -412,12 +415,12 @@ double Contacts::elastic(const SceneContents& contents) {
     prepare(contents);
     double sum = 0;
     for (const auto& pair : pairs_) {
-        const auto& s = pair.friction;
-        if (!(s.stiffness > 0)) continue;
+        sum += energyBesidePotential(pair.memory);
+        if (!pair.memory.touched()) continue;
+        const auto& s = pair.memory.friction;
         const RelativePose pose{Eigen::Map<const Matrix3r>(s.turn), Eigen::Map<const Vector3r>(s.place)};
         sum += normalStiffness *
                finders_.front().potential(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], pose);
-        sum += elasticEnergyOf(s);
     }
     return sum;
 }
@@ -454,8 +457,8 @@ std::vector<double> Contacts::diameters() const {
 std::vector<Contacts::Touch> Contacts::touches() const {
     std::vector<Touch> found;
     for (std::size_t p = 0; p < pairs_.size() && p < effects_.size(); ++p)
-        if (effects_[p].touches)
-            found.push_back({pairs_[p].one, pairs_[p].other, effects_[p].force, effects_[p].torques[1]});
+        if (effects_[p].acts)
+            found.push_back({pairs_[p].one, pairs_[p].other, effects_[p].wrench.force, effects_[p].wrench.torques[1]});
     return found;
 }
 
@@ -465,33 +468,30 @@ int Contacts::touching() const {
 
 Vector3r Contacts::forceOf(int id1, int id2) const {
     for (std::size_t p = 0; p < pairs_.size() && p < effects_.size(); ++p)
-        if (effects_[p].touches && std::minmax(id1, id2) == std::minmax(pairs_[p].one, pairs_[p].other))
-            return pairs_[p].other == id2 ? effects_[p].force : Vector3r(-effects_[p].force);
+        if (effects_[p].acts && std::minmax(id1, id2) == std::minmax(pairs_[p].one, pairs_[p].other))
+            return pairs_[p].other == id2 ? effects_[p].wrench.force : Vector3r(-effects_[p].wrench.force);
     return Vector3r::Zero();
 }
 
 std::vector<double> Contacts::memory() {
     std::vector<double> all;
-    for (const auto& pair : pairs_) {
+    for (auto& pair : pairs_) {
         all.insert(all.end(), {double(pair.one), double(pair.other), double(pair.axis)});
         all.insert(all.end(), std::begin(pair.gap), std::end(pair.gap));
-        const auto* first = reinterpret_cast<const double*>(&pair.friction);
-        all.insert(all.end(), first, first + FrictionState::numbers);
-        all.insert(all.end(), std::begin(pair.dashpot), std::end(pair.dashpot));
+        all.insert(all.end(), pair.memory.begin(), pair.memory.end());
     }
     return all;
 }
 
 void Contacts::setMemory(const std::vector<double>& all) {
-    constexpr std::size_t width = 6 + FrictionState::numbers + 6;
+    constexpr std::size_t width = 6 + PairMemory::numbers;
     if (all.size() % width != 0)
         throw std::invalid_argument("MasonryContacts.memory must have " + std::to_string(width) + " numbers a pair");
     pairs_.clear();
     for (std::size_t at = 0; at < all.size(); at += width) {
-        Pair pair{int(all[at]), int(all[at + 1]), int(all[at + 2]), {}, {}, {}};
+        Pair pair{int(all[at]), int(all[at + 1]), int(all[at + 2]), {}, {}};
         std::copy_n(&all[at + 3], 3, pair.gap);
-        std::copy_n(&all[at + 6], FrictionState::numbers, reinterpret_cast<double*>(&pair.friction));
-        std::copy_n(&all[at + 6 + FrictionState::numbers], 6, pair.dashpot);
+        std::copy_n(&all[at + 6], PairMemory::numbers, pair.memory.begin());
         pairs_.push_back(pair);
     }
     effects_.clear();

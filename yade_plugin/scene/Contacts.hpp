@@ -53,8 +53,8 @@ public:
     double largestEigenvalue(const SceneContents&, bool anew);
     // Of the damping of all contacts of a block: its largest ratio to the critical one [-].
     double largestDampingRatio() const;
-    // What touched in the last step: two bodies, and force [N] and torque about its centre [N m] on the second of them,
-    // global axes.
+    // Where a force acted in the last step: two bodies, and force [N] and torque about its centre [N m] on the second
+    // of them, global axes. That is where blocks pressed on each other, and where they parted in this step.
     struct Touch {
         int one, other;
         Vector3r force, torque;
@@ -62,8 +62,7 @@ public:
     std::vector<Touch> touches() const;
     int touching() const; // number of pairs that pressed on each other in the last step
 
-    // In saved files and checkpoints: for every pair the two ids, the separating axis, the gap, the state of friction
-    // and the damping of the last step.
+    // In saved files and checkpoints: for every pair the two ids, the separating axis, the gap and PairMemory.
     std::vector<double> memory();
     void setMemory(const std::vector<double>&);
     std::vector<int> awake() { return {awake_.begin(), awake_.end()}; }
@@ -77,7 +76,7 @@ public:
     void setChanges(const std::vector<double>&);
 
 protected:
-    // Force on the second body of a pair in the last step [N], global axes; zero if they do not touch.
+    // Force on the second body of a pair in the last step [N], global axes.
     Vector3r forceOf(int id1, int id2) const;
 
 private:
@@ -87,10 +86,7 @@ private:
         // By which the other body stands farther away than it does, in the axes of the one [m]: what crushing and
         // dilatancy left of a joint that was handed over, so that its force goes on.
         double gap[3];
-        FrictionState friction;
-        // Of damping in the last step, in the axes of the one body: force [N] on the other body and moment [N m] about
-        // the centre of the one.
-        double dashpot[6];
+        PairMemory memory;
     };
     using Effect = ContactEffect; // of a pair in the present step
     struct Placed {               // a body when the pairs were last looked for
