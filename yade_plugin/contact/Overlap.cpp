@@ -33,6 +33,7 @@ void OverlapFinder::provideFor(const ContactBlock& block) {
     signs_.resize(most);
     least_.resize(one_.planes.size());
     nearest_.resize(one_.planes.size());
+    cells_.resize(one_.planes.size());
     patches_.reserve(2 * one_.planes.size());
 }
 
@@ -373,18 +374,38 @@ double OverlapFinder::squareOf(const Plane& depth, const Vector& normal) const {
 double OverlapFinder::depthIntegral(const Side& of, const Side& inside) {
     const auto normalOf = [](const Plane& p) { return Vector(p.a, p.b, p.c); };
     double sum = 0;
+    std::fill(cells_.begin(), cells_.end(), false);
     for (int f = 0; f < of.block->faceCount(); ++f) {
         const Vector outward = normalOf(of.planes[std::size_t(f)]);
         const int count = clip(of, inside, f);
         for (int c = 0; c < count; ++c) {
+            cells_[std::size_t(nearest_[std::size_t(c)])] = true;
             const Plane& nearest = inside.planes[std::size_t(nearest_[std::size_t(c)])];
             if (count == 1 || cell(inside, c, count))
                 sum -= 0.5 * normalOf(nearest).dot(outward) * squareOf(nearest, outward);
         }
     }
     const int faces = inside.block->faceCount(), bounds = of.block->faceCount();
+    // From any point of a cell the line towards its face stays in the cell, and ends at the surface of the one block,
+    // in a part that was found above, or at that face. Walls stand between such cells only. A face has no end of such a
+    // line if it lies outside one plane of the one block.
+    const int corners = inside.block->cornerCount();
+    for (int i = 0; i < faces; ++i) {
+        const auto& outline = inside.block->faces[std::size_t(i)];
+        const auto outside = [&](int plane) {
+            const double* depths = inside.depths.data() + plane * corners;
+            for (int k = outline.first; k < outline.beyond; ++k)
+                if (depths[inside.block->outlines[std::size_t(k)]] >= -tolerance_) return false;
+            return true;
+        };
+        bool near = true;
+        for (int plane = 0; plane < bounds && near; ++plane)
+            near = !outside(plane);
+        if (near) cells_[std::size_t(i)] = true;
+    }
     for (int i = 0; i < faces; ++i)
         for (int j = i + 1; j < faces; ++j) {
+            if (!cells_[std::size_t(i)] || !cells_[std::size_t(j)]) continue;
             const Plane& mine = inside.planes[std::size_t(i)];
             const Plane wall = inside.planes[std::size_t(j)] - mine;
             const Vector across = normalOf(wall); // from cell i to cell j the difference of depths falls along this

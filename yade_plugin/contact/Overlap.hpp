@@ -95,6 +95,7 @@ private:
     std::vector<double> signs_, least_;
     int wholeSize_ = 0; // corners of `whole_`
     std::vector<int> nearest_;
+    std::vector<unsigned char> cells_; // whether a face of the opposite block is the nearest somewhere in the overlap
     std::vector<Patch> patches_;
     int size_ = 0;         // corners of the present polygon
     double tolerance_ = 0; // depths below this are zero [m]

@@ -224,12 +224,14 @@ void Contacts::act(SceneContents& contents) {
     if (takesJoints && contents.scene().iter % lookEvery == 0) wake(contents);
     if (stale_ || moved(contents)) findPairs(contents);
     countChanges(contents);
-    const double ratio = dampingRatio(restitution);
+    if (ratioOf_ != restitution) dampingRatio_ = dampingRatio(restitution);
+    ratioOf_ = restitution;
     const int count = int(pairs_.size());
     Parallel::instance().overPieces((count + piece - 1) / piece, 1, [&](int first, int beyond) {
         for (int n = first; n < beyond; ++n)
             for (int p = n * piece; p < std::min(count, (n + 1) * piece); ++p)
-                actOn(contents, ratio, finders_[std::size_t(n)], pairs_[std::size_t(p)], effects_[std::size_t(p)]);
+                actOn(contents, dampingRatio_, finders_[std::size_t(n)], pairs_[std::size_t(p)],
+                      effects_[std::size_t(p)]);
     });
     const auto sums = contents.scene().forces().sums(all.size());
     for (std::size_t p = 0; p < pairs_.size(); ++p) {

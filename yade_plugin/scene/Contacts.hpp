@@ -125,6 +125,7 @@ private:
     std::set<int> awake_;                     // where joints are handed over: bodies that may come near others
     std::vector<Change> changes_;
     double usedSkin_ = 0;
+    double dampingRatio_ = 0, ratioOf_ = -1;                   // dampingRatio(restitution), and for which restitution
     double bound_ = 0, boundStiffness_ = -1, boundRatio_ = -1; // largestEigenvalue(), and what it was found for
     long boundRevision_ = -1;
     bool stale_ = true;  // whether the pairs must be looked for
