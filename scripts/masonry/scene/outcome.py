@@ -32,7 +32,7 @@ from ..run import accuracy
 from . import facts, history
 from .parsing import UNITS
 from .stages import pushing
-from .stages.stage import answersText
+from .stages.answers import answersText
 from .wall import wallOf
 
 FRAMES = 20  # for ParaView in a stage that is no push

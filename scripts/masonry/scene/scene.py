@@ -76,7 +76,7 @@ from .outcome import Outcome
 from .parsing import Parser
 from .resuming import State
 from .stages import AT_REST, STAGES, gravity, prepare
-from .stages.stage import Answer
+from .stages.answers import Answer
 from .targets import LOADED, MOVING_PLATEN, Target
 from .words import RESULT, SHAKES, Call, Script
 
@@ -310,7 +310,7 @@ class Scene:
     @property
     def answers(self) -> list[dict[str, Any]]:
         """What the stages were run for, in their order: a list of dicts, as of
-        :class:`masonry.scene.stages.stage.Answer`, with the ``stage`` and its ``number``.
+        :class:`masonry.scene.stages.answers.Answer`, with the ``stage`` and its ``number``.
         """
         kept, entered = self.running.at.answers, self.running.entered
         numbers = [number for number in sorted(kept, key=int) if int(number) <= entered]

@@ -11,9 +11,9 @@ from typing import Any
 
 from yade import O, Vector3
 
+from ...assembly.motion import REST
 from ...basics import GRAVITY, Unwritable, say
-from .rest import REST
-from .stage import COLLAPSED, FALL, Answer
+from .answers import COLLAPSED, FALL, Answer
 
 #: How such a run ends.
 AT_REST, MOVING = f"{COLLAPSED} and at rest", f"{COLLAPSED} and moving"

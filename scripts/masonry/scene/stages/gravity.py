@@ -12,7 +12,8 @@ from ..bounds import nameOfLean
 from .acting import Acceleration, Tilting
 from .growing import TRIAL, WITHIN, ends, follow, found, grow
 from .rest import Resting, waitForRest
-from .stage import AT_REST, MOVING, stage
+from .answers import AT_REST, MOVING
+from .stage import stage
 from .timed import DURATION
 
 LEAN_GROWS = 0.2  # [s] in which a lean grows

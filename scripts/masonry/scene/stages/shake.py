@@ -17,7 +17,8 @@ from ..ground import UNITS, readRecord, record
 from ..parsing import DAMPING
 from ..words import SHAKES
 from .gravity import LEVEL, sideways
-from .stage import DONE, Answer, stage
+from .answers import DONE, Answer
+from .stage import stage
 from .timed import DURATION, TIME, Timed, timed
 
 

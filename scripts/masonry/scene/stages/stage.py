@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What all stages of a scene share: how they begin and end, their traits, and what they answer."""
+"""What all stages of a scene share: how they begin and end, and their traits."""
 
 from __future__ import annotations
 
 import functools
-import itertools
 import os
 from dataclasses import dataclass
 from typing import Any, Callable, Concatenate, ParamSpec
@@ -17,77 +16,13 @@ from ...run import batch
 from ...run.accuracy import STAGES
 from ..resuming import enter
 from ..words import argumentsOf
+from .answers import COLLAPSED, DONE, FALL
+from .falling import followFall, writeTable
+from .falling import answers as answersOfFall
 
 P = ParamSpec("P")
 #: A stage: a function of the scene and what the user says, which returns how it ended.
 Stage = Callable[Concatenate[Any, P], str]
-
-#: How a stage ends.
-AT_REST, MOVING, DONE, COLLAPSED = "at rest", "moving", "done", "collapsed"
-FALL = "fall"  # the stage in which a collapse is followed: masonry.scene.stages.falling
-
-
-@dataclass(frozen=True)
-class Answer:
-    """A number that a stage was run for.
-
-    :param name: what it is, in one word or several joined by underscores
-    :param unit: ``"-"`` if it has none
-    :param value: None if the stage did not find it
-    :param uncertainty: half the width of the interval that the run itself found about the value, in its unit; None if the
-        run has no measure of it
-    :param how: how the value and its uncertainty were found, a sentence
-    """
-
-    name: str
-    unit: str
-    value: float | None
-    how: str
-    uncertainty: float | None = None
-
-
-def answerText(answer):
-    """An entry of ``answers`` of run.json as a line to read."""
-    head = f"{answer['stage']}: {answer['name'].replace('_', ' ')}"
-    if answer["value"] is None:
-        return f"{head}: not found: {answer['how']}"
-    unit = "" if answer["unit"] == "-" else " " + answer["unit"]
-    known = answer["uncertainty"] is not None
-    about = f" ± {answer['uncertainty']:.2g}" if known else ""
-    return f"{head} {answer['value']:.4g}{about}{unit}"
-
-
-def answersText(answers):
-    """Entries of ``answers`` of run.json as lines to read. Stages of one kind that look for the load that is held and follow
-    each other, as the trials of a bracket, have one line.
-    """
-    searches = lambda one: one["name"] in ("factor_held", "factor_not_held")
-    trial = (
-        lambda one: one["stage"] in ("lean", "load", "wind", "press") or one["number"]
-    )
-    alike = (
-        lambda one: (one["stage"], trial(one), one["unit"]) if searches(one) else None
-    )
-    shown = [a for a in answers if not a["name"].startswith("displacement_held")]
-    shown = [a for a in shown if not a["name"].startswith("displacement_not_held")]
-    for kind, group in itertools.groupby(shown, alike):
-        group = list(group)
-        if kind is None:
-            yield from map(answerText, group)
-            continue
-        held = _furthest(group, "factor_held", max)
-        lost = _furthest(group, "factor_not_held", min)
-        found = [answerText(one) for one in (held, lost) if one]
-        count = len({one["number"] for one in group})
-        stages = f" ({count} stages)" if count > 1 else ""
-        yield "; ".join([found[0] + stages] + [t.partition(": ")[2] for t in found[1:]])
-
-
-def _furthest(answers, name, choose):
-    """The answer of a name with the largest or smallest value, or one without a value if there is no other."""
-    found = [one for one in answers if one["name"] == name]
-    known = [one for one in found if one["value"] is not None]
-    return choose(known, key=lambda one: one["value"]) if known else found[-1]
 
 
 class Rows:
@@ -123,7 +58,8 @@ class Traits:
     :param grows: whether presses, dead loads and wind grow in it
     :param real: whether it runs in real time, whatever falls, in a scene whose collapse is followed
     :param check: function of the scene and what the user says, which raises Refused before the scene is built
-    :param answers: function of the scene and the :class:`Rows` of the stage that gives a list of :class:`Answer`
+    :param answers: function of the scene and the :class:`Rows` of the stage that gives a list of
+        :class:`~masonry.scene.stages.answers.Answer`
     """
 
     bounded: bool = False
@@ -248,8 +184,6 @@ def _follow(scene, name):
 
     :param name: of the stage
     """
-    from . import falling  # which needs this module
-
     running, begun = scene.running, scene.running.at.begun
     try:
         running.endsAtFall = False
@@ -258,14 +192,14 @@ def _follow(scene, name):
             running.fall(running.at.fall)
         scene.ended = COLLAPSED
         try:
-            scene.ended = falling.followFall(scene, tilted=name == "tilt")
+            scene.ended = followFall(scene, tilted=name == "tilt")
         except Collapsed as collapse:
             say(f"note: the fall is followed no farther: {collapse}")
         number = running.entered
-        found = falling.answers(scene, scene.ended, running.memory.begun)
+        found = answersOfFall(scene, scene.ended, running.memory.begun)
         kept = [{"stage": FALL, "number": number, **vars(one)} for one in found]
         running.at.answers = {**running.at.answers, str(number): kept}
-        falling.writeTable(scene)
+        writeTable(scene)
         _noteEnd(running, begun - 1, scene.ended)
         running.mark()
         return COLLAPSED
