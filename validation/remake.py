@@ -126,6 +126,7 @@ def ofStudies():
     return [
         Result("closed_forms", (inYade("closed_forms/closed_forms.py"),), (), (*own("closed_forms"), *ALL), 3, limits=True),
         Result("closed_forms/convergence", (inYade("closed_forms/convergence.py"),), (), (*own("closed_forms"), *RIGID), 3),
+        Result("contact", (inYade("contact/contact.py"),), (), (*own("contact"), *RIGID, *FLYING), 5, limits=True),
         Result("statics", (inYade("statics/statics.py", "--sample", "500", "--seed", "31"),), (), (*own("statics"), *ALL), 10),
         Result("held_loads", (inYade("held_loads/held_loads.py"),), (), (*own("held_loads"), *RIGID), 6, limits=True),
         Result("stability/map", (inYade("stability/stability.py"),), ("stability/map.png",), ("validation/stability/stability.py", *ALL), 9, limits=True),
@@ -151,7 +152,7 @@ def ofStudies():
         Result("random_fields/one_metre", study("random_fields/one_metre"), ("random_fields/*_one_metre.png",), ("validation/random_fields/*.py", *RIGID), 20, ("validation/random_fields/one_metre",)),
         Result("random_fields/one_brick", study("random_fields/one_brick"), ("random_fields/*_one_brick.png",), ("validation/random_fields/*.py", *RIGID), 20, ("validation/random_fields/one_brick",)),
         Result("multifidelity", (program("multifidelity/multifidelity.py", "--jobs", "2"),), ("multifidelity/multifidelity.png",), (*own("multifidelity"), *RIGID, *DEFORMABLE), 120, ("validation/multifidelity",)),
-        Result("benchmark", (inYade("benchmark/benchmark.py"), program("benchmark/threads.py"), program("benchmark/plain.py"), inYade("benchmark/shaken_facade.py", "--lean", "--preset", "fast")), (), ("validation/benchmark/*.py", *ALL), 15, ("benchmark",)),
+        Result("benchmark", (inYade("benchmark/benchmark.py"), program("benchmark/threads.py"), program("benchmark/plain.py"), inYade("benchmark/shaken_facade.py", "--lean", "--preset", "fast"), program("benchmark/heap.py")), (), ("validation/benchmark/*.py", *ALL), 20, ("benchmark",)),
     ]  # fmt: skip
 
 

@@ -5,6 +5,7 @@
 #include "blocks/BlockShape.hpp"
 #include "contact/BroadPhase.hpp"
 #include "contact/ContactDamping.hpp"
+#include "contact/ContactEnds.hpp"
 #include "contact/ContactFriction.hpp"
 #include "contact/ContactStep.hpp"
 #include "contact/Overlap.hpp"
@@ -708,6 +709,60 @@ TEST_CASE("a ratio of damping gives its restitution, and none makes a contact pu
         const double power = -(d.force * o.normal.dot(motion.velocity) + d.moment.dot(motion.spin));
         CHECK(std::abs(power - d.power) <= 1e-9 * (d.power + std::abs(d.force)));
     }
+}
+
+TEST_CASE("a share of a force takes as much energy as it should, or as it can") {
+    Dice dice(13);
+    int found = 0;
+    for (int n = 0; n < 2000; ++n) {
+        const AddedForce force{between(dice, -1, 1), between(dice, 0, 2), between(dice, -0.3, 0.3)};
+        const double energy = between(dice, -0.5, 0.5);
+        const double share = shareThatTakes(force, energy);
+        const auto given = [&](double x) {
+            return x * (force.work + 0.5 * force.others) + 0.5 * x * x * force.response;
+        };
+        CHECK(std::abs(share) <= 1);
+        if (std::abs(share) < 1 && std::abs(given(share) + energy) < 1e-12) {
+            ++found;
+            for (double x : {0.5 * share, -0.5 * share, 0.0}) // none of less size does
+                CHECK((given(x) + energy) * energy > 0);
+        } else if (std::abs(share) < 1) { // none does: this one takes most
+            CHECK(energy > 0);
+            CHECK(given(share) <= given(share + 1e-3));
+            CHECK(given(share) <= given(share - 1e-3));
+        }
+    }
+    CHECK(found > 500);
+    CHECK(shareThatTakes({1, 1, 0}, 0) == 0);
+    CHECK(shareThatTakes({1, 0, 0}, 1) == 0);
+}
+
+TEST_CASE("a mass that meets a spring keeps its energy, wherever in the step it does") {
+    for (double frequency : {0.05, 0.3, 0.7, 1.0, 1.3}) // times the time step
+        for (double phase = 0.01; phase < 1; phase += 0.07) {
+            const double k = frequency * frequency; // mass and time step are 1
+            double x = -phase, v = 1, given = 0, push = 0, most = 0;
+            bool touched = false;
+            for (int n = 0; n < 200; ++n, x += v) {
+                given -= 0.5 * push * v;
+                const bool touches = x > 0;
+                const double plain = touches ? -k * x : 0;
+                const double last = push, w = touches ? 0.5 * k * x * x : 0;
+                push = plain;
+                if (touches && !touched)
+                    push += plain * shareThatTakes({plain * v, plain * plain, plain * plain}, w + 0.5 * plain * v);
+                if (!touches && touched && last * v > 0)
+                    push = last * shareThatTakes({last * v, last * last, 0}, -given);
+                given -= 0.5 * push * v;
+                if (!touches) given = 0;
+                touched = touches;
+                v += push;
+                if (!touches) push = 0;
+                most = std::max(most, x);
+            }
+            CHECK(v == doctest::Approx(-1).epsilon(1e-12));
+            CHECK(most > 0);
+        }
 }
 
 TEST_CASE("sweep and prune finds all pairs of boxes that overlap, in order") {

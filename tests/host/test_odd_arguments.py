@@ -140,6 +140,7 @@ WORDS = {
     "section": (scene, dict(z=0.1, part=None, name=None)),
     "tie": (scene, dict(one=2, other=TOP, stiffness=1e6, strength=1e3, prestress=0.0, slack=0.0, breaking=None, compression=False, anchor=None, name=None)),
     "overlay": (space, dict(side=(0, 1, 0), stiffness=1e7, strength=1e4, gauge=0.1, strain=None, fibres="both", part=None, name=None)),
+    "ground": (lambda: scene(collapse="follow"), dict(level=-5.0, name=None)),
     "spring": (scene, dict(one=2, other=None, stiffness=(1e6, 0, 0), rotation=(0, 0, 0), name=None)),
     "view": (scene, dict(direction=(0, 1, 0), part=None)),
     "settle": (scene, dict(longest=0.05, damping=None, record=True)),

@@ -11,7 +11,8 @@ from hypothesis import strategies as some
 from masonry.basics import GRAVITY, Collapsed
 from masonry.scene.stages import growing
 from masonry.scene.stages.acting import Acceleration, Forces, Tilting
-from masonry.scene.stages.rest import CALM, EVERY, LOOKS, REST, rampTime
+from masonry.assembly.motion import REST
+from masonry.scene.stages.rest import CALM, EVERY, LOOKS, rampTime
 from yade import O, Vector3
 
 X = Vector3.UnitX

@@ -5,7 +5,7 @@ import pytest
 from masonry import AT_REST, COLLAPSED, Scene, bricks, materials
 from masonry.read.files import readRun
 from masonry.run import run
-from masonry.scene.stages.stage import answersText
+from masonry.scene.stages.answers import answersText
 from masonry.study.gathering import _answerName
 from small import SMALL, carryOut, parsed
 from yade import O

@@ -11,7 +11,46 @@ void MasonryContacts::action() {
     const EngineTurn turn(*scene, *this);
     act(turn.store());
     handOver_.act(turn.store(), *this);
+    lookAtFalls(turn.store());
     turn.end();
+}
+
+void MasonryContacts::lookAtFalls(SceneStore& store) {
+    if (!takesJoints || scene->iter % lookEvery != 0) return;
+    if (heldRevision_ != store.revision()) held_ = heldByJoints(store);
+    heldRevision_ = store.revision();
+    std::vector<int> loose;
+    for (int body : awake())
+        if (!held_[std::size_t(body)]) loose.push_back(body);
+    falls_.look(store, loose, diameters());
+    if (dampsLoose) return;
+    for (int body : loose)
+        if (auto& state = store.bodies.state(body); state.isDamped) {
+            state.isDamped = false;
+            store.bodies.take(body);
+        }
+}
+
+py::dict MasonryContacts::fallen() {
+    const BetweenSteps still;
+    py::dict found;
+    for (const auto& fall : falls_.all()) {
+        py::dict one;
+        one["since"] = fall.since;
+        one["fell"] = fall.fell < 0 ? py::object() : py::object(fall.fell);
+        one["most"] = fall.most;
+        one["at"] = fall.at;
+        found[fall.body] = one;
+    }
+    return found;
+}
+
+py::list MasonryContacts::pairs() {
+    const BetweenSteps still;
+    py::list found;
+    for (const auto& touch : touches())
+        found.append(py::make_tuple(touch.one, touch.other, touch.force, touch.torque));
+    return found;
 }
 
 int MasonryContacts::countTouching() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
+#include "scene/Falls.hpp"
 #include "scene/HandOver.hpp"
 #include "scene/SceneCheck.hpp"
 
@@ -18,24 +19,7 @@ public:
 
     template <class Visit> static void attributes(Visit&& visit) {
         using C = MasonryContacts;
-        visit("normalStiffness", &C::normalStiffness,
-              number("Pa/m", "Stiffness of two faces per area; must be given, as that of a joint between the blocks")
-                  .atLeast(0));
-        visit("tangentialRatio", &C::tangentialRatio,
-              number("-", "Elastic stiffness along the face over that along the normal")
-                  .above(0)
-                  .atMost(1)
-                  .source("[decided]: G/E of masonry"));
-        visit("friction", &C::friction,
-              number("-", "Coefficient of friction; -1 stands for none given, which the first step refuses")
-                  .atLeast(-1)
-                  .atMost(10));
-        visit("restitution", &C::restitution,
-              number("-", "Speed after a central impact of two faces over that before it; 1: without damping. Measured "
-                          "ones of stone depend on speed, mass and hardness")
-                  .atLeast(0.1)
-                  .atMost(1)
-                  .source("convention, no measured value"));
+        describe(visit);
         visit("skin", &C::skin,
               number("m", "By which the boxes of the search are larger than their blocks; 0: a tenth of the thinnest "
                           "block that moves. It changes the time of a step, and no result")
@@ -45,6 +29,10 @@ public:
                         "blocks have slid by 2 % of the joint or turned by 1° against each other, and those that are "
                         "open by 2 % of their size everywhere. Blocks that have kept their joints and their places are "
                         "then left out of the search"));
+        visit(
+            "dampsLoose", &MasonryContacts::dampsLoose,
+            described("Whether numerical damping acts on blocks that no joints hold any more, where joints are handed "
+                      "over. It would brake their fall"));
         visit("handing", &C::handing,
               number("J", "Elastic energy that joints got so far when they were handed over: an input of the energy "
                           "balance"),
@@ -52,6 +40,15 @@ public:
         visit("handed", &C::handed, number("", "Number of joints that were handed over so far"), ReadOnly);
         visit("awake", computed<Contacts, std::vector<int>>(&C::awake, &C::setAwake),
               described("Ids of the blocks that are looked for, where joints are handed over"), Hidden);
+        visit("falls",
+              computed<MasonryContacts, std::vector<double>>(&MasonryContacts::fallNumbers,
+                                                             &MasonryContacts::setFallNumbers),
+              described(
+                  "What no joints hold any more, where joints are handed over, five numbers a block: its id; when it "
+                  "came loose [s]; when it had fallen [s], that is, turned by 60° or moved by its diameter since the "
+                  "reference state, -1 if it has not; its largest kinetic energy since it was loose [J], and when it "
+                  "had that [s]"),
+              Hidden);
         visit("changes", computed<Contacts, std::vector<double>>(&C::changes, &C::setChanges),
               described("What joints that were handed over in the last step did to their bodies, less what their "
                         "contacts do"),
@@ -65,15 +62,32 @@ public:
         visit("lostInFriction", &C::lostInFriction, number("J", "Energy that friction took so far"), ReadOnly);
         visit("lostInDamping", &C::lostInDamping, number("J", "Energy that damping took so far"), ReadOnly);
         visit("memory", computed<Contacts, std::vector<double>>(&C::memory, &C::setMemory),
-              described("Pairs of blocks that are near each other, and what their friction remembers"), Hidden);
+              described("Pairs of blocks that are near each other, and what they remember"), Hidden);
     }
 
     template <class PyClass> static void extras(PyClass& cls) {
         cls.def("touching", &MasonryContacts::countTouching,
                 "Number of pairs that pressed on each other in the last step.")
             .def("forceOf", &MasonryContacts::forceBetween, py::args("id1", "id2"),
-                 "Force of body id1 on body id2 in the last step [N], global axes; zero if they do not touch.");
+                 "Force of body id1 on body id2 in the last step [N], global axes. It is zero if they do not touch, "
+                 "but for "
+                 "the first step after a contact, in which they may get energy back.")
+            .def("pairs", &MasonryContacts::pairs,
+                 "Pairs of blocks between which a force acted in the last step, that is, which touch or have just "
+                 "parted: a "
+                 "list of tuples of the ids of both, and the force [N] and the torque about its centre [N m] on the "
+                 "second, global axes.")
+            .def("fallen", &MasonryContacts::fallen,
+                 "Blocks that have come loose where joints are handed over, by their ids: a dict of id -> dict with "
+                 "since, "
+                 "when that was [s]; fell, when the block had turned by 60° or moved by its diameter since the "
+                 "reference "
+                 "state [s], None if it has not; most, its largest kinetic energy since then [J]; and at, when it had "
+                 "that "
+                 "[s]. Looked at every tenth step.");
     }
+
+    bool dampsLoose = true;
 
     using Contacts::problems;
     bool isActivated() override { return standsAlone(*this); }
@@ -82,8 +96,16 @@ public:
 private:
     int countTouching();
     Vector3r forceBetween(int id1, int id2);
+    py::dict fallen();
+    py::list pairs();
+    void lookAtFalls(SceneStore&);
+    std::vector<double> fallNumbers() { return falls_.numbers(); }
+    void setFallNumbers(const std::vector<double>& numbers) { falls_.setNumbers(numbers); }
 
     HandOver handOver_; // holds no state: what it keeps follows from the scene
+    Falls falls_;
+    std::vector<unsigned char> held_; // heldByJoints(), at SceneStore::revision()
+    long heldRevision_ = -1;
 };
 
 } // namespace masonry

@@ -357,9 +357,10 @@ vtkSmartPointer<vtkPolyData> MasonryVtkRecorder::jointData() {
             cells->InsertNextCell(int(parts[p].size()));
             for (const auto& corner : parts[p]) {
                 cells->InsertCellPoint(points->InsertNextPoint(corner.data()));
-                const Vector3r both = moved(s1, r.sides[0].position, r.sides[0].orientation, corner) +
-                                      moved(s2, r.sides[1].position, r.sides[1].orientation, corner);
-                displacement->InsertNextTuple(Vector3r(0.5 * both).data());
+                const Vector3r first = moved(s1, r.sides[0].position, r.sides[0].orientation, corner);
+                const Vector3r second = moved(s2, r.sides[1].position, r.sides[1].orientation, corner);
+                // Where blocks have parted, the crack stays on one of them.
+                displacement->InsertNextTuple(Vector3r(r.handed ? first : 0.5 * (first + second)).data());
             }
             const auto s = phys.state(p);
             const Vector3r jump = geom.jump(p);

@@ -33,12 +33,14 @@ void OverlapFinder::provideFor(const ContactBlock& block) {
     signs_.resize(most);
     least_.resize(one_.planes.size());
     nearest_.resize(one_.planes.size());
+    cells_.resize(one_.planes.size());
     patches_.reserve(2 * one_.planes.size());
 }
 
 void OverlapFinder::place(const ContactBlock& one, const ContactBlock& other, const RelativePose& pose) {
     one_.block = &one;
     other_.block = &other;
+    one_.least = other_.least = HUGE_VAL;
     tolerance_ = tiny * (one.radius + other.radius);
     for (int i = 0; i < one.cornerCount(); ++i)
         one_.corners[std::size_t(i)] = {one.corners[0][i], one.corners[1][i], one.corners[2][i]};
@@ -73,6 +75,10 @@ bool OverlapFinder::separates(const Side& of, Side& from, int face) {
     for (int i = 0; i < count; ++i) {
         depths[i] = plane.depth(corners[i]);
         deepest = std::max(deepest, depths[i]);
+    }
+    if (deepest < from.least) {
+        from.least = deepest;
+        from.shallow = face;
     }
     return deepest <= tolerance_;
 }
@@ -125,33 +131,40 @@ bool OverlapFinder::cut(const Plane& plane, bool kept) {
     return count > 2;
 }
 
-template <class Visit> void OverlapFinder::eachPart(const Side& of, const Side& inside, int face, Visit&& visit) {
+int OverlapFinder::clip(const Side& of, const Side& inside, int face) {
     const auto& outline = of.block->faces[std::size_t(face)];
     const int* numbers = of.block->outlines.data();
     const int corners = of.block->cornerCount(), planes = inside.block->faceCount();
-    const double* depths = of.depths.data();
     double bound = HUGE_VAL; // no point of the face is deeper inside the opposite block
-    int cutting = 0;         // planes that cut the face come first in `nearest_`, from the end of which the others come
-    for (int j = 0; j < planes; ++j, depths += corners) {
+    int cutting = 0;         // planes that cut the face come first in `nearest_`
+    const auto look = [&](int j) {
+        const double* depths = of.depths.data() + j * corners;
         double low = HUGE_VAL, high = -HUGE_VAL;
         for (int k = outline.first; k < outline.beyond; ++k) {
             const double depth = depths[numbers[k]];
             low = std::min(low, depth);
             high = std::max(high, depth);
         }
-        if (high <= tolerance_) return;
+        if (high <= tolerance_) return false;
         bound = std::min(bound, high);
         least_[std::size_t(j)] = low;
         if (low < -tolerance_) nearest_[std::size_t(cutting++)] = j;
-    }
+        return true;
+    };
+    // Most faces look away, and lie outside this plane.
+    if (!look(of.shallow)) return 0;
+    for (int j = 0; j < planes; ++j)
+        if (j != of.shallow && !look(j)) return 0;
     size_ = 0;
     for (int k = outline.first; k < outline.beyond; ++k)
         corner(size_++) = of.corners[std::size_t(numbers[k])];
     for (int c = 0; c < cutting; ++c)
-        if (!cut(inside.planes[std::size_t(nearest_[std::size_t(c)])], false)) return;
+        if (!cut(inside.planes[std::size_t(nearest_[std::size_t(c)])], false)) return 0;
     // Which faces of the opposite block can be the nearest one: those below which some point is less deep than all
     // points are below some other face.
-    int count = 0;
+    // Of two that are equally deep everywhere it is the first.
+    int count = 0, first = 0;
+    double highest = HUGE_VAL;
     for (int j = 0; j < planes; ++j) {
         if (least_[std::size_t(j)] > bound) continue;
         const Plane& plane = inside.planes[std::size_t(j)];
@@ -161,54 +174,83 @@ template <class Visit> void OverlapFinder::eachPart(const Side& of, const Side& 
             low = std::min(low, depth);
             high = std::max(high, depth);
         }
+        if (low > bound) continue;
         bound = std::min(bound, high);
+        if (high < highest - tolerance_) {
+            highest = high;
+            first = count;
+        }
         least_[std::size_t(j)] = low;
         nearest_[std::size_t(count++)] = j;
     }
-    int possible = 0;
-    for (int c = 0; c < count; ++c)
-        if (least_[std::size_t(nearest_[std::size_t(c)])] <= bound)
-            nearest_[std::size_t(possible++)] = nearest_[std::size_t(c)];
-    if (possible == 1) return visit(inside.planes[std::size_t(nearest_[0])]);
-    const int size = size_;
-    std::copy_n(polygon_.begin(), size, whole_.begin());
-    for (int c = 0; c < possible; ++c) {
-        const Plane& nearest = inside.planes[std::size_t(nearest_[std::size_t(c)])];
-        size_ = size;
-        std::copy_n(whole_.begin(), size, polygon_.begin());
-        bool some = true;
-        // Where a part is as deep below two faces, it belongs to the first of them.
-        for (int d = 0; d < possible && some; ++d)
-            if (d != c) some = cut(inside.planes[std::size_t(nearest_[std::size_t(d)])] - nearest, c < d);
-        if (some) visit(nearest);
+    std::swap(nearest_[0], nearest_[std::size_t(first)]);
+    const Plane& main = inside.planes[std::size_t(nearest_[0])];
+    int possible = 1;
+    for (int c = 1; c < count; ++c) {
+        const int j = nearest_[std::size_t(c)];
+        if (least_[std::size_t(j)] > bound) continue;
+        const Plane less = main - inside.planes[std::size_t(j)];
+        bool some = false;
+        for (int i = 0; i < size_ && !some; ++i)
+            some = less.depth(corner(i)) > tolerance_;
+        if (some) nearest_[std::size_t(possible++)] = j;
     }
+    if (possible > 1) {
+        wholeSize_ = size_;
+        std::copy_n(polygon_.begin(), size_, whole_.begin());
+    }
+    return possible;
 }
 
-// Integrals over the present polygon, exact for triangles with a linear pressure. All terms of one sign are added, so
-// that no digits are lost.
-void OverlapFinder::addUp(const Plane& pressure, const Plane& face, Sums& sums) const {
+bool OverlapFinder::cell(const Side& inside, int number, int count) {
+    const Plane& nearest = inside.planes[std::size_t(nearest_[std::size_t(number)])];
+    size_ = wholeSize_;
+    std::copy_n(whole_.begin(), wholeSize_, polygon_.begin());
+    // Where a part is as deep below two faces, it belongs to the first of them.
+    for (int d = 0; d < count; ++d)
+        if (d != number && !cut(inside.planes[std::size_t(nearest_[std::size_t(d)])] - nearest,
+                                nearest_[std::size_t(number)] < nearest_[std::size_t(d)]))
+            return false;
+    return true;
+}
+
+// Integrals over the present polygon, exact for triangles with a linear pressure. With barycentric coordinates l: the
+// mean of l_i l_j is 1/12, of l_i² 1/6; that of l_i l_j l_k 1/60, of l_i² l_j 1/30, of l_i³ 1/10.
+void OverlapFinder::addPressure(const Plane& pressure, const Plane& face, Sums& sums) const {
     const Corner* p = polygon_.data();
     const Corner& o = p[0];
-    const double p0 = pressure.depth(o);
-    double p1 = pressure.depth(p[1]);
+    const double p0 = pressure.depth(o), oo = o.x * o.x + o.y * o.y + o.z * o.z;
+    double p1 = pressure.depth(p[1]), ss = p[1].x * p[1].x + p[1].y * p[1].y + p[1].z * p[1].z;
     for (int i = 2; i < size_; ++i) {
         const Corner &s = p[i - 1], &t = p[i];
         const double sx = s.x - o.x, sy = s.y - o.y, sz = s.z - o.z, tx = t.x - o.x, ty = t.y - o.y, tz = t.z - o.z;
         const double twice = face.a * (sy * tz - sz * ty) + face.b * (sz * tx - sx * tz) + face.c * (sx * ty - sy * tx);
         const double p2 = pressure.depth(t), sum = p0 + p1 + p2;
         const double x = o.x + s.x + t.x, y = o.y + s.y + t.y, z = o.z + s.z + t.z;
-        // With barycentric coordinates l: the mean of l_i l_j is 1/12, of l_i² 1/6; that of l_i l_j l_k 1/60, of l_i²
-        // l_j 1/30, of l_i³ 1/10.
-        const double sixth = twice / 6, part = twice / 24;
-        sums.pressure += sixth * sum;
-        sums.px += part * (sum * x + (p0 * o.x + p1 * s.x + p2 * t.x));
-        sums.py += part * (sum * y + (p0 * o.y + p1 * s.y + p2 * t.y));
-        sums.pz += part * (sum * z + (p0 * o.z + p1 * s.z + p2 * t.z));
-        const double oo = o.x * o.x + o.y * o.y + o.z * o.z, ss = s.x * s.x + s.y * s.y + s.z * s.z;
+        const double part = twice / 24, sumPart = part * sum;
+        const double w0 = sumPart + part * p0, w1 = sumPart + part * p1, w2 = sumPart + part * p2;
+        sums.pressure += 4 * sumPart;
+        sums.px += w0 * o.x + w1 * s.x + w2 * t.x;
+        sums.py += w0 * o.y + w1 * s.y + w2 * t.y;
+        sums.pz += w0 * o.z + w1 * s.z + w2 * t.z;
         const double tt = t.x * t.x + t.y * t.y + t.z * t.z, all = x * x + y * y + z * z;
         const double weighted = p0 * (oo + (o.x * x + o.y * y + o.z * z)) + p1 * (ss + (s.x * x + s.y * y + s.z * z)) +
                                 p2 * (tt + (t.x * x + t.y * y + t.z * z));
         sums.square += twice / 120 * (sum * (all + (oo + ss + tt)) + 2 * weighted);
+        p1 = p2;
+        ss = tt;
+    }
+}
+
+void OverlapFinder::addArea(const Plane& face, Sums& sums) const {
+    const Corner* p = polygon_.data();
+    const Corner& o = p[0];
+    for (int i = 2; i < size_; ++i) {
+        const Corner &s = p[i - 1], &t = p[i];
+        const double sx = s.x - o.x, sy = s.y - o.y, sz = s.z - o.z, tx = t.x - o.x, ty = t.y - o.y, tz = t.z - o.z;
+        const double twice = face.a * (sy * tz - sz * ty) + face.b * (sz * tx - sx * tz) + face.c * (sx * ty - sy * tx);
+        const double x = o.x + s.x + t.x, y = o.y + s.y + t.y, z = o.z + s.z + t.z;
+        const double sixth = twice / 6, part = twice / 24;
         sums.area += 0.5 * twice;
         sums.ax += sixth * x;
         sums.ay += sixth * y;
@@ -219,15 +261,22 @@ void OverlapFinder::addUp(const Plane& pressure, const Plane& face, Sums& sums) 
         sums.yy += part * (y * y + (o.y * o.y + s.y * s.y + t.y * t.y));
         sums.yz += part * (y * z + (o.y * o.z + s.y * s.z + t.y * t.z));
         sums.zz += part * (z * z + (o.z * o.z + s.z * s.z + t.z * t.z));
-        p1 = p2;
     }
 }
 
 void OverlapFinder::addPatches(const Side& of, const Side& inside, double sign) {
     for (int f = 0; f < of.block->faceCount(); ++f) {
+        const int count = clip(of, inside, f);
+        if (count == 0) continue;
         const Plane& face = of.planes[std::size_t(f)];
         Patch patch{face.a, face.b, face.c, sign, {}};
-        eachPart(of, inside, f, [&](const Plane& nearest) { addUp(nearest, face, patch.sums); });
+        // The depth below the first face everywhere, then how much less deep the cells of the others are.
+        const Plane& first = inside.planes[std::size_t(nearest_[0])];
+        addPressure(first, face, patch.sums);
+        addArea(face, patch.sums);
+        for (int c = 1; c < count; ++c)
+            if (cell(inside, c, count))
+                addPressure(inside.planes[std::size_t(nearest_[std::size_t(c)])] - first, face, patch.sums);
         if (patch.sums.pressure > 0) patches_.push_back(patch);
     }
 }
@@ -325,15 +374,38 @@ double OverlapFinder::squareOf(const Plane& depth, const Vector& normal) const {
 double OverlapFinder::depthIntegral(const Side& of, const Side& inside) {
     const auto normalOf = [](const Plane& p) { return Vector(p.a, p.b, p.c); };
     double sum = 0;
+    std::fill(cells_.begin(), cells_.end(), false);
     for (int f = 0; f < of.block->faceCount(); ++f) {
         const Vector outward = normalOf(of.planes[std::size_t(f)]);
-        eachPart(of, inside, f, [&](const Plane& nearest) {
-            sum -= 0.5 * normalOf(nearest).dot(outward) * squareOf(nearest, outward);
-        });
+        const int count = clip(of, inside, f);
+        for (int c = 0; c < count; ++c) {
+            cells_[std::size_t(nearest_[std::size_t(c)])] = true;
+            const Plane& nearest = inside.planes[std::size_t(nearest_[std::size_t(c)])];
+            if (count == 1 || cell(inside, c, count))
+                sum -= 0.5 * normalOf(nearest).dot(outward) * squareOf(nearest, outward);
+        }
     }
     const int faces = inside.block->faceCount(), bounds = of.block->faceCount();
+    // From any point of a cell the line towards its face stays in the cell, and ends at the surface of the one block,
+    // in a part that was found above, or at that face. Walls stand between such cells only. A face has no end of such a
+    // line if it lies outside one plane of the one block.
+    const int corners = inside.block->cornerCount();
+    for (int i = 0; i < faces; ++i) {
+        const auto& outline = inside.block->faces[std::size_t(i)];
+        const auto outside = [&](int plane) {
+            const double* depths = inside.depths.data() + plane * corners;
+            for (int k = outline.first; k < outline.beyond; ++k)
+                if (depths[inside.block->outlines[std::size_t(k)]] >= -tolerance_) return false;
+            return true;
+        };
+        bool near = true;
+        for (int plane = 0; plane < bounds && near; ++plane)
+            near = !outside(plane);
+        if (near) cells_[std::size_t(i)] = true;
+    }
     for (int i = 0; i < faces; ++i)
         for (int j = i + 1; j < faces; ++j) {
+            if (!cells_[std::size_t(i)] || !cells_[std::size_t(j)]) continue;
             const Plane& mine = inside.planes[std::size_t(i)];
             const Plane wall = inside.planes[std::size_t(j)] - mine;
             const Vector across = normalOf(wall); // from cell i to cell j the difference of depths falls along this

@@ -57,6 +57,8 @@ private:
         std::vector<Corner> corners;
         std::vector<Plane> planes;
         std::vector<double> depths; // of its corners below all faces of the opposite block, face by face
+        int shallow;                // the face of the opposite block below which its deepest corner is least deep
+        double least;               // that depth [m]
     };
     struct Sums {            // of a part of a face
         double pressure = 0; // integral of the depth [m³]
@@ -75,11 +77,15 @@ private:
     bool edgesSeparate(const RelativePose&, int edges) const;
     // Cuts the present polygon; false if nothing remains. `kept` is what becomes of a polygon that lies in the plane.
     bool cut(const Plane&, bool kept);
-    // Calls visit(plane of the nearest face of the opposite block) for the parts of a face that lie inside the opposite
-    // block; the part is then the present polygon.
-    template <class Visit> void eachPart(const Side& of, const Side& inside, int face, Visit&& visit);
+    // Makes what of a face lies inside the opposite block the present polygon, and finds which of the opposite faces
+    // may be the nearest somewhere on it: `nearest_`, that in whose depth its deepest point is least deep first.
+    // Returns their number, 0 if nothing lies inside.
+    int clip(const Side& of, const Side& inside, int face);
+    // Makes the part of `whole_` where this one of them is the nearest the present polygon; false if there is none.
+    bool cell(const Side& inside, int number, int count);
     void addPatches(const Side& of, const Side& inside, double sign);
-    void addUp(const Plane& pressure, const Plane& face, Sums&) const;
+    void addPressure(const Plane& pressure, const Plane& face, Sums&) const;
+    void addArea(const Plane& face, Sums&) const;
     double squareOf(const Plane& depth, const Eigen::Vector3d& normal) const;
     Corner& corner(int number) { return polygon_[std::size_t(number)]; }
     double depthIntegral(const Side& of, const Side& inside);
@@ -87,7 +93,9 @@ private:
     Side one_, other_;
     std::vector<Corner> polygon_, spare_, whole_;
     std::vector<double> signs_, least_;
+    int wholeSize_ = 0; // corners of `whole_`
     std::vector<int> nearest_;
+    std::vector<unsigned char> cells_; // whether a face of the opposite block is the nearest somewhere in the overlap
     std::vector<Patch> patches_;
     int size_ = 0;         // corners of the present polygon
     double tolerance_ = 0; // depths below this are zero [m]

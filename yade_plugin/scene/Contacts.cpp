@@ -42,11 +42,7 @@ std::vector<int> Contacts::idsOf(const SceneContents& contents) const {
 }
 
 void Contacts::checkBodies(const SceneContents& contents) const {
-    if (!(normalStiffness > 0))
-        throw std::invalid_argument("MasonryContacts.normalStiffness " + text(normalStiffness) +
-                                    " Pa/m must be given, above 0");
-    if (!(friction >= 0))
-        throw std::invalid_argument("MasonryContacts.friction " + text(friction) + " must be given, at least 0");
+    if (const auto problem = missing("MasonryContacts"); !problem.empty()) throw std::invalid_argument(problem);
     if (takesJoints && !contents.loop && !contents.joints.empty())
         throw std::invalid_argument(
             "MasonryContacts.takesJoints needs MasonryJointLoop: the functors go on with joints "
@@ -152,54 +148,41 @@ void Contacts::findPairs(const SceneContents& contents) {
     for (const auto& [i, j] : overlappingBoxes(boxes, awake)) {
         const std::pair<int, int> ids(ids_[std::size_t(i)], ids_[std::size_t(j)]);
         while (known != pairs_.end() && precedes(*known, ids))
-            lostInFriction += endFriction((known++)->friction);
+            lostInFriction += endFriction((known++)->memory.friction);
         const bool same = known != pairs_.end() && known->one == ids.first && known->other == ids.second;
         if (std::binary_search(joined_.begin(), joined_.end(), ids)) continue;
-        found.push_back(same ? *known++ : Pair{ids.first, ids.second, 0, {}, {}, {}});
+        found.push_back(same ? *known++ : Pair{ids.first, ids.second, 0, {}, {}});
     }
     for (; known != pairs_.end(); ++known)
-        lostInFriction += endFriction(known->friction);
+        lostInFriction += endFriction(known->memory.friction);
     pairs_ = std::move(found);
-    effects_.assign(pairs_.size(), Effect{false, Vector3r::Zero(), {Vector3r::Zero(), Vector3r::Zero()}, 0, 0});
+    effects_.assign(pairs_.size(), Effect::none());
     finders_.resize(std::max<std::size_t>(1, (pairs_.size() + piece - 1) / piece), finders_.front());
     stale_ = false;
 }
 
 RelativePose Contacts::poseOf(const SceneContents& contents, const Pair& pair) const {
-    const Matrix3r back = turns_[std::size_t(pair.one)].transpose();
     const auto& position = contents.bodies.position;
-    return {back * turns_[std::size_t(pair.other)],
-            back * (columnOf(position, pair.other) - columnOf(position, pair.one)) +
-                Eigen::Map<const Vector3r>(pair.gap)};
+    auto pose = relativePose(turns_[std::size_t(pair.one)], columnOf(position, pair.one),
+                             turns_[std::size_t(pair.other)], columnOf(position, pair.other));
+    pose.place += Eigen::Map<const Vector3r>(pair.gap);
+    return pose;
 }
 
-// The mass with which the two bodies of a pair meet at a point along a normal [kg]: the inverse of how fast the point
-// of each would be after an impulse of 1.
-double Contacts::massAlong(const SceneContents& contents, const Pair& pair, const Vector3r& point,
-                           const Vector3r& normal) const {
+ContactBody Contacts::bodyOf(const SceneContents& contents, int body) const {
     const auto& all = contents.bodies;
-    double inverse = 0;
-    for (int id : {pair.one, pair.other}) {
-        const auto b = std::size_t(id);
-        const bool spins = all.spins(id);
-        Vector3r turning = (point - columnOf(all.position, id)).cross(normal);
-        if (spins) turning = (turns_[b].transpose() * turning).eval(); // moments of inertia are those of its own axes
-        for (int d = 0; d < 3; ++d) {
-            if (!all.isBlocked(id, d)) inverse += normal[d] * normal[d] / all.mass[b];
-            if (spins || !all.isBlocked(id, 3 + d)) inverse += turning[d] * turning[d] / all.inertia[d][b];
-        }
-    }
-    return inverse > 0 ? 1 / inverse : 0;
+    return {turns_[std::size_t(body)],    columnOf(all.position, body),
+            columnOf(all.velocity, body), columnOf(all.velocity + 3, body),
+            all.mass[std::size_t(body)],  columnOf(all.inertia, body),
+            all.blockedAxes(body)};
 }
 
 void Contacts::actOn(const SceneContents& contents, double dampingRatio, OverlapFinder& finder, Pair& pair,
                      Effect& effect) const {
-    const auto& all = contents.bodies;
     const auto pose = poseOf(contents, pair);
     Overlap overlap;
     effect.touches =
         finder.find(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], pose, pair.axis, overlap);
-    effect.damped = 0;
     const Vector3r gap(pair.gap[0], pair.gap[1], pair.gap[2]);
     if (!effect.touches) {
         if (!gap.isZero(0)) { // once the blocks are apart as they stand, nothing is left of the joint
@@ -209,57 +192,17 @@ void Contacts::actOn(const SceneContents& contents, double dampingRatio, Overlap
                              without))
                 std::fill(std::begin(pair.gap), std::end(pair.gap), 0.0);
         }
-        effect.force.setZero();
-        effect.torques[0].setZero();
-        effect.torques[1].setZero();
-        overlap.force.setZero();
-        overlap.moment.setZero();
-        overlap.area = 0;
         // Most pairs are only near each other.
-        if (pair.friction.stiffness == 0 && pair.dashpot[0] == 0 && pair.dashpot[1] == 0 && pair.dashpot[2] == 0) {
-            effect.lost = 0;
+        if (!pair.memory.touched()) {
+            effect = Effect::none();
+            pair.memory.elastic.excess = 0;
             return;
         }
     }
-    if (!(overlap.area > 0)) effect.lost = endFriction(pair.friction);
-    Vector3r force = normalStiffness * overlap.force, moment = normalStiffness * overlap.moment;
-    const Matrix3r& turn = turns_[std::size_t(pair.one)];
-    const Vector3r place = columnOf(all.position, pair.one);
-    Eigen::Map<Vector3r> lastForce(pair.dashpot), lastMoment(pair.dashpot + 3);
-    RelativeMotion motion{Vector3r::Zero(), Vector3r::Zero()};
-    if (dampingRatio > 0) {
-        const Vector3r arm = columnOf(all.position, pair.other) - place;
-        const Vector3r spin = columnOf(all.velocity + 3, pair.other), ownSpin = columnOf(all.velocity + 3, pair.one);
-        motion.velocity = turn.transpose() *
-                          (columnOf(all.velocity, pair.other) - spin.cross(arm) - columnOf(all.velocity, pair.one));
-        motion.spin = turn.transpose() * (spin - ownSpin);
-        // A force works over a step with its mean over both ends, as all forces of a scene do (scene/BodyStep).
-        effect.damped = -0.5 * contents.scene().dt * (lastForce.dot(motion.velocity) + lastMoment.dot(motion.spin));
-    }
-    lastForce.setZero();
-    lastMoment.setZero();
-    if (overlap.area > 0) {
-        double normalForce = force.norm();
-        if (dampingRatio > 0) {
-            const double mass = massAlong(contents, pair, place + turn * overlap.centre, turn * overlap.normal);
-            const double coefficient = 2 * dampingRatio * std::sqrt(normalStiffness * mass / overlap.area);
-            const auto damped = dampContact(overlap, motion, coefficient, normalForce);
-            lastForce = damped.force * overlap.normal;
-            lastMoment = damped.moment;
-            force += lastForce;
-            moment += lastMoment;
-            normalForce = std::max(0.0, normalForce + damped.force);
-            effect.damped += 0.5 * damped.power * contents.scene().dt;
-        }
-        const auto step = advanceFriction(pair.friction, overlap, pose, normalForce,
-                                          tangentialRatio * normalStiffness * overlap.area, friction);
-        effect.lost = step.lost;
-        force += step.force;
-        moment += overlap.centre.cross(step.force) + step.moment * overlap.normal;
-    }
-    effect.force = turn * force;
-    effect.torques[0] = turn * (gap.cross(force) - moment);
-    effect.torques[1] = turn * (moment - pose.place.cross(force));
+    const auto one = bodyOf(contents, pair.one), other = bodyOf(contents, pair.other);
+    actOnPair({normalStiffness, tangentialRatio, friction, dampingRatio},
+              {blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], one, other, pose, gap},
+              contents.scene().dt, overlap, finder, pair.memory, effect);
 }
 
 void Contacts::turnBlocks(const SceneContents& contents) {
@@ -281,23 +224,26 @@ void Contacts::act(SceneContents& contents) {
     if (takesJoints && contents.scene().iter % lookEvery == 0) wake(contents);
     if (stale_ || moved(contents)) findPairs(contents);
     countChanges(contents);
-    const double ratio = dampingRatio(restitution);
+    if (ratioOf_ != restitution) dampingRatio_ = dampingRatio(restitution);
+    ratioOf_ = restitution;
     const int count = int(pairs_.size());
     Parallel::instance().overPieces((count + piece - 1) / piece, 1, [&](int first, int beyond) {
         for (int n = first; n < beyond; ++n)
             for (int p = n * piece; p < std::min(count, (n + 1) * piece); ++p)
-                actOn(contents, ratio, finders_[std::size_t(n)], pairs_[std::size_t(p)], effects_[std::size_t(p)]);
+                actOn(contents, dampingRatio_, finders_[std::size_t(n)], pairs_[std::size_t(p)],
+                      effects_[std::size_t(p)]);
     });
     const auto sums = contents.scene().forces().sums(all.size());
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
         const auto& effect = effects_[p];
         lostInFriction += effect.lost;
         lostInDamping += effect.damped;
-        if (!effect.touches) continue;
-        sums.forces[pairs_[p].one] -= effect.force;
-        sums.forces[pairs_[p].other] += effect.force;
-        sums.torques[pairs_[p].one] += effect.torques[0];
-        sums.torques[pairs_[p].other] += effect.torques[1];
+        if (!effect.acts) continue;
+        const auto& [force, torques] = effect.wrench;
+        sums.forces[pairs_[p].one] -= force;
+        sums.forces[pairs_[p].other] += force;
+        sums.torques[pairs_[p].one] += torques[0];
+        sums.torques[pairs_[p].other] += torques[1];
     }
     if (!begun) given = elastic(contents); // blocks that a script has put into each other
     begun = true;
@@ -360,7 +306,7 @@ double Contacts::settle(const SceneContents& contents, Pair& pair, const Vector3
     const auto &one = blocks_[std::size_t(pair.one)], &other = blocks_[std::size_t(pair.other)];
     const Matrix3r back = turns_[std::size_t(pair.one)].transpose();
     std::fill(std::begin(pair.gap), std::end(pair.gap), 0.0);
-    pair.friction = FrictionState{};
+    pair.memory = PairMemory{};
     const RelativePose stands = poseOf(contents, pair);
     Overlap overlap;
     Vector3r axis = back * normal;
@@ -399,7 +345,7 @@ double Contacts::settle(const SceneContents& contents, Pair& pair, const Vector3
     shear -= shear.dot(overlap.normal) * overlap.normal;
     const double limit = friction * press;
     if (shear.norm() > limit) shear *= limit / shear.norm();
-    auto& s = pair.friction;
+    auto& s = pair.memory.friction;
     s.stiffness = tangentialRatio * normalStiffness * overlap.area;
     for (int d = 0; d < 3; ++d) {
         s.shear[d] = shear[d];
@@ -435,7 +381,7 @@ void Contacts::takeOver(const SceneContents& contents, const std::vector<Joint>&
                                    overlap))
             continue;
         const Matrix3r& turn = turns_[std::size_t(pair->one)];
-        const Vector3r shear(pair->friction.shear[0], pair->friction.shear[1], pair->friction.shear[2]);
+        const Vector3r shear(pair->memory.friction.shear);
         const Vector3r gap(pair->gap[0], pair->gap[1], pair->gap[2]);
         const Vector3r force = normalStiffness * overlap.force + shear;
         const Vector3r moment = normalStiffness * overlap.moment + overlap.centre.cross(shear);
@@ -471,12 +417,12 @@ double Contacts::elastic(const SceneContents& contents) {
     prepare(contents);
     double sum = 0;
     for (const auto& pair : pairs_) {
-        const auto& s = pair.friction;
-        if (!(s.stiffness > 0)) continue;
+        sum += energyBesidePotential(pair.memory);
+        if (!pair.memory.touched()) continue;
+        const auto& s = pair.memory.friction;
         const RelativePose pose{Eigen::Map<const Matrix3r>(s.turn), Eigen::Map<const Vector3r>(s.place)};
         sum += normalStiffness *
                finders_.front().potential(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], pose);
-        sum += elasticEnergyOf(s);
     }
     return sum;
 }
@@ -503,39 +449,51 @@ double Contacts::largestEigenvalue(const SceneContents& contents, bool anew) {
 
 double Contacts::largestDampingRatio() const { return std::sqrt(6) * dampingRatio(restitution); }
 
+std::vector<double> Contacts::diameters() const {
+    std::vector<double> found;
+    for (const auto& block : blocks_)
+        found.push_back(2 * block.radius);
+    return found;
+}
+
+std::vector<Contacts::Touch> Contacts::touches() const {
+    std::vector<Touch> found;
+    for (std::size_t p = 0; p < pairs_.size() && p < effects_.size(); ++p)
+        if (effects_[p].acts)
+            found.push_back({pairs_[p].one, pairs_[p].other, effects_[p].wrench.force, effects_[p].wrench.torques[1]});
+    return found;
+}
+
 int Contacts::touching() const {
     return int(std::count_if(effects_.begin(), effects_.end(), [](const auto& effect) { return effect.touches; }));
 }
 
 Vector3r Contacts::forceOf(int id1, int id2) const {
     for (std::size_t p = 0; p < pairs_.size() && p < effects_.size(); ++p)
-        if (effects_[p].touches && std::minmax(id1, id2) == std::minmax(pairs_[p].one, pairs_[p].other))
-            return pairs_[p].other == id2 ? effects_[p].force : Vector3r(-effects_[p].force);
+        if (effects_[p].acts && std::minmax(id1, id2) == std::minmax(pairs_[p].one, pairs_[p].other))
+            return pairs_[p].other == id2 ? effects_[p].wrench.force : Vector3r(-effects_[p].wrench.force);
     return Vector3r::Zero();
 }
 
 std::vector<double> Contacts::memory() {
     std::vector<double> all;
-    for (const auto& pair : pairs_) {
+    for (auto& pair : pairs_) {
         all.insert(all.end(), {double(pair.one), double(pair.other), double(pair.axis)});
         all.insert(all.end(), std::begin(pair.gap), std::end(pair.gap));
-        const auto* first = reinterpret_cast<const double*>(&pair.friction);
-        all.insert(all.end(), first, first + FrictionState::numbers);
-        all.insert(all.end(), std::begin(pair.dashpot), std::end(pair.dashpot));
+        all.insert(all.end(), pair.memory.begin(), pair.memory.end());
     }
     return all;
 }
 
 void Contacts::setMemory(const std::vector<double>& all) {
-    constexpr std::size_t width = 6 + FrictionState::numbers + 6;
+    constexpr std::size_t width = 6 + PairMemory::numbers;
     if (all.size() % width != 0)
         throw std::invalid_argument("MasonryContacts.memory must have " + std::to_string(width) + " numbers a pair");
     pairs_.clear();
     for (std::size_t at = 0; at < all.size(); at += width) {
-        Pair pair{int(all[at]), int(all[at + 1]), int(all[at + 2]), {}, {}, {}};
+        Pair pair{int(all[at]), int(all[at + 1]), int(all[at + 2]), {}, {}};
         std::copy_n(&all[at + 3], 3, pair.gap);
-        std::copy_n(&all[at + 6], FrictionState::numbers, reinterpret_cast<double*>(&pair.friction));
-        std::copy_n(&all[at + 6 + FrictionState::numbers], 6, pair.dashpot);
+        std::copy_n(&all[at + 6], PairMemory::numbers, pair.memory.begin());
         pairs_.push_back(pair);
     }
     effects_.clear();

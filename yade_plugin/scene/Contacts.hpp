@@ -2,10 +2,8 @@
 // Contacts of rigid blocks that no joint connects, wherever they meet. An engine derives from it.
 #pragma once
 #include "SceneContents.hpp"
-#include "common/Property.hpp"
 #include "contact/BroadPhase.hpp"
-#include "contact/ContactDamping.hpp"
-#include "contact/ContactFriction.hpp"
+#include "contact/ContactParameters.hpp"
 #include <algorithm>
 #include <set>
 
@@ -14,16 +12,12 @@ namespace masonry {
 using yade::Matrix3r;
 using yade::Vector3r;
 
-class Contacts {
+class Contacts : public ContactParameters {
 public:
     virtual ~Contacts() = default;
 
-    double normalStiffness = 0;   // per area [Pa/m]
-    double tangentialRatio = 0.4; // stiffness along the face over that along the normal [-]
-    double friction = -1;         // coefficient [-]
-    double restitution = 0.5;     // of a central impact of two faces [-]
-    double skin = 0;              // by which boxes are larger than their blocks [m]; 0: chosen
-    std::vector<int> bodies;      // ids of the blocks; empty: all rigid blocks
+    double skin = 0;         // by which boxes are larger than their blocks [m]; 0: chosen
+    std::vector<int> bodies; // ids of the blocks; empty: all rigid blocks
 
     bool takesJoints = false;  // whether joints without bond whose blocks have moved far are handed over to contact
     bool begun = false;        // whether there was a step
@@ -48,6 +42,8 @@ public:
     static constexpr int lookEvery = 10; // steps between two looks at joints and at bodies that wake
     // Whether a body is one of the blocks that can touch. It is known from the first step on.
     bool covers(int body) const { return std::binary_search(ids_.begin(), ids_.end(), body); }
+    // Twice the largest distance of a corner of a block from its centre [m]; 0 where it cannot touch. By id.
+    std::vector<double> diameters() const;
     // Goes on from the next step where these joints stood, which have no forces any more (HandOver). To be called when
     // the scene has been read again.
     void takeOver(const SceneContents&, const std::vector<Joint>&);
@@ -57,10 +53,16 @@ public:
     double largestEigenvalue(const SceneContents&, bool anew);
     // Of the damping of all contacts of a block: its largest ratio to the critical one [-].
     double largestDampingRatio() const;
+    // Where a force acted in the last step: two bodies, and force [N] and torque about its centre [N m] on the second
+    // of them, global axes. That is where blocks pressed on each other, and where they parted in this step.
+    struct Touch {
+        int one, other;
+        Vector3r force, torque;
+    };
+    std::vector<Touch> touches() const;
     int touching() const; // number of pairs that pressed on each other in the last step
 
-    // In saved files and checkpoints: for every pair the two ids, the separating axis, the gap, the state of friction
-    // and the damping of the last step.
+    // In saved files and checkpoints: for every pair the two ids, the separating axis, the gap and PairMemory.
     std::vector<double> memory();
     void setMemory(const std::vector<double>&);
     std::vector<int> awake() { return {awake_.begin(), awake_.end()}; }
@@ -74,7 +76,7 @@ public:
     void setChanges(const std::vector<double>&);
 
 protected:
-    // Force on the second body of a pair in the last step [N], global axes; zero if they do not touch.
+    // Force on the second body of a pair in the last step [N], global axes.
     Vector3r forceOf(int id1, int id2) const;
 
 private:
@@ -84,18 +86,10 @@ private:
         // By which the other body stands farther away than it does, in the axes of the one [m]: what crushing and
         // dilatancy left of a joint that was handed over, so that its force goes on.
         double gap[3];
-        FrictionState friction;
-        // Of damping in the last step, in the axes of the one body: force [N] on the other body and moment [N m] about
-        // the centre of the one.
-        double dashpot[6];
+        PairMemory memory;
     };
-    struct Effect { // of a pair in the present step, global axes
-        bool touches;
-        Vector3r force;      // on the other body [N]
-        Vector3r torques[2]; // on the one and on the other body, about their centres [N m]
-        double lost, damped;
-    };
-    struct Placed { // a body when the pairs were last looked for
+    using Effect = ContactEffect; // of a pair in the present step
+    struct Placed {               // a body when the pairs were last looked for
         Vector3r position;
         double orientation[4];
     };
@@ -115,7 +109,7 @@ private:
     bool moved(const SceneContents&) const;
     void findPairs(const SceneContents&);
     RelativePose poseOf(const SceneContents&, const Pair&) const;
-    double massAlong(const SceneContents&, const Pair&, const Vector3r& point, const Vector3r& normal) const;
+    ContactBody bodyOf(const SceneContents&, int body) const;
     void actOn(const SceneContents&, double dampingRatio, OverlapFinder&, Pair&, Effect&) const;
 
     static constexpr int piece = 16; // pairs that a thread takes at a time
@@ -131,6 +125,7 @@ private:
     std::set<int> awake_;                     // where joints are handed over: bodies that may come near others
     std::vector<Change> changes_;
     double usedSkin_ = 0;
+    double dampingRatio_ = 0, ratioOf_ = -1;                   // dampingRatio(restitution), and for which restitution
     double bound_ = 0, boundStiffness_ = -1, boundRatio_ = -1; // largestEigenvalue(), and what it was found for
     long boundRevision_ = -1;
     bool stale_ = true;  // whether the pairs must be looked for

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Lumping.hpp"
 #include "MonolithicPairs.hpp"
+#include "SceneStore.hpp"
 #include "common/Text.hpp"
 #include <cmath>
 

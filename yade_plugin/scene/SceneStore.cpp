@@ -67,7 +67,9 @@ SceneStore& SceneStore::of(yade::Scene& scene) {
     static auto& all = *new std::vector<std::unique_ptr<SceneStore>>;
     for (auto& store : all)
         if (&store->scene_ == &scene && !store->gone()) return *store;
-    all.erase(std::remove_if(all.begin(), all.end(), [](const auto& store) { return store->gone(); }), all.end());
+    // What a store of a scene that has ended holds may belong to Python, which must not end it within a run.
+    if (PyGILState_Check())
+        all.erase(std::remove_if(all.begin(), all.end(), [](const auto& store) { return store->gone(); }), all.end());
     all.emplace_back(new SceneStore(scene));
     return *all.back();
 }

@@ -116,6 +116,15 @@ OF_CONNECTORS = {
 }
 
 
+#: Likewise of contacts, in scenes whose collapse is followed.
+OF_CONTACTS = {
+    "handing": "elastic energy that joints had when contacts took their place",
+    "elastic_contacts": "elastic energy in contacts",
+    "friction_contacts": "energy that friction of contacts took",
+    "damping_contacts": "energy that damping of contacts took",
+}
+
+
 def _energy(name):
     return lambda reading: reading.energy[name]
 
@@ -138,6 +147,22 @@ BALANCE = [
     ),
 ]
 CONNECTORS = _energies(OF_CONNECTORS)
+CONTACTS = _energies(OF_CONTACTS)
+#: Of a scene whose collapse is followed.
+FALLS = [
+    Column(
+        "handed_joints",
+        "-",
+        "joints whose place contacts have taken so far",
+        lambda r: r.structure.contacts.handed,
+    ),
+    Column(
+        "fallen_blocks",
+        "-",
+        "blocks that have fallen so far",
+        lambda r: len(r.structure.fallen()),
+    ),
+]
 
 #: Of a push.
 PUSH = [

@@ -10,6 +10,7 @@ from yade.wrapper import (
     ForceResetter,
     Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom,
     InteractionLoop,
+    MasonryContacts,
     Ip2_MasonryMat_MasonryMat_MasonryJointPhys,
     MasonryEnergy,
     MasonryIntegrator,
@@ -57,6 +58,7 @@ def engines(
     functors: bool = False,
     dampingKind: str | None = None,
     connectors: Sequence[Any] = (),
+    contacts: Any = None,
 ) -> None:
     """Fill O.engines for a masonry scene: joints, loads, energy balance and integration. There is no collider.
 
@@ -91,6 +93,7 @@ def engines(
         knows no other. Combined damping takes energy from vibration and hardly brakes a steady motion. Local damping is
         the paper's eq. (3); it holds back what moves steadily, so a mechanism that turns slowly seems stronger than it is
     :param connectors: MasonryTies and MasonrySprings engines
+    :param contacts: MasonryContacts of the blocks that no joint connects, if there are some
     """
     problems = misfits("engines: ", OWN, {"inPlane": inPlane, "functors": functors})
     down: Any = gravity
@@ -128,6 +131,8 @@ def engines(
     connectors = listed(connectors, "connectors", (MasonryTies, MasonrySprings))
     if not joints:
         problems.append("engines: joints must not be empty")
+    if contacts is not None and not isinstance(contacts, MasonryContacts):
+        problems.append(f"engines: contacts must be a MasonryContacts or None, got {shown(contacts)}")  # fmt: skip
     if zones is not None and not isinstance(zones, MasonryZones):
         problems.append(f"engines: zones must be a MasonryZones or None, got {zones!r}")
     integrator = made(
@@ -163,6 +168,7 @@ def engines(
     O.engines = [
         ForceResetter(),
         loop,
+        *([contacts] if contacts else []),
         *connectors,
         *loads,
         MasonryEnergy(label="energy"),

@@ -8,6 +8,7 @@ from yade import O, Vector3
 from ..basics import GRAVITY, Collapsed
 
 FALLEN = 0.05  # of the largest side of a block: one that moves so far, and fast, falls
+REST = 5e-3  # of the load: what may be missing at the supports of a structure that is said to be at rest
 FAR = 1.0  # likewise: it has fallen, and does not only swing on joints that are soft
 FAST = 0.1  # of √(g·side): the velocity of a block that has fallen by half a hundredth of its side
 

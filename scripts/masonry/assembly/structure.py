@@ -5,6 +5,7 @@ import math
 
 from yade import O, Vector3
 from yade.wrapper import (
+    MasonryContacts,
     MasonryJoint,
     MasonryLoad,
     MasonrySprings,
@@ -13,7 +14,7 @@ from yade.wrapper import (
 )
 
 from .._masonry import loadScene, saveScene, timeStepLimit
-from ..basics import GRAVITY, Refused, say
+from ..basics import GRAVITY, Collapsed, Refused, say
 from ..bricks import boxCorners
 from . import threads
 from .blocks import placeBlock
@@ -58,7 +59,7 @@ class Structure:
             unit.density *= args.density_scaling
         self.gravity = description.gravity / args.density_scaling
         self.axes = (0, 2) if description.plane else (0, 1, 2)
-        self.ties = self.springs = None  # their engines
+        self.ties = self.springs = self.contacts = None  # their engines
         self._news = {
             "yields": set(),
             "breaks": set(),
@@ -94,7 +95,7 @@ class Structure:
         O.reset()
         loadingBlock.density *= self.args.density_scaling
         self._addBodies(loadingBlock)
-        self._addEngines()
+        self._addEngines(loadingBlock)
         self.loads["push"] = None
         if self.target:
             self.loads["push"] = self.driveOf(self.target, self.target.drives[0])
@@ -116,7 +117,7 @@ class Structure:
         self.parts, self.ids = {}, []
         targets = description.targets.values()
         for target in targets:
-            if target.box and target.fixed:
+            if target.box and target.fixed and target.joined:
                 self._addPlaten(target, loadingBlock)
         for block in description.bricks:
             material = self.units[block.kind]
@@ -131,7 +132,7 @@ class Structure:
                 target.body = self.ids[target.brick]
                 if target.fixed:
                     O.bodies[target.body].state.blockedDOFs = target.freedom
-        if not any(target.fixed for target in targets):
+        if not any(target.fixed and target.joined for target in targets):
             raise Refused(
                 "nothing is held: a scene needs a platen at the bottom, or hold()"
             )
@@ -141,7 +142,7 @@ class Structure:
         target.body = placeBlock(corners, material, self.description.plane)
         O.bodies[target.body].state.blockedDOFs = target.freedom
 
-    def _addEngines(self):
+    def _addEngines(self, loadingBlock):
         """Engines, joints and the time step, when all blocks are there."""
         args, description = self.args, self.description
         loads, connectors = self._loads(), self._connectors()
@@ -170,6 +171,12 @@ class Structure:
                 plane=args.units == "plane",
                 label="zones",
             )
+        if description.contact:
+            self.contacts = MasonryContacts(
+                takesJoints=True,
+                label="contacts",
+                **description.contact.of(self.joints["bed"]),
+            )
         engines(
             # the rule chooses; YADE wants a joint that fits any pair before it asks
             [MasonryJoint(name="any", elastic=True)],
@@ -181,6 +188,7 @@ class Structure:
             loads=loads,
             connectors=connectors,
             zones=self.zones,
+            contacts=self.contacts,
             functors=description.functors,
             dampingKind="local" if description.functors else kind,
         )
@@ -192,6 +200,9 @@ class Structure:
         self.interactions = connect(
             self.masonry.rule(blocks), allowGaps=description.allowGaps
         )
+        for target in description.targets.values():
+            if not target.joined:  # it is no neighbour of what it touches
+                self._addPlaten(target, loadingBlock)
         self.massScaling = self._massScaling()
         self.scaleMasses(self.massScaling)
         self._usualLimit = self.chooseTimeStep()
@@ -718,6 +729,40 @@ class Structure:
             if label != "push" and load is not push and load.driven:
                 beside += load.reaction * load.direction.normalized()
         return beside
+
+    def fallen(self):
+        """Blocks that have fallen, in a scene whose collapse is followed: a dict from the index of the block to a dict with
+        ``since``, when it had come loose [s], ``fell`` [s], ``most``, its largest kinetic energy [J], and ``at``, when it had
+        that [s]."""
+        if not self.contacts:
+            return {}
+        known = self.contacts.fallen()
+        return {
+            index: known[body]
+            for index, body in enumerate(self.ids)
+            if body in known and known[body]["fell"] is not None
+        }
+
+    def checkFallen(self):
+        """Raise Collapsed if a block has fallen, in a scene whose collapse is followed."""
+        fallen = self.fallen()
+        if fallen:
+            first = min(fallen, key=lambda index: (fallen[index]["fell"], index))
+            at = ", ".join(f"{v:.3g}" for v in self.description.middle(first))
+            others = f", and so have {len(fallen) - 1} others since" if len(fallen) > 1 else ""  # fmt: skip
+            raise Collapsed(
+                f"brick {first} at ({at}) m has fallen at {fallen[first]['fell']:.4g} s{others}"
+            )
+
+    def letFall(self):
+        """From now on no drive and no support moves, and no numerical damping brakes blocks that have come loose."""
+        for target in self.held:
+            if target.fixed:
+                O.bodies[target.body].state.vel = Vector3.Zero
+        for label, load in self.loads.items():
+            if "_drive" in label:
+                load.velocity = load.ramp = 0
+        self.contacts.dampsLoose = False
 
     def refinedJoints(self):
         """How many joints have got more points during the run."""

@@ -245,12 +245,27 @@ def magnificationOf(size, moved):
     return max(1, int(nice))
 
 
-def cracks(directory: FilePath, number: int = -1) -> None:
+def frameOfCracks(run: dict[str, Any], directory: FilePath) -> int:
+    """Number of the frame whose cracks are drawn, from 0: the last one, or, of a run that followed a collapse to the ground, that
+    when the collapse was noticed or the first block had fallen.
+
+    :param run: entries of run.json
+    """
+    times = frameTimes(directory)
+    answers = {a["name"]: a["value"] for a in run.get("answers") or [] if a["stage"] == "fall"}  # fmt: skip
+    found = [answers[n] for n in ("noticed_at", "first_fall") if n in answers]
+    if not found:
+        return len(times) - 1
+    return int(np.argmin(np.abs(np.asarray(times) - min(found))))
+
+
+def cracks(directory: FilePath, number: int | None = None) -> None:
     """Draw cracks.png of a frame that a run has left.
 
-    :param number: of the frame, from 0; negative numbers count from the end
+    :param number: of the frame, from 0; negative numbers count from the end; None: as of :func:`frameOfCracks`
     """
     run = readRun(directory)
+    number = frameOfCracks(run, directory) if number is None else number
     blocks = readFrame(directory, "blocks", number)
     joints = readFrame(directory, "joints", number)
     when = whenOf(run, directory, number)

@@ -35,6 +35,7 @@ class Motion:
     - ``points`` (N, 3): corners and nodes as built [m]; ``owner`` (N): number of the block of each
     - ``bodies`` (B): ids of the bodies of the blocks; ``centres`` (B, 3): means of their points [m]
     - ``brick`` (B): whether a block is one of the masonry, not a platen, a support or the like
+    - ``framed`` (N): whether a point is to be in the picture, and not one of the ground on which blocks fall
     - ``triangles`` (n, 3): surfaces of the blocks, seen from outside counter-clockwise, and ``edges`` (n, 2): their edges,
       both as numbers of points
     - ``rigid`` (B): whether a block is rigid
@@ -115,6 +116,9 @@ class Motion:
             body for part in (self.run.get("parts") or {}).values() for body in part
         ]
         self.brick = np.isin(self.bodies, members) if members else np.ones(len(self.bodies), bool)  # fmt: skip
+        self.framed = self.bodies[self.owner] != self.run.get("ground_body")
+        if not self.framed.any():
+            self.framed[:] = True
         # the side of a zone that another zone has, too, is inside the unit
         _, where, often = np.unique(
             np.sort(triangles, axis=1), axis=0, return_inverse=True, return_counts=True

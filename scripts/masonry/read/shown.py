@@ -24,7 +24,7 @@ from ..arguments import nearest, path, takes
 from ..basics import Refused
 from . import crack_figure, curve_figure, drawing
 from .files import filesOf, readCurve, readRun
-from .frames import framePaths, readFrame
+from .frames import readFrame
 
 DPI = 72  # of pictures in a notebook, for 10 to 50 kB each
 
@@ -169,7 +169,7 @@ class RunFolder:
 
     def _cracks(self):
         try:
-            last = len(framePaths(self.directory, "joints")) - 1
+            last = crack_figure.frameOfCracks(self.numbers, self.directory)
         except Refused:  # there are none with --no-vtk
             return ""
         blocks, joints = (readFrame(self.directory, kind, last) for kind in ("blocks", "joints"))  # fmt: skip

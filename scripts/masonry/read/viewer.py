@@ -114,7 +114,10 @@ def sceneOf(
     run, number = readRun(directory), frameNear(directory, at)
     blocks = readFrame(directory, "blocks", number)
     joints = readFrame(directory, "joints", number)
-    points, moved = blocks["points"], blocks["displacement"]
+    framed = np.ones(len(blocks["points"]), bool)
+    for body, cell in zip(blocks["body"], blocks["cells"]):
+        framed[cell] = body != run.get("ground_body")
+    points, moved = blocks["points"][framed], blocks["displacement"][framed]
     size = np.ptp(points, axis=0).max()
     if magnification is None:
         magnification = magnificationOf(size, np.linalg.norm(moved, axis=1))

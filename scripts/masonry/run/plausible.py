@@ -75,7 +75,7 @@ def _isBound(entry):
 
 
 def _isAnswer(entry):
-    """Whether the answers of a stage are those of :class:`masonry.scene.stages.stage.Answer`."""
+    """Whether the answers of a stage are those of :class:`masonry.scene.stages.answers.Answer`."""
     number, found = entry
     ends = [one for one in found if one["name"] in ENDS]
     unknown = lambda value: value is None or alike(value, 0.0)

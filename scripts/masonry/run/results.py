@@ -70,7 +70,9 @@
   ``name``, ``at_m``, ``between``, ``stiffness_N_per_m``, ``rotational_stiffness_Nm``, ``force_N`` and ``moment_Nm`` on its first end;
   ``overlays``: of every fibre layer ``name``, and how many ``bundles`` it has, and have ``yielded`` or ``broken``. Each is there
   if the scene has some
-- ``ended``: how the last stage ended: ``at rest``, ``moving``, ``done`` or ``collapsed``
+- ``ended``: how the last stage ended: ``at rest``, ``moving``, ``done`` or ``collapsed``; of a scene that follows a collapse also
+  ``collapsed and at rest``, or ``collapsed and moving`` if that was given up
+- ``ground_body``: of such a scene, the id of the ground; fallen.csv has a row for every block that fell
 - ``collapse``: what has fallen, and how far; None if nothing has
 - ``held``: names of the platens and bricks that are held; ``targets``: of all platens and bricks that are held, loaded or
   watched, a list of dicts with ``name``, the id of its ``body`` and whether it is ``held``

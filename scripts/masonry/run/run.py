@@ -77,6 +77,8 @@ class Run:
         self.entered = 0  # number of the stage that was entered last
         #: whether the present stage is that in which the checkpoint of a resumed run was made
         self.redoes = False
+        #: whether the present stage ends when a block has fallen, in a scene whose collapse is followed
+        self.endsAtFall = False
         #: whether the present stage lets the dead loads grow, and is no test yet
         self.loading = False
         self._memory = SimpleNamespace()  # of that stage
@@ -298,7 +300,9 @@ class Run:
             if self.interrupted:
                 raise Interrupted()
             if not at.left:
-                return
+                break
+        if self.endsAtFall:
+            self.model.checkFallen()
 
     def _take(self, steps, one):
         """Take steps that are left of an advance, for some time, or until the user interrupts."""

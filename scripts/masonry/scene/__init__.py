@@ -6,7 +6,7 @@
   :mod:`masonry.scene.loads`, :mod:`masonry.scene.connections` and :mod:`masonry.scene.records`;
   :mod:`masonry.scene.targets`, :mod:`masonry.scene.sections`: what is recorded; :mod:`masonry.scene.ties`: ties, springs and
   fibre layers
-- :mod:`masonry.scene.stages`: the stages of a test
+- :mod:`masonry.scene.stages`: the stages of a test; :mod:`masonry.scene.contact`: what blocks do that have lost their joints
 - :mod:`masonry.scene.materials`: masonry of one's own, published parameter sets, properties that vary from place to place,
   and what of all this was assumed
 - :mod:`masonry.scene.fields`: random fields; :mod:`masonry.scene.history`: displacements there and back;

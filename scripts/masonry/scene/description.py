@@ -10,9 +10,20 @@ from numbers import Integral
 
 import numpy as np
 
-from ..arguments import flag, listOf, misfits, number, orNone, shown, text, vector
+from ..arguments import (
+    flag,
+    listOf,
+    misfits,
+    number,
+    oneOf,
+    orNone,
+    shown,
+    text,
+    vector,
+)
 from ..assembly import columns
 from ..basics import GRAVITY, Refused
+from .contact import Contact
 from .materials import Masonry
 
 
@@ -24,6 +35,7 @@ KINDS = {
     "columns": orNone(listOf(text)),
     "functors": flag,
     "allowGaps": flag,
+    "collapse": oneOf("end", "follow"),
 }
 
 
@@ -47,6 +59,7 @@ class Description:
         functors=False,
         deformable=False,
         allowGaps=False,
+        collapse="end",
     ):
         problems = []
         try:
@@ -60,7 +73,7 @@ class Description:
             problems.append(
                 f"scene {name}: materials must be a masonry.materials.Masonry, got {shown(materials)}"
             )
-        given = dict(title=title, plane=plane, gravity=gravity, columns=choice, functors=functors, allowGaps=allowGaps)  # fmt: skip
+        given = dict(title=title, plane=plane, gravity=gravity, columns=choice, functors=functors, allowGaps=allowGaps, collapse=collapse)  # fmt: skip
         problems += misfits(f"scene {name}: ", KINDS, given)
         if problems:
             raise Refused("\n".join(problems))
@@ -69,6 +82,8 @@ class Description:
         self.functors = functors  # as of masonry.assembly.engines.engines
         self.deformable = deformable  # whether bricks are
         self.allowGaps = allowGaps  # as of masonry.assembly.connecting.connect
+        #: Contact of blocks that have lost their joints, if a collapse is followed, else None.
+        self.contact = Contact() if collapse == "follow" else None
         points = [p for block in self.bricks for p in block.corners]
         #: corners of the box around all bricks [m]
         self.low, self.high = (
@@ -118,14 +133,19 @@ class Description:
         return []
 
     def connectors(self):
-        """Ties, springs and fibre layers by name, which ``--set`` and ``--field`` can change."""
+        """Ties, springs, fibre layers and the contact by name, which ``--set`` and ``--field`` can change."""
         own = [one for one in self.ties if not one.overlay]
-        return {one.name: one for one in (*own, *self.springs, *self.overlays)}
+        contact = [self.contact] if self.contact else []
+        return {one.name: one for one in (*own, *self.springs, *self.overlays, *contact)}  # fmt: skip
 
     def connectedBricks(self):
         """Indices of the bricks at the ends of ties and springs."""
         ends = [end for one in (*self.ties, *self.springs) for end in one.ends]
         return {end.brick for end in ends if end.brick is not None}
+
+    def ground(self):
+        """The target on which blocks fall in a scene whose collapse is followed, or None."""
+        return next((t for t in self.targets.values() if not t.joined), None)
 
     def followed(self):
         """The target whose displacement is drawn under a load that grows: the first that is watched, else the first that
@@ -180,6 +200,7 @@ class Description:
         for record in (*self.sections, *self.ties, *self.springs, *self.overlays):
             found += record.columns(self.plane)
         balance = columns.BALANCE + columns.CONNECTORS * bool(self.ties or self.springs)
+        balance += (columns.CONTACTS + columns.FALLS) * bool(self.contact)
         found += [*self.extra, *balance, *columns.HISTORY * looped]
         heads = columns.heads(found)
         twice = sorted({n for n in heads if heads.count(n) > 1})

@@ -38,7 +38,13 @@ def _size(block):
 def held(description):
     """What is held, loaded and watched before the first stage: pairs of texts, its name and what is done to it."""
     for target in description.targets.values():
-        where = "platen" if target.box else f"brick {target.brick}"
+        where = (
+            "the ground"
+            if not target.joined
+            else "platen"
+            if target.box
+            else f"brick {target.brick}"
+        )
         what = [f"{where}, {_freedom(target)}"]
         if target.pressed:
             what.append(f"pressed by {1e-6 * target.pressed:.4g} MPa")

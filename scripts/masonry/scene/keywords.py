@@ -15,7 +15,16 @@ OF_THE_RUN = {"help", "resume"}
 
 
 #: Names that a scene takes beside its options.
-BESIDE = "title", "plane", "gravity", "columns", "functors", "arguments", "allowGaps"
+BESIDE = (
+    "title",
+    "plane",
+    "gravity",
+    "columns",
+    "functors",
+    "arguments",
+    "allowGaps",
+    "collapse",
+)
 
 
 def checked(parser, name, usual):

@@ -32,7 +32,7 @@ from ..run import accuracy
 from . import facts, history
 from .parsing import UNITS
 from .stages import pushing
-from .stages.stage import answersText
+from .stages.answers import answersText
 from .wall import wallOf
 
 FRAMES = 20  # for ParaView in a stage that is no push
@@ -154,6 +154,7 @@ class Outcome:
                 {"name": t.name, "body": t.body, "held": t.fixed}
                 for t in self.description.targets.values()
             ],
+            **self._ground(),
             recorded_joints=[joint.name for joint in self.description.joints],
             **self._connections(),
             script=shortened(scene.script.words),
@@ -166,6 +167,11 @@ class Outcome:
         if wall:
             entries["wall"] = wall
         return entries
+
+    def _ground(self):
+        """The entry for the ground on which blocks fall, if there is one."""
+        ground = self.description.ground()
+        return {"ground_body": ground.body} if ground else {}
 
     def summary(self):
         """Entries of run.json that follow from the rows."""

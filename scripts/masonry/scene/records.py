@@ -148,7 +148,11 @@ def recordBase(description: Any) -> None:
     """Record the section at the base of a structure that stands on platens, as :func:`section` does, unless the scene has one
     there."""
     z = float(description.low[2])
-    platens = [one for one in description.targets.values() if one.box and one.fixed]
+    platens = [
+        one
+        for one in description.targets.values()
+        if one.box and one.fixed and one.joined
+    ]
     near = 1e-6 * (1 + abs(z))
     own = [one for one in description.sections if one.part is None and abs(one.z - z) < near]  # fmt: skip
     if not platens or own:

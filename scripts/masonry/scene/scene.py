@@ -57,7 +57,17 @@ from ..run.ending import end
 from ..run.presets import BOUND
 from ..run.results import Results
 from ..run.run import Run
-from . import connections, loads, options, probing, records, showing, stages, supports
+from . import (
+    connections,
+    contact,
+    loads,
+    options,
+    probing,
+    records,
+    showing,
+    stages,
+    supports,
+)
 from .bounds import EVERY, GIVEN_UP, SMALL, Bounds, nameInDomain, nameOfLean, nameOfPush
 from .description import Description
 from .ground import readRecord
@@ -66,7 +76,7 @@ from .outcome import Outcome
 from .parsing import Parser
 from .resuming import State
 from .stages import AT_REST, STAGES, gravity, prepare
-from .stages.stage import Answer
+from .stages.answers import Answer
 from .targets import LOADED, MOVING_PLATEN, Target
 from .words import RESULT, SHAKES, Call, Script
 
@@ -144,6 +154,11 @@ class Scene:
     :param arguments: options as :func:`masonry.scene.options.parser` gives them, or a list of words; None: those of the
         command line
     :param allowGaps: whether bricks that nearly share a face stand apart on purpose, and have no joint
+    :param collapse: what a run does when the structure falls: ``"end"``, there, or ``"follow"``. Then joints without bond whose
+        blocks have slid by 2 % of the joint or turned by 1° become contacts during the whole run, a stage that ends in a
+        collapse goes on until the rubble is at rest, and ``shake`` and ``run`` go on whatever falls. Rigid bricks only. The
+        contact has stiffness and residual friction of the bed joint; ``--set contact.friction=0.7`` and the like change it.
+        Blocks fall on the ground, a block that the scene adds below everything else
     :param usual: options of this scene, for example ``rate=50`` [mm/s] or ``dt_fraction=0.4``. They hold unless the command
         line, or the list of words, gives the same option; a note says so then
     :raises Refused: if something is wrong, with all problems at once. A script that does not catch it ends with exit
@@ -165,10 +180,11 @@ class Scene:
         functors: bool = False,
         arguments: Any = None,
         allowGaps: bool = False,
+        collapse: str = "end",
         **usual: Any,
     ) -> None:
         #: what it was made with, its name first, for :meth:`resume`
-        self._made = (name, bricks, materials, title, plane, gravity, columns, functors), allowGaps  # fmt: skip
+        self._made = (name, bricks, materials, title, plane, gravity, columns, functors), dict(allowGaps=allowGaps, collapse=collapse)  # fmt: skip
         fine = isinstance(name, str) and name.strip(". ") and name.isprintable()
         if not fine or "/" in name or len(name.encode()) > LONGEST_NAME:
             raise Refused(
@@ -184,6 +200,7 @@ class Scene:
             columns,
             functors,
             allowGaps=allowGaps,
+            collapse=collapse,
         )
         arguments = options.ofScene(name, arguments, usual)
         self.name, self.args = name, arguments
@@ -195,6 +212,9 @@ class Scene:
         self.script = Script()
         self.calls = []  # every word that was said
         self.staging = False  # whether a stage is being carried out
+        self.bracketing = (
+            False  # whether bracket() looks for a load, so that no collapse is followed
+        )
         self.running = Run(name, arguments, self.script.words)
         # when it is built
         self.model: Any = None
@@ -238,6 +258,7 @@ class Scene:
     drift, column = records.drift, records.column
     joint, section, view = records.joint, records.section, records.view
     tie, spring = connections.tie, connections.spring
+    ground = contact.ground
     overlay = connections.overlay
     # Their names are those of stages, too, which are meant after the first stage.
     hold = _either(supports.hold, stages.hold)
@@ -289,7 +310,7 @@ class Scene:
     @property
     def answers(self) -> list[dict[str, Any]]:
         """What the stages were run for, in their order: a list of dicts, as of
-        :class:`masonry.scene.stages.stage.Answer`, with the ``stage`` and its ``number``.
+        :class:`masonry.scene.stages.answers.Answer`, with the ``stage`` and its ``number``.
         """
         kept, entered = self.running.at.answers, self.running.entered
         numbers = [number for number in sorted(kept, key=int) if int(number) <= entered]
@@ -354,6 +375,8 @@ class Scene:
         if self.args.refine and self.description.functors:
             problems.append(f"--refine {self.args.refine}: the functors keep the points of joints; leave functors=False")  # fmt: skip
         problems += self._wrongRecord()
+        if self.description.contact:
+            problems += contact.problems(self.description, self.args, masonry)
         options.check(self.args, masonry, problems, self.description.plane, connectors)
         self.assumed = masonry.assumed()
         return masonry
@@ -373,6 +396,8 @@ class Scene:
         if self.model:
             return
         description, args = self.description, self.args
+        if description.contact and not description.ground():
+            contact.addGround(description)
         model = Structure(description, self.masonry, args)
         for line in linesOf(self.assumed, self.masonry.brief):
             say(line)
@@ -650,10 +675,10 @@ class Scene:
                 f"resume: scene {self.name} has no run that was interrupted and left a checkpoint"
             )
         folder, calls, given = self.results.directory, self.calls, self.args
-        (name, *made), allowGaps = self._made
+        (name, *made), beside = self._made
         arguments = given.parser.parse_args(["--resume", folder])
         vars(self).clear()
-        self.__init__(name, *made, arguments, allowGaps)  # type: ignore[misc]
+        self.__init__(name, *made, arguments, **beside)  # type: ignore[misc]
         ended = None
         for call in calls:
             with contextlib.suppress(*[ValueError] * call.refused):

@@ -40,8 +40,12 @@ class Section:
     connections: list = field(
         default_factory=list
     )  # ties and springs that cross it, each with its upper end
+    above: dict = field(
+        default_factory=dict
+    )  # whether every body is above it, by its id, where a collapse is followed
     usual: bool = False  # whether nobody said it: the base, which every run records
     _structure: object = None
+    _parts: dict = field(default_factory=dict)  # of the blocks, by their bodies
     _read: tuple = (None, None)  # the last reading, and what was found then
 
     def join(self, structure):
@@ -64,7 +68,10 @@ class Section:
             if self.part in (None, parts.get(upper, parts.get(lower))):
                 self.interactions.append(one)
                 self.signs.append(1 if above[1] else -1)
-        self._structure, self.connections = structure, []
+        self._structure, self.connections, self.above = structure, [], {}
+        if structure.contacts:
+            self.above = {b.id: b.state.refPos[2] > level for b in O.bodies}
+            self._parts = parts
         for one in (*description.ties, *description.springs):
             bodies = [end.bodyIn(structure.ids) for end in one.ends]
             above = [body >= 0 and O.bodies[body].state.refPos[2] > level for body in bodies]  # fmt: skip
@@ -86,6 +93,22 @@ class Section:
         force, moment = resultant(self.interactions, self.signs, self.middle)
         for one, upper in self.connections:
             force, moment = self._with(force, moment, one, upper)
+        if self.above:
+            force, moment = self._withContacts(force, moment)
+        return force, moment
+
+    def _withContacts(self, force, moment):
+        """Force and moment with those of contacts of blocks above with blocks below, wherever these lie now."""
+        for one, other, on, turning in self._structure.contacts.pairs():
+            if self.above[one] == self.above[other]:
+                continue
+            lower, upper = (one, other) if self.above[other] else (other, one)
+            if self.part not in (None, self._parts.get(upper, self._parts.get(lower))):
+                continue
+            # `on` and `turning` act on the second body of the pair, about its centre
+            sign = 1 if lower == other else -1
+            arm = O.bodies[other].state.pos - Vector3(*self.middle)
+            force, moment = force + sign * on, moment + sign * (arm.cross(on) + turning)
         return force, moment
 
     def _with(self, force, moment, one, upper):

@@ -182,7 +182,8 @@ def applySettings(joints, settings):
             problems.append(f"--set {name}.{attribute}={text}: must be {kind}")
     for name, change in changes.items():
         joint = joints[name]
-        if "friction" in change and joint.residualFriction == joint.friction:
+        one = not isinstance(joint, Settable) and joint.residualFriction == joint.friction  # fmt: skip
+        if "friction" in change and one:
             # joints with one value of friction keep one
             change.setdefault("residualFriction", change["friction"])
         try:

@@ -32,6 +32,7 @@ class Target:
     force: tuple | None = None  # [N] dead load
     pressed: float | None = None  # [Pa] on the bricks below
     riding: bool = True  # whether the load moves with the platen
+    joined: bool = True  # whether a platen has joints with what it touches
 
     def columns(self, plane: bool) -> Iterator[Column]:
         """What is recorded of it: displacements, forces where it is held, and its rotation.

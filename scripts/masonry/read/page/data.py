@@ -108,14 +108,15 @@ def _head(motion, magnification, curve):
     """What is said about a run, and how it is seen first."""
     with filesOf(motion.directory):
         joints = readFrame(motion.directory, "joints", motion.numbers[0])
-        view = viewOf(motion.points, joints["normal"], joints["area"])
-    low, high = motion.points.min(axis=0), motion.points.max(axis=0)
+        points = motion.points[motion.framed]
+        view = viewOf(points, joints["normal"], joints["area"])
+    low, high = points.min(axis=0), points.max(axis=0)
     size = float((high - low).max())
-    moved = motion.displacements(len(motion.times) - 1)
+    moved = motion.displacements(len(motion.times) - 1)[motion.framed]
     if magnification is None:
         magnification = magnificationOf(size, np.linalg.norm(moved, axis=1))
     # all is in the picture at the end, but for what flew away, as in cracks.png
-    seen = motion.points + magnification * moved
+    seen = points + magnification * moved
     seen = np.clip(seen, low - 0.6 * size, high + 0.6 * size)
     low, high = np.minimum(low, seen.min(axis=0)), np.maximum(high, seen.max(axis=0))
     courses = _extents(motion)[motion.brick]

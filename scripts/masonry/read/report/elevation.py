@@ -33,9 +33,10 @@ def drawing(motion: Motion) -> tuple[Html, str]:
         joints = readFrame(motion.directory, "joints", motion.numbers[0])
         views = motion.run.get("views") or {}
         sight = next(iter(views.values()), None)
-        view = viewOf(motion.points, joints["normal"], joints["area"], sight)
+        view = viewOf(motion.points[motion.framed], joints["normal"], joints["area"], sight)  # fmt: skip
     flat = np.column_stack([motion.points @ view.right, motion.points @ view.up])
-    low, high = flat.min(axis=0), flat.max(axis=0)
+    framed = flat[motion.framed]
+    low, high = framed.min(axis=0), framed.max(axis=0)
     size = np.maximum(high - low, 1e-9)
     scale = min(WIDE / size[0], HIGHEST / size[1])
     wide, tall = scale * size
@@ -54,6 +55,8 @@ def drawing(motion: Motion) -> tuple[Html, str]:
         points = members[number]
         corners = hull(place[points].round(2))
         block = motion.owner[points[0]]
+        if not motion.framed[points].any():
+            continue
         kind = "brick" if motion.brick[block] else "platen"
         names = [named[b] for b in np.unique(motion.owner[points]) if b in named]
         if names:

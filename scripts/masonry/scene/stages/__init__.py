@@ -13,6 +13,8 @@ A new stage is such a function (:func:`masonry.scene.stages.stage.stage`) and it
 - :mod:`masonry.scene.stages.growing`: how a load grows, and the search for the one that is held;
   :mod:`masonry.scene.stages.acting`: what acts and can be changed
 - :mod:`masonry.scene.stages.shake`: ``shake`` and ``run``
+- :mod:`masonry.scene.stages.falling`: ``fall``, which follows a collapse where the scene says so
+- :mod:`masonry.scene.stages.answers`: how stages end, and what they answer
 - :mod:`masonry.scene.stages.stage`: what all share; :mod:`masonry.scene.stages.timed`: what those share that last for a time
 """
 
@@ -22,7 +24,7 @@ from .loading import growLoad, growPress, growWind, hold, load, prepare, press, 
 from .push import cycle, follow, push
 from .rest import settle
 from .shake import run, shake
-from .stage import AT_REST, COLLAPSED, DONE, MOVING
+from .answers import AT_REST, COLLAPSED, DONE, MOVING
 from .supports import move, release
 
 #: All stages. Each is a method of :class:`masonry.scene.scene.Scene`.

@@ -11,7 +11,8 @@ from yade import O
 from ...arguments import number, orFunction, takes
 from ...basics import Refused
 from ..targets import ANY, JointRecord, Target, recordedJoint
-from .stage import DONE, Answer, stage
+from .answers import DONE, Answer
+from .stage import stage
 from .supports import MILLIMETRES, letGo
 
 ROWS = 2000  # of curve.csv while a block is driven over a distance

@@ -12,7 +12,8 @@ from ..bounds import nameOfLean
 from .acting import Acceleration, Tilting
 from .growing import TRIAL, WITHIN, ends, follow, found, grow
 from .rest import Resting, waitForRest
-from .stage import AT_REST, MOVING, stage
+from .answers import AT_REST, MOVING
+from .stage import stage
 from .timed import DURATION
 
 LEAN_GROWS = 0.2  # [s] in which a lean grows
@@ -183,6 +184,15 @@ def bracket(
         raise ValueError(f"bracket: low {low} must be below high {high}")
     if scene.collapsed:
         scene.stepBack()
+    scene.bracketing = True
+    try:
+        return _halve(scene, carries, low, high, within)
+    finally:
+        scene.bracketing = False
+
+
+def _halve(scene, carries, low, high, within):
+    """As :func:`bracket`."""
     if not carries(low):
         scene.stepBack()
         raise ValueError(

@@ -19,9 +19,10 @@ from typing import Any, Sequence
 from yade import O
 
 from ..._masonry import loadScene, saveScene
+from ...assembly.motion import REST
 from ...basics import Collapsed, say
-from .rest import CALM, EVERY, LOOKS, REST, rampTime
-from .stage import AT_REST, DONE, Answer
+from .rest import CALM, EVERY, LOOKS, rampTime
+from .answers import AT_REST, DONE, Answer
 from .timed import Timed, timed
 
 WITHIN = 0.005  # width of the bracket, over its upper end [-]

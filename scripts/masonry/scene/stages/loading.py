@@ -25,7 +25,8 @@ from ..targets import part as partName
 from .acting import Forces
 from .gravity import LEVEL, WIDTH, boundAlone, putOn, putOnAnswers
 from .growing import WITHIN, found, grow
-from .stage import AT_REST, stage
+from .answers import AT_REST
+from .stage import stage
 from .supports import atOnce
 from .timed import DURATION
 

@@ -18,7 +18,8 @@ from ..parsing import RATE
 from ..targets import LOADED, Target
 from ..words import PUSHES
 from .pushing import SHORT, drivePush
-from .stage import DONE, Answer, stage
+from .answers import DONE, Answer
+from .stage import stage
 
 #: What the stages of this file take from the command line.
 OPTIONS = "until", "history", "rate"

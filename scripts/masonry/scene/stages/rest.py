@@ -9,12 +9,12 @@ from typing import Any
 from yade import O
 
 from ...arguments import flag, number, oneOf, orNone, takes
-from ...assembly.motion import FAR
+from ...assembly.motion import FAR, REST
 from ...basics import Collapsed, Refused, say
-from .stage import AT_REST, MOVING, stage
+from .answers import AT_REST, MOVING
+from .stage import stage
 
 RAMP = 0.02  # [s] in which loads and velocities grow: some ten periods of a wave through the height of a wall
-REST = 5e-3  # of the load: what may be missing at the supports of a structure that is said to be at rest
 CALM = 1e-5  # kinetic over elastic energy of a structure that is said to be at rest [-]
 LOOKS = 3  # so many looks one after the other find a structure at rest before it is said to be
 EVERY = 100  # steps between two looks

@@ -17,7 +17,8 @@ from ..ground import UNITS, readRecord, record
 from ..parsing import DAMPING
 from ..words import SHAKES
 from .gravity import LEVEL, sideways
-from .stage import DONE, Answer, stage
+from .answers import DONE, Answer
+from .stage import stage
 from .timed import DURATION, TIME, Timed, timed
 
 
@@ -48,7 +49,9 @@ def displacements(scene, rows):
     times = rows.column("time_s")
     if scene.collapsed and times:
         how = "when the fall was noticed, from the beginning of the stage"
-        found.append(Answer("time_of_collapse", "s", times[-1] - times[0], how))
+        fell = [one["fell"] for one in scene.model.fallen().values()]
+        noticed = min(fell, default=times[-1])
+        found.append(Answer("time_of_collapse", "s", noticed - times[0], how))
     return found
 
 
@@ -71,7 +74,7 @@ class Damped(Timed):
     limit: float = 0.0
 
 
-@stage(options=("record", "scale"), answers=displacements)
+@stage(options=("record", "scale"), real=True, answers=displacements)
 @takes(
     accelerations=record,
     every=orNone(DURATION),
@@ -159,7 +162,7 @@ def shake(
     return DONE
 
 
-@stage(farther=("seconds",), answers=displacements)
+@stage(farther=("seconds",), real=True, answers=displacements)
 @takes(seconds=DURATION, damping=orNone(DAMPING))
 def run(scene: Any, seconds: float, damping: float | None = None) -> str:
     """Let time pass.

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What all stages of a scene share: how they begin and end, their traits, and what they answer."""
+"""What all stages of a scene share: how they begin and end, and their traits."""
 
 from __future__ import annotations
 
 import functools
-import itertools
 import os
 from dataclasses import dataclass
 from typing import Any, Callable, Concatenate, ParamSpec
@@ -17,76 +16,13 @@ from ...run import batch
 from ...run.accuracy import STAGES
 from ..resuming import enter
 from ..words import argumentsOf
+from .answers import COLLAPSED, DONE, FALL
+from .falling import followFall, writeTable
+from .falling import answers as answersOfFall
 
 P = ParamSpec("P")
 #: A stage: a function of the scene and what the user says, which returns how it ended.
 Stage = Callable[Concatenate[Any, P], str]
-
-#: How a stage ends.
-AT_REST, MOVING, DONE, COLLAPSED = "at rest", "moving", "done", "collapsed"
-
-
-@dataclass(frozen=True)
-class Answer:
-    """A number that a stage was run for.
-
-    :param name: what it is, in one word or several joined by underscores
-    :param unit: ``"-"`` if it has none
-    :param value: None if the stage did not find it
-    :param uncertainty: half the width of the interval that the run itself found about the value, in its unit; None if the
-        run has no measure of it
-    :param how: how the value and its uncertainty were found, a sentence
-    """
-
-    name: str
-    unit: str
-    value: float | None
-    how: str
-    uncertainty: float | None = None
-
-
-def answerText(answer):
-    """An entry of ``answers`` of run.json as a line to read."""
-    head = f"{answer['stage']}: {answer['name'].replace('_', ' ')}"
-    if answer["value"] is None:
-        return f"{head}: not found: {answer['how']}"
-    unit = "" if answer["unit"] == "-" else " " + answer["unit"]
-    known = answer["uncertainty"] is not None
-    about = f" ± {answer['uncertainty']:.2g}" if known else ""
-    return f"{head} {answer['value']:.4g}{about}{unit}"
-
-
-def answersText(answers):
-    """Entries of ``answers`` of run.json as lines to read. Stages of one kind that look for the load that is held and follow
-    each other, as the trials of a bracket, have one line.
-    """
-    searches = lambda one: one["name"] in ("factor_held", "factor_not_held")
-    trial = (
-        lambda one: one["stage"] in ("lean", "load", "wind", "press") or one["number"]
-    )
-    alike = (
-        lambda one: (one["stage"], trial(one), one["unit"]) if searches(one) else None
-    )
-    shown = [a for a in answers if not a["name"].startswith("displacement_held")]
-    shown = [a for a in shown if not a["name"].startswith("displacement_not_held")]
-    for kind, group in itertools.groupby(shown, alike):
-        group = list(group)
-        if kind is None:
-            yield from map(answerText, group)
-            continue
-        held = _furthest(group, "factor_held", max)
-        lost = _furthest(group, "factor_not_held", min)
-        found = [answerText(one) for one in (held, lost) if one]
-        count = len({one["number"] for one in group})
-        stages = f" ({count} stages)" if count > 1 else ""
-        yield "; ".join([found[0] + stages] + [t.partition(": ")[2] for t in found[1:]])
-
-
-def _furthest(answers, name, choose):
-    """The answer of a name with the largest or smallest value, or one without a value if there is no other."""
-    found = [one for one in answers if one["name"] == name]
-    known = [one for one in found if one["value"] is not None]
-    return choose(known, key=lambda one: one["value"]) if known else found[-1]
 
 
 class Rows:
@@ -94,16 +30,17 @@ class Rows:
 
     :param results: of the run
     :param first: number of the first of them, from 0
+    :param beyond: number of the first row after them; None: there is none
     """
 
-    def __init__(self, results, first):
-        self._results, self._first = results, first
+    def __init__(self, results, first, beyond=None):
+        self._results, self._first, self._beyond = results, first, beyond
 
     def column(self, head):
         """The values of a column, or an empty list if curve.csv does not have it."""
         if head not in self._results.columns:
             return []
-        return self._results.column(head)[self._first :]
+        return self._results.column(head)[self._first : self._beyond]
 
 
 def nothing(scene, rows):
@@ -119,14 +56,17 @@ class Traits:
     :param farther: names of the arguments that say how far it goes: a run that is resumed in this stage may change them
     :param options: options of the command line that the stage uses, by the names of their values
     :param grows: whether presses, dead loads and wind grow in it
+    :param real: whether it runs in real time, whatever falls, in a scene whose collapse is followed
     :param check: function of the scene and what the user says, which raises Refused before the scene is built
-    :param answers: function of the scene and the :class:`Rows` of the stage that gives a list of :class:`Answer`
+    :param answers: function of the scene and the :class:`Rows` of the stage that gives a list of
+        :class:`~masonry.scene.stages.answers.Answer`
     """
 
     bounded: bool = False
     farther: tuple = ()
     options: tuple = ()
     grows: bool = False
+    real: bool = False
     check: Callable | None = None
     answers: Callable = nothing
 
@@ -205,7 +145,13 @@ def _carryOut(scene, act, traits, args, settings):
             return _asBefore(scene, over)
         running.loading = traits.grows and not scene.grown
         scene.model.dampByOptions()
+        follows = scene.description.contact is not None
+        if follows and running.redoes and running.at.stage == FALL:
+            return _follow(scene, name)
+        running.endsAtFall = follows and not traits.real
         ended = act(scene, *args, **settings)
+        if follows:
+            scene.model.checkFallen()
         _noteEnd(running, before, ended)
         if not traits.farther:
             running.mark()
@@ -213,7 +159,9 @@ def _carryOut(scene, act, traits, args, settings):
         return ended
     except Collapsed as collapse:
         scene.ended = COLLAPSED
-        _noteEnd(running, before, COLLAPSED)
+        follows = scene.description.contact is not None and not scene.bracketing
+        if not follows:  # else it ends with the fall
+            _noteEnd(running, before, COLLAPSED)
         running.fall(str(collapse))
         try:
             if running.recordedAt() != O.time:
@@ -221,8 +169,39 @@ def _carryOut(scene, act, traits, args, settings):
             running.flush()
             running.markFall()
         except FloatingPointError:
-            pass  # what has fallen may have left finite numbers
+            follows = False  # what has fallen may have left finite numbers
+            _noteEnd(running, before, COLLAPSED)
         _answer(scene, name, traits, before)
+        if follows:
+            return _follow(scene, name)
+        return COLLAPSED
+    except BaseException as error:
+        return scene.failed(error)
+
+
+def _follow(scene, name):
+    """Go on with a structure that has fallen until it is at rest, in a stage or in a run that is resumed while it falls.
+
+    :param name: of the stage
+    """
+    running, begun = scene.running, scene.running.at.begun
+    try:
+        running.endsAtFall = False
+        if running.redoes and not running.advanced:  # all before the fall is over
+            running.entered = running.at.number - 1
+            running.fall(running.at.fall)
+        scene.ended = COLLAPSED
+        try:
+            scene.ended = followFall(scene, tilted=name == "tilt")
+        except Collapsed as collapse:
+            say(f"note: the fall is followed no farther: {collapse}")
+        number = running.entered
+        found = answersOfFall(scene, scene.ended, running.memory.begun)
+        kept = [{"stage": FALL, "number": number, **vars(one)} for one in found]
+        running.at.answers = {**running.at.answers, str(number): kept}
+        writeTable(scene)
+        _noteEnd(running, begun - 1, scene.ended)
+        running.mark()
         return COLLAPSED
     except BaseException as error:
         return scene.failed(error)
@@ -236,10 +215,10 @@ def _noteEnd(running, before, ended):
 def _asBefore(scene, ended):
     """What a stage returns that was over before the run was resumed: how it ended then."""
     running = scene.running
-    if ended == COLLAPSED:
+    if ended.startswith(COLLAPSED):
         running.collapsed, running.results.run["collapse"] = True, running.at.fall
     scene.ended = ended
-    return ended
+    return COLLAPSED if running.collapsed else ended
 
 
 def _answer(scene, name, traits, before):

@@ -16,7 +16,8 @@ from ..loads import FORCE
 from ..parsing import RATE
 from ..targets import ANY, HELD, Target
 from .rest import rampTime
-from .stage import DONE, Answer, stage
+from .answers import DONE, Answer
+from .stage import stage
 from .timed import Timed, timed
 
 #: The kind of a displacement.

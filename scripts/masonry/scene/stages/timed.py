@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from yade import O
 
 from ...arguments import number
-from .stage import DONE
+from .answers import DONE
 
 ROWS = 500  # of curve.csv in such a stage
 FRAMES = 20  # for ParaView in such a stage

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The contact of blocks that have lost their joints: its properties, and the ground on which they fall."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any, Callable
+
+from ..arguments import name as nameOf
+from ..arguments import number, orNone, takes
+from ..basics import Refused
+from .settings import Property, Settable
+from .targets import Target
+from .words import describes
+
+#: Speed after over before a central impact of two faces, as of MasonryContacts [-].
+RESTITUTION = 0.5
+FRICTION = 0.6  # of masonry blocks whose joints have none of their own [-]
+THICK = 0.5  # of the ground, over the height of what is built [-]
+BEYOND = 5.0  # how far the ground reaches out, over that height [-]
+BELOW = (
+    1e-3  # between the underside of what is held and the ground, over that height [-]
+)
+
+
+class Contact(Settable):
+    """Contact of blocks that have lost their joints. What is None is that of the bed joint.
+
+    - ``normalStiffness``: of two faces per area [Pa/m]
+    - ``tangentialRatio``: stiffness along the face over that along the normal [-]
+    - ``friction``: its coefficient [-]; None: the residual friction of the bed joint
+    - ``restitution``: speed after over before a central impact of two faces [-]
+    """
+
+    WORD = "contact"
+
+    def __init__(self) -> None:
+        self.name = "contact"
+        self.normalStiffness: float | None = None
+        self.tangentialRatio: float | None = None
+        self.friction: float | None = None
+        self.restitution: float | None = RESTITUTION
+
+    def known(self) -> dict[str, Property]:
+        """As of :class:`masonry.scene.settings.Settable`, and so are those that follow."""
+        return {
+            "normalStiffness": Property("Pa/m", 0, 1e18, True),
+            "tangentialRatio": Property("-", 0, 1, True),
+            "friction": Property("-", 0, 10),
+            "restitution": Property("-", 0.1, 1),
+        }
+
+    def values(self) -> dict[str, float | None]:
+        return {name: getattr(self, name) for name in self.known()}
+
+    def copied(self) -> Contact:
+        made = Contact()
+        vars(made).update(vars(self))
+        return made
+
+    def scatter(
+        self, name: str, factor: Callable[[float, float, float], float]
+    ) -> None:
+        raise ValueError(f"contact: {name} is the same all over; --set contact.{name}=... changes it")  # fmt: skip
+
+    def of(self, bed: Any) -> dict[str, float]:
+        """The attributes of MasonryContacts.
+
+        :param bed: the bed joint, a MasonryJoint
+        """
+        usual = {
+            "normalStiffness": bed.normalStiffness,
+            "tangentialRatio": min(1.0, bed.shearStiffness / bed.normalStiffness),
+            "friction": FRICTION if bed.elastic else bed.residualFriction,
+        }
+        given = {name: value for name, value in self.values().items() if value is not None}  # fmt: skip
+        return {**usual, **given}
+
+
+def problems(description: Any, args: Any, masonry: Any) -> list[str]:
+    """What does not go together with ``collapse="follow"``: a list of sentences."""
+    found = []
+    if description.functors:
+        found.append("collapse='follow': the functors go on with joints whose blocks have come apart; leave functors=False")  # fmt: skip
+    if args.blocks == "deformable":
+        found.append(
+            "collapse='follow': deformable bricks have no contacts; choose --blocks rigid, or a preset with it, or collapse='end'"
+        )
+    if description.halves and any(j.monolithic for j in masonry.joints.values()):
+        found.append(
+            "collapse='follow': bricks of two halves that move as one have no contacts; choose --crack-surfaces on or off"
+        )
+    if args.density_scaling != 1:
+        found.append(
+            f"--density-scaling {args.density_scaling:g}: with collapse='follow' blocks fall in real time, with true masses"
+        )
+    return found
+
+
+@describes
+@takes(level=number("m", -1e6, 1e6), name=orNone(nameOf))
+def ground(description: Any, level: float, name: str | None = None) -> Target:
+    """The ground on which blocks fall in a scene with ``collapse="follow"``: a block that is held and reaches far out, without
+    joints. A scene that does not say this has it just below everything else.
+
+    :param level: z of its upper side [m], at or below the lowest of the bricks and of what is held
+    :param name: in curve.csv; None: ground
+    """
+    if not description.contact:
+        raise Refused("ground: only a scene with collapse='follow' has a ground")
+    if description.ground():
+        raise Refused("ground: the scene has its ground already")
+    return addGround(description, level, name or "ground")
+
+
+def addGround(
+    description: Any, level: float | None = None, name: str | None = None
+) -> Target:
+    """Add the ground on which blocks fall.
+
+    :param level: as of :func:`ground`; None: just below everything else
+    :param name: in curve.csv; None: ground, or another one if a target has that name
+    """
+    taken = {target.name for target in description.targets.values()}
+    names = itertools.chain(["ground"], (f"ground{k}" for k in itertools.count(2)))
+    free = (one for one in names if one not in taken)
+    boxes = [target.box for target in description.targets.values() if target.box]
+    lowest = min([description.low[2], *(box[0][2] for box in boxes)])
+    height = description.high[2] - description.low[2]
+    top = lowest - BELOW * height if level is None else level
+    if not top <= lowest:
+        raise Refused(
+            f"ground: level {top:g} m must be at most {lowest:g} m, where the lowest of what is built ends"
+        )
+    reach = BEYOND * (description.high[2] - top)
+    low = [description.low[i] - reach for i in range(2)]
+    high = [description.high[i] + reach for i in range(2)]
+    return description.add(
+        Target(
+            name or next(free),
+            fixed=True,
+            point=(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), top),
+            recorded=(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), top),
+            box=((*low, top - THICK * height), (*high, top)),
+            freedom="xyzXYZ",
+            loaded=False,
+            joined=False,
+        )
+    )

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How stages end, and what they answer."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+#: How a stage ends.
+AT_REST, MOVING, DONE, COLLAPSED = "at rest", "moving", "done", "collapsed"
+FALL = "fall"  # the stage in which a collapse is followed: masonry.scene.stages.falling
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A number that a stage was run for.
+
+    :param name: what it is, in one word or several joined by underscores
+    :param unit: ``"-"`` if it has none
+    :param value: None if the stage did not find it
+    :param uncertainty: half the width of the interval that the run itself found about the value, in its unit; None if the
+        run has no measure of it
+    :param how: how the value and its uncertainty were found, a sentence
+    """
+
+    name: str
+    unit: str
+    value: float | None
+    how: str
+    uncertainty: float | None = None
+
+
+def answerText(answer):
+    """An entry of ``answers`` of run.json as a line to read."""
+    head = f"{answer['stage']}: {answer['name'].replace('_', ' ')}"
+    if answer["value"] is None:
+        return f"{head}: not found: {answer['how']}"
+    unit = "" if answer["unit"] == "-" else " " + answer["unit"]
+    known = answer["uncertainty"] is not None
+    about = f" ± {answer['uncertainty']:.2g}" if known else ""
+    return f"{head} {answer['value']:.4g}{about}{unit}"
+
+
+def answersText(answers):
+    """Entries of ``answers`` of run.json as lines to read. Stages of one kind that look for the load that is held and follow
+    each other, as the trials of a bracket, have one line.
+    """
+    searches = lambda one: one["name"] in ("factor_held", "factor_not_held")
+    trial = (
+        lambda one: one["stage"] in ("lean", "load", "wind", "press") or one["number"]
+    )
+    alike = (
+        lambda one: (one["stage"], trial(one), one["unit"]) if searches(one) else None
+    )
+    shown = [a for a in answers if not a["name"].startswith("displacement_held")]
+    shown = [a for a in shown if not a["name"].startswith("displacement_not_held")]
+    for kind, group in itertools.groupby(shown, alike):
+        group = list(group)
+        if kind is None:
+            yield from map(answerText, group)
+            continue
+        held = _furthest(group, "factor_held", max)
+        lost = _furthest(group, "factor_not_held", min)
+        found = [answerText(one) for one in (held, lost) if one]
+        count = len({one["number"] for one in group})
+        stages = f" ({count} stages)" if count > 1 else ""
+        yield "; ".join([found[0] + stages] + [t.partition(": ")[2] for t in found[1:]])
+
+
+def _furthest(answers, name, choose):
+    """The answer of a name with the largest or smallest value, or one without a value if there is no other."""
+    found = [one for one in answers if one["name"] == name]
+    known = [one for one in found if one["value"] is not None]
+    return choose(known, key=lambda one: one["value"]) if known else found[-1]

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a scene does when the structure falls and ``Scene(..., collapse="follow")`` asks for it: it goes on until the rubble is
+at rest, and says what fell, when and where it lies."""
+
+from __future__ import annotations
+
+import csv
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from yade import O, Vector3
+
+from ...assembly.motion import REST
+from ...basics import GRAVITY, Unwritable, say
+from .answers import COLLAPSED, FALL, Answer
+
+#: How such a run ends.
+AT_REST, MOVING = f"{COLLAPSED} and at rest", f"{COLLAPSED} and moving"
+LOOK = 0.05  # time between two looks and rows, over √(side/g) of the largest block [-]
+FRAME = 4  # looks from one frame to the next
+CALM = 0.1  # speed of the fastest block of rubble at rest, over that of one that falls [-]: see Motion.fastest()
+LOOKS = 40  # so many looks one after the other find the rubble at rest before it is said to be
+LONGEST = (
+    20.0  # after which it is given up, over √(2h/g) of the height of what is built [-]
+)
+TABLE = "fallen.csv"
+
+
+@dataclass
+class Falling:
+    """What the stage remembers."""
+
+    begun: float = -1.0  # when the collapse was noticed [s]
+    looks: int = 0  # so far
+    nextFrame: int = 0  # number of the look after which a frame is due
+    quiet: int = 0  # looks that found the rubble at rest, one after the other
+
+
+def followFall(scene: Any, tilted: bool) -> str:
+    """Go on with what falls until it is at rest. Loads stay, but for a horizontal acceleration, which ends when the first block
+    has fallen; drives and supports stand still, and the numerical damping of the options acts on what stands, not on what no
+    joint holds. Returns how that ended.
+
+    :param tilted: whether gravity is that of a ground that is tilted, which stays
+    """
+    model, running, box = scene.model, scene.running, scene.description
+    at = running.stage(FALL, Falling())
+    if at.begun < 0:
+        at.begun = O.time
+        if not running.takesUp:
+            running.frame()  # whose cracks are drawn
+    model.dampByOptions()  # what stands comes to rest; blocks that are loose are not damped so
+    model.letFall()
+    gravity = abs(box.gravity) or GRAVITY
+    size = max(box.size(index) for index in range(len(box.bricks)))
+    every = max(1, round(LOOK * math.sqrt(size / gravity) / O.dt))
+    height = box.high[2] - box.low[2]
+    longest = LONGEST * (math.sqrt(2 * height / gravity) + math.sqrt(size / gravity))
+    most = max(LOOKS, int(longest / (every * O.dt)))
+    while at.looks < most and at.quiet < LOOKS:
+        running.advance(every)
+        at.looks += 1
+        running.record()
+        missing, _ = model.unrest()
+        rests = abs(missing) < REST and model.motion.fastest() < CALM
+        at.quiet = at.quiet + 1 if rests else 0
+        if at.looks >= at.nextFrame:
+            running.frame()
+            at.nextFrame = at.looks + FRAME
+        fallen = len(model.fallen())
+        if fallen and not tilted:
+            model.setGravity(-model.gravity * Vector3.UnitZ)
+        running.show(
+            at.looks / most,
+            lambda: f"{O.time - at.begun:.3f} s, {fallen} blocks have fallen",
+            at.quiet == LOOKS or at.looks == most,
+        )
+    running.flush()
+    if at.quiet < LOOKS:
+        say(
+            f"note: the rubble is not at rest after {O.time - at.begun:.2f} s: {100 * missing:.2f} % of its weight is missing at the "
+            f"supports, and the fastest block moves at {100 * model.motion.fastest():.2g} % of the speed of one that falls"
+        )
+    return AT_REST if at.quiet == LOOKS else MOVING
+
+
+def cornersNow(model: Any, index: int) -> list[Any]:
+    """Where the corners of a block are now [m]."""
+    state = O.bodies[model.ids[index]].state
+    turn = state.ori * state.refOri.conjugate()
+    return [
+        state.pos + turn * (Vector3(*corner) - state.refPos)
+        for corner in model.description.bricks[index].corners
+    ]
+
+
+def volume(model: Any, index: int) -> float:
+    """Volume of a block [m³]."""
+    body = O.bodies[model.ids[index]]
+    return float(body.state.mass / body.mat.density)
+
+
+def answers(scene: Any, ended: str, begun: float) -> list[Answer]:
+    """What fell, when, how fast, and where it lies.
+
+    :param ended: how the fall ended
+    :param begun: time when the collapse was noticed [s]
+    """
+    model, box = scene.model, scene.description
+    fallen = model.fallen()
+    count, share = len(fallen), 0.0
+    masses = [O.bodies[body].state.mass for body in model.ids]
+    if sum(masses):
+        share = sum(masses[index] for index in fallen) / sum(masses)
+    when = f"{ended}: " if ended != AT_REST else ""
+    what = "blocks that have turned by 60° or moved by their diameter since the scene was built"
+    found = [
+        Answer("fallen_blocks", "-", count, f"{when}{what}, of {len(masses)}"),
+        Answer("fallen_share", "-", share, f"{when}mass of these over that of all blocks"),
+    ]  # fmt: skip
+    how = "when the collapse was noticed, since the scene was built"
+    found.append(Answer("noticed_at", "s", begun, how))
+    rest = O.time - begun if ended == AT_REST else None
+    how = "from then on until all was at rest"
+    found.append(Answer("time_to_rest", "s", rest, how))
+    if not fallen:
+        return found
+    first = min(one["fell"] for one in fallen.values())
+    energy = sum(one["most"] for one in fallen.values())
+    corners = [c for index in fallen for c in cornersNow(model, index)]
+    low, high = ([f(c[i] for c in corners) for i in range(3)] for f in (min, max))
+    ground = box.ground().box[1][2]
+    beyond = [max(0.0, box.low[i] - low[i], high[i] - box.high[i]) for i in range(2)]
+    lies = f"{when}of the corners of the fallen blocks"
+    return [
+        *found,
+        Answer("fallen_mass", "kg", sum(masses[index] for index in fallen), f"{when}of the fallen blocks"),
+        Answer("rubble_volume", "m³", sum(volume(model, index) for index in fallen), f"{when}of the fallen blocks, without what lies between them"),
+        Answer("rubble_length_x", "m", high[0] - low[0], f"{lies}, from the first to the last"),
+        Answer("rubble_length_y", "m", high[1] - low[1], f"{lies}, from the first to the last"),
+        Answer("rubble_height", "m", high[2] - ground, f"{lies}, above the ground"),
+        Answer("rubble_reach", "m", max(beyond), f"{lies}: how far they lie beside the box around what was built"),
+        Answer("impact_energy", "J", energy, "sum of the largest kinetic energy that every fallen block had since it came loose"),
+        Answer("first_fall", "s", first, "when the first block had fallen, since the scene was built"),
+    ]  # fmt: skip
+
+
+#: Columns of fallen.csv: name, and the value of a block from its index and its fall.
+HEADS = (
+    "block", "brick", "part", "x_m", "y_m", "z_m", "mass_kg", "volume_m3", "loose_at_s", "fallen_at_s",
+    "largest_kinetic_energy_J", "at_s", "now_x_m", "now_y_m", "now_z_m", "moved_m", "turned_deg", "speed_m_per_s",
+)  # fmt: skip
+
+
+def writeTable(scene: Any) -> None:
+    """Write fallen.csv: a row for every fallen block. Raises Unwritable."""
+    model, box = scene.model, scene.description
+    rows = []
+    for index, fall in model.fallen().items():
+        state, block = O.bodies[model.ids[index]].state, box.bricks[index]
+        turn = (state.ori * state.refOri.conjugate()).toAxisAngle()[1]
+        rows.append([
+            index, block.brick, block.part, *box.middle(index), state.mass, volume(model, index), fall["since"], fall["fell"],
+            fall["most"], fall["at"], *state.pos, (state.pos - state.refPos).norm(), math.degrees(turn), state.vel.norm(),
+        ])  # fmt: skip
+    path = scene.results.path(TABLE)
+    try:
+        with open(path, "w", newline="") as file:
+            writer = csv.writer(file)
+            writer.writerow(HEADS)
+            writer.writerows([[f"{v:.9g}" if isinstance(v, float) else v for v in row] for row in rows])  # fmt: skip
+    except OSError as error:
+        raise Unwritable(f"{path} cannot be written: {error.strerror}") from None

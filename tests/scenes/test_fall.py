@@ -1,0 +1,265 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Scenes whose collapse is followed to the ground: what they say of it, against what stands in YADE, and how they go on."""
+
+import csv
+import math
+import signal
+
+import numpy as np
+import pytest
+import stopped
+from masonry import COLLAPSED, Scene, bricks, materials
+from masonry._masonry import allowThreads
+from masonry.basics import GRAVITY, Refused
+from masonry.read import files
+from masonry.read.crack_figure import frameOfCracks
+from masonry.read.files import readRun
+from masonry.read.frames import readFrame
+from yade import O
+
+DENSITY = 2200
+SIDE = 0.3  # [m] of a cubic half stone
+LEAN = ["--checkpoint-every", "0", "--no-vtk"]
+
+
+def column(tmp_path, *words, courses=4, **settings):
+    """A narrow dry wall of six stones that can turn over along y."""
+    stones = materials.dry(0.6, 2e9, density=DENSITY)
+    wall = bricks.Wall(2 * SIDE, courses * SIDE, unit=(2 * SIDE, SIDE, SIDE), halves=False)  # fmt: skip
+    words = [*(words or LEAN), "--out", str(tmp_path / "results")]
+    scene = Scene("column", wall, stones, plane=False, arguments=words, **{"collapse": "follow", **settings})  # fmt: skip
+    scene.platen("bottom")
+    return scene
+
+
+@pytest.fixture(scope="module")
+def fallen(tmp_path_factory):
+    """The column after an acceleration that it cannot bear: the scene, and its rows."""
+    scene = column(tmp_path_factory.mktemp("fallen"), "--checkpoint-every", "0")
+    scene.settle()
+    scene.lasted = scene.lean(0.4, towards=(0, 1, 0))
+    states = [O.bodies[b].state for b in scene.model.ids]
+    scene.places = [np.array(s.pos) for s in states]
+    scene.turns = [s.ori * s.refOri.conjugate() for s in states]
+    scene.corners = scene.model.description.bricks
+    scene.finish()
+    rows = {n: np.array(v) for n, v in files.readCurve(scene.results.directory).items()}
+    return scene, rows
+
+
+def answer(scene, name):
+    return next(a["value"] for a in scene.answers if a["name"] == name)
+
+
+def test_what_fell_lies_on_the_ground_at_rest(fallen):
+    scene, rows = fallen
+    assert scene.lasted == COLLAPSED and scene.collapsed
+    assert readRun(scene.results.directory)["ended"] == "collapsed and at rest"
+    mass = 4 * 2 * SIDE**3 * DENSITY
+    assert answer(scene, "fallen_blocks") == 6 and answer(scene, "fallen_share") == 1
+    assert answer(scene, "fallen_mass") == pytest.approx(mass)
+    assert answer(scene, "rubble_volume") == pytest.approx(8 * SIDE**3)
+    # one layer on the ground, which carries all of it
+    assert answer(scene, "rubble_height") == pytest.approx(SIDE, rel=1e-3)
+    assert rows["ground_force_z_kN"][-1] == pytest.approx(-1e-3 * mass * GRAVITY, rel=5e-3)  # fmt: skip
+    assert rows["base_force_z_kN"][-1] == 0
+    ground = scene.targets["ground"].box[1][2]
+    assert all(place[2] == pytest.approx(ground + SIDE / 2, abs=1e-5) for place in scene.places)  # fmt: skip
+    reach = max(place[1] for place in scene.places) + SIDE / 2 - SIDE
+    assert answer(scene, "rubble_reach") == pytest.approx(reach, rel=0.01)
+
+
+def test_the_base_section_has_what_contacts_carry(fallen):
+    """All that stands on the base passes through it, whether by joints or by contacts, and later to the ground. The force of a
+    joint that turns is along the mean of both faces, hence 1e-4 kN."""
+    _, rows = fallen
+    carried = rows["base_force_z_kN"] + rows["ground_force_z_kN"]
+    assert rows["base_N_kN"] == pytest.approx(carried, abs=1e-4)
+    along = rows["base_force_y_kN"] + rows["ground_force_y_kN"]
+    assert rows["base_V_y_kN"] == pytest.approx(along, abs=1e-4)
+    assert rows["handed_joints"][-1] > 0
+
+
+def test_energies_of_the_fall(fallen):
+    scene, rows = fallen
+    work = rows["gravity_J"][-1]
+    lost = rows["friction_contacts_J"][-1] + rows["damping_contacts_J"][-1]
+    assert lost == pytest.approx(work, rel=0.02)
+    assert np.abs(rows["balance_error"]).max() < 0.02
+    # every stone is fastest before it strikes, and not all of them at once
+    assert rows["kinetic_J"].max() <= answer(scene, "impact_energy") < 1.5 * work
+
+
+def test_the_table_has_a_row_for_every_fallen_block(fallen):
+    scene, _ = fallen
+    with open(scene.results.path("fallen.csv")) as file:
+        rows = list(csv.DictReader(file))
+    assert [int(row["block"]) for row in rows] == list(range(6))
+    # those that lay below turn over once; how far the upper ones roll on depends on how they strike the ground
+    assert [float(row["turned_deg"]) for row in rows[:4]] == pytest.approx([90] * 4, abs=1)  # fmt: skip
+    for row, place, turn in zip(rows, scene.places, scene.turns):
+        now = [float(row[f"now_{axis}_m"]) for axis in "xyz"]
+        assert now == pytest.approx(place, rel=1e-6, abs=1e-6)
+        assert float(row["loose_at_s"]) < float(row["fallen_at_s"])
+        turned = math.degrees(2 * math.acos(min(1, abs(turn[3]))))
+        assert float(row["turned_deg"]) == pytest.approx(turned, abs=1e-3)
+        # no stone is faster than one that falls from the top, and slides at 0.4 g as long
+        fell = math.sqrt(2 * GRAVITY * 5 * SIDE)
+        assert 0 < float(row["largest_kinetic_energy_J"]) < 0.5 * float(row["mass_kg"]) * 3 * fell**2  # fmt: skip
+
+
+def test_cracks_are_those_of_the_moment_when_the_collapse_was_noticed(fallen):
+    scene, _ = fallen
+    folder = scene.results.directory
+    run = readRun(folder)
+    number = frameOfCracks(run, folder)
+    noticed = answer(scene, "noticed_at")
+    assert files.readCurve(folder)["time_s"][-1] > noticed + 1
+    moved = readFrame(folder, "blocks", number)["displacement"]
+    assert 0 < np.abs(moved).max() < SIDE / 2
+    assert np.abs(readFrame(folder, "blocks", -1)["displacement"]).max() > SIDE
+
+
+def test_an_acceleration_that_the_column_bears_leaves_it_as_without_follow(tmp_path):
+    """A scene in which no joint is handed over has the same bits."""
+    found = []
+    for collapse in ("end", "follow"):
+        scene = column(tmp_path, collapse=collapse)
+        scene.settle()
+        time = O.dt
+        scene.lean(0.1, towards=(0, 1, 0))
+        found.append((time, scene.results.column("gravity_J"), [list(O.bodies[b].state.pos) for b in scene.model.ids]))  # fmt: skip
+        scene.finish()
+    assert found[0][1:] == found[1][1:] or found[0][0] != found[1][0]
+
+
+def test_a_shaken_wall_goes_on_while_its_top_falls(tmp_path):
+    """The record ends as it would, the stones below stay, and the fall is reported."""
+    scene = column(tmp_path, courses=4)
+    scene.settle()
+    pulse = [0, 12.0, 12.0, 12.0, 0, -12.0, -12.0, 0] + 20 * [0.0]
+    assert scene.shake(pulse, 0.05, direction=(0, 1, 0)) == COLLAPSED
+    assert scene.ended.startswith(COLLAPSED)
+    fell = [one["fell"] for one in scene.model.fallen().values()]
+    assert min(fell) < answer(scene, "noticed_at")
+    times = scene.results.column("time_s")
+    assert answer(scene, "time_of_collapse") == pytest.approx(min(fell) - times[1], abs=0.05)  # fmt: skip
+    scene.finish()
+
+
+def test_the_same_bits_on_two_threads(tmp_path):
+    found = []
+    for threads in (1, 2):
+        allowThreads(threads)
+        scene = column(tmp_path)
+        scene.settle()
+        scene.lean(0.4, towards=(0, 1, 0))
+        found.append([scene.results.column(n) for n in ("kinetic_J", "ground_force_z_kN", "base_M_x_kNm")])  # fmt: skip
+        scene.finish()
+    allowThreads(1)
+    assert found[0] == found[1]
+
+
+SCRIPT = """\
+from masonry import Scene, bricks, materials
+stones = materials.dry(0.6, 2e8, density=2200)
+wall = bricks.Wall(0.6, 0.9, unit=(0.6, 0.3, 0.3), halves=False)
+scene = Scene("s", wall, stones, plane=False, collapse="follow")
+scene.platen("bottom")
+scene.settle()
+scene.lean(0.5, (0, 1, 0))
+scene.result("reach", [a["value"] for a in scene.answers if a["name"] == "rubble_reach"][0], "m")
+scene.finish()
+"""
+
+
+@pytest.mark.parametrize("share", [0.5, 0.95])
+def test_a_run_that_is_stopped_in_the_fall_and_resumed_leaves_what_an_unbroken_one_leaves(tmp_path, monkeypatch, share):  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    status, steps, said = stopped.carryOut(SCRIPT, "--out", "whole")
+    assert status == 0 and "collapsed and at rest" in said, said
+    step = round(share * steps)
+    stop = stopped.signalled(signal.SIGTERM, step)
+    stopped.carryOut(SCRIPT, "--out", "broken", stop=stop)
+    assert readRun("broken")["interrupted"]
+    status, _, said = stopped.carryOut(SCRIPT, "--resume", "broken")
+    assert status == 0, said
+    assert stopped.differences(stopped.left("whole"), stopped.left("broken")) == []
+    with open("whole/fallen.csv") as one, open("broken/fallen.csv") as other:
+        assert one.read() == other.read()
+
+
+@pytest.mark.parametrize(
+    "settings, message",
+    [
+        (dict(collapse="go on"), "collapse 'go on' must be one of end, follow"),
+        (dict(functors=True), "leave functors=False"),
+        (dict(blocks="deformable"), "choose --blocks rigid"),
+        (dict(density_scaling=4), "blocks fall in real time, with true masses"),
+    ],
+)
+def test_what_does_not_go_together_is_refused(tmp_path, capsys, settings, message):
+    with pytest.raises((Refused, SystemExit)) as end:
+        scene = column(tmp_path, **settings)
+        scene.settle()
+    assert message in str(end.value) + capsys.readouterr().err
+
+
+def test_contact_takes_the_bed_joint_and_what_set_says(tmp_path, capsys):
+    scene = column(tmp_path, *LEAN, "--set", "contact.friction=0.3", "--set", "contact.restitution=0.2")  # fmt: skip
+    scene.settle()
+    contacts = scene.model.contacts
+    assert (contacts.friction, contacts.restitution) == (0.3, 0.2)
+    assert contacts.normalStiffness == 2e9 and contacts.tangentialRatio == pytest.approx(0.4)  # fmt: skip
+    scene.finish()
+    scene = column(tmp_path)
+    scene.settle()
+    assert scene.model.contacts.friction == 0.6
+    scene.finish()
+    with pytest.raises(SystemExit):
+        column(tmp_path, *LEAN, "--set", "contact.friction=11").settle()
+    assert (
+        "contact: friction 11.0 - must be at least 0 and at most 10"
+        in capsys.readouterr().err
+    )
+
+
+def test_a_support_that_moved_stands_still_in_the_fall(tmp_path):
+    """The right one of two stones on which a third one lies is drawn from under it."""
+    words = [*LEAN, "--out", str(tmp_path / "results")]
+    sides = bricks.block((0, 0, 0), (SIDE, SIDE, SIDE)) + bricks.block((1.5 * SIDE, 0, 0), (2.5 * SIDE, SIDE, SIDE))  # fmt: skip
+    lintel = bricks.block((0.8 * SIDE, 0, SIDE), (1.7 * SIDE, SIDE, 1.5 * SIDE))
+    scene = Scene("lintel", sides + lintel, materials.dry(0.3, 1e8, density=DENSITY), plane=False, collapse="follow", allowGaps=True, arguments=words)  # fmt: skip
+    scene.hold(0, name="still")
+    moved = scene.hold(1, name="ground")  # a name that the ground itself would have
+    scene.settle()
+    assert scene.move(moved, x=300, rate=500) == COLLAPSED
+    assert scene.ended == "collapsed and at rest"
+    column = scene.results.column
+    rows = [n for n, t in enumerate(column("time_s")) if t > answer(scene, "noticed_at") + 0.01]  # fmt: skip
+    assert np.ptp([column("ground_x_mm")[n] for n in rows]) == 0
+    assert column("ground2_force_z_kN")[-1] < 0 and answer(scene, "fallen_blocks") == 1
+    scene.finish()
+
+
+def test_the_ground_where_the_scene_has_it(tmp_path):
+    scene = column(tmp_path)
+    scene.ground(level=-1.0)
+    scene.settle()
+    scene.lean(0.4, towards=(0, 1, 0))
+    lowest = min(O.bodies[b].state.pos[2] for b in scene.model.ids)
+    assert lowest == pytest.approx(-1 + SIDE / 2, abs=0.01)
+    scene.finish()
+    with pytest.raises(Refused, match="ground: level 1 m must be at most -0.2 m"):
+        column(tmp_path).ground(1.0)
+    with pytest.raises(Refused, match="only a scene with collapse='follow'"):
+        column(tmp_path, collapse="end").ground(-1.0)
+
+
+def test_without_follow_the_run_ends_where_it_fell(tmp_path):
+    scene = column(tmp_path, collapse="end")
+    scene.settle()
+    assert scene.lean(0.4, towards=(0, 1, 0)) == COLLAPSED
+    assert scene.ended == COLLAPSED and "ground" not in scene.targets
+    assert not [a for a in scene.answers if a["stage"] == "fall"]
+    scene.finish()

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What two blocks that touch do to each other in a step: the force of the potential, which keeps the energy, damping,
+// and friction, with their memory. The engine of contacts and the functors of contacts both take it from here.
+#pragma once
+#include "ContactDamping.hpp"
+#include "ContactEnds.hpp"
+#include "ContactFriction.hpp"
+
+namespace masonry {
+
+struct ContactProperties {
+    double normalStiffness = 0;   // per area [Pa/m]
+    double tangentialRatio = 0.4; // stiffness along the face over that along the normal [-]
+    double friction = 0;          // coefficient [-]
+    double dampingRatio = 0;      // of ContactDamping [-]
+};
+
+// What a pair remembers from the last step. All numbers are 0 for a pair that did not touch.
+struct PairMemory {
+    static constexpr int numbers = FrictionState::numbers + Wrench::numbers + ElasticAccount::numbers;
+    FrictionState friction;
+    double dashpot[Wrench::numbers]; // the wrench of damping
+    ElasticAccount elastic;
+
+    bool touched() const { return friction.stiffness > 0; }
+    double* begin() { return reinterpret_cast<double*>(this); }
+    double* end() { return begin() + numbers; }
+};
+static_assert(sizeof(PairMemory) == PairMemory::numbers * sizeof(double) &&
+                  std::is_trivially_copyable<PairMemory>::value,
+              "checkpoints and saved files hold the memory as numbers");
+
+// The elastic energy that a pair has beside the potential of its overlap [J].
+double energyBesidePotential(const PairMemory&);
+
+struct ContactEffect {  // of a pair in the present step
+    bool touches, acts; // they press on each other; there is a wrench, which the first step after a contact has, too
+    Wrench wrench;
+    double lost, damped; // energy that friction and damping took in this step [J]
+
+    static ContactEffect none() { return {false, false, Wrench::none(), 0, 0}; }
+};
+
+// Place and orientation of the other block in the axes of the one, from those of both in global axes.
+RelativePose relativePose(const Eigen::Matrix3d& turn, const Eigen::Vector3d& position,
+                          const Eigen::Matrix3d& otherTurn, const Eigen::Vector3d& otherPosition);
+
+// The step of a pair. The overlap is what OverlapFinder found for its pose; `touches` of the effect is its answer, and
+// the overlap counts only then. A pair that does not touch and did not do so in the last step needs no call.
+void actOnPair(const ContactProperties&, const NearBlocks&, double dt, const Overlap&, OverlapFinder&, PairMemory&,
+               ContactEffect&);
+
+} // namespace masonry
