@@ -118,7 +118,7 @@ OF_CONNECTORS = {
 
 #: Likewise of contacts, in scenes whose collapse is followed.
 OF_CONTACTS = {
-    "handing": "elastic energy that joints had when contacts took their place",
+    "handing": "energy that the change from joints to contacts gave",
     "elastic_contacts": "elastic energy in contacts",
     "friction_contacts": "energy that friction of contacts took",
     "damping_contacts": "energy that damping of contacts took",

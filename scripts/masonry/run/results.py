@@ -72,7 +72,8 @@
   if the scene has some
 - ``ended``: how the last stage ended: ``at rest``, ``moving``, ``done`` or ``collapsed``; of a scene that follows a collapse also
   ``collapsed and at rest``, or ``collapsed and moving`` if that was given up
-- ``ground_body``: of such a scene, the id of the ground; fallen.csv has a row for every block that fell
+- ``ground_body``: of such a scene, the id of the ground; ``contact``: the properties of its contacts, ``normalStiffness`` [Pa/m],
+  ``tangentialRatio``, ``friction`` and ``restitution`` [-]; fallen.csv has a row for every block that fell
 - ``collapse``: what has fallen, and how far; None if nothing has
 - ``held``: names of the platens and bricks that are held; ``targets``: of all platens and bricks that are held, loaded or
   watched, a list of dicts with ``name``, the id of its ``body`` and whether it is ``held``

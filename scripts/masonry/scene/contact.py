@@ -18,9 +18,8 @@ RESTITUTION = 0.5
 FRICTION = 0.6  # of masonry blocks whose joints have none of their own [-]
 THICK = 0.5  # of the ground, over the height of what is built [-]
 BEYOND = 5.0  # how far the ground reaches out, over that height [-]
-BELOW = (
-    1e-3  # between the underside of what is held and the ground, over that height [-]
-)
+#: Gap between the underside of what is held and the ground, over that height [-].
+BELOW = 1e-3
 
 
 class Contact(Settable):

@@ -169,9 +169,12 @@ class Outcome:
         return entries
 
     def _ground(self):
-        """The entry for the ground on which blocks fall, if there is one."""
-        ground = self.description.ground()
-        return {"ground_body": ground.body} if ground else {}
+        """Entries for the ground on which blocks fall and for their contact, if a collapse is followed."""
+        ground, engine = self.description.ground(), self.model.contacts
+        if not (ground and engine):
+            return {}
+        names = self.description.contact.known()
+        return {"ground_body": ground.body, "contact": {n: getattr(engine, n) for n in names}}  # fmt: skip
 
     def summary(self):
         """Entries of run.json that follow from the rows."""

@@ -16,7 +16,7 @@ from ...basics import GRAVITY, Unwritable, say
 from .answers import COLLAPSED, FALL, Answer
 
 #: How such a run ends.
-AT_REST, MOVING = f"{COLLAPSED} and at rest", f"{COLLAPSED} and moving"
+FALLEN_AT_REST, FALLEN_MOVING = f"{COLLAPSED} and at rest", f"{COLLAPSED} and moving"  # fmt: skip
 LOOK = 0.05  # time between two looks and rows, over √(side/g) of the largest block [-]
 FRAME = 4  # looks from one frame to the next
 CALM = 0.1  # speed of the fastest block of rubble at rest, over that of one that falls [-]: see Motion.fastest()
@@ -77,12 +77,19 @@ def followFall(scene: Any, tilted: bool) -> str:
             at.quiet == LOOKS or at.looks == most,
         )
     running.flush()
+    ground = box.ground().box[1][2]
+    past = sum(O.bodies[body].state.pos[2] < ground for body in model.ids)
+    if past:
+        say(
+            f"warning: {past} blocks have gone past the edge of the ground and fall on, so the impact energy and the extent of the "
+            "rubble mean nothing"
+        )
     if at.quiet < LOOKS:
         say(
             f"note: the rubble is not at rest after {O.time - at.begun:.2f} s: {100 * missing:.2f} % of its weight is missing at the "
             f"supports, and the fastest block moves at {100 * model.motion.fastest():.2g} % of the speed of one that falls"
         )
-    return AT_REST if at.quiet == LOOKS else MOVING
+    return FALLEN_AT_REST if at.quiet == LOOKS else FALLEN_MOVING
 
 
 def cornersNow(model: Any, index: int) -> list[Any]:
@@ -113,7 +120,7 @@ def answers(scene: Any, ended: str, begun: float) -> list[Answer]:
     masses = [O.bodies[body].state.mass for body in model.ids]
     if sum(masses):
         share = sum(masses[index] for index in fallen) / sum(masses)
-    when = f"{ended}: " if ended != AT_REST else ""
+    when = f"{ended}: " if ended != FALLEN_AT_REST else ""
     what = "blocks that have turned by 60° or moved by their diameter since the scene was built"
     found = [
         Answer("fallen_blocks", "-", count, f"{when}{what}, of {len(masses)}"),
@@ -121,7 +128,7 @@ def answers(scene: Any, ended: str, begun: float) -> list[Answer]:
     ]  # fmt: skip
     how = "when the collapse was noticed, since the scene was built"
     found.append(Answer("noticed_at", "s", begun, how))
-    rest = O.time - begun if ended == AT_REST else None
+    rest = O.time - begun if ended == FALLEN_AT_REST else None
     how = "from then on until all was at rest"
     found.append(Answer("time_to_rest", "s", rest, how))
     if not fallen:
@@ -141,7 +148,7 @@ def answers(scene: Any, ended: str, begun: float) -> list[Answer]:
         Answer("rubble_length_y", "m", high[1] - low[1], f"{lies}, from the first to the last"),
         Answer("rubble_height", "m", high[2] - ground, f"{lies}, above the ground"),
         Answer("rubble_reach", "m", max(beyond), f"{lies}: how far they lie beside the box around what was built"),
-        Answer("impact_energy", "J", energy, "sum of the largest kinetic energy that every fallen block had since it came loose"),
+        Answer("impact_energy", "J", energy, f"{when}sum of the largest kinetic energy that every fallen block had since it came loose"),
         Answer("first_fall", "s", first, "when the first block had fallen, since the scene was built"),
     ]  # fmt: skip
 

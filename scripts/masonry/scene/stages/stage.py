@@ -30,17 +30,16 @@ class Rows:
 
     :param results: of the run
     :param first: number of the first of them, from 0
-    :param beyond: number of the first row after them; None: there is none
     """
 
-    def __init__(self, results, first, beyond=None):
-        self._results, self._first, self._beyond = results, first, beyond
+    def __init__(self, results, first):
+        self._results, self._first = results, first
 
     def column(self, head):
         """The values of a column, or an empty list if curve.csv does not have it."""
         if head not in self._results.columns:
             return []
-        return self._results.column(head)[self._first : self._beyond]
+        return self._results.column(head)[self._first :]
 
 
 def nothing(scene, rows):
