@@ -72,6 +72,8 @@ bool Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom::go(const shared_ptr<yade::S
         const auto grid = gridOf(*face, *interaction, state1, state2);
         const shared_ptr<MasonryJointGeom> geom(new MasonryJointGeom);
         geom->define(*face, grid.along, subcontacts, grid.rows, interaction->id1, interaction->id2, state1, state2);
+        for (auto& side : geom->group->joints[0].sides)
+            side.shearShare = shearShareOf(*scene, side.body);
         if (zones) geom->attach(zones);
         interaction->geom = geom;
         fixed_.fix(*scene, {double(subcontacts), double(rows)});

@@ -26,10 +26,7 @@ void Ip2_MasonryMat_MasonryMat_MasonryJointPhys::assign(const MasonryMat& mat1, 
                                                         yade::Interaction& interaction,
                                                         const shared_ptr<MasonryJoint>& joint) const {
     const auto& geom = geometryOf(interaction);
-    const auto& r = geom.reference();
-    // The elasticity of a rigid unit is added to its joints. Zones of a deformable unit deform themselves.
-    const double d1 = r.rigid(0) ? r.distance(0) : 0, d2 = r.rigid(1) ? r.distance(1) : 0;
-    const auto k = lumpedStiffness(*joint, mat1, mat2, d1, d2);
+    const auto k = lumpedStiffness(*joint, mat1, mat2, geom.reference());
     const shared_ptr<MasonryJointPhys> phys(new MasonryJointPhys);
     phys->define(joint, k, geom.points());
     interaction.phys = phys;

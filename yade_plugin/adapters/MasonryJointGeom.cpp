@@ -86,6 +86,7 @@ void exchange(Numbers& n, JointReference& r) {
         n(side.body);
         n(side.position);
         n(side.orientation);
+        n(side.shearShare);
     }
     int split = r.split;
     n(split);

@@ -8,10 +8,17 @@
 namespace masonry {
 
 ElasticStiffness lumpedStiffness(const PropertySet& joint, const UnitMaterial& unit1, const UnitMaterial& unit2,
-                                 double distance1, double distance2) {
-    const auto k = inSeriesWithUnits(joint, distance1 / unit1.young + distance2 / unit2.young,
-                                     distance1 / unit1.shearModulus() + distance2 / unit2.shearModulus());
-    const auto problems = joint.ownLaw()->snapsBack(k, distance1 + distance2);
+                                 const JointReference& r) {
+    double normal = 0, shear = 0, distance = 0;
+    for (int side = 0; side < 2; ++side) {
+        if (!r.rigid(side)) continue;
+        const auto& unit = side == 0 ? unit1 : unit2;
+        normal += r.distance(side) / unit.young;
+        shear += r.sides[side].shearShare * r.distance(side) / unit.shearModulus();
+        distance += r.distance(side);
+    }
+    const auto k = inSeriesWithUnits(joint, normal, shear);
+    const auto problems = joint.ownLaw()->snapsBack(k, distance);
     if (!problems.empty())
         throw std::invalid_argument("joint \"" + joint.name +
                                     "\": " + joined(problems, ("\njoint \"" + joint.name + "\": ").c_str()));
@@ -34,18 +41,14 @@ void lumpWholeBricks(SceneStore& store) {
     for (std::size_t n = 0; n < store.joints.size(); ++n) {
         const auto& r = store.joints[n].geom->reference();
         if (isCrack[n] || !(isHalf[r.sides[0].body] || isHalf[r.sides[1].body])) continue;
-        double distances[2];
         const UnitMaterial* units[2];
         for (int side = 0; side < 2; ++side) {
             const int body = r.sides[side].body;
-            distances[side] = !r.rigid(side) ? 0
-                              : isHalf[body] ? std::abs((centres[body] - r.polygon()[0]).dot(r.normal))
-                                             : r.distance(side);
             units[side] = dynamic_cast<const UnitMaterial*>(store.scene().bodies->body[body]->material.get());
         }
         if (!units[0] || !units[1]) continue; // of a scene that was loaded from a file
         auto& phys = *store.joints[n].phys;
-        const auto k = lumpedStiffness(*phys.propertySet(), *units[0], *units[1], distances[0], distances[1]);
+        const auto k = lumpedStiffness(*phys.propertySet(), *units[0], *units[1], r);
         const bool same = sameButRoundOff(k.normal, phys.stiffness().normal, k.normal) &&
                           sameButRoundOff(k.shear, phys.stiffness().shear, k.shear);
         if (!same) phys.define(phys.propertySet(), k, phys.points());

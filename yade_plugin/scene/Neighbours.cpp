@@ -4,6 +4,8 @@
 #include "BodyCheck.hpp"
 #include "common/Text.hpp"
 #include <algorithm>
+#include <map>
+#include <set>
 
 namespace masonry {
 
@@ -32,6 +34,7 @@ struct KeptFaces {
     const yade::Scene* scene = nullptr;
     double tolerance = 0;
     std::vector<SharedFace> faces; // in the order of their ids
+    std::set<int> inTwoDirections; // ids of the bodies that share faces of different directions
 };
 KeptFaces kept;
 
@@ -67,6 +70,20 @@ std::vector<Candidate> candidates(double tolerance) {
     }
     if (!wrong.empty()) throw std::invalid_argument(firstOf(wrong));
     return all;
+}
+
+// Ids of the bodies that share faces whose normals are more than 45 degrees apart.
+std::set<int> withFacesInTwoDirections(const std::vector<SharedFace>& faces) {
+    std::map<int, std::vector<Vector3r>> normals; // by body
+    std::set<int> found;
+    for (const auto& shared : faces)
+        for (int id : {shared.ids.first, shared.ids.second}) {
+            auto& others = normals[id];
+            for (const auto& other : others)
+                if (std::abs(other.dot(shared.face.normal)) < std::sqrt(0.5)) found.insert(id);
+            others.push_back(shared.face.normal);
+        }
+    return found;
 }
 
 } // namespace
@@ -122,7 +139,10 @@ py::tuple neighbours(double tolerance, bool keepFaces) {
         sizes.append(py::make_tuple(thin->id, thin->block.thickness));
         sizes.append(py::make_tuple(large->id, large->block.size()));
     }
-    if (keepFaces) kept = {Singleton<yade::Omega>::instance().getScene().get(), tolerance, std::move(shared)};
+    if (keepFaces) {
+        auto apart = withFacesInTwoDirections(shared);
+        kept = {Singleton<yade::Omega>::instance().getScene().get(), tolerance, std::move(shared), std::move(apart)};
+    }
     return py::make_tuple(touching, missing, sizes);
 }
 
@@ -135,6 +155,10 @@ std::optional<FaceContact> takeFace(const yade::Scene& scene, int id1, int id2, 
                                         [](const SharedFace& face, const Pair& wanted) { return face.ids < wanted; });
     if (found == kept.faces.end() || found->ids != ids || found->face.polygon.empty()) return std::nullopt;
     return FaceContact{found->face.normal, std::move(found->face.polygon)};
+}
+
+double shearShareOf(const yade::Scene& scene, int id) {
+    return kept.scene == &scene && kept.inTwoDirections.count(id) ? 0.5 : 1;
 }
 
 void dropFaces() { kept = {}; }
