@@ -344,12 +344,6 @@ def test_numbers_of_points_that_mean_nothing_are_refused(refinement):
         O.step()
 
 
-def test_joints_in_space_are_refused_with_what_helps():
-    couplet(inPlane=False)
-    engine("joints").refinement = 12
-    with pytest.raises(ValueError, match="bodies 0 and 1 has 9 points, .* as many subcontacts and rows"):  # fmt: skip
-        O.step()
-
 
 def test_an_earlier_frame_is_shown_at_the_points_of_the_last():
     """What reads several frames takes, where a joint had fewer points, the nearest of these."""

@@ -14,7 +14,7 @@ class Load;
 struct JointLoop {
     double stiffnessDamping = 0; // stiffness-proportional viscous damping of joints [s]
     double dampingWork = 0;      // energy that it has taken so far [J]
-    int refinement = 0;          // points along a joint that is about to crush; 0: as many as before
+    int points = 0;              // along a side of a joint from when it is about to yield; 0: see Refinement
     double refiningEnergy = 0;   // elastic energy that joints got when they were refined, so far [J]
 };
 
