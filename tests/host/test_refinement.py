@@ -17,7 +17,6 @@ from yade.wrapper import *
 
 from test_checkpoint import bits
 from test_joint_loop import panel
-from test_whole_bricks import brick, pull
 
 LENGTH, WIDTH, HEIGHT = 0.22, 0.102, 0.081
 AREA = LENGTH * WIDTH
@@ -319,21 +318,6 @@ def test_files_and_functors_take_joints_with_other_numbers_of_points(tmp_path):
         len(i.geom.areas) for i in interactions
     ] == sizes  # the functors refine none
     assert abs(engine("energy").balance()["error"]) < 1e-3
-
-
-def test_bricks_that_are_whole_are_refined_when_they_split():
-    crack = dict(monolithic=True, cap=False, tensileStrength=1e5)
-    bodies, joint = brick(**crack)
-    engine("joints").refinement = 12
-    force = Vector3(0.5e5 * 0.102 * 0.081, 0, 0)
-    for n in range(1, 400):
-        pull(bodies, n * 0.01 * force, Vector3(0, 2 * n * 0.01, 0))
-        O.step()
-        if engine("integrator").splits:
-            break
-        assert len(joint.geom.areas) == 3
-    O.step()
-    assert engine("integrator").splits == 1 and len(joint.geom.areas) == 12
 
 
 @pytest.mark.parametrize("refinement", [1, 2, 101, -1])

@@ -64,9 +64,6 @@ RUNS = {
     "rigid: local damping": ["--damping-kind local --rate 50"],
     "rigid: time step": ["--dt-fraction 0.95"],
     "rigid: no crack surfaces": ["--crack-surfaces off"],
-    "rigid: whole bricks": [
-        f"--crack-surfaces whole{rate}" for rate in ("", " --rate 100")
-    ],
     "deformable": [f"{QUICK} --rate 50"],
     "deformable: rate": [f"{QUICK} --rate {v}" for v in (100, 200)],
     "deformable: mesh and rate": [

@@ -87,9 +87,6 @@ void exchange(Numbers& n, JointReference& r) {
         n(side.position);
         n(side.orientation);
     }
-    int split = r.split;
-    n(split);
-    r.split = split != 0;
     n(r.refined);
     int handed = r.handed;
     n(handed);

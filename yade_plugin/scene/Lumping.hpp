@@ -7,15 +7,9 @@
 
 namespace masonry {
 
-class SceneStore;
-
 // The stiffness of a joint between units whose centres lie these distances from its plane [m]; zero for a deformable
 // unit, whose zones deform themselves. Throws std::invalid_argument if a softening branch of the joint would snap back.
 ElasticStiffness lumpedStiffness(const PropertySet&, const UnitMaterial&, const UnitMaterial&, double distance1,
                                  double distance2);
-
-// Gives the joints of bricks that are whole until they crack the stiffness that they have between whole bricks: the
-// centre of the brick counts, not that of its half. The crack surfaces themselves are between halves. For connect().
-void lumpWholeBricks(SceneStore&);
 
 } // namespace masonry

@@ -306,15 +306,14 @@ void Refinement::look(SceneStore& store) {
     const bool read = store.revision() != revision_;
     if (read) readLimits(store);
     if (read || points != checkedPoints_) check(store, points);
-    if (store.scene().iter % every != 0 && store.splits.empty()) return;
+    if (store.scene().iter % every != 0) return;
     std::set<std::pair<const JointShapes*, int>> due;
     bool any = false;
     for (std::size_t k = 0; k < store.kinds.size(); ++k) {
         const auto& kind = store.kinds[k];
-        const auto& whole = kind.shapes->whole;
         if (kind.attached || kind.handed || kind.shapes->points >= points || !limits_[k].isNeeded()) continue;
         for (int j = 0; j < int(kind.shapes->joints.size()); ++j) {
-            if ((!whole.empty() && whole[j]) || !isDue(kind, limits_[k], company, j)) continue;
+            if (!isDue(kind, limits_[k], company, j)) continue;
             due.emplace(kind.shapes.get(), j);
             any = any || isDue(kind, limits_[k], share, j);
         }

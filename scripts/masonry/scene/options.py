@@ -190,11 +190,9 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     )
     p.add_argument(
         "--crack-surfaces",
-        choices=["on", "whole", "off"],
+        choices=["on", "off"],
         default="on",
-        help="whether bricks can crack in half. on: each is two blocks with a crack surface between them; whole: it is one "
-        "block until the stress in the plane of its crack surface reaches the surface's strength, and two from then on; "
-        "off: it is one block",
+        help="whether bricks can crack in half. on: each is two blocks with a crack surface between them; off: it is one block",
     )
     p.add_argument(
         "--joints",

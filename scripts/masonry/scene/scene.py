@@ -376,7 +376,7 @@ class Scene:
             problems.append(f"--refine {self.args.refine}: the functors keep the points of joints; leave functors=False")  # fmt: skip
         problems += self._wrongRecord()
         if self.description.contact:
-            problems += contact.problems(self.description, self.args, masonry)
+            problems += contact.problems(self.description, self.args)
         options.check(self.args, masonry, problems, self.description.plane, connectors)
         self.assumed = masonry.assumed()
         return masonry
