@@ -222,7 +222,6 @@ def wall(
             damping=damping,
             dampingKind=kind,
             blocked="y" if inPlane else "",
-            plane=False,  # the stored numbers are those of tetrahedra: they show that these have not changed
         )
     engines(
         joints,
@@ -362,7 +361,7 @@ def tilted(dt, turn=STRAIGHT, rows=1, deformable=False, about=(0, 1, 0), rate=2.
     soft = dict(normalStiffness=4e9, shearStiffness=2e9, cap=False)
     zones = None
     if deformable:
-        zones = MasonryZones(bodies=bricks, blocked="y" if inPlane else "", plane=False)
+        zones = MasonryZones(bodies=bricks, blocked="y" if inPlane else "")
     engines(
         [
             MasonryJoint(
