@@ -26,9 +26,7 @@
 #include "common/Parallel.hpp"
 #include "common/Text.hpp"
 #include "host/SelfCheck.hpp"
-#include "scene/Changes.hpp"
 #include "scene/CriticalTimeStep.hpp"
-#include "scene/Lumping.hpp"
 #include "scene/Neighbours.hpp"
 #include "scene/Resultant.hpp"
 #include "scene/SceneCheckpoint.hpp"
@@ -132,14 +130,6 @@ void gather() {
     SceneStore::present().update();
 }
 
-void lumpBricks() {
-    const BetweenSteps still;
-    auto& store = SceneStore::present();
-    store.update();
-    lumpWholeBricks(store);
-    ++changes; // the joints are of other kinds now
-}
-
 void connected() {
     const BetweenSteps still;
     auto& store = SceneStore::present();
@@ -223,9 +213,6 @@ static void registerAll() {
     py::def("timeStepLimit", &presentLimit,
             "The first number of criticalTimeStep() [s], in half the time. For masonry.assembly.structure.");
     py::def("gather", &gather, "Move the joints that are there into their columns. For connect().");
-    py::def("lumpBricks", &lumpBricks,
-            "Give the joints of bricks that are whole until they crack the stiffness of joints between whole bricks. "
-            "For connect().");
     py::def(
         "connected", &connected,
         "Tell the plugin that all blocks have their joints. A block that is added later and has no joint is then an "

@@ -22,7 +22,7 @@ from yade import O
 X, Y, Z = 0.11, 0.102, 0.081  # half a brick [m]
 
 
-def bricks(scaling, damping=0.3, strength=0.3e6, plane=True, kind="combined"):
+def bricks(scaling, damping=0.3, strength=0.3e6, plane=True, kind="combined", pieces=2):
     """Two bricks of two halves each on a plate, and a plate on top that pulls the right half up and breaks a brick."""
     O.reset()
     mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
@@ -32,7 +32,7 @@ def bricks(scaling, damping=0.3, strength=0.3e6, plane=True, kind="combined"):
     units = [
         put((i * X, 0, k * Z), ((i + 1) * X, Y, (k + 1) * Z), mat)
         for k in (0, 1)
-        for i in (0, 1)
+        for i in range(pieces)
     ]
     top = put((0, 0, 2 * Z), (2 * X, Y, 2 * Z + 0.05), stiff)
     O.bodies[base].state.blockedDOFs = "xyzXYZ"
@@ -68,6 +68,11 @@ def bricks(scaling, damping=0.3, strength=0.3e6, plane=True, kind="combined"):
     )
     connect(lambda one, two, geom: crack if abs(geom.normal[0]) > 0.9 else None)
     return load, zones
+
+
+def test_bricks_of_three_units_are_refused(scene):
+    with pytest.raises(ValueError, match="body 2 has two joints that are monolithic"):
+        bricks(20, pieces=3)
 
 
 def energy():

@@ -28,7 +28,7 @@ COLUMNS = {
     "top_shear_kN": FORCE,
     "external_J": np.append(0, np.cumsum(0.5 * (FORCE[1:] + FORCE[:-1]) * np.diff(MOVED))) + 7,
     "gravity_J": 0 * MOVED + 2,
-    "splitting_J": 0 * MOVED,
+    "refining_J": 0 * MOVED,
     "kinetic_J": 0 * MOVED,
     "damping_J": MOVED,
     "elastic_compression_J": 5 * MOVED,
@@ -257,7 +257,7 @@ def test_energies_add_up_since_the_first_row(pushed):
     assert pushed.row("elastic energy of all parts")[1:3] == ["20 J", "7.7 %"]  # fmt: skip
     assert pushed.row("energy that joints dissipated in tension")[1:3] == ["8 J", "3.1 %"]  # fmt: skip
     assert pushed.row("what is missing in the balance")[1:3] == ["220 J", "86 %"]
-    assert not [r for r in pushed.rows if "splitting" in r[-1]]  # nothing split
+    assert not [r for r in pushed.rows if "refining" in r[-1]]  # no joint got points
 
 
 def test_every_number_has_a_definition_and_a_source(pushed):

@@ -64,9 +64,6 @@ RUNS = {
     "rigid: local damping": ["--damping-kind local --rate 50"],
     "rigid: time step": ["--dt-fraction 0.95"],
     "rigid: no crack surfaces": ["--crack-surfaces off"],
-    "rigid: whole bricks": [
-        f"--crack-surfaces whole{rate}" for rate in ("", " --rate 100")
-    ],
     "deformable": [f"{QUICK} --rate 50"],
     "deformable: rate": [f"{QUICK} --rate {v}" for v in (100, 200)],
     "deformable: mesh and rate": [
@@ -74,7 +71,6 @@ RUNS = {
     ],
     "deformable: true masses": [f"{SOFT} --divisions 2 --rate 50"],
     "deformable: mass scaling": [f"{SOFT} --mass-scaling 5 --divisions 2 --rate 50"],
-    "deformable: tetrahedra": [f"{SOFT} --units space --divisions 2 --rate 100"],
     **{f"preset {name}": [asOptions(name)] for name in PRESETS},
 }
 
@@ -95,7 +91,6 @@ KINDS = (
     "subcontacts",
     "crack_surfaces",
     "damping_kind",
-    "units",
     "mass_scaling",
 )
 STRETCH = {"rigid": "--until 3 --rate 50", "deformable": "--until 3 --rate 100"}
@@ -198,7 +193,7 @@ def kind(wall, options):
     chosen = readRun(folder(wall, options))["options"]
     chosen = {name: chosen[name] for name in KINDS}
     rigid = chosen["blocks"] == "rigid"
-    for name in ("divisions", "units", "mass_scaling") if rigid else ("subcontacts",):
+    for name in ("divisions", "mass_scaling") if rigid else ("subcontacts",):
         chosen.pop(name)
     return " ".join(f"{asOption(n)} {v}" for n, v in chosen.items())
 

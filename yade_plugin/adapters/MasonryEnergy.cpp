@@ -20,10 +20,9 @@ using yade::State;
 
 namespace {
 
-// Elastic energy [J] that joints got so far when bricks split, when joints were refined and when they were handed over.
+// Elastic energy [J] that joints got so far when they were refined and when they were handed over.
 double givenByChanges(const SceneStore& store) {
-    double all =
-        (store.integrator ? store.integrator->bricks.energy : 0) + (store.loop ? store.loop->refiningEnergy : 0);
+    double all = store.loop ? store.loop->refiningEnergy : 0;
     for (const auto* contacts : store.allContacts)
         all += contacts->handing;
     return all;
@@ -138,7 +137,7 @@ void MasonryEnergy::lookAtBalance(const SceneStore& store) {
         all.inConnectors = connectorsThen[1];
         all.lostInConnectors = connectorsThen[2];
         all.inContacts = contactsThen;
-        all.given = splittingThen; // bricks split, and joints are refined, after the joints were looked at
+        all.given = givenThen; // joints are refined after they were looked at
         warnOfBalance(std::abs(balanceOf(all, storedThen, lostThen).error));
     }
     if (scene->iter % 1000 != 0 || scene->iter == 0) return;
@@ -146,7 +145,7 @@ void MasonryEnergy::lookAtBalance(const SceneStore& store) {
     storedThen = now.stored;
     lostThen = now.lost;
     dampingThen = damping;
-    splittingThen = givenByChanges(store);
+    givenThen = givenByChanges(store);
     connectorsThen = energiesOfConnectors(store);
     contactsThen = energiesOfContacts(store);
     stepThen = int(scene->iter);
@@ -282,7 +281,6 @@ py::dict MasonryEnergy::balance() {
     double handing = 0;
     for (const auto* contacts : store.allContacts)
         handing += contacts->handing;
-    all["splitting"] = given - handing - (store.loop ? store.loop->refiningEnergy : 0);
     all["kinetic"] = moving;
     all["damping"] = drag;
     all["elastic_units"] = inUnits;

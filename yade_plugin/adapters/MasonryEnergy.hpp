@@ -43,7 +43,7 @@ public:
     Vector3r storedThen = Vector3r::Zero();
     Vector3r lostThen = Vector3r::Zero();
     double dampingThen = 0;
-    double splittingThen = 0;
+    double givenThen = 0;
     Vector3r connectorsThen = Vector3r::Zero();
     Vector3r contactsThen = Vector3r::Zero();
     int stepThen = -1;
@@ -98,10 +98,8 @@ public:
         visit("lostThen", &E::lostThen,
               number("J", "Energies dissipated in the joints at the last look at the balance, by mode"), Hidden);
         visit("dampingThen", &E::dampingThen, number("J", "Work of the damping of joints at that look"), Hidden);
-        visit("splittingThen", &E::splittingThen,
-              number("J", "Energy that crack surfaces had when their bricks split, and that joints got when they were "
-                          "refined, at that look"),
-              Hidden);
+        visit("givenThen", &E::givenThen,
+              number("J", "Energy that joints got when they were refined and handed over, at that look"), Hidden);
         visit("connectorsThen", &E::connectorsThen,
               number("J", "Work of tightening, and energies stored and dissipated in ties and springs, at that look"),
               Hidden);
@@ -123,9 +121,9 @@ public:
 
     template <class PyClass> static void extras(PyClass& cls) {
         cls.def("balance", &MasonryEnergy::balance,
-                "All energies of the last step [J]: external, gravity, splitting, refining, kinetic, damping, elastic_ "
-                "and dissipated_ "
-                "tension, shear, compression; elastic_connectors and dissipated_connectors of ties and springs where "
+                "All energies of the last step [J]: external, gravity, refining, kinetic, damping, elastic_ and "
+                "dissipated_ tension, shear, compression; elastic_connectors and dissipated_connectors of ties and "
+                "springs where "
                 "there are "
                 "some; handing, elastic_contacts, friction_contacts and damping_contacts of MasonryContacts where "
                 "there is one; "
@@ -139,15 +137,14 @@ public:
     void action() override;
 
 private:
-    struct Inventory {      // energies that the engines of a scene keep, without those of the joints [J]
-        double work = 0;    // of loads and prescribed motions
-        double falls = 0;   // work of gravity
-        double moving = 0;  // kinetic energy
-        double drag = 0;    // taken by damping
-        double inUnits = 0; // elastic energy of deformable units
-        double given = 0;   // elastic energy that crack surfaces had when their bricks split, and that joints got when
-                            // they were refined
-        double inConnectors = 0;     // elastic energy of ties and springs
+    struct Inventory {           // energies that the engines of a scene keep, without those of the joints [J]
+        double work = 0;         // of loads and prescribed motions
+        double falls = 0;        // work of gravity
+        double moving = 0;       // kinetic energy
+        double drag = 0;         // taken by damping
+        double inUnits = 0;      // elastic energy of deformable units
+        double given = 0;        // elastic energy that joints got when they were refined and when they were handed over
+        double inConnectors = 0; // elastic energy of ties and springs
         double lostInConnectors = 0; // dissipated by them
         // Elastic energy of contacts, and what their friction and damping took. Only a balance has them, because the
         // elastic energy takes longer to find than the forces.

@@ -13,13 +13,4 @@ void MasonryIntegrator::action() {
     turn.end();
 }
 
-py::list MasonryIntegrator::sectionsOfBricks() {
-    const BetweenSteps still;
-    SceneStore::present().update();
-    py::list all;
-    for (const auto& section : bricks.sections())
-        all.append(py::make_tuple(section.body1, section.body2, section.force, section.moment));
-    return all;
-}
-
 } // namespace masonry

@@ -36,31 +36,13 @@ public:
                      "its work"));
         ledgerOfBodies<I>(visit);
         GravityWork::describe<I>(visit);
-        visit("splitting", computed(&I::splitting, &I::setSplitting),
-              number("J", "Elastic energy that crack surfaces had when their bricks split, so far: bricks that were "
-                          "rigid before have no elastic energy to give, so the energy balance counts it as given"),
-              ReadOnly);
-        visit("splits", computed(&I::splits, &I::setSplits),
-              number("-", "Number of bricks that have split so far (MasonryJoint.monolithic)"), ReadOnly);
-        visit("wholeBricks", computed(&I::wholeBricks, &I::setWholeBricks),
-              described("Motion of every brick of two blocks that is still whole"), Hidden);
         visit("last", computed(&I::lastForces, &I::setLastForces),
               described("Force per mass and torque per inertia of every body in the last step"), Hidden);
-    }
-
-    template <class PyClass> static void extras(PyClass& cls) {
-        cls.def("sections", &MasonryIntegrator::sectionsOfBricks,
-                "What every brick of two blocks that is still whole transferred in the plane of its crack surface in "
-                "the last step: a list of (body 1, body 2, force, moment), which act on body 1 [N], [N m], in the "
-                "axes of the joint, normal first, the moment about the middle of the surface.");
     }
 
     using Integrator::problems;
     bool isActivated() override { return standsAlone(*this); }
     void action() override;
-
-private:
-    py::list sectionsOfBricks();
 };
 
 } // namespace masonry

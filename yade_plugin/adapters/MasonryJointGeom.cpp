@@ -88,9 +88,6 @@ void exchange(Numbers& n, JointReference& r) {
         n(side.orientation);
         n(side.shearShare);
     }
-    int split = r.split;
-    n(split);
-    r.split = split != 0;
     n(r.refined);
     int handed = r.handed;
     n(handed);

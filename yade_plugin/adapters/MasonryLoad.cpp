@@ -14,7 +14,7 @@ void MasonryLoad::action() {
     if (turn->zones && turn->zones->unitOf(body))
         throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) +
                                     " is a deformable unit; load a rigid block joined to it");
-    act(*scene, turn->gravity(), turn->integrator ? &turn->integrator->bricks : nullptr);
+    act(*scene, turn->gravity());
     turn.end();
 }
 

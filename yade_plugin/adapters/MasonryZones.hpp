@@ -38,10 +38,6 @@ public:
                   .atLeast(1)
                   .atMost(100),
               Given);
-        visit("plane", &Z::plane,
-              described("Whether units whose nodes are held in one direction, and which are right prisms along it, are "
-                        "plane units, with nodes in their middle plane alone"),
-              Given);
         visit("massScaling", &Z::massScaling,
               number("-",
                      "Selective mass scaling for states of rest: 1 + massScaling is the factor on the masses in all "
@@ -80,8 +76,7 @@ public:
         visit("splitBricks", &Z::splitBricks,
               described("First bodies of bricks whose monolithic crack surface has yielded while masses were scaled"),
               Hidden);
-        visit("laidOut", &Z::laidOut, described("Divisions, plane and bodies for which the nodes were numbered"),
-              Hidden);
+        visit("laidOut", &Z::laidOut, described("Divisions and bodies for which the nodes were numbered"), Hidden);
     }
 
     template <class PyClass> static void extras(PyClass& cls) {

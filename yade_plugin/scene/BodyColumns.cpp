@@ -18,8 +18,6 @@ void BodyColumns::read(const yade::Scene& scene) {
         column.assign(count, 0);
     seen_.assign(count, Seen{});
     isUnit.assign(count, false);
-    isHalf.resize(count, false);
-    takes_.resize(count, 0);
     bodies_.assign(count, nullptr);
     states_.assign(count, nullptr);
     for (int b = 0; b < count; ++b) {
@@ -55,7 +53,6 @@ bool BodyColumns::sameFrame(int b) const {
 void BodyColumns::take(int b) {
     const auto& s = *states_[b];
     auto& seen = seen_[b];
-    ++takes_[b];
     seen.blocked = s.blockedDOFs;
     seen.damped = s.isDamped;
     seen.axes = ~s.blockedDOFs & 63;

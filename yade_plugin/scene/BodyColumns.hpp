@@ -53,11 +53,7 @@ public:
     std::vector<double> referencePosition[3]; // [m]
     std::vector<double> fromReference[4];     // inverse of the reference orientation: w, x, y, z
 
-    // How often a body was taken from the host.
-    unsigned takes(int body) const { return takes_[body]; }
-
     std::vector<unsigned char> isUnit; // whether the body is a deformable unit, which Zones moves
-    std::vector<unsigned char> isHalf; // whether the body is a half of a whole brick, which WholeBricks moves
 
 private:
     struct Seen {           // what the host's State held beside the columns when the body was last taken
@@ -70,7 +66,6 @@ private:
     bool sameFrame(int body) const; // compares inertia and reference place
 
     std::vector<Seen> seen_;
-    std::vector<unsigned> takes_;
     std::vector<const yade::Body*> bodies_;
     std::vector<boost::shared_ptr<yade::State>> states_;
 };

@@ -54,9 +54,6 @@ void Contacts::checkBodies(const SceneContents& contents) const {
         if (contents.bodies.isUnit[id])
             throw std::invalid_argument(name + " is a deformable unit, which has no contacts: give the ids of rigid "
                                                "blocks in MasonryContacts.bodies");
-        if (contents.bodies.isHalf[id])
-            throw std::invalid_argument(name + " is half of a whole brick, which has no contacts: give the ids of "
-                                               "other blocks in MasonryContacts.bodies");
     }
 }
 

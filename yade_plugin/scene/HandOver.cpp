@@ -52,7 +52,7 @@ bool HandOver::isDue(const SceneStore& store, const JointView& joint, const Size
     const auto& shapes = *joint.geom->group;
     const auto& r = joint.geom->reference();
     const int j = joint.geom->index;
-    if (r.handed || r.attached || (!shapes.whole.empty() && shapes.whole[j])) return false;
+    if (r.handed || r.attached) return false;
     if (!shapes.byPoints[j] && size.bonded) return false; // it has always been elastic
     const auto& columns = *joint.phys->group->columns.asTheyStand();
     double least = HUGE_VAL, along = 0, across = 0;

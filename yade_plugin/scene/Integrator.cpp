@@ -46,24 +46,14 @@ void Integrator::advance(SceneContents& contents) {
         bodyAt(scene, load->body, "MasonryLoad.body");
         load->workBefore(scene.dt, bodies.state(load->body));
     }
-    const WholeBricks::Around around{scene.dt, gravity, damping, massDamping, combined(), last_, on.forces, on.torques};
-    bricks.notice(contents, around);
     // The pieces over which energies are summed up do not depend on the number of threads, so neither do the sums.
     constexpr int piece = RigidMotion::most;
     const int pieces = (count + piece - 1) / piece;
-    const int ofBricks = bricks.pieces();
-    std::vector<Sums> found(pieces + ofBricks);
+    std::vector<Sums> found(pieces);
     Parallel::instance().overPieces(pieces, 1, [&](int first, int beyond) {
         for (int n = first; n < beyond; ++n)
             found[n] = advancePiece(scene, bodies, on.forces, on.torques, n * piece, std::min(count, (n + 1) * piece));
     });
-    // Not before: RigidMotion has written to the columns of their halves.
-    if (ofBricks > 0)
-        Parallel::instance().overPieces(ofBricks, 1, [&](int first, int beyond) {
-            for (int n = first; n < beyond; ++n)
-                found[pieces + n].energies = bricks.advancePiece(contents, around, n);
-        });
-    bricks.splitYielded(contents, around);
     const double before = fallen;
     Vector3r moment = Vector3r::Zero();
     beginStep();
@@ -94,7 +84,7 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
         blocked[i] = 63;
         motion.alpha[i] = motion.viscous[i] = 0;
         if (i + ahead < count && bodies.has(b + ahead)) bodies.prefetch(b + ahead);
-        if (!bodies.has(b) || bodies.isUnit[b] || bodies.isHalf[b]) continue;
+        if (!bodies.has(b) || bodies.isUnit[b]) continue;
         thoroughly ? bodies.noticeAll(b) : bodies.notice(b);
         if (bodies.spins(b))
             ++spinning;
@@ -122,8 +112,7 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
         motion.advance(bodies, last, first, count, around, axes);
         for (int i = 0; i < count; ++i) {
             const int b = first + i;
-            const bool mine =
-                bodies.has(b) && !bodies.isUnit[b] && !bodies.isHalf[b] && !bodies.spins(b) && bodies.axes(b) != 0;
+            const bool mine = bodies.has(b) && !bodies.isUnit[b] && !bodies.spins(b) && bodies.axes(b) != 0;
             if (!mine) continue;
             bodies.give(b, axes);
             sum.external += motion.work[i];
@@ -134,7 +123,7 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
         sum.pendingExternal = sum.external;
     }
     for (int b = first; spinning > 0 && b < beyond; ++b) {
-        if (!bodies.has(b) || bodies.isUnit[b] || bodies.isHalf[b] || !bodies.spins(b)) continue;
+        if (!bodies.has(b) || bodies.isUnit[b] || !bodies.spins(b)) continue;
         sum.add(turnFreely(scene.dt, bodies, forces[b], torques[b],
                            b)); // last, because RigidMotion has written to its columns
     }

@@ -4,7 +4,6 @@
 #pragma once
 #include "BodyColumns.hpp"
 #include "GravityWork.hpp"
-#include "WholeBricks.hpp"
 #include "motion/EnergyLedger.hpp"
 
 namespace masonry {
@@ -28,17 +27,6 @@ public:
     // the last step.
     std::vector<Vector3r> lastForces();
     void setLastForces(const std::vector<Vector3r>&);
-
-    // The bricks of two blocks that move as one until they crack.
-    WholeBricks bricks;
-
-    // For attributes: those of the bricks.
-    double splitting() { return bricks.energy; }
-    void setSplitting(const double& energy) { bricks.energy = energy; }
-    int splits() { return bricks.splits; }
-    void setSplits(const int& count) { bricks.splits = count; }
-    std::vector<double> wholeBricks() { return bricks.numbers(); }
-    void setWholeBricks(const std::vector<double>& numbers) { bricks.setNumbers(numbers); }
 
 private:
     bool combined() const { return dampingKind == "combined"; }

@@ -74,8 +74,6 @@ struct JointReference {
     // Corners of the shared face [m]. Copies of a joint have them in common.
     std::shared_ptr<const Polygon> corners = noCorners();
     Side sides[2]; // bodies 1 and 2 of the interaction
-    // Whether a monolithic joint (JointProperties::monolithic) has yielded, so that its blocks are two from then on.
-    bool split = false;
     // Of a joint that was refined (Refinement): its number of points along the joint, and the points that it was made
     // with, which copies of a joint have in common. 0 and null if it was not.
     int refined = 0;
@@ -140,9 +138,6 @@ struct JointShapes : JointGroup {
     std::vector<double> jump[3]; // displacement jump since the reference state: opening and the two slides [m]
     // Stress of JointDamping in the last step [Pa], normal and the two shears; empty while there was no such damping.
     std::vector<double> viscous[3];
-    // Of every joint, whether it is the crack surface of a brick that is still whole (WholeBricks), so that it has no
-    // forces. Empty if there is none.
-    std::vector<unsigned char> whole;
     std::vector<double> area;      // of a subcontact [m²]
     std::vector<double> offset[3]; // from the centre of body 1 to the subcontact in the reference state [m]
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "JointPlan.hpp"
-#include "Integrator.hpp"
 #include "Zones.hpp"
 #include "common/Memory.hpp"
 #include "common/Parallel.hpp"
@@ -37,12 +36,6 @@ bool aboutY(const Quaternionr& q, double& cosine, double& sine) {
 Quaternionr fromPlane(const yade::State& s, const Quaternionr& frame) {
     return s.refOri * frame * Quaternionr(0.5, 0.5, 0.5, 0.5);
 }
-
-// Whether joints of this kind begin as crack surfaces of whole bricks.
-bool isMonolithic(const JointKind& kind) { return kind.states->columns->law().properties().monolithic; }
-
-// How many joints a batch has. Bricks crack one by one, so their batches are small.
-int batchSize(const JointKind& kind) { return isMonolithic(kind) ? lanes : most; }
 
 } // namespace
 
@@ -108,8 +101,6 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
     onBodies_.clear();
     betweenNodes_.clear();
     batches_.clear();
-    firstBatch_.clear();
-    store.splits.clear();
     kinds_.assign(store.kinds.size(), Kind());
 
     const int count = store.bodies.size();
@@ -123,18 +114,13 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
         kinds_[k].firstPoint = points;
         joints += stride;
         if (kind.attached) points += stride * kind.shapes->points;
-        firstBatch_.push_back(int(batches_.size()));
         if (kind.handed) {
             std::fill(kind.shapes->byPoints.begin(), kind.shapes->byPoints.end(), 1);
             continue;
         }
-        const int all = int(kind.shapes->joints.size()), each = batchSize(kind);
-        for (int from = 0; from < all; from += each) {
-            Batch batch{int(k), from, std::min(each, all - from)};
-            for (int j = from; !kind.shapes->whole.empty() && j < from + batch.count; ++j)
-                batch.whole += kind.shapes->whole[j];
-            batches_.push_back(batch);
-        }
+        const int all = int(kind.shapes->joints.size());
+        for (int from = 0; from < all; from += most)
+            batches_.push_back({int(k), from, std::min(most, all - from)});
         buildKind(store, kind, kinds_[k], atBodies);
         if (kind.attached) buildPlaces(kind, kinds_[k], atPlaces, known);
         findIntact(kind, kinds_[k]);
@@ -165,12 +151,11 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
     Parallel::instance().sceneChanged();
 }
 
-// Decides which joints are intact: those whose points say so, and that were never advanced by their points. A crack
-// surface is advanced by its points from its split on, and not at all before.
+// Decides which joints are intact: those whose points say so, and that were never advanced by their points.
 void JointPlan::findIntact(const JointKind& kind, Kind& made) {
     auto& shapes = *kind.shapes;
     const int count = int(shapes.joints.size());
-    if (kind.attached || isMonolithic(kind) || !shapes.law->knowsIntact()) {
+    if (kind.attached || !shapes.law->knowsIntact()) {
         std::fill_n(shapes.byPoints.begin(), count, 1);
         return;
     }
@@ -213,46 +198,6 @@ void JointPlan::orderBatches() {
     order_.resize(batches_.size());
     std::iota(order_.begin(), order_.end(), 0);
     std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) { return middle[a] < middle[b]; });
-    findActive();
-}
-
-void JointPlan::findActive() {
-    active_.clear();
-    for (int n : order_)
-        if (batches_[n].whole < batches_[n].count) active_.push_back(n);
-}
-
-// The bricks that have split since the last step: the references of their joints have moved, and have forces now.
-void JointPlan::followSplits(SceneStore& store) {
-    bool more = false;
-    for (const auto& split : store.splits) {
-        const auto& kind = store.kinds[split.kind];
-        putReference(store, kind.shapes->joints[split.joint], kinds_[split.kind], split.joint);
-        auto& batch = batches_[firstBatch_[split.kind] + split.joint / batchSize(kind)];
-        more = more || batch.whole == batch.count;
-        --batch.whole;
-    }
-    store.splits.clear();
-    if (more) findActive();
-}
-
-// Sets frames and span of a joint.
-void JointPlan::putReference(const SceneStore& store, const JointReference& r, Kind& made, int j) const {
-    const auto put = [&](std::vector<double>* columns, int side) {
-        const Quaternionr q = r.frame(side);
-        if (plane_) {
-            aboutY(fromPlane(store.bodies.state(r.sides[side].body), q), columns[0][j], columns[1][j]);
-            return;
-        }
-        columns[0][j] = q.w();
-        for (int d = 0; d < 3; ++d)
-            columns[1 + d][j] = q.vec()[d];
-    };
-    put(made.frame1, 0);
-    put(made.frame2, 1);
-    const Vector3r span = r.span();
-    for (int d = 0; d < 3; ++d)
-        made.span[d][j] = span[d];
 }
 
 void JointPlan::buildKind(SceneStore& store, const JointKind& kind, Kind& made,
@@ -266,11 +211,25 @@ void JointPlan::buildKind(SceneStore& store, const JointKind& kind, Kind& made,
         column.resize(stride);
     made.body1.resize(stride);
     made.body2.resize(stride);
+    const auto put = [&](std::vector<double>* columns, int j, const JointReference& r, int side) {
+        const Quaternionr q = r.frame(side);
+        if (plane_) {
+            aboutY(fromPlane(store.bodies.state(r.sides[side].body), q), columns[0][j], columns[1][j]);
+            return;
+        }
+        columns[0][j] = q.w();
+        for (int d = 0; d < 3; ++d)
+            columns[1 + d][j] = q.vec()[d];
+    };
     for (int j = 0; j < stride; ++j) { // places after the last joint, up to whole lanes, are filled with its numbers
         const auto& r = kind.shapes->joints[std::min(j, count - 1)];
         made.body1[j] = r.sides[0].body;
         made.body2[j] = r.sides[1].body;
-        putReference(store, r, made, j);
+        put(made.frame1, j, r, 0);
+        put(made.frame2, j, r, 1);
+        const Vector3r span = r.span();
+        for (int d = 0; d < 3; ++d)
+            made.span[d][j] = span[d];
         if (j >= count) continue;
         atBodies[made.body1[j]].push_back({made.first + j, false});
         atBodies[made.body2[j]].push_back({made.first + j, true});
@@ -287,7 +246,7 @@ void JointPlan::buildKind(SceneStore& store, const JointKind& kind, Kind& made,
         shared.insert(shared.end(), {{&made.frame1[d], 1}, {&made.frame2[d], 1}});
     for (auto& column : made.span)
         shared.push_back({&column, length});
-    bool alike = stride >= most && !isMonolithic(kind); // those of bricks that split change one by one
+    bool alike = stride >= most;
     for (const auto& s : shared)
         for (int j = 0; alike && j < count; ++j)
             alike = sameButRoundOff((*s.column)[j], (*s.column)[0], s.scale);
@@ -558,9 +517,6 @@ double JointPlan::advancePoints(Run& run) {
                    : jumpNodal(n, place1, place2, u, j0, j1, j2, frames);
         } else
             plane_ ? jumpRigidInPlane(n, a0, a1, j0, j1, frames) : jumpRigid(n, a0, a1, a2, j0, j1, j2, frames);
-        for (int j = 0; j < n && !shapes.whole.empty(); ++j)
-            if (shapes.whole[from + j]) // a brick that is whole has a jump of round-off
-                frames.step[0][j] = frames.step[1][j] = frames.step[2][j] = j0[j] = j1[j] = j2[j] = 0;
         states.advance(p, from, n, frames.step[0], frames.step[1], plane_ ? nullptr : frames.step[2],
                        frames.normalStress);
         const double *normal = frames.normalStress, *a = states.shearStressA(p, from),
@@ -705,7 +661,6 @@ void JointPlan::bringToNodes(SceneStore& store) {
 }
 
 double JointPlan::advance(SceneStore& store, double stiffnessDamping) {
-    if (store.integrator) store.integrator->bricks.update(store);
     if (store_ != &store || revision_ != store.revision()) {
         build(store, true);
         giveMemoryBack();
@@ -714,7 +669,6 @@ double JointPlan::advance(SceneStore& store, double stiffnessDamping) {
         build(store, false);
         noticeBodies(store);
     }
-    followSplits(store);
     if (zones_) moveDependentPoints(store);
     if (stiffnessDamping > 0)
         for (std::size_t k = 0; k < kinds_.size(); ++k) {
@@ -726,11 +680,11 @@ double JointPlan::advance(SceneStore& store, double stiffnessDamping) {
             endIntact(kind); // without a bond the stress of damping is cut point by point
             kinds_[k].intact = false;
         }
-    const int count = int(active_.size());
+    const int count = int(order_.size());
     taken_.assign(batches_.size(), 0);
     Parallel::instance().overPieces(count, 1, [&](int first, int beyond) {
         for (int place = first; place < beyond; ++place) {
-            const int n = active_[place];
+            const int n = order_[place];
             const auto& batch = batches_[n];
             taken_[n] = advanceBatch(store, store.kinds[batch.kind], kinds_[batch.kind], batch.from, batch.count,
                                      stiffnessDamping);

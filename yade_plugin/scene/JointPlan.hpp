@@ -88,9 +88,6 @@ private:
     void finish(Run&);
     void shareOut();
     void orderBatches();
-    void findActive();
-    void followSplits(SceneStore&);
-    void putReference(const SceneStore&, const JointReference&, Kind&, int joint) const;
     void moveDependentPoints(const SceneStore&);
     void bringToBodies();
     void bringToNodes(SceneStore&);
@@ -100,15 +97,12 @@ private:
     bool plane_ = false;                // whether the run is planar: all joints and motions lie in planes y = constant
     std::vector<Kind> kinds_;
     struct Batch {
-        int kind;      // number of the kind to which its joints belong
-        int from;      // number of its first joint within that kind
-        int count;     // of its joints
-        int whole = 0; // how many of them are crack surfaces of bricks that are whole, and have no forces
+        int kind;  // number of the kind to which its joints belong
+        int from;  // number of its first joint within that kind
+        int count; // of its joints
     };
     std::vector<Batch> batches_;     // joints that a thread takes at a time
     std::vector<int> order_;         // numbers of batches in the order in which threads take them
-    std::vector<int> active_;        // the same without those whose bricks are all whole
-    std::vector<int> firstBatch_;    // number of the first batch of every kind
     std::vector<double> turn_[4];    // planar runs only: cosine and sine of half the angle by which a body has turned
     std::vector<double> referenceY_; // of all bodies [m]
     std::vector<unsigned char> joined_; // whether a body has joints

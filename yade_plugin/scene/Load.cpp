@@ -2,7 +2,6 @@
 #include "Load.hpp"
 #include "BodyCheck.hpp"
 #include "BodyStep.hpp"
-#include "WholeBricks.hpp"
 #include <algorithm>
 
 namespace masonry {
@@ -15,7 +14,7 @@ std::vector<std::string> Load::problems() const {
     return found;
 }
 
-void Load::act(yade::Scene& scene, const Vector3r& gravity, const WholeBricks* bricks) {
+void Load::act(yade::Scene& scene, const Vector3r& gravity) {
     auto& state = *bodyAt(scene, body, "MasonryLoad.body").state;
     if (!damped) state.isDamped = false;
     arm_ = state.ori * state.refOri.conjugate() * (point - state.refPos);
@@ -25,32 +24,14 @@ void Load::act(yade::Scene& scene, const Vector3r& gravity, const WholeBricks* b
     ramp = std::max(0, ramp - 1);
     if (driven) {
         // R is the force along d that gives the point its velocity V = `aim` after this step, d·(v' + w' × arm) = V,
-        // where v' = v + dt (F + R d) / m + dt g and w' = w + dt I^-1 (T + arm × R d). If the body is a half of a whole
-        // brick, all of these are the brick's.
+        // where v' = v + dt (F + R d) / m + dt g and w' = w + dt I^-1 (T + arm × R d).
         const Vector3r d = direction.normalized();
-        WholeBricks::Carrier brick;
-        Vector3r perMass = inverseMass(state), velocity = state.vel, spin = state.angVel, arm = arm_;
-        Vector3r push = sums.forces[body] + total_ + state.mass * gravity;
-        Vector3r twist = sums.torques[body] + arm_.cross(total_);
-        yade::Matrix3r perInertia = inverseInertia(state);
-        if (bricks && bricks->carrierOf(body, brick)) {
-            perMass = brick.inverseMass;
-            perInertia = brick.inverseInertia;
-            velocity = brick.velocity;
-            spin = brick.spin;
-            arm = state.pos + arm_ - brick.centre;
-            push = twist = Vector3r::Zero();
-            for (int id : {brick.body1, brick.body2}) {
-                const auto& half = *bodyAt(scene, id, "a joint holds body").state;
-                const Vector3r on = sums.forces[id] + (id == body ? total_ : Vector3r(Vector3r::Zero()));
-                push += on + half.mass * gravity;
-                twist += sums.torques[id] + (half.pos - brick.centre).cross(on);
-                if (id == body) twist += arm_.cross(total_);
-            }
-        }
-        const Vector3r lever = arm.cross(d);
-        const Vector3r v = velocity + scene.dt * perMass.cwiseProduct(push);
-        const Vector3r w = spin + scene.dt * (perInertia * twist);
+        const Vector3r perMass = inverseMass(state), lever = arm_.cross(d);
+        const yade::Matrix3r perInertia = inverseInertia(state);
+        const Vector3r push = sums.forces[body] + total_ + state.mass * gravity;
+        const Vector3r twist = sums.torques[body] + arm_.cross(total_);
+        const Vector3r v = state.vel + scene.dt * perMass.cwiseProduct(push);
+        const Vector3r w = state.angVel + scene.dt * (perInertia * twist);
         const double mobility = d.dot(perMass.cwiseProduct(d)) + lever.dot(perInertia * lever);
         if (mobility <= 0)
             throw std::invalid_argument("MasonryLoad: body " + std::to_string(body) +

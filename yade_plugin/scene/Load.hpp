@@ -7,8 +7,6 @@ namespace masonry {
 
 using yade::Vector3r;
 
-class WholeBricks;
-
 class Load {
 public:
     int body = 0;                           // id of the loaded body
@@ -26,9 +24,8 @@ public:
 
     // What is wrong with these values, one sentence for each problem; empty if nothing is.
     std::vector<std::string> problems() const;
-    // Adds force and reaction to the forces of the present step. `gravity` is that of the integrator [m/s²]; `bricks`
-    // are its whole bricks, of whose half the body may be one, or null.
-    void act(yade::Scene&, const Vector3r& gravity, const WholeBricks* bricks);
+    // Adds force and reaction to the forces of the present step. `gravity` is that of the integrator [m/s²].
+    void act(yade::Scene&, const Vector3r& gravity);
     // Displacement of the loaded point since the reference state [m].
     Vector3r displacementIn(const yade::Scene&) const;
 

@@ -316,15 +316,14 @@ void Refinement::readLimits(const SceneStore& store) {
 void Refinement::look(SceneStore& store) {
     changed_.clear();
     if (store.revision() != revision_ || store.loop->points != points_) readLimits(store);
-    if (store.scene().iter % every != 0 && store.splits.empty()) return;
+    if (store.scene().iter % every != 0) return;
     std::map<std::pair<const JointShapes*, int>, int> due; // joints, and the points that they get
     bool any = false;
     for (std::size_t k = 0; k < store.kinds.size(); ++k) {
         const auto& kind = store.kinds[k];
-        const auto& whole = kind.shapes->whole;
         if (limits_[k].points() == 0) continue;
         for (int j = 0; j < int(kind.shapes->joints.size()); ++j) {
-            if ((!whole.empty() && whole[j]) || !isDue(kind, limits_[k], company, j)) continue;
+            if (!isDue(kind, limits_[k], company, j)) continue;
             due[{kind.shapes.get(), j}] = limits_[k].points();
             any = any || isDue(kind, limits_[k], share, j);
         }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Resultant.hpp"
 #include "BodyCheck.hpp"
-#include "Integrator.hpp"
-#include "SceneStore.hpp"
 #include "StepGate.hpp"
 #include "Zones.hpp"
 
@@ -34,21 +32,6 @@ Resultant resultantOf(const yade::Scene& scene, const yade::Interaction& interac
                         states[side]->ori * (from.orientation.conjugate() * (place - from.position)));
     };
     Resultant sum;
-    const auto& whole = geom->group->whole;
-    const auto* integrator = SceneStore::of(const_cast<yade::Scene&>(scene)).integrator;
-    WholeBricks::Section section;
-    if (!whole.empty() && whole[geom->index] && integrator &&
-        integrator->bricks.sectionOf(interaction.id1, interaction.id2, section)) {
-        Vector3r middle = Vector3r::Zero();
-        double area = 0;
-        for (int p = 0; p < geom->points(); ++p) {
-            area += geom->area(p);
-            middle += geom->area(p) * present(0, p, geom->centre(p));
-        }
-        sum.force = axes * section.force;
-        sum.moment = axes * section.moment + (middle / area - about).cross(sum.force);
-        return sum;
-    }
     for (int p = 0; p < geom->points(); ++p) {
         const auto s = phys->state(p);
         const Vector3r stress =

@@ -148,28 +148,6 @@ void transferJoints(const SceneStore& store, Transfer& to) {
     }
 }
 
-// A record of a monolithic joint holds whether its brick has split, and the places in its reference that a split moves.
-void transferSplits(const SceneStore& store, Transfer& to) {
-    std::vector<double> records;
-    const auto each = [&](auto&& visit) {
-        for (const auto& joint : store.joints) {
-            if (!joint.phys->propertySet()->monolithic) continue;
-            auto& r = joint.geom->group->joints[joint.geom->index];
-            double split = r.split;
-            visit(split);
-            r.split = split != 0;
-            numbers(r.sides[0].orientation, visit);
-            numbers(r.sides[1].orientation, visit);
-            numbers(r.sides[1].position, visit);
-        }
-    };
-    each([&](double& number) { records.push_back(number); });
-    to.several("splits", records.data(), records.size());
-    if (!to.back) return;
-    const double* next = records.data();
-    each([&](double& number) { number = *next++; });
-}
-
 void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
     Transfer to(file, back);
     to.owner = "scene.";
@@ -183,7 +161,6 @@ void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
     transferPoints(store, to);
     transferHanded(store, to);
     transferJoints(store, to);
-    transferSplits(store, to);
     int number = 0;
     for (const auto& engine : scene.engines)
         if (auto* own = dynamic_cast<Stateful*>(engine.get())) {

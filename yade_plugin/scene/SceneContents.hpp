@@ -37,11 +37,6 @@ public:
     BodyColumns bodies;
     std::vector<JointKind> kinds;
     std::vector<JointView> joints; // of all kinds, in the host's order
-    // The joints of bricks that have split since the joints' last step: their JointReference has changed.
-    struct Split {
-        int kind, joint; // place in `kinds`
-    };
-    std::vector<Split> splits;
 
 protected:
     yade::Scene& scene_;

@@ -6,7 +6,6 @@
 #include "Contacts.hpp"
 #include "Integrator.hpp"
 #include "Load.hpp"
-#include "MonolithicPairs.hpp"
 #include "Zones.hpp"
 #include <algorithm>
 #include <map>
@@ -147,6 +146,32 @@ void SceneStore::readEngines() {
     }
 }
 
+namespace {
+
+// The bricks in two units, which monolithic joints make (JointProperties::monolithic).
+std::vector<Zones::Brick> bricksOf(const std::vector<JointView>& joints) {
+    std::vector<Zones::Brick> bricks;
+    std::map<int, std::string> crackOf; // of every unit, the name of its monolithic joint
+    for (const auto& joint : joints) {
+        const auto& set = *joint.phys->propertySet();
+        if (!set.monolithic) continue;
+        const auto& sides = joint.geom->reference().sides;
+        for (const auto& side : sides) {
+            const auto [other, fresh] = crackOf.emplace(side.body, set.name);
+            if (!fresh)
+                throw std::invalid_argument(
+                    "body " + std::to_string(side.body) + " has two joints that are monolithic, \"" + other->second +
+                    "\" and \"" + set.name +
+                    "\": a brick that is one block until it cracks has two units and one crack surface; use "
+                    "monolithic=False for bricks of more units");
+        }
+        bricks.push_back({sides[0].body, sides[1].body, false});
+    }
+    return bricks;
+}
+
+} // namespace
+
 void SceneStore::update(Look look) {
     if (!sameEngines()) {
         readEngines();
@@ -167,12 +192,7 @@ void SceneStore::update(Look look) {
     if (zones)
         for (int id : zones->bodies)
             if (id >= 0 && id < bodies.size()) bodies.isUnit[id] = true;
-    if (zones) {
-        std::vector<Zones::Brick> bricks;
-        for (const auto& pair : monolithicPairs(*this))
-            bricks.push_back({pair.body1, pair.body2, false});
-        zones->takeBricks(std::move(bricks));
-    }
+    if (zones) zones->takeBricks(bricksOf(joints));
     static long readings = 0;
     revision_ = stiffnessRevision_ = ++readings;
     seenChanges_ = changes;

@@ -26,7 +26,7 @@ std::vector<std::string> Zones::problems() const {
     if (const auto twin = std::adjacent_find(sorted.begin(), sorted.end()); twin != sorted.end())
         wrong.push_back("body " + std::to_string(*twin) + " stands twice in bodies");
     if (!laidOut.empty() && laidOut != layout())
-        wrong.push_back("bodies, divisions and plane cannot change once joints or a run know their nodes");
+        wrong.push_back("bodies and divisions cannot change once joints or a run know their nodes");
     return wrong;
 }
 
@@ -137,7 +137,7 @@ void Zones::mesh() {
             try {
                 const std::array<int, 3> cells{divisions[0], divisions[1], divisions[2]};
                 std::optional<BlockMesh> made;
-                if (plane && held >= 0) made = divideInPlane(block, cells, held);
+                if (held >= 0) made = divideInPlane(block, cells, held);
                 if (!made) made = divide(block, cells);
                 kinds.push_back({block.vertices, mat,
                                  std::make_shared<const BlockElasticity>(std::move(*made), mat->young, mat->poisson,

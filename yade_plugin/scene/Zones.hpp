@@ -18,7 +18,6 @@ class Zones : public EnergyLedger, public GravityWork {
 public:
     std::vector<int> bodies; // ids of the deformable units
     std::vector<int> divisions{1, 1, 1};
-    bool plane = true;                    // whether units held in one direction are plane units, where they can be
     double massScaling = 0;               // of the masses in all but rigid motions of a block, see moveScaled() [-]
     double scaledBy = 0;                  // massScaling in the last step [-]
     std::vector<int> splitBricks;         // first bodies of bricks in two units that have split, in the order of that
@@ -131,10 +130,9 @@ public:
     void checkAlive() const;
 
 private:
-    // All that decides how the nodes are numbered: divisions, whether units are plane, then bodies.
+    // All that decides how the nodes are numbered: divisions, then bodies.
     std::vector<int> layout() const {
         std::vector<int> all = divisions;
-        all.push_back(plane);
         all.insert(all.end(), bodies.begin(), bodies.end());
         return all;
     }

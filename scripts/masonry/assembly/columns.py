@@ -95,7 +95,6 @@ class Reading:
 ENERGIES = {
     "external": "work of the loads",
     "gravity": "work of gravity",
-    "splitting": "elastic energy that crack surfaces had when their bricks, rigid before, split",
     "refining": "elastic energy that joints got when they were given more points",
     "kinetic": "energy of motion",
     "damping": "energy taken by damping",

@@ -19,7 +19,7 @@ from yade.wrapper import (
 )
 
 from .. import _masonry
-from .._masonry import connected, dropFaces, gather, lumpBricks, neighbours
+from .._masonry import connected, dropFaces, gather, neighbours
 from ..arguments import anything, flag, number, shown, takes
 from ..basics import say
 from .blocks import properties, refuse
@@ -166,8 +166,6 @@ def _connect(pairs, physics, rule):
                         f"rule must return a MasonryJoint or None, got {joint!r} for bodies {id1} and {id2}"
                     )
         refuse(problems)
-        if any(joint.monolithic for joint in joints.values()):
-            lumpBricks()
     except BaseException:
         for interaction in made:
             O.interactions.erase(interaction.id1, interaction.id2)

@@ -168,7 +168,6 @@ class Structure:
                 damping=args.damping,
                 dampingKind=kind,
                 blocked="y" if description.plane else "",
-                plane=args.units == "plane",
                 label="zones",
             )
         if description.contact:

@@ -76,7 +76,7 @@ class Contact(Settable):
         return {**usual, **given}
 
 
-def problems(description: Any, args: Any, masonry: Any) -> list[str]:
+def problems(description: Any, args: Any) -> list[str]:
     """What does not go together with ``collapse="follow"``: a list of sentences."""
     found = []
     if description.functors:
@@ -84,10 +84,6 @@ def problems(description: Any, args: Any, masonry: Any) -> list[str]:
     if args.blocks == "deformable":
         found.append(
             "collapse='follow': deformable bricks have no contacts; choose --blocks rigid, or a preset with it, or collapse='end'"
-        )
-    if description.halves and any(j.monolithic for j in masonry.joints.values()):
-        found.append(
-            "collapse='follow': bricks of two halves that move as one have no contacts; choose --crack-surfaces on or off"
         )
     if args.density_scaling != 1:
         found.append(

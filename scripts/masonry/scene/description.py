@@ -124,12 +124,6 @@ class Description:
                 "--crack-surfaces on: the bricks are in pieces, and these materials have no joint 'crack' between them; "
                 "make whole bricks with halves=False, or choose --crack-surfaces off"
             ]
-        crack = materials.joints.get("crack")
-        if self.functors and self.halves and crack and crack.monolithic:
-            return [
-                "--crack-surfaces whole: the functors move every block by itself; leave functors=False, or choose "
-                "--crack-surfaces on or off"
-            ]
         return []
 
     def connectors(self):

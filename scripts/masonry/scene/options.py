@@ -115,14 +115,6 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         "and in the middle of both triangles of that face, so through the thickness at its faces and thirds, whatever N",
     )
     p.add_argument(
-        "--units",
-        choices=["plane", "space"],
-        default="plane",
-        help="deformable units of a scene in the x-z plane: triangles in plane stress in the middle plane of every brick, or "
-        "tetrahedra whose nodes are held along y, as in versions before 3.0, which cost twice as much; a block that is no "
-        "right prism along y has tetrahedra in any case. In space all units have tetrahedra, and this has no effect",
-    )
-    p.add_argument(
         "--damping-kind",
         choices=["local", "combined"],
         default=USUAL["damping_kind"],
@@ -171,11 +163,9 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     )
     p.add_argument(
         "--crack-surfaces",
-        choices=["on", "whole", "off"],
+        choices=["on", "off"],
         default="on",
-        help="whether bricks can crack in half. on: each is two blocks with a crack surface between them; whole: it is one "
-        "block until the stress in the plane of its crack surface reaches the surface's strength, and two from then on; "
-        "off: it is one block",
+        help="whether bricks can crack in half. on: each is two blocks with a crack surface between them; off: it is one block",
     )
     p.add_argument(
         "--joints",

@@ -376,7 +376,7 @@ class Scene:
             problems.append(f"--points {self.args.points}: with functors joints keep three points; leave functors=False")  # fmt: skip
         problems += self._wrongRecord()
         if self.description.contact:
-            problems += contact.problems(self.description, self.args, masonry)
+            problems += contact.problems(self.description, self.args)
         options.check(self.args, masonry, problems, self.description.plane, connectors)
         self.assumed = masonry.assumed()
         return masonry

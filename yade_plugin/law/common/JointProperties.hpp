@@ -80,9 +80,11 @@ template <class Visit> void JointProperties::describe(Visit&& visit) {
     visit("elastic", &P::elastic,
           described("Whether the joint is linear elastic: no strength is ever reached").source("paper section 4.1"));
     visit("monolithic", &P::monolithic,
-          described("Whether the joint is the crack surface of a brick whose two blocks move as one until the surface "
-                    "first yields. A block can belong to one such joint only")
-              .source("yade_plugin/README.md, Whole bricks"));
+          described(
+              "Whether the joint is the crack surface of a brick in two deformable units whose masses are scaled as "
+              "those of one block until the surface first yields. A unit can belong to one such joint only. It means "
+              "nothing to rigid units")
+              .source("yade_plugin/README.md, Scaled masses"));
     visit("tensileStrength", &P::tensileStrength,
           number("Pa", "Tensile strength ft, at most the apex of the Coulomb cone cohesion/friction")
               .atLeast(0)

@@ -368,10 +368,9 @@ def energy(record: Record) -> Iterator[Any]:
     change = lambda name: float(columns[name][-1] - columns[name][0])
     meanings = record.run.get("columns") or {}
     rare = (
-        "splitting_J",
         "refining_J",
         "handing_J",
-    )  # of bricks that split, of joints that get more points, and of those whose place contacts take
+    )  # of joints that get more points, and of those whose place contacts take
     columns = {n: v for n, v in columns.items() if n not in rare or v.any()}
     inputs = [n for n in ("external_J", "gravity_J", *rare) if n in columns]
     elastic = [n for n in columns if n.startswith("elastic_")]

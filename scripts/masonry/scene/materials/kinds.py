@@ -355,8 +355,6 @@ class Masonry:
         elif args.joints != next(iter(LAWS)):
             for joint in copies.values():
                 joint.law = args.joints
-        if args.crack_surfaces == "whole" and "crack" in copies:
-            copies["crack"].monolithic = True
         units = {kind: copied(mat) for kind, mat in source.units.items()}
         own = Masonry(
             copied(source.unit),
