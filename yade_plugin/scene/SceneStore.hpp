@@ -65,7 +65,6 @@ public:
     // For checkBeforeStep().
     bool checked = false;   // whether the scene was checked since it changed
     long seenCollapse = -1; // step in which a collapse was last looked for
-    long contactStep = -1;  // step in which functors of contacts were last at work
 
     // Ids of the blocks that were added after connect() and have no joint.
     std::vector<int> unjoinedBlocks() const;
