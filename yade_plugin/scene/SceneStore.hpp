@@ -18,10 +18,10 @@ public:
 
     // How thoroughly update() looks for changes.
     enum class Look {
-        AtAll,    // at joints, bodies and their State objects
-        InStep,   // at joints; at bodies once a step; at their State objects, which lie apart in memory and are hardly
-                  // ever replaced, every tenth step
-        AtJoints, // at joints only
+        AtAll,    // It looks at joints, bodies and their State objects.
+        InStep,   // It looks at joints every time, at bodies once a step, and at their State objects every tenth step,
+                  // because these are hardly ever replaced and take long to reach in memory.
+        AtJoints, // It looks at joints only.
     };
     // Reads again what has changed since the last time. Throws std::invalid_argument, and leaves the joints in their
     // groups, if the joints of the scene belong to more than one Zones.
