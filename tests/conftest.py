@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Rings, fastest first: common, law, motion, blocks, files (C++, doctest), gates, host, package, then those below.
+"""Rings, fastest first: common, law, motion, blocks, contact, files (C++, doctest), gates, host, package, then those below.
 
 Those of C++, the gates and some files of the package ring need no YADE, and run where it is not installed. All others
 have the installed YADE in this process; without it they are skipped, with that reason. Tests marked ``slow`` stand at

@@ -152,7 +152,6 @@ def ofStudies():
         Result("random_fields/one_metre", study("random_fields/one_metre"), ("random_fields/*_one_metre.png",), ("validation/random_fields/*.py", *RIGID), 20, ("validation/random_fields/one_metre",)),
         Result("random_fields/one_brick", study("random_fields/one_brick"), ("random_fields/*_one_brick.png",), ("validation/random_fields/*.py", *RIGID), 20, ("validation/random_fields/one_brick",)),
         Result("multifidelity", (program("multifidelity/multifidelity.py", "--jobs", "2"),), ("multifidelity/multifidelity.png",), (*own("multifidelity"), *RIGID, *DEFORMABLE), 120, ("validation/multifidelity",)),
-        Result("benchmark", (inYade("benchmark/benchmark.py"), program("benchmark/threads.py"), program("benchmark/plain.py"), inYade("benchmark/shaken_facade.py", "--lean", "--preset", "fast"), program("benchmark/heap.py")), (), ("validation/benchmark/*.py", *ALL), 20, ("benchmark",)),
     ]  # fmt: skip
 
 

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The Python module masonry._masonry. When it is imported it checks whether it fits the running YADE, and registers its
 // classes there.
-#include "adapters/Bo1_MasonryBlock_Aabb.hpp"
 #include "adapters/FunctorOfLaw.hpp"
 #include "adapters/Gl1_MasonryBlock.hpp"
 #include "adapters/Gl1_MasonryJointPhys.hpp"
 #include "adapters/GlExtra_MasonryLegend.hpp"
-#include "adapters/Ig2_MasonryBlock_Polyhedra_MasonryContactGeom.hpp"
 #include "adapters/Ig2_MasonryBlock_Polyhedra_MasonryJointGeom.hpp"
-#include "adapters/Ig2_Polyhedra_Polyhedra_MasonryContactGeom.hpp"
 #include "adapters/Ig2_Polyhedra_Polyhedra_MasonryJointGeom.hpp"
-#include "adapters/Ip2_MasonryMat_MasonryMat_MasonryContactPhys.hpp"
-#include "adapters/Law2_MasonryContactGeom_MasonryContactPhys_Potential.hpp"
 #include "adapters/MasonryBlock.hpp"
 #include "adapters/MasonryContacts.hpp"
 #include "adapters/MasonryEnergy.hpp"
@@ -156,16 +151,6 @@ static void registerAll() {
         enroll<Ig2_Polyhedra_Polyhedra_MasonryJointGeom>(names);
     }
     enroll<Ip2_MasonryMat_MasonryMat_MasonryJointPhys>(names);
-    enroll<Bo1_MasonryBlock_Aabb>(names);
-    enroll<MasonryContactGeom>(names);
-    enroll<MasonryContactPhys>(names);
-    enroll<Ig2_MasonryBlock_MasonryBlock_MasonryContactGeom>(names);
-    if (host::has("Polyhedra")) {
-        enroll<Ig2_MasonryBlock_Polyhedra_MasonryContactGeom>(names);
-        enroll<Ig2_Polyhedra_Polyhedra_MasonryContactGeom>(names);
-    }
-    enroll<Ip2_MasonryMat_MasonryMat_MasonryContactPhys>(names);
-    enroll<Law2_MasonryContactGeom_MasonryContactPhys_Potential>(names);
     for (const auto enrolment : enrolmentsOfFunctors())
         enrolment(names);
     enroll<Gl1_MasonryBlock>(names);

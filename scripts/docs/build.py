@@ -29,16 +29,27 @@ MATHJAX = os.path.join(JAVASCRIPT, "mathjax")
 PARTS = ["MathJax.js", "config/TeX-AMS_SVG-full.js", "extensions", "jax/element", "jax/input/TeX", "jax/output/SVG/config.js", "jax/output/SVG/jax.js", "jax/output/SVG/autoload", "jax/output/SVG/fonts/TeX", "localization/en"]  # fmt: skip
 
 #: The pages of the site by their sections. What stands in a folder of ``validation`` comes below its README.
-FIRST = "First steps"
-OPTIONAL = {"scripts/TUTORIAL"}  # where it is not, notebooks are all of the tutorial
+FIRST = "First steps"  # the notebooks of the tutorial come before its other pages
 SECTIONS = {
-    FIRST: ["scripts/TUTORIAL", "gallery"],
+    FIRST: ["gallery"],
     "Manual": ["scripts/README", "words", "options", "scripts/STUDIES"],
-    "Laws": ["yade_plugin/law/README", "yade_plugin/law/cyclic_softening/README"],
+    "Laws": [
+        "yade_plugin/law/README",
+        "yade_plugin/law/cyclic_softening/README",
+        "yade_plugin/contact/README",
+    ],
     "Validation": ["validation/README"],
     "Reference": ["api/masonry", "classes"],
-    "Project": ["yade_plugin/README", "yade_plugin/host/README", "CONTRIBUTING", "CHANGELOG", "cite"],  # fmt: skip
+    "Project": [
+        "yade_plugin/README",
+        "yade_plugin/host/README",
+        "CONTRIBUTING",
+        "CHANGELOG",
+        "cite",
+    ],
 }
+#: Pages that :func:`stage` makes; all others are Markdown files of the repository.
+GENERATED = {"gallery", "words", "options", "api/masonry", "classes", "cite"}
 
 
 def toctree(pages, caption=""):
@@ -85,8 +96,10 @@ def contents(documents, first=()):
     cases = [d for d in rest if d.startswith("validation/")]
     if set(rest) - set(cases):
         raise ValueError(f"no section of build.py has {', '.join(sorted(set(rest) - set(cases)))}")  # fmt: skip
+    gone = sorted(p for p in named - GENERATED if p + ".md" not in documents)
+    if gone:
+        raise ValueError(f"build.py names {', '.join(gone)}, which the repository does not have")  # fmt: skip
     sections = {t: [*first, *p] if t == FIRST else p for t, p in SECTIONS.items()}
-    sections = {t: [p for p in pages if p + ".md" in documents or p not in OPTIONAL] for t, pages in sections.items()}  # fmt: skip
     return {
         "README.md": "".join(toctree(p, title) for title, p in sections.items()),
         "validation/README.md": toctree([c.removeprefix("validation/") for c in cases]),

@@ -150,7 +150,7 @@ class Stage:
 
     def documents(self):
         """Bring in all Markdown files of the repository. Returns their paths."""
-        found = [path for path in files((".md",)) if not path.startswith("scripts/docs/")]  # fmt: skip
+        found = documents()
         for path in found:
             self.document(path)
         return found
@@ -170,6 +170,11 @@ class Stage:
                 head += f"    yade -n -x {path}\n\n"
             self.copy(path)
             self.write(path + ".md", f"{head}```{{literalinclude}} {name}\n:language: {language}\n```\n")  # fmt: skip
+
+
+def documents():
+    """The paths of all Markdown files of the repository that are pages."""
+    return [path for path in files((".md",)) if not path.startswith("scripts/docs/")]
 
 
 def galleryRows():

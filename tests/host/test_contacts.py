@@ -2,6 +2,9 @@
 """Rigid blocks that meet without a joint: they fall, rest, slide, collide, rock and lie in heaps."""
 
 import math
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -13,12 +16,13 @@ from yade.wrapper import *
 G = 9.81
 BRICK = (0.22, 0.102, 0.081)
 STIFF = 1e10  # Pa/m
+CUBE = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
 
 
 def box(size, middle=(0, 0, 0), turn=Quaternion.Identity, held=False, density=1800):
     corners = [
         Vector3(*middle) + turn * Vector3(*[size[i] * (c[i] - 0.5) for i in range(3)])
-        for c in [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        for c in CUBE
     ]
     body = addBlock(corners, MasonryMat(density=density, young=4.8e9, poisson=0.16))
     if held:
@@ -335,3 +339,41 @@ def test_the_engine_stands_after_the_resetter_and_refuses_deformable_units(scene
     ]
     with pytest.raises(ValueError, match="body 1 is a deformable unit"):
         O.step()
+
+
+@pytest.mark.skipif("Polyhedra" not in globals(), reason="this YADE has no Polyhedra")
+@pytest.mark.parametrize("shapes", ["both", "upper"])
+def test_polyhedra_of_yade_are_blocks_too(scene, shapes):
+    """A Polyhedra on a Polyhedra or on a block, beside the same with blocks alone."""
+    from yade import polyhedra_utils
+
+    def run(*polyhedra):
+        O.reset()
+        for n, poly in enumerate(polyhedra):
+            size, middle = (0.2, 0.1, 0.1), (0.02 * n, 0, 0.1001 * n)
+            if poly:
+                corners = [[m + s * (c - 0.5) for m, s, c in zip(middle, size, p)] for p in CUBE]  # fmt: skip
+                mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+                O.bodies.append(polyhedra_utils.polyhedra(mat, v=corners))
+            else:
+                box(size, middle)
+        O.bodies[0].state.blockedDOFs = "xyzXYZ"
+        contacts = prepare()
+        O.run(4000, True)
+        assert contacts.touching() == 1
+        return [tuple(b.state.pos) for b in O.bodies]
+
+    expected = run(False, False)
+    found = run(shapes == "both", True)
+    assert np.abs(np.array(found) - expected).max() < 1e-9
+
+
+def test_the_program_of_the_benchmark_prints_its_table():
+    """validation/benchmark/heap.py, of two bricks that fall freely."""
+    root = os.path.join(os.path.dirname(__file__), "..", "..")
+    program = os.path.join(root, "validation", "benchmark", "heap.py")
+    words = ["--blocks", "2", "--seconds", "0.02", "--only", "engine"]
+    run = subprocess.run([sys.executable, program, *words], capture_output=True, text=True, timeout=60)  # fmt: skip
+    assert "| time reached, s | 0.02 |" in run.stdout, run.stderr
+    # Two bricks of 3.27 kg that have fallen by 2 mm
+    assert "| potential energy lost, J | 0.1 |" in run.stdout

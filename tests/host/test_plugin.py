@@ -186,7 +186,6 @@ def test_without_yade_the_package_still_reads_results():
 def test_a_class_stands_in_yade_with_docs_keywords_and_dict(name):
     cls = getattr(yade.wrapper, name)
     assert name.startswith("Masonry") or name.split("_")[0] in (
-        "Bo1",
         "Ig2",
         "Ip2",
         "Law2",

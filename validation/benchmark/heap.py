@@ -2,11 +2,11 @@
 """A heap of boxes that fall on a slab: contacts of the plugin beside YADE's own polyhedra.
 
 /usr/bin/python3 validation/benchmark/heap.py [--blocks 60] [--seconds 1.5] [--stiffness 1e8] [--damping 0.2] [--friction 0.5]
-    [--step 0.5] [--stock-step SECONDS] [--minutes 60] [--only engine|functors|stock ...]
+    [--step 0.5] [--stock-step SECONDS] [--minutes 60] [--only engine|stock ...]
 
-drops the same bricks, turned at random, in three processes that step in turns of a hundredth of a second of the heap: with the
-engine MasonryContacts, with the functors of the same contacts in YADE's InteractionLoop, and with YADE's polyhedra and their
-volumetric law (where YADE has them). It prints one table. Times are those of the processor, on one thread.
+drops the same bricks, turned at random, in two processes that step in turns of a hundredth of a second of the heap: with the
+engine MasonryContacts, and with YADE's polyhedra and their volumetric law (where YADE has them). It prints one table. Times are
+those of the processor, on one thread.
 
 The volumetric law presses with kn times the volume of the overlap. Two faces that overlap by a depth d over an area A have the
 volume A d, so kn in N/m³ is the stiffness per area in Pa/m, and the same number is taken for both: each block has twice of it as
@@ -27,7 +27,7 @@ import sys
 import time
 
 BRICK = (0.22, 0.102, 0.081)
-KINDS = ("engine", "functors", "stock")
+KINDS = ("engine", "stock")
 RATIO, DENSITY, G = 0.4, 1800, 9.81
 WINDOW = 0.01  # of the time of the heap, between two rows [s]
 RESTS = (
@@ -80,13 +80,9 @@ def build(given):
     from masonry import addBlock
     from yade import O, Quaternion, Vector3
     from yade.wrapper import (
-        Bo1_MasonryBlock_Aabb,
         ForceResetter,
-        Ig2_MasonryBlock_MasonryBlock_MasonryContactGeom,
         InsertionSortCollider,
         InteractionLoop,
-        Ip2_MasonryMat_MasonryMat_MasonryContactPhys,
-        Law2_MasonryContactGeom_MasonryContactPhys_Potential,
         MasonryContacts,
         MasonryMat,
         NewtonIntegrator,
@@ -115,19 +111,11 @@ def build(given):
         if kind == "stock":
             O.bodies.append(polyhedra_utils.polyhedra(mat, v=points))
         else:
-            O.bodies[addBlock(points, mat)].bounded = True
+            addBlock(points, mat)
     O.bodies[0].state.blockedDOFs = "xyzXYZ"
-    law = dict(normalStiffness=given.stiffness, friction=given.friction, restitution=0.3, tangentialRatio=RATIO)  # fmt: skip
-    physics = Ip2_MasonryMat_MasonryMat_MasonryContactPhys(**law)
     if kind == "engine":
-        energies = MasonryContacts(**law)
+        energies = MasonryContacts(normalStiffness=given.stiffness, friction=given.friction, restitution=0.3, tangentialRatio=RATIO)  # fmt: skip
         contacts = [energies]
-    elif kind == "functors":
-        energies = Law2_MasonryContactGeom_MasonryContactPhys_Potential()
-        contacts = [
-            InsertionSortCollider([Bo1_MasonryBlock_Aabb()], verletDist=0.01),
-            InteractionLoop([Ig2_MasonryBlock_MasonryBlock_MasonryContactGeom()], [physics], [energies]),
-        ]  # fmt: skip
     else:
         energies = Law2_PolyhedraGeom_PolyhedraPhys_Volumetric(traceEnergy=True)
         contacts = [
@@ -149,15 +137,8 @@ class Heap:
 
         self.given, self.clock, self.O = given, time.process_time, O
         self.energies = build(given)
-        self.physics = O.engines[2].physDispatcher.functors[0] if given.child == "functors" else None  # fmt: skip
         self.took = self.contacts = 0.0
         self.begin = self.height()
-
-    def limit(self):
-        """The stable time step [s] of the plugin's contacts; both of its kinds have the same."""
-        from masonry import criticalTimeStep
-
-        return self.physics.timeStep() if self.physics else criticalTimeStep()[0]
 
     def height(self):
         return sum(b.state.mass * G * b.state.pos[2] for b in self.O.bodies if b.id > 0)
@@ -174,14 +155,11 @@ class Heap:
         return self.energies.touching() if self.given.child == "engine" else sum(1 for _ in self.O.interactions)  # fmt: skip
 
     def lost(self):
-        """Energy that friction and damping took, and elastic energy where it can be read [J]."""
-        law, O = self.energies, self.O
+        """Energy that friction and damping took [J]."""
+        law = self.energies
         if self.given.child == "engine":
-            return law.lostInFriction + law.lostInDamping, math.nan
-        if self.given.child == "functors":
-            return law.lostInFriction + law.lostInDamping, law.stored()
-        # The law's elasticEnergy() is the square of the force over kn, which is no energy where kn is in N/m³.
-        return dict(O.energy.items()).get("nonviscDamp", 0) + law.plasticDissipation(), math.nan  # fmt: skip
+            return law.lostInFriction + law.lostInDamping
+        return dict(self.O.energy.items()).get("nonviscDamp", 0) + law.plasticDissipation()  # fmt: skip
 
     def sunk(self):
         """How far the lowest corner is below the slab's face, and the least distance of two middles [m]."""
@@ -201,16 +179,19 @@ class Heap:
         self.took += took
         self.contacts += 0.5 * (before + self.touching()) * steps
         depth, near = self.sunk()
-        lost, stored = self.lost()
         return dict(time=O.time, steps=O.iter, took=self.took, contacts=self.contacts, touching=self.touching(),
-                    kinetic=self.kinetic(), fallen=self.begin - self.height(), lost=lost, stored=stored, depth=depth,
+                    kinetic=self.kinetic(), fallen=self.begin - self.height(), lost=self.lost(), depth=depth,
                     near=near, dt=O.dt)  # fmt: skip
 
 
 def child(given):
     """Answers every line of standard input: a number is a time to step to, ``dt NUMBER`` sets the time step."""
     heap = Heap(given)
-    limit = None if given.child == "stock" else heap.limit()
+    limit = None
+    if given.child == "engine":
+        from masonry import criticalTimeStep
+
+        limit = criticalTimeStep()[0]
     print("ROW " + json.dumps(dict(limit=limit)), flush=True)
     for line in sys.stdin:
         words = line.split()
@@ -285,7 +266,7 @@ def table(heaps, given, limit):
         f"{given.blocks} bricks, {given.stiffness:g} Pa/m, limit of the plugin's time step {limit:.3g} s"
     )
     names = ["time reached, s", "time step, us", "a step, us", "a contact and step, us", "a second of the heap, s",
-             "pairs that touch at the end", "error of the energy, %", "elastic energy at the end, J", "potential energy lost, J", "at rest after, s",
+             "pairs that touch at the end", "error of the energy, %", "potential energy lost, J", "at rest after, s",
              "deepest corner below the slab, mm", "least distance of two middles, mm"]  # fmt: skip
     columns = []
     for h in heaps:
@@ -295,12 +276,11 @@ def table(heaps, given, limit):
             if row["kinetic"] > RESTS * max(row["fallen"], 1e-9):
                 break
             rest = row["time"]
-        stored = 0 if math.isnan(last["stored"]) else last["stored"]
-        error = 100 * (last["kinetic"] + last["lost"] + stored - last["fallen"]) / last["fallen"]  # fmt: skip
+        error = 100 * (last["kinetic"] + last["lost"] - last["fallen"]) / last["fallen"]  # fmt: skip
         columns.append([
             f"{last['time']:.2f}", f"{1e6 * last['dt']:.1f}", f"{1e6 * last['took'] / last['steps']:.1f}",
             f"{1e6 * last['took'] / last['contacts']:.2f}" if last["contacts"] else "-", f"{last['took'] / last['time']:.2f}",
-            last["touching"], f"{error:.3f}", "not read" if h.kind == "engine" else f"{stored:.3g}" if stored else "not known", f"{last['fallen']:.1f}", f"{rest:.2f}" if rest else "not yet",
+            last["touching"], f"{error:.3f}", f"{last['fallen']:.1f}", f"{rest:.2f}" if rest else "not yet",
             f"{1e3 * max(r['depth'] for r in h.rows):.1f}", f"{1e3 * min(r['near'] for r in h.rows):.1f}",
         ])  # fmt: skip
     print("| |", " | ".join(h.kind for h in heaps), "|")

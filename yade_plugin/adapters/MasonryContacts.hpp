@@ -19,7 +19,24 @@ public:
 
     template <class Visit> static void attributes(Visit&& visit) {
         using C = MasonryContacts;
-        describe(visit);
+        visit("normalStiffness", &C::normalStiffness,
+              number("Pa/m", "Stiffness of two faces per area; must be given, as that of a joint between the blocks")
+                  .atLeast(0));
+        visit("tangentialRatio", &C::tangentialRatio,
+              number("-", "Elastic stiffness along the face over that along the normal")
+                  .above(0)
+                  .atMost(1)
+                  .source("[decided]: G/E of masonry"));
+        visit("friction", &C::friction,
+              number("-", "Coefficient of friction; -1 stands for none given, which the first step refuses")
+                  .atLeast(-1)
+                  .atMost(10));
+        visit("restitution", &C::restitution,
+              number("-", "Speed after a central impact of two faces over that before it; 1: without damping. Measured "
+                          "ones of stone depend on speed, mass and hardness")
+                  .atLeast(0.1)
+                  .atMost(1)
+                  .source("convention, no measured value"));
         visit("skin", &C::skin,
               number("m", "By which the boxes of the search are larger than their blocks; 0: a tenth of the thinnest "
                           "block that moves. It changes the time of a step, and no result")

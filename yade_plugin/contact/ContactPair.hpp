@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What two blocks that touch do to each other in a step: the force of the potential, which keeps the energy, damping,
-// and friction, with their memory. The engine of contacts and the functors of contacts both take it from here.
+// and friction, with their memory.
 #pragma once
 #include "ContactDamping.hpp"
 #include "ContactEnds.hpp"
@@ -9,10 +9,10 @@
 namespace masonry {
 
 struct ContactProperties {
-    double normalStiffness = 0;   // per area [Pa/m]
-    double tangentialRatio = 0.4; // stiffness along the face over that along the normal [-]
-    double friction = 0;          // coefficient [-]
-    double dampingRatio = 0;      // of ContactDamping [-]
+    double normalStiffness; // per area [Pa/m]
+    double tangentialRatio; // stiffness along the face over that along the normal [-]
+    double friction;        // coefficient [-]
+    double dampingRatio;    // of ContactDamping [-]
 };
 
 // What a pair remembers from the last step. All numbers are 0 for a pair that did not touch.

@@ -183,16 +183,6 @@ public:
 
 class Scene;
 
-// The box of a body, by which a collider finds pairs. An Aabb has no members beside these.
-class Bound : public Serializable, public Indexable {
-    MASONRY_HOST_CLASS(Bound)
-    MASONRY_HOST_INDEX
-    long lastUpdateIter; // step in which a collider made the box
-    Vector3r refPos;     // place of the body then [m]
-    Real sweepLength;    // by which the collider made the box larger [m]
-    Vector3r color, min, max;
-};
-
 class Body : public Serializable {
     MASONRY_HOST_CLASS(Body)
     static const shared_ptr<Body>& byId(int id, Scene* scene);
@@ -200,7 +190,7 @@ class Body : public Serializable {
     shared_ptr<Material> material;
     shared_ptr<State> state;
     shared_ptr<Shape> shape;
-    shared_ptr<Bound> bound;
+    shared_ptr<void> bound;
     std::map<int, shared_ptr<Interaction>> intrs;
     int clumpId;
 };
@@ -372,22 +362,8 @@ class IGeomFunctor : public Functor,
     IGeomFunctor() = default;
 };
 
-struct Se3 {
-    Vector3r position;
-    Quaternionr orientation;
-};
-
-// Makes the box of a body.
-class BoundFunctor : public Functor,
-                     public FunctorCalls<void, const shared_ptr<Shape>&, shared_ptr<Bound>&, const Se3&, const Body*> {
-    MASONRY_HOST_CLASS(BoundFunctor)
-    virtual std::string get1DFunctorType1() const { return {}; }
-    BoundFunctor() = default;
-};
-
 class ClassFactory {
 public:
-    shared_ptr<Factorable> createShared(std::string name);
     bool registerFactorable(std::string name, Factorable* (*create)(), shared_ptr<Factorable> (*createShared)(),
                             void* (*createPureCustom)());
 };

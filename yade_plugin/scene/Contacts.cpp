@@ -42,7 +42,11 @@ std::vector<int> Contacts::idsOf(const SceneContents& contents) const {
 }
 
 void Contacts::checkBodies(const SceneContents& contents) const {
-    if (const auto problem = missing("MasonryContacts"); !problem.empty()) throw std::invalid_argument(problem);
+    if (!(normalStiffness > 0))
+        throw std::invalid_argument("MasonryContacts.normalStiffness " + text(normalStiffness) +
+                                    " Pa/m must be given, above 0");
+    if (!(friction >= 0))
+        throw std::invalid_argument("MasonryContacts.friction " + text(friction) + " must be given, at least 0");
     if (takesJoints && !contents.loop && !contents.joints.empty())
         throw std::invalid_argument(
             "MasonryContacts.takesJoints needs MasonryJointLoop: the functors go on with joints "

@@ -3,7 +3,7 @@
 #pragma once
 #include "SceneContents.hpp"
 #include "contact/BroadPhase.hpp"
-#include "contact/ContactParameters.hpp"
+#include "contact/ContactPair.hpp"
 #include <algorithm>
 #include <set>
 
@@ -12,12 +12,16 @@ namespace masonry {
 using yade::Matrix3r;
 using yade::Vector3r;
 
-class Contacts : public ContactParameters {
+class Contacts {
 public:
     virtual ~Contacts() = default;
 
-    double skin = 0;         // by which boxes are larger than their blocks [m]; 0: chosen
-    std::vector<int> bodies; // ids of the blocks; empty: all rigid blocks
+    double normalStiffness = 0;   // per area [Pa/m]
+    double tangentialRatio = 0.4; // stiffness along the face over that along the normal [-]
+    double friction = -1;         // coefficient [-]
+    double restitution = 0.5;     // of a central impact of two faces [-]
+    double skin = 0;              // by which boxes are larger than their blocks [m]; 0: chosen
+    std::vector<int> bodies;      // ids of the blocks; empty: all rigid blocks
 
     bool takesJoints = false;  // whether joints without bond whose blocks have moved far are handed over to contact
     bool begun = false;        // whether there was a step

@@ -3,7 +3,6 @@
 #include "Blocks.hpp"
 #include "BodyCheck.hpp"
 #include "Connectors.hpp"
-#include "ContactFunctor.hpp"
 #include "Contacts.hpp"
 #include "JointFunctor.hpp"
 #include "SceneStore.hpp"
@@ -165,8 +164,7 @@ void checkScene(const SceneStore& store) {
         } catch (const std::invalid_argument& error) {
             wrong.push_back(error.what());
         }
-    // Whether blocks may lie on others without a joint.
-    const bool free = !store.contacts.empty() || hasContactFunctor(scene);
+    const bool free = !store.contacts.empty(); // whether blocks may lie on others without a joint
     for (int id : free ? std::vector<int>() : store.unjoinedBlocks())
         wrong.push_back("body " + std::to_string(id) +
                         " was added after connect() and has no joint, so nothing would hold it: build all blocks "
@@ -185,15 +183,6 @@ void checkBeforeStep(SceneStore& store) {
         throw std::invalid_argument(
             "O.periodic: joints do not reach across a periodic cell, nor does a cell strain blocks; "
             "set it to False");
-    if (store.contactStep >= 0 && store.contactStep >= scene.iter - 1) {
-        if (!store.contacts.empty())
-            throw std::invalid_argument(
-                "O.engines: MasonryContacts and the functors of contacts would both press on the "
-                "same blocks: keep one");
-        if (store.watched)
-            throw std::invalid_argument("O.engines: MasonryEnergy does not know contacts of functors: take it out and "
-                                        "read the energies of the law functor, or take MasonryContacts");
-    }
     if (mismatched.load().body1 >= 0) {
         const auto joint = mismatched.exchange({});
         std::vector<std::string> needs;

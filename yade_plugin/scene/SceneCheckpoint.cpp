@@ -2,7 +2,6 @@
 #include "SceneCheckpoint.hpp"
 #include "Blocks.hpp"
 #include "Changes.hpp"
-#include "ContactFunctor.hpp"
 #include "Refinement.hpp"
 #include "SceneStore.hpp"
 #include "StepGate.hpp"
@@ -260,13 +259,6 @@ Checkpoint read(const py::object& bytes) {
     return Checkpoint::read({data, std::size_t(size)});
 }
 
-void refuseContactsOfFunctors(const yade::Scene& scene) {
-    for (std::size_t n = 0; n < scene.interactions->currSize; ++n)
-        if (dynamic_cast<const ContactGeometry*>(scene.interactions->linIntrs[n]->geom.get()))
-            throw std::invalid_argument("contacts of functors are in no checkpoint: take O.save and O.load, or "
-                                        "MasonryContacts");
-}
-
 // A state that is taken or given in the middle of a step would be that of no instant.
 void refuseBeside(const std::string& what) {
     if (Singleton<yade::Omega>::instance().isRunning())
@@ -282,7 +274,6 @@ yade::Scene& present() { return *Singleton<yade::Omega>::instance().getScene(); 
 py::object saveScene(const std::string& extra) {
     refuseBeside("saved");
     const BetweenSteps still;
-    refuseContactsOfFunctors(present());
     auto made = captured(present());
     for (const auto& [name, values] : made.numbers)
         for (double value : values)
@@ -296,7 +287,6 @@ py::object saveScene(const std::string& extra) {
 std::string loadScene(const py::object& bytes) {
     refuseBeside("loaded");
     const BetweenSteps still;
-    refuseContactsOfFunctors(present());
     auto saved = read(bytes), here = captured(present());
     for (const auto& [name, values] : saved.numbers)
         for (double value : values)

@@ -18,10 +18,10 @@ public:
 
     // How thoroughly update() looks for changes.
     enum class Look {
-        AtAll,    // at joints, bodies and their State objects
-        InStep,   // at joints; at bodies once a step; at their State objects, which lie apart in memory and are hardly
-                  // ever replaced, every tenth step
-        AtJoints, // at joints only
+        AtAll,    // It looks at joints, bodies and their State objects.
+        InStep,   // It looks at joints every time, at bodies once a step, and at their State objects every tenth step,
+                  // because these are hardly ever replaced and take long to reach in memory.
+        AtJoints, // It looks at joints only.
     };
     // Reads again what has changed since the last time. Throws std::invalid_argument, and leaves the joints in their
     // groups, if the joints of the scene belong to more than one Zones.
@@ -65,7 +65,6 @@ public:
     // For checkBeforeStep().
     bool checked = false;   // whether the scene was checked since it changed
     long seenCollapse = -1; // step in which a collapse was last looked for
-    long contactStep = -1;  // step in which functors of contacts were last at work
 
     // Ids of the blocks that were added after connect() and have no joint.
     std::vector<int> unjoinedBlocks() const;

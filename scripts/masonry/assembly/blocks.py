@@ -155,7 +155,7 @@ def placeBlock(
         )
     refuse(problems)
     body.state.refPos, body.state.refOri = body.state.pos, body.state.ori
-    body.bounded = True  # as YADE's own bodies: a collider sees it, if there is one
+    body.bounded = False  # no collider runs
     if inPlane:
         # with blocked rotations the integrator takes `inertia` in global axes
         axes = body.state.ori.toRotationMatrix()

@@ -7,10 +7,14 @@ from yade import O, Vector3
 
 from ..basics import GRAVITY, Collapsed
 
-FALLEN = 0.05  # of the largest side of a block: one that moves so far, and fast, falls
-REST = 5e-3  # of the load: what may be missing at the supports of a structure that is said to be at rest
-FAR = 1.0  # likewise: it has fallen, and does not only swing on joints that are soft
-FAST = 0.1  # of √(g·side): the velocity of a block that has fallen by half a hundredth of its side
+#: A block falls when it has moved by this share of its largest side and is as fast as :data:`FAST` says.
+FALLEN = 0.05
+#: The same share where joints are so soft that a block may swing as far as :data:`FALLEN` without falling.
+FAR = 1.0
+#: The velocity of a falling block over √(g·side). A block that falls freely has it after half a hundredth of its side.
+FAST = 0.1
+#: A structure is at rest when the forces at its supports differ from its load by no more than this share of the load.
+REST = 5e-3
 
 
 class Motion:

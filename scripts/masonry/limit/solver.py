@@ -17,13 +17,13 @@ import site
 import sys
 
 HEAD = "rows equations columns entries seconds".split()
-INTS = 2  # so many of the arrays of a programme, the first ones, are of 32-bit integers
-INTERIOR_POINT = 4  # a method of Clp, as its ClpSolve.hpp counts them
-NO_PRESOLVE = 1  # so, too
-FOREVER = 1e9  # time that is none for Clp [s]
-MISSED = 1e-7  # by so much a row may be missed
-STOPPED = 3  # the status of Clp after its longest time
-SIMPLEX = 1500  # from so many variables on HiGHS uses its interior-point method
+INTS = 2  # the number of arrays of 32-bit integers, which come before the other arrays of a programme
+INTERIOR_POINT = 4  # the number of this method in ClpSolve.hpp of Clp
+NO_PRESOLVE = 1  # the number of the choice not to presolve in ClpSolve.hpp of Clp
+FOREVER = 1e9  # a limit of time that Clp never reaches [s]
+MISSED = 1e-7  # largest error of a row in a solution
+STOPPED = 3  # the status of Clp when it has reached its limit of time
+SIMPLEX = 1500  # number of variables from which on HiGHS uses its interior-point method
 PARENT_ENDS = 1  # PR_SET_PDEATHSIG of Linux
 
 

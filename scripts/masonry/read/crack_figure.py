@@ -20,9 +20,10 @@ from .views import outline, viewOf
 
 MAGNIFICATION = 30  # of displacements in cracks.png, as in figure 6 of the paper (see yade_plugin/law/README.md)
 
-#: Displacements are drawn this large beside the structure, else another magnification than the usual one is taken.
+#: Smallest and largest size of the drawn displacements over the size of the structure with the usual magnification. Outside
+#: these limits another magnification is chosen, so that they are about as large as :data:`SHOWN`.
 SEEN = 0.002, 0.6
-SHOWN = 0.06  # so large, if the usual magnification is not taken
+SHOWN = 0.06
 FACING = 0.87  # cosine from which a joint that faces the viewer is drawn as an area, not as a line: less than 30°
 
 BRICK = "#f3e3c8"  # the colour of a block

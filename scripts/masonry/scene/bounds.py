@@ -24,10 +24,13 @@ from ..packages import Missing
 from ..folders import replaced
 from ..run.beside import Failed, Job
 
-#: Up to so many joints a collapse without dilatancy, which takes many rounds, is looked for with --preset bound.
+#: Largest number of joints for which ``--preset bound`` and domains also look for a collapse without dilatancy, which takes many
+#: solutions of the programme.
 SMALL = 500
-EVERY = math.inf  # it is looked for however many joints there are
-JOINTS = 3000  # up to so many joints every run has its bounds; limit analysis of more takes longer than seconds
+EVERY = math.inf  # the same limit where the user asks for that collapse: none
+JOINTS = (
+    3000  # largest number of joints of a run that is bounded unasked: within seconds
+)
 #: Time that limit analysis may take for a load, if nobody asked for it, if somebody did, and if it is done beside a run that
 #: still takes steps [s]. A run that has come to its end, or to a checkpoint, waits until the first of them is over.
 UNASKED, ASKED, BESIDE = 10.0, 600.0, 120.0

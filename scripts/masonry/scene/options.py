@@ -42,7 +42,9 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     p = Parser(
         prog=f"{program} {os.path.basename((sys.argv or ['SCENE'])[0])}",
         description=description,
-        epilog=f"masonry {version}, commit {commit}",
+        epilog='The paper is Y. P. Oktiovan et al., "Prediction of the In-Plane Response of Masonry Walls Using a Piecewise '
+        'Softening Contact Model Within the Distinct Element Method" (TU Delft repository). Its law was first published in '
+        f"Computers & Structures 303 (2024) 107499, doi 10.1016/j.compstruc.2024.107499. masonry {version}, commit {commit}",
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
     )
     mm = lambda text: number(text, 0, 1000, above=True)

@@ -8,8 +8,8 @@ namespace {
 
 using Column = CyclicColumn;
 
-// The law where no strength is passed and no stiffness changes. Tells which subcontacts need more, which then are as
-// before, and how many they are.
+// Advances the subcontacts at which no strength is exceeded and no stiffness changes. A subcontact that needs the whole
+// law keeps its old state, and its entry of `pending` becomes 1. Returns the number of these subcontacts.
 template <bool spatial, bool yielded, bool curved>
 MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicConsequences& ofAll,
                                    const Columns& columns, std::size_t at, int count, const Jumps& jumps,

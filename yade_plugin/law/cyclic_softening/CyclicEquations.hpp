@@ -87,7 +87,8 @@ struct CyclicEquations : PiecewiseEquations {
         return choose(kappa > peakClosure, 1 - chi * (1 - fc / curve.peak), all<T>(1));
     }
 
-    // Square of the displacement Q that crushing counts beside what is plastic.
+    // Square of the elastic displacement Q [m], which measures closure and shear stress together on the cap. Crushing
+    // goes by Q plus the plastic displacement (capDisplacement).
     template <class T> MASONRY_INLINED T onCap(const T& w, const T& sigma, const T& tauSquared) const {
         const T closed = smaller(curved ? sigma / kn : w, T{});
         return closed * closed + (shearWeight / (kn * kn)) * tauSquared;

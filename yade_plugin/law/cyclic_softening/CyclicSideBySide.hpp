@@ -112,11 +112,12 @@ MASONRY_INLINED void advanceAs(const Numbers& numbers, const Columns& columns, T
     const CyclicEquations e = numbers.equations;
     Places some;
     for (int from = 0;;) {
-        int many = 0; // those that wait may stand scattered among others
+        int many = 0; // number of pending subcontacts in this pack; others may lie between them
         for (; from < count && many < packed; ++from)
             if (pending[from]) some.at[many++] = from;
         if (many == 0) return;
-        for (int i = many; i < packed; ++i) // what is missing is the last one again, which does no harm
+        // A pack that is not full repeats its last subcontact: the same numbers are then written several times.
+        for (int i = many; i < packed; ++i)
             some.at[i] = some.at[many - 1];
         some.together = many == packed && some.at[packed - 1] - some.at[0] == packed - 1;
         const Columns& c = columns;

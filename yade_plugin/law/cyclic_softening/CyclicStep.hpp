@@ -22,7 +22,8 @@ template <class T> struct CyclicOutcome {
     bool tore, slid, dilated, crushed; // whether bond, slip, dilation, crushing of one at least may have changed
 };
 
-// Tension damage when the bond was lost otherwise: with lumped units the rows of the table move by what the bond holds.
+// Tension damage after shear or crushing has weakened the bond. With lumped units the softening table is stretched by
+// the force that the bond can carry, so the damage at the largest opening must be read again.
 template <class T, class Look, class M>
 MASONRY_INLINED T tornAgain(const CyclicEquations& e, const Look& look, const CyclicPoint<T>& s,
                             const T& crushRemaining, const M& weaker) {

@@ -15,8 +15,9 @@ constexpr int most = Columns::most;
 
 namespace {
 
-// The law where no strength is passed: eqs. (6), (7), the secant of eq. (11), and the three conditions of eq. (8).
-// Tells which subcontacts need more, which then are as before, and how many they are.
+// Advances the subcontacts at which no strength is exceeded, by eqs. (6) and (7), the secant of eq. (11), and the three
+// conditions of eq. (8). A subcontact that needs the whole law keeps its old state, and its entry of `pending` becomes
+// 1. Returns the number of these subcontacts.
 template <bool spatial, bool yielded, bool residual>
 MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const PiecewiseConsequences& ofAll,
                                    const Columns& columns, std::size_t at, int count, const Jumps& jumps,
@@ -159,9 +160,9 @@ struct Scratch { // of subcontacts side by side, for one step
     Mask open[most], wanted[most], regime[most];
 };
 
-// The step of the subcontacts that wait, in the parts of PiecewiseLaw::advance. All work on the columns that begin at
-// the first of them. What happens to none is not calculated; tables and exponentials are looked up one by one, for
-// those that need them.
+// The step of the pending subcontacts, in the parts of PiecewiseLaw::advance. Each part is a pass over the columns that
+// begin at the first subcontact of the batch. A part that no subcontact needs is left out. Tables and exponentials are
+// evaluated one by one, only for the subcontacts that need them.
 struct SideBySide {
     const PiecewiseEquations& e;
     const Columns& columns;
