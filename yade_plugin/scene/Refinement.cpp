@@ -199,6 +199,7 @@ double refine(const JointView& joint, int along, int count) {
             follow(to, p, numbers[a], numbers[b], t);
         after.shapes->setJump(p, 0, (1 - t) * before.shapes->jumpAt(a, 0) + t * before.shapes->jumpAt(b, 0));
         after.shapes->setViscous(p, 0, (1 - t) * before.shapes->viscousAt(a, 0) + t * before.shapes->viscousAt(b, 0));
+        after.shapes->setImpact(p, 0, before.shapes->impactAt(t < 0.5 ? a : b, 0));
         Energies lost;
         for (const auto& [i, part] : {std::pair(a, 1 - t), std::pair(b, t)}) {
             if (part == 0) continue;
@@ -325,7 +326,7 @@ void Refinement::look(SceneStore& store) {
         for (int p = 0; p < geom.points(); ++p) {
             const auto s = to.joint.phys->state(p);
             const Vector3r stress =
-                Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) + geom.group->viscousAt(p, geom.index);
+                Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) + geom.group->stressBesideLaw(p, geom.index);
             to.forces.push_back({geom.offset(p)[to.along], sign * geom.area(p) * stress});
         }
     };

@@ -14,6 +14,8 @@ class Load;
 struct JointLoop {
     double stiffnessDamping = 0; // stiffness-proportional viscous damping of joints [s]
     double dampingWork = 0;      // energy that it has taken so far [J]
+    bool impacts = false;        // whether impacts of joints take energy (JointImpact)
+    double impactWork = 0;       // energy that they have taken so far [J]
     int refinement = 0;          // points along a joint that is about to crush; 0: as many as before
     double refiningEnergy = 0;   // elastic energy that joints got when they were refined, so far [J]
 };
