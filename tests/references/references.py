@@ -110,9 +110,11 @@ def state():
         "force on the base [N]": list(O.forces.f(0, True)),
         "torque on the base [N m]": list(O.forces.t(0, True)),
         "error of the balance [-]": [balance.pop("error")],
-        # no reference has bricks that split
+        # no reference has bricks that split, or impacts
         "energy [J]": [
-            v for name, v in balance.items() if name not in ("splitting", "refining")
+            v
+            for name, v in balance.items()
+            if name not in ("splitting", "refining", "impacts")
         ],
         "subcontacts in a regime": [
             float(regimes.count(r))
