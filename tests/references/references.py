@@ -110,8 +110,12 @@ def state():
         "force on the base [N]": list(O.forces.f(0, True)),
         "torque on the base [N m]": list(O.forces.t(0, True)),
         "error of the balance [-]": [balance.pop("error")],
-        # no reference has joints that get more points
-        "energy [J]": [v for name, v in balance.items() if name != "refining"],
+        # no reference has joints that get more points, or impacts
+        "energy [J]": [
+            v
+            for name, v in balance.items()
+            if name not in ("refining", "impacts")
+        ],
         "subcontacts in a regime": [
             float(regimes.count(r))
             for r in ("elastic", "opening", "slipping", "crushing")

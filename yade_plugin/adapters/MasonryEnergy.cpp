@@ -55,7 +55,7 @@ MasonryEnergy::Inventory MasonryEnergy::inventory(const SceneStore& store) const
         all.work += contacts->given;
     for (const auto* load : store.allLoads)
         all.work += load->work;
-    if (store.loop) all.drag += store.loop->dampingWork;
+    if (store.loop) all.drag += store.loop->dampingWork + store.loop->impactWork;
     for (const EnergyLedger* other :
          {static_cast<const EnergyLedger*>(store.integrator), static_cast<const EnergyLedger*>(store.zones)}) {
         if (!other) continue;
@@ -128,7 +128,7 @@ void MasonryEnergy::stopIfCollapsed(SceneStore& store, const std::string& beside
 // the joints in every thousandth step, and compares them in the next one with the ledger, which then belongs to the
 // same instant. This costs less than a step.
 void MasonryEnergy::lookAtBalance(const SceneStore& store) {
-    const double damping = store.loop ? store.loop->dampingWork : 0;
+    const double damping = store.loop ? store.loop->dampingWork + store.loop->impactWork : 0;
     if (stepThen >= 0 && scene->iter == stepThen + 1) {
         auto all = inventory(store);
         all.drag += dampingThen - damping;
@@ -282,7 +282,9 @@ py::dict MasonryEnergy::balance() {
     for (const auto* contacts : store.allContacts)
         handing += contacts->handing;
     all["kinetic"] = moving;
-    all["damping"] = drag;
+    const double impacts = store.loop ? store.loop->impactWork : 0;
+    all["damping"] = drag - impacts;
+    all["impacts"] = impacts;
     all["elastic_units"] = inUnits;
     all["elastic_tension"] = stored[0];
     all["elastic_shear"] = stored[1];

@@ -115,11 +115,14 @@ std::vector<double> MasonryJointGeom::record() {
         n(number);
     for (int p = 0; p < count; ++p) {
         Vector3r offsetOfPoint = offset(p), jumpOfPoint = jump(p), viscous = group->viscousAt(p, index);
+        auto impact = group->impactAt(p, index);
         double areaOfPoint = area(p);
         n(offsetOfPoint);
         n(areaOfPoint);
         n(jumpOfPoint);
         n(viscous);
+        n(impact.stress);
+        n(impact.closing);
     }
     return n.flat;
 }
@@ -139,12 +142,16 @@ void MasonryJointGeom::setRecord(const std::vector<double>& flat) {
     made->writeFields(0, fields);
     for (int p = 0; p < count; ++p) {
         Vector3r offsetOfPoint = Vector3r::Zero(), jumpOfPoint = Vector3r::Zero(), viscous = Vector3r::Zero();
+        JointShapes::Impact impact;
         double areaOfPoint = 0;
         n(offsetOfPoint);
         n(areaOfPoint);
         n(jumpOfPoint);
         n(viscous);
+        n(impact.stress);
+        n(impact.closing);
         made->setViscous(p, 0, viscous);
+        made->setImpact(p, 0, impact);
         made->setShape(p, 0, offsetOfPoint, areaOfPoint);
         made->setJump(p, 0, jumpOfPoint);
     }

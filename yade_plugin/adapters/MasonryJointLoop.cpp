@@ -11,7 +11,7 @@ namespace masonry {
 void MasonryJointLoop::action() {
     const EngineTurn turn(*scene, *this);
     refining_.look(turn.store());
-    dampingWork += plan_.advance(turn.store(), stiffnessDamping);
+    plan_.advance(turn.store());
     refining_.count(turn.store());
 }
 

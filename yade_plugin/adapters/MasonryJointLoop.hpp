@@ -33,6 +33,11 @@ public:
                      "sqrt(1 + d²) - d for the highest mode; criticalTimeStep() counts that")
                   .atLeast(0));
         visit("dampingWork", &L::dampingWork, number("J", "Energy taken by stiffnessDamping so far"), ReadOnly);
+        visit("impacts", &L::impacts,
+              described("Whether impacts of joints that close take energy, as their restitution says: for motions in "
+                        "real time alone")
+                  .source("yade_plugin/README.md, Impacts"));
+        visit("impactWork", &L::impactWork, number("J", "Energy taken by impacts so far"), ReadOnly);
         visit("points", &L::points,
               number("-", "Points along a joint between rigid blocks from when it is about to yield; in space along each "
                           "side of its face. 0: 8, and 5 in space; 3: joints keep the three that they are made with. Every "

@@ -10,8 +10,6 @@ namespace masonry {
 
 namespace {
 
-constexpr double gone = 1 - 1e-9; // damage of a bond that is gone
-
 Quaternionr turnOf(const SceneStore& store, int body) {
     const auto& q = store.bodies.orientation;
     return {q[0][body], q[1][body], q[2][body], q[3][body]};
@@ -62,7 +60,7 @@ bool HandOver::isDue(const SceneStore& store, const JointView& joint, const Size
         least = std::min(least, jump[0]);
         along += jump[1];
         across += jump[2];
-        bond = bond || (size.bonded && *columns.tensionDamage(p, j) < gone);
+        bond = bond || (size.bonded && *columns.tensionDamage(p, j) < bondGone);
     }
     if (!std::isfinite(least + along + across)) return false; // other checks say that
     if (least > opening * std::max(size.along, size.across)) return true;
@@ -99,8 +97,10 @@ double HandOver::release(const JointView& joint) {
             if (!std::strcmp(name, "opening")) number = std::max(number, -irreversible);
         });
     }
-    for (int p = 0; p < geom.points(); ++p)
+    for (int p = 0; p < geom.points(); ++p) {
         geom.group->setViscous(p, j, Vector3r::Zero());
+        geom.group->setImpact(p, j, {});
+    }
     geom.group->joints[j].handed = true;
     return before - stored(joint);
 }

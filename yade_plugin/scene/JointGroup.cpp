@@ -46,6 +46,7 @@ void JointShapes::take(int joint, const JointShapes& from, int other) {
     for (int p = 0; p < points; ++p) {
         setJump(p, joint, from.jumpAt(p, other));
         setViscous(p, joint, from.viscousAt(p, other));
+        setImpact(p, joint, from.impactAt(p, other));
         setShape(p, joint, from.offsetAt(p, other), from.areaAt(p, other));
     }
 }

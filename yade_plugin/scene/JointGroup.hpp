@@ -138,6 +138,10 @@ struct JointShapes : JointGroup {
     std::vector<double> jump[3]; // displacement jump since the reference state: opening and the two slides [m]
     // Stress of JointDamping in the last step [Pa], normal and the two shears; empty while there was no such damping.
     std::vector<double> viscous[3];
+    // Of impacts (JointImpact): their stress in the last step [Pa], normal and the two shears, and the largest speed at
+    // which a subcontact has closed since it was open [m/s]: 0 of one that is open, -1 of one that has come back since,
+    // or was never open. Empty while impacts take no energy.
+    std::vector<double> impact[3], closing;
     std::vector<double> area;      // of a subcontact [m²]
     std::vector<double> offset[3]; // from the centre of body 1 to the subcontact in the reference state [m]
 
@@ -208,6 +212,33 @@ struct JointShapes : JointGroup {
         for (auto& column : viscous)
             column.resize(jump[0].size(), 0);
         damped.resize(byPoints.size());
+    }
+    struct Impact {
+        Vector3r stress = Vector3r::Zero();
+        double closing = -1;
+    };
+    Impact impactAt(int point, int joint) const {
+        const std::size_t i = at(point, joint);
+        return closing.empty() ? Impact() : Impact{vectorAt(impact, i), closing[i]};
+    }
+    void setImpact(int point, int joint, const Impact& value) {
+        if (closing.empty() && value.closing == -1 && value.stress.isZero(0)) return;
+        makeImpacts();
+        setVector(impact, at(point, joint), value.stress);
+        closing[at(point, joint)] = value.closing;
+    }
+    void makeImpacts() {
+        for (auto& column : impact)
+            column.resize(jump[0].size(), 0);
+        closing.resize(jump[0].size(), -1);
+    }
+    void dropImpacts() {
+        for (auto* column : {&impact[0], &impact[1], &impact[2], &closing})
+            column->clear();
+    }
+    // The stress that a subcontact has beside that of the law [Pa].
+    Vector3r stressBesideLaw(int point, int joint) const {
+        return viscousAt(point, joint) + impactAt(point, joint).stress;
     }
     void setJump(int point, int joint, const Vector3r& value) {
         bringPoints();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "JointPlan.hpp"
+#include "JointImpact.hpp"
 #include "Zones.hpp"
 #include "common/Memory.hpp"
 #include "common/Parallel.hpp"
@@ -128,6 +129,11 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
     referenceY_.assign(count, 0);
     momentPlace_.assign(count, -1);
     joined_.assign(count, 0);
+    jointedArea_.assign(count, 0);
+    for (const auto& joint : store.joints)
+        for (int p = 0; p < joint.geom->points(); ++p)
+            for (const auto& side : joint.geom->reference().sides)
+                jointedArea_[side.body] += joint.geom->area(p);
     for (auto& column : turn_)
         column.assign(count, 0);
     for (int b = 0; b < count; ++b) {
@@ -155,6 +161,7 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
 void JointPlan::findIntact(const JointKind& kind, Kind& made) {
     auto& shapes = *kind.shapes;
     const int count = int(shapes.joints.size());
+    if (!kind.attached) shapes.findMiddles();
     if (kind.attached || !shapes.law->knowsIntact()) {
         std::fill_n(shapes.byPoints.begin(), count, 1);
         return;
@@ -163,7 +170,6 @@ void JointPlan::findIntact(const JointKind& kind, Kind& made) {
         for (auto* field : {&shapes.linear, &shapes.damped})
             for (auto* column : {&field->middle[2], &field->turn[0], &field->turn[1]})
                 std::fill(column->begin(), column->end(), 0.0);
-    shapes.findMiddles();
     for (int j = 0; j < count; ++j)
         if (!shapes.byPoints[j] && !shapes.isIntact(j)) shapes.byPoints[j] = 1;
     shapes.bringPoints();
@@ -363,10 +369,16 @@ struct JointPlan::Run {
     const BodyColumns& bodies;
     int from, n; // number of the first joint within its kind, and of joints
     double dt, stiffnessDamping;
+    bool impacts;
     JointFrames frames;
 
-    Run(const JointKind& kind, const Kind& plan, const SceneStore& store, double stiffnessDamping)
-        : kind(kind), plan(plan), bodies(store.bodies), dt(store.scene().dt), stiffnessDamping(stiffnessDamping) {}
+    Run(const JointKind& kind, const Kind& plan, const SceneStore& store)
+        : kind(kind),
+          plan(plan),
+          bodies(store.bodies),
+          dt(store.scene().dt),
+          stiffnessDamping(store.loop->stiffnessDamping),
+          impacts(store.loop->impacts) {}
 
     JointShapes& shapes() const { return *kind.shapes; }
     LawColumns& states() const { return *kind.states->columns.asTheyStand(); } // the step brings them up to date
@@ -376,11 +388,10 @@ struct JointPlan::Run {
 };
 
 // Joints are advanced in runs of whole lanes, which are either all intact or all not.
-double JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const Kind& plan, int from, int n,
-                               double stiffnessDamping) {
-    Run run(kind, plan, store, stiffnessDamping);
+JointPlan::Taken JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const Kind& plan, int from, int n) {
+    Run run(kind, plan, store);
     const unsigned char* byPoints = &kind.shapes->byPoints[from];
-    double taken = 0;
+    Taken taken;
     for (int first = 0; first < n;) {
         int beyond = first + lanes;
         while (beyond < n && byPoints[beyond] == byPoints[first])
@@ -388,9 +399,11 @@ double JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const K
         run.from = from + first;
         run.n = std::min(beyond, n) - first;
         align(run);
-        if (byPoints[first])
-            taken += advancePoints(run);
-        else if (!advanceIntact(run, taken))
+        if (byPoints[first]) {
+            const Taken more = advancePoints(run);
+            taken.damping += more.damping;
+            taken.impacts += more.impacts;
+        } else if (!advanceIntact(run, taken.damping))
             continue; // again, because some joints of the run are not intact any more
         first = beyond;
     }
@@ -488,8 +501,8 @@ void JointPlan::finish(Run& run) {
         (plane_ ? finishRigidInPlane : finishRigid)(run.n, run.frames, onJoints);
 }
 
-// Advances joints by their points. Returns the energy that damping takes [J].
-double JointPlan::advancePoints(Run& run) {
+// Advances joints by their points.
+JointPlan::Taken JointPlan::advancePoints(Run& run) {
     const auto& kind = run.kind;
     const auto& plan = run.plan;
     auto& shapes = run.shapes();
@@ -503,7 +516,8 @@ double JointPlan::advancePoints(Run& run) {
     const bool bonded = properties.tensileStrength > 0 && states.tensionDamage(0, from);
     const JointDamping damping{times * k.normal, times * k.shear, properties.elastic, bonded, properties.friction};
     constexpr double none[most] = {};
-    double sumA[most], sumB[most], taken = 0; // shear stresses of law and damping; the energy that damping takes
+    double sumA[most], sumB[most]; // shear stresses of the law and of what is added to them
+    Taken taken;
     for (int p = 0; p < shapes.points; ++p) {
         const std::size_t i = shapes.at(p, from), shape = shapes.alike ? shapes.shape(p, 0) : i;
         const std::size_t first = std::size_t(p) * stride + from;
@@ -521,16 +535,21 @@ double JointPlan::advancePoints(Run& run) {
                        frames.normalStress);
         const double *normal = frames.normalStress, *a = states.shearStressA(p, from),
                      *b = states.shearStressB(p, from);
-        if (!shapes.viscous[0].empty()) {
+        const double* const change[3] = {frames.step[0], frames.step[1], plane_ ? none : frames.step[2]};
+        if (!shapes.viscous[0].empty() || !shapes.closing.empty()) {
             std::copy_n(a, n, sumA);
             plane_ ? std::fill_n(sumB, n, 0.0) : std::copy_n(b, n, sumB);
             a = sumA;
             b = sumB;
-            const double* const change[3] = {frames.step[0], frames.step[1], plane_ ? none : frames.step[2]};
-            double* const viscous[3] = {&shapes.viscous[0][i], &shapes.viscous[1][i], &shapes.viscous[2][i]};
-            taken += addJointDamping(n, damping, states.regime(p, from), states.tensionDamage(p, from), area, change,
-                                     frames.normalStress, sumA, sumB, viscous);
         }
+        if (!shapes.viscous[0].empty()) {
+            double* const viscous[3] = {&shapes.viscous[0][i], &shapes.viscous[1][i], &shapes.viscous[2][i]};
+            taken.damping += addJointDamping(n, damping, states.regime(p, from), states.tensionDamage(p, from), area,
+                                             change, frames.normalStress, sumA, sumB, viscous);
+        }
+        if (!shapes.closing.empty())
+            taken.impacts += addImpacts({run.bodies, jointedArea_, run.dt, run.impacts}, shapes, p, from, n, area,
+                                        change, frames.normalStress, sumA, sumB);
         if (kind.attached) {
             double* onPoints = &onPoints_[(plane_ ? 2 : 3) * (plan.firstPoint + first)];
             plane_ ? pullNodalInPlane(n, area, normal, a, j0, j1, frames, onPoints)
@@ -660,7 +679,8 @@ void JointPlan::bringToNodes(SceneStore& store) {
     }
 }
 
-double JointPlan::advance(SceneStore& store, double stiffnessDamping) {
+void JointPlan::advance(SceneStore& store) {
+    const double stiffnessDamping = store.loop->stiffnessDamping;
     if (store_ != &store || revision_ != store.revision()) {
         build(store, true);
         giveMemoryBack();
@@ -680,28 +700,34 @@ double JointPlan::advance(SceneStore& store, double stiffnessDamping) {
             endIntact(kind); // without a bond the stress of damping is cut point by point
             kinds_[k].intact = false;
         }
+    for (auto& kind : store.kinds)
+        if (store.loop->impacts && !kind.attached && kind.shapes->law->law().properties().restitution < 1)
+            kind.shapes->makeImpacts();
     const int count = int(order_.size());
-    taken_.assign(batches_.size(), 0);
+    taken_.assign(batches_.size(), {});
     Parallel::instance().overPieces(count, 1, [&](int first, int beyond) {
         for (int place = first; place < beyond; ++place) {
             const int n = order_[place];
             const auto& batch = batches_[n];
-            taken_[n] = advanceBatch(store, store.kinds[batch.kind], kinds_[batch.kind], batch.from, batch.count,
-                                     stiffnessDamping);
+            taken_[n] = advanceBatch(store, store.kinds[batch.kind], kinds_[batch.kind], batch.from, batch.count);
         }
     });
     for (std::size_t k = 0; k < kinds_.size(); ++k)
         if (kinds_[k].intact) store.kinds[k].shapes->behind = true;
-    // The step that follows damping has taken half of its work; after that there is nothing left of it.
-    if (stiffnessDamping == 0)
-        for (auto& kind : store.kinds)
-            kind.shapes->dropViscous();
+    // The step that follows damping or an impact has taken half of its work; after that there is nothing left of it.
+    for (auto& kind : store.kinds) {
+        if (stiffnessDamping == 0) kind.shapes->dropViscous();
+        if (!store.loop->impacts) kind.shapes->dropImpacts();
+    }
     const auto sums = store.scene().forces().sums(store.bodies.size());
     forces_ = sums.forces;
     torques_ = sums.torques;
     bringToBodies();
     if (zones_) bringToNodes(store);
-    return std::accumulate(taken_.begin(), taken_.end(), 0.0);
+    for (const auto& taken : taken_) {
+        store.loop->dampingWork += taken.damping;
+        store.loop->impactWork += taken.impacts;
+    }
 }
 
 } // namespace masonry

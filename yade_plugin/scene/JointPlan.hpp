@@ -18,8 +18,8 @@ namespace masonry {
 
 class JointPlan {
 public:
-    // Makes a step. `stiffnessDamping` is that of JointLoop [s]; returns the energy it takes [J].
-    double advance(SceneStore&, double stiffnessDamping);
+    // Makes a step of the joints of the store's loop, and adds the energies that it takes there.
+    void advance(SceneStore&);
 
 private:
     // What a kind of joints (see JointKind) needs beside its columns in the store.
@@ -79,12 +79,15 @@ private:
     bool noticeBodies(SceneStore&);
     void findIntact(const JointKind&, Kind&);
     void endIntact(const JointKind&);
-    struct Run; // joints of a batch that are advanced together
-    double advanceBatch(SceneStore&, const JointKind&, const Kind&, int from, int count, double stiffnessDamping);
+    struct Run;    // joints of a batch that are advanced together
+    struct Taken { // energies that a step takes [J]
+        double damping = 0, impacts = 0;
+    };
+    Taken advanceBatch(SceneStore&, const JointKind&, const Kind&, int from, int count);
     void align(Run&) const;
     bool advanceIntact(Run&, double& taken);
     bool endsIntact(Run&, const IntactFaces&) const;
-    double advancePoints(Run&);
+    Taken advancePoints(Run&);
     void finish(Run&);
     void shareOut();
     void orderBatches();
@@ -106,6 +109,7 @@ private:
     std::vector<double> turn_[4];    // planar runs only: cosine and sine of half the angle by which a body has turned
     std::vector<double> referenceY_; // of all bodies [m]
     std::vector<unsigned char> joined_; // whether a body has joints
+    std::vector<double> jointedArea_;   // of the joints of every body [m²]
     std::vector<int> momentPlace_;      // of all bodies: place in Zones' rows of moments; -1 if it is rigid
     Zones* zones_ = nullptr;            // null if no joint has a deformable side
     std::vector<PointOnBody> onBodies_;
@@ -116,7 +120,7 @@ private:
     // Scratch of a step. Of every joint between rigid bodies the force on body 1 [N] and the torques about both centres
     // [N m]; of a joint with a deformable side only the moments on the rotations of both bodies [N m].
     std::vector<double> onJoints_;
-    std::vector<double> taken_;    // scratch: energy that damping takes in every batch [J]
+    std::vector<Taken> taken_;     // scratch: of every batch
     std::vector<double> onPoints_; // scratch: force on side 1 of every subcontact with deformable sides [N]
     Vector3r* forces_ = nullptr;   // the host's forces of the present step [N], to which the joints add theirs
     Vector3r* torques_ = nullptr;  // the host's torques of the present step [N m]

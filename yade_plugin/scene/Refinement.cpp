@@ -197,6 +197,9 @@ double refine(const JointView& joint, int count) {
         follow(to, p, from, shares[p]);
         after.shapes->setJump(p, 0, jump);
         after.shapes->setViscous(p, 0, viscous);
+        const auto less = [](const Share& one, const Share& other) { return one.weight < other.weight; };
+        const int nearest = std::max_element(shares[p].begin(), shares[p].end(), less)->point;
+        after.shapes->setImpact(p, 0, before.shapes->impactAt(nearest, 0));
         to.setDissipated(p, 0, lost);
     }
     after.giveTo(joint);
@@ -334,8 +337,13 @@ void Refinement::look(SceneStore& store) {
         for (int p = 0; p < geom.points(); ++p) {
             const auto s = to.joint.phys->state(p);
             const Vector3r stress =
-                Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) + geom.group->viscousAt(p, geom.index);
+<<<<<<< HEAD
+                Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) + geom.group->stressBesideLaw(p, geom.index);
+            to.forces.push_back({geom.offset(p)[to.along], sign * geom.area(p) * stress});
+=======
+                Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) + geom.group->stressBesideLaw(p, geom.index);
             to.forces.push_back({geom.offset(p), sign * geom.area(p) * stress});
+>>>>>>> 65a62416c162b27d783c2b84c53cad576d082cf2
         }
     };
     for (const auto& joint : store.joints) { // in the host's order, so that the sum does not depend on addresses

@@ -35,7 +35,7 @@ Resultant resultantOf(const yade::Scene& scene, const yade::Interaction& interac
     for (int p = 0; p < geom->points(); ++p) {
         const auto s = phys->state(p);
         const Vector3r stress =
-            Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) + geom->group->viscousAt(p, geom->index);
+            Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) + geom->group->stressBesideLaw(p, geom->index);
         const Vector3r force = axes * (geom->area(p) * stress), place = geom->centre(p);
         sum.force += force;
         sum.moment += (0.5 * (present(0, p, place) + present(1, p, place)) - about).cross(force);

@@ -105,8 +105,8 @@ void transferHanded(SceneStore& store, Transfer& to) {
 }
 
 // A record of a joint holds the numbers of JointShapes::readFields(). A record of a subcontact holds its jump [m], the
-// stress of damping in the last step [Pa], the energies dissipated in tension, shear and compression [J/m²], and the
-// numbers of its law.
+// stress of damping in the last step [Pa], what JointShapes::impactAt() gives, the energies dissipated in tension,
+// shear and compression [J/m²], and the numbers of its law.
 void transferJoints(const SceneStore& store, Transfer& to) {
     std::vector<double> records;
     const auto add = [&](double x, double y, double z) { records.insert(records.end(), {x, y, z}); };
@@ -119,9 +119,12 @@ void transferJoints(const SceneStore& store, Transfer& to) {
         for (int p = 0; p < joint.geom->points(); ++p) {
             const Vector3r jump = joint.geom->jump(p);
             const Vector3r viscous = joint.geom->group->viscousAt(p, joint.geom->index);
+            const auto impact = joint.geom->group->impactAt(p, joint.geom->index);
             const auto lost = joint.phys->lost(p);
             add(jump[0], jump[1], jump[2]);
             add(viscous[0], viscous[1], viscous[2]);
+            add(impact.stress[0], impact.stress[1], impact.stress[2]);
+            records.push_back(impact.closing);
             add(lost.tension, lost.shear, lost.compression);
             joint.phys->group->columns->read(p, joint.phys->index,
                                              [&](const char*, double number) { records.push_back(number); });
@@ -139,8 +142,9 @@ void transferJoints(const SceneStore& store, Transfer& to) {
             auto& columns = *joint.phys->group->columns;
             joint.geom->group->setJump(p, joint.geom->index, {next[0], next[1], next[2]});
             joint.geom->group->setViscous(p, joint.geom->index, {next[3], next[4], next[5]});
-            const Energies lost{next[6], next[7], next[8]};
-            next += 9;
+            joint.geom->group->setImpact(p, joint.geom->index, {{next[6], next[7], next[8]}, next[9]});
+            const Energies lost{next[10], next[11], next[12]};
+            next += 13;
             columns.write(p, joint.phys->index, [&](const char*, double& number) { number = *next++; });
             columns.setDissipated(p, joint.phys->index, lost);
         }

@@ -98,6 +98,7 @@ ENERGIES = {
     "refining": "elastic energy that joints got when they were given more points",
     "kinetic": "energy of motion",
     "damping": "energy taken by damping",
+    "impacts": "energy taken by impacts of joints that close",
     "elastic_units": "elastic energy in deformable units",
     "elastic_tension": "elastic energy in joints, from tension",
     "elastic_shear": "elastic energy in joints, from shear",

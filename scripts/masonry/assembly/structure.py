@@ -415,6 +415,13 @@ class Structure:
         self.integrator.massDamping = massDamping
         engine("joints").stiffnessDamping = stiffnessDamping
 
+    def countImpacts(self, real):
+        """Let impacts of joints that close take energy from now on, or not.
+
+        :param real: whether what follows runs in real time
+        """
+        engine("joints").impacts = real
+
     def _massScaling(self):
         """The scaling of masses that the options say, for this structure [-].
 
@@ -753,7 +760,9 @@ class Structure:
             )
 
     def letFall(self):
-        """From now on no drive and no support moves, and no numerical damping brakes blocks that have come loose."""
+        """From now on no drive and no support moves, no numerical damping brakes blocks that have come loose, and impacts of
+        joints that close take energy."""
+        self.countImpacts(True)
         for target in self.held:
             if target.fixed:
                 O.bodies[target.body].state.vel = Vector3.Zero

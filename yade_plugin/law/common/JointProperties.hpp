@@ -44,6 +44,7 @@ struct JointProperties {
     double shearStiffnessLoss = 0;
     double compressionStiffnessLoss = 0.5;
     double bondLossByCrushing = 1;
+    double restitution = 0;
     double initialClosingStiffness = 0;
     double closureLimit = 0;
 
@@ -178,6 +179,15 @@ template <class Visit> void JointProperties::describe(Visit&& visit) {
               .atLeast(0)
               .atMost(1)
               .source("[decided]: law/cyclic_softening/README.md"));
+    visit("restitution", &P::restitution,
+          number("-",
+                 "Speed after over before an impact at an end of the joint that closes after it has been open, without "
+                 "bond, between rigid blocks and while MasonryJointLoop.impacts is on; 1: no loss. With 0 a block that "
+                 "rocks keeps what G. W. Housner's (1963) keeps, or a little more, near what F. Peña, F. Prieto, P. B. "
+                 "Lourenço, A. Campos Costa and J. V. Lemos (2007) measured on blocks of granite")
+              .atLeast(0)
+              .atMost(1)
+              .source("yade_plugin/README.md, Impacts"));
     visit("initialClosingStiffness", &P::initialClosingStiffness,
           number("Pa/m",
                  "Normal stiffness kn0 of a dry joint without stress; 0: joints close with kn, not on a curve. Read "

@@ -12,6 +12,8 @@
 
 namespace masonry {
 
+constexpr double bondGone = 1 - 1e-9; // damage of a bond that is gone
+
 class LawColumns {
 public:
     static constexpr int most = Columns::most; // joints that are advanced at a time

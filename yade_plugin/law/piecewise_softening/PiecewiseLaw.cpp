@@ -61,7 +61,8 @@ bool PiecewiseLaw::reads(const std::string& property) {
                                            "compressiveFractureEnergy",
                                            "capNormal",
                                            "capShear",
-                                           "capLinear"};
+                                           "capLinear",
+                                           "restitution"};
     return all.count(property) > 0;
 }
 

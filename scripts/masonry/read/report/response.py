@@ -348,7 +348,7 @@ def bound(record: Record) -> Iterator[Any]:
 
 
 #: Energies in the legend of the chart, by their names in :func:`masonry.read.curve_figure.energies`.
-ENERGIES = {"tension": "dissipated in tension", "shear": "dissipated in shear", "compression": "dissipated in compression", "damping": "taken by damping", "kinetic": "motion", "friction contacts": "friction of contacts", "damping contacts": "damping of contacts"}  # fmt: skip
+ENERGIES = {"tension": "dissipated in tension", "shear": "dissipated in shear", "compression": "dissipated in compression", "damping": "taken by damping", "impacts": "taken by impacts", "kinetic": "motion", "friction contacts": "friction of contacts", "damping contacts": "damping of contacts"}  # fmt: skip
 
 
 def energy(record: Record) -> Iterator[Any]:
@@ -374,7 +374,7 @@ def energy(record: Record) -> Iterator[Any]:
     columns = {n: v for n, v in columns.items() if n not in rare or v.any()}
     inputs = [n for n in ("external_J", "gravity_J", *rare) if n in columns]
     elastic = [n for n in columns if n.startswith("elastic_")]
-    spent = [n for n in columns if n.startswith("dissipated_") or n in ("friction_contacts_J", "damping_contacts_J", "damping_J", "kinetic_J")]  # fmt: skip
+    spent = [n for n in columns if n.startswith("dissipated_") or n in ("friction_contacts_J", "damping_contacts_J", "damping_J", "impacts_J", "kinetic_J")]  # fmt: skip
     total = sum(map(change, inputs))
     part = lambda value: share(value / total) if total > 0 else written(None)
     lines = [

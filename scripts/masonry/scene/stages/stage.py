@@ -144,6 +144,7 @@ def _carryOut(scene, act, traits, args, settings):
             return _asBefore(scene, over)
         running.loading = traits.grows and not scene.grown
         scene.model.dampByOptions()
+        scene.model.countImpacts(traits.real)
         follows = scene.description.contact is not None
         if follows and running.redoes and running.at.stage == FALL:
             return _follow(scene, name)
