@@ -3,6 +3,7 @@
 #include "BodyCheck.hpp"
 #include "BodyStep.hpp"
 #include "Load.hpp"
+#include "SceneContents.hpp"
 #include "common/Parallel.hpp"
 #include <cstdint>
 

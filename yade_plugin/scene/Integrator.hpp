@@ -9,6 +9,7 @@
 namespace masonry {
 
 class Load;
+class SceneContents;
 
 class Integrator : public EnergyLedger, public GravityWork {
 public:

@@ -337,13 +337,8 @@ void Refinement::look(SceneStore& store) {
         for (int p = 0; p < geom.points(); ++p) {
             const auto s = to.joint.phys->state(p);
             const Vector3r stress =
-<<<<<<< HEAD
-                Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) + geom.group->stressBesideLaw(p, geom.index);
-            to.forces.push_back({geom.offset(p)[to.along], sign * geom.area(p) * stress});
-=======
                 Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) + geom.group->stressBesideLaw(p, geom.index);
             to.forces.push_back({geom.offset(p), sign * geom.area(p) * stress});
->>>>>>> 65a62416c162b27d783c2b84c53cad576d082cf2
         }
     };
     for (const auto& joint : store.joints) { // in the host's order, so that the sum does not depend on addresses
