@@ -120,7 +120,8 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         "--damping-kind",
         choices=["local", "combined"],
         default=USUAL["damping_kind"],
-        help="local damping (the paper's eq. (3)) or combined damping, which does not brake a steady motion",
+        help="local damping (the paper's eq. (3)), which brakes a push, as validation/convergence measures, or combined "
+        "damping, which does not brake a steady motion",
     )
     p.add_argument(
         "--points",
@@ -176,13 +177,6 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         help="; ".join(
             [*(law["meaning"] for law in LAWS.values()), "brittle Coulomb slip"]
         ),
-    )
-    p.add_argument(
-        "--joint-stiffness",
-        choices=["joint", "masonry"],
-        default="joint",
-        help="joints of calcium-silicate masonry: stiffness by the paper's eq. (26), or that with which the masonry has "
-        "the moduli of its table 2",
     )
     p.add_argument(
         "--set",

@@ -17,7 +17,7 @@ SHOWN = 5  # differences that are named
 
 #: Options of which run.json has the value that the table gives.
 COMPARED = {*presets.USUAL, "until", "preset", "joints", "crack_surfaces"}
-COMPARED |= {"joint_stiffness", "density_scaling", "quick", "record", "scale"}
+COMPARED |= {"density_scaling", "quick", "record", "scale"}
 
 
 def compareTable(folder, drawn):

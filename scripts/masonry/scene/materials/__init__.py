@@ -17,7 +17,6 @@ from .assumptions import linesOf
 from .formulas import compressiveFractureEnergy, leastEnergy, masonry
 from .kinds import Masonry, withResidual
 from .published import (
-    CALCIUM_SILICATE_MASONRY,
     DRY_GRANITE_MASONRY,
     calciumSilicate,
     calciumSilicateJoints,
@@ -30,7 +29,6 @@ from .published import (
 )
 
 __all__ = [
-    "CALCIUM_SILICATE_MASONRY",
     "DRY_GRANITE_MASONRY",
     "Masonry",
     "MasonryJoint",

@@ -65,7 +65,7 @@ def withResidual(names: Iterable[str], joints: dict[str, MasonryJoint]) -> list[
 
 def _options(value, first=None):
     """The kind of the options of a scene."""
-    if not hasattr(value, "joint_stiffness"):
+    if not hasattr(value, "joints"):
         raise ValueError(f"{shown(value)} must be the options of a scene")
     return value
 
@@ -100,7 +100,6 @@ KINDS = {
     "unit": isA(MasonryMat),
     "joints": dictOf(isA(MasonryJoint), "bed"),
     "units": dictOf(isA(MasonryMat)),
-    "softer": orNone(function),
     "choose": orNone(function),
     "varied": _varied,
     "brief": flag,
@@ -130,7 +129,6 @@ class Masonry:
         leaves it as it is
     :param units: dict of MasonryMat by the ``kind`` of a block, for example ``{"lintel": concrete}``; other kinds are of
         the unit
-    :param softer: function without arguments that gives the same with ``--joint-stiffness masonry``
     :param choose: function (block1, block2, geom) of your own, of the records of two bricks or None for a platen; it
         returns the name of a joint, or None for the rule above
     :param brief: whether a scene prints only how many properties are assumed, as of a published set
@@ -139,7 +137,6 @@ class Masonry:
     unit: MasonryMat
     joints: dict
     units: dict = field(default_factory=dict)
-    softer: Callable[[], Masonry] | None = None
     choose: Callable[..., str | None] | None = None
     #: What :meth:`vary` was given: joint, property, function and step.
     varied: list = field(default_factory=list)
@@ -334,19 +331,11 @@ class Masonry:
 
     @takes(args=_options, connectors=plainly)
     def variant(self, args: Any, connectors: Any = None) -> Masonry:
-        """A copy for the options ``--joints``, ``--joint-stiffness``, ``--crack-surfaces`` and ``--field``; this one stays as it
-        is.
+        """A copy for the options ``--joints`` and ``--field``; this one stays as it is.
 
         :param connectors: names of ties, springs and fibre layers of the scene, whose fields are none of the joints, or None
         """
-        source = self
-        if args.joint_stiffness != "joint":
-            if not self.softer:
-                raise Refused(
-                    f"--joint-stiffness {args.joint_stiffness}: the joints of this masonry have no such variant"
-                )
-            source = self.softer()
-        copies = {name: copied(joint) for name, joint in source.joints.items()}
+        copies = {name: copied(joint) for name, joint in self.joints.items()}
         if args.joints == "brittle":
             copies = {
                 name: joint if joint.elastic else joint.brittleCoulomb()
@@ -355,12 +344,11 @@ class Masonry:
         elif args.joints != next(iter(LAWS)):
             for joint in copies.values():
                 joint.law = args.joints
-        units = {kind: copied(mat) for kind, mat in source.units.items()}
+        units = {kind: copied(mat) for kind, mat in self.units.items()}
         own = Masonry(
-            copied(source.unit),
+            copied(self.unit),
             copies,
             units,
-            None,
             self.choose,
             [*self.varied],
             self.brief,

@@ -11,26 +11,14 @@ from typing import Any
 from yade import Vector3
 from yade.wrapper import MasonryJoint, MasonryMat
 
-from ...arguments import flag, isNumber, number, oneOf, orNone, shown, takes
+from ...arguments import flag, isNumber, number, orNone, shown, takes
 from ...assembly.given import state
 from .kinds import Masonry, byName
 
 
-STIFFNESS = oneOf("joint", "masonry")  # the kind of an argument
-
-
-@takes(stiffness=STIFFNESS)
-def calciumSilicate(stiffness: str = "joint") -> Masonry:
-    """Calcium-silicate masonry of the TUD-COMP walls, for :class:`masonry.scene.scene.Scene`.
-
-    :param stiffness: as of :func:`calciumSilicateJoints`
-    """
-    return Masonry(
-        calciumSilicateUnit(),
-        calciumSilicateJoints(stiffness=stiffness),
-        softer=lambda: calciumSilicate("masonry"),
-        brief=True,
-    )
+def calciumSilicate() -> Masonry:
+    """Calcium-silicate masonry of the TUD-COMP walls, for :class:`masonry.scene.scene.Scene`."""
+    return Masonry(calciumSilicateUnit(), calciumSilicateJoints(), brief=True)
 
 
 #: Young's modulus [Pa] of dry granite masonry at each vertical load [kN] of the tests (Vanin et al. 2017).
@@ -144,14 +132,6 @@ def calciumSilicateUnit() -> MasonryMat:
     return state(unit)
 
 
-#: Height and length of a calcium-silicate unit, mortar included: the distances between two bed joints and between two
-#: head joints [m].
-BED_SPACING, HEAD_SPACING = 0.081, 0.220
-
-#: "Modulus of elasticity Eu" [Pa] in the paper's table 2, by joint. The table has it among the properties of the
-#: interface, but eq. (26) does not use it: it is the modulus of the masonry, across its bed and its head joints.
-CALCIUM_SILICATE_MASONRY = {"bed": 3174e6, "head": 2212e6}
-
 DECIDED = "assumed by calciumSilicateJoints(); the paper gives no value"
 
 #: What the paper does not say of bed and head joints, and what it does not say of the crack joints of a brick.
@@ -180,10 +160,8 @@ CRACK_ASSUMED = [
 ]
 
 
-@takes(brittle=flag, stiffness=STIFFNESS)
-def calciumSilicateJoints(
-    brittle: bool = False, stiffness: str = "joint"
-) -> dict[str, MasonryJoint]:
+@takes(brittle=flag)
+def calciumSilicateJoints(brittle: bool = False) -> dict[str, MasonryJoint]:
     """Support, bed, head and crack joints of the calcium-silicate walls, as a dict by name.
 
     Pairs of units get the first of support, bed and head that fits. The crack joint is for the halves of one brick, and
@@ -198,18 +176,11 @@ def calciumSilicateJoints(
     surface. The crack surface is ten times as stiff as a bed joint. In series with rigid half bricks, whose Young's
     modulus is E and whose length is L, that leaves 0.99 E/L.
 
-    With eq. (26) the masonry is stiffer than the moduli of table 2, CALCIUM_SILICATE_MASONRY, say: 4079 MPa across its
-    bed joints and 4507 MPa across its head joints, not 3174 and 2212 MPa. ``stiffness="masonry"`` is the variant that
-    has these: 1/kn = spacing (1/Eu - 1/E), which is 116 N/mm³ for the bed and 18.6 N/mm³ for the head joint, and
-    ks = kn/(2(1 + nu)). The closure at the compressive strength ucp = n fcp/kn stays as it is, 1.54 mm for the bed joint
-    and 1.21 mm for the head joint, so n becomes smaller as kn does. Table 2's n is the ratio to an elastic closure with
-    the kn of eq. (26); with the same n a softer kn would put the peak at 4.5 mm and 22 mm, and Gc would be too small
-    for it. Support joints follow the bed joint. Crack joints stay: they are brick, and table 2 says nothing of them.
+    With eq. (26) the masonry is stiffer than the moduli of table 2 say: 4079 MPa across its bed joints and 4507 MPa across
+    its head joints, not 3174 and 2212 MPa. The closure at the compressive strength is 1.54 mm for the bed joint and 1.21 mm
+    for the head joint.
 
     :param brittle: whether to give the brittle Coulomb slip joints instead, for comparison
-    :param stiffness: ``"joint"`` for the stiffnesses of eq. (26), ``"masonry"`` for those that give the masonry the
-        moduli of table 2
-    :raises ValueError: if ``stiffness`` is neither
     """
     bed = MasonryJoint(name="bed", jointSet="brick", direction=BED_DIRECTION)
     head = MasonryJoint(
@@ -219,7 +190,6 @@ def calciumSilicateJoints(
         compressiveStrength=5.93e6,
         compressiveFractureEnergy=31500,
     )
-    # before kn of the bed joint changes
     crack = MasonryJoint(
         name="crack",
         jointSet="within one brick",
@@ -233,9 +203,6 @@ def calciumSilicateJoints(
         residualFriction=0.75,
         cap=False,
     )
-    if stiffness == "masonry":
-        for joint, spacing in ((bed, BED_SPACING), (head, HEAD_SPACING)):
-            _softenTo(joint, CALCIUM_SILICATE_MASONRY[joint.name], spacing)
     support = MasonryJoint(
         name="support",
         jointSet="support",
@@ -247,20 +214,6 @@ def calciumSilicateJoints(
         state(joint, **dict.fromkeys(CALCIUM_SILICATE_ASSUMED, DECIDED))
     state(crack, **dict.fromkeys(CRACK_ASSUMED, DECIDED))
     return byName([state(support), bed, head, crack], brittle)
-
-
-def _softenTo(joint, masonry, spacing):
-    """Give a joint the stiffness with which masonry of calcium-silicate units has this modulus [Pa] across joints with
-    this spacing [m]; the closure at its compressive strength stays."""
-    unit = calciumSilicateUnit()
-    kn = 1 / (spacing * (1 / masonry - 1 / unit.young))
-    joint.updateAttrs(
-        {
-            "peakRatio": joint.peakRatio * kn / joint.normalStiffness,
-            "normalStiffness": kn,
-            "shearStiffness": kn / (2 * (1 + unit.poisson)),
-        }
-    )
 
 
 def graniteUnit() -> MasonryMat:
