@@ -26,7 +26,9 @@ parser.add_argument(
     default="fixed",
     help="whether the vertical load stays in place or moves with the wall",
 )
-parser.set_defaults(crack_surfaces="off")
+# The stiffness of these joints was measured, and lets the toe give way: with 3 points the peak is 4 % higher than with 16, with
+# 6 it is within 1 %.
+parser.set_defaults(crack_surfaces="off", points="6,6")
 args = parser.parse_args()
 
 scene = Scene(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Points of the joints of a scene: along them by ``--subcontacts``, and across them, in space, by ``--rows``."""
+"""Points of the joints of a scene: ``--points``, in the plane along a joint, in space along each side of its face."""
 
 import pytest
 from masonry import Scene, bricks, materials
@@ -38,63 +38,49 @@ def apart(values):
     return sorted({round(v, 9) for v in values})
 
 
-@pytest.mark.parametrize(
-    "words, along, across",
-    [
-        ((), 3, 3),
-        (("--rows", "5"), 3, 5),
-        (("--subcontacts", "5"), 5, 3),
-        (("--rows", "5", "--subcontacts", "5"), 5, 5),
-    ],
-)
-def test_rows_lie_through_the_thickness_and_subcontacts_along_the_wall(
-    tmp_path, scene, words, along, across
-):
+@pytest.mark.parametrize("words, count", [((), 3), (("--points", "5"), 3), (("--points", "5,5"), 5)])  # fmt: skip
+def test_joints_in_space_begin_with_points_along_both_sides(tmp_path, scene, words, count):  # fmt: skip
     points = bedPoints(strip(tmp_path, *words))
-    assert len(points) == along * across
-    for axis, count in ((0, along), (1, across)):
+    assert len(points) == count**2
+    for axis in (0, 1):
         places = apart((p[axis] - points[0][axis]) / UNIT[axis] for p in points)
         expected = [v + min(places) for v in RULES[count]]
         assert places == pytest.approx(expected, abs=1e-8)
 
 
 def test_a_scene_in_the_plane_has_one_row(tmp_path, scene):
-    points = bedPoints(strip(tmp_path, "--subcontacts", "5", plane=True))
+    points = bedPoints(strip(tmp_path, "--points", "5,5", plane=True))
     assert len(points) == 5 and len(apart(p[1] for p in points)) == 1
 
 
-def test_a_strip_that_bends_cracks_at_a_force_that_settles_with_more_rows(
+def test_a_strip_that_bends_cracks_at_a_force_that_settles_with_more_points(
     tmp_path, scene
 ):
     """With three rows the middle of a joint, with two thirds of its area, cracks at once, and a quarter too late."""
     peaks = {}
-    for rows in (None, 3, 5, 9):
-        words = ["--rows", str(rows)] if rows else []
-        bent = strip(tmp_path / str(rows), *words, courses=8)
+    for points in (None, "3", "5", "9,9"):
+        words = ["--points", points] if points else []
+        bent = strip(tmp_path / str(points), *words, courses=8)
         middle = bent.handle(4, name="middle")
         bent.settle()
         bent.push(middle, 0.4, direction=(0, 1, 0))
         bent.finish()
-        peaks[rows] = readRun(str(tmp_path / str(rows)))["peak_base_shear_kN"]
-    assert peaks[None] == peaks[3]
-    assert 1.15 < peaks[3] / peaks[9] < 1.4
-    assert peaks[5] == pytest.approx(peaks[9], rel=0.03)
+        peaks[points] = readRun(str(tmp_path / str(points)))["peak_base_shear_kN"]
+    assert peaks[None] == peaks["5"]
+    assert 1.15 < peaks["3"] / peaks["9,9"] < 1.4
+    assert peaks["5"] == pytest.approx(peaks["9,9"], rel=0.03)
 
 
 @pytest.mark.parametrize(
     "words, plane, message",
     [
-        (("--rows", "5"), True, "--rows 5: this scene is in the x-z plane"),
-        (("--rows", "5", "--blocks", "deformable"), False, "--rows 5: joints of deformable units have the points of"),
-        (("--rows", "2"), False, "'2' must be a whole number from 3 to 100"),
-        (("--refine", "12"), False, "--refine 12: this scene is in space"),
-        (("--refine", "12", "--blocks", "deformable"), True, "--refine 12: joints of deformable units have the points of"),
-        (("--refine", "12", "--subcontacts", "12"), True, "--refine 12: it must be above --subcontacts, which is 12"),
-        (("--refine", "12", "--subcontacts", "2"), True, "--refine 12: it must be above --subcontacts, which is 2"),
-        (("--refine", "3"), True, "'3' must be 0 or a whole number from 4 to 100"),
+        (("--points", "5", "--blocks", "deformable"), False, "--points 5: joints of deformable units have the points of"),
+        (("--points", "2"), False, "'2' must be a whole number from 3 to 100"),
+        (("--points", "12,4,4"), True, "'12,4,4' must be one or two whole numbers"),
+        (("--points", "5,6"), True, "'5,6': a joint cannot have fewer points from when it yields than before"),
     ],
 )  # fmt: skip
-def test_rows_that_would_do_nothing_or_harm_are_refused(
+def test_points_that_would_do_nothing_or_harm_are_refused(
     tmp_path, scene, capsys, words, plane, message
 ):
     with pytest.raises(SystemExit) as refused:

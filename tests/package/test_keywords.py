@@ -18,7 +18,7 @@ VALUES = {
     "rate": (7.0, 100.0),
     "until": (3.0, 4.0),
     "damping": (0.3, 0.5),
-    "subcontacts": (4, 5),
+    "points": ("4", "5"),
     "joints": ("brittle", "cyclic"),
     "crack_surfaces": ("off", "on"),
     "vtk_every": (0.5, 2.0),
@@ -123,7 +123,7 @@ def test_only_what_differs_from_preset_and_script_goes_beside_a_preset(form, wor
 
 @pytest.mark.parametrize("form", ["own", "list"])
 def test_keywords_are_checked_with_all_problems_at_once(form):
-    wrong = dict(joints="britle", rate=-50, rat=3, lean=1, resume="x", subcontacts=2.5, out=[], damping=True, set="bed=1", until=1, history="1")  # fmt: skip
+    wrong = dict(joints="britle", rate=-50, rat=3, lean=1, resume="x", points=2.5, out=[], damping=True, set="bed=1", until=1, history="1")  # fmt: skip
     with pytest.raises(Refused) as refused:
         made(form, [], **wrong)
     said = str(refused.value)
@@ -133,7 +133,7 @@ def test_keywords_are_checked_with_all_problems_at_once(form):
         "no option rat; did you mean rate?",
         "lean: 1 must be True or False",
         "no option resume; --resume is for the command line alone",
-        "subcontacts: '2.5' must be a whole number",
+        "points: '2.5' must be a whole number",
         "out: [] must be a number or a text",
         "damping: True must be a number or a text",
         "set: 'bed=1' must read JOINT.PROPERTY=VALUE",

@@ -112,9 +112,7 @@ def state():
         "error of the balance [-]": [balance.pop("error")],
         # no reference has joints that get more points, or impacts
         "energy [J]": [
-            v
-            for name, v in balance.items()
-            if name not in ("refining", "impacts")
+            v for name, v in balance.items() if name not in ("refining", "impacts")
         ],
         "subcontacts in a regime": [
             float(regimes.count(r))

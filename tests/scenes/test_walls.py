@@ -158,7 +158,7 @@ def test_help_prints_the_options_without_running(tmp_path):
     assert run.returncode == 0
     for (
         option
-    ) in "--until --rate --blocks --subcontacts --damping --dt-fraction --crack-surfaces --set --out --vtk-every --no-vtk --checkpoint-every --resume".split():
+    ) in "--until --rate --blocks --points --damping --dt-fraction --crack-surfaces --set --out --vtk-every --no-vtk --checkpoint-every --resume".split():
         assert option in run.stdout
     assert not os.listdir(tmp_path)
 
@@ -309,11 +309,11 @@ def test_a_preset_runs_and_says_what_it_promises(runScene, name):
 
 
 def test_a_preset_whose_option_is_overridden_says_so_twice(runScene):
-    words = ["--preset", "fast", "--subcontacts", "2", "--until", "0.3", "--no-vtk"]
+    words = ["--preset", "fast", "--points", "4", "--until", "0.3", "--no-vtk"]
     process, out = runScene("wall_comp4", *words)
-    note = "preset fast without its promise: --subcontacts beside it"
+    note = "preset fast without its promise: --points beside it"
     assert process.stdout.count(note) == 2
-    preset = {"name": "fast", "overrides": ["subcontacts"], "promise": None}
+    preset = {"name": "fast", "overrides": ["points"], "promise": None}
     assert readRun(out)["preset"] == preset
 
 

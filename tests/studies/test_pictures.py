@@ -401,7 +401,7 @@ def test_studies_of_other_walls_or_options_are_not_joined(studies):
 
 def test_studies_of_other_rates_and_meshes_are_joined(studies):
     for (name, more), directory in zip(
-        {"accurate": {}, "fast": {"rate": 20, "subcontacts": 2}}.items(), studies
+        {"accurate": {}, "fast": {"rate": 20, "points": "4"}}.items(), studies
     ):
         options = {"preset": name, **more}
         study = {"scene": "wall_comp4", "runs": 15, "options": options, "vary": {}}

@@ -199,8 +199,8 @@ CASES = {
     "    dilatancy": lambda: plugin(
         "--set bed.dilatancy=0.1 --set bed.dilatancyDecay=100"
     ),
-    "    two subcontacts": lambda: plugin("--subcontacts 2"),
-    "    eight subcontacts": lambda: plugin("--subcontacts 8"),
+    "    three points": lambda: plugin("--points 3"),
+    "    twelve points": lambda: plugin("--points 12"),
     "    YADE's loop and integrator": lambda: plugin(functors=True),
     "deformable units": lambda: plugin("--blocks deformable"),
     "deformable units, at the peak": lambda: plugin("--blocks deformable", until=2.5),

@@ -31,8 +31,8 @@ STUDIES = [
     (
         "arch of 7, acceleration",
         POINTS,
-        (2, 3, 5, 8),
-        lambda n: acceleration(oppenheim(), False, words=["--subcontacts", str(n)]),
+        (3, 5, 8),
+        lambda n: acceleration(oppenheim(), False, words=["--points", f"{n},{n}"]),
     ),
     (
         "arch of 7, tilt",

@@ -61,7 +61,7 @@ def options(wall, joints, rate):
         for name, value in BLIND["properties"].items():
             for kind in KINDS:
                 words += ["--set", f"{kind}.{name}={value:g}"]
-    return [*words, "--subcontacts", str(POINTS), "--no-vtk"]
+    return [*words, "--points", f"{POINTS},{POINTS}", "--no-vtk"]
 
 
 def folder(wall, joints, results):

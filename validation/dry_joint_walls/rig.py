@@ -27,7 +27,7 @@ BLOCK, LOAD_HEIGHT = (0.200, 0.200, 0.150), 1.325  # [m], as of scripts/wall_dry
 
 parser = options.parser(__doc__, until=30, rate=compare_loops.RATE)
 parser.add_argument("--rig", metavar="KN_PER_MM", type=float, default=37.0, help="stiffness of the base along x (default: 37); 0: held")  # fmt: skip
-parser.set_defaults(crack_surfaces="off", subcontacts=6, history=measured.historyPath(WALL))  # fmt: skip
+parser.set_defaults(crack_surfaces="off", points="6,6", history=measured.historyPath(WALL))  # fmt: skip
 args = parser.parse_args()
 
 level = measured.levelOf(WALL)

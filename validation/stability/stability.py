@@ -260,7 +260,7 @@ AXES = {
     "size / usual": points([1 / 220, 0.01, 0.1, 1, 10 / 0.22], size),
     "gravity": [Point("off", gravity=False), Point("on")],
     "points along a joint": points(
-        [1, 2, 3, 4, 6, 10, 30], lambda v: dict(words=f"--subcontacts {v}")
+        [3, 4, 6, 10, 30], lambda v: dict(words=f"--points {v}")
     ),
     "loss of shear stiffness, cyclic law": points([0, 0.3, 0.6, 0.9, 0.99], losing),
     "loss of stiffness by crushing": points(

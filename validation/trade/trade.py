@@ -56,8 +56,7 @@ RUNS = {
     "reference": [f"{QUICK} --divisions 3 --rate 20"],
     "rigid": [""],
     "rigid: rate": [f"--rate {v}" for v in (50, 100, 200)],
-    "rigid: subcontacts": [f"--subcontacts {n}" for n in (2, 6, 12)],
-    "rigid: rate and subcontacts": ["--rate 100 --subcontacts 2"],
+    "rigid: points": [f"--points {n}" for n in ("3", "5", "12", "12,12")],
     "rigid: cyclic law": ["--joints cyclic"],
     "rigid: density scaling": ["--density-scaling 25"],
     "rigid: damping": ["--damping 0.4"],
@@ -88,7 +87,7 @@ PATCH = (2, 3)
 KINDS = (
     "blocks",
     "divisions",
-    "subcontacts",
+    "points",
     "crack_surfaces",
     "damping_kind",
     "mass_scaling",
@@ -191,10 +190,10 @@ def errors(wall, runs):
 def kind(wall, options):
     """What makes the step of a run as dear as it is: options of a scene that has such steps."""
     chosen = readRun(folder(wall, options))["options"]
-    chosen = {name: chosen[name] for name in KINDS}
+    chosen = {name: chosen[name] for name in KINDS if chosen[name] is not None}
     rigid = chosen["blocks"] == "rigid"
-    for name in ("divisions", "mass_scaling") if rigid else ("subcontacts",):
-        chosen.pop(name)
+    for name in ("divisions", "mass_scaling") if rigid else ("points",):
+        chosen.pop(name, None)
     return " ".join(f"{asOption(n)} {v}" for n, v in chosen.items())
 
 

@@ -49,9 +49,9 @@ Points refinedPoints(const JointReference& r, const Points& first, int count) {
     return all;
 }
 
-// The points among which a place of a joint lies, with weights that keep what is linear over the face: one point, the ends
-// of the shortest stretch of a row, or the corners of the smallest triangle. In a rectangle of four points two triangles
-// are equally small, and each counts for a half.
+// The points among which a place of a joint lies, with weights that keep what is linear over the face: one point, the
+// ends of the shortest stretch of a row, or the corners of the smallest triangle. In a rectangle of four points two
+// triangles are equally small, and each counts for a half.
 struct Share {
     int point;
     double weight;
@@ -69,25 +69,25 @@ std::vector<Share> sharesAt(const Vector3r& place, const Points& points) {
         smallest = std::min(size, smallest);
         found.push_back(std::move(shares));
     };
-    const auto way = [&](int from, int to) { return Vector3r(points[to].offset - points[from].offset); };
+    const auto between = [&](int from, int to) { return Vector3r(points[to].offset - points[from].offset); };
     const bool row = isRow(points);
     for (int a = 0; a < count; ++a) {
         const Vector3r there = place - points[a].offset;
         if (there.norm() < nearest) closest = a;
         nearest = std::min(nearest, there.norm());
         for (int b = a + 1; b < count; ++b) {
-            const Vector3r ab = way(a, b);
+            const Vector3r ab = between(a, b);
             if (row) {
                 const double t = there.dot(ab) / ab.squaredNorm();
                 take(ab.squaredNorm(), {{a, 1 - t}, {b, t}});
                 continue;
             }
             for (int c = b + 1; c < count; ++c) {
-                const Vector3r ac = way(a, c);
+                const Vector3r ac = between(a, c);
                 const double area = ab.cross(ac)[0], size = ab.squaredNorm() + ac.squaredNorm();
                 if (std::abs(area) <= 1e-6 * size) continue;
                 const double u = there.cross(ac)[0] / area, v = ab.cross(there)[0] / area;
-                take(size + way(b, c).squaredNorm(), {{a, 1 - u - v}, {b, u}, {c, v}});
+                take(size + between(b, c).squaredNorm(), {{a, 1 - u - v}, {b, u}, {c, v}});
             }
         }
     }
@@ -139,9 +139,9 @@ struct Alone {
 
 double sum(const Energies& e) { return e.tension + e.shear + e.compression; }
 
-// Gives a point of a joint the state among old points. Jumps and shear stresses are linear over the face. All else comes from
-// that of the old points which has lost least: the law itself opens or closes it as far as the face is open or closed here, and
-// last returns a shear stress beyond the strength. So no number of a law needs to be known.
+// Gives a point of a joint the state among old points. Jumps and shear stresses are linear over the face. All else
+// comes from that of the old points which has lost least: the law itself opens or closes it as far as the face is open
+// or closed here, and last returns a shear stress beyond the strength. So no number of a law needs to be known.
 void follow(LawColumns& to, int point, const LawColumns& from, const std::vector<Share>& shares) {
     int whole = shares[0].point;
     double opening = 0;
@@ -224,9 +224,7 @@ public:
     Vector3r at(const Vector3r& offset) const { return (row(offset) * field_).transpose(); }
 
 private:
-    Eigen::RowVector3d row(const Vector3r& offset) const {
-        return {1, offset[1] - middle_[1], offset[2] - middle_[2]};
-    }
+    Eigen::RowVector3d row(const Vector3r& offset) const { return {1, offset[1] - middle_[1], offset[2] - middle_[2]}; }
     Vector3r middle_;
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver_; // points in a row leave one direction open
     Eigen::MatrixXd field_;
@@ -241,8 +239,8 @@ bool sameMoments(const Points& one, const Points& other) {
     const auto moments = [](const Points& points) {
         Eigen::Matrix3d sums = Eigen::Matrix3d::Zero(); // of 1, b1, b2 with each other
         for (const auto& p : points) {
-            const Vector3r way = p.offset - points[0].offset;
-            const Vector3r terms(1, way[1], way[2]);
+            const Vector3r arm = p.offset - points[0].offset;
+            const Vector3r terms(1, arm[1], arm[2]);
             sums += p.area * terms * terms.transpose();
         }
         return sums;
@@ -261,7 +259,8 @@ Refinement::Limit::Limit(const JointKind& kind, int wanted) : columns_(kind.stat
     const auto then = refinedPoints(first, now, count);
     if (then.size() <= now.size() || !sameMoments(now, then)) return;
     crushes_ = p.cap && columns.law().compression().elasticLimit > 0;
-    cracks_ = !p.cap || !row;
+    cracks_ = (!p.cap || !row) && (p.tensileStrength > 0 || p.cohesion > 0);
+    if (!crushes_ && !cracks_) return;
     points_ = count;
     normal_ = p.capNormal;
     shear_ = p.capShear;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// More points for joints between rigid blocks that are about to yield. While a joint is elastic, few points along it say
-// exactly what it does; where crushing or a crack begins and how far it reaches, only many do. yade_plugin/README.md, Points
-// where a joint yields, says what the new points take over.
+// More points for joints between rigid blocks that are about to yield. While a joint is elastic, few points along it
+// say exactly what it does; where crushing or a crack begins and how far it reaches, only many do.
+// yade_plugin/README.md, Points where a joint yields, says what the new points take over.
 #pragma once
 #include "SceneStore.hpp"
 
@@ -14,13 +14,14 @@ public:
         0.9; // of the elastic limit of the cap, or of the strength, at which a joint gets its points
     static constexpr double company = 0.75; // the same of joints that get theirs when another does: reading all joints
                                             // of a scene again takes as long as some dozen steps
-    static constexpr int pointsOfRow = 8;   // that a joint gets whose points stand in a row, unless JointLoop::points says
-    static constexpr int pointsOfSide = 5;  // the same along each side of a joint in space
-    static constexpr int fewest = 3;        // points along a side that have the true rotational stiffness
-    static constexpr int most = 100;        // points along a side
+    static constexpr int pointsOfRow =
+        8; // that a joint gets whose points stand in a row, unless JointLoop::points says
+    static constexpr int pointsOfSide = 5; // the same along each side of a joint in space
+    static constexpr int fewest = 3;       // points along a side that have the true rotational stiffness
+    static constexpr int most = 100;       // points along a side
 
-    // Refines the joints of a scene that are about to yield, as JointLoop::points says, if this is a step to look at them.
-    // Joints with fewer than three points along a side keep them.
+    // Refines the joints of a scene that are about to yield, as JointLoop::points says, if this is a step to look at
+    // them. Joints with fewer than three points along a side keep them.
     void look(SceneStore&);
     // After the joints have made their step: counts what joints that were refined before it give or take by the forces
     // of the step before, half of which act along this one.
@@ -32,8 +33,8 @@ public:
     static bool setPoints(SceneStore&, const std::vector<double>& refined);
 
 private:
-    // Stresses of a kind of joints at which one of them gets its points: near the elastic limit of the cap, and, of joints in
-    // space and of those that cannot crush, near the first yield of the bond.
+    // Stresses of a kind of joints at which one of them gets its points: near the elastic limit of the cap, and, of
+    // joints in space and of those that cannot crush, near the first yield of the bond.
     class Limit {
     public:
         Limit(const JointKind&, int wanted);
@@ -46,7 +47,7 @@ private:
 
         const LawColumns* columns_;
         int points_ = 0;
-        bool crushes_ = false, cracks_ = false; // whether its limits in compression, and those of its bond count
+        bool crushes_ = false, cracks_ = false;      // whether its limits in compression, and those of its bond count
         double normal_ = 0, shear_ = 0, linear_ = 0; // shape of the cap, Cnn, Css [-] and Cn [Pa]
         double elasticLimit_ = 0;                    // of the cap [Pa]
         // Normal and shear stress [Pa] of the bond up to which the law need not be called.

@@ -70,8 +70,10 @@ def count(text, high, low=1):
 def points(text):
     """The text of ``--points``: one number of points, or two of which the first is not below the second. Raises
     argparse.ArgumentTypeError."""
-    then, _, first = text.partition(",")
-    if count(first or str(FEWEST), 100, FEWEST) > count(then, 100, FEWEST):
+    numbers = [count(part, 100, FEWEST) for part in text.split(",")]
+    if len(numbers) > 2:
+        raise argparse.ArgumentTypeError(f"'{text}' must be one or two whole numbers")
+    if numbers[-1] > numbers[0]:
         raise argparse.ArgumentTypeError(
             f"'{text}': a joint cannot have fewer points from when it yields than before"
         )
