@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Elastic behaviour: stiffness of joints, cantilevers and clamped panels, patch tests, waves."""
+"""Elastic behaviour: stiffness of joints, cantilevers of deformable units, patch tests, waves."""
 
 import math
 
@@ -18,7 +18,7 @@ from masonry.bricks import boxCorners as corners
 from structures import box, elastic, fix, mat
 from yade import O, Quaternion, Vector3
 
-JOINTS, BEAMS = "Stiffness of a joint", "Cantilevers and clamped panels"
+JOINTS, BEAMS = "Stiffness of a joint", "Cantilevers of deformable units"
 PATCH, WAVES = "Patch tests in space", "Waves"
 BRICK = (0.22, 0.102, 0.081)  # [m]
 
@@ -117,84 +117,7 @@ def joint_turns_2(quick):
     return 3 * true, measured
 
 
-# -- beams of rigid blocks --------------------------------------------------------------------------------------------
-
-SIZE, COUNT = (0.4, 0.2, 0.1), 10  # a block [m], and how many there are
-KN, KS = 4e10, 1.6e10  # [Pa/m]
-
-
-def beam(clamped, force=1000.0):
-    """Stiffness of a stack of rigid blocks pushed at its top: expected and measured [N/m].
-
-    Joints stand between the blocks and at both ends, so that a beam of bending stiffness E·I = kn·s·I and shear stiffness
-    G·A = ks·s·A, with the distance s of the joints, is divided by them. What is expected is the sum over the joints, whose
-    shear is uniform, so that the factor 1.2 of a solid section is 1 here.
-    """
-    O.reset()
-    length, thickness, height = SIZE
-    fix(box((0, 0, -height), SIZE, mat()))
-    for n in range(COUNT):
-        box((0, 0, n * height), SIZE, mat(), inPlane=True)
-    top = box((0, 0, COUNT * height), SIZE, mat(), inPlane=True)
-    if clamped:
-        O.bodies[top].state.blockedDOFs = "yXYZ"
-    level = COUNT * height
-    load = MasonryLoad(body=top, point=(length / 2, thickness / 2, level))
-    joint = elastic(KN)
-    joint.shearStiffness = KS
-    engines(
-        [joint],
-        loads=[load],
-        gravity=(0, 0, 0),
-        damping=0.3,
-        dampingKind="local",
-    )
-    connect()
-    O.dt = 0.8 * criticalTimeStep()[0]
-    state, most = O.bodies[top].state, 60000
-    for n in range(most):
-        if n % 20 == 0 and n <= 4000:
-            x = n / 4000
-            load.force = (force * x * x * (3 - 2 * x), 0, 0)
-        O.step()
-    inertia, area = thickness * length**3 / 12, thickness * length
-    turned = moved = 0.0
-    # the moment at a joint is M0 + F·(level - z); a clamped top has a moment that leaves it upright
-    lever = [level - n * height for n in range(COUNT + 1)]
-    own = -force * sum(lever) / len(lever) if clamped else 0.0
-    for arm in lever:
-        turned = (own + force * arm) / (KN * inertia)
-        moved += turned * arm + force / (KS * area)
-    where = Vector3(length / 2, thickness / 2, level)
-    arm = where - state.refPos
-    direction = (state.pos + state.ori * arm - state.refPos - arm)[0]
-    return force / moved, force / direction
-
-
-DISCRETE = "sum over the joints of 1/(h³/3EI + h/GA), E = kn·s, G = ks·s"
-
-
-@case(
-    BEAMS,
-    "stiffness of a cantilever of 10 rigid blocks [N/m]",
-    DISCRETE,
-    aim=0.005,
-    quick=True,
-)
-def cantilever_rigid(quick):
-    return beam(False)
-
-
-@case(
-    BEAMS,
-    "stiffness of a clamped panel of 10 rigid blocks [N/m]",
-    DISCRETE.replace("3EI", "12EI"),
-    aim=0.005,
-    quick=True,
-)
-def clamped_rigid(quick):
-    return beam(True)
-
+# -- cantilevers of deformable units ----------------------------------------------------------------------------------
 
 E, NU, RHO = 4.8e9, 0.16, 1800.0
 

@@ -65,8 +65,7 @@ struct JointReference {
         int body = -1;
         Vector3r position = Vector3r::Zero();              // of the body's centre [m]
         Quaternionr orientation = Quaternionr::Identity(); // of the body
-        // Share of the body's shear compliance that this joint takes: a half if the body has joints across faces of
-        // another direction, too (law/README.md, Rigid units).
+        // Share of the body's shear compliance that this joint takes (law/README.md, Rigid units).
         double shearShare = 1;
     };
     Vector3r normal = Vector3r::UnitX();  // unit normal, from side 0 to side 1

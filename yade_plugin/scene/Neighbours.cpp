@@ -4,8 +4,8 @@
 #include "BodyCheck.hpp"
 #include "common/Text.hpp"
 #include <algorithm>
+#include <cmath>
 #include <map>
-#include <set>
 
 namespace masonry {
 
@@ -33,8 +33,8 @@ struct SharedFace {
 struct KeptFaces {
     const yade::Scene* scene = nullptr;
     double tolerance = 0;
-    std::vector<SharedFace> faces; // in the order of their ids
-    std::set<int> inTwoDirections; // ids of the bodies that share faces of different directions
+    std::vector<SharedFace> faces;     // in the order of their ids
+    std::map<int, double> shearShares; // by body
 };
 KeptFaces kept;
 
@@ -72,18 +72,50 @@ std::vector<Candidate> candidates(double tolerance) {
     return all;
 }
 
-// Ids of the bodies that share faces whose normals are more than 45 degrees apart.
-std::set<int> withFacesInTwoDirections(const std::vector<SharedFace>& faces) {
-    std::map<int, std::vector<Vector3r>> normals; // by body
-    std::set<int> found;
-    for (const auto& shared : faces)
-        for (int id : {shared.ids.first, shared.ids.second}) {
-            auto& others = normals[id];
-            for (const auto& other : others)
-                if (std::abs(other.dot(shared.face.normal)) < std::sqrt(0.5)) found.insert(id);
-            others.push_back(shared.face.normal);
+// What a body has of a face that it shares.
+struct Side {
+    Vector3r normal, offset; // offset: from the foot of the perpendicular from the body's centre to the middle [m]
+    double area, distance;   // distance of the centre from the face [m]
+};
+
+// The share of a unit's shear compliance that each of its joints takes (law/README.md, Rigid units): the largest of the
+// planes of shear in which it has joints across faces of two directions, more than 45 degrees apart; without any, 1.
+double shearShare(const std::vector<Side>& sides) {
+    constexpr double youngOverShear = 2.4; // of a Poisson's ratio of 0.2; 0 to 0.35 change the share by 0.03 at most
+    const double near = std::sqrt(0.5);
+    double share = 0;
+    for (auto one = sides.begin(); one != sides.end(); ++one)
+        for (auto other = one + 1; other != sides.end(); ++other) {
+            const double cosine = one->normal.dot(other->normal);
+            if (std::abs(cosine) >= near) continue;
+            const Vector3r axes[2] = {one->normal, (other->normal - cosine * one->normal).normalized()};
+            double slipping[2] = {0, 0}, opening[2] = {0, 0};
+            for (const auto& side : sides)
+                for (int a = 0; a < 2; ++a) {
+                    if (std::abs(side.normal.dot(axes[a])) <= near) continue;
+                    const double off = side.offset.dot(axes[1 - a]);
+                    slipping[a] += side.area * side.distance;
+                    opening[1 - a] += youngOverShear * side.area * off * off / side.distance;
+                }
+            const double first = 0.5 * opening[0] / slipping[0], second = 0.5 * opening[1] / slipping[1];
+            share = std::max(share, 1 / std::max(1 - first - second + std::hypot(1, first - second), 1.0));
         }
-    return found;
+    return share > 0 ? share : 1;
+}
+
+std::map<int, double> shearShares(const yade::Scene& scene, const std::vector<SharedFace>& faces) {
+    std::map<int, std::vector<Side>> sides; // by body
+    for (const auto& [ids, face] : faces)
+        for (int id : {ids.first, ids.second}) {
+            const Vector3r arm = centroid(face.polygon, face.normal) - scene.bodies->body[id]->state->pos;
+            const double along = arm.dot(face.normal);
+            sides[id].push_back(
+                {face.normal, arm - along * face.normal, area(face.polygon, face.normal), std::abs(along)});
+        }
+    std::map<int, double> shares;
+    for (const auto& [id, own] : sides)
+        shares[id] = shearShare(own);
+    return shares;
 }
 
 } // namespace
@@ -140,8 +172,9 @@ py::tuple neighbours(double tolerance, bool keepFaces) {
         sizes.append(py::make_tuple(large->id, large->block.size()));
     }
     if (keepFaces) {
-        auto apart = withFacesInTwoDirections(shared);
-        kept = {Singleton<yade::Omega>::instance().getScene().get(), tolerance, std::move(shared), std::move(apart)};
+        const auto& scene = *Singleton<yade::Omega>::instance().getScene();
+        auto shares = shearShares(scene, shared);
+        kept = {&scene, tolerance, std::move(shared), std::move(shares)};
     }
     return py::make_tuple(touching, missing, sizes);
 }
@@ -158,7 +191,8 @@ std::optional<FaceContact> takeFace(const yade::Scene& scene, int id1, int id2, 
 }
 
 double shearShareOf(const yade::Scene& scene, int id) {
-    return kept.scene == &scene && kept.inTwoDirections.count(id) ? 0.5 : 1;
+    const auto found = kept.shearShares.find(id);
+    return kept.scene == &scene && found != kept.shearShares.end() ? found->second : 1;
 }
 
 void dropFaces() { kept = {}; }

@@ -19,8 +19,8 @@ boost::python::list touchingPairs(double tolerance);
 // The face that two bodies of a scene share, as neighbours() has found it with this tolerance. Each face is given once:
 // the joint keeps it then. Nothing if no such face is kept.
 std::optional<FaceContact> takeFace(const yade::Scene&, int id1, int id2, double tolerance);
-// Share of a body's shear compliance that each of its joints takes, by the faces that are kept: a half if the body
-// shares faces whose normals are more than 45 degrees apart, else 1 (law/README.md, Rigid units).
+// Share of a body's shear compliance that each of its joints takes, by the faces that are kept (law/README.md, Rigid
+// units).
 double shearShareOf(const yade::Scene&, int id);
 // Frees the memory of all faces that are still kept.
 void dropFaces();
