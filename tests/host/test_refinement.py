@@ -17,7 +17,6 @@ from yade.wrapper import *
 
 from test_checkpoint import bits
 from test_joint_loop import panel
-from test_whole_bricks import brick, pull
 
 LENGTH, WIDTH, HEIGHT = 0.22, 0.102, 0.081
 AREA = LENGTH * WIDTH
@@ -38,7 +37,7 @@ JOINT = dict(
 )
 
 
-def couplet(refine=0, inPlane=True, subcontacts=3, **properties):
+def couplet(refine=3, inPlane=True, subcontacts=3, rows=None, **properties):
     """Two bricks on each other, the lower one fixed; the upper one moves as :func:`move` says."""
     O.reset()
     unit = MasonryMat(density=1800, young=1e13, poisson=0.2)
@@ -51,11 +50,12 @@ def couplet(refine=0, inPlane=True, subcontacts=3, **properties):
         damping=0.7,
         gravity=(0, 0, 0),
         subcontacts=subcontacts,
+        rows=rows,
         inPlane=inPlane,
         loads=[load],
     )
     joint = connect()[0]
-    engine("joints").refinement = refine
+    engine("joints").points = refine
     O.dt = 0.5 * O.bodies[top].state.mass ** 0.5 / math.sqrt(4 * 1e11 * AREA)
     return joint
 
@@ -106,12 +106,12 @@ LAWS = pytest.mark.parametrize("law", ["softening", "cyclic"])
 @pytest.mark.parametrize("points", [5, 12, 13])
 def test_an_elastic_joint_keeps_force_moment_and_energy(law, points):
     results = []
-    for refine in (0, points):
+    for refine in (3, points):
         joint = couplet(law=law)
         ramp(60e3, 0.015, 4e3)
         assert not any(max(list(d)) for d in joint.phys.damage)
         assert 0.92 * 4e6 < -np.array(joint.phys.stress)[:, 0].min() < 4e6
-        engine("joints").refinement = refine
+        engine("joints").points = refine
         run(10)
         results.append((resultants(joint), energies("elastic"), len(joint.geom.areas)))
         assert abs(engine("joints").refiningEnergy) < 1e-12 * energies("elastic")
@@ -145,7 +145,7 @@ def test_a_cracked_joint_takes_its_crack_along_and_the_balance_closes(law):
     before = [list(d)[0] for d in joint.phys.damage]
     assert before[0] > 0.1 and before[2] == 0
     lost = energies("dissipated")
-    engine("joints").refinement = 12
+    engine("joints").points = 12
     ramp(18e3, 0.09, 1.5e3, start=2 / 3)
     after = [list(d)[0] for d in joint.phys.damage]
     assert len(after) == 12
@@ -160,7 +160,7 @@ def test_a_cracked_joint_takes_its_crack_along_and_the_balance_closes(law):
 def test_other_numbers_of_points_have_the_same_end():
     """A joint that crushes: with points that come late it is as one that has had them from the beginning."""
     ends = {}
-    for name, (few, refine) in {"few": (3, 0), "refined": (3, 12), "many": (12, 0)}.items():  # fmt: skip
+    for name, (few, refine) in {"few": (3, 3), "refined": (3, 12), "many": (12, 3)}.items():  # fmt: skip
         joint = couplet(refine, subcontacts=few)
         ramp(85e3, 0.03, 2e3, parts=200)
         ends[name] = O.bodies[1].state.rot()[1]
@@ -168,9 +168,9 @@ def test_other_numbers_of_points_have_the_same_end():
     assert ends["refined"] == pytest.approx(ends["many"], rel=0.01)
 
 
-def test_at_zero_nothing_changes_and_a_late_refinement_begins_where_it_is_set():
+def test_with_three_points_nothing_changes_far_from_the_limit():
     ends = []
-    for refine in (0, 12):
+    for refine in (3, 12):
         joint = couplet(refine)
         ramp(30e3)  # far from the limit
         ends.append(states(joint))
@@ -193,7 +193,7 @@ def pushed(refine=12, case="softening", stiffnessDamping=0.0, **more):
     stiffnessDamping = given.pop("stiffnessDamping", stiffnessDamping)
     strength = dict(compressiveStrength=4e6, compressiveFractureEnergy=12000)
     interactions = panel(False, damping=0.3, rows=1, **{**strength, **given})
-    engine("joints").refinement = refine
+    engine("joints").points = refine
     if stiffnessDamping:
         engine("joints").stiffnessDamping = stiffnessDamping
         O.dt *= 0.5
@@ -267,7 +267,7 @@ def test_a_scene_that_yade_saves_keeps_the_points(tmp_path):
 @pytest.mark.parametrize("case", CASES)
 def test_the_balance_closes_as_it_does_without(case):
     errors = []
-    for refine in (0, 12):
+    for refine in (3, 12):
         pushed(refine, case)
         run(300)
         errors.append(abs(engine("energy").balance()["error"]))
@@ -288,14 +288,15 @@ def test_any_number_of_threads_gives_the_same_bits():
 
 def test_a_panel_with_points_that_come_late_is_one_that_has_had_them_from_the_beginning():
     lost, turned = {}, {}
-    for name, (refine, few) in {"few": (0, 3), "refined": (12, 3), "many": (0, 12)}.items():  # fmt: skip
+    for name, (refine, few) in {"few": (3, 3), "refined": (12, 3), "many": (3, 12)}.items():  # fmt: skip
         pushed(refine, size=6, subcontacts=few)
         run(1000)
         lost[name] = energies("dissipated_compression")
         turned[name] = O.bodies[-1].state.rot()[1]
     for found in (lost, turned):
         assert abs(found["few"] / found["many"] - 1) > 0.3
-        assert found["refined"] == pytest.approx(found["many"], rel=0.01)
+        # joints that slide before they are about to crush do so at three points
+        assert found["refined"] == pytest.approx(found["many"], rel=0.02)
 
 
 def test_files_and_functors_take_joints_with_other_numbers_of_points(tmp_path):
@@ -318,37 +319,76 @@ def test_files_and_functors_take_joints_with_other_numbers_of_points(tmp_path):
     assert [
         len(i.geom.areas) for i in interactions
     ] == sizes  # the functors refine none
-    assert abs(engine("energy").balance()["error"]) < 1e-3
+    # without MasonryJointLoop nobody has the energy that joints got when they were refined
+    assert abs(engine("energy").balance()["error"]) < 2e-3
 
 
-def test_bricks_that_are_whole_are_refined_when_they_split():
-    crack = dict(monolithic=True, cap=False, tensileStrength=1e5)
-    bodies, joint = brick(**crack)
-    engine("joints").refinement = 12
-    force = Vector3(0.5e5 * 0.102 * 0.081, 0, 0)
-    for n in range(1, 400):
-        pull(bodies, n * 0.01 * force, Vector3(0, 2 * n * 0.01, 0))
-        O.step()
-        if engine("integrator").splits:
-            break
-        assert len(joint.geom.areas) == 3
-    O.step()
-    assert engine("integrator").splits == 1 and len(joint.geom.areas) == 12
+# ---- joints in space ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("refinement", [1, 2, 101, -1])
-def test_numbers_of_points_that_mean_nothing_are_refused(refinement):
-    couplet()
-    with pytest.raises(ValueError, match=f"refinement {refinement} must be 0"):
-        engine("joints").refinement = refinement
-        O.step()
+def bent(points=0, subcontacts=3, rows=None, **properties):
+    """The couplet, whose upper brick is free in space."""
+    joint = couplet(points, inPlane=False, subcontacts=subcontacts, rows=rows, **properties)  # fmt: skip
+    return joint
 
 
-def test_joints_in_space_are_refused_with_what_helps():
-    couplet(inPlane=False)
-    engine("joints").refinement = 12
-    with pytest.raises(ValueError, match="bodies 0 and 1 has 9 points, .* as many subcontacts and rows"):  # fmt: skip
-        O.step()
+def moments(joint):
+    """Force [N] and moments of the normal stress about both middle lines of the joint [N m]."""
+    area, stress = np.array(joint.geom.areas), np.array(joint.phys.stress)
+    lever = np.array(joint.geom.centres)[:, :2] - (LENGTH / 2, WIDTH / 2)
+    return np.array([area @ stress[:, 0], *(area * stress[:, 0]) @ lever])
+
+
+@LAWS
+@pytest.mark.parametrize("points", [4, 5, 8])
+def test_an_elastic_joint_in_space_keeps_force_moments_and_energy(law, points):
+    found = {}
+    for count in (3, points):
+        joint = bent(3, law=law)
+        engine("load").point = Vector3(LENGTH / 2 + 0.01, WIDTH / 2 - 0.004, HEIGHT)
+        for n in range(1, 101):
+            engine("load").force = Vector3(0, 0, -0.56e5 * n / 100)
+            run(20)
+        assert not any(max(list(d)) for d in joint.phys.damage)
+        engine("joints").points = count
+        run(10)
+        assert len(joint.geom.areas) == count**2
+        found[count] = [*moments(joint), energies("elastic")]
+        assert abs(engine("joints").refiningEnergy) < 1e-12 * energies("elastic")
+    assert found[points][:3] == pytest.approx(found[3][:3], abs=1e-9 * 0.56e5)
+    assert found[points][3] == pytest.approx(found[3][3], rel=1e-9)
+
+
+@LAWS
+def test_a_joint_that_bends_across_is_as_one_that_has_had_its_points_from_the_beginning(law):  # fmt: skip
+    """The crack goes through the thickness of the wall; with three rows the joint turns otherwise."""
+    turned, errors = {}, {}
+    for name, few, points in (("few", 3, 3), ("refined", 3, 9), ("many", 9, 9)):
+        bent(points, subcontacts=few, rows=few, law=law)
+        engine("load").point = Vector3(LENGTH / 2, WIDTH / 2 + 0.025, HEIGHT)
+        for n in range(1, 201):
+            engine("load").force = Vector3(0, 0, -60e3 * n / 200)
+            run(20)
+        turned[name] = O.bodies[1].state.rot()[0]
+        errors[name] = abs(engine("energy").balance()["error"])
+    assert abs(turned["few"] / turned["many"] - 1) > 0.03
+    assert turned["refined"] == pytest.approx(turned["many"], rel=0.005)
+    assert errors["refined"] < max(3 * errors["many"], 1e-6)
+
+
+def test_joints_that_have_not_their_stiffness_keep_their_points():
+    """With two points along a side a joint is three times too stiff against rotation: more would change that."""
+    bent(5, subcontacts=3, rows=2, cap=False)
+    run(20)
+    ramp(-0.95 * 0.1e6 * AREA)
+    assert engine("joints").refinedJoints == 0
+
+
+def test_without_a_word_joints_get_eight_points_and_five_a_side_in_space():
+    for inPlane, count in ((True, 8), (False, 25)):
+        joint = couplet(0, inPlane=inPlane, cap=False)
+        ramp(-0.95 * 0.1e6 * AREA)
+        assert len(joint.geom.areas) == count
 
 
 def test_an_earlier_frame_is_shown_at_the_points_of_the_last():

@@ -35,6 +35,6 @@ TEST_CASE("a law for one subcontact gets columns: slip under constant pressure t
     CHECK(numbers.size() == 5);
     CHECK(columns->numbersOfState() == 5);
     const auto lone = law->columns(k, 1, 1);
-    lone->take(0, 0, *columns, 10);
+    lone->take(0, 0, *columns, 0, 10);
     CHECK(lone->number(0, 0, "slip") == columns->number(0, 10, "slip"));
 }

@@ -965,7 +965,7 @@ struct Twins {
             std::make_unique<PiecewiseColumns>(paperLaw(p), columns->stiffness(), columns->joints(), columns->points());
         for (int point = 0; point < columns->points(); ++point)
             for (int j = 0; j < columns->joints(); ++j)
-                others->take(point, j, *columns, j);
+                others->take(point, j, *columns, point, j);
         columns = std::move(others);
         for (auto& path : paths)
             path.law = PiecewiseLaw(p);

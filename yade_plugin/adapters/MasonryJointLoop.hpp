@@ -38,19 +38,17 @@ public:
                         "real time alone")
                   .source("yade_plugin/README.md, Impacts"));
         visit("impactWork", &L::impactWork, number("J", "Energy taken by impacts so far"), ReadOnly);
-        visit(
-            "refinement", &L::refinement,
-            number("",
-                   "Points along a joint between rigid blocks from when it is about to yield: when a subcontact bears "
-                   "0.9 of the elastic limit of the cap, or, of a joint that cannot crush, as the crack surface of a "
-                   "brick, 0.9 of its strength, the joint gets as many along its row, at the points of Gauss and "
-                   "Lobatto, and they take over its state. Every tenth step looks for such joints, and takes those "
-                   "at 0.75 along. 0: joints keep the points that they were made with. Else 3 to 100, and joints "
-                   "need one row of at least three points, as blocks that move in a plane have. A joint that has as "
-                   "many already is left alone, and so are those of deformable units")
-                .atLeast(0)
-                .atMost(Refinement::most)
-                .source("yade_plugin/README.md, Points where a joint yields"));
+        visit("points", &L::points,
+              number("-", "Points along a joint between rigid blocks from when it is about to yield; in space along each "
+                          "side of its face. 0: 8, and 5 in space; 3: joints keep the three that they are made with. Every "
+                          "tenth step looks for joints that bear 0.9 of the elastic limit of the cap, and, of joints in "
+                          "space and of those that cannot crush, as the crack surface of a brick, 0.9 of the strength of the "
+                          "bond, and takes those at 0.75 along. The points of Gauss and Lobatto take over the state. A joint "
+                          "that was made with as many, or with fewer than three along a side, and joints of deformable "
+                          "units keep theirs")
+                  .atLeast(0)
+                  .atMost(Refinement::most)
+                  .source("yade_plugin/README.md, Points where a joint yields"));
         visit("refiningEnergy", &L::refiningEnergy,
               number("J", "Elastic energy that joints got so far when they were refined: 0 of those that were elastic, "
                           "the difference between few and many points of those that were cracked"),
@@ -68,7 +66,7 @@ public:
                          "Number of joints whose points need not be advanced, because they are between rigid blocks "
                          "and have always been elastic. It is known from the first step on.");
         cls.add_property("refinedJoints", &MasonryJointLoop::refinedJoints,
-                         "Number of joints that have more points than they were made with; see refinement.");
+                         "Number of joints that have more points than they were made with; see points.");
     }
 
     bool isActivated() override { return standsAlone(*this); }

@@ -312,7 +312,7 @@ struct JointStates : JointGroup {
         auto& own = *columns;
         const auto& others = *from.columns;
         for (int p = 0; p < own.points(); ++p)
-            own.take(p, number, others, other);
+            own.take(p, number, others, p, other);
     }
 
     JointStates(const JointStates&) = delete;

@@ -2,10 +2,9 @@
 #include "Refinement.hpp"
 #include "blocks/JointPoints.hpp"
 #include "common/Text.hpp"
+#include <Eigen/Dense>
 #include <algorithm>
-#include <cstring>
-#include <numeric>
-#include <set>
+#include <map>
 
 namespace masonry {
 
@@ -24,26 +23,85 @@ Points pointsOf(const JointGeometry& geom) {
     return all;
 }
 
-// The tangent of a joint, 1 or 2, along which its points stand in one row; 0 if they do not, or if they are too few for
-// the true rotational stiffness.
-int rowOf(const Points& points) {
-    double extent[3] = {0, 0, 0};
-    for (int d = 1; d < 3; ++d) {
-        const auto by = [&](const JointPoint& a, const JointPoint& b) { return a.offset[d] < b.offset[d]; };
-        const auto [low, high] = std::minmax_element(points.begin(), points.end(), by);
-        if (low != points.end()) extent[d] = high->offset[d] - low->offset[d];
-    }
-    const int along = extent[1] >= extent[2] ? 1 : 2;
-    const bool row = extent[3 - along] <= close * extent[along];
-    return row && int(points.size()) >= Refinement::fewest ? along : 0;
+// Of the first joint of a kind. All of a kind are alike in whether their points stand in a row.
+Points pointsOf(const JointKind& kind) {
+    Points all;
+    for (int p = 0; p < kind.shapes->points; ++p)
+        all.push_back({kind.shapes->offsetAt(p, 0), kind.shapes->areaAt(p, 0)});
+    return all;
 }
 
-// As many points in the row of a joint.
-Points inRow(const JointReference& r, int along, int count) {
+// Whether points stand in one row along the joint's tangent, as those of a joint whose blocks move in a plane.
+bool isRow(const Points& points) {
+    const auto apart = [&](int d) {
+        const auto by = [&](const JointPoint& a, const JointPoint& b) { return a.offset[d] < b.offset[d]; };
+        const auto [low, high] = std::minmax_element(points.begin(), points.end(), by);
+        return high->offset[d] - low->offset[d];
+    };
+    return apart(2) <= close * apart(1);
+}
+
+// So many points along the row that a joint was made with, or along both sides of a joint in space.
+Points refinedPoints(const JointReference& r, const Points& first, int count) {
     Points all;
-    const bool first = along == 1;
-    for (const auto& part : subdivide(r.polygon(), r.normal, r.tangent, first ? count : 1, first ? 1 : count))
+    for (const auto& part : subdivide(r.polygon(), r.normal, r.tangent, count, isRow(first) ? 1 : count))
         all.push_back({r.axes().transpose() * (part.centre - r.sides[0].position), part.area});
+    return all;
+}
+
+// The points among which a place of a joint lies, with weights that keep what is linear over the face: one point, the ends
+// of the shortest stretch of a row, or the corners of the smallest triangle. In a rectangle of four points two triangles
+// are equally small, and each counts for a half.
+struct Share {
+    int point;
+    double weight;
+};
+std::vector<Share> sharesAt(const Vector3r& place, const Points& points) {
+    const int count = int(points.size());
+    double smallest = HUGE_VAL, nearest = HUGE_VAL;
+    int closest = 0;
+    std::vector<std::vector<Share>> found;
+    const auto take = [&](double size, std::vector<Share> shares) {
+        for (const auto& share : shares)
+            if (share.weight < -1e-6) return;
+        if (size > smallest * (1 + 1e-6)) return;
+        if (size < smallest * (1 - 1e-6)) found.clear();
+        smallest = std::min(size, smallest);
+        found.push_back(std::move(shares));
+    };
+    const auto way = [&](int from, int to) { return Vector3r(points[to].offset - points[from].offset); };
+    const bool row = isRow(points);
+    for (int a = 0; a < count; ++a) {
+        const Vector3r there = place - points[a].offset;
+        if (there.norm() < nearest) closest = a;
+        nearest = std::min(nearest, there.norm());
+        for (int b = a + 1; b < count; ++b) {
+            const Vector3r ab = way(a, b);
+            if (row) {
+                const double t = there.dot(ab) / ab.squaredNorm();
+                take(ab.squaredNorm(), {{a, 1 - t}, {b, t}});
+                continue;
+            }
+            for (int c = b + 1; c < count; ++c) {
+                const Vector3r ac = way(a, c);
+                const double area = ab.cross(ac)[0], size = ab.squaredNorm() + ac.squaredNorm();
+                if (std::abs(area) <= 1e-6 * size) continue;
+                const double u = there.cross(ac)[0] / area, v = ab.cross(there)[0] / area;
+                take(size + way(b, c).squaredNorm(), {{a, 1 - u - v}, {b, u}, {c, v}});
+            }
+        }
+    }
+    std::vector<double> weights(count, 0.0);
+    for (const auto& shares : found)
+        for (const auto& [point, weight] : shares)
+            weights[point] += weight / found.size();
+    if (nearest * nearest <= close * smallest) {
+        weights.assign(count, 0.0);
+        weights[closest] = 1;
+    }
+    std::vector<Share> all;
+    for (int p = 0; p < count; ++p)
+        if (std::abs(weights[p]) > close) all.push_back({p, weights[p]});
     return all;
 }
 
@@ -79,85 +137,30 @@ struct Alone {
 
 // ---- state ------------------------------------------------------------------------------------------------------
 
-// The numbers of a subcontact by their names, as its law gives them.
-class Numbers {
-public:
-    Numbers(const LawColumns& columns, int point, int joint) {
-        columns.read(point, joint, [&](const char* name, double number) { all_.emplace_back(name, number); });
-    }
-    double operator[](const char* name) const {
-        for (const auto& [each, number] : all_)
-            if (std::strcmp(each, name) == 0) return number;
-        return 0;
-    }
-    void set(const char* name, double value) {
-        for (auto& [each, number] : all_)
-            if (std::strcmp(each, name) == 0) number = value;
-    }
-    void writeTo(LawColumns& columns, int point) const {
-        columns.write(point, 0, [&](const char* name, double& number) { number = (*this)[name]; });
-    }
-    double irreversible() const { return (*this)["crushing"] - (*this)["dilation"]; }
-    double elasticOpening() const { return (*this)["opening"] + irreversible(); }
-    // How far a crack has opened here at most; of a point that has none, how far it is open or closed now.
-    double crack() const { return (*this)["tensionDamage"] > 0 ? (*this)["largestOpening"] : elasticOpening(); }
+double sum(const Energies& e) { return e.tension + e.shear + e.compression; }
 
-    // Between two subcontacts, at the share t of the way from the first.
-    static Numbers between(const Numbers& a, const Numbers& b, double t) {
-        Numbers made = a;
-        for (std::size_t n = 0; n < made.all_.size(); ++n)
-            made.all_[n].second = (1 - t) * a.all_[n].second + t * b.all_[n].second;
-        return made;
+// Gives a point of a joint the state among old points. Jumps and shear stresses are linear over the face. All else comes from
+// that of the old points which has lost least: the law itself opens or closes it as far as the face is open or closed here, and
+// last returns a shear stress beyond the strength. So no number of a law needs to be known.
+void follow(LawColumns& to, int point, const LawColumns& from, const std::vector<Share>& shares) {
+    int whole = shares[0].point;
+    double opening = 0;
+    Shear stress;
+    for (const auto& [old, weight] : shares) {
+        if (sum(from.dissipated(old, 0)) < sum(from.dissipated(whole, 0))) whole = old;
+        opening += weight * from.state(old, 0).opening;
+        stress.a += weight * *from.shearStressA(old, 0);
+        stress.b += weight * *from.shearStressB(old, 0);
     }
-
-private:
-    std::vector<std::pair<const char*, double>> all_;
-};
-
-// Where a new point stands between the points that there were.
-struct Between {
-    int first, second;
-    double share; // of the way from the first to the second
-};
-
-Between placeOf(double at, const std::vector<double>& places, const std::vector<int>& order) {
-    const double length = places[order.back()] - places[order.front()];
-    std::size_t n = 1;
-    while (n + 1 < order.size() && places[order[n]] < at)
-        ++n;
-    const int a = order[n - 1], b = order[n];
-    const double t = (at - places[a]) / (places[b] - places[a]);
-    if (std::abs(at - places[a]) <= close * length) return {a, b, 0};
-    if (std::abs(at - places[b]) <= close * length) return {a, b, 1};
-    return {a, b, std::clamp(t, 0.0, 1.0)};
+    to.take(point, 0, from, whole, 0);
+    if (shares.size() == 1) return;
+    to.advanceOne(point, 0, {opening - from.state(whole, 0).opening, {}});
+    to.setElastic(point, 0, opening, stress.a / to.stiffness().shear, stress.b / to.stiffness().shear);
+    to.advanceOne(point, 0, {});
 }
 
-// Gives a new point the state between two. All that is linear along an elastic joint is linear here: jumps and shear
-// stresses. The damage of a crack is no mean of damages: the law opens the point as far as the crack was open at most
-// there, and closes it to where it is. Last, the law returns a shear stress beyond the strength.
-void follow(LawColumns& columns, int point, const Numbers& a, const Numbers& b, double t) {
-    const auto now = Numbers::between(a, b, t);
-    const double opening = now.elasticOpening(), crack = (1 - t) * a.crack() + t * b.crack();
-    auto start = now;
-    start.set("opening", -now.irreversible());
-    for (const char* name : {"shearStressA", "shearStressB", "largestOpening", "tensionDamage", "regime"})
-        start.set(name, 0);
-    start.writeTo(columns, point);
-    double at = 0;
-    if (crack > std::max(opening, 0.0)) {
-        columns.advanceOne(point, 0, {crack, {}});
-        at = crack;
-    }
-    columns.advanceOne(point, 0, {opening - at, {}});
-    Numbers last(columns, point, 0);
-    for (const char* name : {"shearStressA", "shearStressB"})
-        last.set(name, now[name]);
-    last.writeTo(columns, point);
-    columns.advanceOne(point, 0, {});
-}
-
-// Gives a joint other points in its row, which take over its state. Returns the elastic energy that it gets by that.
-double refine(const JointView& joint, int along, int count) {
+// Gives a joint other points, which take over its state. Returns the energy that it gets by that [J].
+double refine(const JointView& joint, int count) {
     auto& shapes = *joint.geom->group;
     const int j = joint.geom->index;
     if (!shapes.byPoints[j]) shapes.endIntact(j);
@@ -167,63 +170,99 @@ double refine(const JointView& joint, int along, int count) {
     before.states->take(0, *joint.phys->group, joint.phys->index);
     const auto& from = before.columns();
 
-    Alone after(joint, inRow(joint.geom->reference(), along, count));
+    Alone after(joint, refinedPoints(joint.geom->reference(), old, count));
     auto& r = after.shapes->joints[0];
     r.refined = count;
     r.coarse = std::make_shared<const Points>(old);
     auto& to = after.columns();
-    std::vector<double> places;
-    std::vector<Numbers> numbers;
-    std::vector<int> order(old.size());
-    for (std::size_t p = 0; p < old.size(); ++p) {
-        places.push_back(old[p].offset[along]);
-        numbers.emplace_back(from, int(p), 0);
-    }
-    std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](int a, int b) { return places[a] < places[b]; });
-
-    // What was dissipated goes to the new points around, by their areas.
-    std::vector<Between> between;
+    std::vector<std::vector<Share>> shares;
     std::vector<double> areas(old.size(), 0.0); // of the new points, by the old ones
     for (int p = 0; p < after.shapes->points; ++p) {
-        const auto b = placeOf(after.shapes->offsetAt(p, 0)[along], places, order);
-        areas[b.first] += (1 - b.share) * after.shapes->areaAt(p, 0);
-        areas[b.second] += b.share * after.shapes->areaAt(p, 0);
-        between.push_back(b);
+        shares.push_back(sharesAt(after.shapes->offsetAt(p, 0), old));
+        for (const auto& [o, weight] : shares.back())
+            areas[o] += weight * after.shapes->areaAt(p, 0);
     }
     for (int p = 0; p < after.shapes->points; ++p) {
-        const auto [a, b, t] = between[p];
-        if (t == 0 || t == 1)
-            numbers[t == 0 ? a : b].writeTo(to, p);
-        else
-            follow(to, p, numbers[a], numbers[b], t);
-        after.shapes->setJump(p, 0, (1 - t) * before.shapes->jumpAt(a, 0) + t * before.shapes->jumpAt(b, 0));
-        after.shapes->setViscous(p, 0, (1 - t) * before.shapes->viscousAt(a, 0) + t * before.shapes->viscousAt(b, 0));
-        after.shapes->setImpact(p, 0, before.shapes->impactAt(t < 0.5 ? a : b, 0));
+        Vector3r jump = Vector3r::Zero(), viscous = Vector3r::Zero();
         Energies lost;
-        for (const auto& [i, part] : {std::pair(a, 1 - t), std::pair(b, t)}) {
-            if (part == 0) continue;
-            const auto e = from.dissipated(i, 0);
-            const double all = part * old[i].area / areas[i];
-            lost.tension += all * e.tension;
-            lost.shear += all * e.shear;
-            lost.compression += all * e.compression;
+        for (const auto& [o, weight] : shares[p]) {
+            jump += weight * before.shapes->jumpAt(o, 0);
+            viscous += weight * before.shapes->viscousAt(o, 0);
+            const auto e = from.dissipated(o, 0);
+            const double part = weight * old[o].area / areas[o];
+            lost.tension += part * e.tension;
+            lost.shear += part * e.shear;
+            lost.compression += part * e.compression;
         }
+        follow(to, p, from, shares[p]);
+        after.shapes->setJump(p, 0, jump);
+        after.shapes->setViscous(p, 0, viscous);
+        const auto less = [](const Share& one, const Share& other) { return one.weight < other.weight; };
+        const int nearest = std::max_element(shares[p].begin(), shares[p].end(), less)->point;
+        after.shapes->setImpact(p, 0, before.shapes->impactAt(nearest, 0));
         to.setDissipated(p, 0, lost);
     }
     after.giveTo(joint);
     return after.energy() - before.energy();
 }
 
+// What is linear over the face of a joint, by its values at the points.
+class LinearOver {
+public:
+    explicit LinearOver(const JointGeometry& geom) : middle_(geom.offset(0)) {
+        Eigen::MatrixXd places(geom.points(), 3);
+        for (int p = 0; p < geom.points(); ++p)
+            places.row(p) = row(geom.offset(p));
+        solver_.compute(places);
+    }
+    void fit(const std::vector<Vector3r>& values) {
+        Eigen::MatrixXd given(values.size(), 3);
+        for (std::size_t p = 0; p < values.size(); ++p)
+            given.row(p) = values[p].transpose();
+        field_ = solver_.solve(given);
+    }
+    Vector3r at(const Vector3r& offset) const { return (row(offset) * field_).transpose(); }
+
+private:
+    Eigen::RowVector3d row(const Vector3r& offset) const {
+        return {1, offset[1] - middle_[1], offset[2] - middle_[2]};
+    }
+    Vector3r middle_;
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver_; // points in a row leave one direction open
+    Eigen::MatrixXd field_;
+};
+
 } // namespace
 
 // ---- where ------------------------------------------------------------------------------------------------------
 
-Refinement::Limit::Limit(const LawColumns& columns) : columns_(&columns) {
+// Whether points of a joint have the area and the moments of others: with fewer than three along a side they have not.
+bool sameMoments(const Points& one, const Points& other) {
+    const auto moments = [](const Points& points) {
+        Eigen::Matrix3d sums = Eigen::Matrix3d::Zero(); // of 1, b1, b2 with each other
+        for (const auto& p : points) {
+            const Vector3r way = p.offset - points[0].offset;
+            const Vector3r terms(1, way[1], way[2]);
+            sums += p.area * terms * terms.transpose();
+        }
+        return sums;
+    };
+    return moments(one).isApprox(moments(other), 1e-6);
+}
+
+Refinement::Limit::Limit(const JointKind& kind, int wanted) : columns_(kind.states->columns.asTheyStand().get()) {
+    const auto& columns = *columns_;
     const auto& p = columns.law().properties();
-    if (p.elastic) return;
+    const auto& first = kind.shapes->joints[0];
+    if (p.elastic || kind.attached || kind.handed || first.refined) return;
+    const auto now = pointsOf(kind);
+    const bool row = isRow(now);
+    const int count = wanted ? wanted : row ? pointsOfRow : pointsOfSide;
+    const auto then = refinedPoints(first, now, count);
+    if (then.size() <= now.size() || !sameMoments(now, then)) return;
     crushes_ = p.cap && columns.law().compression().elasticLimit > 0;
-    cracks_ = !p.cap;
+    cracks_ = !p.cap || !row;
+    points_ = count;
     normal_ = p.capNormal;
     shear_ = p.capShear;
     linear_ = p.capLinear;
@@ -240,8 +279,8 @@ Refinement::Limit::Limit(const LawColumns& columns) : columns_(&columns) {
 
 bool Refinement::Limit::isReached(double part, double sigma, double a, double b) const {
     const double squared = a * a + b * b, pressed = std::min(sigma, 0.0), limit = part * elasticLimit_;
-    if (crushes_) return (normal_ * pressed + linear_) * pressed + shear_ * squared > limit * limit;
-    return (sigma > tension_ || squared > slip_ * slip_) && yields(sigma / part, a / part, b / part);
+    if (crushes_ && (normal_ * pressed + linear_) * pressed + shear_ * squared > limit * limit) return true;
+    return cracks_ && (sigma > tension_ || squared > slip_ * slip_) && yields(sigma / part, a / part, b / part);
 }
 
 bool Refinement::Limit::yields(double sigma, double a, double b) const {
@@ -261,7 +300,7 @@ bool Refinement::isDue(const JointKind& kind, const Limit& limit, double part, i
     for (int p = 0; p < shapes.points && shapes.byPoints[j]; ++p) {
         const double a = *columns.shearStressA(p, j), b = *columns.shearStressB(p, j);
         const double* damage = limit.cracks() ? columns.tensionDamage(p, j) : nullptr;
-        if ((damage && *damage > 0) || (!limit.cracks() && *columns.regime(p, j) == Regime::Crushing)) return true;
+        if ((damage && *damage > 0) || *columns.regime(p, j) == Regime::Crushing) return true;
         if (limit.isReached(part, columns.stressIfClosed(p, j), a, b) &&
             limit.isReached(part, columns.state(p, j).normalStress, a, b))
             return true;
@@ -272,51 +311,24 @@ bool Refinement::isDue(const JointKind& kind, const Limit& limit, double part, i
 void Refinement::readLimits(const SceneStore& store) {
     limits_.clear();
     for (const auto& kind : store.kinds)
-        limits_.emplace_back(*kind.states->columns.asTheyStand());
+        limits_.emplace_back(kind, store.loop->points);
     revision_ = store.revision();
-}
-
-void Refinement::check(const SceneStore& store, int points) {
-    if (points < fewest || points > most)
-        throw std::invalid_argument("MasonryJointLoop.refinement " + std::to_string(points) + " must be 0, or " +
-                                    std::to_string(fewest) + " to " + std::to_string(most));
-    for (std::size_t k = 0; k < store.kinds.size(); ++k) {
-        const auto& shapes = *store.kinds[k].shapes;
-        for (std::size_t j = 0; j < shapes.joints.size() && limits_[k].isNeeded() && !store.kinds[k].attached; ++j) {
-            const auto& r = shapes.joints[j];
-            Points all;
-            for (int p = 0; p < shapes.points && !r.coarse; ++p)
-                all.push_back({shapes.offsetAt(p, int(j)), shapes.areaAt(p, int(j))});
-            if (r.coarse || rowOf(all)) continue;
-            throw std::invalid_argument(
-                "MasonryJointLoop.refinement " + std::to_string(points) + ": the joint of bodies " +
-                std::to_string(r.sides[0].body) + " and " + std::to_string(r.sides[1].body) + " has " +
-                std::to_string(shapes.points) + " points, and only joints with one row of at least " +
-                std::to_string(fewest) +
-                " points can be refined, as those of blocks that move in a plane: set the refinement to 0, and give "
-                "joints in space as many subcontacts and rows from the beginning as are needed");
-        }
-    }
-    checkedPoints_ = points;
+    points_ = store.loop->points;
 }
 
 void Refinement::look(SceneStore& store) {
-    const int points = store.loop->refinement;
     changed_.clear();
-    if (points == 0) return;
-    const bool read = store.revision() != revision_;
-    if (read) readLimits(store);
-    if (read || points != checkedPoints_) check(store, points);
+    if (store.revision() != revision_ || store.loop->points != points_) readLimits(store);
     if (store.scene().iter % every != 0 && store.splits.empty()) return;
-    std::set<std::pair<const JointShapes*, int>> due;
+    std::map<std::pair<const JointShapes*, int>, int> due; // joints, and the points that they get
     bool any = false;
     for (std::size_t k = 0; k < store.kinds.size(); ++k) {
         const auto& kind = store.kinds[k];
         const auto& whole = kind.shapes->whole;
-        if (kind.attached || kind.handed || kind.shapes->points >= points || !limits_[k].isNeeded()) continue;
+        if (limits_[k].points() == 0) continue;
         for (int j = 0; j < int(kind.shapes->joints.size()); ++j) {
             if ((!whole.empty() && whole[j]) || !isDue(kind, limits_[k], company, j)) continue;
-            due.emplace(kind.shapes.get(), j);
+            due[{kind.shapes.get(), j}] = limits_[k].points();
             any = any || isDue(kind, limits_[k], share, j);
         }
     }
@@ -327,19 +339,21 @@ void Refinement::look(SceneStore& store) {
             const auto s = to.joint.phys->state(p);
             const Vector3r stress =
                 Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) + geom.group->stressBesideLaw(p, geom.index);
-            to.forces.push_back({geom.offset(p)[to.along], sign * geom.area(p) * stress});
+            to.forces.push_back({geom.offset(p), sign * geom.area(p) * stress});
         }
     };
-    for (const auto& joint : store.joints) // in the host's order, so that the sum does not depend on addresses
-        if (due.count({joint.geom->group.get(), joint.geom->index})) {
-            Changed change{joint, {}, rowOf(pointsOf(*joint.geom)), {}};
+    for (const auto& joint : store.joints) { // in the host's order, so that the sum does not depend on addresses
+        const auto found = due.find({joint.geom->group.get(), joint.geom->index});
+        if (found != due.end()) {
+            Changed change{joint, {}, {}};
             add(change, 1);
-            store.loop->refiningEnergy += refine(joint, change.along, points);
+            store.loop->refiningEnergy += refine(joint, found->second);
             add(change, -1);
             for (int p = 0; p < joint.geom->points(); ++p)
                 change.jumps.push_back(joint.geom->jump(p));
             changed_.push_back(std::move(change));
         }
+    }
     store.jointsChanged();
     readLimits(store);
 }
@@ -347,13 +361,13 @@ void Refinement::look(SceneStore& store) {
 void Refinement::count(SceneStore& store) {
     for (const auto& change : changed_) {
         const auto& geom = *change.joint.geom;
-        // The jump grows linearly along the row.
-        const int last = int(change.jumps.size()) - 1;
-        const double from = geom.offset(0)[change.along], length = geom.offset(last)[change.along] - from;
-        const Vector3r first = geom.jump(0) - change.jumps[0];
-        const Vector3r slope = (geom.jump(last) - change.jumps[last] - first) / length;
+        std::vector<Vector3r> moved;
+        for (int p = 0; p < geom.points(); ++p)
+            moved.push_back(geom.jump(p) - change.jumps[p]);
+        LinearOver jump(geom);
+        jump.fit(moved);
         for (const auto& [place, force] : change.forces)
-            store.loop->refiningEnergy -= 0.5 * force.dot(first + (place - from) * slope);
+            store.loop->refiningEnergy -= 0.5 * force.dot(jump.at(place));
     }
     changed_.clear();
 }
@@ -366,14 +380,14 @@ bool Refinement::setPoints(SceneStore& store, const std::vector<double>& refined
         const double count = refined[n];
         if (count == r.refined) continue;
         const bool fits = count == 0 || (count >= fewest && count <= most && count == std::floor(count));
-        if (!fits || r.attached || !rowOf(r.coarse ? *r.coarse : pointsOf(*joint.geom))) return false;
+        if (!fits || r.attached) return false;
         change.emplace_back(&joint, int(count));
     }
     if (change.empty()) return true;
     for (const auto& [joint, count] : change) {
         const auto& r = joint->geom->reference();
         const auto first = r.coarse ? *r.coarse : pointsOf(*joint->geom);
-        const Alone fresh(*joint, count ? inRow(r, rowOf(first), count) : first);
+        const Alone fresh(*joint, count ? refinedPoints(r, first, count) : first);
         fresh.shapes->joints[0].refined = count;
         fresh.shapes->joints[0].coarse = count ? std::make_shared<const Points>(first) : nullptr;
         fresh.giveTo(*joint);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// More points for joints between rigid blocks whose cap is about to yield. What a joint does before its toe crushes,
-// few points along it say exactly or nearly so; where crushing begins and how far it reaches, only many do. README.md,
-// Points where the toe crushes, says what the new points take over.
+// More points for joints between rigid blocks that are about to yield. While a joint is elastic, few points along it say
+// exactly what it does; where crushing or a crack begins and how far it reaches, only many do. yade_plugin/README.md, Points
+// where a joint yields, says what the new points take over.
 #pragma once
 #include "SceneStore.hpp"
 
@@ -14,11 +14,13 @@ public:
         0.9; // of the elastic limit of the cap, or of the strength, at which a joint gets its points
     static constexpr double company = 0.75; // the same of joints that get theirs when another does: reading all joints
                                             // of a scene again takes as long as some dozen steps
-    static constexpr int fewest = 3;        // points in a row that have the true rotational stiffness
-    static constexpr int most = 100;        // points along a joint
+    static constexpr int pointsOfRow = 8;   // that a joint gets whose points stand in a row, unless JointLoop::points says
+    static constexpr int pointsOfSide = 5;  // the same along each side of a joint in space
+    static constexpr int fewest = 3;        // points along a side that have the true rotational stiffness
+    static constexpr int most = 100;        // points along a side
 
-    // Refines the joints of a scene that are about to yield, as JointLoop::refinement says, if this is a step to look
-    // at them. Throws std::invalid_argument if joints of the scene cannot be refined.
+    // Refines the joints of a scene that are about to yield, as JointLoop::points says, if this is a step to look at them.
+    // Joints with fewer than three points along a side keep them.
     void look(SceneStore&);
     // After the joints have made their step: counts what joints that were refined before it give or take by the forces
     // of the step before, half of which act along this one.
@@ -30,12 +32,12 @@ public:
     static bool setPoints(SceneStore&, const std::vector<double>& refined);
 
 private:
-    // Stresses of a kind of joints at which one of them gets its points: near the elastic limit of the cap, or, of
-    // joints that cannot crush, near the first yield.
+    // Stresses of a kind of joints at which one of them gets its points: near the elastic limit of the cap, and, of joints in
+    // space and of those that cannot crush, near the first yield of the bond.
     class Limit {
     public:
-        explicit Limit(const LawColumns&);
-        bool isNeeded() const { return crushes_ || cracks_; }
+        Limit(const JointKind&, int wanted);
+        int points() const { return points_; } // along a side that a joint gets; 0: it keeps those that it has
         bool cracks() const { return cracks_; }
         bool isReached(double part, double normalStress, double shearStressA, double shearStressB) const;
 
@@ -43,32 +45,31 @@ private:
         bool yields(double normalStress, double shearStressA, double shearStressB) const;
 
         const LawColumns* columns_;
-        bool crushes_ = false, cracks_ = false;
+        int points_ = 0;
+        bool crushes_ = false, cracks_ = false; // whether its limits in compression, and those of its bond count
         double normal_ = 0, shear_ = 0, linear_ = 0; // shape of the cap, Cnn, Css [-] and Cn [Pa]
         double elasticLimit_ = 0;                    // of the cap [Pa]
-        // Of joints that cannot crush: normal and shear stress [Pa] up to which the law need not be called.
+        // Normal and shear stress [Pa] of the bond up to which the law need not be called.
         double tension_ = 0, slip_ = 0;
     };
     void readLimits(const SceneStore&);
-    void check(const SceneStore&, int points);
     bool isDue(const JointKind&, const Limit&, double part, int joint) const;
 
-    // A joint that was refined in this step, with the forces at a row of points before and after that.
+    // A joint that was refined in this step, with the forces at its points before and after that.
     struct Changed {
         JointView joint;
         struct Force {
-            double place;   // along the row [m]
+            Vector3r place; // offset of a point [m]
             Vector3r force; // at the points that there were, less that at the new ones, in the joint's axes [N]
         };
         std::vector<Force> forces;
-        int along;
         std::vector<Vector3r> jumps; // of the new points before the step [m]
     };
 
     std::vector<Changed> changed_;
     std::vector<Limit> limits_; // of the store's kinds
     long revision_ = -1;        // SceneContents::revision() for which they were read
-    int checkedPoints_ = 0;     // number of points for which the scene was checked
+    int points_ = 0;            // JointLoop::points for which they were read
 };
 
 } // namespace masonry

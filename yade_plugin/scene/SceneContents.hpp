@@ -16,7 +16,7 @@ struct JointLoop {
     double dampingWork = 0;      // energy that it has taken so far [J]
     bool impacts = false;        // whether impacts of joints take energy (JointImpact)
     double impactWork = 0;       // energy that they have taken so far [J]
-    int refinement = 0;          // points along a joint that is about to crush; 0: as many as before
+    int points = 0;              // along a side of a joint from when it is about to yield; 0: see Refinement
     double refiningEnergy = 0;   // elastic energy that joints got when they were refined, so far [J]
 };
 

@@ -177,13 +177,14 @@ class Structure:
                 label="contacts",
                 **description.contact.of(self.joints["bed"]),
             )
+        points = [int(n) for n in args.points.split(",")] if args.points else []
         engines(
             # the rule chooses; YADE wants a joint that fits any pair before it asks
             [MasonryJoint(name="any", elastic=True)],
             damping=args.damping,
             gravity=(0, 0, -self.gravity),
-            subcontacts=args.subcontacts,
-            rows=args.rows,
+            points=points[0] if points else None,
+            subcontacts=points[1] if len(points) > 1 else None,
             inPlane=description.plane,
             loads=loads,
             connectors=connectors,
@@ -193,8 +194,6 @@ class Structure:
             dampingKind="local" if description.functors else kind,
         )
         self.energy, self.integrator = engine("energy"), engine("integrator")
-        if args.refine:
-            engine("joints").refinement = args.refine
         self.damp(args.damping, kind)
         blocks = dict(zip(self.ids, description.bricks))
         self.interactions = connect(

@@ -9,7 +9,7 @@ from typing import Any
 USUAL = {
     "blocks": "rigid",
     "divisions": 1,
-    "subcontacts": 3,
+    "points": None,
     "rate": 20.0,
     "damping": 0.8,
     "damping_kind": "combined",
@@ -22,7 +22,6 @@ PRESETS: dict[str, dict[str, Any]] = {
     "fast": {
         "blocks": "rigid",
         "divisions": 1,
-        "subcontacts": 3,
         "rate": 100.0,
     },
     "balanced": {
@@ -149,7 +148,7 @@ COMPANIONS: dict[str, dict[str, Any]] = {
     "rigid, 50 mm/s": {"rate": 50.0},
     "rigid, 100 mm/s, time step 0.78": {"rate": 100.0, "dt_fraction": 0.78},
     "rigid, 100 mm/s, time step 0.76": {"rate": 100.0, "dt_fraction": 0.76},
-    "rigid, 100 mm/s, 6 points": {"rate": 100.0, "subcontacts": 6},
+    "rigid, 100 mm/s, 12 points": {"rate": 100.0, "points": "12"},
     "one cell, 100 mm/s": {**_ONE, "rate": 100.0},
     "one cell, 100 mm/s, time step 0.78": {**_ONE, "rate": 100.0, "dt_fraction": 0.78},
     "one cell, 100 mm/s, time step 0.76": {**_ONE, "rate": 100.0, "dt_fraction": 0.76},
@@ -174,7 +173,7 @@ FIDELITIES = (
         (
             _CHANCE[0],
             Source("rate", ("rigid, 200 mm/s", "rigid, 100 mm/s", "rigid, 50 mm/s")),
-            Source("points", ("rigid, 100 mm/s", "rigid, 100 mm/s, 6 points"), 0.5),
+            Source("points", ("rigid, 100 mm/s", "rigid, 100 mm/s, 12 points"), 0.5),
             Source("block model", ("one cell, 100 mm/s", "rigid, 50 mm/s")),
         ),
     ),

@@ -16,7 +16,7 @@
   ``value``, ``unit`` and ``source``. An entry with the name ``support`` says that these joints take the bed joint
 - ``units``: how many bricks or half bricks there are; ``nodes``: how many nodes of deformable units; ``joint_count``: how
   many joints between blocks; ``joints_by_kind``: how many of each kind; ``subcontacts``: how many points of joints when the
-  run began; ``refined_joints``: with ``--refine``, how many joints got more of them
+  run began; ``refined_joints``: of rigid units, how many joints got more of them
 - ``versions``: of ``yade``, ``python`` and ``masonry``; ``commit``: of the plugin; ``threads``: how many
   steps may use; ``host``: its name; ``date``: when the run ended, in UTC, as 2026-05-31T12:00:00Z
 - ``steps_by_threads``: what :func:`masonry.assembly.threads.used` says, of the process that ended the run

@@ -22,15 +22,13 @@ from .parsing import (
     massScaling,
     number,
     pathOf,
-    refinement,
+    points,
 )
 from .fields import read as readField
 from .settings import scatterAll, setting
 
 #: The largest half-width that --accuracy takes [%]: what is less certain is no number.
 MOST_PERCENT = 50
-#: Fewest rows of points that give a joint its stiffness against bending: two give three times that, one none.
-FEWEST = 3
 
 
 def parser(description, until, rate=USUAL["rate"], loops=True):
@@ -51,7 +49,7 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     p.add_argument(
         "--preset",
         choices=[BOUND, *PRESETS],
-        help="blocks, divisions, subcontacts, rate, damping and mass scaling with a promise of error and time; "
+        help="blocks, divisions, points, rate, damping and mass scaling with a promise of error and time; "
         "an option given beside it wins, and drops the promise; bound is limit analysis alone, without a run",
     )
     p.add_argument(
@@ -131,31 +129,14 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         help="local damping (the paper's eq. (3)) or combined damping, which does not brake a steady motion",
     )
     p.add_argument(
-        "--subcontacts",
+        "--points",
         metavar="N",
-        type=lambda t: count(t, 100),
-        default=USUAL["subcontacts"],
-        help="points along each joint of rigid units, at its ends and between them (Gauss-Lobatto): in the x-z plane along "
-        "its length there, in space along its longest edge, which of a bed joint is that along the wall; from three on "
-        "rocking and rotational stiffness are exact, and a step costs in proportion",
-    )
-    p.add_argument(
-        "--refine",
-        metavar="POINTS",
-        type=refinement,
-        default=0,
-        help="in the x-z plane: points along a joint of rigid units from when it is about to crush or, a crack surface of a "
-        "brick, to crack: with 12 a wall of half bricks is about that of 12 --subcontacts, in a fraction of the time; 0: as many as before",
-    )
-    p.add_argument(
-        "--rows",
-        metavar="N",
-        type=lambda t: count(t, 100, FEWEST),
-        default=None,
-        help="in space: rows of points across each joint of rigid units, at right angles to --subcontacts, also at its edges "
-        "and between them: of a bed joint through the thickness of the wall, where a crack of bending goes; None: "
-        f"{FEWEST}. Fewer than {FEWEST} would bend with a wrong stiffness or none. A scene in the x-z plane has one row, in the "
-        "middle of the thickness, and deformable units have the points of their cells: both refuse the option",
+        type=points,
+        default=USUAL["points"],
+        help="points along a joint of rigid units from when it is about to yield, at its ends and between them "
+        "(Gauss-Lobatto), in space along each side of its face; None: 8, and 5 in space. Until then a joint has three, with "
+        "which an elastic joint is exact; N,M gives all joints M points from the beginning. How few are enough: "
+        "validation/convergence",
     )
     p.add_argument(
         "--damping",
@@ -321,29 +302,9 @@ def check(args, masonry, more=(), plane=False, connectors=None):
         problems.append("--divisions: rigid units are not divided")
     if args.mass_scaling not in (0, "auto") and args.blocks == "rigid":
         problems.append("--mass-scaling: rigid units have no deformation to slow")
-    if args.rows and plane:
+    if args.points and args.blocks == "deformable":
         problems.append(
-            f"--rows {args.rows}: this scene is in the x-z plane, where joints do not bend across their thickness and have "
-            "one row of points, in its middle; Scene(..., plane=False) is in space, --subcontacts are the points along a joint"
-        )
-    if args.rows and args.blocks == "deformable":
-        problems.append(
-            f"--rows {args.rows}: joints of deformable units have the points of their cells, of which one is through the "
-            "thickness; --divisions are those along the other two sides"
-        )
-    if args.refine and args.blocks == "deformable":
-        problems.append(
-            f"--refine {args.refine}: joints of deformable units have the points of their cells; --divisions makes more of them"
-        )
-    elif args.refine and not plane:
-        problems.append(
-            f"--refine {args.refine}: this scene is in space, and only joints with one row of points, as those of a scene in "
-            "the x-z plane, get more of them during a run; --subcontacts and --rows give all joints more from the beginning"
-        )
-    elif args.refine and not FEWEST <= args.subcontacts < args.refine:
-        problems.append(
-            f"--refine {args.refine}: it must be above --subcontacts, which is {args.subcontacts}, and that at least {FEWEST}, "
-            "so that a joint keeps its stiffness"
+            f"--points {args.points}: joints of deformable units have the points of their cells; --divisions makes more of them"
         )
     connectors = connectors or {}
     try:

@@ -27,6 +27,9 @@ UNITS = {
 RATES, DAMPINGS = (1e-3, 1000.0), (0.0, 0.99)
 RATE, DAMPING = arguments.number("mm/s", *RATES), arguments.number("", *DAMPINGS)
 
+#: Fewest points along a side that give a joint its stiffness against rotation: two give three times that, one none.
+FEWEST = 3
+
 #: Options that can be changed when a run is resumed.
 FREE = {"until", "history", "checkpoint_every", "vtk_every", "no_vtk", "lean"}
 
@@ -64,13 +67,15 @@ def count(text, high, low=1):
     return int(text)
 
 
-def refinement(text):
-    """The number of points that a text of ``--refine`` stands for: 0, or 4 to 100. Raises argparse.ArgumentTypeError."""
-    if text == "0" or text.isdecimal() and 4 <= int(text) <= 100:
-        return int(text)
-    raise argparse.ArgumentTypeError(
-        f"'{text}' must be 0 or a whole number from 4 to 100"
-    )
+def points(text):
+    """The text of ``--points``: one number of points, or two of which the first is not below the second. Raises
+    argparse.ArgumentTypeError."""
+    then, _, first = text.partition(",")
+    if count(first or str(FEWEST), 100, FEWEST) > count(then, 100, FEWEST):
+        raise argparse.ArgumentTypeError(
+            f"'{text}': a joint cannot have fewer points from when it yields than before"
+        )
+    return text
 
 
 def massScaling(text):

@@ -372,8 +372,8 @@ class Scene:
         connectors = self.description.connectors()
         masonry = self.description.materials.variant(self.args, [*connectors])
         problems = self.description.problems(masonry)
-        if self.args.refine and self.description.functors:
-            problems.append(f"--refine {self.args.refine}: the functors keep the points of joints; leave functors=False")  # fmt: skip
+        if self.args.points and self.description.functors:
+            problems.append(f"--points {self.args.points}: with functors joints keep three points; leave functors=False")  # fmt: skip
         problems += self._wrongRecord()
         if self.description.contact:
             problems += contact.problems(self.description, self.args, masonry)
@@ -413,7 +413,6 @@ class Scene:
         with self.running.clock("setup"), self.running.breakable(), withoutCollector():
             model.build(loadingBlock())
             self._prepare()
-        self._noteRows()
         self._noteCourse()
         self.running.start(model, self.outcome.space(), State(self))
         Scene.present = self
@@ -429,16 +428,6 @@ class Scene:
             say(
                 f"note: the joints are for courses of {1e3 * course:.4g} mm, mortar included, and the bricks have {found} mm: "
                 "give bricks the same unit= and joint= as the materials"
-            )
-
-    def _noteRows(self):
-        """Say that three rows of points are few where bonded joints bend out of a plane."""
-        description, args = self.description, self.args
-        bonded = {i.phys.joint.name for i in self.model.interactions if _isBonded(i.phys.joint)}  # fmt: skip
-        if bonded and not (description.plane or args.rows or args.blocks == "deformable"):  # fmt: skip
-            say(
-                f"note: joints with bond ({', '.join(sorted(bonded))}) have three rows of points, whose force against bending "
-                "out of a plane can be up to 28 % too large; --rows 5 is within 4 %"
             )
 
     def _prepare(self):
@@ -703,8 +692,3 @@ class Scene:
             say(
                 f"note: {self.name}: the script ended without scene.finish(); there is no run.json, and no figure"
             )
-
-
-def _isBonded(joint):
-    """Whether a joint can crack in tension."""
-    return not joint.elastic and joint.tensileStrength > 0

@@ -73,11 +73,11 @@ public:
         s.regime = regimeOf(regime);
         set(point, joint, s);
     }
-    void take(int point, int joint, const LawColumns& from, int other) override {
+    void take(int point, int joint, const LawColumns& from, int otherPoint, int other) override {
         const auto* same = dynamic_cast<const ColumnsOf*>(&from);
-        if (!same) return LawColumns::take(point, joint, from, other);
-        set(point, joint, same->get(point, other)); // the same law: no names need to be compared
-        setDissipated(point, joint, from.dissipated(point, other));
+        if (!same) return LawColumns::take(point, joint, from, otherPoint, other);
+        set(point, joint, same->get(otherPoint, other)); // the same law: no names need to be compared
+        setDissipated(point, joint, from.dissipated(otherPoint, other));
     }
     void show(int point, int joint, const ShowField& shown) const override {
         LawType::show(equations_, get(point, joint), shown);

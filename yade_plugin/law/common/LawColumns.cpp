@@ -50,14 +50,14 @@ double LawColumns::shown(int point, int joint, const JointField& field) const {
     return found;
 }
 
-void LawColumns::take(int point, int joint, const LawColumns& from, int other) {
+void LawColumns::take(int point, int joint, const LawColumns& from, int otherPoint, int other) {
     std::vector<std::pair<const char*, double>> numbers;
-    from.read(point, other, [&](const char* name, double value) { numbers.emplace_back(name, value); });
+    from.read(otherPoint, other, [&](const char* name, double value) { numbers.emplace_back(name, value); });
     write(point, joint, [&](const char* name, double& value) {
         for (const auto& [each, number] : numbers)
             if (std::strcmp(each, name) == 0) value = number;
     });
-    setDissipated(point, joint, from.dissipated(point, other));
+    setDissipated(point, joint, from.dissipated(otherPoint, other));
 }
 
 LawColumns::Sums LawColumns::energies(const double* area, bool alike) const {

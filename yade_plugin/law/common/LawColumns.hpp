@@ -61,7 +61,7 @@ public:
     // One of these numbers; zero if the law has none of this name.
     double number(int point, int joint, const char* name) const;
     // Takes the state of a subcontact from other columns, that is all numbers that both laws call the same.
-    virtual void take(int point, int joint, const LawColumns& from, int other);
+    virtual void take(int point, int joint, const LawColumns& from, int otherPoint, int other);
 
     // What files show of a subcontact beside its stresses.
     virtual void show(int point, int joint, const ShowField&) const = 0;

@@ -128,7 +128,7 @@ def _compare(scene, name, load, at):
         say(
             f"note: {name}: rigid blocks would carry {entry['factor']:.4g}, and the run held {100 * (1 - at.held[0] / entry['factor']):.0f} % "
             "less: joints that are soft let the structure lean before it falls. Try stiffer joints (normalStiffness), and more "
-            "points (--subcontacts, --rows)"
+            "points (--points)"
         )
 
 
