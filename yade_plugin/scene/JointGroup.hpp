@@ -141,8 +141,8 @@ struct JointShapes : JointGroup {
     // Stress of JointDamping in the last step [Pa], normal and the two shears; empty while there was no such damping.
     std::vector<double> viscous[3];
     // Of impacts (JointImpact): their stress in the last step [Pa], normal and the two shears, and the largest speed at
-    // which a subcontact has closed since it was open [m/s]: 0 of one that is open, -1 of one that has come back since,
-    // or was never open. Empty while impacts take no energy.
+    // which a corner has closed since it was open [m/s]: 0 of one that is open, -1 of one that has come back since, was
+    // never open, or is no corner (`rim`). Empty while impacts take no energy.
     std::vector<double> impact[3], closing;
     // Of every joint, whether it is the crack surface of a brick that is still whole (WholeBricks), so that it has no
     // forces. Empty if there is none.
