@@ -138,8 +138,8 @@ struct JointShapes : JointGroup {
     // Stress of JointDamping in the last step [Pa], normal and the two shears; empty while there was no such damping.
     std::vector<double> viscous[3];
     // Of impacts (JointImpact): their stress in the last step [Pa], normal and the two shears, and the largest speed at
-    // which a subcontact has closed since it was open [m/s]: 0 of one that is open, -1 of one that has come back since,
-    // or was never open. Empty while impacts take no energy.
+    // which a corner has closed since it was open [m/s]: 0 of one that is open, -1 of one that has come back since, was
+    // never open, or is no corner (`rim`). Empty while impacts take no energy.
     std::vector<double> impact[3], closing;
     std::vector<double> area;      // of a subcontact [m²]
     std::vector<double> offset[3]; // from the centre of body 1 to the subcontact in the reference state [m]

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "JointImpact.hpp"
 #include "BodyStep.hpp"
-#include <algorithm>
 
 namespace masonry {
 
@@ -41,14 +40,13 @@ Vector3r impulseAgainst(const Vector3r& speed, const JointImpacts& by, const Joi
 
 } // namespace
 
-double addImpacts(const JointImpacts& by, JointShapes& shapes, int point, int from, int count, const double* area,
+double addImpacts(const JointImpacts& by, JointShapes& shapes, int corner, int from, int count, const double* area,
                   const double* const* change, double* normal, double* shearA, double* shearB) {
     const auto& properties = shapes.law->law().properties();
-    const double* damage = properties.tensileStrength > 0 ? shapes.law->tensionDamage(point, from) : nullptr;
-    const bool corner = std::find(shapes.rim.begin(), shapes.rim.end(), point) != shapes.rim.end();
+    const double* damage = properties.tensileStrength > 0 ? shapes.law->tensionDamage(corner, from) : nullptr;
     double taken = 0;
     for (int i = 0; i < count; ++i) {
-        const std::size_t at = shapes.at(point, from + i);
+        const std::size_t at = shapes.at(corner, from + i);
         double& closing = shapes.closing[at];
         const Vector3r step(change[0][i], change[1][i], change[2] ? change[2][i] : 0);
         const double speed = -step[0] / by.dt;
@@ -59,14 +57,14 @@ double addImpacts(const JointImpacts& by, JointShapes& shapes, int point, int fr
             closing = -1;
         else if (closing >= 0) {
             const double beyond = properties.restitution * std::max(closing, speed);
-            if (by.act && corner && speed > beyond) {
+            if (by.act && speed > beyond) {
                 int meeting = 0; // a corner that was open before counts all that may meet with it in this step
                 for (int other : shapes.rim) {
                     const double theirs = shapes.closing[shapes.at(other, from + i)];
                     meeting += closing > 0 ? theirs > 0 : theirs >= 0;
                 }
                 const Vector3r ends(step[0] / by.dt + beyond, step[1] / by.dt, step[2] / by.dt);
-                now = impulseAgainst(ends, by, shapes, point, from + i, 1.0 / meeting) / (by.dt * area[i]);
+                now = impulseAgainst(ends, by, shapes, corner, from + i, 1.0 / meeting) / (by.dt * area[i]);
             }
             closing = std::max(closing, speed);
         }

@@ -21,10 +21,10 @@ struct JointImpacts {
     bool act; // whether corners get impulses; else only the second half of the work of the last step is left to count
 };
 
-// Adds the stress of impacts to the stresses of the law [Pa] at a point of the joints from..from+count, and brings
+// Adds the stress of impacts to the stresses of the law [Pa] at a corner of the joints from..from+count, and brings
 // JointShapes::impact and closing there up to date. `change` are the changes of the jump in this step [m], the last of
 // them null in a planar run. Returns the energy taken in the step by the trapezoidal rule [J].
-double addImpacts(const JointImpacts&, JointShapes&, int point, int from, int count, const double* area,
+double addImpacts(const JointImpacts&, JointShapes&, int corner, int from, int count, const double* area,
                   const double* const* change, double* normal, double* shearA, double* shearB);
 
 } // namespace masonry

@@ -536,7 +536,9 @@ JointPlan::Taken JointPlan::advancePoints(Run& run) {
         const double *normal = frames.normalStress, *a = states.shearStressA(p, from),
                      *b = states.shearStressB(p, from);
         const double* const change[3] = {frames.step[0], frames.step[1], plane_ ? none : frames.step[2]};
-        if (!shapes.viscous[0].empty() || !shapes.closing.empty()) {
+        const bool meets =
+            !shapes.closing.empty() && std::find(shapes.rim.begin(), shapes.rim.end(), p) != shapes.rim.end();
+        if (!shapes.viscous[0].empty() || meets) {
             std::copy_n(a, n, sumA);
             plane_ ? std::fill_n(sumB, n, 0.0) : std::copy_n(b, n, sumB);
             a = sumA;
@@ -547,7 +549,7 @@ JointPlan::Taken JointPlan::advancePoints(Run& run) {
             taken.damping += addJointDamping(n, damping, states.regime(p, from), states.tensionDamage(p, from), area,
                                              change, frames.normalStress, sumA, sumB, viscous);
         }
-        if (!shapes.closing.empty())
+        if (meets)
             taken.impacts += addImpacts({run.bodies, jointedArea_, run.dt, run.impacts}, shapes, p, from, n, area,
                                         change, frames.normalStress, sumA, sumB);
         if (kind.attached) {

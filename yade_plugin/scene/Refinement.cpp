@@ -197,9 +197,7 @@ double refine(const JointView& joint, int count) {
         follow(to, p, from, shares[p]);
         after.shapes->setJump(p, 0, jump);
         after.shapes->setViscous(p, 0, viscous);
-        const auto less = [](const Share& one, const Share& other) { return one.weight < other.weight; };
-        const int nearest = std::max_element(shares[p].begin(), shares[p].end(), less)->point;
-        after.shapes->setImpact(p, 0, before.shapes->impactAt(nearest, 0));
+        if (shares[p].size() == 1) after.shapes->setImpact(p, 0, before.shapes->impactAt(shares[p][0].point, 0));
         to.setDissipated(p, 0, lost);
     }
     after.giveTo(joint);
