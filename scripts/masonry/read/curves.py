@@ -12,6 +12,8 @@ from . import loops
 #: Of the elastic energy: what joints dissipate up to it is no crack [-]. Where mortar bonds, nothing is dissipated before
 #: the first crack, and this share finds it a row or two late; dry joints slip a little from the first row on.
 CRACKED = 1e-5
+#: Of :func:`suddenLoss`: the stretch of the push [mm].
+SUDDEN = 0.1
 #: Of :func:`quasiStatic`: the weight of the base of a bar in shear [-].
 SHEAR = 2 / 3
 
@@ -87,6 +89,22 @@ def peakAtBothEnds(top: Numbers, base: Numbers) -> float:
     that the other does not. Such a pulse counts in the peak at the base, but not here.
     """
     return max(map(min, zip(top, base)), default=0.0)
+
+
+def suddenLoss(displacement: Numbers, top: Numbers, base: Numbers) -> tuple[float, float]:  # fmt: skip
+    """The largest fall of the force of a push within :data:`SUDDEN`, over the largest force before it [-], and the displacement
+    at which it begins. The force is the mean of both ends, which leaves out waves that pass through. Rows that lie farther
+    apart show none.
+    """
+    force, largest, beyond = [0.5 * (t + b) for t, b in zip(top, base)], 0.0, 0
+    found = 0.0, 0.0
+    for n, moved in enumerate(displacement):
+        largest = max(largest, force[n])
+        while beyond + 1 < len(force) and displacement[beyond + 1] <= moved + SUDDEN:
+            beyond += 1
+        if beyond > n and largest > 0:
+            found = max(found, ((force[n] - force[beyond]) / largest, moved))
+    return found
 
 
 def stillGrows(displacement: Numbers, force: Numbers) -> bool:

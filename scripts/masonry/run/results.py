@@ -124,6 +124,8 @@ A run with a push has these, too:
   both are within it; ``fidelity``, what was chosen; ``quantities``, a list with ``name``, ``unit``, ``value``, ``half_width``,
   ``half_width_percent``, ``parts_percent`` by the source of the error, and ``how`` it was found; ``not_covered``; and
   ``companions``, the runs beside this one: ``name``, ``options``, ``peak`` [kN], ``work`` [J], ``seconds``, ``collapsed``, ``folder``
+- ``sudden_loss``, ``sudden_loss_at_mm``: of a push in one direction, as of :func:`masonry.read.curves.suddenLoss` [-]; above 0.1
+  the run says that its answer can depend on chance
 - ``dynamic_imbalance``: as of :func:`masonry.read.curves.dynamicImbalance` [-]; ``too_fast``: whether it is more than a push
   may have
 - ``wall``, of a whole wall in running bond in the x-z plane that a platen pushes: ``length_m``, ``height_m``,

@@ -25,6 +25,7 @@ from ..read.curves import (
     peakAtBothEnds,
     quasiStatic,
     stiffness,
+    suddenLoss,
     stillGrows,
 )
 from ..read.frames import asFrame
@@ -277,6 +278,9 @@ class Outcome:
             dynamic_imbalance=imbalance,
             too_fast=imbalance > pushing.IMBALANCE,
         )
+        if not self.pushed.history:
+            share, begun = suddenLoss(moved, top, shear)
+            found.update(sudden_loss=share, sudden_loss_at_mm=begun)
         if self.pushed.history:
             low = min(range(len(shear)), key=shear.__getitem__)
             found.update(
@@ -557,6 +561,8 @@ class Outcome:
             yield pushing.tooFast(self.pushed, run["dynamic_imbalance"])
         if run.get("damped_share", 0) > pushing.DAMPED:
             yield pushing.tooDamped(self.pushed, run["damped_share"])
+        if run.get("sudden_loss", 0) > pushing.SUDDEN:
+            yield pushing.tooSudden(self.pushed, run)
         at = lambda force, moved: f"{run[force]:.1f} kN at {run[moved]:.2f} mm"
         if "accuracy" in run:
             yield from accuracy.lines(run["accuracy"])
@@ -575,6 +581,8 @@ class Outcome:
             yield pushing.tooFast(self.pushed, run["dynamic_imbalance"])
         if self.pushed and run.get("damped_share", 0) > pushing.DAMPED:
             yield pushing.tooDamped(self.pushed, run["damped_share"])
+        if self.pushed and run.get("sudden_loss", 0) > pushing.SUDDEN:
+            yield pushing.tooSudden(self.pushed, run)
 
 
 def _meanings(cls):

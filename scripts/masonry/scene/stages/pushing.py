@@ -11,6 +11,7 @@ from yade import O
 
 from ...assembly.period import firstPeriod
 from ...basics import Collapsed, Refused, say
+from ...read import curves
 from ...run.presets import USUAL
 from ..history import aim, pathLength, turns
 from .rest import rampTime
@@ -25,6 +26,7 @@ SHARE = 1.0
 #: Frames for ParaView along a history, beside those at its turning points and zeros.
 FRAMES = 200
 IMBALANCE = 0.1  # a push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more
+SUDDEN = 0.1  # of the peak: a larger fall within a tenth of a millimetre is few bricks that give way at once
 DAMPED = 0.1  # of what loops lose: a larger share of damping is a warning, because the loops are too fat by it
 
 
@@ -331,4 +333,14 @@ def tooDamped(args, share):
     return (
         f"warning: damping, not the wall, took {100 * share:.0f} % of what the loops lost; more than "
         f"{100 * DAMPED:.0f} % spoil the work of the cycles; try --rate {slower:g}"
+    )
+
+
+def tooSudden(args, run):
+    """The warning of a push whose force falls at once, from the entries of run.json."""
+    check = "--preset accurate" if args.blocks == "rigid" else "--dt-fraction 0.78"
+    return (
+        f"warning: the force fell by {100 * run['sudden_loss']:.0f} % of its peak within {curves.SUDDEN:g} mm at "
+        f"{run['sudden_loss_at_mm']:.2f} mm: a few bricks gave way at once, and which ones can depend on the block model, the points of "
+        f"joints and the time step; {check} is the cheapest check"
     )
