@@ -14,7 +14,7 @@ def curve(force, step=0.01, until=5.0):
     return moved, [force(u) for u in moved]
 
 
-def test_a_fall_is_found_with_its_place_and_share_of_the_peak_before_it():
+def test_a_fall_is_found_with_its_place_and_share_of_the_peak():
     moved, force = curve(lambda u: 25.0 * min(u, 1.0) - (4.0 if u >= 2.05 else 0.0))
     share, at = suddenLoss(moved, force, force)
     assert share == pytest.approx(4 / 25)

@@ -92,18 +92,17 @@ def peakAtBothEnds(top: Numbers, base: Numbers) -> float:
 
 
 def suddenLoss(displacement: Numbers, top: Numbers, base: Numbers) -> tuple[float, float]:  # fmt: skip
-    """The largest fall of the force of a push within :data:`SUDDEN`, over the largest force before it [-], and the displacement
-    at which it begins. The force is the mean of both ends, which leaves out waves that pass through. Rows that lie farther
-    apart show none.
+    """The largest fall of the force of a push within :data:`SUDDEN`, over its peak [-], and the displacement at which it begins.
+
+    The force is the mean of both ends, which leaves out waves that pass through. Rows that lie farther apart show none.
     """
-    force, largest, beyond = [0.5 * (t + b) for t, b in zip(top, base)], 0.0, 0
-    found = 0.0, 0.0
+    force = [0.5 * (t + b) for t, b in zip(top, base)]
+    peak, beyond, found = max(force, default=0.0), 0, (0.0, 0.0)
     for n, moved in enumerate(displacement):
-        largest = max(largest, force[n])
         while beyond + 1 < len(force) and displacement[beyond + 1] <= moved + SUDDEN:
             beyond += 1
-        if beyond > n and largest > 0:
-            found = max(found, ((force[n] - force[beyond]) / largest, moved))
+        if beyond > n and peak > 0:
+            found = max(found, ((force[n] - force[beyond]) / peak, moved))
     return found
 
 
