@@ -318,7 +318,7 @@ def test_a_preset_whose_option_is_overridden_says_so_twice(runScene):
 
 
 def test_a_dry_wall_takes_a_preset_without_a_promise(runScene):
-    words = ["--preset", "balanced", "--until", "0.2", "--no-vtk"]
+    words = ["--preset", "accurate", "--until", "0.2", "--no-vtk"]
     process, out = runScene("wall_dry", *words)
     assert "without its promise: not measured on wall_dry" in process.stdout
     assert readRun(out)["options"]["blocks"] == "deformable"
