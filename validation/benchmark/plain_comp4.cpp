@@ -46,7 +46,7 @@ Joint jointOf(double kn, double ks, double ft, double gI, double cp, double gII,
     j.ownKs = ks;
     const double shear = young / (2 * (1 + poisson));
     j.kn = 1 / (1 / kn + lumped / young);
-    j.ks = 1 / (1 / ks + lumped / shear);
+    j.ks = 1 / (1 / ks + 0.5 * lumped / shear); // half bricks share their shear between bed and head joints
     j.elastic = elastic;
     j.ft = ft;
     j.cp = cp;

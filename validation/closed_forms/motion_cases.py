@@ -3,7 +3,7 @@
 
 import math
 
-from cases import case
+from cases import between, case
 from masonry import (
     MasonryJoint,
     MasonryMat,
@@ -16,7 +16,8 @@ from masonry import (
     engines,
 )
 from masonry.bricks import boxCorners as corners
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
+from scipy.optimize import brentq
 from structures import G, box, dry, elastic, fix, mat, rigidlike, sceneOf
 from yade import O, Quaternion, Vector3
 
@@ -187,14 +188,22 @@ def newmark_short(quick):
 B, H = 0.25, 1.0  # of the rocking block [m]
 
 
-def standing(share, stiffness=1e10, size=(B, H), fraction=0.4):
+def standing(
+    share, stiffness=1e10, size=(B, H), fraction=0.4, restitution=1.0, points=None
+):
     """A free block on a fixed one, turned about its edge by a share of its slenderness angle; returns its state."""
     O.reset()
     width, height = size
     fix(box((-1, 0, -0.2), (2 + width, 0.25, 0.2), mat()))
     block = box((0, 0, 0), (width, 0.25, height), mat(), inPlane=True)
-    engines([dry(stiffness, friction=5)], damping=0)
+    engines(
+        [dry(stiffness, friction=5, restitution=restitution)],
+        damping=0,
+        subcontacts=points,
+    )
     connect()
+    engine("joints").impacts = True
+    engine("joints").points = points or 0
     O.dt = fraction * criticalTimeStep()[0]
     turn = Quaternion(Vector3(0, 1, 0), share * math.atan2(width, height))
     state, edge = O.bodies[block].state, Vector3(width, 0.125, 0)
@@ -252,13 +261,13 @@ def rocking_75(quick):
     return quarter(0.75)
 
 
-def restitution(size, stiffness=1e10):
+def restitution(size, stiffness=1e10, **joint):
     """Angular velocity after the first impact over that before it [-]: of rigid blocks, and measured.
 
     Both velocities follow from the energy of the block at rest, before the impact and at the largest angle after it.
     """
     alpha, share = math.atan2(*size), 0.5
-    state = standing(share, stiffness, size)
+    state = standing(share, stiffness, size, **joint)
     p = math.sqrt(0.75 * G / (0.5 * math.hypot(*size)))
     farthest, most = 0.0, 4 * math.acosh(1 / (1 - share)) / p
     swung = -0.05 * alpha  # beyond the vibrations of the impact
@@ -269,22 +278,114 @@ def restitution(size, stiffness=1e10):
     return 1 - 1.5 * math.sin(alpha) ** 2, spin(-farthest) / spin(share * alpha)
 
 
-RIGID = "1 − 1.5·sin²α: rigid blocks, conserved angular momentum"
+RIGID = "1 − 1.5·sin²α: rigid blocks, conserved angular momentum; Housner 1963"
+
+
+def impact(name, size, aim=0.02, points=3, of=0.0):
+    """A case of the restitution at the first impact, with joints that have this restitution and as many points."""
+    what = f"restitution at the first impact, {size[0]} × {size[1]:g} m, {points} points, joint restitution {of:g}"
+    measure = lambda quick: restitution(size, restitution=of, points=points)
+    measure.__name__ = name
+    case(ROCK, what, RIGID, aim=aim, quick=True)(measure)
+
+
+impact("restitution_squat", (0.25, 0.5))
+impact("restitution_slender", (0.25, 1.0))
+impact("restitution_thin", (0.25, 2.0))
+impact("restitution_8_points", (0.25, 1.0), points=8)
+impact("restitution_elastic", (0.25, 1.0), aim=None, of=1.0)
+
+
+def housnerFalls(pulse, lasts, kept):
+    """Whether a rigid block on a rigid base turns over under a ground acceleration, with so much of its spin kept at an
+    impact: Housner's equation of motion.
+
+    :param pulse: ground acceleration [m/s²] as a function of time, none after it has lasted
+    """
+    alpha, p2 = math.atan2(B, H), 0.75 * G / (0.5 * math.hypot(B, H))
+    end = lasts + 3.0
+
+    def rates(t, y):
+        side = math.copysign(1.0, y[0] or y[1] or -pulse(t))
+        about = alpha * side - y[0]
+        push = pulse(t) / G if t < lasts else 0.0
+        return [y[1], -p2 * (math.sin(about) + push * math.cos(about))]
+
+    meets, over = lambda t, y: y[0], lambda t, y: abs(y[0]) - 0.5 * math.pi
+    meets.terminal = over.terminal = True
+    # it leaves its base when the ground is fast enough, and is upright again at every impact
+    t = brentq(lambda t: pulse(t) - G * B / H, 0, 0.25 * lasts)
+    y = [-1e-9, 0.0]
+    while t < end:
+        meets.direction = -math.copysign(1.0, y[0])
+        found = solve_ivp(rates, (t, end), y, events=(meets, over), max_step=0.002, rtol=1e-8, atol=1e-10)  # fmt: skip
+        if len(found.t_events[1]):
+            return True
+        spin = kept * found.y[1][-1]
+        if abs(spin) < 1e-3:
+            return False
+        t, y = found.t[-1], [math.copysign(1e-9, spin), spin]
+    return False
+
+
+def turnsOver(pulse, lasts, of):
+    """The same of a block on a joint with this restitution."""
+    state = standing(0, 1e11, restitution=of, points=3)
+    integrator = engine("integrator")
+    integrator.damping = 0.3
+    go(0.02)
+    integrator.damping, begun = 0, O.time
+    while O.time < begun + lasts + 3:
+        at = O.time - begun + 0.5 * O.dt
+        integrator.gravity = Vector3(-pulse(at) if at < lasts else 0, 0, -G)
+        O.step()
+        if abs(angle(state)) > 1:
+            return True
+    return False
+
+
+def overturning(wave, lasts, of, quick):
+    """Amplitude of a pulse that turns a block over [g], of Housner's equation and measured.
+
+    :param wave: of the time over that of the pulse
+    """
+    pulse = lambda a: lambda t: a * G * wave(t / lasts)
+    alpha = math.atan2(B, H)
+    kept = 1 - 1.5 * math.sin(alpha) ** 2 if of == 0 else 1.0
+    low, high = 1.01 * B / H, 2.0
+    while high - low > 1e-4:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if housnerFalls(pulse(middle), lasts, kept) else (middle, high)  # fmt: skip
+    stays = lambda a: not turnsOver(pulse(a), lasts, of)
+    return low, between(stays, low, 0.02, quick, spread=0.1)
+
+
+SINE, HALF = lambda x: math.sin(2 * math.pi * x), lambda x: math.sin(math.pi * x)
+EQUATION = "Housner's equation of motion, an impact keeps 1 − 1.5·sin²α of the spin"
+
+
+@case(ROCK, "full sine of 0.4 s that turns 0.25 × 1 m over [g]", EQUATION, aim=0.02)
+def overturning_long(quick):
+    return overturning(SINE, 0.4, 0.0, quick)
+
+
+@case(ROCK, "full sine of 0.25 s that turns it over [g]", EQUATION, aim=0.02)
+def overturning_short(quick):
+    return overturning(SINE, 0.25, 0.0, quick)
+
+
+@case(ROCK, "half sine of 0.3 s that turns it over, without an impact [g]", EQUATION, aim=0.01)  # fmt: skip
+def overturning_half(quick):
+    return overturning(HALF, 0.3, 0.0, quick)
 
 
 @case(
     ROCK,
-    "restitution at the first impact, 0.25 × 1 m, undamped joint",
-    RIGID,
-    quick=True,
+    "full sine of 0.4 s that turns it over, joint restitution 1 [g]",
+    "Housner's equation of motion, all of the spin kept",
 )
-def restitution_slender(quick):
-    return restitution((0.25, 1.0))
-
-
-@case(ROCK, "restitution at the first impact, 0.5 × 1 m, undamped joint", RIGID)
-def restitution_squat(quick):
-    return restitution((0.5, 1.0))
+def overturning_elastic(quick):
+    return overturning(SINE, 0.4, 1.0, quick)
 
 
 # -- damping and work -------------------------------------------------------------------------------------------------

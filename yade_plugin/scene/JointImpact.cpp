@@ -48,7 +48,7 @@ double addImpacts(const JointImpacts& by, JointShapes& shapes, int corner, int f
     for (int i = 0; i < count; ++i) {
         const std::size_t at = shapes.at(corner, from + i);
         double& closing = shapes.closing[at];
-        const Vector3r step(change[0][i], change[1][i], change[2] ? change[2][i] : 0);
+        const Vector3r step(change[0][i], change[1][i], change[2][i]);
         const double speed = -step[0] / by.dt;
         Vector3r now = Vector3r::Zero();
         if (normal[i] >= 0 && !properties.elastic && !(damage && damage[i] < bondGone))

@@ -7,7 +7,7 @@
 // stored comes back. So a corner of the face gets in every step of its closing, beside the stress of the law, the
 // impulse that ends its motion as an impact of two free rigid bodies does. Of the masses of a block every joint has the
 // part that its area has of all joints of the block, and the corners of a joint that meet at the same time have equal
-// parts. So the impulses of a step never bring a motion beyond rest, at no time step, and take energy.
+// parts. So the impulses of a step end a motion and hardly reverse it, and they take energy at any time step.
 #pragma once
 #include "BodyColumns.hpp"
 #include "JointGroup.hpp"
@@ -22,8 +22,8 @@ struct JointImpacts {
 };
 
 // Adds the stress of impacts to the stresses of the law [Pa] at a corner of the joints from..from+count, and brings
-// JointShapes::impact and closing there up to date. `change` are the changes of the jump in this step [m], the last of
-// them null in a planar run. Returns the energy taken in the step by the trapezoidal rule [J].
+// JointShapes::impact and closing there up to date. `change` are the changes of the jump in this step [m]. Returns the
+// energy taken in the step by the trapezoidal rule [J].
 double addImpacts(const JointImpacts&, JointShapes&, int corner, int from, int count, const double* area,
                   const double* const* change, double* normal, double* shearA, double* shearB);
 

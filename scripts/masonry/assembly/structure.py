@@ -184,6 +184,7 @@ class Structure:
             gravity=(0, 0, -self.gravity),
             points=points[0] if points else None,
             subcontacts=points[1] if len(points) > 1 else None,
+            rows=points[1] if len(points) > 1 and not description.plane else None,
             inPlane=description.plane,
             loads=loads,
             connectors=connectors,

@@ -242,7 +242,7 @@ class Companions:
 
     def _start(self, name):
         options = {**CHOSEN, **COMPANIONS[name]}
-        words = [f"{asOption(option)}={value}" for option, value in options.items()]
+        words = [f"{asOption(option)}={value}" for option, value in options.items() if value is not None]  # fmt: skip
         folder = self.folderOf(name)
         command = [*self.command, *words, "--lean", "--checkpoint-every=0", f"--out={folder}"]  # fmt: skip
         env = {**os.environ, "OMP_NUM_THREADS": "1", COMPANION: str(os.getpid())}

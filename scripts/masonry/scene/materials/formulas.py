@@ -128,7 +128,7 @@ class _Kind:
                 elastic = strength**2 / (2 * stiffness)
                 say(
                     f"warning: materials.masonry: {what} {given:.4g} J/m² of the {self.name} joint softens more steeply than "
-                    f"joint and rigid units are stiff and would snap back: it must be above {least:.4g} J/m² (the "
+                    f"joint and rigid units are stiff and can snap back: it must be above {least:.4g} J/m² (the "
                     f"elastic energy of the joint at its peak is {elastic:.4g} J/m²)"
                 )
             self.values[name] = given

@@ -105,9 +105,10 @@ def shake(
     samples the acceleration changes evenly, and each step has that of its middle: nothing is filtered, and the time step
     does not depend on the samples.
 
-    Joints that slide, crack and crush take energy. The default adds no other damping, since none is measured for
-    masonry that rocks. :func:`rayleigh` gives the two viscous ones from a damping ratio. The stages that follow have the
-    damping of the options again.
+    Joints that slide, crack and crush take energy, and so do those without bond that close after they have been open, as
+    their ``restitution`` says. The default adds no other damping, since none is measured for masonry that rocks.
+    :func:`rayleigh` gives the two viscous ones from a damping ratio. The stages that follow have the damping of the options
+    again.
 
     ``--record FILE`` replaces the record of the first shake of a scene, with the time between its samples, its factor and its
     unit, and ``--scale S`` makes that shake S times as strong. A record that does not end at rest is named with its numbers; nothing is corrected.

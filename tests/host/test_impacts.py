@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Impacts of joints that close: what a block that rocks keeps, and that they take energy and never give any."""
+
+import os
+import random
+import sys
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from masonry import (
+    MasonryJoint,
+    connect,
+    criticalTimeStep,
+    engine,
+    engines,
+    loadCheckpoint,
+    saveCheckpoint,
+)
+from masonry._masonry import allowThreads
+from yade import O, Vector3
+
+sys.path.insert(0, os.path.join(ROOT, "validation", "closed_forms"))
+from motion_cases import restitution  # noqa: E402
+from structures import box, dry, fix, mat  # noqa: E402
+
+B, H = 0.25, 1.0  # of a stack [m]
+
+
+def stack(count=3, inPlane=False, law="softening", restitution=0.0, step=0.5):
+    """Blocks one upon the other."""
+    O.reset()
+    fix(box((-1, -1, -0.2), (2 + B, 2 + B, 0.2), mat()))
+    for k in range(count):
+        box((0, 0, k * H / count), (B, B, H / count), mat(), inPlane=inPlane)
+    engines([dry(1e9, law=law, restitution=restitution)], damping=0)
+    connect()
+    engine("joints").impacts = True
+    O.dt = step * criticalTimeStep()[0]
+
+
+def shake(seconds, seed=1):
+    """Gravity that jumps about, so that blocks rock, hop and slide."""
+    dice = random.Random(seed)
+    for _ in range(round(seconds / 0.05)):
+        aside = [dice.uniform(-5, 5), 0 if isPlane() else dice.uniform(-5, 5)]
+        engine("integrator").gravity = Vector3(*aside, -9.81)
+        run(round(0.05 / O.dt))
+
+
+def isPlane():
+    return "y" in O.bodies[1].state.blockedDOFs
+
+
+def run(steps):
+    for _ in range(steps):
+        O.step()
+
+
+def untilImpact():
+    """Steps until one of them has taken energy, half of whose work is left."""
+    taken = engine("joints").impactWork
+    while engine("joints").impactWork == taken:
+        O.step()
+
+
+def bits():
+    values = [v for b in O.bodies for v in (*b.state.pos, *b.state.vel, *b.state.angVel)]  # fmt: skip
+    return np.array([*values, *engine("energy").balance().values()]).tobytes()
+
+
+CASES = {
+    "plane": dict(inPlane=True),
+    "space": {},
+    "cyclic": dict(law="cyclic"),
+    "cyclic in the plane": dict(law="cyclic", inPlane=True),
+    "half": dict(restitution=0.5),
+}
+
+
+@pytest.mark.parametrize("size", [(0.25, 0.5), (0.25, 1.0), (0.25, 2.0)], ids=str)
+def test_a_block_that_rocks_keeps_what_that_of_housner_keeps(scene, size):
+    for points, least, most in ((3, -0.005, 0.015), (8, -0.005, 0.07)):
+        rigid, kept = restitution(size, restitution=0, points=points)
+        assert least < kept - rigid < most, points
+    balance = engine("energy").balance()
+    assert balance["impacts"] > 0 and abs(balance["error"]) < 1e-4
+
+
+def test_less_is_lost_with_more_restitution(scene):
+    kept = [restitution((B, H), restitution=e, points=3)[1] for e in (0, 0.5, 0.9, 1)]
+    assert kept == sorted(kept) and kept[-1] > 0.98
+    assert engine("energy").balance()["impacts"] == 0
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("step", [0.1, 0.4, 0.8])
+def test_impacts_never_give_energy(scene, case, step):
+    for seed in range(3):
+        stack(step=step, **CASES[case])
+        most = fallen = 0
+        for part in range(20):
+            shake(0.05, seed + 10 * part)
+            now = engine("joints").impactWork
+            fallen, most = max(fallen, most - now), max(most, now)
+        balance = engine("energy").balance()
+        assert most > 0.2 and fallen < 0.01 * most
+        assert abs(balance["error"]) < 3e-3
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_threads_and_a_checkpoint_change_no_bit(scene, case, tmp_path):
+    found = []
+    for threads in (1, 2):
+        allowThreads(threads)
+        stack(**CASES[case])
+        shake(0.5)
+        untilImpact()
+        saveCheckpoint(str(tmp_path / "now"))
+        shake(0.2)
+        found.append(bits())
+    allowThreads(1)
+    assert found[0] == found[1]
+    stack(**CASES[case])
+    loadCheckpoint(str(tmp_path / "now"))
+    shake(0.2)
+    assert bits() == found[0]
+
+
+def test_what_is_pressed_or_bonded_has_no_impacts(scene):
+    bonds = dict(tensileStrength=5e6, cohesion=1e7, modeIFractureEnergy=1e4, modeIIFractureEnergy=1e5)  # fmt: skip
+    for joint, speed in ((dry(1e9), 0.002), (MasonryJoint(cap=False, **bonds), 0.3)):
+        O.reset()
+        fix(box((-1, 0, -0.2), (2 + B, B, 0.2), mat()))
+        block = box((0, 0, 0), (B, B, H), mat(), inPlane=True)
+        engines([joint], damping=0.8)
+        connect()
+        O.dt = 0.5 * criticalTimeStep()[0]
+        run(500)
+        engine("integrator").damping, engine("joints").impacts = 0, True
+        O.bodies[block].state.vel = Vector3(0, 0, -speed)
+        engine("energy").given()
+        run(1000)
+        balance = engine("energy").balance()
+        assert balance["impacts"] == 0
+        assert balance["external"] > 0  # the motion that was given
+
+
+def test_without_impacts_nothing_is_taken_and_the_last_half_is_counted(scene):
+    stack()
+    shake(0.3)
+    untilImpact()
+    taken = engine("joints").impactWork
+    engine("joints").impacts = False
+    O.step()
+    assert engine("joints").impactWork != taken
+    taken = engine("joints").impactWork
+    shake(0.5)
+    assert engine("joints").impactWork == taken
+    assert abs(engine("energy").balance()["error"]) < 1e-3
