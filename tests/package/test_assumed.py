@@ -34,6 +34,7 @@ OTHER = {
     "capNormal": 1.1,
     "capShear": 8.0,
     "capLinear": 1.0,
+    "restitution": 0.5,
 }
 STRENGTHS = dict(tensileStrength=0.1e6, cohesion=0.2e6, friction=0.6, compressiveStrength=8e6)  # fmt: skip
 
