@@ -70,6 +70,27 @@ LONG = [
     "test_a_wall_of_the_law_runs_and_goes_on_from_a_checkpoint_bit_for_bit",
 ]
 
+#: Tests whose cases take some tenths of a second to a second each: the quick ring has the first case alone.
+FIRST_CASE = [
+    "test_a_block_that_is_erased_is_an_error_or_left_out",
+    "test_a_dry_pier_tips_about_its_toe_or_slides",
+    "test_a_forked_process_goes_on",
+    "test_a_push_is_the_shear_force_below_and_its_lever_arm_the_moment",
+    "test_a_run_that_was_saved_among_intact_joints_goes_on_in_the_same_bits",
+    "test_a_run_that_was_saved_goes_on_in_the_same_bits",
+    "test_a_scene_built_anew_goes_on_bit_for_bit",
+    "test_a_semicircular_arch_needs_the_thickness_of_limit_analysis",
+    "test_a_step_right_after_a_pause_ends",
+    "test_a_wall_of_bricks_tips_out_of_its_plane_at_thickness_over_height",
+    "test_crafted_checkpoints_are_value_errors_and_change_nothing",
+    "test_one_couplet_of_seventy_that_is_one_per_cent_other_keeps_its_own_numbers",
+    "test_the_bound_of_a_push_lacks_what_dead_loads_push_already",
+    "test_the_bound_of_a_tilt_turns_weight_and_not_dead_loads",
+    "test_the_section_at_the_foot_has_the_force_and_moment_that_the_base_feels",
+    "test_what_outlives_its_scene_raises_an_error_when_read",
+    "test_whatever_is_imported_first",
+]
+
 #: On a busy machine examples take longer than hypothesis expects, and some are large.
 settings.register_profile(
     "busy",
@@ -170,13 +191,18 @@ def pytest_collection_modifyitems(items):
         parts = item.path.relative_to(os.path.join(ROOT, "tests")).parts
         return parts[0] if parts[0] in RINGS else RINGS[-1]
 
+    seen = set()
     for item in items:
-        if ring(item) in SLOW:
+        name = getattr(item, "originalname", None)
+        if ring(item) in SLOW or (name in FIRST_CASE and name in seen):
             item.add_marker(pytest.mark.slow)
-        if getattr(item, "originalname", None) in LONG or "site" in getattr(item, "fixturenames", []):  # fmt: skip
+        seen.add(name)
+        if name in LONG or "site" in getattr(item, "fixturenames", []):
             item.add_marker(pytest.mark.long)
-        for name in set(TOGETHER) & set(getattr(item, "fixturenames", [])):
-            item.add_marker(pytest.mark.xdist_group(name))
+        if item.get_closest_marker("long"):
+            item.add_marker(pytest.mark.slow)
+        for group in set(TOGETHER) & set(getattr(item, "fixturenames", [])):
+            item.add_marker(pytest.mark.xdist_group(group))
     items.sort(
         key=lambda item: (
             item.get_closest_marker("slow") is not None,

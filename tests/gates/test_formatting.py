@@ -27,6 +27,7 @@ def test_cpp_is_formatted_by_clang_format():
     assert formatting.unformattedCpp(paths) == []
 
 
+@pytest.mark.slow
 @needsBlack
 def test_python_is_formatted_by_black():
     paths = tree.files((".py",))
@@ -34,6 +35,7 @@ def test_python_is_formatted_by_black():
     assert formatting.unformattedPython(paths) == []
 
 
+@pytest.mark.slow
 @needsPyflakes
 def test_no_import_is_unused():
     found = {path: formatting.unusedImports(path) for path in tree.files((".py",))}

@@ -20,6 +20,7 @@ def withoutYade(*words):
     return run.returncode, run.stdout + run.stderr
 
 
+@pytest.mark.slow
 def test_all_that_needs_no_yade_is_found_without_it():
     paths = [os.path.join(TESTS, name) for name in WITHOUT_YADE]
     status, output = withoutYade("--collect-only", *paths)

@@ -218,6 +218,7 @@ def test_blocks_press_when_they_overlap_with_forces_and_moments_that_are_opposit
     assert rest.norm() <= 1e-13 * pressing * (between.norm() + pair.reach)
 
 
+@pytest.mark.slow
 @settings(max_examples=100)
 @given(
     pairs(depths=(-3, -1)),
@@ -235,6 +236,7 @@ def test_where_the_pair_stands_and_which_block_comes_first_changes_nothing(pair,
         assert (momentAgain - moment).norm() <= allowed * pair.reach
 
 
+@pytest.mark.slow
 @settings(max_examples=100)
 @given(pairs(depths=(-4, -1)), some.integers(0, 2**32 - 1))
 def test_the_force_does_not_jump(pair, seed):
@@ -306,6 +308,7 @@ class Path:
         )
 
 
+@pytest.mark.slow
 @settings(max_examples=40)
 @given(pairs(depths=(-3, -1)), some.integers(0, 2**32 - 1), some.sampled_from([1, 5]))
 def test_a_closed_path_gives_back_its_work(pair, seed, wide):
@@ -325,6 +328,7 @@ def test_a_closed_path_gives_back_its_work(pair, seed, wide):
     assert abs(total) <= 1e-6 * largest
 
 
+@pytest.mark.slow
 @settings(max_examples=25)
 @given(pairs(depths=(-3, -1)), some.integers(0, 2**32 - 1), some.floats(0.05, 2))
 def test_friction_only_takes_energy(pair, seed, friction):

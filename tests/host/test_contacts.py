@@ -254,6 +254,7 @@ def states():
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [12, pytest.param(200, marks=pytest.mark.long)])
 def test_a_heap_comes_to_rest_with_a_balance_of_energy(scene, count):
     heap(count, abreast=1 if count < 20 else 10)

@@ -52,6 +52,7 @@ def test_a_dry_pier_tips_about_its_toe_or_slides(tmp_path, stones):
     assert readRun(tmp_path / "r")["steps"] == 0
 
 
+@pytest.mark.slow
 def test_where_joints_crush_the_domain_is_concave_and_ends(tmp_path):
     """Bed joints of calcium-silicate masonry crush at some MPa: the shear force grows, and falls again, to nothing at the strength
     of the section."""
@@ -67,6 +68,7 @@ def test_where_joints_crush_the_domain_is_concave_and_ends(tmp_path):
     assert not any(one.exact for one in found.bounds)
 
 
+@pytest.mark.slow
 def test_the_scene_stays_as_it_is(tmp_path):
     """The bound of a push is the same with a domain before it, and lies on the domain."""
     bounds = []
@@ -85,6 +87,7 @@ def test_the_scene_stays_as_it_is(tmp_path):
     assert capacity.domain(tmp_path / "1").shear(own) == pytest.approx(bounds[0], rel=1e-5)  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_run_is_a_point_below_its_bound(tmp_path):
     """A slow push of a dry pier with stiff joints reaches what rigid blocks carry, but for what it leans."""
     stiff = materials.dry(FRICTION, normalStiffness=1e11, density=DENSITY)
@@ -104,6 +107,7 @@ def test_a_run_is_a_point_below_its_bound(tmp_path):
     assert curve.yieldForce < curve.peakForce == pytest.approx(point.shear)
 
 
+@pytest.mark.slow
 def test_a_domain_is_kept_when_a_run_is_resumed(tmp_path):
     kept = []
     for n, words in enumerate(([], ["--until", "0.1", "--resume", str(tmp_path / "0")])):  # fmt: skip

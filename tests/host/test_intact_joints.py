@@ -128,6 +128,7 @@ def test_a_run_that_was_saved_among_intact_joints_goes_on_in_the_same_bits(
     assert 0 < whole[2] < len(interactions)
 
 
+@pytest.mark.slow
 def test_reading_points_in_every_step_changes_nothing():
     interactions = panel(False)
     run(200)

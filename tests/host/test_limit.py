@@ -389,6 +389,7 @@ def test_the_preset_bound_runs_nothing(scene, tmp_path, capsys):
     )
 
 
+@pytest.mark.slow
 def test_a_lean_is_bracketed_by_its_bound_alone(scene, tmp_path):
     from masonry import AT_REST
 
@@ -449,6 +450,7 @@ def test_a_tilt_is_the_same_under_another_gravity(scene, tmp_path):
     assert leant["factor"] == pytest.approx(0.5 * 1.62 / G, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_limit_analysis_alone_replaces_a_load_and_stands_under_one_that_moves_nothing(scene, tmp_path):  # fmt: skip
     s, highest, weight = stones(tmp_path, (100, 0, -50))
     assert s.load(highest, (0, 0, -1e5)) == "at rest"  # on a base that is held
@@ -563,6 +565,7 @@ def test_a_peak_may_be_above_its_bound_by_two_per_cent_and_the_imbalance(imbalan
     assert lean.startswith("warning: lean: the load that was held, 0.5105 g")
 
 
+@pytest.mark.slow
 def test_a_peak_above_its_bound_is_a_warning_with_both_numbers(scene, tmp_path, capsys):
     s, top = small("--out", str(tmp_path / "r"))
     s.settle()
@@ -578,6 +581,7 @@ def test_a_peak_above_its_bound_is_a_warning_with_both_numbers(scene, tmp_path, 
     assert f"{0.9 * peak:.4g} kN" in said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("plane", [True, False])
 def test_deformable_units_have_the_bound_of_rigid_ones(scene, tmp_path, plane):
     from masonry import Scene, bricks, materials
@@ -597,6 +601,7 @@ def test_deformable_units_have_the_bound_of_rigid_ones(scene, tmp_path, plane):
     assert factors[1] == pytest.approx(factors[0], rel=0.02)  # other points of joints
 
 
+@pytest.mark.slow
 def test_no_bound_is_reported_after_supports_have_moved(scene, tmp_path):
     from masonry import Scene, bricks, materials
 

@@ -369,7 +369,11 @@ def isNamed(name, argument, message):
     return any(text.lower() in message.lower() for text in found)
 
 
-@pytest.mark.parametrize("name", [*WORDS, *CALLS])
+#: Words that take steps, some tenths of a second each time.
+STEPS = {"accelerate", "bound", "cycle", "domain", "follow", "growLoad", "growPress", "load, a stage", "move", "pressJoint", "push", "result", "shake", "tilt"}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] * (n in STEPS)) for n in (*WORDS, *CALLS)])  # fmt: skip
 def test_odd_values_are_refused_in_a_sentence_or_mean_something(folder, name):
     values = odd()
     legal = WORDS[name][1] if name in WORDS else CALLS[name][2]

@@ -81,12 +81,14 @@ other.join()
     assert (tmp_path / "elsewhere" / "run.json").exists()
 
 
+@pytest.mark.slow
 def test_threads_are_those_that_are_asked_for(tmp_path):
     code = "from masonry import Scene; from yade import O; print(O.numThreads)"
     assert done(code, env=environment(OMP_NUM_THREADS="2")) == "2\n"
     assert done(code) == "1\n"
 
 
+@pytest.mark.slow
 def test_a_yade_that_was_imported_before_has_one_thread(tmp_path):
     end = "import ctypes; print('threads', ctypes.CDLL(None).omp_get_max_threads())"
     run = played(tmp_path, FOUND + "import yade\n", end=end)
@@ -113,6 +115,7 @@ def test_whatever_is_imported_first(code):
     done(code + "; import importlib, masonry; importlib.reload(masonry).Scene")
 
 
+@pytest.mark.slow
 def test_what_reads_results_does_not_start_yade():
     code = """
 import sys, masonry, masonry.read.measure, masonry.read.shown, masonry.study, masonry.run.batch
@@ -126,6 +129,7 @@ print([name for name in sys.modules if name.split(".")[0] == "yade"])
     assert "module 'masonry' has no attribute 'Scenes'" in python("-c", code).stderr
 
 
+@pytest.mark.slow
 def test_the_importer_of_yade_works_before_and_after(tmp_path):
     (tmp_path / "yadeimport.py").symlink_to("/usr/bin/yade")
     first = "import sys; sys.path.insert(0, '.'); import yadeimport\n"
@@ -137,6 +141,7 @@ def test_the_importer_of_yade_works_before_and_after(tmp_path):
     assert run.returncode == 0, run.stderr
 
 
+@pytest.mark.slow
 def test_words_of_a_notebook_are_not_those_of_the_scene(tmp_path):
     begin = """
 import sys, types
@@ -188,6 +193,7 @@ def test_a_virtual_environment_without_what_yade_needs_gives_a_sentence(tmp_path
     assert "--system-site-packages" in run.stdout
 
 
+@pytest.mark.slow
 def test_a_source_tree_without_the_plugin_says_how_to_build_it(tmp_path):
     shutil.copytree(os.path.join(ROOT, "scripts", "masonry"), tmp_path / "masonry")
     env = environment(PYTHONPATH=str(tmp_path))
@@ -196,6 +202,7 @@ def test_a_source_tree_without_the_plugin_says_how_to_build_it(tmp_path):
     assert "REFUSED: the masonry plugin is not built" in said and "setup.sh" in said
 
 
+@pytest.mark.slow
 def test_a_scene_beside_the_sources_uses_the_installed_package(tmp_path):
     shutil.copytree(os.path.join(ROOT, "scripts", "masonry"), tmp_path / "masonry")
     end = "import sys; print(sys.modules['masonry.scene'].__file__)"
@@ -317,6 +324,7 @@ def test_a_run_that_is_stopped_goes_on_to_the_same_bits(tmp_path, number):
     assert whole == stopped
 
 
+@pytest.mark.slow
 def test_several_scenes_follow_each_other_in_one_process(tmp_path):
     more = SCENE.replace('"plain"', '"second"').replace("stack(2", "stack(3")
     run = played(tmp_path, "", end=more)

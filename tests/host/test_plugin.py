@@ -120,6 +120,7 @@ for warning in told:
 """
 
 
+@pytest.mark.slow
 def test_a_yade_of_an_unknown_version_is_used_on_the_users_word_only(monkeypatch):
     monkeypatch.delenv("MASONRY_UNKNOWN_YADE", raising=False)
     run = inFreshYade(UNKNOWN)
@@ -132,6 +133,7 @@ def test_a_yade_of_an_unknown_version_is_used_on_the_users_word_only(monkeypatch
     assert "WARNED: RuntimeWarning YADE 2099.1 is not known" in run.stdout
 
 
+@pytest.mark.slow
 def test_an_unknown_version_with_another_layout_is_refused_whatever_the_user_says(
     monkeypatch,
 ):
@@ -150,6 +152,7 @@ def test_an_unknown_version_with_another_layout_is_refused_whatever_the_user_say
     assert "State.mass: expected offset 176, found offset 168" in run.stdout
 
 
+@pytest.mark.slow
 def test_the_running_version_is_a_known_one_without_a_warning():
     run = inFreshYade(UNKNOWN.replace('yade.config.version = "2099.1"', ""))
     assert "TAKEN" in run.stdout and "WARNED" not in run.stdout, run.stdout

@@ -354,6 +354,7 @@ assert not silent, "read without an error: " + ", ".join(silent)
     inYade(code)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("blocks", ["rigid", "deformable"])
 def test_a_joint_read_after_its_engine_is_gone_shows_its_last_state(blocks):
     inYade(
@@ -498,6 +499,7 @@ O.run(20, True)
     )
 
 
+@pytest.mark.slow
 def test_a_joint_that_is_erased_leaves_the_others_alone():
     inYade(
         """
