@@ -201,8 +201,8 @@ def pytest_collection_modifyitems(items):
             item.add_marker(pytest.mark.long)
         if item.get_closest_marker("long"):
             item.add_marker(pytest.mark.slow)
-        for name in set(TOGETHER) & set(getattr(item, "fixturenames", [])):
-            item.add_marker(pytest.mark.xdist_group(name))
+        for group in set(TOGETHER) & set(getattr(item, "fixturenames", [])):
+            item.add_marker(pytest.mark.xdist_group(group))
     items.sort(
         key=lambda item: (
             item.get_closest_marker("slow") is not None,
