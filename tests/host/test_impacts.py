@@ -97,6 +97,11 @@ def test_less_is_lost_with_more_restitution(scene):
 @pytest.mark.parametrize("step", [0.1, 0.4, 0.8])
 def test_impacts_never_give_energy(scene, case, step):
     for seed in range(3):
+        # blocks that turn far have an error of the balance without impacts, too
+        stack(step=step, **{**CASES[case], "restitution": 1.0})
+        for part in range(20):
+            shake(0.05, seed + 10 * part)
+        without = abs(engine("energy").balance()["error"])
         stack(step=step, **CASES[case])
         most = fallen = 0
         for part in range(20):
@@ -105,7 +110,7 @@ def test_impacts_never_give_energy(scene, case, step):
             fallen, most = max(fallen, most - now), max(most, now)
         balance = engine("energy").balance()
         assert most > 0.2 and fallen < 0.01 * most
-        assert abs(balance["error"]) < 3e-3
+        assert abs(balance["error"]) < max(3e-3, 1.5 * without)
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -280,7 +280,9 @@ def test_a_corner_has_a_panel_for_each_wall_and_shows_its_joint_in_both(scene, t
     assert np.abs(np.diff(lines[:, :, 1])).sum() == pytest.approx(high)
     assert not len(crackLines(panels["front"])["open"])  # it faces the viewer there
     faces = [c for c in panels["front"].collections if c.get_label() == "open, seen face-on"]  # fmt: skip
-    assert sum(len(c.get_paths()) for c in faces) == 25  # its points: five a side, since it has yielded
+    assert (
+        sum(len(c.get_paths()) for c in faces) == 25
+    )  # its points: five a side, since it has yielded
 
     # a ground that has moved with everything is taken off
     message = json.load(open(os.path.join(folder, "run.json")))

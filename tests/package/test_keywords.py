@@ -145,8 +145,8 @@ def test_keywords_are_checked_with_all_problems_at_once(form):
 def test_options_of_a_parser_serve_several_scenes():
     args = options.parser("own", until=30, rate=5).parse_args([])
     blocks, stones = bricks.stack(2, (0.2, 0.1, 0.1)), materials.dry(0.5)
-    Scene("one", blocks, stones, arguments=args, rate=100, preset="accurate")
-    assert args.rate == 100 and args.blocks == "deformable"
+    Scene("one", blocks, stones, arguments=args, rate=50, preset="accurate")
+    assert args.rate == 50 and args.blocks == "deformable"
     Scene("two", blocks, stones, arguments=args, damping=0.3)
     assert (args.rate, args.blocks, args.damping, args.preset) == (5, "rigid", 0.3, None)  # fmt: skip
 

@@ -276,7 +276,10 @@ def test_softening_that_snaps_back_is_a_warning_and_no_scene(
     made = clay(**changes).joints[joint]
     soft = 2.4 if "II" in energy else 1.0  # E/G of the bricks
     least = materials.leastEnergy(getattr(made, strength), getattr(made, stiffness), soft * distance / 7.5e9)  # fmt: skip
-    for share, snaps in ((1.02, False), (0.2, True)):  # bricks in halves share their shear, and are half as far apart
+    for share, snaps in (
+        (1.02, False),
+        (0.2, True),
+    ):  # bricks in halves share their shear, and are half as far apart
         capsys.readouterr()
         masonry = clay(**changes, **{energy: share * least})
         said = capsys.readouterr().out

@@ -244,7 +244,7 @@ def _describe(run, scene):
         kinds=run.vtk.kinds if run.vtk else [],
         seconds={part: round(s, 3) for part, s in at.seconds.items()},
     )
-    if run.args.blocks == "rigid":
+    if run.args.blocks == "rigid" and not scene.description.functors:
         entries["refined_joints"] = scene.model.refinedJoints()
     if at.steps:
         perStep = at.seconds["steps"] / at.steps

@@ -42,7 +42,7 @@ def putState(scene, state):
         if path is not None and not history.canBe(path):
             raise otherVersion("the history of the last push")
         scene.model.putState(state["model"])
-    except KeyError as error:
+    except (KeyError, TypeError) as error:
         raise otherVersion(f"the state of the scene, {error}") from None
     scene.grown, scene.loadUnit = state["grown"], state["loadUnit"]
     pushed = state["pushed"]
