@@ -478,26 +478,35 @@ Vector3r Contacts::forceOf(int id1, int id2) const {
 
 std::vector<double> Contacts::memory() {
     std::vector<double> all;
-    for (auto& pair : pairs_) {
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        auto& pair = pairs_[p];
         all.insert(all.end(), {double(pair.one), double(pair.other), double(pair.axis)});
         all.insert(all.end(), std::begin(pair.gap), std::end(pair.gap));
         all.insert(all.end(), pair.memory.begin(), pair.memory.end());
+        const Effect effect = p < effects_.size() ? effects_[p] : Effect::none();
+        double wrench[Wrench::numbers];
+        effect.wrench.store(wrench);
+        all.insert(all.end(), {double(effect.touches), double(effect.acts)});
+        all.insert(all.end(), std::begin(wrench), std::end(wrench));
     }
     return all;
 }
 
 void Contacts::setMemory(const std::vector<double>& all) {
-    constexpr std::size_t width = 6 + PairMemory::numbers;
+    constexpr std::size_t ofEffect = 6 + PairMemory::numbers, width = ofEffect + 2 + Wrench::numbers;
     if (all.size() % width != 0)
         throw std::invalid_argument("MasonryContacts.memory must have " + std::to_string(width) + " numbers a pair");
     pairs_.clear();
+    effects_.clear();
     for (std::size_t at = 0; at < all.size(); at += width) {
         Pair pair{int(all[at]), int(all[at + 1]), int(all[at + 2]), {}, {}};
         std::copy_n(&all[at + 3], 3, pair.gap);
         std::copy_n(&all[at + 6], PairMemory::numbers, pair.memory.begin());
         pairs_.push_back(pair);
+        double wrench[Wrench::numbers];
+        std::copy_n(&all[at + ofEffect + 2], Wrench::numbers, wrench);
+        effects_.push_back({all[at + ofEffect] != 0, all[at + ofEffect + 1] != 0, Wrench::of(wrench), 0, 0});
     }
-    effects_.clear();
     stale_ = true;
 }
 

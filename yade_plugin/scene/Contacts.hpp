@@ -66,7 +66,8 @@ public:
     std::vector<Touch> touches() const;
     int touching() const; // number of pairs that pressed on each other in the last step
 
-    // In saved files and checkpoints: for every pair the two ids, the separating axis, the gap and PairMemory.
+    // In saved files and checkpoints: for every pair the two ids, the separating axis, the gap, PairMemory, and what it
+    // did in the last step: whether it touched, whether it acted, and its wrench.
     std::vector<double> memory();
     void setMemory(const std::vector<double>&);
     std::vector<int> awake() { return {awake_.begin(), awake_.end()}; }
