@@ -30,6 +30,8 @@ parser.add_argument(
 # 6 it is within 1 %.
 parser.set_defaults(crack_surfaces="off", points="6,6")
 args = parser.parse_args()
+if args.blocks == "deformable":
+    args.points = None  # their joints have the points of their cells
 
 scene = Scene(
     "wall_dry",

@@ -22,7 +22,8 @@ from masonry.assembly.structure import Structure
 from small import SMALL, carryOut, parsed, settled
 from yade import O
 
-ENERGY_IN, ENERGY_OUT = ("external_J", "gravity_J"), ("kinetic_J", "damping_J")
+ENERGY_IN = "external_J", "gravity_J", "refining_J"
+ENERGY_OUT = "kinetic_J", "damping_J", "impacts_J"
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +112,9 @@ def test_frames_show_units_and_subcontacts_with_their_state(squat):
         == 5
     )
     blocks, joints = readFrame(squat, "blocks"), readFrame(squat, "joints")
-    assert len(blocks["cells"]) == 1226 and len(joints["cells"]) == 7350
+    assert (
+        len(blocks["cells"]) == 1226 and len(joints["cells"]) > 7350
+    )  # three a joint, more where it yields
     assert blocks["displacement"][:, 0].max() == pytest.approx(4e-3, rel=0.02)
     # No displacement out of the plane of the wall.
     assert np.abs(blocks["displacement"][:, 1]).max() < 1e-12

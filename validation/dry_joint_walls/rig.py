@@ -29,6 +29,8 @@ parser = options.parser(__doc__, until=30, rate=compare_loops.RATE)
 parser.add_argument("--rig", metavar="KN_PER_MM", type=float, default=37.0, help="stiffness of the base along x (default: 37); 0: held")  # fmt: skip
 parser.set_defaults(crack_surfaces="off", points="6,6", history=measured.historyPath(WALL))  # fmt: skip
 args = parser.parse_args()
+if args.blocks == "deformable":
+    args.points = None  # their joints have the points of their cells
 
 level = measured.levelOf(WALL)
 scene = Scene(
