@@ -12,7 +12,6 @@ import pytest
 from conftest import ROOT
 from masonry import readCheckpoint
 from masonry.read import drawing, figures, loops, measure
-from masonry.read.files import readRun
 from masonry.run import results
 from masonry.scene import history
 from masonry.scene.stages import pushing, rest
@@ -52,14 +51,10 @@ def test_the_wall_turns_at_its_amplitudes_and_ends_at_zero(
     turns = moved[loops.turningPoints(moved, 0.05)]
     wanted = [0, 0.1, -0.1, 0.3, -0.3, 0.3, -0.3, 1, -1, 0]
     assert turns == pytest.approx(wanted, abs=0.01)
-    step = (
-        readRun(tmp_path)["time_step_s"] * float(words[words.index("--rate") + 1])
-        if "--rate" in words
-        else 0.0001
-    )
-    assert (
-        np.abs(np.diff(moved)).max() <= 0.01 + 1.01 * step
-    )  # ROW_EVERY, in whole time steps
+    made = readRun(tmp_path)
+    step = made["time_step_s"] * made["options"]["rate"]  # [mm]
+    # rows are ROW_EVERY apart, in whole time steps
+    assert np.abs(np.diff(moved)).max() <= 0.01 + 1.01 * step
     assert moved[-1] == pytest.approx(0, abs=0.01)
 
 
