@@ -38,8 +38,8 @@ TOGETHER = [
     "site",
 ]  # fixtures that many tests share
 
-#: Tests that take some seconds to a minute each, and of which others try a part: ``scripts/test.sh`` leaves them out, and
-#: ``scripts/test.sh all`` runs them.
+#: Tests that take some seconds to a minute each, and of which others try a part: ``scripts/test.sh`` leaves them out, with the
+#: site, the sanitizers and what needs a browser. ``scripts/test.sh long`` runs these alone, ``scripts/test.sh all`` both.
 LONG = [
     "test_a_quick_case_holds_its_limits_or_says_why_not",
     "test_the_program_of_the_benchmark_prints_its_table",
@@ -181,7 +181,7 @@ def pytest_configure(config):
                 importlib.import_module("yade.config")
     config.addinivalue_line("markers", "slow: takes seconds; not in the quick ring")
     config.addinivalue_line(
-        "markers", "long: takes ten seconds and more; only in all tests"
+        "markers", "long: takes ten seconds and more, or needs large packages"
     )
     config.addinivalue_line("markers", "xdist_group: one worker for all of a name")
 

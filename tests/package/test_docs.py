@@ -5,6 +5,7 @@ import glob
 import html.parser
 import importlib.util
 import os
+import pathlib
 import re
 import subprocess
 import sys
@@ -62,7 +63,12 @@ class Page(html.parser.HTMLParser):
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
-    """The folder of the site, made with warnings as errors; notebooks are shown as they are stored."""
+    """The folder of the site, made with warnings as errors; notebooks are shown as they are stored.
+
+    MASONRY_SITE names one that ``scripts/docs.sh`` has made, which is then not made again.
+    """
+    if "MASONRY_SITE" in os.environ:
+        return pathlib.Path(os.environ["MASONRY_SITE"])
     out = tmp_path_factory.mktemp("docs")
     run = subprocess.run(
         ["/usr/bin/python3", os.path.join(DOCS, "build.py"), "--out", str(out), "--no-pdf", "--no-run"],

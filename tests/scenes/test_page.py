@@ -15,7 +15,7 @@ from masonry.read.motion import Cracks, Motion
 from matplotlib.image import imread
 
 needsBrowser = pytest.mark.skipif(bool(browser.MISSING), reason=browser.MISSING)
-pytestmark = [needsBrowser, pytest.mark.xdist_group("browser")]
+pytestmark = [needsBrowser, pytest.mark.long, pytest.mark.xdist_group("browser")]
 MOST = 3e6  # [bytes] of the page of COMP-4
 
 

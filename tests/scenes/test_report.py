@@ -126,7 +126,7 @@ def moved(chromium, frame):
     chromium.drawn()
 
 
-pictured = [needsBrowser, pytest.mark.xdist_group("browser")]
+pictured = [needsBrowser, pytest.mark.long, pytest.mark.xdist_group("browser")]
 
 
 class TestInABrowser:
