@@ -458,7 +458,7 @@ def test_limit_analysis_alone_replaces_a_load_and_stands_under_one_that_moves_no
     slides = 0.7 * weight / 3  # the highest stone
     assert s.load(highest, (0.9 * slides, 0, 0)) == "at rest"
     assert s.load(highest, (1.1 * slides, 0, 0)) == "moving"
-    assert s.model.forceOf(highest).force[0] == pytest.approx(0.9 * slides)
+    assert s.model.loading.forceOf(highest).force[0] == pytest.approx(0.9 * slides)
     low, high = s.bracket(lambda f: s.load(highest, (f, 0, 0)) == "at rest", 1, 1e3)
     assert low <= slides * 1.001 and slides * 0.999 <= high
     s.finish()
@@ -494,7 +494,7 @@ def test_a_bound_is_found_anew_beside_another_load_and_where_the_structure_went(
     assert bound() == tips(100)
     s.bounds.hold("acceleration towards x", 0.5)
     assert bound() == tips(100) and s.running.at.held
-    s.model.forceOf(highest).force = Vector3(0, 0, -400)
+    s.model.loading.forceOf(highest).force = Vector3(0, 0, -400)
     assert bound() == tips(400)
     assert not s.running.at.held  # that was beside the other load
     for body in O.bodies:  # all goes by half a stone, with the loads on it

@@ -91,7 +91,7 @@ def standing(scaling=1.0, height=0.6):
         recordedAt=lambda: None,
     )  # fmt: skip
     motion = SimpleNamespace(checkFall=nothing, fastest=lambda: 0.0)
-    made = SimpleNamespace(loadFactor=0.0, motion=motion)
+    made = SimpleNamespace(loading=SimpleNamespace(loadFactor=0.0), supports=SimpleNamespace(), motion=motion)  # fmt: skip
     args = SimpleNamespace(density_scaling=scaling)
     return SimpleNamespace(args=args, description=box, running=running, model=made, share=1)  # fmt: skip
 
@@ -104,7 +104,7 @@ def test_a_growth_takes_longer_with_scaled_masses_and_has_the_load_of_the_middle
     assert made.whole == pytest.approx(4.0)
     made._before(1000, 2000)  # from 1 to 2 s
     assert load.values == [pytest.approx(3.0 * 1.5 / 4.0)]
-    assert made.model.loadFactor == load.values[-1]
+    assert made.model.loading.loadFactor == load.values[-1]
     made._before(3999, 4100)
     assert load.values[-1] == 3.0  # no more than the whole
 
@@ -118,7 +118,7 @@ def trial(looks, source=0.2, goal=0.5, scaling=1.0, speeds=None):
     O.dt = 1e-4
     scene, load, number = standing(scaling), Load(), iter(range(10**6))
     at = growing.Growing(goal=goal, source=source, marks=[])
-    scene.model.unrest = lambda: (0.0, 0.0) if looks(next(number)) else (2 * REST, 2 * CALM)  # fmt: skip
+    scene.model.supports.unrest = lambda: (0.0, 0.0) if looks(next(number)) else (2 * REST, 2 * CALM)  # fmt: skip
     if speeds:
         scene.model.motion.fastest = lambda: speeds(at.taken)
     held = growing._Search(scene, at, load, 0.01)._trial()
@@ -130,7 +130,7 @@ def test_a_trial_leads_smoothly_to_its_load_and_looks_for_rest_under_it_alone(
     scene, source, goal
 ):
     held, at, values, made = trial(lambda n: True, source, goal)
-    assert held and made.model.loadFactor == pytest.approx(goal)
+    assert held and made.model.loading.loadFactor == pytest.approx(goal)
     ramp = int(rampTime(made.args) / O.dt)
     assert at.taken == math.ceil(ramp / EVERY) * EVERY + (LOOKS - 1) * EVERY
     low, high = sorted((source, goal))
@@ -167,7 +167,9 @@ def search(monkeypatch, capacity, moving, last, fell, within, states, setsOff):
     text = lambda factor: base64.b64encode(repr(factor).encode()).decode()
     load, made = Load(most=1.2 * last), standing()
     made.model.atRest = None
-    made.model.alongNow = lambda: 1e-3 * here["factor"]  # [m]: as many mm as the factor
+    made.model.loading.alongNow = (
+        lambda: 1e-3 * here["factor"]
+    )  # [m]: as many mm as the factor
     factors = [last * n / states for n in range(states + 1)]
     at = growing.Growing(
         fell="it fell" if fell else "", last=last, lastState=text(last),
@@ -225,7 +227,7 @@ def test_a_search_brackets_what_the_structure_holds_from_rest(
         if fell:
             with pytest.raises(Collapsed, match="it fell"):
                 found.end()
-            assert made.model.loadFactor == last
+            assert made.model.loading.loadFactor == last
         else:
             found.end()
         assert float(made.model.atRest) == pytest.approx(held)

@@ -181,7 +181,7 @@ def test_damping_of_joints_is_a_part_of_what_they_transmit(tmp_path, scene):
     foot = wall.section(0)
     wall.settle()
     engine("joints").stiffnessDamping = 1e-4
-    wall.model.chooseTimeStep()
+    wall.model.scheme.chooseTimeStep()
     wall.push(top, 0.02, rate=50)
     felt = O.forces.f(base.body, True)
     assert (foot.forces()[0] - felt).norm() < 1e-6 * felt.norm()

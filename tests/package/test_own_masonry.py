@@ -304,7 +304,7 @@ def test_a_wall_has_the_modulus_of_its_masonry(tmp_path):
     upper = scene.watch((0.26, 0.06, 0.6375), name="upper")
     scene.press(top, 0.4e6)
     assert scene.settle() == AT_REST
-    moved = [scene.model.moved(target)[0][2] for target in (lower, upper)]
+    moved = [scene.model.supports.moved(target)[0][2] for target in (lower, upper)]
     scene.finish()
     strain = (moved[0] - moved[1]) / (0.6375 - 0.1125)
     assert 0.4e6 / strain == pytest.approx(CLAY["E"], rel=0.01)

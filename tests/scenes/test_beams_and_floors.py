@@ -33,7 +33,7 @@ def test_a_cantilever_sags_as_a_beam_with_shear(tmp_path, words):
     scene.load(tip, (0, 0, -force))
     assert scene.settle() == "at rest"
     expected = force * span**3 / (3 * YOUNG * INERTIA) + force * span / (5 / 6 * SHEAR * AREA)  # fmt: skip
-    assert -scene.model.moved(tip)[0][2] == pytest.approx(expected, rel=0.003)
+    assert -scene.model.supports.moved(tip)[0][2] == pytest.approx(expected, rel=0.003)
     scene.finish()
 
 

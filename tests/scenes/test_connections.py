@@ -169,7 +169,7 @@ def test_a_tie_sets_the_time_step_where_it_is_stiffest(tmp_path):
         scene.platen("bottom")
         scene.tie(at(1.2), anchor=at(1.2, -3.0), stiffness=stiffness)
         assert scene.settle() == "at rest"
-        limits.append(scene.model.limit)
+        limits.append(scene.model.scheme.limit)
         scene.finish()
     mass = WEIGHT / GRAVITY
     assert limits[1] < 2 / math.sqrt(1e13 / mass) * 1.35 < 0.1 * limits[0]
@@ -263,7 +263,7 @@ def test_ends_that_a_script_moves_are_where_it_moved_them(tmp_path):
     scene.settle()
     scene.push(top, 2)
     low = tie.elongation
-    engine = scene.model.ties
+    engine = scene.description.connectors[0].engine
     engine.updateAttrs({"points1": [at(HEIGHT)], "points2": [at(HEIGHT, 3.0)]})
     O.step()
     assert tie.elongation / low == pytest.approx(4, rel=0.01)
@@ -327,7 +327,7 @@ def test_frames_have_ties_and_springs(tmp_path):
     assert frame["tension"][1] == pytest.approx(tie.force, rel=1e-12)
     assert np.linalg.norm(frame["force"][1]) == pytest.approx(tie.force, rel=1e-12)
     assert frame["elongation"][1] == pytest.approx(tie.elongation, rel=1e-12)
-    (spring,) = scene.description.springs
+    spring = scene.description.connectors[0]
     assert frame["force"][0] == pytest.approx(spring.force, rel=1e-12)
     one, other = frame["points"][frame["cells"][1]] + frame["displacement"][frame["cells"][1]]  # fmt: skip
     after = (

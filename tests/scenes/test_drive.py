@@ -30,7 +30,7 @@ def test_the_period_of_a_brick_between_two_joints_is_its_closed_form(tmp_path, s
     springs = sum(i.phys.shearStiffness * sum(i.geom.areas) for i in model.interactions)
     mass = size[0] * size[1] * size[2] * model.unit.density
     expected = 2 * math.pi * math.sqrt(mass / springs)
-    model.chooseTimeStep(0.2 * model.limit)
+    model.scheme.chooseTimeStep(0.2 * model.scheme.limit)
     before = saveScene("null")
     found = firstPeriod(model, Vector3.UnitX, 0.05)
     assert found == pytest.approx(expected, rel=0.003)

@@ -248,7 +248,7 @@ def test_a_lean_that_is_held_is_noted_with_its_factor_and_displacement(scene, tm
     assert s.lean(0.3) == AT_REST and s.lean(0.2) == AT_REST
     column = s.results.column
     assert s.running.at.held == {"acceleration towards x": 0.3}
-    assert s.model.loadFactor == column("load_factor")[-1] == 0.2
+    assert s.model.loading.loadFactor == column("load_factor")[-1] == 0.2
     assert s.load(stone, (100, 0, 0)) == AT_REST
     s.finish()
     # both leans count from where the first one began, and the force from where it began itself
@@ -287,7 +287,7 @@ def test_a_press_of_a_later_stage_has_its_stress_with_the_weight_of_the_platen(s
     s.settle()
     down = lambda: -1e3 * s.results.column("base_force_z_kN")[-1]
     assert down() == pytest.approx(0.05e6 * 0.3 * 0.3 + WEIGHT, rel=5e-3)
-    assert s.model.weightOf(top) > 0.02 * down()
+    assert s.model.supports.weightOf(top) > 0.02 * down()
     assert s.press(top, 0.1e6) == AT_REST
     assert down() == pytest.approx(0.1e6 * 0.3 * 0.3 + WEIGHT, rel=5e-3)
     s.finish()

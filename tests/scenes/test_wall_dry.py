@@ -40,7 +40,7 @@ def test_joints_and_units_in_series_give_back_the_masonry(
     finer = ["--divisions", "2"] if blocks == "deformable" else []
     words = ["--crack-surfaces", "off", "--blocks", blocks, *finer]
     _, model, _ = settled(tmp_path, *words, wall=GRANITE)
-    loaded = model.topDisplacement()[1]
+    loaded = model.loading.topDisplacement()[1]
     joint, young = model.joints["bed"].normalStiffness, 20.2e9
     assert 8 / joint + 1.2 / young == pytest.approx(1.2 / 4.068e9, rel=1e-9)
     own = 2600 * 9.81 * 1.2 / 2  # mean stress of the wall's weight [Pa]

@@ -249,8 +249,8 @@ def test_before_it_cracks_a_mirrored_push_gives_the_mirrored_force(scene, tmp_pa
     for sign in (1, -1):
         _, model, _ = settled(tmp_path)
         # Damping depends on the signs of forces and velocities, which are round-off at rest.
-        model.damp(0, "local")
-        model.loads["push"].velocity = sign * 0.002
+        model.scheme.damp(0, "local")
+        model.loading.loads["push"].velocity = sign * 0.002
         for _ in range(2000):
             O.step()
         forces.append(base(model)[0])
@@ -260,7 +260,7 @@ def test_before_it_cracks_a_mirrored_push_gives_the_mirrored_force(scene, tmp_pa
 
 def test_a_wall_saved_in_the_middle_of_its_push_goes_on_the_same(scene, tmp_path):
     _, model, _ = settled(tmp_path)
-    model.loads["push"].velocity = 0.02
+    model.loading.loads["push"].velocity = 0.02
     for _ in range(1500):
         O.step()
     O.save(str(tmp_path / "middle.yade.gz"))

@@ -80,7 +80,7 @@ def springs_below_a_block(quick):
         steel = O.bodies[base.body].state.mass * GRAVITY
         leaning = WEIGHT * (HEIGHT / 2 + below) + steel * below / 2
         flexible = 1 / along + (level + below) ** 2 / (about - leaning)
-        measured = 200.0 / s.model.moved(top)[0][0]
+        measured = 200.0 / s.model.supports.moved(top)[0][0]
         # the block itself turns on its joint
         (joint,) = s.model.interactions
         turning = joint.phys.normalStiffness * DEPTH * WIDTH**3 / 12
@@ -103,7 +103,7 @@ def sag(pieces, held, loaded):
         piece = s.handle(loaded, "loaded")
         s.load(piece, (0, 0, -1e3))
         s.settle()
-        return -s.model.moved(piece)[0][2], LENGTH * (1 - 1 / pieces)
+        return -s.model.supports.moved(piece)[0][2], LENGTH * (1 - 1 / pieces)
 
 
 def bent(span, bending, shearing):
@@ -226,7 +226,7 @@ def portal(quick):
         clear = height - height / pieces / 2 + deep / 2
         k, rigidity = clear / span, YOUNG * WIDE * deep**3 / 12
         expected = 24 * rigidity / clear**3 * (6 * k + 1) / (6 * k + 4)
-        return expected, 10.0 / s.model.moved(pushed)[0][0]
+        return expected, 10.0 / s.model.supports.moved(pushed)[0][0]
 
 
 @case(
@@ -255,4 +255,4 @@ def infill(quick):
             found[sum(body in s.model.ids[1:3] for body in (one.id1, one.id2))] = one.phys.normalStiffness  # fmt: skip
         k1, k2 = found[0], found[1]
         expected = thick * height / 12 * k1 * k2 * length**3 / (k1 * height**3 + k2 * length**3)  # fmt: skip
-        return expected, force / s.model.moved(top)[0][0]
+        return expected, force / s.model.supports.moved(top)[0][0]

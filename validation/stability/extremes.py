@@ -356,7 +356,7 @@ class Play:
         except Wrong as wrong:
             if "moments" not in str(wrong):
                 raise
-            scene.model.damp(0.8, "local")
+            scene.model.scheme.damp(0.8, "local")
             O.run(CALMING, True)
             checkNewton(scene)
             self.inMotion = f"not at rest: statics holds when it is: {wrong}"

@@ -123,7 +123,7 @@ class Observed(Scene):
     def pushOn(self):
         point, args = self.point, self.args
         if point.dt:
-            O.dt = point.dt * self.model.limit
+            O.dt = point.dt * self.model.scheme.limit
         if point.rate is None:
             args.rate = args.until / (STEPS * O.dt)
         return self.push(self.top)

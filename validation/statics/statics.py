@@ -171,13 +171,13 @@ def _rows(matrix):
 def stepped(scene):
     """Take a step without damping. Returns its sums: forces and moments of what acts from outside, and what they change."""
     model = scene.model
-    model.damp(0.0, scene.args.damping_kind)
-    model.integrator.damping = 0.0  # of rigid bodies beside deformable ones
+    model.scheme.damp(0.0, scene.args.damping_kind)
+    model.scheme.integrator.damping = 0.0  # of rigid bodies beside deformable ones
     before = _momenta(model)
-    loads = [load for label, load in model.loads.items() if label != "push"]
+    loads = [load for label, load in model.loading.loads.items() if label != "push"]
     points = [np.array(load.point) + np.array(load.displacement()) for load in loads]
-    places = {t.name: np.array(O.bodies[t.body].state.pos) for t in model.held}
-    gravity = np.array(model.now)
+    places = {t.name: np.array(O.bodies[t.body].state.pos) for t in model.supports.held}
+    gravity = np.array(model.scheme.now)
     O.step()
     after = _momenta(model)
     force, moment, change, spin = (np.zeros(3) for _ in range(4))
@@ -196,7 +196,9 @@ def stepped(scene):
         size = max(size, np.abs(one).max())
     for (
         target
-    ) in model.held:  # what holds them takes all that acts on them along these axes
+    ) in (
+        model.supports.held
+    ):  # what holds them takes all that acts on them along these axes
         state = O.bodies[target.body].state
         on, twist = np.array(O.forces.f(target.body)), np.array(O.forces.t(target.body))
         on = on + state.mass * gravity
@@ -237,14 +239,14 @@ def checkColumns(scene):
     after = _momenta(model)
     reading = model.read()
     values = {c.head: c.value(reading) for c in scene.columns}
-    held = {t.body for t in model.held if not set("xyz") - set(O.bodies[t.body].state.blockedDOFs)}  # fmt: skip
+    held = {t.body for t in model.supports.held if not set("xyz") - set(O.bodies[t.body].state.blockedDOFs)}  # fmt: skip
     free = [n for n, body in enumerate(_owners(model)) if body not in held]
-    gravity = np.array(model.now)
+    gravity = np.array(model.scheme.now)
     need = sum(before[n][0] * (gravity - (after[n][2] - before[n][2]) / O.dt) for n in free)  # fmt: skip
     size = np.abs(need).max()
     named = {t.body: t for t in scene.targets.values()}
     handles = {t.body for t in named.values() if t.brick is not None and t.loaded and not t.fixed}  # fmt: skip
-    for label, load in model.loads.items():
+    for label, load in model.loading.loads.items():
         if label == "push":
             continue
         size = max(size, load.force.norm(), abs(load.reaction))
@@ -298,7 +300,7 @@ def checkWork(scene, first):
         raise Wrong(f"a push has {len(top)} rows")
     work = float(np.sum(0.5 * (top[1:] + top[:-1]) * np.diff(moved)))
     size = float(np.sum(np.abs(0.5 * (top[1:] + top[:-1]) * np.diff(moved))))
-    press = scene.model.loads.get("top_force")
+    press = scene.model.loading.loads.get("top_force")
     if press:  # which does work, too, and keeps its force
         work += 1e-3 * press.force[2] * (column("top_z_mm")[-1] - column("top_z_mm")[first])  # fmt: skip
     between = float(

@@ -48,7 +48,6 @@ class Reading:
     - ``topShear``: force that drives the pushed point [N]
     - ``energy``: the energy balance [J]
     - ``goal``: number of the point of a history that the drive is going to, from 1, and its displacement [mm]
-    - ``ofTies``: forces [N] and elongations [m] of all ties, two lists
     - ``forces``: force of the structure on what is held, along the axes that are held now or that springs hold, by the name of
       the target [N]
 
@@ -60,34 +59,35 @@ class Reading:
         self._moved = {}
         self.forces = {}
         held = Vector3(0, 0, 0)
-        for target in structure.held:
-            force = structure.supportedBy(target)
-            self.forces[target.name] = force + structure.onSpringsOf(target)
+        for target in structure.supports.held:
+            force = structure.supports.supportedBy(target)
+            self.forces[target.name] = force + structure.connectors.onSpringsOf(target)
             for i in structure.axes:
                 held[i] += force[i]
-        held += structure.onGround()
+        held += structure.connectors.onGround()
         self.along = self.up = self.topShear = self.rotation = 0.0
         self.sunk = -0.0
-        if structure.followed:
-            moved, self.rotation = self.moved(structure.followed)
-            origin = structure.origin
+        if structure.loading.followed:
+            moved, self.rotation = self.moved(structure.loading.followed)
+            origin = structure.loading.origin
             self.along, self.up = (
-                moved.dot(structure.direction) - origin[0],
+                moved.dot(structure.loading.direction) - origin[0],
                 moved[2] - origin[1],
             )
-        if structure.target:
-            self.sunk = -self.moved(structure.target)[0][2]
-            self.topShear = structure.loads["push"].reaction
-        beside = structure.besideThePush()
-        self.baseShear = held.dot(structure.direction) - beside.dot(structure.direction)
+        if structure.loading.target:
+            self.sunk = -self.moved(structure.loading.target)[0][2]
+            self.topShear = structure.loading.loads["push"].reaction
+        beside = structure.loading.besideThePush()
+        self.baseShear = held.dot(structure.loading.direction) - beside.dot(
+            structure.loading.direction
+        )
         self.energy = structure.energy.balance()
-        self.ofTies = structure.ofTies()
-        self.goal = structure.goal
+        self.goal = structure.loading.goal
 
     def moved(self, target):
         """Displacement of a target's recorded point since the scene was built [m], and its rotation [rad]."""
         if target.name not in self._moved:
-            self._moved[target.name] = self.structure.moved(target)
+            self._moved[target.name] = self.structure.supports.moved(target)
         return self._moved[target.name]
 
 

@@ -72,10 +72,12 @@ def firstPeriod(structure, direction, longest):
 
 def _momenta(structure, direction, acceleration, every):
     """The momentum of a structure along a direction [N·s] after each ``every`` steps under an acceleration [m/s²]."""
-    structure.damp(0.0, "local")
-    force = lambda: (structure.applied() + structure.carried()).dot(direction)
-    rest, now = force(), structure.now
-    structure.setGravity(now + acceleration)
+    structure.scheme.damp(0.0, "local")
+    force = lambda: (structure.supports.applied() + structure.supports.carried()).dot(
+        direction
+    )
+    rest, now = force(), structure.scheme.now
+    structure.scheme.setGravity(now + acceleration)
     O.step()
     before, momentum = force() - rest, 0.0
     while True:

@@ -361,7 +361,7 @@ class Run:
         """
         began = time.perf_counter()
         reading = self.model.read()
-        for sentence in self.model.news():
+        for sentence in self.model.connectors.news():
             say(f"note: {sentence}")
         self._readings.append([value(reading) for value in self._values])
         self._recordedTime = reading.time

@@ -97,7 +97,9 @@ class Bounds:
 
     def _pushed(self, assembly, target, direction):
         """The live load of a push: 1 kN along a direction."""
-        load = next(x for x in self.model.loads.values() if x and x.body == target.body)
+        load = next(
+            x for x in self.model.loading.loads.values() if x and x.body == target.body
+        )
         away = load.displacement() if not assembly.stood else np.zeros(3)
         point = np.array(target.point) + np.array(away)
         block = assembly.ids.index(target.body)
@@ -177,7 +179,7 @@ class Bounds:
     ):
         self.take(True)
         known, model = self.entries.get(what), self.model
-        acting = self._acting(gravity or model.now)
+        acting = self._acting(gravity or model.scheme.now)
         same = self.place.beside.get(what, acting) == acting
         self.place.beside = {**self.place.beside, what: acting}
         if known and same and not lowerUpTo and known.get("note") != GIVEN_UP:
@@ -223,7 +225,7 @@ class Bounds:
         try:
             assembly = limit.read()
             assembly.deadline = time.monotonic() + seconds
-            down = assembly.weights(gravity or self.model.now)
+            down = assembly.weights(gravity or self.model.scheme.now)
             forces = self._forces(assembly, pushed, pressed)
             if pressed:
                 entry["normal_kN"] = _carriedBy(assembly, down + forces)
@@ -316,8 +318,11 @@ class Bounds:
 
     def _acting(self, gravity):
         """What acts beside a load and what holds the structure now: data that can be compared."""
-        loads = [[load.body, *force, load.driven] for load, force in self.model.deadLoads()]  # fmt: skip
-        held = [O.bodies[target.body].state.blockedDOFs for target in self.model.held]
+        loads = [[load.body, *force, load.driven] for load, force in self.model.loading.deadLoads()]  # fmt: skip
+        held = [
+            O.bodies[target.body].state.blockedDOFs
+            for target in self.model.supports.held
+        ]
         return [list(gravity), loads, held]
 
     def _forces(self, assembly, pushed, pressed=None):
@@ -327,10 +332,10 @@ class Bounds:
         :param pressed: target and normal force [kN] that replaces its press, or None
         """
         loads = np.zeros_like(assembly.held, float)
-        for load, force in self.model.deadLoads():
+        for load, force in self.model.loading.deadLoads():
             block, point = assembly.ids.index(load.body), _pointOf(load, assembly)
             if pressed and load.label == f"{pressed[0].name}_force":
-                own = self.model.weightOf(pressed[0])
+                own = self.model.supports.weightOf(pressed[0])
                 force = Vector3(force[0], force[1], own - 1e3 * pressed[1])
             if force.norm():
                 loads += assembly.force(block, np.array(force), point)

@@ -105,15 +105,15 @@ def tie(
     _inPlane(description, ends)
     if _samePlace(*ends):
         raise Refused(f"tie: its ends, {ends[0].words} and {ends[1].words}, are on one brick")  # fmt: skip
-    number = len(description.ties)
-    made = Tie(name or f"tie{number}", ends, stiffness, strength, prestress, slack, breaking, compression, number=number)  # fmt: skip
+    number = len(description.connectorsOf(Tie))
+    made = Tie(name or f"tie{number}", ends, stiffness, strength, prestress, slack, breaking, compression)  # fmt: skip
     if not made.length > 0:
         raise Refused(f"tie: its ends are both at {ends[0].point} m")
     problems = made.problems()
     if problems:
         raise Refused("\n".join(f"tie: {one}" for one in problems))
     _checkName(description, made.name, "tie")
-    description.ties.append(made)
+    description.connectors.append(made)
     return made
 
 
@@ -152,7 +152,7 @@ def spring(
     :param name: of the columns; None: ``spring`` and a number
     :returns: a :class:`Spring`, whose ``force`` and ``moment`` can be read between stages
     """
-    name = name or f"spring{len(description.springs)}"
+    name = name or f"spring{len(description.connectorsOf(Spring))}"
     first = _endOf(description, one)
     second = End(first.point) if other is None else _endOf(description, other)
     second.point = first.point
@@ -166,8 +166,8 @@ def spring(
     if problems:
         raise Refused("\n".join(problems))
     _checkName(description, name, "spring")
-    made = Spring(name, (first, second), tuple(stiffness), tuple(rotation), number=len(description.springs))  # fmt: skip
-    description.springs.append(made)
+    made = Spring(name, (first, second), tuple(stiffness), tuple(rotation))
+    description.connectors.append(made)
     return made
 
 
@@ -250,11 +250,10 @@ def overlay(
             point = first + share * (last - first)
             at = lambda sign, n: End(tuple(map(float, point + sign * across)), None, n)
             ends = at(-1, pair[0]), at(1, pair[1])
-            number = len(description.ties) + len(made)
-            made.append(Tie(f"{name}_{len(made)}", ends, 0.5 * width * stiffness / gauge, 0.5 * width * strength, 0.0, 0.0, strain, False, number=number, overlay=name))  # fmt: skip
+            made.append(Tie(f"{name}_{len(made)}", ends, 0.5 * width * stiffness / gauge, 0.5 * width * strength, 0.0, 0.0, strain, False, overlay=name))  # fmt: skip
     if not made:
         raise Refused(f"overlay: no joint ends at a face that looks along {tuple(side)}")  # fmt: skip
-    description.ties += made
+    description.connectors += made
     description.overlays.append(Overlay(name, made, stiffness, strength, gauge, strain))
     return description.overlays[-1]
 
@@ -266,7 +265,7 @@ def _samePlace(one, other):
 
 
 def _checkName(description, name, word):
-    known = {one.name for one in (*description.ties, *description.springs, *description.overlays)}  # fmt: skip
+    known = {one.name for one in (*description.connectors, *description.overlays)}  # fmt: skip
     if (
         name in known
         or name in description.targets

@@ -98,8 +98,7 @@ class Description:
         self.drifts = []
         self._boxes = None  # bricks, and their lower and upper corners and middles, for _nearest()
         self.sections = []
-        self.ties = []  # of masonry.scene.connections
-        self.springs = []
+        self.connectors = []  # ties and springs, records of masonry.scene.ties
         self.overlays = []
         self.winds = []  # brick, force [N] and point [m]
         self.views = {}  # direction of sight by part
@@ -126,15 +125,19 @@ class Description:
             ]
         return []
 
-    def connectors(self):
+    def connectorsOf(self, kind):
+        """Connectors of one class of records, in the order in which they were named."""
+        return [one for one in self.connectors if type(one) is kind]
+
+    def settable(self):
         """Ties, springs, fibre layers and the contact by name, which ``--set`` and ``--field`` can change."""
-        own = [one for one in self.ties if not one.overlay]
+        own = [one for one in self.connectors if not one.overlay]
         contact = [self.contact] if self.contact else []
-        return {one.name: one for one in (*own, *self.springs, *self.overlays, *contact)}  # fmt: skip
+        return {one.name: one for one in (*own, *self.overlays, *contact)}
 
     def connectedBricks(self):
         """Indices of the bricks at the ends of ties and springs."""
-        ends = [end for one in (*self.ties, *self.springs) for end in one.ends]
+        ends = [end for one in self.connectors for end in one.ends]
         return {end.brick for end in ends if end.brick is not None}
 
     def ground(self):
@@ -175,7 +178,7 @@ class Description:
         for name, target in self.targets.items():
             if target is one:
                 self.targets[name] = other
-        for records in (self.joints, self.sections, self.ties, self.springs):
+        for records in (self.joints, self.sections, self.connectors):
             records[:] = [other if record is one else record for record in records]
 
     def columns(self, structure, looped):
@@ -191,9 +194,9 @@ class Description:
             found += drift.columns(self.plane)
         for joint in self.joints:
             found += joint.columns()
-        for record in (*self.sections, *self.ties, *self.springs, *self.overlays):
+        for record in (*self.sections, *self.connectors, *self.overlays):
             found += record.columns(self.plane)
-        balance = columns.BALANCE + columns.CONNECTORS * bool(self.ties or self.springs)
+        balance = columns.BALANCE + columns.CONNECTORS * bool(self.connectors)
         balance += (columns.CONTACTS + columns.FALLS) * bool(self.contact)
         found += [*self.extra, *balance, *columns.HISTORY * looped]
         heads = columns.heads(found)
@@ -279,11 +282,11 @@ def accelerations(structure, plane):
             f"acceleration_{axis}",
             "g",
             f"horizontal acceleration along {axis} that acts on the blocks",
-            lambda r, i=i: structure.now[i] * scaling / GRAVITY,
+            lambda r, i=i: structure.scheme.now[i] * scaling / GRAVITY,
         )
     yield columns.Column(
         "load_factor",
         "-",
         "factor of the load that a stage put on or let grow last",
-        lambda r: structure.loadFactor,
+        lambda r: structure.loading.loadFactor,
     )

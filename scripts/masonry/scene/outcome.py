@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What comes out of a scene: entries of run.json, what curve.png shows, and the lines at the end on the terminal."""
 
+import collections
 import contextlib
 import math
 import os
@@ -142,7 +143,7 @@ class Outcome:
             },
             assumed=scene.assumed,
             time_step_s=O.dt,
-            time_step_limit_s=model.limit,
+            time_step_limit_s=model.scheme.limit,
             units=len(model.bricks),
             nodes=len(model.zones.displacements) if model.zones else 0,
             joint_count=len(model.interactions),
@@ -164,7 +165,7 @@ class Outcome:
         )
         if self.description.views:
             entries["views"] = self.description.views
-        wall = wallOf(self.description, model.target) if self.pushed else None
+        wall = wallOf(self.description, model.loading.target) if self.pushed else None
         if wall:
             entries["wall"] = wall
         return entries
@@ -203,8 +204,10 @@ class Outcome:
     def _connections(self):
         """Entries for ties and springs, if there are any."""
         description = self.description
-        ties = [one for one in description.ties if not one.overlay or one.state != "elastic"]  # fmt: skip
-        kinds = {"ties": ties, "springs": description.springs, "overlays": description.overlays}  # fmt: skip
+        kinds = collections.defaultdict(list, overlays=description.overlays)
+        for one in description.connectors:
+            if one.isListed:
+                kinds[one.PLURAL].append(one)
         return {name: [one.entry() for one in records] for name, records in kinds.items() if records}  # fmt: skip
 
     def _ofAccuracy(self, found, column):
@@ -236,8 +239,8 @@ class Outcome:
         )
         moved = column("displacement_mm")
         first = None if row is None else moved[row]
-        height = model.target.recorded[2] - self.description.low[2]
-        sways = height > 0 and abs(model.direction[2]) < 1e-9
+        height = model.loading.target.recorded[2] - self.description.low[2]
+        sways = height > 0 and abs(model.loading.direction[2]) < 1e-9
         joints = (
             ((i.id1, i.id2), i.phys.opening, i.geom.centres) for i in model.interactions
         )
@@ -317,7 +320,7 @@ class Outcome:
     def _measured(self, moved, shear):
         """The numbers that masonry.read.measure finds of a wall, and its failure mode: what leaves no frames has them at
         once."""
-        found, wall = {}, wallOf(self.description, self.model.target)
+        found, wall = {}, wallOf(self.description, self.model.loading.target)
         if not self.pushed.history:
             found = measure.pushNumbers(moved, shear)
             if not math.isfinite(found["drop_at_mm"]):
@@ -335,13 +338,15 @@ class Outcome:
     def figure(self):
         """The entries of run.json by which curve.png is drawn."""
         found = dict(title=self.description.title, figure=self._figure())
-        wall = wallOf(self.description, self.model.target) if self.pushed else None
+        wall = (
+            wallOf(self.description, self.model.loading.target) if self.pushed else None
+        )
         return {**found, "wall": wall} if wall else found
 
     def _figure(self):
         """The entry ``figure`` of run.json."""
         loads = self._loads()
-        if loads and loads[-1][1][0] != "push" and self.model.followed:
+        if loads and loads[-1][1][0] != "push" and self.model.loading.followed:
             return self._figureOfLoad(*loads[-1])
         if self.pushed:
             return self._figureOfPush()
@@ -361,7 +366,7 @@ class Outcome:
         }
 
     def _figureOfPush(self):
-        target = self.model.target
+        target = self.model.loading.target
         height = f"{target.recorded[2]:.3g} m above the base"
         return {
             "x": {
@@ -388,7 +393,7 @@ class Outcome:
         """What is drawn of a load that grew, or that was put on step by step: its factor over the displacement of what is
         watched."""
         kind, name, _ = load
-        at, followed = self.scene.running.at, self.model.followed
+        at, followed = self.scene.running.at, self.model.loading.followed
         first, factors = at.stages[number - 1][3], self.results.column("load_factor")
         rows = range(first, len(factors))
         if kind == "lean":

@@ -103,7 +103,7 @@ def _plain(values):
 def _ofConnectors(scene):
     """Bounds of the properties of ties, springs and fibre layers, by name and property."""
     of = lambda p: {"low": p.low, "high": p.high, "unit": p.unit}
-    connectors = scene.description.connectors()
+    connectors = scene.description.settable()
     return {name: {n: of(p) for n, p in one.known().items()} for name, one in connectors.items()}  # fmt: skip
 
 
@@ -144,7 +144,7 @@ def _refused(scene, parser, words):
         text = errors.getvalue()
         return (text.partition("error: ")[2] or text).strip().splitlines()
     try:
-        connectors = copiedAll(scene.description.connectors())
+        connectors = copiedAll(scene.description.settable())
         masonry = scene.description.materials.variant(args, [*connectors])
         check(args, masonry, connectors=connectors)
         for text in args.field:

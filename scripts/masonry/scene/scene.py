@@ -369,7 +369,7 @@ class Scene:
     @functools.cached_property
     def masonry(self) -> Masonry:
         """The materials for the options of this run: :class:`masonry.scene.materials.Masonry`. Raises Refused."""
-        connectors = self.description.connectors()
+        connectors = self.description.settable()
         masonry = self.description.materials.variant(self.args, [*connectors])
         problems = self.description.problems(masonry)
         if self.args.points and self.description.functors:
@@ -567,7 +567,7 @@ class Scene:
             raise ValueError(f"domain: {target.name} is not pressed: press({target.name}, ...) before the first stage says where the normal force acts")  # fmt: skip
         self.begin()
         self.bounds.take(True)
-        if "z" in (target.freedom or "") or self.model.isDriven(target, "z"):
+        if "z" in (target.freedom or "") or self.model.loading.isDriven(target, "z"):
             raise ValueError(f"domain: {target.name} is held along z, so its normal force is no load that could be replaced")  # fmt: skip
         if self.collapsed:
             raise ValueError(

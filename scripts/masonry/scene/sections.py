@@ -72,7 +72,7 @@ class Section:
         if structure.contacts:
             self.above = {b.id: b.state.refPos[2] > level for b in O.bodies}
             self._parts = parts
-        for one in (*description.ties, *description.springs):
+        for one in description.connectors:
             bodies = [end.bodyIn(structure.ids) for end in one.ends]
             above = [body >= 0 and O.bodies[body].state.refPos[2] > level for body in bodies]  # fmt: skip
             if above[0] != above[1]:
@@ -113,8 +113,8 @@ class Section:
 
     def _with(self, force, moment, one, upper):
         """Force and moment with those of a tie or a spring, whose upper end is given."""
-        on, turning = one.on(upper, self._structure)
-        arm = self._structure.placeOf(upper) - Vector3(*self.middle)
+        on, turning = one.on(upper, self._structure.connectors)
+        arm = self._structure.connectors.placeOf(upper) - Vector3(*self.middle)
         return force - on, moment - arm.cross(on) - turning
 
     def _of(self, reading):

@@ -150,7 +150,7 @@ def _counted(description):
 
 def _materials(scene):
     """Tables of the joints and units, with the options of this run."""
-    connectors = copiedAll(scene.description.connectors())
+    connectors = copiedAll(scene.description.settable())
     masonry = scene.description.materials.variant(scene.args, [*connectors])
     try:
         masonry.apply(scene.args.set, connectors)

@@ -162,8 +162,8 @@ def _standOn(description, target, springs, point):
     """Let a platen stand on springs to the ground."""
     of = lambda axes: tuple(float(springs.get(axis, 0)) for axis in axes)
     ends = End(point, target), End(point)
-    name, number = f"{target.name}_spring", len(description.springs)
-    description.springs.append(Spring(name, ends, of("xyz"), of("XYZ"), number=number))
+    name = f"{target.name}_spring"
+    description.connectors.append(Spring(name, ends, of("xyz"), of("XYZ")))
 
 
 @describes

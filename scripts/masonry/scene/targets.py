@@ -62,14 +62,15 @@ class Target:
                         f"{self.name}_force_{axis}",
                         "kN",
                         f"force of the structure on what loads, drives or holds {self.name} along {axis}",
-                        lambda r, i=i: -1e-3 * r.structure.forceFrom(self)[i],
+                        lambda r, i=i: -1e-3 * r.structure.supports.forceFrom(self)[i],
                     )
         for i, axis in [("xyz".index(axis), axis) for axis in self.drives]:
             yield Column(
                 f"{self.name}_force_{axis}",
                 "kN",
                 f"force of the structure on the drive of {self.name} along {axis}",
-                lambda r, i=i, axis=axis: -1e-3 * r.structure.driveForce(self, axis)[i],
+                lambda r, i=i, axis=axis: -1e-3
+                * r.structure.loading.driveForce(self, axis)[i],
             )
         if not self.fixed:
             about = " about y" if plane else ", its angle"

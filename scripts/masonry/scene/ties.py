@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Callable, Iterator
 
 from yade import Vector3
+from yade.wrapper import MasonrySprings, MasonryTies
 
 from ..assembly.columns import Column
 from .settings import Property, Settable
@@ -27,6 +28,7 @@ OF_OVERLAY = {
     "strength": Property("N/m", 0, MOST, True),
     "strain": Property("", 0, 10, True),
 }
+NEVER = 1e300  # strength [N] and breaking elongation [m] of a tie that has none
 GROUND = -1  # in place of the id of a body
 
 
@@ -83,7 +85,38 @@ class Tie(Settable):
     number: int = 0  # among the ties of the engine
     overlay: str = ""  # name of the overlay of which it is a fibre; then it has no columns of its own
 
-    WORD = "tie"
+    WORD, PLURAL = "tie", "ties"  # in messages, and in run.json
+    isSupport = False  # whether its force on a platen is one of a support
+
+    @staticmethod
+    def engineOf(records: list[Tie], **ends: Any) -> Any:
+        """The engine of all ties of a scene.
+
+        :param ends: their bodies and points
+        """
+        never = lambda value: NEVER if value is None else value
+        breaks = lambda one: one.breaking and one.breaking * one.length
+        return MasonryTies(
+            label="ties",
+            stiffness=[one.stiffness for one in records],
+            strength=[never(one.strength) for one in records],
+            breaking=[never(breaks(one)) for one in records],
+            compression=[int(one.compression) for one in records],
+            rest=[one.rest(0) for one in records],
+            **ends,
+        )
+
+    @staticmethod
+    def grow(records: list[Tie], engine: Any, share: float) -> None:
+        """Tighten ties to a share of their prestress [-]."""
+        engine.rest = [one.rest(share) for one in records]
+
+    def events(self, since: int) -> Iterator[tuple[str, str]]:
+        """What has happened to it since a time step, and the name under which that is said: of fibres that of their layer."""
+        engine, n = self.engine, self.number
+        for what, steps in (("yields", engine.yieldedAt), ("breaks", engine.brokenAt)):
+            if len(steps) and steps[n] >= since:
+                yield what, self.overlay or self.name
 
     def known(self) -> dict[str, Property]:
         """As of :class:`Settable`, and so are those that follow."""
@@ -138,13 +171,13 @@ class Tie(Settable):
         """Present elongation of the distance between its ends [m]."""
         return self.engine.elongations[self.number] if len(self.engine.elongations) else 0.0  # fmt: skip
 
-    def on(self, end: End, structure: Any) -> Any:
+    def on(self, end: End, connectors: Any) -> Any:
         """Force [N] and moment [N m] on one of its ends: two vectors.
 
-        :param structure: :class:`masonry.assembly.structure.Structure`
+        :param connectors: :class:`masonry.assembly.connectors.Connectors`
         """
         other = self.ends[1] if end is self.ends[0] else self.ends[0]
-        away = structure.placeOf(other) - structure.placeOf(end)
+        away = connectors.placeOf(other) - connectors.placeOf(end)
         return self.force * away.normalized(), 0 * away
 
     def columns(self, plane: bool) -> Iterator[Column]:
@@ -152,8 +185,13 @@ class Tie(Settable):
         if self.overlay:
             return
         where = f"{self.ends[0].words} and {self.ends[1].words}"
-        yield Column(f"{self.name}_force", "kN", f"force of the tie between {where}, positive in tension", lambda r: 1e-3 * r.ofTies[0][self.number])  # fmt: skip
-        yield Column(f"{self.name}_elongation", "mm", f"elongation of the distance between {where}", lambda r: 1e3 * r.ofTies[1][self.number])  # fmt: skip
+        yield Column(f"{self.name}_force", "kN", f"force of the tie between {where}, positive in tension", lambda r: 1e-3 * self.force)  # fmt: skip
+        yield Column(f"{self.name}_elongation", "mm", f"elongation of the distance between {where}", lambda r: 1e3 * self.elongation)  # fmt: skip
+
+    @property
+    def isListed(self) -> bool:
+        """Whether run.json has an entry of it: of a fibre only when it is no longer elastic."""
+        return not self.overlay or self.state != "elastic"
 
     @property
     def state(self) -> str:
@@ -194,7 +232,25 @@ class Spring(Settable):
     engine: Any = None  # YADE's, when the scene is built
     number: int = 0  # among the springs of the engine
 
-    WORD = "spring"
+    WORD, PLURAL = "spring", "springs"
+    isSupport, isListed, overlay = True, True, ""
+
+    @staticmethod
+    def engineOf(records: list[Spring], **ends: Any) -> Any:
+        """The engine of all springs of a scene, as that of ties, and so are those that follow."""
+        return MasonrySprings(
+            label="springs",
+            stiffness=[one.stiffness for one in records],
+            rotationalStiffness=[one.rotation for one in records],
+            **ends,
+        )
+
+    @staticmethod
+    def grow(records: list[Spring], engine: Any, share: float) -> None:
+        pass
+
+    def events(self, since: int) -> Iterator[tuple[str, str]]:
+        return iter(())
 
     def known(self) -> dict[str, Property]:
         """As of :class:`Settable`, and so are those that follow. A direction without a spring gets none."""
@@ -231,7 +287,7 @@ class Spring(Settable):
         """Present moment on the first end, about its point [N m]."""
         return self.engine.moments[self.number] if len(self.engine.moments) else (0.0, 0.0, 0.0)  # fmt: skip
 
-    def on(self, end: End, structure: Any) -> Any:
+    def on(self, end: End, connectors: Any) -> Any:
         """As :meth:`Tie.on`."""
         sign = 1 if end is self.ends[0] else -1
         return sign * Vector3(*self.force), sign * Vector3(*self.moment)

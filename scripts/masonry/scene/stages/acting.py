@@ -58,10 +58,10 @@ class Acceleration(Acting):
         self.model, self.towards = model, towards
 
     def now(self):
-        return list(self.model.now)
+        return list(self.model.scheme.now)
 
     def put(self, values):
-        self.model.setGravity(Vector3(*values))
+        self.model.scheme.setGravity(Vector3(*values))
 
     def at(self, began, share):
         down = self.model.description.gravity * Vector3.UnitZ

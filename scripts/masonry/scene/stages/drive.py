@@ -120,7 +120,7 @@ def _driveBy(scene, target, axis, distance):
 
     :param distance: function that gives the displacement [m] when the stage begins
     """
-    run, load = scene.running, scene.model.driveOf(target, axis)
+    run, load = scene.running, scene.model.loading.driveOf(target, axis)
     scene.ended = DONE
     at = run.stage(axis, Driving())
     if at is None:

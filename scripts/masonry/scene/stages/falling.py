@@ -50,7 +50,7 @@ def followFall(scene: Any, tilted: bool) -> str:
         at.begun = O.time
         if not running.takesUp:
             running.frame()  # whose cracks are drawn
-    model.dampByOptions()  # what stands comes to rest; blocks that are loose are not damped so
+    model.scheme.dampByOptions()  # what stands comes to rest; blocks that are loose are not damped so
     model.letFall()
     gravity = abs(box.gravity) or GRAVITY
     size = max(box.size(index) for index in range(len(box.bricks)))
@@ -62,7 +62,7 @@ def followFall(scene: Any, tilted: bool) -> str:
         running.advance(every)
         at.looks += 1
         running.record()
-        missing, _ = model.unrest()
+        missing, _ = model.supports.unrest()
         rests = abs(missing) < REST and model.motion.fastest() < CALM
         at.quiet = at.quiet + 1 if rests else 0
         if at.looks >= at.nextFrame:
@@ -70,7 +70,7 @@ def followFall(scene: Any, tilted: bool) -> str:
             at.nextFrame = at.looks + FRAME
         fallen = len(model.fallen())
         if fallen and not tilted:
-            model.setGravity(-model.gravity * Vector3.UnitZ)
+            model.scheme.setGravity(-model.gravity * Vector3.UnitZ)
         running.show(
             at.looks / most,
             lambda: f"{O.time - at.begun:.3f} s, {fallen} blocks have fallen",

@@ -22,7 +22,7 @@ LEAN_GROWS = 0.2  # [s] in which a lean grows
 def putOnAnswers(scene, rows):
     """The load that was put on, as held or as not held."""
     asked, unit = scene.running.memory.goal, scene.loadUnit
-    end, load = [asked, 1e3 * scene.model.alongNow()], f"{asked:.4g} {unit}"
+    end, load = [asked, 1e3 * scene.model.loading.alongNow()], f"{asked:.4g} {unit}"
     if scene.ended == AT_REST:
         return ends(scene, end, "the structure came to rest under it", None, f"it held {load}")  # fmt: skip
     why = f"the structure did not come to rest under {load}"
@@ -153,7 +153,7 @@ def putOn(scene, name, load, towards, longest, over=0.0):
     def growing(x):
         share = x * x * (3 - 2 * x)
         load.put([was + share * (end - was) for was, end in zip(first, ends)])
-        model.loadFactor = share * at.goal
+        model.loading.loadFactor = share * at.goal
 
     ended = waitForRest(scene, at, longest or TRIAL, growing, over=over)
     if ended == AT_REST:

@@ -113,7 +113,7 @@ def grow(scene, name, load, duration, towards, within=WITHIN):
 def _noteDrives(scene, name):
     """Say which bricks a push has left under its drive."""
     for target in scene.targets.values():
-        along = [a for a in "xyz" if scene.model.pushOf(target, a)]
+        along = [a for a in "xyz" if scene.model.loading.pushOf(target, a)]
         if along and target.brick is not None:
             say(
                 f"note: {name}: the drive of a push holds {target.name} along {', '.join(along)}, without numerical damping, so "
@@ -139,10 +139,10 @@ def follow(scene, name, towards):
     """
     target, origins = scene.description.followed(), scene.running.at.origins
     if target and name not in origins:
-        origin = scene.model.follow(target, towards)
+        origin = scene.model.loading.follow(target, towards)
         scene.running.at.origins = {**origins, name: origin}
     origin = scene.running.at.origins.get(name, (0, 0))
-    scene.model.followFrom(target, towards, origin)
+    scene.model.loading.followFrom(target, towards, origin)
 
 
 def found(scene, rows):
@@ -170,7 +170,7 @@ def ends(scene, held, whyHeld, lost, whyLost):
     :param held: factor and displacement [mm] of a load that was held, or None; ``lost``: of one that was not
     :param whyHeld: how it was found, or why it was not; ``whyLost``: likewise
     """
-    answers, target = [], scene.model.followed
+    answers, target = [], scene.model.loading.followed
     for name, end, how, when in (
         ("held", held, whyHeld, "at rest"),
         ("not_held", lost, whyLost, "when it was seen not to come to rest"),
@@ -209,7 +209,7 @@ class _Growth:
             self._put(scene.share)
         except Collapsed as collapse:
             at.fell = str(collapse)
-        at.steps, at.last = at.done, model.loadFactor
+        at.steps, at.last = at.done, model.loading.loadFactor
         try:
             at.lastState = _text(saveScene("null"))
         except ValueError:  # a number of what has fallen may no longer be finite
@@ -220,10 +220,10 @@ class _Growth:
 
     def _put(self, share):
         self.load.put(self.load.at(self.at.begun, share))
-        self.model.loadFactor = self.load.factor(share)
+        self.model.loading.loadFactor = self.load.factor(share)
 
     def _after(self):
-        at, factor = self.at, self.model.loadFactor
+        at, factor = self.at, self.model.loading.loadFactor
         # a checkpoint may hold the old lists
         at.rows = [*at.rows, [O.time, factor, self.model.motion.fastest()]]
         if len(at.rows) % at.spacing == 0:
@@ -254,7 +254,7 @@ class _Search:
                 if state is not None:
                     loadScene(_state(state))
             held = self._trial()
-            end = [at.goal, 1e3 * self.model.alongNow()]
+            end = [at.goal, 1e3 * self.model.loading.alongNow()]
             if held:
                 at.held, at.heldState = end, _text(saveScene("null"))
                 at.climbs += bool(at.climbs)
@@ -282,7 +282,7 @@ class _Search:
         if not at.over:
             loadScene(_state(at.lastState))
             at.kept, at.lastState, at.over = [], "", 1
-        self.model.loadFactor = at.last
+        self.model.loading.loadFactor = at.last
         if at.fell:
             raise Collapsed(at.fell)
         scene.ended = DONE
@@ -353,7 +353,7 @@ class _Search:
 
     def _alongThen(self):
         loadScene(_state(self.at.lastState))
-        return self.model.alongNow()
+        return self.model.loading.alongNow()
 
     # -- a trial --------------------------------------------------------------------------------------------------
 
@@ -368,7 +368,7 @@ class _Search:
             x = min(1.0, (at.taken + EVERY) / growing)
             factor = at.source + x * x * (3 - 2 * x) * (at.goal - at.source)
             self.load.put(self.load.at(at.begun, self.load.shareOf(factor)))
-            model.loadFactor = factor
+            model.loading.loadFactor = factor
             try:
                 self.running.advance(EVERY)
                 at.taken += EVERY
@@ -376,7 +376,7 @@ class _Search:
             except Collapsed:
                 at.ended = 0
                 return False
-            missing, moving = model.unrest()
+            missing, moving = model.supports.unrest()
             rests = abs(missing) < REST and moving < CALM and x == 1
             at.quiet = at.quiet + 1 if rests else 0
             if at.quiet == LOOKS:

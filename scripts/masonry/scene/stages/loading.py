@@ -39,7 +39,7 @@ GROWS = 2.0  # [s] in which a load grows to its whole
 def _forceOn(scene, target, force, name):
     """The load of a force on a target, in kN along its direction. Raises ValueError."""
     force = checkedForce(scene.description, force, name)
-    engine = scene.model.forceOf(target)
+    engine = scene.model.loading.forceOf(target)
     if not force.norm() > 0 and name != "load":
         raise ValueError(f"{name}: force must not be zero")
     # a load that is taken away keeps its direction
@@ -98,7 +98,7 @@ def _windOn(scene, pressure, towards, part, name):
     calm = name == "wind" and pressure == 0  # the wind of before ends
     faces = windFaces(scene.description, pressure or float(calm), towards, part, name)
     # suction has the engines of a pressure on the same faces, so that one replaces the other
-    engines = scene.model.windOf(windLabel(towards.normalized(), part), faces)
+    engines = scene.model.loading.windOf(windLabel(towards.normalized(), part), faces)
     towards = math.copysign(1, pressure) * towards.normalized()
     sign = math.copysign(1e3, pressure)
     forces = [-sign * area * Vector3(*normal) for _, normal, area, _ in faces]
@@ -172,7 +172,7 @@ def _pressOn(scene, platen, stress, name):
     if not stress > 0:
         raise ValueError(f"{name}: stress {stress!r} Pa must be above 0")
     doubtPress(stress, name)
-    engine, area = scene.model.pressOf(platen)
+    engine, area = scene.model.loading.pressOf(platen)
     down = -1e6 * area * Vector3.UnitZ
     what = f"press of {platen.name}"
     return Forces([engine], [down], what, "MPa", 1e-6 * stress)
@@ -192,7 +192,7 @@ def press(
     :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
     """
     made = _pressOn(scene, platen, stress, "press")
-    made.beside = [0, 0, scene.model.weightOf(platen)]
+    made.beside = [0, 0, scene.model.supports.weightOf(platen)]
     return _putOn(scene, "press", made, -Vector3.UnitZ, longest)
 
 
@@ -259,14 +259,14 @@ def hold(scene: Any, target: Target, axes: Axes = "xyzXYZ") -> str:
         raise Refused(
             f"hold: {target.name} is a deformable brick, which can be held before the first stage alone"
         )
-    driven = [a for a in "xyz" if scene.model.isDriven(target, a) and a in axes]
+    driven = [a for a in "xyz" if scene.model.loading.isDriven(target, a) and a in axes]
     if driven:
         raise ValueError(
             f"hold: a drive holds {target.name} along {', '.join(driven)} already"
         )
 
     def act():
-        scene.model.holdAlso(target, axes)
+        scene.model.supports.holdAlso(target, axes)
         state = O.bodies[target.body].state
         blocked = {*state.blockedDOFs, *axes}
         state.blockedDOFs = "".join(a for a in "xyzXYZ" if a in blocked)
@@ -284,8 +284,8 @@ def prepare(scene, word, said):
     """
     target = scene.targets.get(said.get("target") or said.get("platen"))
     if word in ("load", "growLoad") and target:
-        scene.model.forceOf(target)
+        scene.model.loading.forceOf(target)
     elif word in ("press", "growPress") and target:
-        scene.model.pressOf(target)
+        scene.model.loading.pressOf(target)
     elif word in ("wind", "growWind"):
         _windOn(scene, said["pressure"], said["towards"], said["part"], word)

@@ -136,7 +136,7 @@ def _drive(scene, name, target, aims, direction, rate, continued):
     args.rate = args.rate if rate is None else rate
     model = scene.model
     direction = vector(direction, f"{name}: direction").normalized()
-    model.pushTo(target, direction, name)
+    model.loading.pushTo(target, direction, name)
     scene.pushed = args
     began = f"{target.name} {[round(v, 9) for v in direction]}"
     if continued and began not in scene.running.at.origins:
@@ -148,7 +148,7 @@ def _drive(scene, name, target, aims, direction, rate, continued):
     scene.running.note("push", *names)
     if not scene.only:
         drivePush(scene, name, args, began, continued)
-        model.loads["push"].velocity = model.loads["push"].ramp = 0
+        model.loading.loads["push"].velocity = model.loading.loads["push"].ramp = 0
     scene.ended = DONE
     return DONE
 

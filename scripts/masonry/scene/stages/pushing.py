@@ -130,7 +130,7 @@ def drivePush(scene, name, args, began, continued=False):
     at = run.stage(name, Pushing())
     first, origin = at.origin is None, at.origin
     if first:
-        origin = here = list(model.topDisplacement())
+        origin = here = list(model.loading.topDisplacement())
         if continued:
             origin = run.at.origins[began]
             at.moved = at.last = at.start = 1e3 * (here[0] - origin[0])
@@ -142,11 +142,11 @@ def drivePush(scene, name, args, began, continued=False):
     whole, spacing = pathOf(args, at.start), frameSpacing(args)
     if at.passed >= len(goals):
         raise Refused(f"--resume: its history has {at.passed} points and more")
-    load = model.loads["push"]
+    load = model.loading.loads["push"]
     every = max(1, int(rowSpacing(args) / (args.rate * O.dt)))
-    model.goal = at.passed + 1, goals[at.passed].displacement
+    model.loading.goal = at.passed + 1, goals[at.passed].displacement
     if first:
-        at.origin = model.origin = origin
+        at.origin = model.loading.origin = origin
         run.at.origins = {**run.at.origins, began: origin}
         at.now = at.since = O.time
         at.moved = 1e3 * run.record().along
@@ -155,7 +155,7 @@ def drivePush(scene, name, args, began, continued=False):
         at.period = _measuredPeriod(scene, name, args, whole)
         at.places = model.motion.positions() if at.period else []
         run.at.swings = {**run.at.swings, str(run.entered): [at.period, 0.0, 0.0]}
-    model.origin = at.origin
+    model.loading.origin = at.origin
 
     def detail():
         if not args.history:
@@ -167,12 +167,12 @@ def drivePush(scene, name, args, began, continued=False):
     velocity, moves, undamped = None, True, None
     while moves:
         goal = goals[at.passed]
-        model.goal = at.passed + 1, goal.displacement
+        model.loading.goal = at.passed + 1, goal.displacement
         growth, start, steps = _pace(at, goal, args, every)
         free = bool(at.period) and not at.turned and growth < 1
         if free != undamped:
             undamped = free
-            model.damp(0.0, "local") if free else model.dampByOptions()
+            model.scheme.damp(0.0, "local") if free else model.scheme.dampByOptions()
         full = goal.direction * args.rate * 1e-3
         if velocity != full * growth:
             velocity = load.velocity = full * growth
@@ -180,7 +180,7 @@ def drivePush(scene, name, args, began, continued=False):
         if start < growth:
             load.ramp = run.at.left or steps
             load.acceleration = full * (growth - start) / (steps * O.dt)
-        model.keepLoadLine()
+        model.loading.keepLoadLine()
         run.advance(steps)
         reading = run.record()
         before = at.moved
@@ -192,7 +192,7 @@ def drivePush(scene, name, args, began, continued=False):
         how = None
         if at.hasLost(goal.direction, shear):
             how = "less than a fifth of the peak of its force is left"
-        elif model.hasSunk(reading.sunk + min(0.0, reading.along * model.direction[2])):  # fmt: skip
+        elif model.loading.hasSunk(reading.sunk + min(0.0, reading.along * model.loading.direction[2])):  # fmt: skip
             how = "the pushed point has come down by half a course"
         elif at.retreats(goal.direction, whole):
             how = "it moves against its push"
@@ -219,7 +219,7 @@ def _measuredPeriod(scene, name, args, path):
     run, model = scene.running, scene.model
     longest = min(LONGEST * rampTime(args), SHARE * path / args.rate)
     with run.clock("setup"), run.breakable():
-        period = firstPeriod(model, model.direction, longest)
+        period = firstPeriod(model, model.loading.direction, longest)
     if not period:
         say(
             f"note: {name}: no first period up to {1e3 * longest:.3g} ms was found; the drive gets to its rate within "
@@ -232,8 +232,8 @@ def _measuredPeriod(scene, name, args, path):
 
 def _noteSwing(run, model, at):
     """Keep the period of a push whose velocity has grown, the weight of the base in its shear force, and the time."""
-    moved = model.alongNow() - 1e-3 * at.start
-    weight = model.motion.baseWeight(at.places, model.direction, moved)
+    moved = model.loading.alongNow() - 1e-3 * at.start
+    weight = model.motion.baseWeight(at.places, model.loading.direction, moved)
     swing = [at.period, weight or 0.0, at.now]
     run.at.swings = {**run.at.swings, str(run.entered): swing}
     at.places = []

@@ -64,15 +64,15 @@ def settle(
     :returns: ``AT_REST``; ``MOVING`` if it is not at rest by then; ``COLLAPSED``
     """
     if scene.only:
-        scene.model.grow(1.0)
+        scene.model.loading.grow(1.0)
         scene.grown, scene.ended = True, AT_REST
         return AT_REST
     model, args = scene.model, scene.args
-    grow, scene.grown = (lambda x: None) if scene.grown else model.grow, True
+    grow, scene.grown = (lambda x: None) if scene.grown else model.loading.grow, True
     memory = scene.running.stage("settle", Resting())
     if damping:
         most = SETTLING if model.zones and damping == "local" else 1.0
-        model.damp(min(most, args.damping), damping)
+        model.scheme.damp(min(most, args.damping), damping)
     return waitForRest(scene, memory, longest, grow, record=record)
 
 
@@ -105,13 +105,13 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True):
         if at.done % EVERY:
             model.motion.checkFall(FAR)
             continue
-        missing, moving = model.unrest()
+        missing, moving = model.supports.unrest()
         rests = abs(missing) < REST and moving < CALM
         rests = rests and at.done > (1.2 if over else 1.1) * growing
         at.quiet = at.quiet + 1 if rests else 0
         if load == 1:
             model.motion.checkFall()
-            if model.target and model.hasSunk():
+            if model.loading.target and model.loading.hasSunk():
                 raise Collapsed("the platen has come down by half a course")
         running.show(
             at.done / most,
@@ -119,7 +119,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True):
             at.quiet == LOOKS or at.done >= most,
         )
     if at.quiet < LOOKS:
-        missing, moving = model.unrest()
+        missing, moving = model.supports.unrest()
         say(
             f"note: the structure is not at rest after {at.done * O.dt:.2f} s: {100 * missing:.2f} % of the load is "
             f"missing at the supports, kinetic over elastic energy is {moving:.1e}; longest=... [s] waits longer"

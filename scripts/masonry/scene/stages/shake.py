@@ -137,9 +137,9 @@ def shake(
         raise Refused("--density-scaling: a scene that is shaken runs in real time")
     at = scene.running.stage("shake", Damped())
     model = scene.model
-    model.trueMasses("shake")
-    model.damp(damping, scene.args.damping_kind, massDamping, stiffnessDamping)
-    at.limit = model.chooseTimeStep(at.limit)
+    model.scheme.trueMasses("shake")
+    model.scheme.damp(damping, scene.args.damping_kind, massDamping, stiffnessDamping)
+    at.limit = model.scheme.chooseTimeStep(at.limit)
     if O.dt > every:
         say(
             f"warning: shake: the time step, {O.dt:.3g} s, is longer than the time between samples, {every:.3g} s, so that some "
@@ -155,11 +155,11 @@ def shake(
             a = (1 - share) * values[first] + share * values[first + 1]
         else:
             a = 0.0
-        model.setGravity(down - scale * a * direction)
+        model.scheme.setGravity(down - scale * a * direction)
 
     duration = (len(values) - 1) * every + after
     timed(scene, at, scene.share * duration, before, each=1)
-    model.setGravity(down)
+    model.scheme.setGravity(down)
     return DONE
 
 
@@ -172,10 +172,10 @@ def run(scene: Any, seconds: float, damping: float | None = None) -> str:
     :param damping: damping constant during it [-]; None: that of the options
     """
     at = scene.running.stage("run", Damped())
-    changed = scene.model.trueMasses("run")
+    changed = scene.model.scheme.trueMasses("run")
     if damping is not None:
-        scene.model.damp(damping, scene.args.damping_kind)
+        scene.model.scheme.damp(damping, scene.args.damping_kind)
     if damping is not None or changed:
-        at.limit = scene.model.chooseTimeStep(at.limit)
+        at.limit = scene.model.scheme.chooseTimeStep(at.limit)
     timed(scene, at, scene.share * seconds, lambda done, beyond: None)
     return DONE

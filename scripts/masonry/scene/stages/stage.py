@@ -143,8 +143,8 @@ def _carryOut(scene, act, traits, args, settings):
         if over:
             return _asBefore(scene, over)
         running.loading = traits.grows and not scene.grown
-        scene.model.dampByOptions()
-        scene.model.countImpacts(traits.real)
+        scene.model.scheme.dampByOptions()
+        scene.model.scheme.countImpacts(traits.real)
         follows = scene.description.contact is not None
         if follows and running.redoes and running.at.stage == FALL:
             return _follow(scene, name)

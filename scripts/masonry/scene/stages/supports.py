@@ -60,9 +60,14 @@ def letGo(scene, target, axes, force):
     state = O.bodies[target.body].state
     if plane:  # nothing moves along the others
         axes = "".join(a for a in axes if a in "xzY") or axes
-    driven = any(model.driveOf(target, a) or model.pushOf(target, a) for a in axes)
+    driven = any(
+        model.loading.driveOf(target, a) or model.loading.pushOf(target, a)
+        for a in axes
+    )
     for axis in axes:
-        drive = model.driveOf(target, axis) or model.pushOf(target, axis)
+        drive = model.loading.driveOf(target, axis) or model.loading.pushOf(
+            target, axis
+        )
         if drive:
             drive.driven, drive.velocity = False, 0
             drive.force = vector(force or (0, 0, 0), "release: force [N]")

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What holds a structure, and what its platens and held bricks feel: forces, displacements, and whether it is at rest."""
+
+import math
+
+from yade import O, Vector3
+
+FILLED = 1e-9  # of a platen's side: what may be free of bricks if it is said to be full
+
+
+class Supports:
+    """Platens, and bricks that are held, loaded or watched, of a structure that is built.
+
+    - ``held``: targets of which a direction is held
+    - ``freeMass``: of all other blocks [kg]
+
+    :param structure: :class:`masonry.assembly.structure.Structure`
+    """
+
+    def __init__(self, structure):
+        self.structure, self.description = structure, structure.description
+        targets = self.description.targets.values()
+        self.held = [target for target in targets if target.freedom]
+        # Rows are read at every few steps: what does not change is kept.
+        self._placed = {target.name: self._placeOf(target) for target in targets}
+        self._forces = O.forces
+        held = {target.body for target in self.held}
+        self.freeMass = sum(b.state.mass for b in O.bodies if b.id not in held)
+
+    @staticmethod
+    def _placeOf(target):
+        """What the motion of a target's recorded point is found from."""
+        state = O.bodies[target.body].state
+        arm = Vector3(*target.recorded) - state.refPos
+        upright = state.refOri.conjugate()
+        return state, state.refPos, arm, upright * arm, upright
+
+    def holdAlso(self, target, axes):
+        """Count a target as one that is held along more axes."""
+        if target not in self.held:
+            self.held.append(target)
+            self.freeMass -= O.bodies[target.body].state.mass
+        held = {*(target.freedom or ""), *axes}
+        target.freedom = "".join(a for a in "xyzXYZ" if a in held)
+
+    def forceOn(self, target):
+        """Force of the structure on a target [N]."""
+        return self._forces.f(target.body, True)
+
+    def supportedBy(self, target):
+        """Force of the structure on a target along the axes that are held now, 0 along the others [N]."""
+        force, blocked = self.forceOn(target), O.bodies[target.body].state.blockedDOFs
+        return Vector3(*(f if a in blocked else 0.0 for a, f in zip("xyz", force)))
+
+    def forceFrom(self, target):
+        """Force of what loads, drives and holds a target on it [N]."""
+        total, blocked = Vector3(0, 0, 0), O.bodies[target.body].state.blockedDOFs
+        for label, load in self.structure.loading.loads.items():
+            if label != "push" and load.body == target.body:
+                total += load.force + load.reaction * load.direction.normalized()
+        on = self.forceOn(target)
+        for i, axis in enumerate("xyz"):
+            if axis in blocked:
+                total[i] = -on[i]
+        return total
+
+    def moved(self, target):
+        """Displacement of a target's recorded point since the scene was built [m], and its rotation, about y in a plane,
+        else its angle [rad]."""
+        state, place, arm, ownArm, upright = self._placed[target.name]
+        turn = state.ori
+        axis, angle = (turn * upright).toAxisAngle()
+        if self.description.plane:
+            angle *= axis[1]
+        return state.pos + turn * ownArm - place - arm, angle
+
+    def applied(self):
+        """Sum of the weights of what is free to follow them, and of the loads without drives [N]."""
+        applied = self.freeMass * self.structure.scheme.now
+        for target in self.held:
+            state = O.bodies[target.body].state
+            for i, axis in enumerate("xyz"):
+                if axis not in state.blockedDOFs:
+                    applied[i] += state.mass * self.structure.scheme.now[i]
+        for label, load in self.structure.loading.loads.items():
+            if label != "push":
+                applied += load.force
+        return applied
+
+    def carried(self):
+        """Sum of the forces of supports and drives on the structure [N]."""
+        carried = Vector3(0, 0, 0)
+        for target in self.held:
+            blocked, on = O.bodies[target.body].state.blockedDOFs, self.forceOn(target)
+            for i, axis in enumerate("xyz"):
+                if axis in blocked:
+                    carried[i] -= on[i]
+        for label, load in self.structure.loading.loads.items():
+            if label != "push":
+                carried += load.reaction * load.direction.normalized()
+        return carried - self.structure.connectors.onGround()
+
+    def unrest(self):
+        """What of the loads is missing at the supports, and kinetic over elastic energy [-]."""
+        energy = self.structure.energy.balance()
+        elastic = sum(
+            energy.get(f"elastic_{m}", 0.0)
+            for m in ("compression", "shear", "tension", "units", "connectors")
+        )
+        applied, carried = self.applied(), self.carried()
+        if self.description.plane:
+            applied[1] = carried[1] = 0
+        size = applied.norm()
+        loads = sum(
+            load.force.norm()
+            for n, load in self.structure.loading.loads.items()
+            if n != "push"
+        )
+        if size < 1e-6 * loads:  # loads that balance each other
+            size = loads
+        missing = (applied + carried).norm() / (size or 1.0)
+        moving = abs(energy["kinetic"])
+        return missing, moving / elastic if elastic else math.inf
+
+    def contactOf(self, target):
+        """Area of a platen's joints [m²], and their middle [m]."""
+        area, middle = 0.0, Vector3.Zero
+        for interaction in self.structure.interactions:
+            if target.body in (interaction.id1, interaction.id2):
+                geom = interaction.geom
+                for a, c in zip(geom.areas, geom.centres):
+                    area += a
+                    middle += a * c
+        low, high = target.box
+        side = (high[0] - low[0]) * (high[1] - low[1])
+        if abs(area - side) < FILLED * side:
+            return side, [(a + b) / 2 for a, b in zip(low, high)]
+        return area, middle / area
+
+    def weightOf(self, target):
+        """Weight of the body of a target [N]."""
+        return O.bodies[target.body].state.mass * self.structure.gravity
