@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A pinnacle of six drums, read from a file: a horizontal acceleration grows until it falls."""
+"""A pinnacle of six drums, read from a file: a horizontal acceleration grows until it falls.
+
+It slides and tips. It takes about 1 s.
+"""
 
 import os
 import sys

@@ -31,8 +31,14 @@ PARTS = ["MathJax.js", "config/TeX-AMS_SVG-full.js", "extensions", "jax/element"
 #: The pages of the site by their sections. What stands in a folder of ``validation`` comes below its README.
 FIRST = "First steps"  # the notebooks of the tutorial come before its other pages
 SECTIONS = {
-    FIRST: ["gallery"],
-    "Manual": ["scripts/README", "words", "options", "scripts/STUDIES"],
+    FIRST: ["scripts/TASKS", "scripts/WALL", "gallery"],
+    "Manual": [
+        "scripts/README",
+        "words",
+        "options",
+        "scripts/STUDIES",
+        "scripts/FILES",
+    ],
     "Laws": [
         "yade_plugin/law/README",
         "yade_plugin/law/cyclic_softening/README",
@@ -118,9 +124,7 @@ def stage(folder, out, runs):
     for path, table in contents(documents, lessons).items():
         made.document(path, read(path) + table)
     made.sources()
-    for name, _ in staging.galleryRows():
-        made.copy(f"scripts/gallery/{name}.png")
-    made.write("gallery.md", staging.gallery())
+    made.write("gallery.md", staging.galleryPage())
     made.write("words.rst", generated.words())
     made.write("options.rst", generated.optionsOfScenes())
     made.write("classes.rst", generated.classes())

@@ -6,6 +6,7 @@ first page. Only links are changed: those that lead to a folder lead to its READ
 page of that module, and those to any other source to a page that shows it.
 """
 
+import ast
 import os
 import posixpath
 import re
@@ -32,7 +33,6 @@ _LINK = re.compile(r"(\]\()([^)\s]+)(\))")
 _TO_MODULE = re.compile(r"\[([^\]]+)\]\(([^)\s]+\.py)\)")
 _EQUATION = re.compile(r"^( *)```math$", re.M)
 _HTML = re.compile(r'(<img src=")([^"]+)(")')
-_ROW = re.compile(r"^\| \[(\w+)\]\((\w+\.py)\) \| ([^|]+) \| ([^|]+) \| <img src=\"([^\"]+)\"", re.M)  # fmt: skip
 
 
 def page(path):
@@ -156,20 +156,18 @@ class Stage:
         return found
 
     def sources(self):
-        """Make a page of each source to which a document leads, and of each scene that the gallery has not."""
-        rows = {name: row for name, row in galleryRows()}
-        scenes = {f"scripts/{name}.py" for name in rows}
-        for path in sorted(self.shown | scenes):
-            name = posixpath.basename(path)
+        """Make a page of each source to which a document leads, and of each scene of the gallery."""
+        scenes = {f"scripts/{name}.py": name for name in gallery()}
+        for path in sorted(self.shown | set(scenes)):
+            file = posixpath.basename(path)
             language = SOURCES[os.path.splitext(path)[1]]
-            head = f"# {name.removesuffix('.py') if path in scenes else path}\n\n"
+            head = f"# {path}\n\n"
             if path in scenes:
-                row = rows[name.removesuffix(".py")]
-                self.copy(f"scripts/{row['picture']}")
-                head += f"{row['shows']} It takes {row['time']} on one core.\n\n![{name}]({row['picture']})\n\n"
-                head += f"    yade -n -x {path}\n\n"
+                name = scenes[path]
+                self.copy(f"scripts/gallery/{name}.png")
+                head = f"# {name}\n\n{aboutScene(name)}\n\n![{name}](gallery/{name}.png)\n\n    yade -n -x {path}\n\n"
             self.copy(path)
-            self.write(path + ".md", f"{head}```{{literalinclude}} {name}\n:language: {language}\n```\n")  # fmt: skip
+            self.write(path + ".md", f"{head}```{{literalinclude}} {file}\n:language: {language}\n```\n")  # fmt: skip
 
 
 def documents():
@@ -177,22 +175,29 @@ def documents():
     return [path for path in files((".md",)) if not path.startswith("scripts/docs/")]
 
 
-def galleryRows():
-    """The rows of the gallery in scripts/README.md: pairs of a name and a dict of ``time``, ``shows`` and ``picture``."""
-    for name, _, time, shows, picture in _ROW.findall(read("scripts/README.md")):
-        yield name, dict(time=time, shows=shows, picture=picture)
-
-
 def gallery():
+    """The names of the scenes of the gallery, those that have a picture there."""
+    return [posixpath.basename(path)[:-4] for path in files((".png",)) if path.startswith("scripts/gallery/")]  # fmt: skip
+
+
+def aboutScene(name):
+    """What the docstring of a scene says, in Markdown."""
+    return ast.get_docstring(ast.parse(read(f"scripts/{name}.py"))).replace("``", "`")
+
+
+def galleryPage():
     """The page of all scenes with their pictures, in Markdown."""
-    cards = [
-        f"::::{{container}} card\n[![{name}](scripts/{row['picture']})](scripts/{name}.py.md)\n\n"
-        f"[{name}](scripts/{name}.py.md) · {row['time']}\n\n{row['shows']}\n::::\n"
-        for name, row in galleryRows()
-    ]
+    cards = []
+    for name in gallery():
+        about, page = aboutScene(name), f"scripts/{name}.py.md"
+        picture = f"[![{name}](scripts/gallery/{name}.png)]({page})"
+        first = about.partition("\n\n")[0]
+        cards.append(
+            f"::::{{container}} card\n{picture}\n\n[{name}]({page})\n\n{first}\n::::\n"
+        )
     head = (
         "# Gallery\n\nA picture leads to the scene that made it. Times are those of one core.\n\n"
         ":::::{container} gallery\n"
     )
-    scenes = "\n".join(f"scripts/{name}.py" for name, _ in galleryRows())
+    scenes = "\n".join(f"scripts/{name}.py" for name in gallery())
     return f"{head}{chr(10).join(cards)}:::::\n\n```{{toctree}}\n:hidden:\n\n{scenes}\n```\n"

@@ -13,7 +13,7 @@ import sys
 import tree
 
 #: Files that a reader writes himself, or that a run makes.
-OF_THE_READER = {"my_scene.py", "scene.py", "script.py"}
+OF_THE_READER = {"my_scene.py", "my_wall.py", "scene.py", "script.py"}
 MADE = ("results/", "build/", "out/")
 MODULES = "scripts/masonry"
 FOLDERS = ("", "yade_plugin", "scripts", "scripts/masonry", "tests", "validation")

@@ -19,7 +19,7 @@ sys.path.insert(1, os.path.join(ROOT, "tests", "gates"))
 
 import tree
 
-TUTORIAL = ("scripts/TUTORIAL.md", "scripts/docs/")
+TUTORIAL = ("scripts/docs/",)
 PROGRAMS = ("yade", "bash", "/usr/bin/python3", "python3", "jupyter", "for", "cd", "seq", "squeue", "apt-get", "unshare")  # fmt: skip
 
 #: Commands that are not run here, and why: who runs them, or what they need.
@@ -41,7 +41,7 @@ REASONS = {
 #: What is replaced in a command before it is run.
 REPLACED = (
     (r"bash scripts/run\.sh (\w+)", r"yade -n -x scripts/\1.py"),
-    (r"^((?:yade -n -x|/usr/bin/python3) (?:scripts/\w+|my_scene)\.py\b(?!.*--(?:resume|preset bound|help)).*)", r"\1 --quick"),
+    (r"^((?:yade -n -x|/usr/bin/python3) (?:scripts/\w+|my_\w+)\.py\b(?!.*--(?:resume|preset bound|help)).*)", r"\1 --quick"),
     (r"(/usr/bin/python3 scripts/plot\.py.*) --quick", r"\1"),
     (r"(.*--preset bound)", r"\1 --out results/bound"),
     (r"(.*scripts/wall_\w+\.py (?:--history|--joint).*)", r"\1 --lean --out results/other"),
@@ -51,8 +51,9 @@ REPLACED = (
 #: Documents with Python, and what becomes of it: a file that commands name, or a program of its own.
 BLOCKS = {
     "README.md": ["my_scene.py"],
-    "scripts/README.md": ["checkpoint.py"],
+    "scripts/FILES.md": ["checkpoint.py"],
     "scripts/STUDIES.md": ["study.py", "ida.py"],
+    "scripts/WALL.md": ["my_wall.py"],
 }
 #: A record of the format of PEER: a sine that swells and fades, with another frequency in every file.
 PEER = """PEER NGA STRONG MOTION DATABASE RECORD
@@ -120,6 +121,7 @@ def folder(tmp_path_factory):
     for name in ("scripts", "validation", "yade_plugin", "tests"):
         os.symlink(os.path.join(ROOT, name), path / name)
     (path / "my_scene.py").write_text(PYTHON["README.md"][0])
+    (path / "my_wall.py").write_text(PYTHON["scripts/WALL.md"][0])
     study = PYTHON["scripts/STUDIES.md"][0]
     small = study.replace("runs=200", "runs=3").replace('"until": 6', '"until": 0.2')
     assert small.count("runs=3") == 1 and small.count('"until": 0.2') == 1
@@ -135,7 +137,7 @@ def folder(tmp_path_factory):
     (path / "measured.csv").write_text("displacement_mm\n0.1\n-0.1\n0\n")
     (path / "test.csv").write_text("d,F\n0,0\n1,50\n2,60\n")
     (path / "checkpoint.py").write_text(
-        SCENE + PYTHON["scripts/README.md"][0] + "assert pushed == 1000\nscene.finish()\n"
+        SCENE + PYTHON["scripts/FILES.md"][0] + "assert pushed == 1000\nscene.finish()\n"
     )  # fmt: skip
     return path
 
