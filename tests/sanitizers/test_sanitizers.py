@@ -8,6 +8,9 @@ import pytest
 from conftest import BUILD, ROOT
 
 
+pytestmark = pytest.mark.long
+
+
 def build(sanitizers, name, *targets):
     folder = os.path.join(BUILD, name)
     options = [
