@@ -14,8 +14,9 @@ trap 'rm -rf "$logs"' EXIT
 
 release=$(. /etc/os-release && echo "${VERSION_CODENAME:-unknown}")
 case $release in
-    bookworm | trixie) ;; # the names of all packages are the same in both
-    *) echo "This is no release that the plugin is known to work on (Debian 12 bookworm, Debian 13 trixie) but '$release':" \
+    bookworm | trixie | forky) ;; # the names of all packages are the same in them
+    resolute) ;; # Ubuntu 26.04, whose packages come from Debian's; not tried
+    *) echo "This is not a release that the plugin is known to work on (Debian 12 bookworm, 13 trixie, forky) but '$release':" \
             "packages may have other names, and its YADE may be refused." >&2 ;;
 esac
 # Python's numpy, scipy and matplotlib and the libraries of VTK come with yade, so figures and bounds need little more.

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 # Tries both commands of README.md in a fresh Debian, and prints peak and times of each release in a line.
 #
-#   bash scripts/try_release.sh bookworm|trixie...      in a temporary folder, which is removed at the end
+#   bash scripts/try_release.sh bookworm|trixie|forky...      in a temporary folder, which is removed at the end
 #   FOLDER=/some/new/folder bash scripts/try_release.sh trixie
 #   KEEP=1 FOLDER=/some/new/folder bash scripts/try_release.sh trixie     leaves the release there, for more trials
 #   MIRROR=http://... bash scripts/try_release.sh trixie      another package mirror than that of debootstrap
@@ -13,7 +13,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 (($#)) || { sed -n '2,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2; }
 for release in "$@"; do
-    [[ $release == bookworm || $release == trixie ]] || { echo "release '$release' must be bookworm or trixie" >&2; exit 2; }
+    [[ $release =~ ^(bookworm|trixie|forky)$ ]] || { echo "release '$release' must be bookworm, trixie or forky" >&2; exit 2; }
 done
 ((EUID == 0)) || { echo "needs root, for chroot" >&2; exit 1; }
 command -v debootstrap >/dev/null || { echo "needs debootstrap: apt-get install debootstrap" >&2; exit 1; }
@@ -46,11 +46,15 @@ lines=("release|yade|command|outcome|time [s]|peak [kN]")
 for release in "$@"; do
     root=$folder/$release
     started=$SECONDS
-    debootstrap --variant=minbase "$release" "$root" ${MIRROR:+"$MIRROR"} >"$folder/$release.log" 2>&1 ||
+    script= # a debootstrap that is older than the release makes it as sid
+    [[ -e /usr/share/debootstrap/scripts/$release ]] || script=/usr/share/debootstrap/scripts/sid
+    debootstrap --variant=minbase "$release" "$root" "${MIRROR:-}" ${script:+"$script"} >"$folder/$release.log" 2>&1 ||
         { tail -n 20 "$folder/$release.log" >&2; exit 1; }
     lines+=("$release|-|debootstrap|ok|$((SECONDS - started))|-")
     printf '#!/bin/sh\nexit 101\n' >"$root/usr/sbin/policy-rc.d" # no package starts a service
     chmod +x "$root/usr/sbin/policy-rc.d"
+    # a mirror that is kept as it was one day offers lists whose date is over
+    echo 'Acquire::Check-Valid-Until "false";' >"$root/etc/apt/apt.conf.d/99-old-mirror"
     mount -t proc proc "$root/proc"
     mkdir "$root/root/masonry"
     git ls-files -z --cached --others --exclude-standard | tar -c --null --files-from=- | tar -x -C "$root/root/masonry"

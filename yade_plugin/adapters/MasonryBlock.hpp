@@ -42,6 +42,9 @@ class MasonryBlock : public Adapter<MasonryBlock, yade::Shape>, public BlockSurf
         wire = highlight = false;
     }
 
+    // [m³]; overrides a function of YADE's Shape where that has one.
+    double getVolume() { return volume; }
+
     // Throws std::runtime_error if a saved file holds corners or triangles that make no block.
     void postLoad();
 

@@ -91,6 +91,11 @@ struct Slot {
 };
 
 const Slot slots[] = {
+#ifdef MASONRY_HOST_HAS_VOLUME
+    {"Shape", 12, "getVolume"},
+#else
+    {"Shape", 12, "modifyClassIndex"},
+#endif
     {"Serializable", 2, "getBaseClassName"},
     {"Serializable", 3, "getBaseClassNumber"},
     {"Serializable", 4, "getClassName"},
@@ -165,6 +170,7 @@ struct Version {
 
 const Version versions[] = {
     {"2023.02a", "Debian 12", {}}, {"2025.2.0", "Debian 13", {"Polyhedra"}}, // built without CGAL
+    {"2026.1.0", "Debian forky", {"Polyhedra"}},
 };
 
 const Version* known(const std::string& name) {

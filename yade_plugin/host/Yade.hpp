@@ -120,6 +120,9 @@ public:
 
 class Shape : public Serializable, public Indexable {
     MASONRY_HOST_CLASS(Shape)
+#ifdef MASONRY_HOST_HAS_VOLUME // since YADE 2026.1.0; CMakeLists.txt looks for it in the YADE that is installed
+    virtual Real getVolume();
+#endif
     MASONRY_HOST_INDEX
 private:
     shared_ptr<void> boundFunctor_, internalForceFunctor_;
