@@ -132,14 +132,12 @@ def test_a_preset_stands_for_its_options_and_keeps_its_promise(name):
     args = parse("--preset", name, "--until", "3", "--no-vtk", "--out", "x")
     for option, value in options.PRESETS[name].items():
         assert getattr(args, option) == value
-    preset = presets.presetOf(args, "wall_comp4")
+    preset = presets.presetOf(args, "wall_comp4", LIKE)
     promise = presets.PROMISES[name]
     assert preset["promise"]["peak_error"] == promise["peak_error"]
     assert preset["promise"]["work_error"] == promise["work_error"]
     assert preset["overrides"] == []
-    assert f"within {100 * promise['work_error']:g} %" in presets.presetNote(
-        preset, "wall_comp4"
-    )
+    assert f"within {100 * promise['work_error']:g} %" in presets.presetNote(preset)
 
 
 @pytest.mark.parametrize(
@@ -154,24 +152,44 @@ def test_a_preset_stands_for_its_options_and_keeps_its_promise(name):
 )
 def test_an_option_beside_a_preset_wins_and_drops_the_promise(words, dropped):
     args = parse("--preset", "accurate", *words)
-    preset = presets.presetOf(args, "wall_comp4")
+    preset = presets.presetOf(args, "wall_comp4", LIKE)
     assert preset["overrides"] == dropped and (preset["promise"] is None) == bool(
         dropped
     )
     assert args.blocks == "deformable" and args.dt_fraction == 0.8
     if words[0] == "--rate":
         assert args.rate == float(words[1])
-    note = presets.presetNote(preset, "wall_comp4")
+    note = presets.presetNote(preset)
     assert ("without its promise" in note) == bool(dropped)
     for name in dropped:
         assert "--" + name.replace("_", "-") in note
 
 
-def test_a_preset_promises_nothing_of_a_wall_it_was_not_measured_on():
-    preset = presets.presetOf(parse("--preset", "fast"), "my_wall")
-    assert preset["promise"] is None
-    assert "not measured on my_wall" in presets.presetNote(preset, "my_wall")
-    assert presets.presetOf(parse(), "wall_comp4") is None
+#: Of a wall that is like those on which ``fast`` was measured.
+LIKE = {name: 0.5 * (least + most) for name, (least, most) in presets.RANGE.items()}
+
+
+def test_a_preset_promises_less_of_a_wall_that_is_like_those_it_was_measured_on():
+    preset = presets.presetOf(parse("--preset", "fast"), "my_wall", LIKE)
+    elsewhere = presets.PROMISES["fast"]["elsewhere"]
+    assert preset["promise"] == elsewhere and preset["outside"] == []
+    assert f"within {100 * elsewhere['peak_error']:g} %" in presets.presetNote(preset)
+    assert presets.presetOf(parse(), "my_wall", LIKE) is None
+
+
+@pytest.mark.parametrize("name", presets.RANGE)
+@pytest.mark.parametrize("end", [0, 1])
+def test_a_preset_names_the_property_that_was_not_measured(name, end):
+    wall = {**LIKE, name: presets.RANGE[name][end] + (0.02 * (2 * end - 1)) * presets.RANGE[name][1]}  # fmt: skip
+    preset = presets.presetOf(parse("--preset", "fast"), "my_wall", wall)
+    (sentence,) = preset["outside"]
+    assert preset["promise"] is None and sentence.startswith(name.partition(" [")[0])
+    assert sentence in presets.presetNote(preset)
+
+
+def test_a_preset_promises_nothing_in_space():
+    preset = presets.presetOf(parse("--preset", "fast"), "my_wall", None)
+    assert preset["promise"] is None and "moves in space" in presets.presetNote(preset)
 
 
 @settings(max_examples=300)

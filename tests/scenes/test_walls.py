@@ -316,8 +316,8 @@ def test_a_preset_whose_option_is_overridden_says_so_twice(runScene):
     process, out = runScene("wall_comp4", *words)
     note = "preset fast without its promise: --points beside it"
     assert process.stdout.count(note) == 2
-    preset = {"name": "fast", "overrides": ["points"], "promise": None}
-    assert readRun(out)["preset"] == preset
+    preset = readRun(out)["preset"]
+    assert preset["overrides"] == ["points"] and preset["promise"] is None
 
 
 def test_a_dry_wall_takes_a_preset_without_a_promise(runScene):

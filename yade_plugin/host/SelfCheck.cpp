@@ -169,7 +169,8 @@ struct Version {
 };
 
 const Version versions[] = {
-    {"2023.02a", "Debian 12", {}}, {"2025.2.0", "Debian 13", {"Polyhedra"}}, // built without CGAL
+    {"2023.02a", "Debian 12", {}},
+    {"2025.2.0", "Debian 13", {"Polyhedra"}}, // built without CGAL
     {"2026.1.0", "Debian forky", {"Polyhedra"}},
 };
 

@@ -215,7 +215,7 @@ def _describe(run, scene):
         scene=run.name,
         options=_options(run),
         preset=run.preset,
-        preset_note=presetNote(run.preset, run.name) if run.preset else None,
+        preset_note=presetNote(run.preset) if run.preset else None,
         columns=meanings(scene.columns),
         versions={
             "yade": yade.config.version,
@@ -320,4 +320,4 @@ def _report(run, scene):
     if remark := threads.remark():
         say(remark)
     if run.preset:
-        say(presetNote(run.preset, run.name))
+        say(presetNote(run.preset))

@@ -40,8 +40,8 @@ BOUND = "bound"
 #: What a preset promises. ``peak_error``, ``work_error`` and ``stiffness_error`` are the most that the peak, the work over the
 #: push and the initial stiffness differ from those of a fine and slow run [-]. ``walls`` has how far each wall was pushed for
 #: that [mm], and the time that it takes with ``yade -j2`` on two idle server cores [s]. validation/trade measures all of them.
-#: ``elsewhere`` has the errors of peak and work in the plane of forty other walls, of which all but ``missed`` lay within
-#: them: validation/accuracy.
+#: ``elsewhere`` has the errors of peak and work of these four and the forty walls of validation/accuracy, of which all but
+#: ``missed`` lay within them. Any wall in their :data:`RANGE` gets this promise.
 PROMISES: dict[str, dict[str, Any]] = {
     "fast": {
         "peak_error": 0.02,
@@ -53,7 +53,7 @@ PROMISES: dict[str, dict[str, Any]] = {
             "wall_comp4": (12, 8),
             "wall_comp6": (16, 9),
         },
-        "elsewhere": {"peak_error": 0.06, "work_error": 0.07, "missed": 1},
+        "elsewhere": {"peak_error": 0.06, "work_error": 0.07, "walls": 44, "missed": 1},
     },
     "accurate": {
         "peak_error": 0.02,
@@ -66,6 +66,18 @@ PROMISES: dict[str, dict[str, Any]] = {
             "wall_comp6": (16, 40),
         },
     },
+}
+
+#: The walls on which ``fast`` was measured: the least and the largest value of each property that
+#: :func:`masonry.scene.facts.properties` finds. All were pushed once, in their plane.
+RANGE: dict[str, tuple[float, float]] = {
+    "length over height": (0.27, 3.4),
+    "courses": (6, 34),
+    "bricks in the length": (3, 18),
+    "pressure at the top [MPa]": (0.3, 0.7),
+    "tensile strength of bed joints [MPa]": (0, 0.15),
+    "cohesion of bed joints [MPa]": (0, 0.165),
+    "friction of bed joints": (0.43, 0.65),
 }
 
 #: Options that leave a preset's promise alone.
@@ -215,29 +227,62 @@ def asOption(name):
     return "--" + name.replace("_", "-")
 
 
-def presetOf(args, scene):
+def outsideOf(properties):
+    """Sentences on properties of a scene in which a scene is unlike the walls on which ``fast`` was measured.
+
+    :param properties: values by name, as :func:`masonry.scene.facts.properties` gives them; None: it moves in space
+    """
+    if properties is None:
+        return ["it moves in space, and they were pushed in their plane"]
+    sentences = []
+    for name, (least, most) in RANGE.items():
+        value = properties[name]
+        if not least - 0.005 * most <= value <= 1.005 * most:
+            what, _, unit = name.partition(" [")
+            unit = unit and " " + unit.rstrip("]")
+            sentences.append(f"{what} {value:.3g}{unit}, theirs {least:g} to {most:g}{unit}")  # fmt: skip
+    return sentences
+
+
+def presetOf(args, scene, properties):
     """What run.json says of the preset: None without one, or a dict.
 
-    ``name`` is the preset's. ``overrides`` are options given beside it. ``promise`` is None if there are any, or if the
-    scene is none of those that the promise was measured on. Else it holds ``peak_error``, ``work_error`` and
-    ``stiffness_error`` [-], ``until_mm`` and ``seconds``.
+    ``name`` is the preset's. ``overrides`` are options given beside it. ``outside`` are sentences on what was not measured.
+    ``promise`` is None if there are any of both. Else it holds ``peak_error`` and ``work_error`` [-]; of a wall on which
+    it was measured also ``stiffness_error`` [-], ``until_mm`` and ``seconds``; of another one that is like these ``walls``, how many these are, and ``missed``, how many of them had larger errors.
 
     :param args: the parsed options
     :param scene: name of the scene
+    :param properties: of the scene, as :func:`outsideOf` takes them
     """
     if not args.preset:
         return None
-    known, promise = PROMISES.get(args.preset), None
-    if known and not args.overrides and scene in known["walls"]:
+    known, promise, outside = PROMISES.get(args.preset, {}), None, []
+    if scene in known.get("walls", {}):
         until, seconds = known["walls"][scene]
         promise = {name: known[name] for name in ("peak_error", "work_error", "stiffness_error")}  # fmt: skip
         promise.update(until_mm=until, seconds=seconds)
-    return {"name": args.preset, "overrides": args.overrides, "promise": promise}
+    elif "elsewhere" in known:
+        promise, outside = known["elsewhere"], outsideOf(properties)
+    elif known:
+        outside = [f"not measured on {scene}"]
+    return {
+        "name": args.preset,
+        "overrides": args.overrides,
+        "outside": outside,
+        "promise": None if args.overrides or outside else promise,
+    }
 
 
-def presetNote(preset, scene):
+def presetNote(preset):
     """What :func:`presetOf` returned, as a line to read."""
     name, promise = preset["name"], preset["promise"]
+    if promise and "walls" in promise:
+        return (
+            f"preset {name}: of {promise['walls']} walls whose properties are like these, pushed once, all but "
+            f"{promise['missed']} had their peak within {100 * promise['peak_error']:g} % and their work within "
+            f"{100 * promise['work_error']:g} % of a fine and slow run"
+        )
     if promise:
         return (
             f"preset {name}: promises the peak within {100 * promise['peak_error']:g} %, the work over "
@@ -250,8 +295,11 @@ def presetNote(preset, scene):
         reason = ", ".join(map(asOption, preset["overrides"])) + " beside it"
         return f"preset {name} without its promise: {reason}"
     others = PROMISES[name].get("elsewhere")
-    measured = others and (
-        f"; of 40 other walls pushed in their plane all but {others['missed']} had their peak within "
-        f"{100 * others['peak_error']:g} % and their work within {100 * others['work_error']:g} %"
+    measured = (
+        f"unlike the {others['walls']} walls on which it was measured: "
+        if others
+        else ""
     )
-    return f"preset {name} without its promise: not measured on {scene}{measured or ''}"
+    return (
+        f"preset {name} without its promise: {measured}{'; '.join(preset['outside'])}"
+    )

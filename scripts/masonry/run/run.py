@@ -97,10 +97,11 @@ class Run:
 
     # -- beginning ------------------------------------------------------------------------------------------------
 
-    def open(self, columns):
+    def open(self, columns, properties):
         """Open the folder, and read the checkpoint of a run that is resumed. No file is written yet.
 
         :param columns: :class:`masonry.assembly.columns.Column` objects
+        :param properties: of the scene, as :func:`masonry.scene.facts.properties` gives them
         """
         args = self.args
         self._values = [column.value for column in columns]
@@ -126,9 +127,9 @@ class Run:
             plausible.check(self._saved, self.at)
         self._takeSignals()
         listen(self.hear)
-        self.preset = presetOf(args, self.name)
+        self.preset = presetOf(args, self.name, properties)
         if self.preset:
-            say(presetNote(self.preset, self.name))
+            say(presetNote(self.preset))
 
     def start(self, model, space, state):
         """Take up the model that now stands in YADE, in the state of the checkpoint if the run is resumed.

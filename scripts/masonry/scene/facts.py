@@ -2,6 +2,7 @@
 """What a scene is, in words: what is built, and what is held, loaded and watched. Notebooks show it, and run.json has it."""
 
 import collections
+import statistics
 
 from ..bricks import Bricks, summary
 
@@ -33,6 +34,32 @@ def sizes(description):
 
 def _size(block):
     return " × ".join(f"{1e3 * (b - a):.4g}" for a, b in zip(block.low, block.high))
+
+
+def properties(description, masonry):
+    """What decides whether a scene is like the walls on which a preset was measured: values by the names in
+    :data:`masonry.run.presets.RANGE`; None for a scene in space.
+
+    :param masonry: its materials
+    """
+    if not description.plane:
+        return None
+    length, _, height = (b - a for a, b in zip(description.low, description.high))
+    whole = Bricks(description.bricks).whole()
+    sides = [[b - a for a, b in zip(one.low, one.high)] for one in whole]
+    usual = lambda axis: statistics.median(side[axis] for side in sides)
+    pressed = [t.pressed for t in description.targets.values() if t.pressed]
+    bed = masonry.joints["bed"]
+    of = lambda name: getattr(bed, name, 0.0)
+    return {
+        "length over height": length / height,
+        "courses": height / usual(2),
+        "bricks in the length": length / usual(0),
+        "pressure at the top [MPa]": 1e-6 * sum(pressed),
+        "tensile strength of bed joints [MPa]": 1e-6 * of("tensileStrength"),
+        "cohesion of bed joints [MPa]": 1e-6 * of("cohesion"),
+        "friction of bed joints": of("friction"),
+    }
 
 
 def held(description):

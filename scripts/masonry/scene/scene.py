@@ -60,6 +60,7 @@ from ..run.run import Run
 from . import (
     connections,
     contact,
+    facts,
     loads,
     options,
     probing,
@@ -404,7 +405,7 @@ class Scene:
         records.recordBase(description)
         self.columns = description.columns(model, bool(args.history))
         self.model = model
-        self.running.open(self.columns)
+        self.running.open(self.columns, facts.properties(description, self.masonry))
         self.bounds = Bounds(model, self.running.at)
         if self.only:
             self.bounds.prepare()
