@@ -161,7 +161,9 @@ class Stage:
         for path in sorted(self.shown | set(scenes)):
             file = posixpath.basename(path)
             language = SOURCES[os.path.splitext(path)[1]]
-            head = f"# {path}\n\n"
+            head = (
+                f"---\norphan: true\n---\n\n# {path}\n\n"  # no table of contents has it
+            )
             if path in scenes:
                 name = scenes[path]
                 self.copy(f"scripts/gallery/{name}.png")

@@ -37,6 +37,7 @@ REASONS = {
     r".*vtable\.py FOLDER": "needs an unpacked YADE of another release",
     r".*-m masonry\.capacity": "a tenth of a push has no peak: tests/package/test_capacity.py",
     r"jupyter": "opens a browser",
+    r"unshare": "needs namespaces of users, which containers may refuse",
 }  # fmt: skip
 #: What is replaced in a command before it is run.
 REPLACED = (
