@@ -172,7 +172,7 @@ def test_a_damaged_file_is_refused_in_words(saved):
         (flipped, "is damaged: its bytes do not give the sum"),
         (data + b"\0", "is damaged: its size"),
         (b"time_s\n", "is no masonry checkpoint"),
-        (data.replace(b"format 2", b"format 9"), "is of another version of the plugin"),
+        (data.replace(b"format 3", b"format 9"), "is of another version of the plugin"),
     ):
         open(path, "wb").write(wrong)
         for read in (loadCheckpoint, readCheckpoint):

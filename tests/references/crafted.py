@@ -6,7 +6,7 @@ import json
 import random
 import struct
 
-TITLE = b"masonry checkpoint, format 2\n"
+TITLE = b"masonry checkpoint, format 3\n"
 
 #: What stands in place of a number, a text, a list or a dict of the JSON text.
 ODD = (

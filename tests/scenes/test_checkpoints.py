@@ -491,7 +491,7 @@ def test_what_cannot_be_taken_up_is_refused(broken, tmp_path, capsys):
     for wrong, message in (
         (data[:middle], "run.checkpoint is cut short: "),
         (flip, "run.checkpoint is damaged: "),
-        (data.replace(b"format 2", b"format 9"), "of another version of the plugin"),
+        (data.replace(b"format 3", b"format 9"), "of another version of the plugin"),
         (b"", "run.checkpoint is cut short: 0 bytes"),
     ):
         kept.write_bytes(wrong)

@@ -29,14 +29,14 @@ from yade import *
 import masonry
 from masonry import *
 law = next(law for law in MasonryJoint.laws() if law["name"] == "coulomb")
-assert law["properties"] == ["friction"]
+assert law["properties"] == ["tensileStrength", "friction"]
 def pair():
     brick = lambda z: [(x, y, z + h) for x in (0, 0.22) for y in (0, 0.102) for h in (0, 0.081)]
     mat = MasonryMat(young=4.8e9, poisson=0.16, density=1800)
     low, high = (addBlock(brick(z), mat, inPlane=True) for z in (0, 0.081))
     O.bodies[low].state.blockedDOFs = "xyzXYZ"
     load = MasonryLoad(body=high, point=(0.11, 0.051, 0.162), force=(0, 0, -2e3), direction=(1, 0, 0), driven=True, velocity=0.01)
-    engines([MasonryJoint(law="coulomb", friction=0.5)], loads=[load], functors=functors, damping=0.3)
+    engines([MasonryJoint(law="coulomb", friction=0.5, tensileStrength=0)], loads=[load], functors=functors, damping=0.3)
     connect()
     O.dt = 0.5 * criticalTimeStep()[0]
     O.run(2000, True)
@@ -51,6 +51,42 @@ for functors in (False, True):
     for normal, a, b in found[0]:
         assert normal <= 0 and abs(abs(a) + 0.5 * normal) <= 1e-9 * abs(normal), found
     assert found[2] == ([law["functor"]] if functors else [])
+print("DONE")
+"""
+FALLING = """
+from yade import *
+import masonry
+from masonry import *
+ground, pier = (3, 3, 0.4), (0.25, 0.25, 0.5)
+def block(low, size):
+    return addBlock(masonry.bricks.boxCorners(low, [a + b for a, b in zip(low, size)]), mat)
+mat = MasonryMat(young=1e12, poisson=0.16, density=1800)
+O.bodies[block((-1, -1, -0.4), ground)].state.blockedDOFs = "xyzXYZ"
+for course in range(2):
+    block((0, 0, 0.5 * course), pier)
+stiff = dict(normalStiffness=1e10, shearStiffness=5e9)
+joint = MasonryJoint(law="coulomb", friction=0.7, tensileStrength=5e3, **stiff)
+engines([joint], gravity=(0.45 * 9.81, 0, -9.81), damping=0)
+contacts = MasonryContacts(normalStiffness=1e10, friction=0.7, takesJoints=True)
+loop = next(n for n, e in enumerate(O.engines) if isinstance(e, MasonryJointLoop))
+O.engines = [*O.engines[: loop + 1], contacts, *O.engines[loop + 1 :]]
+connect()
+O.dt = 0.5 * criticalTimeStep()[0]
+bed = next(i for i in O.interactions if 0 in (i.id1, i.id2))
+assert len(bed.phys.slip) == 9
+while not O.engines[loop].refinedJoints:
+    O.step()
+assert {d[0] for d in bed.phys.damage} == {0} and len(bed.phys.slip) == 25
+while not contacts.handed:
+    O.step()
+assert [d[0] for d in bed.phys.damage] == [1] * 25  # of the foot, about which the pier turns as one
+assert all(s[1:] == (0, 0) and s[0] <= 0 for s in bed.phys.stress)
+stress, slip, jumps = bed.phys.stress, bed.phys.slip, bed.geom.jumps
+O.run(int(0.8 / O.dt), True)
+assert O.bodies[2].state.pos[2] < 0.5 and contacts.touching() > 0
+assert (bed.phys.stress, bed.phys.slip, bed.geom.jumps) == (stress, slip, jumps)
+balance = engine("energy").balance()
+assert balance["dissipated_tension"] > 0 and abs(balance["error"]) < 0.02, balance
 print("DONE")
 """
 
@@ -76,6 +112,7 @@ def test_a_wall_of_the_law_runs_and_goes_on_from_a_checkpoint_bit_for_bit(
     environment, tmp_path
 ):
     words = "--joints coulomb --until 0.3 --rate 4 --vtk-every 0.1".split()
+    words += [f"--set={kind}.tensileStrength=0" for kind in ("bed", "head", "crack")]
     whole, broken = str(tmp_path / "whole"), str(tmp_path / "broken")
     assert start(environment, *words, "--out", whole).wait() == 0
     process = start(environment, *words, "--out", broken, "--checkpoint-every", "0.001")
@@ -98,7 +135,7 @@ def test_a_wall_of_the_law_runs_and_goes_on_from_a_checkpoint_bit_for_bit(
     friction = np.where(crack, 0.75, 0.43)[mobilised > 0]  # of masonry.materials
     shear = (-normal * mobilised)[mobilised > 0] * friction
     assert shear == pytest.approx(joints["shear_stress"][mobilised > 0], rel=1e-9)
-    assert joints["damage_tension"].max() == 0  # the law has no bond
+    assert joints["damage_tension"].max() == 0  # there is no bond
 
 
 def test_the_law_runs_in_a_study(environment, tmp_path):
@@ -115,10 +152,13 @@ def test_the_law_runs_in_a_study(environment, tmp_path):
     assert "coulomb" in table and "softening" in table
 
 
-def test_the_law_has_a_functor_that_python_finds_by_its_name(environment, tmp_path):
-    (tmp_path / "functors.py").write_text(FUNCTORS)
+@pytest.mark.parametrize("script", [FUNCTORS, FALLING], ids=["functor", "collapse"])
+def test_the_law_has_a_functor_and_its_joints_are_refined_and_handed_over(
+    environment, tmp_path, script
+):
+    (tmp_path / "script.py").write_text(script)
     run = subprocess.run(
-        ["yade", "-n", "-x", str(tmp_path / "functors.py")],
+        ["yade", "-n", "-x", str(tmp_path / "script.py")],
         env=environment,
         capture_output=True,
         text=True,

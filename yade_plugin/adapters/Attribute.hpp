@@ -4,6 +4,7 @@
 // each class, which would take most of the time of a build.
 #pragma once
 #include "common/Property.hpp"
+#include "law/common/SofteningTable.hpp"
 #include "scene/Transfer.hpp"
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
@@ -34,6 +35,8 @@ template <class T> struct IsShared : std::false_type {};
 template <class T> struct IsShared<shared_ptr<T>> : std::true_type {};
 template <class T> struct IsList : std::false_type {};
 template <class T> struct IsList<std::vector<T>> : std::true_type {};
+template <class T> struct HoldsObjects : IsShared<T> {};
+template <class T> struct HoldsObjects<std::vector<T>> : IsShared<T> {};
 
 template <class T> std::string expectedType() {
     if constexpr (IsList<T>::value) {
@@ -119,9 +122,11 @@ public:
         return std::is_arithmetic<T>::value || std::is_same<T, std::string>::value || std::is_same<T, Vector3r>::value;
     }
     void transfer(void* object, Transfer& to) const override {
-        auto value = get(object);
-        to(name, value);
-        if (to.back) put(object, value);
+        if constexpr (!HoldsObjects<T>::value) {
+            auto value = get(object);
+            to(name, value);
+            if (to.back) put(object, value);
+        }
     }
     void archive(void* object, boost::archive::binary_iarchive& from) const override { through(object, from); }
     void archive(void* object, boost::archive::binary_oarchive& to) const override { through(object, to); }
@@ -131,30 +136,18 @@ public:
 private:
     template <class Archive> void through(void* object, Archive& ar) const {
         auto value = get(object);
-        archiveValue(ar, value);
+        if constexpr (std::is_arithmetic<T>::value || std::is_same<T, std::string>::value || HoldsObjects<T>::value)
+            ar& boost::serialization::make_nvp(name, value);
+        else {
+            std::vector<double> flat;
+            StateNumbers to(flat);
+            if (Archive::is_saving::value) to(value);
+            ar& boost::serialization::make_nvp(name, flat);
+            StateNumbers from(flat, std::string("saved file is damaged at ") + name);
+            if (Archive::is_loading::value) from(value);
+        }
         if (Archive::is_loading::value) put(object, value);
     }
-    template <class Archive, class V> void archiveValue(Archive& ar, V& value) const {
-        if constexpr (IsNumbers<V>::value) {
-            std::vector<V> one{value};
-            archiveNumbers(ar, one);
-            if (one.size() != 1) damaged();
-            value = one[0];
-        } else
-            ar& boost::serialization::make_nvp(name, value);
-    }
-    template <class Archive, class V> void archiveValue(Archive& ar, std::vector<V>& values) const {
-        if constexpr (IsNumbers<V>::value)
-            archiveNumbers(ar, values);
-        else
-            ar& boost::serialization::make_nvp(name, values);
-    }
-    template <class Archive, class V> void archiveNumbers(Archive& ar, std::vector<V>& values) const {
-        auto flat = Archive::is_saving::value ? flattened(values) : std::vector<double>();
-        ar& boost::serialization::make_nvp(name, flat);
-        if (Archive::is_loading::value && !unflatten(flat, values)) damaged();
-    }
-    [[noreturn]] void damaged() const { throw std::runtime_error(std::string("saved file is damaged at ") + name); }
 };
 
 // An attribute that is a member of the class or of a base of it, and one that is computed.
@@ -176,6 +169,26 @@ public:
     T get(void* object) const override { return (static_cast<Class*>(object)->*functions_.get)(); }
     void put(void* object, const T& value) const override {
         if (functions_.put) (static_cast<Class*>(object)->*functions_.put)(value);
+    }
+};
+
+// State that Python does not see, and whose numbers a function of the class visits.
+template <class Class, class Owner> class StateAttribute final : public AttributeOf<std::vector<double>> {
+    void (Owner::*const visit_)(StateNumbers&);
+
+public:
+    StateAttribute(const char* name, void (Owner::*visit)(StateNumbers&), const Property& property)
+        : AttributeOf(name, property, Hidden), visit_(visit) {}
+    std::vector<double> get(void* object) const override {
+        std::vector<double> flat;
+        StateNumbers to(flat);
+        (static_cast<Class*>(object)->*visit_)(to);
+        return flat;
+    }
+    void put(void* object, const std::vector<double>& flat) const override {
+        StateNumbers from(flat, std::string("the saved state is damaged at '") + name + "'");
+        (static_cast<Class*>(object)->*visit_)(from);
+        from.end();
     }
 };
 
@@ -229,6 +242,10 @@ private:
         void operator()(const char* name, const Computed<Owner, T>& functions, const Property& property,
                         int flags = Plain) const {
             all.push_back(std::make_unique<ComputedAttribute<Class, Owner, T>>(name, functions, property, flags));
+        }
+        template <class Owner>
+        void operator()(const char* name, void (Owner::*visit)(StateNumbers&), const Property& property) const {
+            all.push_back(std::make_unique<StateAttribute<Class, Owner>>(name, visit, property));
         }
     };
 

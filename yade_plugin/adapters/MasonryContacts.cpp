@@ -10,15 +10,16 @@ namespace masonry {
 void MasonryContacts::action() {
     const EngineTurn turn(*scene, *this);
     act(turn.store());
-    handOver_.act(turn.store(), *this);
+    conversion_.act(turn.store(), *this);
     lookAtFalls(turn.store());
     turn.end();
 }
 
 void MasonryContacts::lookAtFalls(SceneStore& store) {
     if (!takesJoints || scene->iter % lookEvery != 0) return;
-    if (heldRevision_ != store.revision()) held_ = heldByJoints(store);
-    heldRevision_ = store.revision();
+    const auto present = std::make_pair(store.revision(), converted);
+    if (heldFor_ != present) held_ = heldByJoints(store);
+    heldFor_ = present;
     std::vector<int> loose;
     for (int body : awake())
         if (!held_[std::size_t(body)]) loose.push_back(body);

@@ -2,7 +2,7 @@
 #pragma once
 #include "Adapter.hpp"
 #include "scene/Falls.hpp"
-#include "scene/HandOver.hpp"
+#include "scene/JointConversion.hpp"
 #include "scene/SceneCheck.hpp"
 
 namespace masonry {
@@ -50,26 +50,11 @@ public:
             "dampsLoose", &MasonryContacts::dampsLoose,
             described("Whether numerical damping acts on blocks that no joints hold any more, where joints are handed "
                       "over. It would brake their fall"));
-        visit("handing", &C::handing,
+        visit("handing", &C::conversionEnergy,
               number("J", "Elastic energy that joints got so far when they were handed over: an input of the energy "
                           "balance"),
               ReadOnly);
-        visit("handed", &C::handed, number("", "Number of joints that were handed over so far"), ReadOnly);
-        visit("awake", computed<Contacts, std::vector<int>>(&C::awake, &C::setAwake),
-              described("Ids of the blocks that are looked for, where joints are handed over"), Hidden);
-        visit("falls",
-              computed<MasonryContacts, std::vector<double>>(&MasonryContacts::fallNumbers,
-                                                             &MasonryContacts::setFallNumbers),
-              described(
-                  "What no joints hold any more, where joints are handed over, five numbers a block: its id; when it "
-                  "came loose [s]; when it had fallen [s], that is, turned by 60° or moved by its diameter since the "
-                  "reference state, -1 if it has not; its largest kinetic energy since it was loose [J], and when it "
-                  "had that [s]"),
-              Hidden);
-        visit("changes", computed<Contacts, std::vector<double>>(&C::changes, &C::setChanges),
-              described("What joints that were handed over in the last step did to their bodies, less what their "
-                        "contacts do"),
-              Hidden);
+        visit("handed", &C::converted, number("", "Number of joints that were handed over so far"), ReadOnly);
         visit("bodies", &C::bodies, described("Ids of the blocks; empty: all blocks of the scene"), Given);
         visit("begun", &C::begun, described("Whether there was a step"), Hidden);
         visit("given", &C::given,
@@ -78,8 +63,9 @@ public:
               ReadOnly);
         visit("lostInFriction", &C::lostInFriction, number("J", "Energy that friction took so far"), ReadOnly);
         visit("lostInDamping", &C::lostInDamping, number("J", "Energy that damping took so far"), ReadOnly);
-        visit("memory", computed<Contacts, std::vector<double>>(&C::memory, &C::setMemory),
-              described("Pairs of blocks that are near each other, and what they remember"), Hidden);
+        visit("memory", &MasonryContacts::visitMemory,
+              described("Pairs of blocks that are near each other, and what they remember; blocks that are awake, and "
+                        "those that no joints hold any more"));
     }
 
     template <class PyClass> static void extras(PyClass& cls) {
@@ -116,13 +102,15 @@ private:
     py::dict fallen();
     py::list pairs();
     void lookAtFalls(SceneStore&);
-    std::vector<double> fallNumbers() { return falls_.numbers(); }
-    void setFallNumbers(const std::vector<double>& numbers) { falls_.setNumbers(numbers); }
+    void visitMemory(StateNumbers& n) {
+        visitState(n);
+        n(falls_);
+    }
 
-    HandOver handOver_; // holds no state: what it keeps follows from the scene
+    JointConversion conversion_; // holds no state: what it keeps follows from the scene
     Falls falls_;
-    std::vector<unsigned char> held_; // heldByJoints(), at SceneStore::revision()
-    long heldRevision_ = -1;
+    std::vector<unsigned char> held_;       // heldByJoints() ...
+    std::pair<long, int> heldFor_{-1, 0};   // ... at this SceneStore::revision(), after so many hand-overs
 };
 
 } // namespace masonry

@@ -24,7 +24,7 @@ namespace {
 double givenByChanges(const SceneStore& store) {
     double all = store.loop ? store.loop->refiningEnergy : 0;
     for (const auto* contacts : store.allContacts)
-        all += contacts->handing;
+        all += contacts->conversionEnergy;
     return all;
 }
 
@@ -280,7 +280,7 @@ py::dict MasonryEnergy::balance() {
     all["refining"] = store.loop ? store.loop->refiningEnergy : 0;
     double handing = 0;
     for (const auto* contacts : store.allContacts)
-        handing += contacts->handing;
+        handing += contacts->conversionEnergy;
     all["kinetic"] = moving;
     const double impacts = store.loop ? store.loop->impactWork : 0;
     all["damping"] = drag - impacts;

@@ -25,7 +25,7 @@ shared_ptr<MasonryZones> MasonryJointGeom::zones() {
                                          : shared_ptr<MasonryZones>();
 }
 
-// A file holds the zones before the record. They are kept in a group without subcontacts, which setRecord() replaces.
+// A file holds the zones before the record. They are kept in a group without subcontacts, which visitRecord() replaces.
 void MasonryJointGeom::setZones(const shared_ptr<MasonryZones>& all) {
     group.reset();
     index = 0;
@@ -35,128 +35,18 @@ void MasonryJointGeom::setZones(const shared_ptr<MasonryZones>& all) {
     group->joints[0].attached->zones = all;
 }
 
-namespace {
-
-// Writes the numbers of a joint one after another, or reads them in the same order.
-class Numbers {
-public:
-    explicit Numbers(bool back) : back_(back) {}
-    Numbers(bool back, const std::vector<double>& flat) : flat(flat), back_(back) {}
-
-    template <class T> void operator()(T& value) {
-        if constexpr (std::is_integral<T>::value) {
-            double number = double(value);
-            one(number);
-            if (!(std::abs(number) < 1e9)) damaged();
-            value = T(number);
-        } else
-            numbers(value, [this](double& number) { one(number); });
+void MasonryJointGeom::visitRecord(StateNumbers& n) {
+    if (group) shapes();
+    std::size_t count = points();
+    n.visitCount(count);
+    if (count == 0) return;
+    if (n.back) {
+        const shared_ptr<JointShapes> made(new JointShapes(1, int(count)));
+        if (group) made->joints[0].attached = reference().attached;
+        group = made;
     }
-    template <class T> void list(std::vector<T>& values) {
-        std::size_t count = values.size();
-        (*this)(count);
-        if (back_) {
-            if (count > flat.size()) damaged();
-            values.resize(count);
-        }
-        for (auto& value : values)
-            (*this)(value);
-    }
-    [[noreturn]] static void damaged() { throw std::runtime_error("saved file is damaged at a joint"); }
-
-    std::vector<double> flat;
-
-private:
-    void one(double& number) {
-        if (!back_) return flat.push_back(number);
-        if (next_ == flat.size()) damaged();
-        number = flat[next_++];
-    }
-    bool back_;
-    std::size_t next_ = 0;
-};
-
-void exchange(Numbers& n, JointReference& r) {
-    n(r.normal);
-    n(r.tangent);
-    auto corners = r.polygon();
-    n.list(corners);
-    if (corners != r.polygon()) r.corners = std::make_shared<Polygon>(std::move(corners));
-    for (auto& side : r.sides) {
-        n(side.body);
-        n(side.position);
-        n(side.orientation);
-        n(side.shearShare);
-    }
-    n(r.refined);
-    int handed = r.handed;
-    n(handed);
-    r.handed = handed != 0;
-    auto coarse = r.coarse ? *r.coarse : std::vector<JointPoint>();
-    n.list(coarse);
-    if (!r.coarse && !coarse.empty()) r.coarse = std::make_shared<std::vector<JointPoint>>(std::move(coarse));
-    std::vector<Attachment> none;
-    for (int side = 0; side < 2; ++side)
-        n.list(r.attached ? r.attached->sides[side] : none);
-}
-
-} // namespace
-
-std::vector<double> MasonryJointGeom::record() {
-    if (!group) return {};
-    shapes();
-    Numbers n(false);
-    int count = group->points;
-    n(count);
-    exchange(n, group->joints[index]);
-    double fields[JointShapes::numbersOfFields];
-    group->readFields(index, fields);
-    for (double& number : fields)
-        n(number);
-    for (int p = 0; p < count; ++p) {
-        Vector3r offsetOfPoint = offset(p), jumpOfPoint = jump(p), viscous = group->viscousAt(p, index);
-        auto impact = group->impactAt(p, index);
-        double areaOfPoint = area(p);
-        n(offsetOfPoint);
-        n(areaOfPoint);
-        n(jumpOfPoint);
-        n(viscous);
-        n(impact.stress);
-        n(impact.closing);
-    }
-    return n.flat;
-}
-
-void MasonryJointGeom::setRecord(const std::vector<double>& flat) {
-    if (flat.empty()) return;
-    Numbers n(true, flat);
-    int count = 0;
-    n(count);
-    if (count < 0 || std::size_t(count) > flat.size()) Numbers::damaged();
-    const shared_ptr<JointShapes> made(new JointShapes(1, count));
-    if (group) made->joints[0].attached = reference().attached;
-    exchange(n, made->joints[0]);
-    double fields[JointShapes::numbersOfFields];
-    for (double& number : fields)
-        n(number);
-    made->writeFields(0, fields);
-    for (int p = 0; p < count; ++p) {
-        Vector3r offsetOfPoint = Vector3r::Zero(), jumpOfPoint = Vector3r::Zero(), viscous = Vector3r::Zero();
-        JointShapes::Impact impact;
-        double areaOfPoint = 0;
-        n(offsetOfPoint);
-        n(areaOfPoint);
-        n(jumpOfPoint);
-        n(viscous);
-        n(impact.stress);
-        n(impact.closing);
-        made->setViscous(p, 0, viscous);
-        made->setImpact(p, 0, impact);
-        made->setShape(p, 0, offsetOfPoint, areaOfPoint);
-        made->setJump(p, 0, jumpOfPoint);
-    }
-    group = made;
-    index = 0;
+    group->visitShape(index, n);
+    group->visitState(index, n);
 }
 
 py::list MasonryJointGeom::centres() {

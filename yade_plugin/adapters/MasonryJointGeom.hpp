@@ -28,7 +28,7 @@ class MasonryJointGeom : public Adapter<MasonryJointGeom, yade::IGeom>, public J
         visit("distance2", computed(&G::distance2), number("m", "Distance of body 2's centre from the joint's plane"),
               Shown);
         visit("zones", computed(&G::zones, &G::setZones), described("MasonryZones of the deformable sides"), Hidden);
-        visit("record", computed(&G::record, &G::setRecord), described("All numbers of the joint"), Hidden);
+        visit("record", &G::visitRecord, described("All numbers of the joint"));
     }
 
     MasonryJointGeom() {
@@ -57,8 +57,7 @@ private:
     double distance2();
     shared_ptr<MasonryZones> zones();
     void setZones(const shared_ptr<MasonryZones>&);
-    std::vector<double> record();
-    void setRecord(const std::vector<double>&);
+    void visitRecord(StateNumbers&);
     py::list centres();
     py::list areas();
     py::list jumps();

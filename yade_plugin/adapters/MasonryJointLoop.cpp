@@ -29,7 +29,7 @@ int MasonryJointLoop::intactJoints() const {
     int count = 0;
     for (const auto& kind : store.kinds)
         count += int(
-            std::count(kind.shapes->byPoints.begin(), kind.shapes->byPoints.begin() + kind.shapes->joints.size(), 0));
+            std::count(kind.shapes->pointwise.begin(), kind.shapes->pointwise.begin() + kind.shapes->joints.size(), 0));
     return count;
 }
 
@@ -38,7 +38,7 @@ int MasonryJointLoop::refinedJoints() const {
     auto& store = SceneStore::present();
     store.update();
     return int(std::count_if(store.joints.begin(), store.joints.end(),
-                             [](const JointView& joint) { return joint.geom->reference().refined > 0; }));
+                             [](const JointView& joint) { return joint.geom->refined().points > 0; }));
 }
 
 } // namespace masonry

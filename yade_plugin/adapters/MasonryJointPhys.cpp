@@ -32,38 +32,20 @@ Vector3r MasonryJointPhys::dissipated() {
     return sum;
 }
 
-// Holds the two stiffnesses [Pa/m], then of every subcontact the numbers of its law and the energies dissipated in
-// tension, shear and compression [J/m²].
-std::vector<double> MasonryJointPhys::record() {
-    if (!group) return {};
-    group->check();
-    std::vector<double> flat{stiffness().normal, stiffness().shear};
-    for (int p = 0; p < points(); ++p) {
-        group->columns->read(p, index, [&](const char*, double number) { flat.push_back(number); });
-        const auto e = lost(p);
-        flat.insert(flat.end(), {e.tension, e.shear, e.compression});
+void MasonryJointPhys::visitRecord(StateNumbers& n) {
+    if (group) group->check();
+    std::size_t count = points();
+    n.visitCount(count);
+    if (count == 0) return;
+    ElasticStiffness k = group ? stiffness() : ElasticStiffness();
+    n(k.normal, k.shear);
+    if (n.back) {
+        if (!loaded_ || !(k.normal > 0) || !(k.shear > 0)) n.refuse();
+        group.reset(new JointStates(loaded_, k, 1, int(count)));
+        index = 0;
+        loaded_.reset();
     }
-    return flat;
-}
-
-void MasonryJointPhys::setRecord(const std::vector<double>& flat) {
-    if (flat.empty()) return;
-    const auto damaged = std::runtime_error("saved file is damaged at the state of a joint");
-    if (flat.size() < 2 || !loaded_ || !(flat[0] > 0) || !(flat[1] > 0)) throw damaged;
-    const ElasticStiffness k{flat[0], flat[1]};
-    const std::size_t ofEnergies = 3;
-    const std::size_t width = JointStates(loaded_, k, 1, 1).columns->numbersOfState() + ofEnergies;
-    if ((flat.size() - 2) % width != 0) throw damaged;
-    const int count = int((flat.size() - 2) / width);
-    group.reset(new JointStates(loaded_, k, 1, count));
-    index = 0;
-    loaded_.reset();
-    auto next = flat.begin() + 2;
-    for (int p = 0; p < count; ++p) {
-        group->columns->write(p, 0, [&](const char*, double& number) { number = *next++; });
-        group->columns->setDissipated(p, 0, {next[0], next[1], next[2]});
-        next += ofEnergies;
-    }
+    group->visitState(index, n);
 }
 
 // ---- for Python -------------------------------------------------------------------------------------------------
@@ -103,7 +85,8 @@ py::list MasonryJointPhys::damage() {
 py::list MasonryJointPhys::largest() {
     return perSubcontact([this](int p) {
         const auto& columns = *group->columns;
-        return py::make_tuple(columns.number(p, index, "largestOpening"), columns.number(p, index, "largestClosure"));
+        const auto number = [&](Role role) { const double* at = columns.column(role, p, index); return at ? *at : 0; };
+        return py::make_tuple(number(Role::LargestOpening), number(Role::LargestClosure));
     });
 }
 

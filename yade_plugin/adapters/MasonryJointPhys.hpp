@@ -26,7 +26,7 @@ class MasonryJointPhys : public Adapter<MasonryJointPhys, yade::IPhys>, public J
               Shown);
         visit("dissipated", computed(&P::dissipated),
               number("J", "Energy dissipated so far in tension, shear and compression"), Shown);
-        visit("record", computed(&P::record, &P::setRecord), described("All numbers of the joint"), Hidden);
+        visit("record", &P::visitRecord, described("All numbers of the joint"));
     }
 
     MasonryJointPhys() {
@@ -65,8 +65,7 @@ private:
     double normalStiffness();
     double shearStiffness();
     Vector3r dissipated();
-    std::vector<double> record();
-    void setRecord(const std::vector<double>&);
+    void visitRecord(StateNumbers&);
     template <class F> py::list perSubcontact(F&& value);
     py::list stress();
     py::list opening();

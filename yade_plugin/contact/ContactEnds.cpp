@@ -22,15 +22,15 @@ double shareThatTakes(const AddedForce& force, double energy) {
 }
 
 void countLastPush(const NearBlocks& blocks, double dt, ElasticAccount& account) {
-    account.given -= 0.5 * dt * powerOf(blocks, Wrench::of(account.push));
+    account.given -= 0.5 * dt * powerOf(blocks, account.push);
 }
 
 // Where the area grows, the force itself is scaled. Where it shrinks, that of the last step is added in part, because
 // that acted on what has gone as if it stayed to the end of the step.
 Wrench keepEnergy(const NearBlocks& blocks, double normalStiffness, double dt, const ContactChange& change,
                   const Wrench& elastic, const Wrench& dashpot, OverlapFinder& finder, ElasticAccount& account) {
-    const auto last = Wrench::of(account.push);
-    elastic.store(account.push);
+    const Wrench last = account.push;
+    account.push = elastic;
     const double work = dt * powerOf(blocks, elastic);
     const bool unknown = !change.begins && last.force.isZero(0);
     if (!change.begins && !unknown && std::abs(change.area) <= noticed) {
@@ -51,7 +51,7 @@ Wrench keepEnergy(const NearBlocks& blocks, double normalStiffness, double dt, c
                                         missing);
     auto all = elastic;
     all.add(share, added);
-    all.store(account.push);
+    account.push = all;
     account.given -= 0.5 * dt * powerOf(blocks, all);
     account.excess = share != 0 ? account.given - potential : 0;
     return all;
@@ -59,12 +59,12 @@ Wrench keepEnergy(const NearBlocks& blocks, double normalStiffness, double dt, c
 
 bool endOn(const NearBlocks& blocks, const Eigen::Vector3d& normal, double dt, ElasticAccount& account,
            Wrench& wrench) {
-    const auto last = standing(blocks, Wrench::of(account.push));
+    const auto last = standing(blocks, account.push);
     const double work = dt * powerOf(blocks, last);
     if (!(work * last.force.dot(blocks.one.turn * normal) > 0)) return false; // they do not part along the force
     const double share = shareThatTakes({work, dt * dt * responseOf(blocks, last, last), 0}, -account.given);
     if (share == 0) return false;
-    wrench = Wrench::none();
+    wrench = Wrench();
     wrench.add(share, last);
     account.excess = account.given - 0.5 * share * work;
     return true;

@@ -19,12 +19,13 @@ double shareThatTakes(const AddedForce&, double energy);
 
 // What a pair remembers of its elastic force. All numbers are 0 for a pair that did not touch.
 struct ElasticAccount {
-    static constexpr int numbers = Wrench::numbers + 2;
     // The elastic wrench of the last step; 0 also where nothing is known of it, because a script has put blocks
     // elsewhere.
-    double push[Wrench::numbers];
-    double given;  // what the blocks have given to it since the contact began, up to the place of the last step [J]
-    double excess; // elastic energy less the potential: in a step in which a contact begins or ends, else 0 [J]
+    Wrench push;
+    double given = 0;  // what the blocks have given to it since the contact began, up to the place of the last step [J]
+    double excess = 0; // elastic energy less the potential: in a step in which a contact begins or ends, else 0 [J]
+
+    template <class Visit> void visitState(Visit&& visit) { visit(push, given, excess); }
 };
 
 struct ContactChange { // of the contact area since the last step

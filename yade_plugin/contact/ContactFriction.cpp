@@ -10,8 +10,6 @@ using Vector = Eigen::Vector3d;
 
 namespace {
 
-using Turn = Eigen::Map<Eigen::Matrix3d>;
-
 // A vector turned as the normal of the contact has turned.
 Vector follow(const Vector& v, const Vector& from, const Vector& to) {
     const Vector axis = from.cross(to), first = axis.cross(v);
@@ -23,7 +21,7 @@ Vector follow(const Vector& v, const Vector& from, const Vector& to) {
 double leverOfFriction(const Overlap& overlap) { return 0.94 * std::sqrt(overlap.meanSquare); }
 
 double elasticEnergyOf(const FrictionState& s) {
-    const double square = Vector(s.shear[0], s.shear[1], s.shear[2]).squaredNorm() + s.twist * s.twist;
+    const double square = s.shear.squaredNorm() + s.twist * s.twist;
     return s.stiffness > 0 ? 0.5 * square / s.stiffness : 0;
 }
 
@@ -38,19 +36,18 @@ FrictionStep advanceFriction(FrictionState& state, const Overlap& overlap, const
     const double lever = leverOfFriction(overlap), limit = friction * normalForce;
     const Vector& normal = overlap.normal;
     FrictionStep step{Vector::Zero(), 0, 0, 0};
-    Vector shear(state.shear[0], state.shear[1], state.shear[2]), slip = Vector::Zero();
+    Vector shear = state.shear, slip = Vector::Zero();
     double twist = state.twist, spin = 0, soft = 0;
     if (state.stiffness > 0) {
-        const Vector last(state.normal[0], state.normal[1], state.normal[2]);
+        const Vector& last = state.normal;
         if (last.dot(normal) < -0.5) { // the contact is another one
             step.lost += endFriction(state);
             shear.setZero();
             twist = 0;
         } else {
             // The point of the other block at the centre of pressure was here, in the axes of the one.
-            const Eigen::Matrix3d turned = pose.turn * Turn(state.turn).transpose();
-            const Vector before = Vector(state.place[0], state.place[1], state.place[2]) +
-                                  turned.transpose() * (overlap.centre - pose.place);
+            const Eigen::Matrix3d turned = pose.turn * state.turn.transpose();
+            const Vector before = state.place + turned.transpose() * (overlap.centre - pose.place);
             slip = overlap.centre - before;
             slip -= slip.dot(normal) * normal;
             const Vector turn(turned(2, 1) - turned(1, 2), turned(0, 2) - turned(2, 0), turned(1, 0) - turned(0, 1));
@@ -61,7 +58,7 @@ FrictionStep advanceFriction(FrictionState& state, const Overlap& overlap, const
             shear = (shear + std::tan(half) * normal.cross(shear)).eval();
             shear -= shear.dot(normal) * normal;
             if (const double length = shear.norm(); length > 0)
-                shear *= Vector(state.shear[0], state.shear[1], state.shear[2]).norm() / length;
+                shear *= state.shear.norm() / length;
             // Where the area grows, what comes in is without stress, and the force stays. Where it shrinks, what goes
             // takes its force along.
             const double energy = elasticEnergyOf(state), share = std::min(1.0, stiffness / state.stiffness);
@@ -93,14 +90,7 @@ FrictionStep advanceFriction(FrictionState& state, const Overlap& overlap, const
         shear = trial;
         twist = trialTwist;
     }
-    for (int d = 0; d < 3; ++d) {
-        state.shear[d] = shear[d];
-        state.normal[d] = normal[d];
-        state.place[d] = pose.place[d];
-    }
-    state.twist = twist;
-    state.stiffness = stiffness;
-    Turn(state.turn) = pose.turn;
+    state = {shear, twist, stiffness, normal, pose.turn, pose.place};
     step.force = shear;
     step.moment = twist * lever;
     step.stored = elasticEnergyOf(state);

@@ -3,23 +3,20 @@
 // contact/README.md.
 #pragma once
 #include "Overlap.hpp"
-#include <type_traits>
 
 namespace masonry {
 
 // What the friction of a pair remembers from the last step. All is in the axes of the one block.
 struct FrictionState {
-    static constexpr int numbers = 20;
-    double shear[3];  // force on the other block [N]
-    double twist;     // moment about the normal on the other block over the lever of friction [N]
-    double stiffness; // of the elastic slip [N/m]; 0: the pair did not touch
-    double normal[3]; // of the contact
-    double turn[9];   // of the relative pose
-    double place[3];  // of the relative pose [m]
+    Eigen::Vector3d shear = Eigen::Vector3d::Zero();  // force on the other block [N]
+    double twist = 0;     // moment about the normal on the other block over the lever of friction [N]
+    double stiffness = 0; // of the elastic slip [N/m]; 0: the pair did not touch
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero(); // of the contact
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Zero();   // of the relative pose
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();  // of the relative pose [m]
+
+    template <class Visit> void visitState(Visit&& visit) { visit(shear, twist, stiffness, normal, turn, place); }
 };
-static_assert(sizeof(FrictionState) == FrictionState::numbers * sizeof(double) &&
-                  std::is_trivially_copyable<FrictionState>::value,
-              "checkpoints hold the state as numbers");
 
 struct FrictionStep {
     Eigen::Vector3d force; // on the other block, at the centre of pressure [N]

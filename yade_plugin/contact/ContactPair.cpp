@@ -28,8 +28,8 @@ bool cameByThemselves(const NearBlocks& blocks, double dt, const FrictionState& 
     const double reach = blocks.otherBlock.radius;
     const double allowed = 0.1 * dt * (velocity.norm() + turning.norm() + reach * spin.norm()) +
                            1e-12 * (one.position.norm() + arm.norm() + reach);
-    const Vector shift = blocks.pose.place - Vector(last.place) - dt * (back * (velocity - turning));
-    const Eigen::Matrix3d turned = blocks.pose.turn * Eigen::Map<const Eigen::Matrix3d>(last.turn).transpose();
+    const Vector shift = blocks.pose.place - last.place - dt * (back * (velocity - turning));
+    const Eigen::Matrix3d turned = blocks.pose.turn * last.turn.transpose();
     const Vector turn(turned(2, 1) - turned(1, 2), turned(0, 2) - turned(2, 0), turned(1, 0) - turned(0, 1));
     return shift.norm() + reach * (0.5 * turn - dt * (back * spin)).norm() <= allowed;
 }
@@ -37,7 +37,7 @@ bool cameByThemselves(const NearBlocks& blocks, double dt, const FrictionState& 
 // The wrench of damping [N, N m] and the power that it takes [W].
 Wrench damp(const ContactProperties& law, const NearBlocks& blocks, const Overlap& overlap, double& power) {
     power = 0;
-    if (!(law.dampingRatio > 0)) return Wrench::none();
+    if (!(law.dampingRatio > 0)) return Wrench();
     const auto& one = blocks.one;
     const double mass = massAlong(blocks, one.position + one.turn * overlap.centre, one.turn * overlap.normal);
     const double coefficient = 2 * law.dampingRatio * std::sqrt(law.normalStiffness * mass / overlap.area);
@@ -67,16 +67,16 @@ void actOnPair(const ContactProperties& law, const NearBlocks& blocks, double dt
     auto& account = memory.elastic;
     account.excess = 0;
     if (memory.touched()) {
-        effect.damped -= 0.5 * dt * powerOf(blocks, Wrench::of(memory.dashpot));
+        effect.damped -= 0.5 * dt * powerOf(blocks, memory.dashpot);
         countLastPush(blocks, dt, account);
-        if (!cameByThemselves(blocks, dt, memory.friction)) Wrench::none().store(account.push);
+        if (!cameByThemselves(blocks, dt, memory.friction)) account.push = Wrench();
     }
     if (!(effect.touches && overlap.area > 0)) {
         effect.wrench =
             effect.touches ? wrenchOf(blocks, law.normalStiffness * overlap.force, law.normalStiffness * overlap.moment)
-                           : Wrench::none();
+                           : Wrench();
         if (!effect.touches && memory.touched())
-            effect.acts = endOn(blocks, Vector(memory.friction.normal), dt, account, effect.wrench);
+            effect.acts = endOn(blocks, memory.friction.normal, dt, account, effect.wrench);
         effect.lost += endFriction(memory.friction);
         const double excess = account.excess;
         memory = PairMemory{};
@@ -86,7 +86,7 @@ void actOnPair(const ContactProperties& law, const NearBlocks& blocks, double dt
     const auto potential = wrenchOf(blocks, law.normalStiffness * overlap.force, law.normalStiffness * overlap.moment);
     double power;
     const auto dashpot = damp(law, blocks, overlap, power);
-    dashpot.store(memory.dashpot);
+    memory.dashpot = dashpot;
     effect.damped += 0.5 * dt * power;
     const double tangential = law.tangentialRatio * law.normalStiffness * overlap.area;
     const ContactChange change{!memory.touched(), 1 - memory.friction.stiffness / tangential};

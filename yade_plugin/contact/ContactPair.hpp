@@ -17,28 +17,24 @@ struct ContactProperties {
 
 // What a pair remembers from the last step. All numbers are 0 for a pair that did not touch.
 struct PairMemory {
-    static constexpr int numbers = FrictionState::numbers + Wrench::numbers + ElasticAccount::numbers;
     FrictionState friction;
-    double dashpot[Wrench::numbers]; // the wrench of damping
+    Wrench dashpot; // of damping
     ElasticAccount elastic;
 
     bool touched() const { return friction.stiffness > 0; }
-    double* begin() { return reinterpret_cast<double*>(this); }
-    double* end() { return begin() + numbers; }
+    template <class Visit> void visitState(Visit&& visit) { visit(friction, dashpot, elastic); }
 };
-static_assert(sizeof(PairMemory) == PairMemory::numbers * sizeof(double) &&
-                  std::is_trivially_copyable<PairMemory>::value,
-              "checkpoints and saved files hold the memory as numbers");
 
 // The elastic energy that a pair has beside the potential of its overlap [J].
 double energyBesidePotential(const PairMemory&);
 
-struct ContactEffect {  // of a pair in the present step
-    bool touches, acts; // they press on each other; there is a wrench, which the first step after a contact has, too
+struct ContactEffect { // of a pair in the present step
+    bool touches = false;
+    bool acts = false; // whether there is a wrench, which the first step after a contact has, too
     Wrench wrench;
-    double lost, damped; // energy that friction and damping took in this step [J]
+    double lost = 0, damped = 0; // energy that friction and damping took in this step [J]
 
-    static ContactEffect none() { return {false, false, Wrench::none(), 0, 0}; }
+    template <class Visit> void visitState(Visit&& visit) { visit(touches, acts, wrench); }
 };
 
 // Place and orientation of the other block in the axes of the one, from those of both in global axes.

@@ -6,19 +6,6 @@ namespace masonry {
 
 using Vector = Eigen::Vector3d;
 
-Wrench Wrench::of(const double (&stored)[numbers]) {
-    using Numbers = Eigen::Map<const Vector>;
-    return {Numbers(stored), {Numbers(stored + 3), Numbers(stored + 6)}};
-}
-
-void Wrench::store(double (&to)[numbers]) const {
-    for (int d = 0; d < 3; ++d) {
-        to[d] = force[d];
-        to[3 + d] = torques[0][d];
-        to[6 + d] = torques[1][d];
-    }
-}
-
 Wrench& Wrench::add(double share, const Wrench& wrench) {
     force += share * wrench.force;
     torques[0] += share * wrench.torques[0];

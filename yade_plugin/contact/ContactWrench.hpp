@@ -24,14 +24,12 @@ struct NearBlocks {
 };
 
 struct Wrench { // of a pair, global axes
-    static constexpr int numbers = 9;
-    Eigen::Vector3d force;      // on the other block [N]; the one has the opposite
-    Eigen::Vector3d torques[2]; // on the one and on the other block, about their centres [N m]
+    Eigen::Vector3d force = Eigen::Vector3d::Zero(); // on the other block [N]; the one has the opposite
+    // On the one and on the other block, about their centres [N m].
+    Eigen::Vector3d torques[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
 
-    static Wrench none() { return {Eigen::Vector3d::Zero(), {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}}; }
-    static Wrench of(const double (&stored)[numbers]);
-    void store(double (&)[numbers]) const;
     Wrench& add(double share, const Wrench&);
+    template <class Visit> void visitState(Visit&& visit) { visit(force, torques[0], torques[1]); }
 };
 
 // Of a force on the other block [N] and a moment about the centre of the one [N m], both in the axes of the one.

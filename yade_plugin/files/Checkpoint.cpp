@@ -7,7 +7,7 @@ namespace masonry {
 
 namespace {
 
-constexpr std::string_view title = "masonry checkpoint, format 2\n";
+constexpr std::string_view title = "masonry checkpoint, format 3\n";
 constexpr std::string_view family = title.substr(0, title.find(','));
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }

@@ -43,7 +43,6 @@ void CollapseWatch::measure(const yade::Scene& scene, const std::vector<JointKin
     };
     for (const auto& kind : kinds)
         for (const auto& r : kind.shapes->joints) {
-            if (kind.handed) break;
             Joint joint{r.sides[0].body,
                         r.sides[1].body,
                         r.sides[1].orientation.conjugate() * r.sides[0].orientation,
@@ -84,11 +83,11 @@ Collapse CollapseWatch::look(const yade::Scene& scene, const BodyColumns& column
     const double* const q[4] = {columns.orientation[0].data(), columns.orientation[1].data(),
                                 columns.orientation[2].data(), columns.orientation[3].data()};
     for (const auto& kind : kinds) {
-        if (kind.handed) continue;
-        const auto& shapes = *kind.shapes;
-        shapes.bringPoints();
+        auto& shapes = *kind.shapes;
+        shapes.synchronise();
         const double each = 1.0 / shapes.points;
         for (int j = 0; j < int(shapes.joints.size()); ++j, ++n) {
+            if (shapes.converted[j]) continue;
             const auto& joint = joints_[n];
             const Quaternionr one(q[0][joint.body1], q[1][joint.body1], q[2][joint.body1], q[3][joint.body1]);
             const Quaternionr two(q[0][joint.body2], q[1][joint.body2], q[2][joint.body2], q[3][joint.body2]);

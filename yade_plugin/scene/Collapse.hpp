@@ -46,7 +46,7 @@ private:
         double size;            // largest extent of the smaller block [m]
     };
     long revision_ = -1;
-    std::vector<Joint> joints_; // those of SceneStore::kinds that were not handed over, one kind after the other
+    std::vector<Joint> joints_; // those of SceneStore::kinds, one kind after the other
 };
 
 } // namespace masonry

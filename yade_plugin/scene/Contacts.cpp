@@ -62,7 +62,7 @@ void Contacts::checkBodies(const SceneContents& contents) const {
 }
 
 void Contacts::prepare(const SceneContents& contents) {
-    if (revision_ == contents.revision()) return;
+    if (revision_ == contents.stiffnessRevision()) return;
     ids_ = idsOf(contents);
     const auto count = std::size_t(contents.bodies.size());
     blocks_.assign(count, ContactBlock{});
@@ -86,12 +86,12 @@ void Contacts::prepare(const SceneContents& contents) {
     // so far.
     usedSkin_ = skin > 0 ? skin : thinnest < HUGE_VAL ? 0.1 * thinnest : 0.01;
     joined_.clear();
-    for (const auto& joint : contents.joints)
-        if (!joint.geom->reference().handed)
-            joined_.emplace_back(std::minmax(joint.interaction->id1, joint.interaction->id2));
+    contents.eachJoint([&](const JointView& joint) {
+        joined_.emplace_back(std::minmax(joint.interaction->id1, joint.interaction->id2));
+    });
     std::sort(joined_.begin(), joined_.end());
     stale_ = true;
-    revision_ = contents.revision();
+    revision_ = contents.stiffnessRevision();
 }
 
 // Whether a body has left its box. A point of a block is moved by a rotation of the angle a by at most a times its
@@ -152,12 +152,12 @@ void Contacts::findPairs(const SceneContents& contents) {
             lostInFriction += endFriction((known++)->memory.friction);
         const bool same = known != pairs_.end() && known->one == ids.first && known->other == ids.second;
         if (std::binary_search(joined_.begin(), joined_.end(), ids)) continue;
-        found.push_back(same ? *known++ : Pair{ids.first, ids.second, 0, {}, {}});
+        found.push_back(same ? *known++ : Pair{ids.first, ids.second});
     }
     for (; known != pairs_.end(); ++known)
         lostInFriction += endFriction(known->memory.friction);
     pairs_ = std::move(found);
-    effects_.assign(pairs_.size(), Effect::none());
+    effects_.assign(pairs_.size(), Effect());
     finders_.resize(std::max<std::size_t>(1, (pairs_.size() + piece - 1) / piece), finders_.front());
     stale_ = false;
 }
@@ -166,7 +166,7 @@ RelativePose Contacts::poseOf(const SceneContents& contents, const Pair& pair) c
     const auto& position = contents.bodies.position;
     auto pose = relativePose(turns_[std::size_t(pair.one)], columnOf(position, pair.one),
                              turns_[std::size_t(pair.other)], columnOf(position, pair.other));
-    pose.place += Eigen::Map<const Vector3r>(pair.gap);
+    pose.place += pair.gap;
     return pose;
 }
 
@@ -184,18 +184,18 @@ void Contacts::actOn(const SceneContents& contents, double dampingRatio, Overlap
     Overlap overlap;
     effect.touches =
         finder.find(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], pose, pair.axis, overlap);
-    const Vector3r gap(pair.gap[0], pair.gap[1], pair.gap[2]);
+    const Vector3r gap = pair.gap;
     if (!effect.touches) {
         if (!gap.isZero(0)) { // once the blocks are apart as they stand, nothing is left of the joint
             Overlap without;
             const RelativePose stands{pose.turn, pose.place - gap};
             if (!finder.find(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], stands, pair.axis,
                              without))
-                std::fill(std::begin(pair.gap), std::end(pair.gap), 0.0);
+                pair.gap.setZero();
         }
         // Most pairs are only near each other.
         if (!pair.memory.touched()) {
-            effect = Effect::none();
+            effect = Effect();
             pair.memory.elastic.excess = 0;
             return;
         }
@@ -263,12 +263,10 @@ bool Contacts::isAwake(const SceneContents& contents, int body) const {
 // as wide: neighbours that share an edge only are pressed a little into each other by the stress of the joints around.
 void Contacts::wake(const SceneContents& contents) {
     std::vector<unsigned char> jointed(std::size_t(contents.bodies.size()), 0);
-    for (const auto& joint : contents.joints) {
-        const auto& r = joint.geom->reference();
-        if (!r.handed)
-            for (const auto& side : r.sides)
-                jointed[std::size_t(side.body)] = 1;
-    }
+    contents.eachJoint([&](const JointView& joint) {
+        for (const auto& side : joint.geom->reference().sides)
+            jointed[std::size_t(side.body)] = 1;
+    });
     const auto before = awake_.size();
     for (int id : ids_) {
         if (awake_.count(id) || isHeld(contents, id)) continue;
@@ -306,7 +304,7 @@ double Contacts::settle(const SceneContents& contents, Pair& pair, const Vector3
     auto& finder = finders_.front();
     const auto &one = blocks_[std::size_t(pair.one)], &other = blocks_[std::size_t(pair.other)];
     const Matrix3r back = turns_[std::size_t(pair.one)].transpose();
-    std::fill(std::begin(pair.gap), std::end(pair.gap), 0.0);
+    pair.gap.setZero();
     pair.memory = PairMemory{};
     const RelativePose stands = poseOf(contents, pair);
     Overlap overlap;
@@ -334,9 +332,7 @@ double Contacts::settle(const SceneContents& contents, Pair& pair, const Vector3
         const double middle = 0.5 * (low + high);
         (pressAt(middle) > wanted ? low : high) = middle;
     }
-    const Vector3r gap = high * axis;
-    for (int d = 0; d < 3; ++d)
-        pair.gap[d] = gap[d];
+    pair.gap = high * axis;
     const double press = pressAt(high);
     if (press == 0) return 0;
     const RelativePose pose = poseOf(contents, pair);
@@ -348,12 +344,10 @@ double Contacts::settle(const SceneContents& contents, Pair& pair, const Vector3
     if (shear.norm() > limit) shear *= limit / shear.norm();
     auto& s = pair.memory.friction;
     s.stiffness = tangentialRatio * normalStiffness * overlap.area;
-    for (int d = 0; d < 3; ++d) {
-        s.shear[d] = shear[d];
-        s.normal[d] = overlap.normal[d];
-        s.place[d] = pose.place[d];
-    }
-    Eigen::Map<Matrix3r>(s.turn) = pose.turn;
+    s.shear = shear;
+    s.normal = overlap.normal;
+    s.turn = pose.turn;
+    s.place = pose.place;
     return energy + elasticEnergyOf(s);
 }
 
@@ -361,32 +355,34 @@ double Contacts::settle(const SceneContents& contents, Pair& pair, const Vector3
 // friction. What remains are moments, and what is not the same counts as given: the difference of the elastic energies
 // here, and the work of the difference of both forces in the half step that follows (countChanges).
 void Contacts::takeOver(const SceneContents& contents, const std::vector<Joint>& joints) {
+    prepare(contents);
     for (const auto& joint : joints) {
         changes_.push_back({joint.body1, joint.force, joint.torque1});
         changes_.push_back({joint.body2, -joint.force, joint.torque2});
         awake_.insert(joint.body1);
         awake_.insert(joint.body2);
+        const auto pair = std::pair<int, int>(std::minmax(joint.body1, joint.body2));
+        const auto joined = std::lower_bound(joined_.begin(), joined_.end(), pair);
+        if (joined != joined_.end() && *joined == pair) joined_.erase(joined);
     }
-    handed += int(joints.size());
-    prepare(contents);
+    converted += int(joints.size());
     turnBlocks(contents);
     findPairsOfWoken(contents);
     for (const auto& joint : joints) {
         auto* pair = pairOf(joint.body1, joint.body2);
         if (!pair) continue;
         const double sign = pair->one == joint.body1 ? 1 : -1;
-        handing += settle(contents, *pair, sign * joint.normal, -sign * joint.force);
+        conversionEnergy += settle(contents, *pair, sign * joint.normal, -sign * joint.force);
         const auto pose = poseOf(contents, *pair);
         Overlap overlap;
         if (!finders_.front().find(blocks_[std::size_t(pair->one)], blocks_[std::size_t(pair->other)], pose, pair->axis,
                                    overlap))
             continue;
         const Matrix3r& turn = turns_[std::size_t(pair->one)];
-        const Vector3r shear(pair->memory.friction.shear);
-        const Vector3r gap(pair->gap[0], pair->gap[1], pair->gap[2]);
+        const Vector3r& shear = pair->memory.friction.shear;
         const Vector3r force = normalStiffness * overlap.force + shear;
         const Vector3r moment = normalStiffness * overlap.moment + overlap.centre.cross(shear);
-        changes_.push_back({pair->one, turn * force, turn * (moment - gap.cross(force))});
+        changes_.push_back({pair->one, turn * force, turn * (moment - pair->gap.cross(force))});
         changes_.push_back({pair->other, -(turn * force), -(turn * (moment - pose.place.cross(force)))});
     }
 }
@@ -394,24 +390,9 @@ void Contacts::takeOver(const SceneContents& contents, const std::vector<Joint>&
 void Contacts::countChanges(const SceneContents& contents) {
     const double half = 0.5 * contents.scene().dt;
     for (const auto& change : changes_)
-        handing += half * (change.force.dot(columnOf(contents.bodies.velocity, change.body)) +
+        conversionEnergy += half * (change.force.dot(columnOf(contents.bodies.velocity, change.body)) +
                            change.torque.dot(columnOf(contents.bodies.velocity + 3, change.body)));
     changes_.clear();
-}
-
-std::vector<double> Contacts::changes() {
-    std::vector<double> all;
-    for (const auto& [body, force, torque] : changes_)
-        all.insert(all.end(), {double(body), force[0], force[1], force[2], torque[0], torque[1], torque[2]});
-    return all;
-}
-
-void Contacts::setChanges(const std::vector<double>& all) {
-    if (all.size() % 7 != 0) throw std::invalid_argument("MasonryContacts.changes must have 7 numbers a body");
-    changes_.clear();
-    for (std::size_t at = 0; at < all.size(); at += 7)
-        changes_.push_back(
-            {int(all[at]), {all[at + 1], all[at + 2], all[at + 3]}, {all[at + 4], all[at + 5], all[at + 6]}});
 }
 
 double Contacts::elastic(const SceneContents& contents) {
@@ -421,7 +402,7 @@ double Contacts::elastic(const SceneContents& contents) {
         sum += energyBesidePotential(pair.memory);
         if (!pair.memory.touched()) continue;
         const auto& s = pair.memory.friction;
-        const RelativePose pose{Eigen::Map<const Matrix3r>(s.turn), Eigen::Map<const Vector3r>(s.place)};
+        const RelativePose pose{s.turn, s.place};
         sum += normalStiffness *
                finders_.front().potential(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], pose);
     }
@@ -429,7 +410,7 @@ double Contacts::elastic(const SceneContents& contents) {
 }
 
 double Contacts::largestEigenvalue(const SceneContents& contents, bool anew) {
-    if (!anew && boundRevision_ == contents.revision() && boundStiffness_ == normalStiffness &&
+    if (!anew && boundRevision_ == contents.stiffnessRevision() && boundStiffness_ == normalStiffness &&
         boundRatio_ == tangentialRatio)
         return bound_;
     checkBodies(contents);
@@ -441,7 +422,7 @@ double Contacts::largestEigenvalue(const SceneContents& contents, bool anew) {
         most = std::max(most, embeddedEigenvalue(contactBlock(surface.vertices, surface.triangles), s.mass, s.inertia,
                                                  normalStiffness, tangentialRatio * normalStiffness));
     }
-    boundRevision_ = contents.revision();
+    boundRevision_ = contents.stiffnessRevision();
     boundStiffness_ = normalStiffness;
     boundRatio_ = tangentialRatio;
     bound_ = 2 * most;
@@ -476,37 +457,13 @@ Vector3r Contacts::forceOf(int id1, int id2) const {
     return Vector3r::Zero();
 }
 
-std::vector<double> Contacts::memory() {
-    std::vector<double> all;
-    for (std::size_t p = 0; p < pairs_.size(); ++p) {
-        auto& pair = pairs_[p];
-        all.insert(all.end(), {double(pair.one), double(pair.other), double(pair.axis)});
-        all.insert(all.end(), std::begin(pair.gap), std::end(pair.gap));
-        all.insert(all.end(), pair.memory.begin(), pair.memory.end());
-        const Effect effect = p < effects_.size() ? effects_[p] : Effect::none();
-        double wrench[Wrench::numbers];
-        effect.wrench.store(wrench);
-        all.insert(all.end(), {double(effect.touches), double(effect.acts)});
-        all.insert(all.end(), std::begin(wrench), std::end(wrench));
-    }
-    return all;
-}
-
-void Contacts::setMemory(const std::vector<double>& all) {
-    constexpr std::size_t ofEffect = 6 + PairMemory::numbers, width = ofEffect + 2 + Wrench::numbers;
-    if (all.size() % width != 0)
-        throw std::invalid_argument("MasonryContacts.memory must have " + std::to_string(width) + " numbers a pair");
-    pairs_.clear();
-    effects_.clear();
-    for (std::size_t at = 0; at < all.size(); at += width) {
-        Pair pair{int(all[at]), int(all[at + 1]), int(all[at + 2]), {}, {}};
-        std::copy_n(&all[at + 3], 3, pair.gap);
-        std::copy_n(&all[at + 6], PairMemory::numbers, pair.memory.begin());
-        pairs_.push_back(pair);
-        double wrench[Wrench::numbers];
-        std::copy_n(&all[at + ofEffect + 2], Wrench::numbers, wrench);
-        effects_.push_back({all[at + ofEffect] != 0, all[at + ofEffect + 1] != 0, Wrench::of(wrench), 0, 0});
-    }
+void Contacts::visitState(StateNumbers& n) {
+    std::vector<int> awake(awake_.begin(), awake_.end());
+    effects_.resize(pairs_.size());
+    n(awake, changes_, pairs_, effects_);
+    if (!n.back) return;
+    if (effects_.size() != pairs_.size()) n.refuse();
+    awake_ = {awake.begin(), awake.end()};
     stale_ = true;
 }
 

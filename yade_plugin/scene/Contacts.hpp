@@ -26,8 +26,8 @@ public:
     bool takesJoints = false;  // whether joints without bond whose blocks have moved far are handed over to contact
     bool begun = false;        // whether there was a step
     double given = 0;          // elastic energy that contacts had in the first step [J]
-    double handing = 0;        // elastic energy that joints got so far when they were handed over [J]
-    int handed = 0;            // how many joints were handed over so far
+    double conversionEnergy = 0; // elastic energy that joints got so far when they were handed over [J]
+    int converted = 0;           // how many joints were handed over so far
     double lostInFriction = 0; // so far [J]
     double lostInDamping = 0;  // so far [J]
 
@@ -48,7 +48,7 @@ public:
     bool covers(int body) const { return std::binary_search(ids_.begin(), ids_.end(), body); }
     // Twice the largest distance of a corner of a block from its centre [m]; 0 where it cannot touch. By id.
     std::vector<double> diameters() const;
-    // Goes on from the next step where these joints stood, which have no forces any more (HandOver). To be called when
+    // Goes on from the next step where these joints stood, which have no forces any more (JointConversion). To be called when
     // the scene has been read again.
     void takeOver(const SceneContents&, const std::vector<Joint>&);
     // Elastic energy of all contacts in the last step [J].
@@ -66,19 +66,9 @@ public:
     std::vector<Touch> touches() const;
     int touching() const; // number of pairs that pressed on each other in the last step
 
-    // In saved files and checkpoints: for every pair the two ids, the separating axis, the gap, PairMemory, and what it
-    // did in the last step: whether it touched, whether it acted, and its wrench.
-    std::vector<double> memory();
-    void setMemory(const std::vector<double>&);
-    std::vector<int> awake() { return {awake_.begin(), awake_.end()}; }
-    void setAwake(const std::vector<int>& ids) {
-        awake_ = {ids.begin(), ids.end()};
-        stale_ = true;
-    }
-    // What joints that were handed over in the last step did to their bodies, less what their contacts do: for each
-    // the id, force [N] and torque [N m].
-    std::vector<double> changes();
-    void setChanges(const std::vector<double>&);
+    // The bodies that are looked for where joints are handed over, by their ids.
+    const std::set<int>& awake() const { return awake_; }
+    void visitState(StateNumbers&);
 
 protected:
     // Force on the second body of a pair in the last step [N], global axes.
@@ -86,21 +76,25 @@ protected:
 
 private:
     struct Pair {
-        int one, other;
-        int axis;
+        int one = 0, other = 0;
+        int axis = 0; // that separated them when that was last looked for
         // By which the other body stands farther away than it does, in the axes of the one [m]: what crushing and
         // dilatancy left of a joint that was handed over, so that its force goes on.
-        double gap[3];
+        Vector3r gap = Vector3r::Zero();
         PairMemory memory;
+
+        template <class Visit> void visitState(Visit&& visit) { visit(one, other, axis, gap, memory); }
     };
     using Effect = ContactEffect; // of a pair in the present step
     struct Placed {               // a body when the pairs were last looked for
         Vector3r position;
         double orientation[4];
     };
-    struct Change { // of what acts on a body
+    struct Change { // of what acts on a body, where its joint was handed over in the last step and a contact goes on
         int body;
         Vector3r force, torque; // [N], [N m]
+
+        template <class Visit> void visitState(Visit&& visit) { visit(body, force, torque); }
     };
     std::vector<int> idsOf(const SceneContents&) const;
     void turnBlocks(const SceneContents&);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <stdexcept>
 
 namespace masonry {
 
@@ -43,20 +42,6 @@ void Falls::look(const SceneContents& contents, const std::vector<int>& loose, c
     }
 }
 
-std::vector<double> Falls::numbers() const {
-    std::vector<double> found;
-    for (const auto& fall : all_)
-        found.insert(found.end(), {double(fall.body), fall.since, fall.fell, fall.most, fall.at});
-    return found;
-}
-
-void Falls::setNumbers(const std::vector<double>& numbers) {
-    if (numbers.size() % 5 != 0) throw std::invalid_argument("MasonryContacts.falls must have 5 numbers a body");
-    all_.clear();
-    for (std::size_t n = 0; n < numbers.size(); n += 5)
-        all_.push_back({int(numbers[n]), numbers[n + 1], numbers[n + 2], numbers[n + 3], numbers[n + 4]});
-}
-
 std::vector<unsigned char> heldByJoints(const SceneContents& contents) {
     constexpr unsigned allAxes = 63;
     const auto count = std::size_t(contents.bodies.size());
@@ -68,10 +53,10 @@ std::vector<unsigned char> heldByJoints(const SceneContents& contents) {
             body = next[body] = next[next[body]];
         return body;
     };
-    for (const auto& joint : contents.joints) {
-        const auto& r = joint.geom->reference();
-        if (!r.handed) next[first(std::size_t(r.sides[0].body))] = first(std::size_t(r.sides[1].body));
-    }
+    contents.eachJoint([&](const JointView& joint) {
+        const auto& sides = joint.geom->reference().sides;
+        next[first(std::size_t(sides[0].body))] = first(std::size_t(sides[1].body));
+    });
     std::vector<unsigned char> held(count, 0);
     for (std::size_t b = 0; b < count; ++b)
         if (contents.bodies.has(int(b)) && contents.bodies.blockedAxes(int(b)) == allAxes) held[first(b)] = 1;

@@ -14,6 +14,8 @@ struct Fall {
     double fell;  // when it had fallen [s]; -1: it has not
     double most;  // largest kinetic energy since then [J]
     double at;    // when it had that [s]
+
+    template <class Visit> void visitState(Visit&& visit) { visit(body, since, fell, most, at); }
 };
 
 class Falls {
@@ -26,9 +28,7 @@ public:
     void look(const SceneContents&, const std::vector<int>& loose, const std::vector<double>& diameters);
     const std::vector<Fall>& all() const { return all_; } // sorted by body
 
-    // In saved files and checkpoints: five numbers for each, as in Fall.
-    std::vector<double> numbers() const;
-    void setNumbers(const std::vector<double>&);
+    void visitState(StateNumbers& visit) { visit(all_); }
 
 private:
     std::vector<Fall> all_;

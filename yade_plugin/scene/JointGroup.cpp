@@ -12,7 +12,9 @@ JointShapes::JointShapes(int count, int pointCount)
     for (auto* column : {&jump[0], &jump[1], &jump[2], &area, &offset[0], &offset[1], &offset[2]})
         column->assign(std::size_t(stride) * points, 0);
     const int whole = (count + lanes - 1) / lanes * lanes; // whole lanes, also of one joint
-    byPoints.assign(whole, 0);
+    refined.resize(count);
+    converted.assign(whole, 0);
+    pointwise.assign(whole, 0);
     linear.resize(whole);
 }
 
@@ -28,20 +30,27 @@ void LinearField::clear() {
             columns[d].clear();
 }
 
-void LinearField::take(int joint, const LinearField& from, int other) {
+std::array<double, 6> LinearField::numbersOf(int j) const {
+    if (empty()) return {};
+    return {middle[0][j], middle[1][j], middle[2][j], turn[0][j], turn[1][j], turn[2][j]};
+}
+
+void LinearField::setNumbers(int joint, const std::array<double, 6>& numbers) {
     for (int d = 0; d < 3; ++d) {
-        middle[d][joint] = from.middle[d][other];
-        turn[d][joint] = from.turn[d][other];
+        middle[d][joint] = numbers[d];
+        turn[d][joint] = numbers[3 + d];
     }
 }
 
-void JointShapes::take(int joint, const JointShapes& from, int other) {
+void JointShapes::take(int joint, JointShapes& from, int other) {
     joints[joint] = from.joints[other];
-    byPoints[joint] = from.byPoints[other];
-    linear.take(joint, from.linear, other);
+    refined[joint] = from.refined[other];
+    converted[joint] = from.converted[other];
+    pointwise[joint] = from.pointwise[other];
+    linear.setNumbers(joint, from.linear.numbersOf(other));
     if (!from.damped.empty()) {
         makeViscous();
-        damped.take(joint, from.damped, other);
+        damped.setNumbers(joint, from.damped.numbersOf(other));
     }
     for (int p = 0; p < points; ++p) {
         setJump(p, joint, from.jumpAt(p, other));
@@ -71,27 +80,50 @@ void JointShapes::shareShapes() {
     alike = true;
 }
 
-void JointShapes::readFields(int joint, double* numbers) const {
-    *numbers++ = byPoints[joint];
-    for (const auto* field : {&linear, &damped})
-        for (const auto* columns : {field->middle, field->turn})
-            for (int d = 0; d < 3; ++d)
-                *numbers++ = field->empty() ? 0 : columns[d][joint];
+void JointReference::visitState(StateNumbers& n) {
+    auto all = polygon();
+    n(normal, tangent, all, sides[0], sides[1]);
+    if (all != polygon()) corners = std::make_shared<Polygon>(std::move(all));
+    std::vector<Attachment> none[2];
+    auto& points = attached ? attached->sides : none;
+    n(points[0], points[1]);
 }
 
-void JointShapes::writeFields(int joint, const double* numbers) {
-    byPoints[joint] = *numbers++ != 0;
-    bool moving = false; // whether there is a stress of damping
-    for (int i = 6; i < 12; ++i)
-        moving = moving || numbers[i] != 0;
-    if (moving) makeViscous();
-    for (auto* field : {&linear, &damped})
-        for (auto* columns : {field->middle, field->turn})
-            for (int d = 0; d < 3; ++d, ++numbers)
-                if (!field->empty()) columns[d][joint] = *numbers;
+void RefinedJoint::visitState(StateNumbers& n) {
+    auto all = coarse ? *coarse : std::vector<JointPoint>();
+    n(points, all);
+    if (n.back) coarse = all.empty() ? nullptr : std::make_shared<const std::vector<JointPoint>>(std::move(all));
 }
 
-void JointShapes::bringPointsOf(int j) {
+void JointShapes::visitShape(int j, StateNumbers& n) {
+    n(joints[j], refined[j]);
+    for (int p = 0; p < points; ++p) {
+        JointPoint point{offsetAt(p, j), areaAt(p, j)};
+        n(point);
+        if (n.back) setShape(p, j, point.offset, point.area);
+    }
+}
+
+void JointShapes::visitState(int j, StateNumbers& n) {
+    auto jumps = linear.numbersOf(j), rates = damped.numbersOf(j);
+    n(pointwise[j], converted[j], jumps, rates);
+    if (n.back) {
+        linear.setNumbers(j, jumps);
+        if (rates != std::array<double, 6>{}) makeViscous();
+        if (!damped.empty()) damped.setNumbers(j, rates);
+    }
+    for (int p = 0; p < points; ++p) {
+        Vector3r now = jumpAt(p, j), damping = viscousAt(p, j);
+        Impact met = impactAt(p, j);
+        n(now, damping, met);
+        if (!n.back) continue;
+        setJump(p, j, now);
+        setViscous(p, j, damping);
+        setImpact(p, j, met);
+    }
+}
+
+void JointShapes::synchronise(int j) {
     const auto& k = law->stiffness();
     const std::size_t f = face(j);
     for (int p = 0; p < points; ++p) {
@@ -106,10 +138,19 @@ void JointShapes::bringPointsOf(int j) {
     }
 }
 
+void JointShapes::endIntact(int joint) {
+    const int first = joint / lanes * lanes;
+    for (int j = first; j < std::min(first + lanes, int(joints.size())); ++j)
+        if (!pointwise[j]) {
+            synchronise(j);
+            pointwise[j] = 1;
+        }
+}
+
 void JointShapes::writePoints() {
-    behind = false;
+    stale = false;
     for (int j = 0; j < int(joints.size()); ++j)
-        if (!byPoints[j]) bringPointsOf(j);
+        if (!pointwise[j]) synchronise(j);
 }
 
 bool JointShapes::isIntact(int j) const {
@@ -153,7 +194,7 @@ void markCorners(const std::vector<std::array<double, 2>>& points, std::vector<b
 } // namespace
 
 void JointShapes::findMiddles() {
-    const int count = alike ? JointFrames::most : int(byPoints.size());
+    const int count = alike ? JointFrames::most : int(pointwise.size());
     for (auto* column : {&middle[0], &middle[1], &middle[2], &faceArea, &inertia[0], &inertia[1], &inertia[2]})
         column->assign(count, 0);
     std::vector<bool> corner(points, false);

@@ -5,8 +5,8 @@
 // are views: each holds a group and the joint's number in it.
 #pragma once
 #include "PropertySet.hpp"
-#include "Transfer.hpp"
 #include "blocks/FaceContact.hpp"
+#include "common/StateNumbers.hpp"
 #include "law/common/LawColumns.hpp"
 #include "motion/JointFrames.hpp"
 #include <boost/weak_ptr.hpp>
@@ -14,6 +14,8 @@
 namespace masonry {
 
 using boost::shared_ptr;
+using yade::Quaternionr;
+using yade::Vector3r;
 
 class Zones;
 
@@ -36,27 +38,17 @@ struct JointGroup {
 struct Attachment {
     std::array<int, 3> nodes{0, 0, 0};      // numbers in the lists of Zones
     std::array<double, 3> weights{1, 0, 0}; // their sum is 1
+
+    template <class Visit> void visitState(Visit&& visit) { visit(nodes, weights); }
 };
-template <> struct IsNumbers<Attachment> : std::true_type {};
-template <class F> void numbers(Attachment& a, F&& each) {
-    for (int i = 0; i < 3; ++i) {
-        double node = a.nodes[i];
-        each(node);
-        each(a.weights[i]);
-        a.nodes[i] = int(node);
-    }
-}
 
 // A subcontact in the reference state.
 struct JointPoint {
     Vector3r offset = Vector3r::Zero(); // from the centre of body 1, in the joint's axes [m]
     double area = 0;                    // that it stands for [m²]
+
+    template <class Visit> void visitState(Visit&& visit) { visit(offset, area); }
 };
-template <> struct IsNumbers<JointPoint> : std::true_type {};
-template <class F> void numbers(JointPoint& p, F&& each) {
-    numbers(p.offset, each);
-    each(p.area);
-}
 
 // Geometry of a joint in its reference state: the state of its two blocks when it was made. Vectors without another
 // remark are in global axes.
@@ -67,18 +59,14 @@ struct JointReference {
         Quaternionr orientation = Quaternionr::Identity(); // of the body
         // Share of the body's shear compliance that this joint takes (law/README.md, Rigid units).
         double shearShare = 1;
+
+        template <class Visit> void visitState(Visit&& visit) { visit(body, position, orientation, shearShare); }
     };
     Vector3r normal = Vector3r::UnitX();  // unit normal, from side 0 to side 1
     Vector3r tangent = Vector3r::UnitY(); // first direction in the joint's plane
     // Corners of the shared face [m]. Copies of a joint have them in common.
     std::shared_ptr<const Polygon> corners = noCorners();
     Side sides[2]; // bodies 1 and 2 of the interaction
-    // Of a joint that was refined (Refinement): its number of points along the joint, and the points that it was made
-    // with, which copies of a joint have in common. 0 and null if it was not.
-    int refined = 0;
-    std::shared_ptr<const std::vector<JointPoint>> coarse;
-    // Whether the joint has been handed over to contact (HandOver): it has no forces any more, and its state stays.
-    bool handed = false;
     // How the subcontacts of a joint with a deformable side move with the nodes.
     struct Attached {
         shared_ptr<Zones> zones;
@@ -108,6 +96,16 @@ struct JointReference {
     }
     // Whether the body of a side is rigid.
     bool rigid(int side) const { return !attached || attached->sides[side].empty(); }
+    void visitState(StateNumbers&);
+};
+
+// What Refinement has made of a joint: its number of points along a side, and the points that it was made with, which
+// copies of a joint have in common. 0 and null if it was not refined.
+struct RefinedJoint {
+    int points = 0;
+    std::shared_ptr<const std::vector<JointPoint>> coarse;
+
+    void visitState(StateNumbers&);
 };
 
 // A vector field that is linear over the faces of joints, in columns: the value at the middle of a face, and the vector
@@ -121,7 +119,8 @@ struct LinearField {
         const double t0 = turn[0][joint], t1 = turn[1][joint], t2 = turn[2][joint];
         return {middle[0][joint] + (t1 * b2 - t2 * b1), middle[1][joint] - t0 * b2, middle[2][joint] + t0 * b1};
     }
-    void take(int joint, const LinearField& from, int other);
+    std::array<double, 6> numbersOf(int joint) const; // zero if the columns are empty
+    void setNumbers(int joint, const std::array<double, 6>&);
     void clear();
 };
 
@@ -144,16 +143,22 @@ struct JointShapes : JointGroup {
     std::vector<double> area;      // of a subcontact [m²]
     std::vector<double> offset[3]; // from the centre of body 1 to the subcontact in the reference state [m]
 
+    // What becomes of joints in a run.
+    std::vector<RefinedJoint> refined; // set by Refinement
+    // Whether the contact of its blocks has taken the place of a joint, set by JointConversion: a step leaves its state
+    // as it is, and it has no forces any more. Such a joint keeps its place in the columns.
+    std::vector<unsigned char> converted;
+
     // Intact joints (see JointPlan): a joint between rigid blocks that has always been elastic. Its jump is linear over
     // its face and its stress is the stiffness times that, so a step only brings `linear` up to date. What stands in
     // the columns of jumps, stresses of damping, openings and stresses of the law is then of an earlier step, until
-    // somebody reads them: bringPoints() is called before that. All else that the law remembers of the points is always
+    // somebody reads them: synchronise() is called before that. All else that the law remembers of the points is always
     // up to date.
-    std::vector<unsigned char> byPoints; // of every joint, whether it is not intact; never becomes so again
+    std::vector<unsigned char> pointwise; // of every joint, whether it is not intact; never becomes so again
     LinearField linear;                  // jumps of intact joints [m]
     LinearField damped; // of the stress of JointDamping, what is to be multiplied by the stiffnesses [m]; empty like
                         // `viscous`
-    mutable bool behind = false;              // whether the columns of intact joints are of an earlier step
+    bool stale = false;                       // whether the columns of intact joints are of an earlier step
     std::shared_ptr<LawColumns> law;          // of the same joints; null before they belong to a scene
     std::vector<double> middle[3];            // middle of the face, as `offset` [m]; empty before findMiddles()
     std::vector<double> faceArea, inertia[3]; // area [m²] and its second moments about the middle, along the first
@@ -161,20 +166,18 @@ struct JointShapes : JointGroup {
     std::vector<int> rim; // numbers of the points that are corners of their hull in one of the joints
 
     // Writes what intact joints have in their linear fields to their points, if that is of an earlier step.
-    void bringPoints() const {
-        if (behind) const_cast<JointShapes*>(this)->writePoints();
+    void synchronise() {
+        if (stale) writePoints();
     }
-    void bringPointsOf(int joint); // the same for one joint, always
-    void endIntact(int joint) {    // from now on an intact joint is advanced by its points
-        bringPointsOf(joint);
-        byPoints[joint] = 1;
-    }
+    void synchronise(int joint);  // the same for one joint, always
+    // From now on the joints of a vector register, of which this is one, are advanced by their points.
+    void endIntact(int joint);
     void findMiddles(); // fills `middle` to `rim` from areas and offsets
     // Place of a joint in the columns `middle` to `inertia`.
     std::size_t face(int joint) const { return alike ? std::size_t(joint % JointFrames::most) : std::size_t(joint); }
     // Jump of a subcontact of an intact joint [m].
     Vector3r intactJumpAt(int point, int joint) const {
-        if (!behind) return vectorAt(jump, at(point, joint)); // the same bits
+        if (!stale) return vectorAt(jump, at(point, joint)); // the same bits
         const std::size_t s = shape(point, joint), f = face(joint);
         return linear.at(joint, offset[1][s] - middle[1][f], offset[2][s] - middle[2][f]);
     }
@@ -187,14 +190,14 @@ struct JointShapes : JointGroup {
     std::size_t shape(int point, int joint) const {
         return alike ? std::size_t(point) * JointFrames::most : at(point, joint);
     }
-    Vector3r jumpAt(int point, int joint) const {
-        bringPoints();
+    Vector3r jumpAt(int point, int joint) {
+        synchronise();
         return vectorAt(jump, at(point, joint));
     }
     Vector3r offsetAt(int point, int joint) const { return vectorAt(offset, shape(point, joint)); }
     double areaAt(int point, int joint) const { return area[shape(point, joint)]; }
-    Vector3r viscousAt(int point, int joint) const {
-        bringPoints();
+    Vector3r viscousAt(int point, int joint) {
+        synchronise();
         return viscous[0].empty() ? Vector3r(Vector3r::Zero()) : vectorAt(viscous, at(point, joint));
     }
     void setViscous(int point, int joint, const Vector3r& value) {
@@ -210,11 +213,13 @@ struct JointShapes : JointGroup {
     void makeViscous() {
         for (auto& column : viscous)
             column.resize(jump[0].size(), 0);
-        damped.resize(byPoints.size());
+        damped.resize(pointwise.size());
     }
     struct Impact {
         Vector3r stress = Vector3r::Zero();
         double closing = -1;
+
+        template <class Visit> void visitState(Visit&& visit) { visit(stress, closing); }
     };
     Impact impactAt(int point, int joint) const {
         const std::size_t i = at(point, joint);
@@ -236,24 +241,22 @@ struct JointShapes : JointGroup {
             column->clear();
     }
     // The stress that a subcontact has beside that of the law [Pa].
-    Vector3r stressBesideLaw(int point, int joint) const {
+    Vector3r stressBesideLaw(int point, int joint) {
         return viscousAt(point, joint) + impactAt(point, joint).stress;
     }
     void setJump(int point, int joint, const Vector3r& value) {
-        bringPoints();
+        synchronise();
         setVector(jump, at(point, joint), value);
     }
-    // The numbers of a joint that its points do not hold: whether it is intact, and its linear fields.
-    static constexpr int numbersOfFields = 13;
-    void readFields(int joint, double* numbers) const;
-    void writeFields(int joint, const double* numbers);
+    void visitState(int joint, StateNumbers&); // what changes in a step
+    void visitShape(int joint, StateNumbers&); // what it was made as, and its points
     // Sets area and offset of a subcontact. Only for groups whose joints do not share them.
     void setShape(int point, int joint, const Vector3r& offsetOfPoint, double areaOfPoint) {
         setVector(offset, at(point, joint), offsetOfPoint);
         area[at(point, joint)] = areaOfPoint;
     }
     // Copies joint number `other` of another group with the same number of points into place `joint` of this one.
-    void take(int joint, const JointShapes& from, int other);
+    void take(int joint, JointShapes& from, int other);
     // If areas and offsets of all joints are the same but for round-off, keeps those of the first joint alone and sets
     // `alike`. Each value then stands `JointFrames::most` times, so that a batch of joints reads them as it reads
     // others, and they stay in the innermost cache.
@@ -285,11 +288,11 @@ struct JointStates : JointGroup {
         Current(const JointStates& of, std::unique_ptr<LawColumns> all) : of_(of), all_(std::move(all)) {}
         LawColumns* operator->() const { return &**this; }
         LawColumns& operator*() const {
-            if (of_.shapes) of_.shapes->bringPoints();
+            if (of_.shapes) of_.shapes->synchronise();
             return *all_;
         }
-        // As they stand, for what does not depend on the present state.
-        const std::shared_ptr<LawColumns>& asTheyStand() const { return all_; }
+        // For what does not depend on the present state.
+        const std::shared_ptr<LawColumns>& unsynchronised() const { return all_; }
 
     private:
         const JointStates& of_;
@@ -308,6 +311,10 @@ struct JointStates : JointGroup {
         for (int p = 0; p < own.points(); ++p)
             own.take(p, number, others, p, other);
     }
+    void visitState(int number, StateNumbers& n) {
+        for (int p = 0; p < columns->points(); ++p)
+            columns->visitState(p, number, n);
+    }
 
     JointStates(const JointStates&) = delete;
     JointStates& operator=(const JointStates&) = delete;
@@ -318,7 +325,6 @@ struct JointKind {
     shared_ptr<JointShapes> shapes;
     shared_ptr<JointStates> states;
     bool attached; // whether a side of these joints is deformable
-    bool handed;   // whether they were handed over to contact, so that they have no forces
 };
 
 } // namespace masonry

@@ -43,7 +43,7 @@ Vector3r impulseAgainst(const Vector3r& speed, const JointImpacts& by, const Joi
 double addImpacts(const JointImpacts& by, JointShapes& shapes, int corner, int from, int count, const double* area,
                   const double* const* change, double* normal, double* shearA, double* shearB) {
     const auto& properties = shapes.law->law().properties();
-    const double* damage = properties.tensileStrength > 0 ? shapes.law->tensionDamage(corner, from) : nullptr;
+    const double* damage = shapes.law->isBonded() ? shapes.law->column(Role::BondDamage, corner, from) : nullptr;
     double taken = 0;
     for (int i = 0; i < count; ++i) {
         const std::size_t at = shapes.at(corner, from + i);

@@ -9,6 +9,7 @@
 #include "motion/JointFrames.hpp"
 #include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <numeric>
 
 namespace masonry {
@@ -96,7 +97,7 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
     for (int b = 0; b < store.bodies.size(); ++b)
         if (store.bodies.has(b)) store.bodies.noticeAll(b);
     for (const auto& kind : store.kinds)
-        kind.shapes->bringPoints();
+        kind.shapes->synchronise();
     plane_ = mayBePlane && liesInPlane(store);
     if (plane_) dropStressOutOfPlane(store);
     onBodies_.clear();
@@ -115,10 +116,6 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
         kinds_[k].firstPoint = points;
         joints += stride;
         if (kind.attached) points += stride * kind.shapes->points;
-        if (kind.handed) {
-            std::fill(kind.shapes->byPoints.begin(), kind.shapes->byPoints.end(), 1);
-            continue;
-        }
         const int all = int(kind.shapes->joints.size());
         for (int from = 0; from < all; from += most)
             batches_.push_back({int(k), from, std::min(most, all - from)});
@@ -142,10 +139,6 @@ void JointPlan::build(SceneStore& store, bool mayBePlane) {
         const auto* unit = zones_ ? zones_->unitOf(b) : nullptr;
         if (unit) momentPlace_[b] = unit->momentPlace;
     }
-    for (const auto& kind : store.kinds)
-        for (std::size_t j = 0; kind.handed && j < kind.shapes->joints.size(); ++j)
-            for (const auto& side : kind.shapes->joints[j].sides)
-                joined_[side.body] = 1; // so that a script that moves it is noticed
     onJoints_.assign(std::size_t(plane_ ? 4 : 9) * joints, 0);
     onPoints_.assign(std::size_t(plane_ ? 2 : 3) * points, 0);
     toBodies_.fill(atBodies);
@@ -163,7 +156,7 @@ void JointPlan::findIntact(const JointKind& kind, Kind& made) {
     const int count = int(shapes.joints.size());
     if (!kind.attached) shapes.findMiddles();
     if (kind.attached || !shapes.law->knowsIntact()) {
-        std::fill_n(shapes.byPoints.begin(), count, 1);
+        std::fill_n(shapes.pointwise.begin(), count, 1);
         return;
     }
     if (plane_) // nothing yields the plane; there may be round-off of a run in space
@@ -171,22 +164,22 @@ void JointPlan::findIntact(const JointKind& kind, Kind& made) {
             for (auto* column : {&field->middle[2], &field->turn[0], &field->turn[1]})
                 std::fill(column->begin(), column->end(), 0.0);
     for (int j = 0; j < count; ++j)
-        if (!shapes.byPoints[j] && !shapes.isIntact(j)) shapes.byPoints[j] = 1;
-    shapes.bringPoints();
+        if (!shapes.pointwise[j] && !shapes.isIntact(j)) shapes.pointwise[j] = 1;
+    shapes.synchronise();
     for (int first = 0; first < count; first += lanes) {
-        const auto from = shapes.byPoints.begin() + first, beyond = from + std::min(lanes, count - first);
+        const auto from = shapes.pointwise.begin() + first, beyond = from + std::min(lanes, count - first);
         if (std::find(from, beyond, 1) != beyond) // joints side by side are intact together
             std::fill(from, beyond, 1);
         else
             made.intact = true;
     }
-    shapes.behind = made.intact;
+    shapes.stale = made.intact;
 }
 
 // From now on the joints of a kind are advanced by their points.
 void JointPlan::endIntact(const JointKind& kind) {
-    for (int j = 0; j < int(kind.shapes->joints.size()); ++j)
-        if (!kind.shapes->byPoints[j]) kind.shapes->endIntact(j);
+    for (int first = 0; first < int(kind.shapes->joints.size()); first += lanes)
+        kind.shapes->endIntact(first);
 }
 
 // Bodies are numbered course by course as a rule. A thread that takes the joints of the bodies that it moves itself
@@ -381,7 +374,7 @@ struct JointPlan::Run {
           impacts(store.loop->impacts) {}
 
     JointShapes& shapes() const { return *kind.shapes; }
-    LawColumns& states() const { return *kind.states->columns.asTheyStand(); } // the step brings them up to date
+    LawColumns& states() const { return *kind.states->columns.unsynchronised(); } // the step brings them up to date
     const double* offset(int d, int p) const {
         return &shapes().offset[d][shapes().alike ? shapes().shape(p, 0) : shapes().at(p, from)];
     }
@@ -390,16 +383,16 @@ struct JointPlan::Run {
 // Joints are advanced in runs of whole lanes, which are either all intact or all not.
 JointPlan::Taken JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const Kind& plan, int from, int n) {
     Run run(kind, plan, store);
-    const unsigned char* byPoints = &kind.shapes->byPoints[from];
+    const unsigned char* pointwise = &kind.shapes->pointwise[from];
     Taken taken;
     for (int first = 0; first < n;) {
         int beyond = first + lanes;
-        while (beyond < n && byPoints[beyond] == byPoints[first])
+        while (beyond < n && pointwise[beyond] == pointwise[first])
             beyond += lanes;
         run.from = from + first;
         run.n = std::min(beyond, n) - first;
         align(run);
-        if (byPoints[first]) {
+        if (pointwise[first]) {
             const Taken more = advancePoints(run);
             taken.damping += more.damping;
             taken.impacts += more.impacts;
@@ -486,9 +479,8 @@ bool JointPlan::endsIntact(Run& run, const IntactFaces& faces) const {
         any |= yielding[i];
     for (int first = 0; any && first < run.n; first += lanes) {
         const int beyond = std::min(first + lanes, run.n);
-        const bool ends = std::any_of(yielding + first, yielding + beyond, [](Mask m) { return m != 0; });
-        for (int i = run.from + first; ends && i < run.from + beyond; ++i)
-            shapes.endIntact(i);
+        if (std::any_of(yielding + first, yielding + beyond, [](Mask m) { return m != 0; }))
+            shapes.endIntact(run.from + first);
     }
     return any != 0;
 }
@@ -513,11 +505,16 @@ JointPlan::Taken JointPlan::advancePoints(Run& run) {
     const auto& k = states.stiffness();
     const auto& properties = states.law().properties();
     const double times = run.stiffnessDamping / run.dt;
-    const bool bonded = properties.tensileStrength > 0 && states.tensionDamage(0, from);
-    const JointDamping damping{times * k.normal, times * k.shear, properties.elastic, bonded, properties.friction};
+    const JointDamping damping{times * k.normal, times * k.shear, properties.elastic, states.isBonded(),
+                               properties.friction};
     constexpr double none[most] = {};
     double sumA[most], sumB[most]; // shear stresses of the law and of what is added to them
     Taken taken;
+    int still[most], stills = 0; // joints that contacts have taken the place of: they keep their state
+    Vector3r kept[most];         // and their jumps at a point
+    if (std::memchr(&shapes.converted[from], 1, std::size_t(n)))
+        for (int i = 0; i < n; ++i)
+            if (shapes.converted[from + i]) still[stills++] = i;
     for (int p = 0; p < shapes.points; ++p) {
         const std::size_t i = shapes.at(p, from), shape = shapes.alike ? shapes.shape(p, 0) : i;
         const std::size_t first = std::size_t(p) * stride + from;
@@ -529,8 +526,19 @@ JointPlan::Taken JointPlan::advancePoints(Run& run) {
             const double* u = zones_->displacementRows();
             plane_ ? jumpNodalInPlane(n, place1, place2, u, j0, j1, frames)
                    : jumpNodal(n, place1, place2, u, j0, j1, j2, frames);
-        } else
+        } else {
+            for (int s = 0; s < stills; ++s)
+                kept[s] = {j0[still[s]], j1[still[s]], j2[still[s]]};
             plane_ ? jumpRigidInPlane(n, a0, a1, j0, j1, frames) : jumpRigid(n, a0, a1, a2, j0, j1, j2, frames);
+            for (int s = 0; s < stills; ++s) {
+                const int joint = still[s];
+                j0[joint] = kept[s][0];
+                j1[joint] = kept[s][1];
+                j2[joint] = kept[s][2];
+                for (auto& step : frames.step)
+                    step[joint] = 0;
+            }
+        }
         states.advance(p, from, n, frames.step[0], frames.step[1], plane_ ? nullptr : frames.step[2],
                        frames.normalStress);
         const double *normal = frames.normalStress, *a = states.shearStressA(p, from),
@@ -546,7 +554,7 @@ JointPlan::Taken JointPlan::advancePoints(Run& run) {
         }
         if (!shapes.viscous[0].empty()) {
             double* const viscous[3] = {&shapes.viscous[0][i], &shapes.viscous[1][i], &shapes.viscous[2][i]};
-            taken.damping += addJointDamping(n, damping, states.regime(p, from), states.tensionDamage(p, from), area,
+            taken.damping += addJointDamping(n, damping, states.regime(p, from), states.column(Role::BondDamage, p, from), area,
                                              change, frames.normalStress, sumA, sumB, viscous);
         }
         if (meets)
@@ -560,6 +568,9 @@ JointPlan::Taken JointPlan::advancePoints(Run& run) {
             plane_ ? pullRigidInPlane(n, area, normal, a, a0, a1, frames) : pullRigid(n, area, normal, a, b, frames);
     }
     finish(run);
+    const int width = plane_ ? 4 : 9;
+    for (int s = 0; s < stills; ++s)
+        std::fill_n(&onJoints_[std::size_t(width) * (plan.first + from + still[s])], width, 0.0);
     return taken;
 }
 
@@ -696,9 +707,8 @@ void JointPlan::advance(SceneStore& store) {
         for (std::size_t k = 0; k < kinds_.size(); ++k) {
             const auto& kind = store.kinds[k];
             kind.shapes->makeViscous();
-            const auto& properties = kind.shapes->law->law().properties();
-            const bool bonded = properties.tensileStrength > 0 && kind.shapes->law->tensionDamage(0, 0);
-            if (!kinds_[k].intact || properties.elastic || bonded) continue;
+            const auto& law = *kind.shapes->law;
+            if (!kinds_[k].intact || law.law().properties().elastic || law.isBonded()) continue;
             endIntact(kind); // without a bond the stress of damping is cut point by point
             kinds_[k].intact = false;
         }
@@ -715,7 +725,7 @@ void JointPlan::advance(SceneStore& store) {
         }
     });
     for (std::size_t k = 0; k < kinds_.size(); ++k)
-        if (kinds_[k].intact) store.kinds[k].shapes->behind = true;
+        if (kinds_[k].intact) store.kinds[k].shapes->stale = true;
     // The step that follows damping or an impact has taken half of its work; after that there is nothing left of it.
     for (auto& kind : store.kinds) {
         if (stiffnessDamping == 0) kind.shapes->dropViscous();

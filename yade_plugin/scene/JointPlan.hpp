@@ -7,7 +7,7 @@
 // Its force and moment then follow from the jump at the middle of the face and the moments of area, and whether it is
 // about to yield shows at the outermost points. So its points are not advanced. Just before it yields, the points take
 // the jumps of the step before with the elastic stresses that belong to them, and are advanced by the law from then on.
-// JointShapes::byPoints says which joints are advanced by points. That is part of the state of a joint, so that a run
+// JointShapes::pointwise says which joints are advanced by points. That is part of the state of a joint, so that a run
 // that was saved goes on in the same bits.
 #pragma once
 #include "SceneStore.hpp"

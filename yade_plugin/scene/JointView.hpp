@@ -22,6 +22,8 @@ public:
     const JointReference& reference() const { return group->joints[index]; }
     int points() const { return group ? group->points : 0; }
     double area(int point) const { return group->areaAt(point, index); }
+    const RefinedJoint& refined() const { return group->refined[index]; }
+    bool converted() const { return group->converted[index]; } // to a contact: the joint has no forces any more
     Vector3r jump(int point) const { return group->jumpAt(point, index); }
     Vector3r offset(int point) const { return group->offsetAt(point, index); }
     // Point of a subcontact in the reference state, global axes [m].
@@ -61,9 +63,9 @@ public:
     }
 
     bool made() const { return group != nullptr; }
-    int points() const { return group ? group->columns.asTheyStand()->points() : 0; }
-    const Law& law() const { return group->columns.asTheyStand()->law(); }
-    const ElasticStiffness& stiffness() const { return group->columns.asTheyStand()->stiffness(); }
+    int points() const { return group ? group->columns.unsynchronised()->points() : 0; }
+    const Law& law() const { return group->columns.unsynchronised()->law(); }
+    const ElasticStiffness& stiffness() const { return group->columns.unsynchronised()->stiffness(); }
     // What every law knows of a subcontact; `shown` gives what files show of it beside that, zero if its law does not.
     JointState state(int point) const { return group->columns->state(point, index); }
     double shown(int point, const JointField& field) const { return group->columns->shown(point, index, field); }

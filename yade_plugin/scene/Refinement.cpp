@@ -114,11 +114,12 @@ struct Alone {
         : shapes(new JointShapes(1, int(points.size()))),
           states(new JointStates(joint.phys->propertySet(), joint.phys->stiffness(), 1, int(points.size()))) {
         shapes->joints[0] = joint.geom->reference();
-        shapes->byPoints[0] = 1;
+        shapes->refined[0] = joint.geom->refined();
+        shapes->pointwise[0] = 1;
         for (int p = 0; p < shapes->points; ++p)
             shapes->setShape(p, 0, points[p].offset, points[p].area);
     }
-    LawColumns& columns() const { return *states->columns.asTheyStand(); }
+    LawColumns& columns() const { return *states->columns.unsynchronised(); }
     void giveTo(const JointView& joint) const {
         joint.geom->group = shapes;
         joint.phys->group = states;
@@ -163,7 +164,6 @@ void follow(LawColumns& to, int point, const LawColumns& from, const std::vector
 double refine(const JointView& joint, int count) {
     auto& shapes = *joint.geom->group;
     const int j = joint.geom->index;
-    if (!shapes.byPoints[j]) shapes.endIntact(j);
     const auto old = pointsOf(*joint.geom);
     Alone before(joint, old);
     before.shapes->take(0, shapes, j);
@@ -171,9 +171,7 @@ double refine(const JointView& joint, int count) {
     const auto& from = before.columns();
 
     Alone after(joint, refinedPoints(joint.geom->reference(), old, count));
-    auto& r = after.shapes->joints[0];
-    r.refined = count;
-    r.coarse = std::make_shared<const Points>(old);
+    after.shapes->refined[0] = {count, std::make_shared<const Points>(old)};
     auto& to = after.columns();
     std::vector<std::vector<Share>> shares;
     std::vector<double> areas(old.size(), 0.0); // of the new points, by the old ones
@@ -246,24 +244,21 @@ bool sameMoments(const Points& one, const Points& other) {
     return moments(one).isApprox(moments(other), 1e-6);
 }
 
-Refinement::Limit::Limit(const JointKind& kind, int wanted) : columns_(kind.states->columns.asTheyStand().get()) {
+Refinement::Limit::Limit(const JointKind& kind, int wanted) : columns_(kind.states->columns.unsynchronised().get()) {
     const auto& columns = *columns_;
     const auto& p = columns.law().properties();
     const auto& first = kind.shapes->joints[0];
-    if (p.elastic || kind.attached || kind.handed || first.refined) return;
+    if (p.elastic || kind.attached || kind.shapes->refined[0].points) return;
     const auto now = pointsOf(kind);
     const bool row = isRow(now);
     const int count = wanted ? wanted : row ? pointsOfRow : pointsOfSide;
     const auto then = refinedPoints(first, now, count);
     if (then.size() <= now.size() || !sameMoments(now, then)) return;
-    crushes_ = p.cap && columns.law().compression().elasticLimit > 0;
-    cracks_ = (!p.cap || !row) && (p.tensileStrength > 0 || p.cohesion > 0);
-    if (!crushes_ && !cracks_) return;
-    points_ = count;
-    normal_ = p.capNormal;
-    shear_ = p.capShear;
-    linear_ = p.capLinear;
     elasticLimit_ = columns.law().compression().elasticLimit;
+    const bool bonded = columns.column(Role::BondDamage, 0, 0) && (p.tensileStrength > 0 || p.cohesion > 0);
+    cracks_ = (elasticLimit_ == 0 || !row) && bonded;
+    if (elasticLimit_ == 0 && !cracks_) return;
+    points_ = count;
     if (!cracks_) return;
     const auto within = [&](double sigma, double tau) { return !yields(sigma / company, tau / company, 0); };
     constexpr double most = 1e12, least = 1; // [Pa]
@@ -275,8 +270,8 @@ Refinement::Limit::Limit(const JointKind& kind, int wanted) : columns_(kind.stat
 }
 
 bool Refinement::Limit::isReached(double part, double sigma, double a, double b) const {
-    const double squared = a * a + b * b, pressed = std::min(sigma, 0.0), limit = part * elasticLimit_;
-    if (crushes_ && (normal_ * pressed + linear_) * pressed + shear_ * squared > limit * limit) return true;
+    const double squared = a * a + b * b, limit = part * elasticLimit_;
+    if (limit > 0 && columns_->law().squaredCapStress(sigma, squared) > limit * limit) return true;
     return cracks_ && (sigma > tension_ || squared > slip_ * slip_) && yields(sigma / part, a / part, b / part);
 }
 
@@ -288,15 +283,16 @@ bool Refinement::Limit::yields(double sigma, double a, double b) const {
 // Whether a point of a joint has reached this part of the limit, or was beyond it already.
 bool Refinement::isDue(const JointKind& kind, const Limit& limit, double part, int j) const {
     const auto& shapes = *kind.shapes;
-    const auto& columns = *kind.states->columns.asTheyStand();
-    for (int p = 0; p < shapes.points && !shapes.byPoints[j]; ++p) {
+    const auto& columns = *kind.states->columns.unsynchronised();
+    if (shapes.converted[j]) return false;
+    for (int p = 0; p < shapes.points && !shapes.pointwise[j]; ++p) {
         const auto& k = columns.stiffness();
         const Vector3r jump = shapes.intactJumpAt(p, j);
         if (limit.isReached(part, k.normal * jump[0], k.shear * jump[1], k.shear * jump[2])) return true;
     }
-    for (int p = 0; p < shapes.points && shapes.byPoints[j]; ++p) {
+    for (int p = 0; p < shapes.points && shapes.pointwise[j]; ++p) {
         const double a = *columns.shearStressA(p, j), b = *columns.shearStressB(p, j);
-        const double* damage = limit.cracks() ? columns.tensionDamage(p, j) : nullptr;
+        const double* damage = limit.cracks() ? columns.column(Role::BondDamage, p, j) : nullptr;
         if ((damage && *damage > 0) || *columns.regime(p, j) == Regime::Crushing) return true;
         if (limit.isReached(part, columns.stressIfClosed(p, j), a, b) &&
             limit.isReached(part, columns.state(p, j).normalStress, a, b))
@@ -350,7 +346,7 @@ void Refinement::look(SceneStore& store) {
             changed_.push_back(std::move(change));
         }
     }
-    store.jointsChanged();
+    store.pointsChanged();
     readLimits(store);
 }
 
@@ -368,27 +364,25 @@ void Refinement::count(SceneStore& store) {
     changed_.clear();
 }
 
-bool Refinement::setPoints(SceneStore& store, const std::vector<double>& refined) {
+bool Refinement::setPoints(SceneStore& store, const std::vector<int>& refined) {
     std::vector<std::pair<const JointView*, int>> change; // joints and their new numbers of points
     for (std::size_t n = 0; n < store.joints.size(); ++n) {
         const auto& joint = store.joints[n];
-        const auto& r = joint.geom->reference();
-        const double count = refined[n];
-        if (count == r.refined) continue;
-        const bool fits = count == 0 || (count >= fewest && count <= most && count == std::floor(count));
-        if (!fits || r.attached) return false;
-        change.emplace_back(&joint, int(count));
+        const int count = refined[n];
+        if (count == joint.geom->refined().points) continue;
+        const bool fits = count == 0 || (count >= fewest && count <= most);
+        if (!fits || joint.geom->reference().attached) return false;
+        change.emplace_back(&joint, count);
     }
     if (change.empty()) return true;
     for (const auto& [joint, count] : change) {
-        const auto& r = joint->geom->reference();
-        const auto first = r.coarse ? *r.coarse : pointsOf(*joint->geom);
-        const Alone fresh(*joint, count ? refinedPoints(r, first, count) : first);
-        fresh.shapes->joints[0].refined = count;
-        fresh.shapes->joints[0].coarse = count ? std::make_shared<const Points>(first) : nullptr;
+        const auto& coarse = joint->geom->refined().coarse;
+        const auto first = coarse ? coarse : std::make_shared<const Points>(pointsOf(*joint->geom));
+        const Alone fresh(*joint, count ? refinedPoints(joint->geom->reference(), *first, count) : *first);
+        fresh.shapes->refined[0] = {count, count ? first : nullptr};
         fresh.giveTo(*joint);
     }
-    store.jointsChanged();
+    store.pointsChanged();
     return true;
 }
 

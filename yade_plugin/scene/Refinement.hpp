@@ -30,7 +30,7 @@ public:
     // Gives the joints of a scene the numbers of points along them in `refined`, one number a joint in the store's
     // order; 0 stands for the points that a joint was made with. The state of a joint whose points change is that of a
     // new one. Returns false, and changes nothing, if a joint cannot have these points.
-    static bool setPoints(SceneStore&, const std::vector<double>& refined);
+    static bool setPoints(SceneStore&, const std::vector<int>& refined);
 
 private:
     // Stresses of a kind of joints at which one of them gets its points: near the elastic limit of the cap, and, of
@@ -47,9 +47,8 @@ private:
 
         const LawColumns* columns_;
         int points_ = 0;
-        bool crushes_ = false, cracks_ = false;      // whether its limits in compression, and those of its bond count
-        double normal_ = 0, shear_ = 0, linear_ = 0; // shape of the cap, Cnn, Css [-] and Cn [Pa]
-        double elasticLimit_ = 0;                    // of the cap [Pa]
+        double elasticLimit_ = 0; // in compression [Pa]; 0: none
+        bool cracks_ = false;     // whether the limits of its bond count
         // Normal and shear stress [Pa] of the bond up to which the law need not be called.
         double tension_ = 0, slip_ = 0;
     };

@@ -20,17 +20,13 @@ struct BodyRecord {
     Vector3r force, torque;          // of the last step, so that scripts can read them after loading
     Vector3r lasting, lastingTorque; // the host's permanent force and torque
     Quaternionr orientation;
-    double blocked, damped;
-};
-template <class F> void numbers(BodyRecord& b, F&& each) {
-    for (auto* v : {&b.position, &b.velocity, &b.spin, &b.momentum, &b.force, &b.torque, &b.lasting, &b.lastingTorque})
-        numbers(*v, each);
-    numbers(b.orientation, each);
-    each(b.blocked);
-    each(b.damped);
-}
+    unsigned blocked;
+    bool damped;
 
-template <> struct IsNumbers<BodyRecord> : std::true_type {};
+    template <class Visit> void visitState(Visit&& visit) {
+        visit(position, velocity, spin, momentum, force, torque, lasting, lastingTorque, orientation, blocked, damped);
+    }
+};
 
 namespace {
 
@@ -51,27 +47,31 @@ void transferBodies(yade::Scene& scene, Transfer& to) {
         const auto& s = *body->state;
         const int id = body->id;
         records.push_back({s.pos, s.vel, s.angVel, s.angMom, forces.getForce(id), forces.getTorque(id), none, none,
-                           s.ori, double(s.blockedDOFs), double(s.isDamped)});
+                           s.ori, s.blockedDOFs, s.isDamped});
         if (forces.getPermForceUsed()) {
             records.back().lasting = forces.getPermForce(id);
             records.back().lastingTorque = forces.getPermTorque(id);
         }
     }
-    to.several("bodies", records.data(), records.size());
+    to.numbers("bodies", [&](StateNumbers& n) {
+        for (auto& record : records) {
+            n(record);
+            if (record.blocked > 63) n.refuse();
+        }
+    });
     if (!to.back) return;
     forces.reset(scene.iter, forces.getPermForceUsed());
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         auto& s = *bodies[i]->state;
         const int id = bodies[i]->id;
         const auto& r = records[i];
-        if (!(r.blocked >= 0 && r.blocked <= 63)) to.damaged("bodies");
         s.pos = r.position;
         s.vel = r.velocity;
         s.angVel = r.spin;
         s.angMom = r.momentum;
         s.ori = r.orientation;
-        s.blockedDOFs = unsigned(r.blocked);
-        s.isDamped = r.damped != 0;
+        s.blockedDOFs = r.blocked;
+        s.isDamped = r.damped;
         forces.addForce(id, r.force - r.lasting);
         forces.addTorque(id, r.torque - r.lastingTorque);
         if (!r.lasting.isZero(0)) forces.setPermForce(id, r.lasting);
@@ -80,89 +80,36 @@ void transferBodies(yade::Scene& scene, Transfer& to) {
     forces.sync();
 }
 
-// How many points the joints have that were refined. It comes first, because all other records of joints follow it.
-void transferPoints(SceneStore& store, Transfer& to) {
-    std::vector<double> refined;
-    for (const auto& joint : store.joints)
-        refined.push_back(joint.geom->reference().refined);
-    to.several("refined", refined.data(), refined.size());
-    if (to.back && !Refinement::setPoints(store, refined)) to.damaged("refined");
-}
-
-// Which joints were handed over to contact.
-void transferHanded(SceneStore& store, Transfer& to) {
-    std::vector<double> handed;
-    for (const auto& joint : store.joints)
-        handed.push_back(joint.geom->reference().handed);
-    to.several("handed", handed.data(), handed.size());
-    if (!to.back) return;
-    for (std::size_t n = 0; n < store.joints.size(); ++n) {
-        const auto& geom = *store.joints[n].geom;
-        geom.group->joints[geom.index].handed = handed[n] != 0;
-    }
-    ++changes;
-    store.update();
-}
-
-// A record of a joint holds the numbers of JointShapes::readFields(). A record of a subcontact holds its jump [m], the
-// stress of damping in the last step [Pa], what JointShapes::impactAt() gives, the energies dissipated in tension,
-// shear and compression [J/m²], and the numbers of its law.
-void transferJoints(const SceneStore& store, Transfer& to) {
-    std::vector<double> records;
-    const auto add = [&](double x, double y, double z) { records.insert(records.end(), {x, y, z}); };
-    constexpr std::size_t width = JointShapes::numbersOfFields;
-    std::vector<double> fields(width * store.joints.size());
-    double* field = fields.data();
-    for (const auto& joint : store.joints) {
-        joint.geom->group->readFields(joint.geom->index, field);
-        field += width;
-        for (int p = 0; p < joint.geom->points(); ++p) {
-            const Vector3r jump = joint.geom->jump(p);
-            const Vector3r viscous = joint.geom->group->viscousAt(p, joint.geom->index);
-            const auto impact = joint.geom->group->impactAt(p, joint.geom->index);
-            const auto lost = joint.phys->lost(p);
-            add(jump[0], jump[1], jump[2]);
-            add(viscous[0], viscous[1], viscous[2]);
-            add(impact.stress[0], impact.stress[1], impact.stress[2]);
-            records.push_back(impact.closing);
-            add(lost.tension, lost.shear, lost.compression);
-            joint.phys->group->columns->read(p, joint.phys->index,
-                                             [&](const char*, double number) { records.push_back(number); });
+// The numbers of points come first, because all other numbers of joints follow them.
+void transferJoints(SceneStore& store, Transfer& to) {
+    to.numbers("points", [&](StateNumbers& n) {
+        std::vector<int> points;
+        for (const auto& joint : store.joints) {
+            points.push_back(joint.geom->refined().points);
+            n(points.back());
         }
-    }
-    to.several("joints", records.data(), records.size());
-    to.several("jointFields", fields.data(), fields.size());
-    if (!to.back) return;
-    const double* next = records.data();
-    field = fields.data();
-    for (const auto& joint : store.joints) {
-        joint.geom->group->writeFields(joint.geom->index, field);
-        field += width;
-        for (int p = 0; p < joint.geom->points(); ++p) {
-            auto& columns = *joint.phys->group->columns;
-            joint.geom->group->setJump(p, joint.geom->index, {next[0], next[1], next[2]});
-            joint.geom->group->setViscous(p, joint.geom->index, {next[3], next[4], next[5]});
-            joint.geom->group->setImpact(p, joint.geom->index, {{next[6], next[7], next[8]}, next[9]});
-            const Energies lost{next[10], next[11], next[12]};
-            next += 13;
-            columns.write(p, joint.phys->index, [&](const char*, double& number) { number = *next++; });
-            columns.setDissipated(p, joint.phys->index, lost);
+        if (n.back && !Refinement::setPoints(store, points)) n.refuse();
+    });
+    to.numbers("joints", [&](StateNumbers& n) {
+        for (const auto& joint : store.joints) {
+            joint.geom->group->visitState(joint.geom->index, n);
+            joint.phys->group->visitState(joint.phys->index, n);
         }
-    }
+    });
 }
 
 void transfer(yade::Scene& scene, Checkpoint& file, bool back) {
     Transfer to(file, back);
     to.owner = "scene.";
-    to("step", scene.iter);
+    to.numbers("step", [&](StateNumbers& n) {
+        n(scene.iter);
+        if (scene.iter < 0) n.refuse(); // an assertion of the host would end the program
+    });
     to("time", scene.time);
     to("dt", scene.dt);
-    if (scene.iter < 0) to.damaged("step"); // an assertion of the host would end the program
     transferBodies(scene, to);
     auto& store = SceneStore::of(scene);
     store.update();
-    transferPoints(store, to);
-    transferHanded(store, to);
     transferJoints(store, to);
     int number = 0;
     for (const auto& engine : scene.engines)
@@ -185,10 +132,11 @@ public:
     std::string text() const { return std::to_string(sumOf(bytes_)); }
 
 private:
-    void add(double value) { bytes_.append(reinterpret_cast<const char*>(&value), sizeof value); }
-    void add(const std::string& text) { bytes_ += text; }
-    template <class T> std::enable_if_t<IsNumbers<T>::value> add(T value) {
-        numbers(value, [&](double& number) { add(number); });
+    template <class T> void add(T value) {
+        std::vector<double> numbers;
+        StateNumbers to(numbers);
+        to(value);
+        bytes_.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double));
     }
     void add(Stateful* own) {
         Checkpoint all;
@@ -222,13 +170,13 @@ Checkpoint captured(yade::Scene& scene) {
         joints(kind->second, double(joint.interaction->id1), double(joint.interaction->id2), r.normal, r.tangent,
                joint.phys->stiffness().normal, joint.phys->stiffness().shear);
         // A joint that was refined is still the one that it was made as.
-        for (const auto& point : r.coarse ? *r.coarse : std::vector<JointPoint>())
-            joints(point.offset, point.area);
-        for (int p = 0; p < joint.geom->points() && !r.coarse; ++p)
-            joints(joint.geom->offset(p), joint.geom->area(p));
+        if (const auto& coarse = joint.geom->refined().coarse)
+            joints(*coarse);
+        else
+            for (int p = 0; p < joint.geom->points(); ++p)
+                joints(joint.geom->offset(p), joint.geom->area(p));
         for (int side = 0; side < 2 && r.attached; ++side)
-            for (const auto& attachment : r.attached->sides[side])
-                joints(attachment);
+            joints(r.attached->sides[side]);
     }
     made.texts["blocks"] = blocks.text();
     made.texts["joints"] = joints.text();

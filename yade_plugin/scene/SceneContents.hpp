@@ -40,6 +40,12 @@ public:
     std::vector<JointKind> kinds;
     std::vector<JointView> joints; // of all kinds, in the host's order
 
+    // Calls `each` with every joint whose place no contact has taken.
+    template <class F> void eachJoint(F&& each) const {
+        for (const auto& joint : joints)
+            if (!joint.geom->converted()) each(joint);
+    }
+
 protected:
     yade::Scene& scene_;
     long revision_ = 0, stiffnessRevision_ = 0;

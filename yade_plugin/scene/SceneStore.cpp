@@ -199,7 +199,7 @@ void SceneStore::update(Look look) {
     seenInteractions_ = scene_.interactions->currSize;
 }
 
-void SceneStore::jointsChanged() {
+void SceneStore::pointsChanged() {
     const bool same = sameJoints();
     const long before = stiffnessRevision_;
     ++changes;
@@ -220,7 +220,7 @@ void SceneStore::readJoints() {
         if (fresh) at->second = sets.emplace(valuesOf(*joint), int(sets.size())).first->second;
         return at->second;
     };
-    using Key = std::tuple<int, int, bool, bool>;
+    using Key = std::tuple<int, int, bool>;
     std::map<Key, std::multimap<double, std::size_t>> byStiffness; // numbers of groups, sorted by normal stiffness
     std::vector<Group> groups;
     std::vector<JointView> found;
@@ -240,8 +240,7 @@ void SceneStore::readJoints() {
             throw std::invalid_argument("the joints of a scene can belong to one MasonryZones only");
         if (attached) zonesOfJoints = attached->zones.get();
         const auto& k = phys->stiffness();
-        auto& alike = byStiffness[{setNumber(phys->propertySet().get()), geom->points(), attached != nullptr,
-                                   geom->reference().handed}];
+        auto& alike = byStiffness[{setNumber(phys->propertySet().get()), geom->points(), attached != nullptr}];
         auto at = alike.lower_bound(k.normal * (1 - 2e-12));
         const auto fits = [&](std::size_t group) {
             return sameButRoundOff(groups[group].k.normal, k.normal, k.normal) &&
@@ -263,9 +262,9 @@ void SceneStore::readJoints() {
         const int count = int(group.members.size()), points = first.geom->points();
         JointKind kind{shared_ptr<JointShapes>(new JointShapes(count, points)),
                        shared_ptr<JointStates>(new JointStates(first.phys->propertySet(), group.k, count, points)),
-                       first.geom->reference().attached != nullptr, first.geom->reference().handed};
+                       first.geom->reference().attached != nullptr};
         kind.states->shapes = kind.shapes;
-        kind.shapes->law = kind.states->columns.asTheyStand();
+        kind.shapes->law = kind.states->columns.unsynchronised();
         for (JointGroup* group :
              {static_cast<JointGroup*>(kind.shapes.get()), static_cast<JointGroup*>(kind.states.get())}) {
             group->scene = life_;

@@ -26,9 +26,8 @@ public:
     // Reads again what has changed since the last time. Throws std::invalid_argument, and leaves the joints in their
     // groups, if the joints of the scene belong to more than one Zones.
     void update(Look look = Look::AtAll);
-    // Reads the joints again of which some were given other points or were handed over to contact: their stiffness
-    // stays in the time step.
-    void jointsChanged();
+    // Reads the joints again of which some were given other points: their stiffness stays in the time step.
+    void pointsChanged();
     // masonry.connect() calls this when all blocks have their joints. Blocks that are added later are then reported by
     // unjoinedBlocks().
     void connected();

@@ -10,9 +10,21 @@ namespace masonry {
 
 using Mask = std::int64_t; // a switch as wide as the numbers beside it, for the vector units
 
-// The columns that every law has. A law counts on from `count`:
-//   struct ColumnOfMyLaw : SharedColumn { enum { Slip = SharedColumn::count, count }; };
+// What a column of a law means to those who do not know the law.
+enum class Role {
+    BondDamage,     // in tension [-]: 0 as the bond was made, 1 where it is gone
+    LargestOpening, // [m] so far
+    LargestClosure, // [m] so far
+};
+
+// The columns that every law has. A law counts on from `count`, and says which of its columns have a role:
+//   struct ColumnOfMyLaw : SharedColumn {
+//       enum { Slip = SharedColumn::count, Damage, count };
+//       static constexpr int of(Role role) { return role == Role::BondDamage ? int(Damage) : none; }
+//   };
 struct SharedColumn {
+    static constexpr int none = -1;
+    static constexpr int of(Role) { return none; }
     enum {
         Opening, // [m]
         ShearStressA,

@@ -30,7 +30,7 @@ public:
     using Column = typename LawType::Column;
 
     ColumnsOf(std::shared_ptr<const LawType> law, const ElasticStiffness& k, int joints, int points)
-        : LawColumns(Column::count, k, joints, points),
+        : LawColumns(Column::count, &Column::of, k, joints, points),
           law_(std::move(law)),
           equations_(law_->equations(k)),
           elastic_(law_->properties().elastic) {}
@@ -71,6 +71,12 @@ public:
         double regime = double(s.regime);
         writer("regime", regime);
         s.regime = regimeOf(regime);
+        set(point, joint, s);
+    }
+    void release(int point, int joint) override {
+        State s = get(point, joint);
+        s.shearStress = {};
+        s.opening = std::max(s.opening, -columns_[Column::Irreversible][at(point, joint)]);
         set(point, joint, s);
     }
     void take(int point, int joint, const LawColumns& from, int otherPoint, int other) override {

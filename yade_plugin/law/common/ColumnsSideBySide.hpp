@@ -40,10 +40,6 @@ public:
           yielded_(std::size_t(groups_) * points, 0),
           rows_(std::size_t(stride_) * points, TableRows{0, 0}) {}
 
-    const double* tensionDamage(int point, int from) const override {
-        return columns_[Column::TensionDamage] + at(point, from);
-    }
-
     State get(int point, int joint) const override {
         const std::size_t i = at(point, joint);
         const bool yielded = hasYielded(point, joint);

@@ -24,6 +24,9 @@ public:
     virtual const SofteningTable& tension() const;
     virtual const SofteningTable& shear() const;
     virtual const CompressionCurve& compression() const;
+    // What stresses make of the elastic limit in compression, squared [Pa²]: they reach it where this is the square of
+    // compression().elasticLimit. 0 in a law that does not crush.
+    virtual double squaredCapStress(double /*normal*/, double /*squaredShear*/) const { return 0; }
 
     // What is wrong with this joint between rigid units that make it show the stiffness k: a softening branch that
     // would snap back. A sentence each. `distance` [m] is that of the units' centroids, so far as it is lumped into k.

@@ -7,8 +7,8 @@
 
 namespace masonry {
 
-LawColumns::LawColumns(int count, const ElasticStiffness& k, int joints, int points)
-    : k_(k), joints_(joints), points_(points), stride_(joints == 1 ? 1 : (joints + lanes - 1) / lanes * lanes) {
+LawColumns::LawColumns(int count, int (*of)(Role), const ElasticStiffness& k, int joints, int points)
+    : of_(of), k_(k), joints_(joints), points_(points), stride_(joints == 1 ? 1 : (joints + lanes - 1) / lanes * lanes) {
     const std::size_t size = std::size_t(stride_) * points_;
     columns_.pitch = size % 512 == 0 ? size + lanes : size; // columns whole pages apart would compete for the cache
     const std::size_t numbers = columns_.pitch * count + lanes;
@@ -20,7 +20,9 @@ LawColumns::LawColumns(int count, const ElasticStiffness& k, int joints, int poi
     regime_.assign(size, Regime::Elastic);
 }
 
-const double* LawColumns::tensionDamage(int, int) const { return nullptr; }
+bool LawColumns::isBonded() const {
+    return law().properties().tensileStrength > 0 && of_(Role::BondDamage) != SharedColumn::none;
+}
 
 Energies LawColumns::dissipated(int point, int joint) const {
     const std::size_t i = at(point, joint);
@@ -28,24 +30,18 @@ Energies LawColumns::dissipated(int point, int joint) const {
             columns_[SharedColumn::LostCompression][i]};
 }
 
-int LawColumns::numbersOfState() const {
-    int count = 0;
-    read(0, 0, [&](const char*, double) { ++count; });
-    return count;
-}
-
-double LawColumns::number(int point, int joint, const char* name) const {
-    double found = 0;
-    read(point, joint, [&](const char* each, double value) {
-        if (std::strcmp(each, name) == 0) found = value;
-    });
-    return found;
+void LawColumns::visitState(int point, int joint, StateNumbers& n) {
+    Energies lost = dissipated(point, joint);
+    n(lost.tension, lost.shear, lost.compression);
+    if (!n.back) return read(point, joint, [&](const char*, double number) { n(number); });
+    write(point, joint, [&](const char*, double& number) { n(number); });
+    setDissipated(point, joint, lost);
 }
 
 double LawColumns::shown(int point, int joint, const JointField& field) const {
     double found = 0;
     show(point, joint, [&](const JointField& each, double value) {
-        if (std::strcmp(each.name, field.name) == 0) found = value;
+        if (&each == &field) found = value;
     });
     return found;
 }

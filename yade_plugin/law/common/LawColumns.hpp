@@ -6,6 +6,7 @@
 #include "JointField.hpp"
 #include "JointState.hpp"
 #include "Law.hpp"
+#include "common/StateNumbers.hpp"
 #include <cstdlib>
 #include <functional>
 #include <vector>
@@ -18,8 +19,8 @@ class LawColumns {
 public:
     static constexpr int most = Columns::most; // joints that are advanced at a time
 
-    // `count` is the number of columns of the law.
-    LawColumns(int count, const ElasticStiffness& k, int joints, int points);
+    // `count` is the number of columns of the law, `of` gives its column of a role.
+    LawColumns(int count, int (*of)(Role), const ElasticStiffness& k, int joints, int points);
     virtual ~LawColumns() = default;
 
     int joints() const { return joints_; }
@@ -36,8 +37,13 @@ public:
         return columns_[SharedColumn::ShearStressB] + at(point, from);
     }
     const Regime* regime(int point, int from) const { return &regime_[at(point, from)]; }
-    // Damage of the bond in tension [-], null where the law knows no bond.
-    virtual const double* tensionDamage(int point, int from) const;
+    // The numbers of a role, null where the law has no such column.
+    const double* column(Role role, int point, int from) const {
+        const int of = of_(role);
+        return of == SharedColumn::none ? nullptr : columns_[of] + at(point, from);
+    }
+    // Whether these joints were made with a bond whose damage the law knows.
+    bool isBonded() const;
 
     // Normal stress [Pa] that a subcontact has if it is closed and its stiffness is that of an intact one.
     double stressIfClosed(int point, int joint) const {
@@ -57,9 +63,9 @@ public:
     // function, `write` takes those that the function leaves.
     virtual void read(int point, int joint, const std::function<void(const char* name, double number)>&) const = 0;
     virtual void write(int point, int joint, const std::function<void(const char* name, double& number)>&) = 0;
-    int numbersOfState() const; // how many numbers these are
-    // One of these numbers; zero if the law has none of this name.
-    double number(int point, int joint, const char* name) const;
+    void visitState(int point, int joint, StateNumbers&); // the same and what was dissipated, to save or to load
+    // Takes the stresses from a subcontact: what is pressed or sheared is at rest from now on, what is open stays so.
+    virtual void release(int point, int joint) = 0;
     // Takes the state of a subcontact from other columns, that is all numbers that both laws call the same.
     virtual void take(int point, int joint, const LawColumns& from, int otherPoint, int other);
 
@@ -117,6 +123,7 @@ protected:
 
     std::size_t at(int point, int joint) const { return std::size_t(point) * stride_ + joint; }
 
+    int (*of_)(Role);
     ElasticStiffness k_;
     int joints_, points_, stride_;
     Columns columns_;

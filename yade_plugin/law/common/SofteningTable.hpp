@@ -13,6 +13,8 @@ namespace masonry {
 struct TableRow {
     double ratio;  // [-] displacement over the displacement at peak strength, >= 1
     double damage; // [-] 0 at the peak, at most 1
+
+    template <class Visit> void visitState(Visit&& visit) { visit(ratio, damage); }
 };
 
 class SofteningTable {

@@ -31,6 +31,9 @@ public:
     const SofteningTable& tension() const override { return paper_.tension(); }
     const SofteningTable& shear() const override { return paper_.shear(); }
     const CompressionCurve& compression() const override { return paper_.compression(); }
+    double squaredCapStress(double normal, double squaredShear) const override {
+        return paper_.squaredCapStress(normal, squaredShear);
+    }
 
     // The equations for a joint that shows the stiffness k, its own or lumped with rigid units.
     CyclicEquations equations(const ElasticStiffness& k) const;

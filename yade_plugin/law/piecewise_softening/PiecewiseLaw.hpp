@@ -37,6 +37,9 @@ public:
     static std::vector<std::string> problems(const JointProperties& properties, bool (*reads)(const std::string&));
 
     const CompressionCurve& compression() const override { return own_.curve; }
+    double squaredCapStress(double normal, double squaredShear) const override {
+        return own_.capStress(normal, squaredShear);
+    }
     const SofteningTable& tension() const override { return tension_; }
     const SofteningTable& shear() const override { return shear_; }
 

@@ -20,6 +20,11 @@ struct PiecewiseColumn : SharedColumn {
         CapSquared, // [Pa²] square of the cap's strength
         count
     };
+    static constexpr int of(Role role) {
+        return role == Role::BondDamage       ? int(TensionDamage)
+               : role == Role::LargestOpening ? int(LargestOpening)
+                                              : int(LargestClosure);
+    }
 };
 
 struct PiecewiseState : JointState {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "HandOver.hpp"
+#include "JointConversion.hpp"
 #include "Blocks.hpp"
 #include "Resultant.hpp"
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace masonry {
 
@@ -34,33 +33,32 @@ double stored(const JointView& joint) {
 
 } // namespace
 
-void HandOver::measure(const SceneStore& store) {
+void JointConversion::measure(const SceneStore& store) {
     sizes_.clear();
     for (const auto& joint : store.joints) {
         const auto& r = joint.geom->reference();
-        const auto& columns = *joint.phys->group->columns.asTheyStand();
-        const bool bonded = columns.law().properties().tensileStrength > 0 && columns.tensionDamage(0, 0);
+        const auto& columns = *joint.phys->group->columns.unsynchronised();
         sizes_.push_back({extent(r.polygon(), r.tangent), extent(r.polygon(), r.normal.cross(r.tangent)),
-                          r.sides[1].orientation.conjugate() * r.sides[0].orientation, bonded});
+                          r.sides[1].orientation.conjugate() * r.sides[0].orientation, columns.isBonded()});
     }
-    revision_ = store.revision();
+    revision_ = store.stiffnessRevision();
 }
 
-bool HandOver::isDue(const SceneStore& store, const JointView& joint, const Size& size) const {
+bool JointConversion::isDue(const SceneStore& store, const JointView& joint, const Size& size) const {
     const auto& shapes = *joint.geom->group;
     const auto& r = joint.geom->reference();
     const int j = joint.geom->index;
-    if (r.handed || r.attached) return false;
-    if (!shapes.byPoints[j] && size.bonded) return false; // it has always been elastic
-    const auto& columns = *joint.phys->group->columns.asTheyStand();
+    if (shapes.converted[j] || r.attached) return false;
+    if (!shapes.pointwise[j] && size.bonded) return false; // it has always been elastic
+    const auto& columns = *joint.phys->group->columns.unsynchronised();
     double least = HUGE_VAL, along = 0, across = 0;
     bool bond = false;
     for (int p = 0; p < shapes.points; ++p) {
-        const Vector3r jump = shapes.byPoints[j] ? Vector3r(joint.geom->jump(p)) : shapes.intactJumpAt(p, j);
+        const Vector3r jump = shapes.pointwise[j] ? Vector3r(joint.geom->jump(p)) : shapes.intactJumpAt(p, j);
         least = std::min(least, jump[0]);
         along += jump[1];
         across += jump[2];
-        bond = bond || (size.bonded && *columns.tensionDamage(p, j) < bondGone);
+        bond = bond || (size.bonded && *columns.column(Role::BondDamage, p, j) < bondGone);
     }
     if (!std::isfinite(least + along + across)) return false; // other checks say that
     if (least > opening * std::max(size.along, size.across)) return true;
@@ -72,40 +70,30 @@ bool HandOver::isDue(const SceneStore& store, const JointView& joint, const Size
     return w < std::cos(0.5 * turn);
 }
 
-std::vector<JointView> HandOver::due(const SceneStore& store) {
-    if (revision_ != store.revision()) measure(store);
+std::vector<JointView> JointConversion::due(const SceneStore& store) {
+    if (revision_ != store.stiffnessRevision()) measure(store);
     std::vector<JointView> found;
     for (std::size_t n = 0; n < store.joints.size(); ++n)
         if (isDue(store, store.joints[n], sizes_[n])) found.push_back(store.joints[n]);
     return found;
 }
 
-double HandOver::release(const JointView& joint) {
+double JointConversion::release(const JointView& joint) {
     auto& geom = *joint.geom;
     const int j = geom.index;
-    if (!geom.group->byPoints[j]) geom.group->endIntact(j);
+    geom.group->endIntact(j);
     auto& columns = *joint.phys->group->columns;
     const double before = stored(joint);
     for (int p = 0; p < geom.points(); ++p) {
-        double irreversible = 0;
-        columns.read(p, joint.phys->index, [&](const char* name, double number) {
-            if (!std::strcmp(name, "crushing")) irreversible += number;
-            if (!std::strcmp(name, "dilation")) irreversible -= number;
-        });
-        columns.write(p, joint.phys->index, [&](const char* name, double& number) {
-            if (!std::strcmp(name, "shearStressA") || !std::strcmp(name, "shearStressB")) number = 0;
-            if (!std::strcmp(name, "opening")) number = std::max(number, -irreversible);
-        });
-    }
-    for (int p = 0; p < geom.points(); ++p) {
+        columns.release(p, joint.phys->index);
         geom.group->setViscous(p, j, Vector3r::Zero());
         geom.group->setImpact(p, j, {});
     }
-    geom.group->joints[j].handed = true;
+    geom.group->converted[j] = 1;
     return before - stored(joint);
 }
 
-void HandOver::act(SceneStore& store, Contacts& contacts) {
+void JointConversion::act(SceneStore& store, Contacts& contacts) {
     if (!contacts.takesJoints || store.scene().iter % Contacts::lookEvery != 0) return;
     std::vector<Contacts::Joint> all;
     for (const auto& joint : due(store)) {
@@ -118,11 +106,9 @@ void HandOver::act(SceneStore& store, Contacts& contacts) {
         const auto at1 = resultantOf(store.scene(), *joint.interaction, placeOf(store, body1));
         const auto at2 = resultantOf(store.scene(), *joint.interaction, placeOf(store, body2));
         all.push_back({body1, body2, (normalBy(0) + normalBy(1)).normalized(), at1.force, at1.moment, -at2.moment});
-        contacts.handing -= release(joint);
+        contacts.conversionEnergy -= release(joint);
     }
-    if (all.empty()) return;
-    store.jointsChanged();
-    contacts.takeOver(store, all);
+    if (!all.empty()) contacts.takeOver(store, all);
 }
 
 } // namespace masonry

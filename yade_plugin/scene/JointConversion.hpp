@@ -8,7 +8,7 @@
 
 namespace masonry {
 
-class HandOver {
+class JointConversion {
 public:
     // How far the blocks of a joint without bond may move before it is handed over.
     static constexpr double slide = 0.02; // mean slide over the size of the joint in that direction [-]
@@ -33,7 +33,7 @@ private:
     static double release(const JointView&);
     bool isDue(const SceneStore&, const JointView&, const Size&) const;
 
-    long revision_ = -1;
+    long revision_ = -1;      // SceneContents::stiffnessRevision() for which they were measured
     std::vector<Size> sizes_; // of the joints of SceneStore, in its order
 };
 
