@@ -6,4 +6,5 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 scene=${1:-wall_comp4}
 [[ -f "$here/$scene.py" ]] || { echo "no scene '$scene'; there are: $(cd "$here" && echo *.py | sed 's/\.py//g')" >&2; exit 2; }
 bash "$here/setup.sh"
+export HOME=${HOME:-$(echo ~)}  # YADE ends without it
 exec yade -n -x "$here/$scene.py" "${@:2}"

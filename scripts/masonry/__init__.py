@@ -23,10 +23,10 @@ A scene of one's own is bricks, materials and stages::
 - :mod:`masonry.run`: a run: checkpoints, results, presets, rows of a table
 - :mod:`masonry.assembly`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by body; the 3-D view
 - :mod:`masonry.folders`: what is written in folders that others may have packed, and how
+- :mod:`masonry.background`: tasks in other processes, and programs, several at a time
 - :mod:`masonry.memory`: what numerical libraries take of the memory
 - :mod:`masonry.packages`: libraries that come when they are first needed, and the Debian packages that have them
 - :mod:`masonry.host`: how YADE is found and started in plain Python
-- :mod:`masonry.packages`: what is said where a package of the system is missing
 - :mod:`masonry.notebook`: what is different in a notebook
 - :mod:`masonry.arguments`: how every word checks what it is given
 - :mod:`masonry.basics`: gravity, how a run can end before its time, what is said on the terminal
@@ -52,6 +52,9 @@ import importlib
 import importlib.util
 import os
 from typing import TYPE_CHECKING
+
+# YADE ends without it, and cron jobs and containers may have none.
+os.environ.setdefault("HOME", os.path.expanduser("~"))
 
 # YADE does not search the folder of its script for modules. It comes last, so that nothing in it hides another module.
 if hasattr(sys, "yade_argv") and sys.argv and os.path.isfile(sys.argv[0]):

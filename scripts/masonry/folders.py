@@ -2,7 +2,7 @@
 """Folders that others may have packed: what is written in them stays in them, and what is read from them is data.
 
 Results, studies and checkpoints are handed on as folders, and an archive keeps symbolic links. A file in such a folder is
-opened for writing by :func:`inside` or :func:`replaced` alone, which follow no link, and :func:`check` names all links of a
+opened by :func:`inside` or :func:`replaced` alone, which write through no link, and :func:`check` names all links of a
 folder before anything is written there. ``scripts/README.md`` says what may be shared. This module needs no YADE.
 """
 
@@ -55,33 +55,32 @@ def _odd(entry):
 
 
 def inside(path, flags):
-    """The ``opener`` of Python's ``open`` for a file that is written in such a folder.
+    """The ``opener`` of Python's ``open`` for a file in such a folder: a regular one, because a pipe or a device has no end.
 
-    It follows no symbolic link, does not wait for a pipe, and refuses a file that has a second name (a hard link), because
-    what is written would change that, too.
+    What is written is reached through no symbolic link, and has no second name (a hard link): that would change, too.
 
     :raises OSError: with the reason
     """
-    safe = os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
+    writes = flags & (os.O_WRONLY | os.O_RDWR)
+    safe = os.O_NONBLOCK | os.O_CLOEXEC | (os.O_NOFOLLOW if writes else 0)
     try:
         number = os.open(path, flags & ~os.O_TRUNC | safe, 0o666)
     except OSError as error:
-        if error.errno == errno.ELOOP:
-            raise OSError(errno.ELOOP, "it is a symbolic link", path) from None
-        if error.errno == errno.ENXIO:
-            raise OSError(errno.ENXIO, "it is no regular file", path) from None
-        raise
-    try:
-        found = os.fstat(number)
-        if not stat.S_ISREG(found.st_mode):
-            raise OSError(errno.EINVAL, "it is no regular file", path)
-        if found.st_nlink > 1:
-            raise OSError(errno.EMLINK, "it has a second name, a hard link", path)
-        if flags & os.O_TRUNC:
-            os.ftruncate(number, 0)
-    except BaseException:
+        why = {errno.ELOOP: "it is a symbolic link", errno.ENXIO: "it is no regular file"}.get(error.errno)  # fmt: skip
+        raise OSError(error.errno, why, path) from None if why else error
+    found = os.fstat(number)
+    wrong = (
+        "it is no regular file"
+        if not stat.S_ISREG(found.st_mode)
+        else "it has a second name, a hard link"
+        if writes and found.st_nlink > 1
+        else ""
+    )
+    if wrong:
         os.close(number)
-        raise
+        raise OSError(errno.EINVAL, wrong, path)
+    if flags & os.O_TRUNC:
+        os.ftruncate(number, 0)
     return number
 
 

@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 from conftest import ROOT
-from crafted import records
+from kept import records
 from masonry import (
     MasonryJoint,
     addBlock,
@@ -260,9 +260,9 @@ def test_a_damped_run_goes_on_bit_for_bit_after_saving_and_loading(
 
 def dampingStresses():
     """The stresses of damping in the state that a checkpoint keeps [Pa], three for every subcontact."""
-    found = {name: value for _, name, value in records(saveScene(""))}
+    found = records(saveScene(""))
     joints = O.interactions[0, 1].geom.areas
-    numbers = np.frombuffer(found[b"scene.joints"]).reshape(len(joints), -1)
+    numbers = np.frombuffer(found["scene.joints"]).reshape(len(joints), -1)
     return numbers[:, 3:6]  # after three numbers of the jump
 
 

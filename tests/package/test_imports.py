@@ -10,7 +10,7 @@ from conftest import ROOT
 PACKAGE = os.path.join(ROOT, "scripts", "masonry")
 
 #: The rooms of the package. Each imports only those above it, and itself.
-LAYERS = ["basics", "host", "notebook", "packages", "memory", "folders", "arguments", "bricks", "read", "capacity", "assembly", "run", "limit", "scene", "study"]  # fmt: skip
+LAYERS = ["basics", "host", "notebook", "packages", "memory", "background", "folders", "arguments", "bricks", "read", "capacity", "assembly", "run", "limit", "scene", "study"]  # fmt: skip
 #: Rooms and modules that work where YADE is not installed, with all that they import.
 WITHOUT_YADE = [
     "basics",
@@ -18,6 +18,7 @@ WITHOUT_YADE = [
     "notebook",
     "packages",
     "memory",
+    "background",
     "folders",
     "arguments",
     "bricks",

@@ -2,8 +2,6 @@
 """Runs that are killed, interrupted or stopped by a full disk, and resumed. Their curve must be that of a whole run."""
 
 import errno
-import io
-import itertools
 import math
 import os
 import random
@@ -11,18 +9,15 @@ import re
 import signal
 import subprocess
 import time
-from contextlib import redirect_stderr
 
 import pytest
 from conftest import ROOT
-from crafted import Crafted
 from masonry import readCheckpoint, saveCheckpoint
 from masonry.read.files import readCurve, readRun
 from masonry.run import checkpoints
 from masonry.run import run as running
 from masonry.run.results import Results
 from masonry.run.run import Run
-from masonry.scene.outcome import Outcome
 from masonry.assembly.structure import Structure
 from small import SMALL, Wall, carryOut, parsed, scene as runScript
 
@@ -435,36 +430,6 @@ def test_a_curve_with_a_second_name_is_not_written(broken, tmp_path, capsys):
     assert refused(broken) == 2
     assert "a second name, a hard link" in capsys.readouterr().err
     assert (tmp_path / "backup.csv").read_bytes() == before
-
-
-@pytest.mark.parametrize("seed", range(2))
-def test_crafted_checkpoints_are_refused_in_a_sentence_and_change_nothing(
-    scene, tmp_path, monkeypatch, seed
-):
-    """What passes is taken up like any other: its numbers are possible ones."""
-    monkeypatch.setattr(Outcome, "draw", lambda self, directory: None)
-    words = ["--until", "0.1", "--rate", "100", "--no-vtk"]
-    assert run(tmp_path / "whole", *words) == 0
-    whole = {n: (tmp_path / "whole" / n).read_bytes() for n in os.listdir(tmp_path / "whole")}  # fmt: skip
-    out, count = tmp_path / "out", 0
-    out.mkdir()
-    for kind, data in itertools.islice(Crafted(whole["run.checkpoint"], seed), 150):
-        for name in os.listdir(out):
-            os.remove(out / name)
-        for name, text in {**whole, "run.checkpoint": data}.items():
-            (out / name).write_bytes(text)
-        with redirect_stderr(io.StringIO()) as message:
-            try:
-                status = run(out, resume=True)
-            except SystemExit as end:
-                status = end.code
-        assert status in (0, 2), kind
-        if status == 2:
-            count += 1
-            assert len(message.getvalue().splitlines()) == 1, message.getvalue()
-            now = {n: (out / n).read_bytes() for n in os.listdir(out)}
-            assert now == {**whole, "run.checkpoint": data}
-    assert count > 90
 
 
 def test_options_that_say_the_same_are_welcome(broken):

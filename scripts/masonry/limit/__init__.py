@@ -15,8 +15,8 @@ The blocks and joints are those of the scene that is built, so this is a second 
 Of a :class:`masonry.Scene` ``scene.bound(...)`` does all this.
 
 The static theorem is used: the largest factor for which forces in the joints exist that are in equilibrium with the loads
-and nowhere above the strength. It is a linear programme, which the interior-point method of Clp solves, or HiGHS where
-Clp's library is missing, in a process of its own that can be ended (:mod:`masonry.limit.worker`). Its dual is the
+and nowhere above the strength. It is a linear programme, which the interior-point method of Clp solves, in a process of its own
+that can be ended (:mod:`masonry.limit.solver`). Its dual is the
 mechanism: how fast each block moves when the structure gives way (Livesley, "Limit analysis of structures formed from
 rigid blocks", International Journal for Numerical Methods in Engineering 12, 1978).
 

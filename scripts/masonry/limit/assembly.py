@@ -14,7 +14,8 @@ from ..arguments import Numbers
 from ..basics import Refused
 from . import slipping
 from .bound import Bound
-from .programme import FACETS, Late, Programme, Unsolved, solve
+from .programme import FACETS, Programme, solve
+from .solver import Late, Unsolved
 
 TURNS = 6  # how often the facets of friction are turned at most
 STILL = 1e-3  # change of the factor at which they stand still [-]
@@ -231,7 +232,7 @@ class Assembly:
             if most is not None:
                 raise
             if isinstance(unsolved, Late):
-                raise Refused(f"limit analysis: {unsolved}") from None
+                raise Refused("limit analysis: it was not solved in time") from None
             raise self._why(live, dead, sense, turn, unsolved) from None
         speed = np.zeros(self.held.shape)
         # The dual of equilibrium, with which the live load has the power of its unit.

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The linear programme of limit analysis, and its solution with Clp or HiGHS."""
+"""The linear programme of limit analysis, and its solution."""
 
 import math
 
 import numpy as np
 
-from . import worker
+from . import solver
+from .solver import Late, Unsolved
 
 FACETS = 8  # of a friction cone
 SHARE = 12  # entries of the load by which a copy of the factor is multiplied
@@ -197,22 +198,8 @@ def _polygon(turn, one, two):
     return [radius * (x * one + y * two) for x, y in zip(cos, sin)]
 
 
-class Unsolved(Exception):
-    """The programme has no solution, or none was found; the text says what the solver says."""
-
-
-class Late(Unsolved):
-    """The time of the solver is over."""
-
-    def __init__(self):
-        super().__init__("it was not solved in time")
-
-
 def solve(programme, cost, loads, left):
-    """Solve a programme, with Clp's interior-point method if its library is there, else with HiGHS, in a process of its own.
-
-    On the many contacts of a wall in which forces can be shared in many ways, Clp's method takes a twentieth of the time
-    of HiGHS's.
+    """Solve a programme.
 
     :param programme: :class:`Programme`
     :param cost: of each variable
@@ -228,8 +215,10 @@ def solve(programme, cost, loads, left):
     equal, unequal = programme.matrices()
     if not (np.isfinite(equal.data).all() and np.isfinite(loads).all()):
         raise Unsolved("the programme has numbers that are not finite")
-    values, dual = _solved(
-        programme, cost, loads, vstack([equal, unequal], "csc"), left
+    whole = vstack([equal, unequal], "csc")
+    sides = np.append(loads, programme.limits)
+    values, dual = solver.solve(
+        whole, len(loads), programme.low, programme.high, cost, sides, left
     )
     off = np.abs(equal @ values - loads).max()
     over = (unequal @ values - programme.limits).max(initial=0)
@@ -238,21 +227,3 @@ def solve(programme, cost, loads, left):
             f"its solution misses equilibrium by {off:.1g} and strength by {over:.1g} of a block's usual load"
         )
     return values, dual
-
-
-def _solved(programme, cost, loads, whole, left):
-    try:
-        word, text, values, dual = worker.solve(
-            whole,
-            len(loads),
-            programme.low,
-            programme.high,
-            cost,
-            np.append(loads, programme.limits),
-            left,
-        )
-    except worker.Ended:
-        raise Late from None
-    if word == "solved":
-        return values, dual
-    raise Late if word == "late" else Unsolved(text)

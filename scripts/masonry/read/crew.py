@@ -12,12 +12,12 @@ report.html. It ends without a word if it is given no folder. This module needs 
 from __future__ import annotations
 
 import contextlib
-import ctypes
+import math
 import os
-import signal
 import sys
 
 from .. import memory
+from ..background import Failed, Task
 from ..basics import say
 from ..folders import check
 from ..packages import Missing, needed
@@ -28,7 +28,6 @@ STDIN = 0
 END = b"\0"  # of the name of the folder
 #: Exit statuses beside 0 and those of figures: there is no report, and there are figures.
 NO_REPORT = 3
-PARENT_ENDS = 1  # PR_SET_PDEATHSIG of prctl
 
 
 def _load() -> None:
@@ -62,41 +61,20 @@ def _draw(folder: str) -> int:
     return onFolder(figures.draw, [folder])
 
 
-def _beside(folder: str) -> int:
-    """Draw the figures in a copy of this process, which ends with it. Returns the copy's number, or 0 if there is none."""
-    sys.stdout.flush(), sys.stderr.flush()
-    try:
-        process = os.fork()
-    except OSError:  # no process is to be had
-        return 0
-    if process:
-        return process
-    status = 1
-    try:
-        with contextlib.suppress(AttributeError, OSError):
-            ctypes.CDLL(None).prctl(PARENT_ENDS, signal.SIGKILL)
-        status = _draw(folder)
-        sys.stdout.flush(), sys.stderr.flush()
-    finally:
-        os._exit(status)
-
-
 def main() -> int:
     """The program. Returns its exit status."""
     _load()
     folder = _folder()
     if not folder:
         return 0
-    process = _beside(folder)
-    status = 0 if process else _draw(folder)
+    drawing = Task(lambda: [_draw(folder)])
     written = NO_REPORT
 
     def write(directory: str) -> None:
-        nonlocal status, process
         memory.reserve()
         check(directory)
         record = report.read(directory)
-        status, process = _ended(process, status), 0
+        drawing.ready(seconds=math.inf)  # the report shows the figures
         while os.read(STDIN, 1):  # at its end the run has written its own figures
             pass
         report.write(record, os.path.join(directory, report.NAME))
@@ -105,14 +83,10 @@ def main() -> int:
         written = onFolder(write, [folder]) and NO_REPORT
     except Exception as problem:  # the figures shall be there all the same
         say(f"the report cannot be made: {type(problem).__name__}: {problem}", sys.stderr)  # fmt: skip
-    finally:
-        status = _ended(process, status)
-    return status or written
-
-
-def _ended(process: int, status: int) -> int:
-    """Wait for the copy that draws. Returns its exit status; without one, the other."""
-    return os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]) if process else status
+    try:
+        return drawing.result() or written
+    except Failed:
+        return 1
 
 
 if __name__ == "__main__":

@@ -5,38 +5,25 @@ from __future__ import annotations
 
 import contextlib
 import csv
-import errno
 import math
 import os
-import stat
 import sys
 from typing import Any, Callable, Iterator, Sequence
 
 from .. import memory
 from ..arguments import FilePath
 from ..basics import Refused, say
-from ..folders import fromJson
+from ..folders import fromJson, inside
 
 
-def readWhole(path: FilePath, sizeOf: Callable[[bytes], int] | None = None) -> bytes:
-    """The bytes of a file. Raises OSError for what is no file, too: a pipe never ends, and a device has no end.
-
-    :param sizeOf: function of the first 64 bytes that gives how many the file should have; of a longer one, which may be
-        an endless hole, one byte more is read. Never more is asked of the memory than the file has
-    """
-    number = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
-    with open(number, "rb") as f:
-        found = os.fstat(number)
-        if not stat.S_ISREG(found.st_mode):
-            raise OSError(errno.EINVAL, "it is no regular file", path)
-        head = f.read(64)
-        if not sizeOf:
-            return head + f.read()
-        return head + f.read(max(0, min(sizeOf(head) + 1, found.st_size) - len(head)))
+def readWhole(path: FilePath) -> bytes:
+    """The bytes of a file. Raises OSError for what is no file, too: a pipe never ends, and a device has no end."""
+    with open(path, "rb", opener=inside) as file:
+        return file.read()
 
 
-def _read(path):
-    """Text of a file of a run."""
+def readText(path: FilePath) -> str:
+    """The text of a file. Raises Refused if there is none."""
     try:
         return readWhole(path).decode()
     except OSError as error:
@@ -48,7 +35,7 @@ def _read(path):
 def readCurve(directory: FilePath) -> dict[str, list[float]]:
     """curve.csv of a run as a dict of column name -> list of numbers. Raises Refused if there is none."""
     path = os.path.join(directory, "curve.csv")
-    lines = list(csv.reader(_read(path).splitlines()))
+    lines = list(csv.reader(readText(path).splitlines()))
     if len(lines) < 2:
         raise Refused(f"{path}: there is no row of numbers")
     columns, rows, problems = lines[0], [], []
@@ -73,7 +60,7 @@ def readRun(directory: FilePath) -> dict[str, Any]:
     """run.json of a run as a dict; this module's docstring lists its keys. Raises Refused if there is none."""
     path = os.path.join(directory, "run.json")
     try:
-        run = fromJson(_read(path))
+        run = fromJson(readText(path))
     except ValueError as error:
         if isinstance(error, Refused):
             raise

@@ -4,9 +4,8 @@
 - :mod:`masonry.run.run`: a run in stages; :mod:`masonry.run.place`: how far it has come;
   :mod:`masonry.run.ending`: how it ends
 - :mod:`masonry.run.results`: the files that a run leaves, and the keys of run.json
-- :mod:`masonry.run.checkpoints`: the state of a scene on disk; :mod:`masonry.run.plausible`: whether it can be that of a run
+- :mod:`masonry.run.checkpoints`: the state of a scene on disk
 - :mod:`masonry.run.presets`: options that trade accuracy for time, and :mod:`masonry.run.accuracy`: a push whose error is found
 - :mod:`masonry.run.batch`: rows of a table for ``yade-batch``
-- :mod:`masonry.run.beside`: work that other processes do while a run goes on
 - :mod:`masonry.run.progress`, :mod:`masonry.run.plotting`: a run on the terminal, and in ``yade.plot``
 """

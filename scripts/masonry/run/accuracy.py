@@ -16,30 +16,25 @@ This module needs no YADE.
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import hashlib
 import json
 import os
 import shutil
-import signal
-import subprocess
 import sys
-import time
 from typing import Any
 
-from ..basics import Interrupted, Refused, say
-from ..folders import replaced
+from .. import background
+from ..basics import Refused, say
+from ..folders import check, inside, replaced
 from ..read.files import readRun
 from . import batch
 from .presets import CHOSEN, COMPANIONS, FIDELITIES, MAIN, asOption, fidelityOf
 
 FOLDER = "accuracy"  # of the companions, in that of the results
 PLAN = "plan.json"  # there: what was run, while it goes on
-#: Name in the environment of a companion, with the number of the process that started it. Its scene looks at no other runs.
+#: Name in the environment of a companion. Its scene looks at no other runs.
 COMPANION = "MASONRY_COMPANION"
-_parent = os.environ.pop(COMPANION, None)  # what a companion itself starts is none
-LOOK_EVERY = 0.05  # [s]
-DIES_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux
+_isCompanion = bool(os.environ.pop(COMPANION, ""))  # what it starts itself is none
 #: Half the width of a 95 % interval over the range of three runs, for the difference from another run: Student's t with two
 #: degrees of freedom, 4.30, times sqrt(1 + 1/3), over 1.69, the mean range of three in standard deviations.
 BY_CHANCE = 2.9
@@ -118,16 +113,7 @@ def needed(number: int) -> list[str]:
 
 def isCompanion() -> bool:
     """Whether this process is a companion of another run."""
-    return _parent is not None
-
-
-def endWithParent() -> None:
-    """Let a companion end in order when the run beside which it was started is gone, also if that was killed."""
-    if _parent is not None and sys.platform == "linux":
-        with contextlib.suppress(AttributeError, OSError):
-            ctypes.CDLL(None).prctl(DIES_WITH_PARENT, signal.SIGTERM, 0, 0, 0)
-        if os.getppid() != int(_parent):
-            os.kill(os.getpid(), signal.SIGTERM)
+    return _isCompanion
 
 
 class Companions:
@@ -149,7 +135,8 @@ class Companions:
         return os.path.join(self.folder, plain.replace("__", "_"))
 
     def begin(self, key: str) -> None:
-        """Make the folder, or take up what an interrupted run with this key left there."""
+        """Make the folder, or take up what an interrupted run with this key left there. Raises Refused."""
+        check(os.path.dirname(self.folder), self.folder)
         path = os.path.join(self.folder, PLAN)
         with contextlib.suppress(OSError, ValueError):
             with open(path) as file:
@@ -212,46 +199,20 @@ class Companions:
         :raises Interrupted: after Ctrl-C and SIGTERM, when all of them have ended
         """
         due = [name for name in names if name not in self.numbers]
-        stopped: list[int] = []
-        handlers = {
-            n: signal.signal(n, lambda number, frame: stopped.append(number))
-            for n in (signal.SIGINT, signal.SIGTERM)
-        }
-        running: dict[str, subprocess.Popen[bytes]] = {}
         cores = len(os.sched_getaffinity(0))
-        try:
-            while (due or running) and not stopped:
-                while due and len(running) < cores:
-                    name = due.pop(0)
-                    running[name] = self._start(name)
-                time.sleep(LOOK_EVERY)
-                for name, process in list(running.items()):
-                    if process.poll() is not None:
-                        del running[name]
-                        self._ended(name, process.returncode)
-            if stopped:
-                raise Interrupted()
-        finally:
-            for process in running.values():
-                with contextlib.suppress(ProcessLookupError):
-                    process.terminate()
-            for process in running.values():
-                process.wait()
-            for number, handler in handlers.items():
-                signal.signal(number, handler)
+        background.carryOut(due, self._start, self._ended, cores)
 
     def _start(self, name):
         options = {**CHOSEN, **COMPANIONS[name]}
         words = [f"{asOption(option)}={value}" for option, value in options.items() if value is not None]  # fmt: skip
         folder = self.folderOf(name)
         command = [*self.command, *words, "--lean", "--checkpoint-every=0", f"--out={folder}"]  # fmt: skip
-        env = {**os.environ, "OMP_NUM_THREADS": "1", COMPANION: str(os.getpid())}
-        for other in (batch.VARIABLE, batch.SCENE, batch.PROBE):
+        env = {**os.environ, "OMP_NUM_THREADS": "1", COMPANION: "1"}
+        for other in (batch.VARIABLE, batch.PROBE):
             env.pop(other, None)
         try:
-            with open(folder + ".log", "wb") as log:
-                # in a session of its own: Ctrl-C is for this process, which ends it in order
-                return subprocess.Popen(command, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True)  # fmt: skip
+            with open(folder + ".log", "wb", opener=inside) as log:
+                return background.start(command, log, env)
         except OSError as error:
             raise Refused(f"--accuracy: cannot run {command[0]}: {error.strerror}") from None  # fmt: skip
 

@@ -23,12 +23,10 @@ import os
 import re
 
 from ..basics import Refused
-from ..read.files import readRun, readWhole
+from ..read.files import readRun, readText
 
 #: Options that a study itself gives, or that a row of it cannot have.
 OWN = {"out", "resume", "lean", "set", "field", "no_vtk", "vtk_every", "help"}
-#: Name in the environment of the scene that the user of a study has named.
-SCENE = "MASONRY_SCENE"
 VARIABLE = "YADE_BATCH"  # of the environment: path of the table and number of the line
 ROWS = "rows"  # folder of the results, beside the table
 FIELD = "field:"  # begins the name of a column
@@ -40,12 +38,7 @@ UNWRITTEN = "cannot write "  # begins what is said if that file cannot be writte
 
 def readTable(path):
     """The rows of a table by the number of their line, from 1: dicts of texts. Raises Refused if it is none."""
-    try:
-        text = readWhole(path).decode("utf-8")
-    except OSError as error:
-        raise Refused(f"cannot read {path}: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise Refused(f"cannot read {path}: {error}") from None
+    text = readText(path)
     lines = [re.sub(r"\s*#.*", "", line).split() for line in text.split("\n")]
     used = [number for number, words in enumerate(lines, 1) if words]
     if not used:

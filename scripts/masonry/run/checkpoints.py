@@ -83,7 +83,7 @@ def readState(directory: FilePath) -> tuple[bytes, Any]:
 
 def _bytesOf(path):
     with _says(path):
-        return readWhole(path, _size)
+        return readWhole(path)
 
 
 def _extra(path, textOf, data):
@@ -102,14 +102,6 @@ def _says(path):
         why = plain(error)
         why = why if len(why) < LONGEST else why[:LONGEST] + " ..."
         raise ValueError(f"{path} {why}") from None
-
-
-def _size(head):
-    """Bytes of a checkpoint that begins like this; of another file, so many as are needed to say that it is none."""
-    title, end, number = head.partition(b"\n")
-    if len(number) < 8:
-        return len(head)
-    return len(title + end) + 8 + int.from_bytes(number[:8], "little")
 
 
 def alike(value: Any, example: Any) -> bool:

@@ -4,11 +4,8 @@
 import contextlib
 import datetime
 import os
-import site
 import socket
 import sys
-import sysconfig
-import traceback
 
 import yade.config
 
@@ -18,7 +15,6 @@ from ..assembly.columns import meanings
 from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
 from ..memory import FULL
 from .checkpoints import NAME
-from .plausible import DAMAGES, brief
 from .presets import presetNote
 
 OFF = 0.01  # of the work done: a larger error of the energy balance is a warning
@@ -46,7 +42,6 @@ def end(run, scene, error):
 
 
 def _end(run, scene, error):
-    error = _ofCheckpoint(run, error)
     if not run.results and not isinstance(error, Refused):
         return False
     try:
@@ -79,8 +74,11 @@ def _end(run, scene, error):
         run.fall(str(error))
     elif error:
         run.results.run["error"] = str(error)
-        run.checkpoint()
-        _finish(run, scene)
+        try:
+            run.checkpoint()
+            _finish(run, scene)
+        except (Unwritable, MemoryError) as other:
+            say(f"{other or FULL}; what was written before is kept", sys.stderr)
         raise error
     if stopped:
         run.results.run["error"] = str(stopped[0])
@@ -121,30 +119,6 @@ def _beforeSteps(run, error):
     if run.status:
         say(error, sys.stderr)
     return bool(run.status)
-
-
-def _ofCheckpoint(run, error):
-    """The error, or a refusal if it was raised in this package by what a checkpoint says, before anything was written."""
-    if run.advanced or not run.args.resume or not isinstance(error, DAMAGES):
-        return error
-    if isinstance(error, Refused) or not _isOwn(error):
-        return error
-    return Refused(
-        f"--resume: {os.path.join(run.args.resume, NAME)} cannot be taken up: {brief(error)}"
-    )
-
-
-def _isOwn(error):
-    """Whether an error was raised in this package or in a library that it called, and not in the script that uses it."""
-    frames = [frame.f_code.co_filename for frame, _ in traceback.walk_tb(error.__traceback__)]  # fmt: skip
-    ours = os.path.join(os.path.dirname(os.path.dirname(__file__)), "")
-    libraries = tuple({*sysconfig.get_paths().values(), *site.getsitepackages()})
-    for name in reversed(frames):
-        if name.startswith(ours):
-            return True
-        if not name.startswith((*libraries, "<")):
-            return False
-    return False
 
 
 def _keepEarlier(run, error):

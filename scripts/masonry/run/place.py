@@ -37,7 +37,7 @@ class Place:
     bounds: dict = field(default_factory=dict)  # what limit analysis found, by the load
     #: Load factors under which the structure came to rest, by the names of their bounds.
     held: dict = field(default_factory=dict)
-    #: What stages pushed or put on, by their numbers: the kind, one of LOADS, the name of the load
+    #: What stages pushed or put on, by their numbers: the kind, "push", "lean" or "growth", the name of the load
     #: and that of the opposite one.
     loads: dict = field(default_factory=dict)
     #: How stages ended, by their numbers, and the number of the last stage then: a stage may consist of several.
@@ -71,32 +71,22 @@ def restored(example, values):
     return type(example)(**{**before, **values})
 
 
-#: Kinds of loads of :attr:`Place.loads`.
-LOADS = "push", "lean", "growth"
-#: What an answer of a stage has, as of masonry.scene.stages.stage.
-ANSWER = {"stage", "number", "name", "unit", "value", "how", "uncertainty"}
-
-
-def _isAnswers(entry):
-    """Whether an entry of the answers is the number of a stage and a list of what it answered."""
-    number, found = entry
-    return number.isdecimal() and all(
-        isinstance(one, dict) and one.keys() == ANSWER
-        for one in (found if isinstance(found, list) else [None])
-    )
-
-
-#: What a note has, and of which kind.
-NOTE = {"stage": "", "number": 0, "time_s": 0.0, "text": ""}
-
-
-def _isNote(note):
-    """Whether a note is of the form that :meth:`masonry.run.run.Run.hear` gives it."""
-    return (
-        isinstance(note, dict)
-        and note.keys() == NOTE.keys()
-        and all(alike(note[name], NOTE[name]) for name in NOTE)
-    )
+#: What lists and dicts of a :class:`Place` hold, as :func:`masonry.run.checkpoints.alike` takes it.
+HOLDS = {
+    "stages": ["", 0, 0.0, 0],
+    "seconds": 0.0,
+    "frames": 0.0,
+    "origins": [0.0, 0.0],
+    "swings": [0.0] * 3,
+    "bounds": {},
+    "held": 0.0,
+    "loads": ["", "", ""],
+    "ended": ["", 0],
+    "places": 0.0,
+    "answers": [],
+    "notes": {},
+    "resumed": 0.0,
+}
 
 
 class Saved:
@@ -134,26 +124,14 @@ class Saved:
     def place(self):
         """How far the run had come: a :class:`Place`. Raises Refused."""
         at = restored(Place(), self.at)
-        if not (
-            set(at.seconds) == set(PARTS)
-            and all(alike(seconds, 0.0) for seconds in at.seconds.values())
-            and all(alike(stage, ["", 0, 0.0, 0]) for stage in at.stages)
-            and all(map(_isAnswers, at.answers.items()))
-            and all(map(_isNote, at.notes))
-            and alike(list(at.held.values()), None)
-            and all(alike(swing, [0.0] * 3) for swing in at.swings.values())
-            and all(alike(ended, ["", 0]) for ended in at.ended.values())
-            and at.rows <= len(self.rows)
-            and at.frameCount <= len(at.frames)
-            and at.number <= len(at.stages)
-            and alike(at.places, None)
-            and all(
-                alike(load, ["", "", ""]) and load[0] in LOADS
-                for load in at.loads.values()
-            )
-            and alike(at.frames + at.resumed, None)
-        ):
-            raise otherVersion("the counters of the run")
+        values = lambda held: held.values() if isinstance(held, dict) else held
+        wrong = [
+            name
+            for name, example in HOLDS.items()
+            if not all(alike(one, example) for one in values(getattr(at, name)))
+        ]
+        if wrong:
+            raise otherVersion(f"its {', '.join(wrong)}")
         return at
 
     def load(self):

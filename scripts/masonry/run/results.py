@@ -162,7 +162,6 @@ import os
 import re
 import shutil
 import socket
-import stat
 import time
 
 from .. import folders
@@ -291,7 +290,7 @@ class Lock:
 
     @classmethod
     def forget(cls):
-        """Let go of all locks in a copy of the process; the process itself keeps them."""
+        """Let go of all locks in a copy of the process; the process itself keeps them, and others may have its folder when it ends."""
         for lock in cls._held.values():
             lock._file.close()
         cls._held.clear()
@@ -310,10 +309,13 @@ class Lock:
         self._file.close()
 
 
+os.register_at_fork(after_in_child=Lock.forget)
+
+
 def held(directory):
     """Whether a run is writing to a folder now, as far as its lock tells."""
     try:
-        file = open(os.path.join(directory, LOCK), "rb", opener=_lockFile)
+        file = open(os.path.join(directory, LOCK), "rb", opener=folders.inside)
     except OSError:
         return False
     with file:
@@ -330,15 +332,6 @@ def held(directory):
         except OSError:
             return bool(_object(file.read()))
         return False
-
-
-def _lockFile(path, flags):
-    """The ``opener`` of a lock, which is a file if a run has left it: a pipe would never end."""
-    number = os.open(path, flags | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC)
-    if stat.S_ISREG(os.fstat(number).st_mode):
-        return number
-    os.close(number)
-    raise OSError(errno.EINVAL, f"{LOCK} is no regular file", path)
 
 
 def _object(data):

@@ -20,12 +20,13 @@ from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
 from .. import notebook
-from .._masonry import commit, loadScene, version
+from .._masonry import commit, version
 from ..assembly import threads
 
+from ..background import Failed, Task
+
 from ..basics import Collapsed, Interrupted, Refused, Unwritable, listen, say, stopListening  # fmt: skip
-from . import batch, plausible
-from .beside import Failed, Job
+from . import batch
 from .checkpoints import NAME, saveCheckpoint
 from .place import Place, Saved, otherVersion, restored
 from .plotting import live
@@ -82,7 +83,7 @@ class Run:
         #: whether the present stage lets the dead loads grow, and is no test yet
         self.loading = False
         self._memory = SimpleNamespace()  # of that stage
-        self._frame = None  # the job that writes a frame beside the run
+        self._frame = None  # the task that writes a frame beside the run
         self._frameTook = 0.0  # the last one, if the run has written it itself [s]
         #: function that takes what is found beside the run: with True it waits for that
         self.takeFound = lambda wait: None
@@ -105,8 +106,6 @@ class Run:
         """
         args = self.args
         self._values = [column.value for column in columns]
-        # those of the package; a function of the script may count how often it is called
-        self._ownValues = [c.value for c in columns if c.unit is not None]
         heads = [column.head for column in columns]
         self._live = live(heads)
         folder = args.out or os.path.join("results", self.name)
@@ -124,7 +123,6 @@ class Run:
                     f"--resume: {args.resume} holds a run of {self._saved.scene}, this is {self.name}"
                 )
             self.at = self._saved.place()
-            plausible.check(self._saved, self.at)
         self._takeSignals()
         listen(self.hear)
         self.preset = presetOf(args, self.name, properties)
@@ -146,11 +144,7 @@ class Run:
             if any(len(row) != width for row in self._saved.rows):
                 raise Refused(f"--resume: its rows are not of {width} columns")
             self._saved.load()
-            plausible.checkBodies(O.bodies)
-            plausible.checkReading(self._ownValues, model.read())
             self.state.takeRest(self.at)
-            plausible.checkStates(self.at, loadScene)
-            self._saved.load()  # as it was before these looked at it
             self.at.resumed.append(O.time)
             self._saved.compareHost(hostNow())
         self._recorder = MasonryVtkRecorder(
@@ -240,10 +234,8 @@ class Run:
                 )
                 if self.at.frames:
                     self._recorder.collect()
-            except (TypeError, OSError, RuntimeError, Unwritable, ValueError) as error:
+            except (OSError, RuntimeError, Unwritable) as error:
                 raise Refused(f"--resume: {error}") from None
-            except ArithmeticError as error:
-                raise otherVersion(plausible.brief(error)) from None
         self.advanced = True
 
     # -- what stages call -----------------------------------------------------------------------------------------
@@ -396,7 +388,7 @@ class Run:
             began = time.perf_counter()
             self.awaitFrame()
             if self._frameTook > SLOW_FRAME and not final:
-                self._frame = Job(self._frameBeside)
+                self._frame = Task(self._frameBeside)
                 self.vtk.times = [*self.vtk.times, O.time]
             else:
                 now = time.perf_counter()
@@ -419,10 +411,10 @@ class Run:
     def awaitFrame(self):
         """Wait until the frame is whole that is written beside the run. Raises Unwritable if it could not be written: then
         the run has gone on, and the frame is none of its frames."""
-        job, self._frame = self._frame, None
+        task, self._frame = self._frame, None
         try:
-            if job:
-                job.result()
+            if task:
+                task.result()
         except (Failed, Unwritable) as failed:
             lost = self.vtk.times[-1]
             self.vtk.times = self.at.frames = list(self.vtk.times[:-1])

@@ -5,7 +5,6 @@
 what they are.
 """
 
-import contextlib
 import math
 import os
 import sys
@@ -16,13 +15,12 @@ import numpy as np
 from yade import O, Vector3
 
 from .. import limit
+from ..background import Failed, Task
 from ..basics import GRAVITY, Interrupted, Refused, say
 from ..limit.assembly import Endless
-from ..limit.worker import worker
 from ..memory import FULL
 from ..packages import Missing
 from ..folders import replaced
-from ..run.beside import Failed, Job
 
 #: Largest number of joints for which ``--preset bound`` and domains also look for a collapse without dilatancy, which takes many
 #: solutions of the programme.
@@ -61,17 +59,12 @@ class Bounds:
         self.model, self.place = model, place
         #: what was found last, in this process: limit.Bound and its entry
         self.last = None
-        self._job = (
+        self._task = (
             None  # beside the run: finds a bound, then the files of its mechanism
         )
         self._looksFor = ""  # name of the load whose bound it has not found yet
         self._since = 0.0  # since when it looks [s]
         self.endless = set()  # names of loads under which nothing gives way
-
-    def prepare(self):
-        """Start the process of the solver, which is ready then when the first load needs it."""
-        with contextlib.suppress(Refused):  # it is said when there is a load
-            worker.start()
 
     @property
     def entries(self):
@@ -207,7 +200,7 @@ class Bounds:
         work = lambda: self._found(what, unit, load, tilts, pushed, gravity, lowerUpTo, seconds, pressed)  # fmt: skip
         if beside:
             self.drop()  # of two mechanisms the last one is kept
-            self._job = Job(lambda: self._withFiles(what, work), parts=2)
+            self._task = Task(lambda: self._withFiles(what, work), parts=2)
             self._looksFor, self._since = what, time.monotonic()
             return entry
         try:
@@ -267,18 +260,20 @@ class Bounds:
         """In a copy of the process: what was found without the mechanism, then the files of the mechanism by their names."""
         *found, bound = work()
         yield (*found, None)
-        worker.end()
         files, model = {}, self.model
         self._note(what, found[0], [], False, bound)
-        with tempfile.TemporaryDirectory() as folder:
-            views = model.description.views
-            try:
-                self.write(folder, model.description.title, model.parts, views)
-            except Missing as missing:
-                say(f"{FIGURE} is left out: {missing}", sys.stderr)
-            for name in os.listdir(folder):
-                with open(os.path.join(folder, name), "rb") as file:
-                    files[name] = file.read()
+        views = model.description.views
+        try:
+            with tempfile.TemporaryDirectory() as folder:
+                try:
+                    self.write(folder, model.description.title, model.parts, views)
+                except Missing as missing:
+                    say(f"{FIGURE} is left out: {missing}", sys.stderr)
+                for name in os.listdir(folder):
+                    with open(os.path.join(folder, name), "rb") as file:
+                        files[name] = file.read()
+        except OSError as error:
+            say(f"the mechanism is left out: {error.strerror}", sys.stderr)
         yield files
 
     def take(self, wait, givesUp=lambda: False):
@@ -287,12 +282,12 @@ class Bounds:
         :param wait: whether to wait for it
         :param givesUp: function that says while it is waited for whether to do without it
         """
-        job, what = self._job, self._looksFor
-        if not what or not (wait or job.ready()):
+        task, what = self._task, self._looksFor
+        if not what or not (wait or task.ready()):
             return
-        if not job.ready(0, SILENT) and time.monotonic() - self._since < UNASKED:
+        if not task.ready(0, SILENT) and time.monotonic() - self._since < UNASKED:
             say("waiting for limit analysis")
-        while not job.ready(0, SILENT):
+        while not task.ready(0, SILENT):
             late = time.monotonic() - self._since > UNASKED
             if late or givesUp():
                 note = LATE if late else GIVEN_UP
@@ -300,7 +295,7 @@ class Bounds:
                 self.drop()
                 return
         try:
-            self._note(what, *job.result())
+            self._note(what, *task.result())
         except Failed as failed:
             note = f"limit analysis: {failed}"
             self._note(what, {"note": note}, [f"note: {note}"], False, None)
@@ -312,9 +307,9 @@ class Bounds:
 
     def drop(self):
         """Leave what is done beside the run."""
-        job, self._job, self._looksFor = self._job, None, ""
-        if job:
-            job.end()
+        task, self._task, self._looksFor = self._task, None, ""
+        if task:
+            task.end()
 
     def _acting(self, gravity):
         """What acts beside a load and what holds the structure now: data that can be compared."""
@@ -422,7 +417,7 @@ class Bounds:
 
     def write(self, directory, title, parts, views, draws=True):
         """Write the mechanism that was found last: two files for ParaView and, if it is to be drawn, mechanism.png."""
-        if self._job:
+        if self._task:
             self._writeFound(directory, draws)
         elif self.last:
             bound, entry = self.last
@@ -436,13 +431,13 @@ class Bounds:
 
     def _writeFound(self, directory, draws):
         """Write the files that were made beside the run; if they are not to be drawn, those that are there."""
-        if not draws and not self._job.ready(1):
+        if not draws and not self._task.ready(1):
             self.drop()
             return
-        if not self._job.ready(1, SILENT):
+        if not self._task.ready(1, SILENT):
             say("waiting for the mechanism")
         try:
-            files = self._job.result(1)
+            files = self._task.result(1)
         except Failed as failed:
             say(f"the mechanism is left out: {failed}", sys.stderr)
             return

@@ -196,18 +196,6 @@ def noise(history):
     return max(AT_ZERO, NOISE * max(map(abs, history["points_mm"])))
 
 
-def canBe(value):
-    """Whether a value that was read from a file has the form of a history."""
-    points = value.get("points_mm") if isinstance(value, dict) else None
-    number = lambda p: isinstance(p, (int, float)) and abs(p) <= MOST
-    return (
-        isinstance(points, list)
-        and len(points) > 0
-        and all(map(number, points))
-        and isinstance(value.get("text"), str)
-    )
-
-
 def extends(new, old):
     """Whether a history begins with all points of another one."""
     return new["points_mm"][: len(old["points_mm"])] == old["points_mm"]

@@ -8,9 +8,7 @@ import re
 from .. import arguments
 from ..basics import Refused, plain
 from ..run import batch
-from ..run.checkpoints import alike
 from ..run.place import Saved
-from ..run.plausible import DAMAGES, brief
 from ..run.presets import HARMLESS, PRESETS, asOption
 from . import fields, history
 
@@ -212,46 +210,15 @@ class Parser(argparse.ArgumentParser):
         acting = {action.dest for action in self._actions}
         names = acting | set(self._defaults)
         wrong = [asOption(name) for name in known if name not in names | {"overrides"}]
-        beside = known.get("overrides")
-        if not (isinstance(beside, list) and all(isinstance(n, str) for n in beside)):
-            wrong.append("what stands beside a preset")
         for name in set(self._defaults) - acting:
             if known.get(name) != self._defaults[name]:
                 wrong.append(f"{asOption(name)} {known.get(name)!r}")
-        for action in self._actions:
-            name, value = action.dest, known.get(action.dest)
-            if name in ("help", "out", "resume"):
-                continue
-            if name not in known:
-                wrong.append(f"no {asOption(name)}")
-            elif not self._couldBe(action, value):
-                wrong.append(f"{asOption(name)} {value!r}")
+        asked = acting - {"help", "out", "resume"}
+        wrong += [f"no {asOption(name)}" for name in sorted(asked - known.keys())]
         if wrong:
             raise Refused(
                 f"--resume: {folder} was left by another scene or version: {', '.join(wrong)}"
             )
-
-    def _couldBe(self, action, value):
-        if value is None:
-            return action.dest == "until" or action.default is None
-        if action.choices:
-            return value in action.choices
-        if action.nargs == 0:
-            return isinstance(value, bool)
-        if action.dest == "set":
-            return isinstance(value, list) and all(
-                alike(setting, ["", "", ""]) for setting in value
-            )
-        if action.dest == "field":
-            return isinstance(value, list) and all(isinstance(v, str) for v in value)
-        if action.dest == "history":
-            return history.canBe(value)
-        try:
-            return not isinstance(value, (list, dict, bool)) and (
-                action.type is None or action.type(str(value)) == value
-            )
-        except (argparse.ArgumentTypeError, ValueError, TypeError, ArithmeticError):
-            return False
 
     def _resumed(self, args, folder):
         try:
@@ -260,8 +227,6 @@ class Parser(argparse.ArgumentParser):
             self._checkKnown(known, folder)
         except Refused as refused:
             self.exit(2, f"{refused}\n")
-        except DAMAGES as error:
-            self.exit(2, f"--resume: {folder} cannot be taken up: {brief(error)}\n")
         known["set"] = [tuple(setting) for setting in known["set"]]
         known["out"] = folder
         start = Options(self, **{**known, "set": [], "field": []})

@@ -237,7 +237,6 @@ class Scene:
 
     def _askAccuracy(self):
         """As :func:`masonry.run.accuracy.ask`. Ends the script in order where there is no answer."""
-        accuracy.endWithParent()
         parser, found = Parser.last
         fromLine = found is self.args and sys.argv and os.path.isfile(sys.argv[0])
         try:
@@ -407,8 +406,6 @@ class Scene:
         self.model = model
         self.running.open(self.columns, facts.properties(description, self.masonry))
         self.bounds = Bounds(model, self.running.at)
-        if self.only:
-            self.bounds.prepare()
         self.running.takeFound = self._takeFound
         self.outcome = Outcome(self)
         with self.running.clock("setup"), self.running.breakable(), withoutCollector():

@@ -15,7 +15,7 @@ from ..basics import Interrupted, Refused, Unwritable, say
 from . import slurm
 from .continuing import checkRows, rowsOf
 from .gathering import CSV, Folder, gather
-from .local import Local, yadeBatch
+from .local import Local
 from .plan import Study
 from .start import NOTHING, begin
 
@@ -98,8 +98,6 @@ def main(words):
             return tell(Folder(args.out))
         if args.slurm:
             slurm.check()
-        elif not args.prepare:
-            yadeBatch()
         study = load(args.file)
         folder = begin(study, args.out, os.path.dirname(os.path.abspath(args.file)))
         if args.slurm:

@@ -7,9 +7,10 @@ that the table gives it; a row that goes on from a checkpoint is refused by the 
 and begins again. What a row has found cannot be compared with anything: whoever wants to be sure runs it again.
 """
 
+from itertools import zip_longest
 
 from ..basics import Refused
-from ..read.files import readWhole
+from ..read.files import readText
 from ..run import batch, presets
 from .gathering import TABLE
 
@@ -27,51 +28,15 @@ def compareTable(folder, drawn):
     :param drawn: the text of the table
     """
     path = folder.of(TABLE)
-    try:
-        text = readWhole(path).decode()
-    except OSError as error:
-        raise Refused(f"cannot read {path}: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise Refused(f"cannot read {path}: it is no text") from None
+    text = readText(path)
     if text == drawn:
         return
-    found = _differences(_cells(text), _cells(drawn))
-    found = found or ["its blanks or ends of lines are others"]
-    more = [f"and {len(found) - SHOWN} more"] if len(found) > SHOWN else []
+    lines = zip_longest(text.split("\n"), drawn.split("\n"), fillvalue="nothing")
+    number, was, now = next((n, *two) for n, two in enumerate(lines, 1) if two[0] != two[1])  # fmt: skip
     raise Refused(
-        f"--out: {path} is not what the study draws; remove it, and it is drawn again. There\n  "
-        + "\n  ".join(found[:SHOWN] + more)
+        f"--out: {path} is not what the study draws; remove it, and it is drawn again. Line {number} is\n  {was}\n"
+        f"and the study draws\n  {now}"
     )
-
-
-def _cells(text):
-    return [line.split() for line in text.splitlines()]
-
-
-def _differences(there, drawn):
-    """Sentences on what two tables, lists of lists of words, differ in."""
-    heads = drawn[0]
-    if there[:1] != [heads]:
-        columns = there[0] if there else []
-        return [
-            f"column {c} is not of the study" for c in columns if c not in heads
-        ] + [f"column {c} is missing" for c in heads if c not in columns] or [
-            "its columns have another order"
-        ]
-    if len(there) != len(drawn):
-        return [f"it has {len(there) - 1} rows, and the study {len(drawn) - 1}"]
-    found = []
-    for number, (one, other) in enumerate(zip(there[1:], drawn[1:]), 1):
-        row = f"row {batch.named(number)}"
-        if len(one) != len(heads):
-            found.append(f"{row} has {len(one)} values in {len(heads)} columns")
-            continue
-        found += [
-            f"{row}: {head} is {was}, and the study draws {now}"
-            for head, was, now in zip(heads, one, other)
-            if was != now
-        ]
-    return found
 
 
 def rowsOf(folder):

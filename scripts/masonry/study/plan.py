@@ -183,22 +183,31 @@ class Study:
                 problems.append(f"correlation {pair!r}: must be of two names")
                 continue
             one, two = map(joined, pair)
-            odd = [
-                n for n in (one, two) if not isinstance(self.vary.get(n), Distribution)
-            ]
-            if (
-                odd
-                or one == two
-                or not isinstance(value, (int, float))
-                or not -1 < value < 1
-            ):
-                problems.append(
-                    f"correlation {pair!r} = {value!r}: must be above -1 and below 1, of two names that have distributions"
-                )
-            elif (two, one) in self.correlation:
-                problems.append(f"correlation {pair!r}: given twice")
-            else:
+            wrong = [reason for n in (one, two) if (reason := self._uncorrelated(n))]
+            if one == two:
+                wrong.append("the two names are the same")
+            if not isinstance(value, (int, float)) or not -1 < value < 1:
+                wrong.append("it must be above -1 and below 1")
+            if (two, one) in self.correlation:
+                wrong.append("given twice")
+            problems += [f"correlation {pair!r} = {value!r}: {why}" for why in wrong]
+            if not wrong:
                 self.correlation[one, two] = float(value)
+
+    def _uncorrelated(self, name):
+        """Why a name can have no correlation, or nothing."""
+        what = self.vary.get(name)
+        if isinstance(what, Distribution):
+            return ""
+        if what:
+            return f"{name} is a choice; only distributions have a correlation"
+        for column, what in self.vary.items():
+            names = tuple(_namesOf(column))
+            if name in names and isinstance(what, Field):
+                return f"{name} is a field; only distributions have a correlation"
+            if name in names:
+                return f"{name} varies with others: name it by its key in vary, {names}"
+        return f"{name} does not vary"
 
     # -- what follows -------------------------------------------------------------------------------------------------
 

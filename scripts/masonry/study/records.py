@@ -8,18 +8,13 @@ import numpy as np
 
 from ..run import batch, presets
 from ..basics import Refused
-from ..read.files import readCurve, readWhole
+from ..read.files import readCurve, readText
 from .gathering import CSV, TIMES, Folder
 
 
 def _table(path):
     """A CSV file as a dict of column -> texts. Raises Refused."""
-    try:
-        lines = list(csv.reader(readWhole(path).decode("utf-8").splitlines()))
-    except OSError as error:
-        raise Refused(f"cannot read {path}: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise Refused(f"cannot read {path}: it is no text") from None
+    lines = list(csv.reader(readText(path).splitlines()))
     head = lines[0] if lines else []
     if head[:1] != ["run"] or "status" not in head:
         raise Refused(

@@ -250,7 +250,8 @@ def drawIncremental(demands, limit):
     yield from _drawn(demands.directory, {"ida": curves, "fragility": fragility})
 
 
-def main(words=None):
+def parser():
+    """What the program takes."""
     parser = argparse.ArgumentParser(
         prog="python3 -m masonry.study.report",
         description="Statistics and pictures of a study.",
@@ -288,7 +289,12 @@ def main(words=None):
         "the demand, and --demand has intensities at which the probability is printed",
     )
     parser.add_argument("--no-pictures", action="store_true", help="the table alone")
-    args = parser.parse_args(words)
+    return parser
+
+
+def main(words=None):
+    """The program. Returns its exit status."""
+    args = parser().parse_args(words)
     try:
         demands, prices = _listed("--demand", args.demand), _listed(
             "--prices", args.prices

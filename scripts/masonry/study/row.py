@@ -3,8 +3,8 @@
 
 A row of an incremental analysis is followed by the higher levels of its record, until the structure falls. A row that was
 run is left out, one that was stopped goes on from its checkpoint, and one that somebody else is running is
-left alone. ``DIR/rows/NUMBER.log`` has what it says. This is what a task of Slurm, or of GNU parallel, calls; yade-batch calls
-it too, with the row and the scene in its environment. The exit status is 0 if all rows are ended.
+left alone. ``DIR/rows/NUMBER.log`` has what it says. This is what a study on this machine, a task of Slurm, or GNU parallel calls.
+The exit status is 0 if all rows are ended.
 
 The scene is a program, and the folder of a study is data: that study.json names a scene is no reason to run it. So the user
 names it, unless it is in the folder itself, and it must be the file with which the study began. The first line says what runs.
@@ -19,6 +19,7 @@ import subprocess
 import sys
 import time
 
+from .. import background
 from ..run import batch
 from ..basics import Refused, say
 from ..folders import inside
@@ -38,13 +39,12 @@ class Job:
     """Runs rows, and stops in order when it is asked to.
 
     :param path: folder of the study
-    :param more: words for YADE
     :param scene: its file, as the user has named it; None: that of study.json, if it is in the folder
     :raises Refused: if the folder is not as a study leaves it, or the scene is another one
     """
 
-    def __init__(self, path, more=(), scene=None):
-        self.folder, self.more = Folder(path), list(more)
+    def __init__(self, path, scene=None):
+        self.folder = Folder(path)
         self.folder.check()
         self.script = _sceneOf(self.folder, scene)
         rowsOf(self.folder)
@@ -58,30 +58,22 @@ class Job:
         if self._child:
             self._child.send_signal(signal.SIGTERM)
 
-    def run(self, number, log=None):
-        """Run a row, unless it is done. Returns the exit status.
-
-        :param log: file object that takes what it says; None: the log of the row
-        """
+    def run(self, number):
+        """Run a row, unless it is done. Returns the exit status."""
         folder = self.folder
         if folder.isDone(number):
             return 0
         self._checkRecord(number)
         os.makedirs(folder.of(batch.ROWS), exist_ok=True)
-        own = log is None
-        if own and folder.isHeld(number):
+        if folder.isHeld(number):
             return REFUSED  # somebody else runs it, and writes this log
-        log = open(folder.row(number) + ".log", "wb", opener=inside) if own else log
         # what an attempt took that left a checkpoint belongs to the price of the row
         checkpoint = os.path.join(folder.row(number), "run.checkpoint")
         spent = folder.lastJob(number).get("seconds", 0)
         spent = spent if os.path.exists(checkpoint) else 0
         began = time.monotonic()
-        try:
+        with open(folder.row(number) + ".log", "wb", opener=inside) as log:
             status = self._attempts(number, log)
-        finally:
-            if own:
-                log.close()
         message = "" if status == 0 else self._reason(number)
         record = {
             "host": socket.gethostname(),
@@ -136,23 +128,12 @@ class Job:
     def _yade(self, number, log):
         place = f"{self.folder.of(TABLE)}:{number + 1}"
         env = {**os.environ, batch.VARIABLE: place, "OMP_NUM_THREADS": "1"}
-        command = ["yade", "-n", *self.more, "-x", self.script]
+        command = ["yade", "-n", "--threads=1", "-x", self.script]
         where = os.path.dirname(self.script)
-        self._child = subprocess.Popen(
-            command,
-            env=env,
-            cwd=where,
-            stdin=subprocess.DEVNULL,
-            stdout=log,
-            stderr=log,
-        )
+        self._child = background.start(command, log, env, where)
         if self.stopped:
             self._child.send_signal(signal.SIGTERM)
-        while True:
-            try:
-                return self._child.wait()
-            except InterruptedError:
-                pass
+        return self._child.wait()
 
     def _said(self, number):
         """Bytes of the log so far."""
@@ -200,18 +181,6 @@ def _sceneOf(folder, named):
     return path
 
 
-def _batched(words):
-    """The row that yade-batch runs, with its words for YADE."""
-    path, line = batch.place(os.environ[batch.VARIABLE])
-    folder, scene = os.path.dirname(os.path.abspath(path)), os.environ.get(batch.SCENE)
-    job = Job(folder, words[: words.index("-x")], scene)
-    say(f"note: this runs {job.script}")
-    status = job.run(line - 1, sys.stdout.buffer)
-    for number in job.folder.chains.higher(line - 1):
-        status = status if job.stopped else job.run(number) or status
-    return status
-
-
 def requeue(job):
     """Ask Slurm to run this task again, if it is one that ran out of time."""
     env = os.environ
@@ -221,8 +190,6 @@ def requeue(job):
 
 def main(words):
     try:
-        if batch.VARIABLE in os.environ and "-x" in words:
-            return _batched(words)
         return _rows(words)
     except Refused as refused:
         say(refused, sys.stderr)
@@ -241,7 +208,7 @@ def _rows(words):
         raise Refused(
             "name the scene, the folder of a study and the numbers of its rows: --scene FILE DIR NUMBER..."
         )
-    job = Job(words[0], ["--threads=1"], scene)
+    job = Job(words[0], scene)
     runs = job.folder.description()["study"]["runs"]
     beyond = [w for w in words[1:] if not 1 <= int(w) <= runs]
     if beyond:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, Sequence
 
@@ -53,15 +52,7 @@ class Distribution:
         low, high = p.get("low"), p.get("high")
         if low is None and high is None:
             return made
-        # OpenTURNS compares both numbers of an interval, those of open ends, too
-        most = ot.SpecFunc.MaxScalar
-        ends = ot.Interval(
-            [-most if low is None else low],
-            [most if high is None else high],
-            [low is not None],
-            [high is not None],
-        )
-        return ot.TruncatedDistribution(made, ends)
+        return ot.TruncatedDistribution(made, _interval(low, high))
 
     def beyond(self, low: float | None, high: float | None) -> float:
         """Probability of a value below ``low`` or above ``high``; None is no bound [-]."""
@@ -79,48 +70,33 @@ class Distribution:
         return f"{self.kind}({', '.join(f'{n}={v:g}' for n, v in self.parameters)})"
 
 
+def _interval(low, high):
+    """The numbers between two ends, as OpenTURNS has them; None is no end."""
+    ot = openturns()
+    most = ot.SpecFunc.MaxScalar  # it compares the numbers of open ends, too
+    ends = [-most if low is None else low], [most if high is None else high]
+    return ot.Interval(*ends, [low is not None], [high is not None])
+
+
 def _aboutMean(kind, mean, cov, low, high):
     parameters = {"mean": mean, "cov": cov}
-    parameters.update(
-        {n: v for n, v in (("low", low), ("high", high)) if v is not None}
-    )
-    _finite(**parameters)
+    ends = {n: v for n, v in (("low", low), ("high", high)) if v is not None}
+    _finite(**parameters, **ends)
     if not cov >= LEAST_COV:
         raise Refused(f"{kind}: coefficient of variation {cov} must be above 0, and at least {LEAST_COV:g}")  # fmt: skip
     if mean == 0 or (kind == "lognormal" and mean < 0):
         raise Refused(f"{kind}: mean {mean:g} must be above 0")
     if low is not None and high is not None and not low < high:
         raise Refused(f"{kind}: low {low:g} must be below high {high:g}")
-    made = Distribution(kind, tuple(parameters.items()))
-    kept = _between(kind, mean, cov, low, high)
-    if not kept > NEVER:
-        raise Refused(
-            f"{made}: its ends leave {kept:.3g} of the distribution, they must leave more than {NEVER:g}"
-        )
+    made = Distribution(kind, tuple({**parameters, **ends}.items()))
+    if ends:
+        whole = Distribution(kind, tuple(parameters.items())).law()
+        kept = whole.computeProbability(_interval(low, high))
+        if not kept > NEVER:
+            raise Refused(
+                f"{made}: its ends leave {kept:.3g} of the distribution, they must leave more than {NEVER:g}"
+            )
     return made
-
-
-def _between(kind, mean, cov, low, high):
-    """Probability that a lognormal or normal variable lies between two ends; None is no end [-]."""
-
-    def below(end, sign):
-        """Probability that it lies below an end, or above it with ``sign`` -1."""
-        if kind == "normal":
-            away = (end - mean) / abs(mean * cov)
-        elif end > 0:
-            # of the logarithm: variance ln(1 + cov²), mean ln(mean) - variance/2
-            variance = math.log1p(cov * cov)
-            away = (math.log(end / mean) + variance / 2) / math.sqrt(variance)
-        else:
-            away = -math.inf
-        return 0.5 * math.erfc(-sign * away / math.sqrt(2))
-
-    if low is None or high is None:
-        end, sign = (low, -1) if high is None else (high, 1)
-        return 1.0 if end is None else below(end, sign)
-    # the difference of two small numbers, not of two that are nearly 1
-    sign = -1 if below(low, 1) > 0.5 else 1
-    return sign * (below(high, sign) - below(low, sign))
 
 
 @takes(mean=plainly, cov=plainly, low=plainly, high=plainly)

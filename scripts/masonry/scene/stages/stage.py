@@ -176,6 +176,8 @@ def _carryOut(scene, act, traits, args, settings):
             return _follow(scene, name)
         return COLLAPSED
     except BaseException as error:
+        if before is not None and running.entered == before:
+            scene.script.words.pop()  # it has done nothing, and a run that goes on need not say it again
         return scene.failed(error)
 
 

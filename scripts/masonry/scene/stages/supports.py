@@ -48,37 +48,36 @@ def atOnce(scene, name, act):
 
     :param act: function that changes the state of the scene
     """
+    act()  # first: what it refuses is no stage
     scene.running.stage(name, Instant())
-    act()
     scene.ended = DONE
     return DONE
 
 
 def letGo(scene, target, axes, force):
     """Free a target along some axes, with a force in place of its drive."""
-    problems, model, plane = [], scene.model, scene.description.plane
+    plane = scene.description.plane
     state = O.bodies[target.body].state
     if plane:  # nothing moves along the others
         axes = "".join(a for a in axes if a in "xzY") or axes
-    driven = any(
-        model.loading.driveOf(target, a) or model.loading.pushOf(target, a)
-        for a in axes
-    )
-    for axis in axes:
-        drive = model.loading.driveOf(target, axis) or model.loading.pushOf(
-            target, axis
-        )
-        if drive:
-            drive.driven, drive.velocity = False, 0
-            drive.force = vector(force or (0, 0, 0), "release: force [N]")
-        elif axis in state.blockedDOFs and (axis in "xzY" or not plane):
-            state.blockedDOFs = state.blockedDOFs.replace(axis, "")
-        else:
-            problems.append(f"release: {target.name} is not held along {axis}")
-    if force is not None and not driven:
+    loading = scene.model.loading
+    drives = {a: loading.driveOf(target, a) or loading.pushOf(target, a) for a in axes}
+    held = {a for a in state.blockedDOFs if a in "xzY" or not plane}
+    problems = [
+        f"release: {target.name} is not held along {axis}"
+        for axis, drive in drives.items()
+        if not (drive or axis in held)
+    ]
+    if force is not None and not any(drives.values()):
         problems.append("release: only in place of a drive a force can stay")
     if problems:
         raise ValueError("\n".join(problems))
+    for axis, drive in drives.items():
+        if drive:
+            drive.driven, drive.velocity = False, 0
+            drive.force = vector(force or (0, 0, 0), "release: force [N]")
+        else:
+            state.blockedDOFs = state.blockedDOFs.replace(axis, "")
     return DONE
 
 

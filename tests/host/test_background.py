@@ -6,9 +6,9 @@ import signal
 import time
 
 import pytest
+from masonry import background
+from masonry.background import Failed, Task
 from masonry.basics import Unwritable
-from masonry.run import beside
-from masonry.run.beside import Failed, Job
 
 
 def children():
@@ -25,9 +25,9 @@ def test_results_come_one_after_the_other_and_no_process_stays():
         yield os.getpid()
         yield large
 
-    job = Job(work, parts=2)
-    assert job.result(1) == large
-    assert job.result(0) not in (0, os.getpid())
+    task = Task(work, parts=2)
+    assert task.result(1) == large
+    assert task.result(0) not in (0, os.getpid())
     assert children() == before and len(os.listdir("/proc/self/fd")) == len(files)
 
 
@@ -37,9 +37,9 @@ def test_it_goes_on_meanwhile():
         yield 1
 
     began = time.monotonic()
-    job = Job(work)
-    assert time.monotonic() - began < 0.3 and not job.ready()
-    assert job.ready(0, 10) and job.result() == 1
+    task = Task(work)
+    assert time.monotonic() - began < 0.3 and not task.ready()
+    assert task.ready(0, 10) and task.result() == 1
 
 
 def test_what_it_raises_is_raised_here():
@@ -48,7 +48,7 @@ def test_what_it_raises_is_raised_here():
         yield
 
     with pytest.raises(Unwritable, match="cannot write x: No space"):
-        Job(work).result()
+        Task(work).result()
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
@@ -59,10 +59,10 @@ def test_one_that_is_killed_is_one_clear_sentence(number):
         yield os.getpid()
         time.sleep(60)
 
-    job = Job(work, parts=2)
-    os.kill(job.result(), number)
+    task = Task(work, parts=2)
+    os.kill(task.result(), number)
     with pytest.raises(Failed, match="its process has ended before its time"):
-        job.result(1)
+        task.result(1)
     assert children() == before
 
 
@@ -73,16 +73,16 @@ def test_one_that_is_dropped_ends():
         time.sleep(60)
         yield
 
-    job = Job(work)
-    job.end()
+    task = Task(work)
+    task.end()
     assert children() == before
-    job.end()
+    task.end()
 
 
 def test_without_a_process_the_work_is_done_at_once(monkeypatch):
     def refused():
         raise BlockingIOError("no process")
 
-    monkeypatch.setattr(beside.os, "fork", refused)
-    job = Job(lambda: iter([os.getpid(), 2]), parts=2)
-    assert job.ready(1) and job.result(0) == os.getpid() and job.result(1) == 2
+    monkeypatch.setattr(background.os, "fork", refused)
+    task = Task(lambda: iter([os.getpid(), 2]), parts=2)
+    assert task.ready(1) and task.result(0) == os.getpid() and task.result(1) == 2

@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Other processes: tasks that a copy of this one carries out, and programs, several at a time.
+
+A :class:`Task` begins with the scene as it is at that moment, so nothing need be packed for it, and what the run does then does
+not change what the copy sees. It takes no steps and ends without any clean-up. Where the system gives no process the work is
+done at once instead. :func:`carryOut` is the pool: it runs programs beside each other. Both end when this process does.
+
+This module needs no YADE.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import math
+import os
+import pickle
+import select
+import signal
+import subprocess
+import sys
+import time
+import traceback
+from typing import Any, Callable, Iterable, Iterator
+
+from .basics import Interrupted
+
+LONGEST = 60.0  # [s] that is waited for at once
+LOOK_EVERY = 0.05  # [s] between looks at programs
+PARENT_ENDS = 1  # PR_SET_PDEATHSIG of prctl
+
+
+class Failed(Exception):
+    """A task has failed; the text says why."""
+
+
+class Task:
+    """Work that goes on in a copy of this process. What it gives can be had from :meth:`result`, one after the other.
+
+    :param work: a function without arguments whose result can be iterated, as a generator
+    :param parts: how many results it gives
+    """
+
+    def __init__(self, work: Callable[[], Iterable[Any]], parts: int = 1) -> None:
+        self._results: list[Any] = []
+        self._process = 0
+        self._files: list[int] = []  # of the results, and the end of a pipe
+        self._reads, writes = -1, -1
+        sys.stdout.flush(), sys.stderr.flush()
+        old = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
+        try:
+            for _ in range(parts):
+                self._files.append(os.memfd_create("task", os.MFD_CLOEXEC))
+            self._reads, writes = os.pipe2(os.O_CLOEXEC)
+            self._process = os.fork()
+            if not self._process:
+                _carryOut(work, self._files, self._reads, writes)
+        except OSError:  # no process or no file is to be had
+            pass
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, old)
+            _close([writes])
+        if not self._process:
+            self.end()
+            self._results = [*work()]
+
+    def ready(self, part: int = 0, seconds: float = 0.0) -> bool:
+        """Whether a result is there, or will never be, within some time [s]."""
+        until = time.monotonic() + seconds
+        while len(self._results) <= part and self._process:
+            poll = select.poll()
+            poll.register(self._reads, select.POLLIN)
+            rest = max(0.0, until - time.monotonic())
+            if not poll.poll(1e3 * min(rest, LONGEST)):
+                if rest > LONGEST:
+                    continue
+                return False
+            if os.read(self._reads, 1):
+                with open(self._files[len(self._results)], "rb", closefd=False) as file:
+                    file.seek(0)
+                    self._results.append(pickle.load(file))
+                if len(self._results) == len(self._files):
+                    self.end()
+            else:
+                self.end()
+        return True
+
+    def result(self, part: int = 0) -> Any:
+        """A result; it is waited for. Raises what the work raised, or Failed if its process has ended without it."""
+        self.ready(part, math.inf)
+        last = self._results[-1] if self._results else None
+        if isinstance(last, BaseException):
+            raise last
+        if len(self._results) <= part:
+            raise Failed("its process has ended before its time")
+        return self._results[part]
+
+    def end(self) -> None:
+        """End the process, if it is there."""
+        process, self._process = self._process, 0
+        if process:
+            if len(self._results) < len(self._files):
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(process, signal.SIGKILL)
+            with contextlib.suppress(ChildProcessError):
+                os.waitpid(process, 0)
+        _close([self._reads, *self._files])
+        self._files, self._reads = [], -1
+
+
+def _close(numbers):
+    for number in numbers:
+        if number >= 0:
+            os.close(number)
+
+
+def _carryOut(work, files, reads, writes):
+    """Do the work in the copy of the process, which ends here."""
+    try:
+        os.setsid()  # Ctrl-C is for the run
+        _endWithParent(signal.SIGKILL)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_DFL)
+        signal.pthread_sigmask(signal.SIG_SETMASK, ())
+        os.close(reads)
+        results: Iterator[Any] = iter(())
+        for part, number in enumerate(files):
+            try:
+                results = results if part else iter(work())
+                value = next(results)
+                data = pickle.dumps(value)
+            except BaseException as error:
+                value = error
+                try:
+                    data = pickle.dumps(error)
+                except Exception:
+                    data = pickle.dumps(Failed(traceback.format_exception_only(error)[-1].strip()))  # fmt: skip
+            with open(number, "wb", closefd=False) as file:
+                file.write(data)
+            os.write(writes, b"1")
+            if isinstance(value, BaseException):
+                break
+    finally:
+        os._exit(0)
+
+
+def _endWithParent(number):
+    """Let this process get a signal when the one that started it ends, however that ends."""
+    with contextlib.suppress(AttributeError, OSError):
+        ctypes.CDLL(None).prctl(PARENT_ENDS, number, 0, 0, 0)
+
+
+def start(
+    command: list[str], log: Any, env: dict[str, str], cwd: str | None = None
+) -> subprocess.Popen[bytes]:
+    """Start a program, which is asked to stop (SIGTERM) when this process ends, also if that is killed.
+
+    It is in a session of its own: Ctrl-C is for this process, which ends it in order.
+
+    :param log: file that takes what it says
+    :raises OSError: if it cannot be started
+    """
+    return subprocess.Popen(
+        command,
+        env=env,
+        cwd=cwd,
+        stdin=subprocess.DEVNULL,
+        stdout=log,
+        stderr=log,
+        start_new_session=True,
+        preexec_fn=lambda: _endWithParent(signal.SIGTERM),
+    )
+
+
+def carryOut(
+    names: Iterable[Any],
+    begin: Callable[[Any], subprocess.Popen[bytes]],
+    ended: Callable[[Any, int], None],
+    most: int,
+    look: Callable[[], None] = lambda: None,
+) -> None:
+    """Run programs, so many at a time. An error that a function raises stops all of them.
+
+    :param begin: function that starts the program of a name
+    :param ended: function of the name and the exit status of a program that is over
+    :param most: programs at a time
+    :param look: function that is called about twenty times a second
+    :raises Interrupted: after Ctrl-C and SIGTERM. All programs have ended then
+    """
+    due, running = [*names], {}
+    stopped: list[int] = []
+    handlers = {
+        n: signal.signal(n, lambda number, frame: stopped.append(number))
+        for n in (signal.SIGINT, signal.SIGTERM)
+    }
+    try:
+        while (due or running) and not stopped:
+            while due and len(running) < most:
+                name = due.pop(0)
+                running[name] = begin(name)
+            time.sleep(LOOK_EVERY)
+            for name, process in list(running.items()):
+                if process.poll() is not None:
+                    del running[name]
+                    ended(name, process.returncode)
+            look()
+        if stopped:
+            raise Interrupted()
+    finally:
+        for process in running.values():
+            with contextlib.suppress(ProcessLookupError):
+                process.terminate()
+        for process in running.values():
+            process.wait()
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
