@@ -79,8 +79,9 @@ class Structure:
         self.direction = Vector3.UnitX  # of the present push or load
         self.pushing = False  # whether the present load is a push
         self.grown = False  # whether presses, dead loads and wind have their whole
-        #: Displacement of the followed point when the push or load began, along it and up [m].
-        self.origin = 0.0, 0.0
+        #: Displacement of the followed point when the push or load began, along it and up, and of the bricks at the followed
+        #: platen along it [m].
+        self.origin = 0.0, 0.0, 0.0
         #: Point of the history that the drive is going to: its number, from 1, and its displacement [mm].
         self.goal = 0, 0.0
 
@@ -104,7 +105,8 @@ class Structure:
         targets = self.description.targets.values()
         self.held = [target for target in targets if target.freedom]
         # Rows are read at every few steps: what does not change is kept.
-        self._placed = {target.name: self._placeOf(target) for target in targets}
+        self._placed = {t.name: self._placeOf(t.body, t.recorded) for t in targets}
+        self._faces = {t.name: self._faceOf(t) for t in targets if t.box and not t.fixed}  # fmt: skip
         self._forces = O.forces
         held = {target.body for target in self.held}
         self._freeMass = sum(b.state.mass for b in O.bodies if b.id not in held)
@@ -317,12 +319,27 @@ class Structure:
             return side, [(a + b) / 2 for a, b in zip(low, high)]
         return area, middle / area
 
-    def _placeOf(self, target):
-        """What the motion of a target's recorded point is found from."""
-        state = O.bodies[target.body].state
-        arm = Vector3(*target.recorded) - state.refPos
+    def _placeOf(self, body, point):
+        """What the motion of a point of a body is found from."""
+        state = O.bodies[body].state
+        arm = Vector3(*point) - state.refPos
         upright = state.refOri.conjugate()
         return state, state.refPos, arm, upright * arm, upright
+
+    def _faceOf(self, target):
+        """The middles of a platen's joints, as points of the bricks there: pairs of what their motion is found from, and the share of
+        the platen's area. Of a deformable brick its own middle stands for that."""
+        found, deformable = [], set(self.zones.bodies) if self.zones else ()
+        for one in self.interactions:
+            if target.body not in (one.id1, one.id2):
+                continue
+            brick = one.id2 if one.id1 == target.body else one.id1
+            areas, area = one.geom.areas, sum(one.geom.areas)
+            middle = sum((a * c for a, c in zip(areas, one.geom.centres)), Vector3.Zero) / area  # fmt: skip
+            middle = O.bodies[brick].state.refPos if brick in deformable else middle
+            found.append((self._placeOf(brick, middle), area))
+        whole = sum(area for _, area in found)
+        return [(place, area / whole) for place, area in found]
 
     # -- loads ----------------------------------------------------------------------------------------------------
 
@@ -536,11 +553,11 @@ class Structure:
         load.damped = False
         load.direction, load.driven = direction, True
         self.target, self.direction, self.loads["push"] = target, direction, load
-        self.followed, self.origin, self.pushing = target, (0, 0), True
+        self.followed, self.origin, self.pushing = target, (0, 0, 0), True
 
     def follow(self, target, direction):
         """From now on record the displacement of a target, or None, along a direction. Returns its origin [m]."""
-        self.followFrom(target, direction, (0, 0))
+        self.followFrom(target, direction, (0, 0, 0))
         if target:
             self.origin = self.topDisplacement()
         return list(self.origin)
@@ -640,9 +657,28 @@ class Structure:
         return state.pos + turn * ownArm - place - arm, angle
 
     def topDisplacement(self):
-        """Displacement of the followed point along the push or load and upwards since the scene was built [m]."""
+        """Displacement since the scene was built [m] of the followed point, along the push or load and upwards, and of the bricks at
+        the followed platen along it."""
         moved = self.moved(self.followed)[0]
-        return moved.dot(self.direction), moved[2]
+        return moved.dot(self.direction), moved[2], self.masonryMoved()
+
+    def masonryMoved(self):
+        """Displacement of the bricks at the followed platen along the push or load since the scene was built [m]; of a brick that is
+        followed, that of its point."""
+        face = self._faces.get(self.followed.name)
+        if not face:
+            return self.moved(self.followed)[0].dot(self.direction)
+        return sum(
+            share * (state.pos + state.ori * ownArm - place - arm).dot(self.direction)
+            for (state, place, arm, ownArm, _), share in face
+        )
+
+    def driftHeight(self):
+        """Height of the points of which :meth:`masonryMoved` is [m]."""
+        face = self._faces.get(self.followed.name)
+        if not face:
+            return self.followed.recorded[2]
+        return sum(share * (place[2] + arm[2]) for (_, place, arm, *_), share in face)
 
     def alongNow(self):
         """Displacement of the followed point along the push or load since that began [m]; 0 if none is followed."""
