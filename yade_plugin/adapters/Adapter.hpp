@@ -7,8 +7,9 @@
 //         visit("young", &T::young, number("Pa", "Young's modulus").above(0));
 //     }
 // An attribute whose value lives elsewhere, as the state of a joint does, is given by two functions in place of a
-// member: `visit("zones", computed(&T::zones, &T::setZones), ...)`. State that Python does not see is given by one function
-// that visits its numbers: `visit("record", &T::visitRecord, ...)`, see common/StateNumbers.hpp. A class may also define
+// member: `visit("zones", computed(&T::zones, &T::setZones), ...)`. State that Python does not see is given by one
+// function that visits its numbers: `visit("record", &T::visitRecord, ...)`, see common/StateNumbers.hpp. A class may
+// also define
 //     void postLoad()                               checks and prepares the object after attributes were changed
 //     std::vector<std::string> problems()           says what is wrong beyond the bounds of single attributes
 //     std::string title()                           gives the name of the object in messages

@@ -85,7 +85,10 @@ py::list MasonryJointPhys::damage() {
 py::list MasonryJointPhys::largest() {
     return perSubcontact([this](int p) {
         const auto& columns = *group->columns;
-        const auto number = [&](Role role) { const double* at = columns.column(role, p, index); return at ? *at : 0; };
+        const auto number = [&](Role role) {
+            const double* at = columns.column(role, p, index);
+            return at ? *at : 0;
+        };
         return py::make_tuple(number(Role::LargestOpening), number(Role::LargestClosure));
     });
 }

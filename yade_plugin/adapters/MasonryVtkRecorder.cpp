@@ -360,7 +360,8 @@ vtkSmartPointer<vtkPolyData> MasonryVtkRecorder::jointData() {
                 const Vector3r first = moved(s1, r.sides[0].position, r.sides[0].orientation, corner);
                 const Vector3r second = moved(s2, r.sides[1].position, r.sides[1].orientation, corner);
                 // Where blocks have parted, the crack stays on one of them.
-                displacement->InsertNextTuple(Vector3r(joint.geom->converted() ? first : 0.5 * (first + second)).data());
+                displacement->InsertNextTuple(
+                    Vector3r(joint.geom->converted() ? first : 0.5 * (first + second)).data());
             }
             const auto s = phys.state(p);
             const Vector3r jump = geom.jump(p);

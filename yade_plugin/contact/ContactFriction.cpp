@@ -57,8 +57,7 @@ FrictionStep advanceFriction(FrictionState& state, const Overlap& overlap, const
             const double half = 0.5 * spin;
             shear = (shear + std::tan(half) * normal.cross(shear)).eval();
             shear -= shear.dot(normal) * normal;
-            if (const double length = shear.norm(); length > 0)
-                shear *= state.shear.norm() / length;
+            if (const double length = shear.norm(); length > 0) shear *= state.shear.norm() / length;
             // Where the area grows, what comes in is without stress, and the force stays. Where it shrinks, what goes
             // takes its force along.
             const double energy = elasticEnergyOf(state), share = std::min(1.0, stiffness / state.stiffness);

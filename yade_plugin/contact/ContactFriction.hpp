@@ -8,7 +8,7 @@ namespace masonry {
 
 // What the friction of a pair remembers from the last step. All is in the axes of the one block.
 struct FrictionState {
-    Eigen::Vector3d shear = Eigen::Vector3d::Zero();  // force on the other block [N]
+    Eigen::Vector3d shear = Eigen::Vector3d::Zero(); // force on the other block [N]
     double twist = 0;     // moment about the normal on the other block over the lever of friction [N]
     double stiffness = 0; // of the elastic slip [N/m]; 0: the pair did not touch
     Eigen::Vector3d normal = Eigen::Vector3d::Zero(); // of the contact

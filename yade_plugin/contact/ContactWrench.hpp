@@ -23,7 +23,7 @@ struct NearBlocks {
                          // [m]
 };
 
-struct Wrench { // of a pair, global axes
+struct Wrench {                                      // of a pair, global axes
     Eigen::Vector3d force = Eigen::Vector3d::Zero(); // on the other block [N]; the one has the opposite
     // On the one and on the other block, about their centres [N m].
     Eigen::Vector3d torques[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};

@@ -391,7 +391,7 @@ void Contacts::countChanges(const SceneContents& contents) {
     const double half = 0.5 * contents.scene().dt;
     for (const auto& change : changes_)
         conversionEnergy += half * (change.force.dot(columnOf(contents.bodies.velocity, change.body)) +
-                           change.torque.dot(columnOf(contents.bodies.velocity + 3, change.body)));
+                                    change.torque.dot(columnOf(contents.bodies.velocity + 3, change.body)));
     changes_.clear();
 }
 

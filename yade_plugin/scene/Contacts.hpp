@@ -23,13 +23,13 @@ public:
     double skin = 0;              // by which boxes are larger than their blocks [m]; 0: chosen
     std::vector<int> bodies;      // ids of the blocks; empty: all rigid blocks
 
-    bool takesJoints = false;  // whether joints without bond whose blocks have moved far are handed over to contact
-    bool begun = false;        // whether there was a step
-    double given = 0;          // elastic energy that contacts had in the first step [J]
+    bool takesJoints = false;    // whether joints without bond whose blocks have moved far are handed over to contact
+    bool begun = false;          // whether there was a step
+    double given = 0;            // elastic energy that contacts had in the first step [J]
     double conversionEnergy = 0; // elastic energy that joints got so far when they were handed over [J]
     int converted = 0;           // how many joints were handed over so far
-    double lostInFriction = 0; // so far [J]
-    double lostInDamping = 0;  // so far [J]
+    double lostInFriction = 0;   // so far [J]
+    double lostInDamping = 0;    // so far [J]
 
     std::vector<std::string> problems() const;
     // Throws std::invalid_argument if a body is not there, is no block, or is a deformable unit.
@@ -48,8 +48,8 @@ public:
     bool covers(int body) const { return std::binary_search(ids_.begin(), ids_.end(), body); }
     // Twice the largest distance of a corner of a block from its centre [m]; 0 where it cannot touch. By id.
     std::vector<double> diameters() const;
-    // Goes on from the next step where these joints stood, which have no forces any more (JointConversion). To be called when
-    // the scene has been read again.
+    // Goes on from the next step where these joints stood, which have no forces any more (JointConversion). To be
+    // called when the scene has been read again.
     void takeOver(const SceneContents&, const std::vector<Joint>&);
     // Elastic energy of all contacts in the last step [J].
     double elastic(const SceneContents&);

@@ -155,10 +155,10 @@ struct JointShapes : JointGroup {
     // somebody reads them: synchronise() is called before that. All else that the law remembers of the points is always
     // up to date.
     std::vector<unsigned char> pointwise; // of every joint, whether it is not intact; never becomes so again
-    LinearField linear;                  // jumps of intact joints [m]
+    LinearField linear;                   // jumps of intact joints [m]
     LinearField damped; // of the stress of JointDamping, what is to be multiplied by the stiffnesses [m]; empty like
                         // `viscous`
-    bool stale = false;                       // whether the columns of intact joints are of an earlier step
+    bool stale = false; // whether the columns of intact joints are of an earlier step
     std::shared_ptr<LawColumns> law;          // of the same joints; null before they belong to a scene
     std::vector<double> middle[3];            // middle of the face, as `offset` [m]; empty before findMiddles()
     std::vector<double> faceArea, inertia[3]; // area [m²] and its second moments about the middle, along the first
@@ -169,7 +169,7 @@ struct JointShapes : JointGroup {
     void synchronise() {
         if (stale) writePoints();
     }
-    void synchronise(int joint);  // the same for one joint, always
+    void synchronise(int joint); // the same for one joint, always
     // From now on the joints of a vector register, of which this is one, are advanced by their points.
     void endIntact(int joint);
     void findMiddles(); // fills `middle` to `rim` from areas and offsets
@@ -241,9 +241,7 @@ struct JointShapes : JointGroup {
             column->clear();
     }
     // The stress that a subcontact has beside that of the law [Pa].
-    Vector3r stressBesideLaw(int point, int joint) {
-        return viscousAt(point, joint) + impactAt(point, joint).stress;
-    }
+    Vector3r stressBesideLaw(int point, int joint) { return viscousAt(point, joint) + impactAt(point, joint).stress; }
     void setJump(int point, int joint, const Vector3r& value) {
         synchronise();
         setVector(jump, at(point, joint), value);

@@ -554,8 +554,9 @@ JointPlan::Taken JointPlan::advancePoints(Run& run) {
         }
         if (!shapes.viscous[0].empty()) {
             double* const viscous[3] = {&shapes.viscous[0][i], &shapes.viscous[1][i], &shapes.viscous[2][i]};
-            taken.damping += addJointDamping(n, damping, states.regime(p, from), states.column(Role::BondDamage, p, from), area,
-                                             change, frames.normalStress, sumA, sumB, viscous);
+            taken.damping +=
+                addJointDamping(n, damping, states.regime(p, from), states.column(Role::BondDamage, p, from), area,
+                                change, frames.normalStress, sumA, sumB, viscous);
         }
         if (meets)
             taken.impacts += addImpacts({run.bodies, jointedArea_, run.dt, run.impacts}, shapes, p, from, n, area,

@@ -22,7 +22,8 @@ public:
         auto& text = file_.texts[owner + name];
         (back ? value : text) = back ? text : value;
     }
-    // `visit` is called with the StateNumbers of this name. A checkpoint with other numbers than it asks for is refused.
+    // `visit` is called with the StateNumbers of this name. A checkpoint with other numbers than it asks for is
+    // refused.
     template <class F> void numbers(const std::string& name, F&& visit) {
         auto& flat = file_.numbers[owner + name];
         if (!back) {

@@ -10,6 +10,8 @@ from typing import Callable
 
 from yade import O, Vector3
 
+from ..read.quantities import ENERGIES, OF_CONNECTORS, OF_CONTACTS
+
 
 @dataclass(frozen=True)
 class Column:
@@ -84,45 +86,22 @@ class Reading:
         self.energy = structure.energy.balance()
         self.goal = structure.loading.goal
 
+    @property
+    def masonryAlong(self):
+        """Displacement of the bricks at the followed platen since the push or load began, along it [m]."""
+        loading = self.structure.loading
+        if not loading.followed:
+            return 0.0
+        moved = self.structure.supports.masonryMoved(
+            loading.followed, loading.direction
+        )
+        return moved - loading.origin[2]
+
     def moved(self, target):
         """Displacement of a target's recorded point since the scene was built [m], and its rotation [rad]."""
         if target.name not in self._moved:
             self._moved[target.name] = self.structure.supports.moved(target)
         return self._moved[target.name]
-
-
-#: Energies by their name in the balance, and what each is.
-ENERGIES = {
-    "external": "work of the loads",
-    "gravity": "work of gravity",
-    "refining": "elastic energy that joints got when they were given more points",
-    "kinetic": "energy of motion",
-    "damping": "energy taken by damping",
-    "impacts": "energy taken by impacts of joints that close",
-    "elastic_units": "elastic energy in deformable units",
-    "elastic_tension": "elastic energy in joints, from tension",
-    "elastic_shear": "elastic energy in joints, from shear",
-    "elastic_compression": "elastic energy in joints, from compression",
-    "dissipated_tension": "energy that joints dissipated in tension",
-    "dissipated_shear": "energy that joints dissipated in shear",
-    "dissipated_compression": "energy that joints dissipated in compression",
-}
-
-
-#: Likewise of ties and springs, in scenes that have some.
-OF_CONNECTORS = {
-    "elastic_connectors": "elastic energy in ties and springs",
-    "dissipated_connectors": "energy that ties dissipated",
-}
-
-
-#: Likewise of contacts, in scenes whose collapse is followed.
-OF_CONTACTS = {
-    "handing": "energy that the change from joints to contacts gave",
-    "elastic_contacts": "elastic energy in contacts",
-    "friction_contacts": "energy that friction of contacts took",
-    "damping_contacts": "energy that damping of contacts took",
-}
 
 
 def _energy(name):
@@ -132,7 +111,7 @@ def _energy(name):
 def _energies(names):
     return [
         Column(name, "J", f"{meaning} since the scene was built", _energy(name))
-        for name, meaning in names.items()
+        for name, (meaning, _) in names.items()
     ]
 
 
@@ -199,6 +178,15 @@ PUSH = [
     ),
 ]
 
+#: Of a scene in which a platen moves.
+OF_PLATEN = [
+    Column(
+        "masonry_displacement",
+        "mm",
+        "displacement of the bricks at the pushed or watched platen along the push or load since that began; elsewhere of that point",
+        lambda r: 1e3 * r.masonryAlong,
+    )
+]
 #: Of a push that follows a history.
 HISTORY = [
     Column(

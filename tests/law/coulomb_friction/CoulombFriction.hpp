@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A joint law for tests, which shows what a law needs to be one: this folder and an entry in the list (law/Laws.cpp).
-// Closed faces are linear elastic and slip by Coulomb friction, tau <= -sigma tan(phi). Open faces carry nothing. A bond
-// of the strength ft carries tension, and tau <= (ft - sigma) tan(phi), until the first yield breaks it.
+// Closed faces are linear elastic and slip by Coulomb friction, tau <= -sigma tan(phi). Open faces carry nothing. A
+// bond of the strength ft carries tension, and tau <= (ft - sigma) tan(phi), until the first yield breaks it.
 #pragma once
 #include "law/common/ColumnsOf.hpp"
 #include <algorithm>

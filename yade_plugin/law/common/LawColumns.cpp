@@ -8,7 +8,11 @@
 namespace masonry {
 
 LawColumns::LawColumns(int count, int (*of)(Role), const ElasticStiffness& k, int joints, int points)
-    : of_(of), k_(k), joints_(joints), points_(points), stride_(joints == 1 ? 1 : (joints + lanes - 1) / lanes * lanes) {
+    : of_(of),
+      k_(k),
+      joints_(joints),
+      points_(points),
+      stride_(joints == 1 ? 1 : (joints + lanes - 1) / lanes * lanes) {
     const std::size_t size = std::size_t(stride_) * points_;
     columns_.pitch = size % 512 == 0 ? size + lanes : size; // columns whole pages apart would compete for the cache
     const std::size_t numbers = columns_.pitch * count + lanes;
