@@ -34,7 +34,7 @@ SECTIONS = {
     FIRST: ["scripts/TASKS", "scripts/WALL", "gallery"],
     "Manual": [
         "scripts/README",
-        "words",
+        "commands",
         "options",
         "scripts/STUDIES",
         "scripts/FILES",
@@ -55,7 +55,7 @@ SECTIONS = {
     ],
 }
 #: Pages that :func:`stage` makes; all others are Markdown files of the repository.
-GENERATED = {"gallery", "words", "options", "api/masonry", "classes", "cite"}
+GENERATED = {"gallery", "commands", "options", "api/masonry", "classes", "cite"}
 
 
 def toctree(pages, caption=""):
@@ -125,7 +125,7 @@ def stage(folder, out, runs):
         made.document(path, read(path) + table)
     made.sources()
     made.write("gallery.md", staging.galleryPage())
-    made.write("words.rst", generated.words())
+    made.write("commands.rst", generated.commands())
     made.write("options.rst", generated.optionsOfScenes())
     made.write("classes.rst", generated.classes())
     made.write("cite.md", generated.cite())

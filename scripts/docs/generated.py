@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pages of the site that are made from the code: the words of a scene, the options, the plugin's classes, all modules."""
+"""Pages of the site that are made from the code: the commands of a scene, the options, the plugin's classes, all modules."""
 
 import argparse
 import contextlib
@@ -55,15 +55,15 @@ def summary(thing):
     return re.split(r"(?<=[.:])\s(?=[A-Z])", about)[0].rstrip(":").removesuffix(".")
 
 
-# -- words of a scene -------------------------------------------------------------------------------------------------
+# -- commands of a scene -------------------------------------------------------------------------------------------------
 
 
 #: Methods of a scene that its stages call, and no script.
 FOR_STAGES = {"begin", "checkOpen", "failed", "findBound", "keepState", "masonry", "probe"}  # fmt: skip
 
 
-def _words():
-    """The words of a scene by what they are for: dict of a title to their names."""
+def _commands():
+    """The commands of a scene by what they are for: dict of a title to their names."""
     described = {}
     for module, title in ((supports, "What holds it"), (loads, "What loads it"), (records, "What is recorded")):  # fmt: skip
         described[title] = [n for n, f in vars(Scene).items() if _madeIn(f, module)]
@@ -90,12 +90,12 @@ def _madeIn(thing, module):
     return getattr(_inner(thing), "__module__", None) == module.__name__ and inspect.getdoc(_inner(thing))  # fmt: skip
 
 
-def words():
-    """The page of the words of a scene."""
-    described, stages, own = _words()
-    text = ".. currentmodule:: masonry\n\n" + heading("Words of a scene")
+def commands():
+    """The page of the commands of a scene."""
+    described, stages, own = _commands()
+    text = ".. currentmodule:: masonry\n\n" + heading("Commands of a scene")
     text += (
-        "A scene is described, then it goes through its stages, then it is finished. Every word checks all that it is given "
+        "A scene is described, then it goes through its stages, then it is finished. Every command checks all that it is given "
         "before it does anything; what it takes, with unit and bounds, is what the check has.\n\n"
         ".. autoclass:: masonry.Scene\n   :no-members:\n\n"
     )
@@ -234,7 +234,7 @@ def api():
                 text += "   :members:\n"
             if name != page and public:  # they stand at the top of the page
                 text += f"   :exclude-members: {', '.join(public)}\n"
-            if name == Scene.__module__:  # it is the page of the words
+            if name == Scene.__module__:  # it is the page of the commands
                 text += "   :exclude-members: Scene\n"
             text += "\n"
         if page == "masonry":

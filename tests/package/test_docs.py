@@ -99,7 +99,7 @@ def test_every_document_is_a_page(site, pages):
             assert heading[1] in pages[page].text, path
     for path in glob.glob(os.path.join(DOCS, "tutorial", "*.ipynb")):
         assert os.path.relpath(path, ROOT).removesuffix(".ipynb") + ".html" in pages
-    assert {"gallery.html", "words.html", "options.html", "classes.html", "cite.html"} < set(pages)  # fmt: skip
+    assert {"gallery.html", "commands.html", "options.html", "classes.html", "cite.html"} < set(pages)  # fmt: skip
 
 
 @needsSphinx
@@ -140,10 +140,10 @@ def test_every_link_within_the_site_leads_somewhere(site, pages):
 
 @needsSphinx
 @pytest.mark.slow
-def test_the_page_of_words_has_every_word_with_unit_and_bounds(pages):
+def test_the_page_of_commands_has_every_command_with_unit_and_bounds(pages):
     from masonry.scene.stages import LATER, STAGES
 
-    page = pages["words.html"]
+    page = pages["commands.html"]
     for stage in (*STAGES, *LATER):
         assert f"masonry.Scene.{stage.__name__}" in page.anchors
     for (

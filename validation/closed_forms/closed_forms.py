@@ -92,10 +92,12 @@ def main(words=None):
             with open(args.out, "w") as file:
                 file.write("\n".join(lines) + "\n")
 
-    for case in chosen(args.only, options.error):
+    cases = chosen(args.only, options.error)
+    tell(head(HEAD))
+    for case in cases:
         if case.group != group:
             group = case.group
-            tell("", f"### {group}", "", head(HEAD))
+            tell(line([f"**{group}**", *[""] * 7]))
         result = carryOut(case, args.quick)
         if not result:
             tell(line([case.name, case.what, case.source, "", "failed", "", "", ""]))
