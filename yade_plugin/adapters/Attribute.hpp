@@ -37,6 +37,8 @@ template <class T> struct IsList : std::false_type {};
 template <class T> struct IsList<std::vector<T>> : std::true_type {};
 template <class T> struct HoldsObjects : IsShared<T> {};
 template <class T> struct HoldsObjects<std::vector<T>> : IsShared<T> {};
+// Lists of names are found anew and never saved.
+template <class T> using IsNames = std::is_same<T, std::vector<std::string>>;
 
 template <class T> std::string expectedType() {
     if constexpr (IsList<T>::value) {
@@ -122,7 +124,7 @@ public:
         return std::is_arithmetic<T>::value || std::is_same<T, std::string>::value || std::is_same<T, Vector3r>::value;
     }
     void transfer(void* object, Transfer& to) const override {
-        if constexpr (!HoldsObjects<T>::value) {
+        if constexpr (!HoldsObjects<T>::value && !IsNames<T>::value) {
             auto value = get(object);
             to(name, value);
             if (to.back) put(object, value);
@@ -138,7 +140,7 @@ private:
         auto value = get(object);
         if constexpr (std::is_arithmetic<T>::value || std::is_same<T, std::string>::value || HoldsObjects<T>::value)
             ar& boost::serialization::make_nvp(name, value);
-        else {
+        else if constexpr (!IsNames<T>::value) {
             std::vector<double> flat;
             StateNumbers to(flat);
             if (Archive::is_saving::value) to(value);

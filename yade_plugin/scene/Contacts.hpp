@@ -81,7 +81,7 @@ private:
         // By which the other body stands farther away than it does, in the axes of the one [m]: what crushing and
         // dilatancy left of a joint that was handed over, so that its force goes on.
         Vector3r gap = Vector3r::Zero();
-        PairMemory memory;
+        PairMemory memory = {};
 
         template <class Visit> void visitState(Visit&& visit) { visit(one, other, axis, gap, memory); }
     };
