@@ -67,7 +67,9 @@ def inside(path, flags):
         number = os.open(path, flags & ~os.O_TRUNC | safe, 0o666)
     except OSError as error:
         why = {errno.ELOOP: "it is a symbolic link", errno.ENXIO: "it is no regular file"}.get(error.errno)  # fmt: skip
-        raise OSError(error.errno, why, path) from None if why else error
+        if not why:
+            raise
+        raise OSError(error.errno, why, path) from None
     found = os.fstat(number)
     wrong = (
         "it is no regular file"
