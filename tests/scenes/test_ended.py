@@ -11,7 +11,7 @@ import time
 import pytest
 import yade
 from masonry import Scene
-from masonry.limit import worker
+from masonry.limit import solver
 from masonry.memory import FULL
 from masonry.read.files import readRun
 from masonry.run.run import Run
@@ -29,14 +29,6 @@ HOST = os.path.dirname(os.path.dirname(os.path.abspath(yade.__file__)))
 def undrawn(monkeypatch):
     """Figures take longer than these runs."""
     monkeypatch.setattr(Outcome, "draw", lambda self, directory: None)
-
-
-@pytest.fixture
-def own(monkeypatch):
-    """A process of the solver that ends with the test."""
-    monkeypatch.setattr(worker, "worker", worker.Worker())
-    yield worker.worker
-    worker.worker.end()
 
 
 @pytest.fixture
@@ -65,17 +57,15 @@ def signalled():
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_ends_limit_analysis_and_the_run_says_so(
-    scene, tmp_path, undrawn, own, signalled, number
+    scene, tmp_path, undrawn, monkeypatch, signalled, number
 ):
-    exchange, asked = own._exchange, tmp_path / "asked"
+    asked, solved = tmp_path / "asked", solver._solved
 
-    def slow(ask, until):
-        time.sleep(0.5)  # it has begun
-        own._process.send_signal(signal.SIGSTOP)  # a solver that takes its time
-        asked.write_text(str(own._process.pid))
-        return exchange(ask, until)
+    def slow(*words):
+        asked.write_text(str(os.getpid()))
+        time.sleep(60)
 
-    own._exchange = slow
+    monkeypatch.setattr(solver, "_solved", slow)
     sent = signalled(number, asked.exists)
     assert carryOut(SMALL, parsed(*SHORT, "--out", str(tmp_path))) == 130
     assert time.monotonic() - sent[0] < PROMPT
@@ -83,7 +73,7 @@ def test_a_signal_ends_limit_analysis_and_the_run_says_so(
     assert not os.path.exists(gone) or "(zombie)" in open(gone + "/status").read()
     run = readRun(str(tmp_path))
     assert run["interrupted"] and run["bounds"][0]["note"] == GIVEN_UP
-    own._exchange = exchange
+    monkeypatch.setattr(solver, "_solved", solved)
     assert carryOut(SMALL, parsed("--resume", str(tmp_path))) == 0
     assert readRun(str(tmp_path))["bounds"][0]["note"] == GIVEN_UP  # its stage was over
     assert carryOut(SMALL, parsed(*SHORT, "--out", str(tmp_path / "whole"))) == 0
@@ -108,12 +98,11 @@ def test_a_signal_ends_the_drawing_of_figures(
 
 
 def test_figures_whose_program_cannot_be_started_are_one_sentence(
-    scene, tmp_path, monkeypatch, own, capsys
+    scene, tmp_path, monkeypatch, capsys
 ):
     monkeypatch.setattr(outcome.sys, "executable", "/nowhere/python3")
     assert carryOut(SMALL, parsed(*SHORT, "--out", str(tmp_path))) == 1
     said = capsys.readouterr()
-    assert "its solver cannot be started: No such file or directory" in said.out
     assert "the figures are not drawn: No such file or directory; what" in said.err
     assert readRun(str(tmp_path))["peak_base_shear_kN"] > 0
 

@@ -58,14 +58,7 @@ def _end(run, scene, error):
     if error and not isinstance(error, Collapsed) and run.results.earlier:
         return _keepEarlier(run, error)
     stopped = []
-    try:
-        run.flush()
-    except Unwritable as unwritable:
-        stopped.append(unwritable)
-    except MemoryError:
-        stopped.append(FULL)
-    except FloatingPointError as broken:
-        error = error or broken
+    error = _flushed(run, error, stopped)
     if isinstance(error, Interrupted):
         say("\ninterrupted: what was computed is kept")
     elif isinstance(error, Unwritable):
@@ -105,6 +98,19 @@ def _end(run, scene, error):
     fell = run.collapsed and run.loading
     run.status = 1 if stopped or fell else 130 if run.interrupted else 0
     return True
+
+
+def _flushed(run, error, stopped):
+    """Write the rows that wait. Returns the error, or what is wrong with a row; what stops the run is added to a list."""
+    try:
+        run.flush()
+    except Unwritable as unwritable:
+        stopped.append(unwritable)
+    except MemoryError:
+        stopped.append(FULL)
+    except FloatingPointError as broken:
+        return error or broken
+    return error
 
 
 def _beforeSteps(run, error):

@@ -75,21 +75,8 @@ def fit(low: Numbers, high: Numbers, confidence: float = CONFIDENCE) -> Fit:
     :raises Refused: if the records cannot give it, with the reason
     """
     low, high = np.asarray(low, float), np.asarray(high, float)
-    n, reached = len(low), int(np.isfinite(high).sum())
-    if n < FEWEST:
-        raise Refused(f"a fragility needs {FEWEST} records or more, there are {n}")
-    if not (np.all(low >= 0) and np.all(high > low)):
-        raise Refused("a fragility needs levels that grow from 0 on")
-    if not reached:
-        raise Refused(f"no fragility: at none of the {n} records is the limit reached; add higher levels")  # fmt: skip
-    if not low.any():
-        raise Refused(f"no fragility: at all {n} records the limit is reached at the lowest level that was run; add lower levels")  # fmt: skip
-    if low.max() <= high.min():
-        places = dict.fromkeys(f"{end:.3g}" for end in (low.max(), high.min()))
-        raise Refused(
-            f"no fragility: all records may reach the limit at one intensity, {' to '.join(places)}, so the dispersion cannot be "
-            "found; add levels about it, or records"
-        )
+    _check(low, high)
+    n = len(low)
     with np.errstate(divide="ignore"):
         ends = np.unique(np.column_stack([np.log(low), np.log(high)]), axis=0, return_counts=True)  # fmt: skip
     (lower, upper), counts = ends[0].T, ends[1]
@@ -125,11 +112,30 @@ def fit(low: Numbers, high: Numbers, confidence: float = CONFIDENCE) -> Fit:
     return Fit(
         Interval(math.exp(mean), float(medians.min()), float(medians.max())),
         Interval(spread, float(spreads.min()), float(spreads.max())),
-        reached,
+        int(np.isfinite(high).sum()),
         n,
         confidence,
         edge,
     )
+
+
+def _check(low, high):
+    """Refuse records that cannot give a fragility."""
+    n = len(low)
+    if n < FEWEST:
+        raise Refused(f"a fragility needs {FEWEST} records or more, there are {n}")
+    if not (np.all(low >= 0) and np.all(high > low)):
+        raise Refused("a fragility needs levels that grow from 0 on")
+    if not np.isfinite(high).any():
+        raise Refused(f"no fragility: at none of the {n} records is the limit reached; add higher levels")  # fmt: skip
+    if not low.any():
+        raise Refused(f"no fragility: at all {n} records the limit is reached at the lowest level that was run; add lower levels")  # fmt: skip
+    if low.max() <= high.min():
+        places = dict.fromkeys(f"{end:.3g}" for end in (low.max(), high.min()))
+        raise Refused(
+            f"no fragility: all records may reach the limit at one intensity, {' to '.join(places)}, so the dispersion cannot be "
+            "found; add levels about it, or records"
+        )
 
 
 def _drop(n, confidence):
