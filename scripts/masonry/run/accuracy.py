@@ -136,7 +136,10 @@ class Companions:
 
     def begin(self, key: str) -> None:
         """Make the folder, or take up what an interrupted run with this key left there. Raises Refused."""
-        check(os.path.dirname(self.folder), self.folder)
+        try:
+            check(os.path.dirname(self.folder), self.folder)
+        except OSError as error:
+            raise Refused(f"--out: cannot read {error.filename}: {error.strerror}") from None  # fmt: skip
         path = os.path.join(self.folder, PLAN)
         with contextlib.suppress(OSError, ValueError):
             with open(path) as file:

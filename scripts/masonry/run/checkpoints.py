@@ -16,13 +16,11 @@ from .._masonry import loadScene, saveScene, savedText
 from ..arguments import FilePath, anything
 from ..arguments import path as pathOf
 from ..arguments import shown, takes
-from ..basics import plain
 from ..folders import fromJson, replaced
 from ..read.files import readWhole
 
 NAME = "run.checkpoint"  # in the folder of a run
 LARGEST = 1e100  # no number of a run is beyond; its square can be computed
-LONGEST = 500  # characters of a reason: it can quote a file that somebody has made up
 
 
 @takes(path=pathOf, extra=anything)
@@ -60,8 +58,7 @@ def loadCheckpoint(path: FilePath) -> Any:
     :raises ValueError: if the file is damaged, or of another scene or version; the scene stays as it is
     :raises OSError: if it cannot be read
     """
-    data = _bytesOf(path)
-    extra = _extra(path, savedText, data)  # first, so that a wrong one changes nothing
+    data, extra = _read(path)  # first, so that a wrong one changes nothing
     with _says(path):
         loadScene(data)
     return extra
@@ -70,38 +67,30 @@ def loadCheckpoint(path: FilePath) -> Any:
 @takes(path=pathOf)
 def readCheckpoint(path: FilePath) -> Any:
     """The ``extra`` of a checkpoint alone, of a file that is whole. Raises what :func:`loadCheckpoint` raises."""
-    return _extra(path, savedText, _bytesOf(path))
+    return _read(path)[1]
 
 
 def readState(directory: FilePath) -> tuple[bytes, Any]:
     """The checkpoint of a run: its bytes, as ``loadScene`` takes them, and its ``extra``. Raises as
     :func:`readCheckpoint`."""
-    path = os.path.join(directory, NAME)
-    data = _bytesOf(path)
-    return data, _extra(path, savedText, data)
+    return _read(os.path.join(directory, NAME))
 
 
-def _bytesOf(path):
+def _read(path):
     with _says(path):
-        return readWhole(path)
-
-
-def _extra(path, textOf, data):
-    with _says(path):
-        return fromJson(textOf(data))
+        data = readWhole(path)
+        return data, fromJson(savedText(data))
 
 
 @contextlib.contextmanager
 def _says(path):
-    """Let every error in the contents of a checkpoint be a ValueError that names the file and is short enough to read."""
+    """Let every error in the contents of a checkpoint be a ValueError that names the file."""
     try:
         yield
     except MemoryError:
         raise ValueError(f"{path} is too large for the memory") from None
     except (ValueError, OverflowError) as error:
-        why = plain(error)
-        why = why if len(why) < LONGEST else why[:LONGEST] + " ..."
-        raise ValueError(f"{path} {why}") from None
+        raise ValueError(f"{path} {error}") from None
 
 
 def alike(value: Any, example: Any) -> bool:

@@ -287,24 +287,16 @@ class Chains:
 
 def isPlan(plan: Any, runs: int) -> bool:
     """Whether the entry ``ida`` of study.json is of the form that :meth:`Incremental.describe` gives it."""
-    if not isinstance(plan, dict) or plan.keys() != {"records", "measure", "levels", "scales"}:  # fmt: skip
+    try:
+        strengths, records = plan["levels"] or plan["scales"], plan["records"]
+        numbers = [*strengths, *(one["intensity"] for one in records)]
+        texts = [plan["measure"], *(one[n] for one in records for n in ("name", "sha256"))]  # fmt: skip
+    except (KeyError, TypeError):
         return False
-    records, strengths = plan["records"], plan["levels"] or plan["scales"]
     return (
-        isinstance(plan["measure"], str)
-        and isinstance(strengths, list)
-        and bool(strengths)
-        and all(map(isNumber, strengths))
-        and isinstance(records, list)
-        and len(records) * len(strengths) == runs
-        and all(
-            isinstance(one, dict)
-            and isinstance(one.get("name"), str)
-            and re.fullmatch(r"[A-Za-z0-9_-]+", one["name"])
-            and isinstance(one.get("sha256"), str)
-            and isNumber(one.get("intensity"))
-            for one in records
-        )
+        len(records) * len(strengths) == runs
+        and all(map(isNumber, numbers))
+        and all(isinstance(text, str) for text in texts)
     )
 
 
