@@ -248,10 +248,13 @@ def test_odd_arguments_are_refused_by_name():
 # -- of a run ---------------------------------------------------------------------------------------------------------
 
 
+PUSH = {"stage": "push", "first_row": 0, "load": ["push", "top along x", ""]}
+
+
 def run(folder, moved, base, top=None, **entries):
     """A folder of results with a push that takes a second."""
     rows = np.column_stack([np.linspace(0, 1, len(moved)), moved, base, base if top is None else top])  # fmt: skip
-    entries = {"peak_base_shear_kN": max(base), "figure": {}, "interrupted": False, **entries}  # fmt: skip
+    entries = {"stages": [PUSH], "interrupted": False, **entries}
     return writeRun(folder, HEADS, rows, **entries)
 
 
@@ -276,7 +279,7 @@ def test_a_wave_of_a_run_lasts_no_longer_than_its_first_period(tmp_path):
     moved, force = curve((0, 0), (2, 100), (3, 98), (3.01, 70), (3.04, 70), (3.05, 98), (6, 90), (7, 0), rows=4001)  # fmt: skip
     slow = run(tmp_path / "slow", moved, force, first_period_s=1e-3)
     fast = run(tmp_path / "fast", moved, force, first_period_s=2e-2)
-    assert bilinear.pushover(fast).pulse == pytest.approx(0.14)
+    assert bilinear.pushover(fast).data.pulse == pytest.approx(0.14)
     assert bilinear.ofRun(slow).ultimateDisplacement < 3.01
     assert bilinear.ofRun(fast).ultimateDisplacement == pytest.approx(6 + 1 / 9)
 
@@ -284,7 +287,8 @@ def test_a_wave_of_a_run_lasts_no_longer_than_its_first_period(tmp_path):
 def test_only_the_rows_of_the_last_push_count(tmp_path):
     moved, force = WHOLE
     both = np.append([3.0, 1.0, 0.0], moved), np.append([9.0, 9.0, 9.0], force)
-    folder = run(tmp_path, *both, figure={"rows": list(range(3, len(moved) + 3))})
+    other = {**PUSH, "load": ["push", "top along y", ""]}
+    folder = run(tmp_path, *both, stages=[other, {**PUSH, "first_row": 3}])
     assert alike(bilinear.ofRun(folder), bilinear.bilinear(moved, force))
 
 
@@ -294,7 +298,8 @@ def test_only_the_rows_of_the_last_push_count(tmp_path):
         ({"interrupted": True}, "the run was interrupted, so its curve is not whole"),
         ({"error": "the disk is full"}, "ended by an error: the disk is full"),
         ({"history": {"text": "1,2"}}, "goes along a history of loading"),
-        ({"figure": None}, "not the files of a finished run"),
+        ({"stages": []}, "the run has no push"),
+        ({"stages": [None]}, "not the files of a finished run"),
     ],
 )
 def test_a_run_without_a_whole_push_is_refused_with_its_folder(tmp_path, entries, message):  # fmt: skip
@@ -314,18 +319,16 @@ def test_a_run_that_is_no_push_is_refused(tmp_path):
 
 def test_a_push_to_its_collapse_and_one_that_was_too_fast_say_so(tmp_path):
     moved, force = curve((0, 0), (2, 100), (10, 90))
-    folder = run(tmp_path, moved, force, collapse_displacement_mm=10.0, too_fast=True, dynamic_imbalance=0.12)  # fmt: skip
+    folder = run(tmp_path, moved, force, collapsed=True, too_fast=True, dynamic_imbalance=0.12)  # fmt: skip
     notes = bilinear.ofRun(folder).notes
     assert notes[0].startswith("not reached: the structure collapsed at 10 mm")
     assert notes[1] == "the push was too fast: 12 % of the force did not reach the supports"  # fmt: skip
 
 
 def test_drifts_are_displacements_over_the_height(tmp_path):
-    wall = {"measure_height_m": 2.5}
-    folder = run(tmp_path / "wall", *WHOLE, wall=wall, displacement_at_first_crack_mm=0.5)  # fmt: skip
+    folder = run(tmp_path / "wall", *WHOLE, recorded_height_m=2.5)
     found = {one.name: one for one in bilinear.drifts(folder)}
     fall = bilinear.bilinear(*WHOLE).ultimateDisplacement
-    assert found["drift_at_first_crack_mrad"].value == pytest.approx(0.2)
     assert found["drift_at_peak_mrad"].value == pytest.approx(0.8)
     assert found["drift_at_fall_mrad"].value == pytest.approx(fall / 2.5)
     assert found["drift_at_collapse_mrad"].value is None
@@ -336,11 +339,6 @@ def test_drifts_are_displacements_over_the_height(tmp_path):
     with pytest.raises(Refused, match="drifts need height=, in m"):
         bilinear.drifts(other)
     assert bilinear.drifts(other, 2.0)[1].value == pytest.approx(1)
-    new = run(tmp_path / "new", *WHOLE, recorded_height_m=2.0, wall=wall)
-    assert bilinear.drifts(new)[1].value == pytest.approx(1)
-    # runs of before have it by the drift at their first crack
-    crack = run(tmp_path / "crack", *WHOLE, displacement_at_first_crack_mm=0.5, drift_at_first_crack_mrad=0.25)  # fmt: skip
-    assert bilinear.drifts(crack)[1].value == pytest.approx(1)
 
 
 def test_numbers_have_unit_meaning_and_source(tmp_path):

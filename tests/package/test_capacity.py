@@ -13,7 +13,7 @@ from masonry import capacity
 from masonry.basics import Refused
 from masonry.capacity import __main__ as program
 from masonry.capacity import spectra
-from test_bilinear import WHOLE, curve, run
+from test_bilinear import PUSH, WHOLE, curve, run
 from test_figures import writeRun
 
 # -- spectra ----------------------------------------------------------------------------------------------------------
@@ -347,7 +347,7 @@ SYSTEM = [
 
 
 def test_a_folder_gets_its_numbers_and_its_picture(tmp_path):
-    folder = run(tmp_path, *WHOLE, wall={"measure_height_m": 2.5}, answers=SYSTEM)
+    folder = run(tmp_path, *WHOLE, recorded_height_m=2.5, answers=SYSTEM)
     spectrum = capacity.elastic(0.2, "g", type=1, ground="B")
     found = capacity.assess(folder, spectrum)
     with open(tmp_path / "capacity.json") as file:
@@ -438,8 +438,8 @@ def test_a_folder_that_has_no_curve_does_not_keep_the_others_from_theirs(tmp_pat
         {"answers": None},
         {"recorded_height_m": math.nan, "displacement_at_first_crack_mm": "x"},
         {"first_period_s": math.inf, "collapse_displacement_mm": math.nan},
-        {"figure": {"rows": ["a"]}},
-        {"figure": {"rows": [10**9]}},
+        {"stages": ["a"]},
+        {"stages": [{"load": ["push"], "first_row": "a"}]},
         {"wall": 3},
     ],
 )  # fmt: skip
@@ -479,7 +479,7 @@ def test_a_domain_has_its_bounds_in_order_and_runs_as_points(tmp_path):
     heads = ["time_s", "displacement_mm", "base_shear_kN", "top_shear_kN", "base_force_z_kN"]  # fmt: skip
     down = np.where(np.arange(len(moved)) == at, -60.0, -55.0)
     rows = np.column_stack([moved, moved, force, force, down])
-    point = writeRun(tmp_path / "run", heads, rows, peak_base_shear_kN=1.0, figure={}, held=["base"])  # fmt: skip
+    point = writeRun(tmp_path / "run", heads, rows, stages=[PUSH], held=["base"])  # fmt: skip
     found = capacity.assessDomain(folder, [point])
     assert [one.normal for one in found.bounds] == [25, 55, 105]
     assert found.shear(40) == pytest.approx((5.4 + 11.8) / 2)

@@ -10,6 +10,8 @@ from typing import Callable
 
 from yade import O, Vector3
 
+from ..read.quantities import ENERGIES, OF_CONNECTORS, OF_CONTACTS
+
 
 @dataclass(frozen=True)
 class Column:
@@ -91,40 +93,6 @@ class Reading:
         return self._moved[target.name]
 
 
-#: Energies by their name in the balance, and what each is.
-ENERGIES = {
-    "external": "work of the loads",
-    "gravity": "work of gravity",
-    "refining": "elastic energy that joints got when they were given more points",
-    "kinetic": "energy of motion",
-    "damping": "energy taken by damping",
-    "impacts": "energy taken by impacts of joints that close",
-    "elastic_units": "elastic energy in deformable units",
-    "elastic_tension": "elastic energy in joints, from tension",
-    "elastic_shear": "elastic energy in joints, from shear",
-    "elastic_compression": "elastic energy in joints, from compression",
-    "dissipated_tension": "energy that joints dissipated in tension",
-    "dissipated_shear": "energy that joints dissipated in shear",
-    "dissipated_compression": "energy that joints dissipated in compression",
-}
-
-
-#: Likewise of ties and springs, in scenes that have some.
-OF_CONNECTORS = {
-    "elastic_connectors": "elastic energy in ties and springs",
-    "dissipated_connectors": "energy that ties dissipated",
-}
-
-
-#: Likewise of contacts, in scenes whose collapse is followed.
-OF_CONTACTS = {
-    "handing": "energy that the change from joints to contacts gave",
-    "elastic_contacts": "elastic energy in contacts",
-    "friction_contacts": "energy that friction of contacts took",
-    "damping_contacts": "energy that damping of contacts took",
-}
-
-
 def _energy(name):
     return lambda reading: reading.energy[name]
 
@@ -132,7 +100,7 @@ def _energy(name):
 def _energies(names):
     return [
         Column(name, "J", f"{meaning} since the scene was built", _energy(name))
-        for name, meaning in names.items()
+        for name, (meaning, _) in names.items()
     ]
 
 
@@ -199,6 +167,15 @@ PUSH = [
     ),
 ]
 
+#: Of a scene in which a platen moves.
+OF_PLATEN = [
+    Column(
+        "masonry_displacement",
+        "mm",
+        "displacement of the bricks at the pushed or watched platen along the push or load since that began; elsewhere of that point",
+        lambda r: 1e3 * r.structure.loading.masonryAlong(),
+    )
+]
 #: Of a push that follows a history.
 HISTORY = [
     Column(

@@ -14,7 +14,7 @@ class Loading:
     - ``loads``: MasonryLoad engines by label; ``push`` is the one that drives the pushed target, or None
     - ``target``: what is pushed; from the beginning the target that a drive holds
     - ``followed``: whose displacement is recorded along the load, or None; ``direction`` of the present push or load, and
-      ``origin``: that displacement when it began, along it and up [m]
+      ``origin``: that displacement when it began, along it and up, and that of the bricks at the followed platen along it [m]
     - ``pushing``: whether the present load is a push
     - ``grown``: whether presses, dead loads and wind have their whole
     - ``loadFactor`` of the load that a stage puts on or lets grow [-]
@@ -32,7 +32,7 @@ class Loading:
         self.target = next((target for target in targets if target.drives), None)
         self.followed = self.target
         self.loads["push"] = self.target and self.driveOf(self.target, self.target.drives[0])  # fmt: skip
-        self.direction, self.origin = Vector3.UnitX, (0.0, 0.0)
+        self.direction, self.origin = Vector3.UnitX, (0.0, 0.0, 0.0)
         self.pushing = self.grown = False
         self.loadFactor = 0.0
         self.goal = 0, 0.0
@@ -207,11 +207,11 @@ class Loading:
         load.damped = False
         load.direction, load.driven = direction, True
         self.target, self.direction, self.loads["push"] = target, direction, load
-        self.followed, self.origin, self.pushing = target, (0, 0), True
+        self.followed, self.origin, self.pushing = target, (0, 0, 0), True
 
     def follow(self, target, direction):
         """From now on record the displacement of a target, or None, along a direction. Returns its origin [m]."""
-        self.followFrom(target, direction, (0, 0))
+        self.followFrom(target, direction, (0, 0, 0))
         if target:
             self.origin = self.topDisplacement()
         return list(self.origin)
@@ -222,9 +222,17 @@ class Loading:
         self.pushing = False
 
     def topDisplacement(self):
-        """Displacement of the followed point along the push or load and upwards since the scene was built [m]."""
+        """Displacement since the scene was built [m] of the followed point, along the push or load and upwards, and of the bricks at
+        the followed platen along it."""
         moved = self.supports.moved(self.followed)[0]
-        return moved.dot(self.direction), moved[2]
+        return moved.dot(self.direction), moved[2], self._masonryMoved()
+
+    def _masonryMoved(self):
+        return self.supports.masonryMoved(self.followed, self.direction)
+
+    def masonryAlong(self):
+        """Displacement of the bricks at the followed platen along the push or load since that began [m]; 0 if none is followed."""
+        return self._masonryMoved() - self.origin[2] if self.followed else 0.0
 
     def alongNow(self):
         """Displacement of the followed point along the push or load since that began [m]; 0 if none is followed."""

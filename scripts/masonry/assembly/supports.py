@@ -22,18 +22,35 @@ class Supports:
         targets = self.description.targets.values()
         self.held = [target for target in targets if target.freedom]
         # Rows are read at every few steps: what does not change is kept.
-        self._placed = {target.name: self._placeOf(target) for target in targets}
+        self._placed = {t.name: self._placeOf(t.body, t.recorded) for t in targets}
+        self._faces = {t.name: self._faceOf(t) for t in targets if t.box and not t.fixed}  # fmt: skip
         self._forces = O.forces
         held = {target.body for target in self.held}
         self.freeMass = sum(b.state.mass for b in O.bodies if b.id not in held)
 
     @staticmethod
-    def _placeOf(target):
-        """What the motion of a target's recorded point is found from."""
-        state = O.bodies[target.body].state
-        arm = Vector3(*target.recorded) - state.refPos
+    def _placeOf(body, point):
+        """What the motion of a point of a body is found from."""
+        state = O.bodies[body].state
+        arm = Vector3(*point) - state.refPos
         upright = state.refOri.conjugate()
         return state, state.refPos, arm, upright * arm, upright
+
+    def _faceOf(self, target):
+        """The middles of a platen's joints, as points of the bricks there: pairs of what their motion is found from, and the share of
+        the platen's area. Of a deformable brick its own middle stands for that."""
+        zones, found = self.structure.zones, []
+        deformable = set(zones.bodies) if zones else ()
+        for one in self.structure.interactions:
+            if target.body not in (one.id1, one.id2):
+                continue
+            brick = one.id2 if one.id1 == target.body else one.id1
+            areas, area = one.geom.areas, sum(one.geom.areas)
+            middle = sum((a * c for a, c in zip(areas, one.geom.centres)), Vector3.Zero) / area  # fmt: skip
+            middle = O.bodies[brick].state.refPos if brick in deformable else middle
+            found.append((self._placeOf(brick, middle), area))
+        whole = sum(area for _, area in found)
+        return [(place, area / whole) for place, area in found]
 
     def holdAlso(self, target, axes):
         """Count a target as one that is held along more axes."""
@@ -73,6 +90,23 @@ class Supports:
         if self.description.plane:
             angle *= axis[1]
         return state.pos + turn * ownArm - place - arm, angle
+
+    def masonryMoved(self, target, direction):
+        """Displacement of the bricks at a platen along a direction since the scene was built [m]; of a brick, that of its point."""
+        face = self._faces.get(target.name)
+        if not face:
+            return self.moved(target)[0].dot(direction)
+        return sum(
+            share * (state.pos + state.ori * ownArm - place - arm).dot(direction)
+            for (state, place, arm, ownArm, _), share in face
+        )
+
+    def driftHeight(self, target):
+        """Height of the points of which :meth:`masonryMoved` is [m]."""
+        face = self._faces.get(target.name)
+        if not face:
+            return target.recorded[2]
+        return sum(share * (place[2] + arm[2]) for (_, place, arm, *_), share in face)
 
     def applied(self):
         """Sum of the weights of what is free to follow them, and of the loads without drives [N]."""

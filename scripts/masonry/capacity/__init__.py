@@ -34,7 +34,8 @@ is for the user to say. So neither is guessed: they are given, or the script of 
 less. Torsion, walls that fall out of their plane, and the change of the stiffness by the cycles of an earthquake are not in it.
 """
 
-from ..read.bilinear import Bilinear, Number, Pushover, bilinear, drifts, pushover
+from ..read.bilinear import Bilinear, Pushover, bilinear, drifts, pushover
+from ..read.quantities import Number
 from ..read.bilinear import ofRun as bilinearOf
 from .n2 import Demand, Equivalent, demand, equivalent, iterated, ofMasses, ofRun
 from .domains import BoundPoint, Domain, RunPoint, domain, runPoint

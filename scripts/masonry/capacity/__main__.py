@@ -10,7 +10,8 @@ from typing import Sequence
 
 from .. import memory
 from ..basics import Refused, say
-from ..read.bilinear import RULES, Number, lines
+from ..read.bilinear import RULES, lines
+from ..read.quantities import Number
 from . import n2
 from .domains import Domain
 from .report import CAPACITY, DOMAIN, assess, assessDomain

@@ -18,7 +18,7 @@ import numpy as np
 from ..arguments import FilePath, isNumber
 from ..basics import GRAVITY, Refused
 from ..read.bilinear import pushover
-from ..read.files import filesOf, readCurve, readRun
+from ..read.files import filesOf, readRun
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ def runPoint(directory: FilePath) -> RunPoint:
     :raises Refused: if the run has no whole push, or if its normal force is not known
     """
     push = pushover(directory)
-    at = int(push.force.argmax())
+    at = push.data.peak()
     normal, source = _normal(push, at)
     return RunPoint(
         name=os.path.basename(os.path.normpath(push.directory)),
@@ -116,18 +116,16 @@ def _normal(push, at):
     """Normal force at the supports at a row of the push [kN], and where it comes from."""
     run = push.run
     with filesOf(push.directory):
-        data, rows = readCurve(push.directory), run["figure"].get("rows")
         heads = [f"{name}_force_z_kN" for name in run.get("held", [])]
-        if heads and all(head in data for head in heads):
-            row = at if rows is None else rows[at]
-            total = -sum(data[head][row] for head in heads)
+        missing = [head for head in heads if push.data.column(head) is None]
+        if heads and not missing:
+            total = -sum(push.data[head][at] for head in heads)
             return float(total), f"curve.csv: {', '.join(heads)}"
         wall, material = run.get("wall"), run.get("unit_material")
         if not (wall and material):
-            missing = ", ".join(head for head in heads if head not in data)
             raise Refused(
                 f"{push.directory}: the normal force at the peak is not known: curve.csv has no column "
-                f"{missing or 'of a vertical force'}; run the scene with all columns"
+                f"{', '.join(missing) or 'of a vertical force'}; run the scene with all columns"
             )
         area = wall["length_m"] * wall["thickness_m"]
         weight = material["density_kg_per_m3"] * GRAVITY * area * wall["height_m"]

@@ -12,9 +12,10 @@ from typing import Any
 
 from ..arguments import Numbers, isA, items, isNumber, number, flag, takes
 from ..basics import Refused
-from ..read.bilinear import Bilinear, Number, Pushover
+from ..read.bilinear import Bilinear, Pushover
 from ..read.bilinear import ofRun as bilinearOf
 from ..read.files import filesOf
+from ..read.quantities import Number
 from .spectra import Spectrum
 
 #: Names and units of the answers of a script by which a run says its equivalent system (``scene.result``).

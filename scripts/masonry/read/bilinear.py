@@ -28,16 +28,17 @@ from __future__ import annotations
 import math
 import sys
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple, Sequence
+from typing import Any, Sequence
 
 import numpy as np
 
-from ..arguments import FilePath, Numbers, isNumber, number, oneOf, orNone, takes
+from ..arguments import FilePath, Numbers, number, oneOf, orNone, takes
 from ..basics import Refused, say
-from .files import filesOf, onFolder, readCurve, readRun
+from . import curves, quantities
+from .files import filesOf, onFolder
+from .quantities import FALL, Number, RunData
 
-#: Share of the peak at which the secant stiffness is taken, and to which the force falls at the ultimate displacement [-].
-SECANT, FALL = 0.7, 0.8
+SECANT = 0.7  # of the peak: where the secant stiffness is taken
 #: What a curve may begin with, of the peak and of the displacement there [-].
 BEGIN = 0.01
 #: By how much of its largest displacement a push may go back [-].
@@ -56,21 +57,6 @@ ANNEX_B = "EN 1998-1:2004, annex B.3, equation (B.6)"
 RULES = {"masonry": CONVENTION, "en1998": ANNEX_B}
 
 
-class Number(NamedTuple):
-    """A number for a report."""
-
-    name: str  #: with its unit at the end, as in run.json
-    value: float | None  #: None if there is none; ``note`` says why
-    unit: str
-    meaning: str  #: one sentence
-    source: str  #: of the rule
-    note: str = ""  #: what the number does not say, a sentence
-
-    def entry(self) -> dict[str, Any]:
-        """The number as an entry of a JSON file."""
-        return self._asdict()
-
-
 @dataclass(frozen=True)
 class Bilinear:
     """A bilinear curve: what :func:`bilinear` found."""
@@ -84,9 +70,19 @@ class Bilinear:
     area: float  #: under the curve up to du [J], which is kN mm
     secant: float  #: share of the peak at which K was taken [-]; not used by ``en1998``
     fall: float  #: share of the peak to which the force falls at du [-]
-    reached: bool  #: whether the force falls so far; else du is the end of the curve
     mechanism: float  #: displacement at which the plastic mechanism forms [mm]; not used by ``masonry``
-    notes: tuple[str, ...]  #: sentences on what the numbers do not say
+    unreached: str  #: a sentence if the force does not fall so far, so that du is the end of the curve; else empty
+    remarks: tuple[str, ...]  #: other sentences on what the numbers do not say
+
+    @property
+    def reached(self) -> bool:
+        """Whether the force falls to its share of the peak."""
+        return not self.unreached
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """All sentences on what the numbers do not say."""
+        return (*filter(None, [self.unreached]), *self.remarks)
 
     @property
     def yieldDisplacement(self) -> float:
@@ -116,7 +112,7 @@ class Bilinear:
             stiff = "Yield force over yield displacement."
             force = f"Force at which the plastic mechanism forms, at {self.mechanism:.4g} mm."
         ultimate = f"Displacement after the peak at which the force has fallen to {self.fall:g} of it."
-        missing = "" if self.reached else self.notes[0]
+        missing = self.unreached
         return [
             Number("bilinear_stiffness_kN_per_mm", self.stiffness, "kN/mm", stiff, source),
             Number("yield_force_kN", self.yieldForce, "kN", force, source),
@@ -142,28 +138,6 @@ def _area(moved, force, end):
     last = float(np.interp(end, moved, force))
     d, f = np.append(moved[inside], end), np.append(force[inside], last)
     return float(np.trapz(f, d)), last
-
-
-def _fallen(moved, force, at, level, pulse):
-    """Displacement at which the force falls below a level after row ``at`` and stays below for longer than a pulse; else None.
-
-    What falls within a pulse before the end of the curve may be a wave, too. Without pulses the first fall counts.
-    """
-    below = force < level
-    row = at
-    while True:
-        under = np.flatnonzero(below[row:])
-        if not len(under):
-            return None
-        first = row + int(under[0])
-        back = np.flatnonzero(~below[first:])
-        last = first + int(back[0]) if len(back) else len(moved) - 1
-        down = _crossing(moved, force, level, first)
-        if pulse == 0 or moved[last] - down > pulse:
-            return down
-        if not len(back):
-            return None
-        row = last
 
 
 def _checked(displacement, force):
@@ -251,17 +225,17 @@ def bilinear(
         )
     stiffness = level / upper
     _checkPeak(moved, forces, stiffness)
-    end, notes = _fallen(moved, forces, at, fall * peak, pulse), []
-    reached = end is not None
-    if end is None:
+    place, notes, unreached = curves.fallen(moved, forces, at, fall * peak, pulse), [], ""  # fmt: skip
+    if place is None:
         end = float(moved[-1])
         dips = (forces[at:] < fall * peak).any()
         wave = f" for longer than a wave of {pulse:.2g} mm" if dips else ""
-        notes.append(
+        unreached = (
             f"not reached: the force never falls to {fall:g} of its peak{wave}, so the ultimate displacement is the end of the curve, and "
             "the ductility is that of the part which was run"
         )
     else:
+        end = float(np.interp(place, np.arange(len(moved)), moved))
         again = (moved > end + pulse) & (forces >= fall * peak)
         if again.any():
             notes.append(
@@ -306,9 +280,9 @@ def bilinear(
         area=area,
         secant=secant,
         fall=fall,
-        reached=reached,
         mechanism=forms,
-        notes=tuple(notes),
+        unreached=unreached,
+        remarks=tuple(notes),
     )
 
 
@@ -348,12 +322,15 @@ class Pushover:
     """The curve of one push of a run: what :func:`pushover` read."""
 
     directory: str
+    data: RunData  #: of the run
     displacement: np.ndarray  #: of the pushed point along the push [mm]
     force: np.ndarray  #: that both ends carry at once, along the push [kN]
-    pulse: float  #: displacement of the drive within the first period of the structure [mm]; 0 if that is not known
-    height: float | None  #: of the recorded point above the lowest brick [m], if run.json has it
-    run: dict[str, Any]  #: entries of run.json
     notes: tuple[str, ...]  #: sentences on the run
+
+    @property
+    def run(self) -> dict[str, Any]:
+        """Entries of run.json."""
+        return self.data.run
 
 
 def pushover(directory: FilePath) -> Pushover:
@@ -362,65 +339,31 @@ def pushover(directory: FilePath) -> Pushover:
     :param directory: folder of results
     :raises Refused: if the run has no push, was interrupted, failed, or goes along a history
     """
-    run = readRun(directory)
+    data = RunData.read(directory)
+    run = data.run
     if run.get("interrupted"):
         raise Refused(
             f"{directory}: the run was interrupted, so its curve is not whole; continue it with --resume {directory}"
         )
     if run.get("error"):
         raise Refused(f"{directory}: the run ended by an error: {run['error']}")
-    if "history" in run:
+    if data.isLooped:
         raise Refused(
             f"{directory}: the run goes along a history of loading, there and back, and a bilinear curve is of one push"
         )
-    data = readCurve(directory)
-    heads = ("displacement_mm", "base_shear_kN", "top_shear_kN")
-    missing = [head for head in heads if head not in data]
-    if "peak_base_shear_kN" not in run or missing:
-        why = f": curve.csv has no column {', '.join(missing)}" if missing else ""
-        raise Refused(f"{directory}: the run has no push{why}")
+    heads = (quantities.MOVED, quantities.BASE, quantities.TOP)
+    missing = [head for head in heads if data.column(head) is None]
     with filesOf(directory):
-        rows = run["figure"].get("rows")
-        values = {name: np.array(column) for name, column in data.items()}
-        if rows is not None:
-            values = {name: column[rows] for name, column in values.items()}
-        moved, base, top = (values[head] for head in heads)
-        pulse, period = 0.0, _known(run, "first_period_s")
-        if period and "time_s" in values and len(moved) > 1:
-            lasted = float(np.ptp(values["time_s"]))
-            pulse = period * float(np.ptp(moved)) / lasted if lasted > 0 else 0.0
+        if missing or not data.isPush:
+            why = f": curve.csv has no column {', '.join(missing)}" if missing else ""
+            raise Refused(f"{directory}: the run has no push{why}")
         notes = []
         if run.get("too_fast"):
             notes.append(
                 f"the push was too fast: {100 * run['dynamic_imbalance']:.2g} % of the force did not reach the supports"
             )
-        return Pushover(
-            directory=str(directory),
-            displacement=moved,
-            force=np.minimum(base, top),
-            pulse=pulse,
-            height=_heightOf(run),
-            run=run,
-            notes=tuple(notes),
-        )
-
-
-def _known(run, key):
-    """A finite number of run.json, or None."""
-    value = run.get(key)
-    return float(value) if isNumber(value) and math.isfinite(value) else None
-
-
-def _heightOf(run):
-    """Height of the recorded point above the lowest brick [m], or None if run.json does not have it, as of an older run that saw
-    no crack."""
-    known = _known(run, "recorded_height_m")
-    moved, drift = _known(run, "displacement_at_first_crack_mm"), _known(run, "drift_at_first_crack_mrad")  # fmt: skip
-    if known is None and moved and drift:
-        known = moved / drift
-    if known is None and "wall" in run:
-        known = _known(run["wall"], "measure_height_m")
-    return known if known and known > 0 else None
+        moved = np.array(data[quantities.MOVED])
+        return Pushover(str(directory), data, moved, data.carried(), tuple(notes))
 
 
 def ofRun(
@@ -439,53 +382,52 @@ def ofRun(
     push = directory if isinstance(directory, Pushover) else pushover(directory)
     try:
         found = bilinear(
-            push.displacement, push.force, rule, secant, fall, mechanism, push.pulse
+            push.displacement,
+            push.force,
+            rule,
+            secant,
+            fall,
+            mechanism,
+            push.data.pulse,
         )
     except Refused as refused:
         raise Refused(f"{push.directory}: {refused}") from None
-    notes = (*found.notes, *push.notes)
-    if not found.reached and _known(push.run, "collapse_displacement_mm") is not None:
-        notes = (
+    unreached = found.unreached
+    if unreached and push.data.collapse is not None:
+        unreached = (
             f"not reached: the structure collapsed at {found.ultimateDisplacement:.4g} mm before the force had fallen to {fall:g} of its "
-            "peak, so the ultimate displacement is that of the collapse",
-            *notes[1:],
+            "peak, so the ultimate displacement is that of the collapse"
         )
-    return replace(found, notes=notes)
+    remarks = (*found.remarks, *push.notes)
+    return replace(found, unreached=unreached, remarks=remarks)
 
 
 @takes(height=orNone(number("m", 0, above=True)))
 def drifts(
     directory: FilePath | Pushover, height: float | None = None, fall: float = FALL
 ) -> list[Number]:
-    """Drifts of the push of a run [mrad]: displacement over height, at the first crack, at the peak, where the force has
-    fallen to a share of the peak, and at the collapse.
+    """Drifts of the push of a run [mrad] at the first crack, at the peak, where the force has fallen to a share of the peak, and at
+    the collapse: displacement of the masonry over its height.
 
     :param directory: folder of results, or what :func:`pushover` read of it
-    :param height: of the point whose displacement is recorded above the base [m]; None: that of run.json
+    :param height: of the point whose displacement is recorded above the base [m], for drifts of that point; None: those of the
+        masonry, of which run.json has the height
     :param fall: as of :func:`bilinear`
     :returns: four numbers; one that the run does not have has the value None and a note that says why
     :raises Refused: if the run has no whole push, or if there is no height
     """
     push = directory if isinstance(directory, Pushover) else pushover(directory)
-    high = height or push.height
-    if not high:
+    data = RunData(push.run, push.data.column, height=height)
+    if not data.height:
         raise Refused(
             f"{push.directory}: run.json does not have the height of the recorded point above the base, so drifts need height=, in m"
         )
-    found, note = ofRun(push, fall=fall), ""
-    if not found.reached:
-        note = found.notes[0]
-    run = push.run
-    first, last = _known(run, "displacement_at_first_crack_mm"), _known(run, "collapse_displacement_mm")  # fmt: skip
-    over = f"over the height, {high:.4g} m"
-    source = "displacement over height"
-    mrad = lambda moved: None if moved is None else moved / high
-    return [
-        Number("drift_at_first_crack_mrad", mrad(first), "mrad", f"Displacement at the first crack that is seen, {over}.", source, "" if first is not None else "no crack was seen in the push"),
-        Number("drift_at_peak_mrad", mrad(found.peakDisplacement), "mrad", f"Displacement at the largest force, {over}.", source),
-        Number("drift_at_fall_mrad", mrad(found.ultimateDisplacement if found.reached else None), "mrad", f"Displacement after the peak at which the force has fallen to {fall:g} of it, {over}.", source, note),
-        Number("drift_at_collapse_mrad", mrad(last), "mrad", f"Last displacement before the collapse, {over}.", source, "" if last is not None else "the push did not end in a collapse"),
-    ]  # fmt: skip
+    found = []
+    for state in quantities.STATES:
+        place = data.fallenTo(fall) if state.share else data.place(state)
+        one = Number(state.drift, data.drift(place), "mrad", f"Over the height, {data.height:.4g} m. {state.meaning}", "displacement over height")  # fmt: skip
+        found.append(one if place is not None else one._replace(note=state.missing))
+    return found
 
 
 def lines(numbers: list[Number], notes: Sequence[str] = ()) -> list[str]:

@@ -61,7 +61,7 @@ NEEDED = ["area", "bodies", "crushing", "damage_compression", "joint_dissipated"
 def layOut(
     frame: dict[str, Any], wall: dict[str, Any]
 ) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-    """Joints of a frame on the grid of the brickwork, without those to the support and to the loading block.
+    """Joints of a frame on the grid of the brickwork.
 
     :param frame: of the joints
     :param wall: the entry ``wall`` of run.json
@@ -69,15 +69,14 @@ def layOut(
         the shape (courses - 1, half units). The second is of upright joints, which are head joints and cracks of
         bricks, its arrays have the shape (courses, half units - 1). Each has ``opening`` and ``slide``, means over a
         joint [m]; ``shear``, the energy that a joint dissipated in shear [J]; ``crushing``, the volume of plastic
-        closure [m³]; and ``past``, the area that closed past the peak of its compression curve [m²]
+        closure [m³]; and ``past``, the area that closed past the peak of its compression curve [m²]. The first has ``beds``,
+        too, the same of all bed joints with those to the support and to the loading block, (courses + 1, half units)
     """
     half, height = wall["unit_m"][0] / 2, wall["unit_m"][2]
     courses, columns = wall["courses"], wall["half_units"]
-    bed = {
-        name: np.zeros((courses - 1, columns))
-        for name in ("opening", "slide", "shear", "crushing", "past")
-    }
-    upright = {name: np.zeros((courses, columns - 1)) for name in bed}
+    names = ("opening", "slide", "shear", "crushing", "past")
+    beds = {name: np.zeros((courses + 1, columns)) for name in names}
+    upright = {name: np.zeros((courses, columns - 1)) for name in names}
     _, first, joint = np.unique(
         frame["bodies"], axis=0, return_index=True, return_inverse=True
     )
@@ -94,13 +93,18 @@ def layOut(
         "past": total(frame["damage_compression"] > 0),
     }
     flat = np.abs(frame["normal"][first, 2]) > 0.5
-    row = np.where(flat, np.rint(z) - 1, np.floor(z)).astype(int)
-    column = np.where(flat, np.floor(x), np.rint(x) - 1).astype(int)
-    inner = flat & (row >= 0) & (row < courses - 1)
-    for name in values:
-        bed[name][row[inner], column[inner]] = values[name][inner]
-        upright[name][row[~flat], column[~flat]] = values[name][~flat]
-    return bed, upright
+    row = np.where(flat, np.rint(z), np.floor(z)).astype(int)
+    # a platen and a whole brick share a joint of two half units
+    long = np.where(flat, np.rint(whole / (half * wall["unit_m"][1])), 1).astype(int)
+    first = np.where(flat, np.rint(x - long / 2), np.rint(x) - 1).astype(int)
+    up, flat = ~flat, flat & (row >= 0) & (row <= courses)
+    for name in names:
+        for n in range(long.max(initial=1)):
+            has = flat & (long > n)
+            share = long[has] if name in ("shear", "crushing", "past") else 1
+            beds[name][row[has], first[has] + n] = values[name][has] / share
+        upright[name][row[up], first[up]] = values[name][up]
+    return {**{name: beds[name][1:-1] for name in names}, "beds": beds}, upright
 
 
 def centresOf(points: np.ndarray, cells: Sequence[np.ndarray]) -> np.ndarray:
@@ -246,20 +250,21 @@ def crushing(bed: dict[str, np.ndarray]) -> dict[str, Any]:
 
 
 def sliding(bed: dict[str, np.ndarray]) -> dict[str, Any]:
-    """Numbers of the bed joint, from side to side of the wall, in which most energy was lost in shear.
+    """Numbers of the bed joint, from side to side of the wall, in which most energy was lost in shear; those to the support and to
+    the loading block are bed joints, too.
 
     - sliding_course: courses between it and the base
     - sliding_energy_share [-]: of the energy lost in shear by all bed joints, what it lost
     - slid_share [-]: of its length, what slid more than CRACK
     - slid_mm: its slide, the median over its length
     """
-    energy = bed["shear"].sum(axis=1)
+    energy, slide = bed["beds"]["shear"].sum(axis=1), bed["beds"]["slide"]
     course, whole = int(energy.argmax()), energy.sum()
     return {
-        "sliding_course": course + 1,
+        "sliding_course": course,
         "sliding_energy_share": energy[course] / whole if whole > 0 else 0.0,
-        "slid_share": (bed["slide"][course] > CRACK).mean(),
-        "slid_mm": 1e3 * np.median(bed["slide"][course]),
+        "slid_share": (slide[course] > CRACK).mean(),
+        "slid_mm": 1e3 * np.median(slide[course]),
     }
 
 
@@ -271,10 +276,35 @@ def patternNumbers(
     return {name: np.asarray(value).item() for name, value in found.items()}
 
 
-def pattern(frame: dict[str, Any], wall: dict[str, Any]) -> dict[str, Any]:
+#: The numbers of a pattern, by the functions that find them.
+MEASURED = {
+    **dict.fromkeys(
+        ("diagonal_energy_share", "diagonal_joint_share", "diagonal_band_courses", "diagonal_reach", "parallel_cracks"),
+        "masonry.read.cracks.diagonal",
+    ),
+    **{f"flexural_{what}": "masonry.read.cracks.flexure" for end in ("base", "top") for what in (f"cracks_{end}", f"opening_{end}_mm", f"course_{end}")},
+    **dict.fromkeys(
+        ("crushed_volume_cm3", "crushed_share_toe", "crushed_share_top_left", "past_peak_area_cm2"), "masonry.read.cracks.crushing"
+    ),
+    **dict.fromkeys(("sliding_course", "sliding_energy_share", "slid_share", "slid_mm"), "masonry.read.cracks.sliding"),
+    "failure_mode": "masonry.read.cracks.failureMode",
+}  # fmt: skip
+
+
+def pattern(frame: dict[str, Any], wall: dict[str, Any], looped: bool = False) -> dict[str, Any]:  # fmt: skip
     """Numbers of the crack pattern of a wall; ``frame``, of which the arrays NEEDED are enough, and ``wall`` as of
-    :func:`layOut`."""
-    return patternNumbers(*layOut(frame, wall))
+    :func:`layOut`.
+
+    :param looped: whether the wall was pushed back, too: then the numbers of the diagonal and of crushing are there once more, of
+        the wall that is seen from behind, with ``_mirrored`` at the end of the name
+    """
+    bed, upright = layOut(frame, wall)
+    found = patternNumbers(bed, upright)
+    if looped:
+        bed, upright = mirrored(bed), mirrored(upright)
+        other = {**diagonal(bed, upright), **crushing(bed)}
+        found.update((f"{n}_mirrored", np.asarray(v).item()) for n, v in other.items())
+    return found
 
 
 #: Of a wall that slides along a bed joint: share of that joint's length that slid, and of the energy in shear [-].
@@ -282,7 +312,10 @@ SLID = 0.9, 0.5
 
 
 def failureMode(
-    numbers: dict[str, Any], wall: dict[str, Any], grows: bool = False
+    numbers: dict[str, Any],
+    wall: dict[str, Any],
+    grows: bool = False,
+    lost: bool = False,
 ) -> str:
     """A plain name of how a wall gave way, from its crack pattern at the end. The first that applies is given:
 
@@ -293,13 +326,15 @@ def failureMode(
     - ``toe crushing``: bed joints of more than one half unit closed past the peak of their compression curve
     - ``rocking``: a bed joint opened at a side of the wall by more than CRACK, and by more than bed joints slid
     - ``partial cracking``: bed joints opened or slid by more than CRACK, but none of the above applies
-    - ``none``: the wall is not cracked
+    - ``other``: the wall has lost force, and none of the above applies
+    - ``none``: the wall is not cracked, and has lost no force
 
     A wall that has several of these has the name of one: the numbers beside it tell of the others.
 
     :param numbers: of :func:`patternNumbers`
     :param wall: the entry ``wall`` of run.json
     :param grows: as of :func:`masonry.read.curves.stillGrows`; of a wall that follows a history False
+    :param lost: whether the force of the push has fallen after its peak
     """
     if grows:
         return "none yet"
@@ -318,9 +353,9 @@ def failureMode(
     if opened > max(1e3 * CRACK, numbers["slid_mm"]):
         return "rocking"
     cracked = max(opened, numbers["slid_mm"]) > 1e3 * CRACK
-    return "partial cracking" if cracked else "none"
+    return "partial cracking" if cracked else "other" if lost else "none"
 
 
 def mirrored(joints: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The joints of :func:`layOut` of a wall that is seen from behind: what fell to the right falls to the left."""
-    return {name: values[:, ::-1] for name, values in joints.items()}
+    return {n: values[:, ::-1] for n, values in joints.items() if n != "beds"}

@@ -6,6 +6,8 @@ from __future__ import annotations
 import math
 from typing import Any, Callable
 
+import numpy as np
+
 from ..arguments import Numbers
 from . import loops
 
@@ -104,6 +106,33 @@ def suddenLoss(displacement: Numbers, top: Numbers, base: Numbers) -> tuple[floa
         if beyond > n and peak > 0:
             found = max(found, ((force[n] - force[beyond]) / peak, moved))
     return found
+
+
+def fallen(displacement: Any, force: Any, at: int, level: float, pulse: float) -> float | None:  # fmt: skip
+    """Where the force falls below a level after a row and stays below for longer than a pulse: a number of a row with a fraction, or
+    None. What falls within a pulse before the end of the curve may be a wave, too. Without pulses the first fall counts.
+
+    :param displacement: that does not go back, and ``force``: arrays
+    :param at: number of the row
+    :param pulse: a displacement
+    """
+    below, row = force < level, at
+    while True:
+        under = np.flatnonzero(below[row:])
+        if not len(under):
+            return None
+        first = row + int(under[0])
+        back = np.flatnonzero(~below[first:])
+        last = first + int(back[0]) if len(back) else len(force) - 1
+        place = float(first)
+        if first and force[first] != force[first - 1]:
+            place += (level - force[first]) / (force[first] - force[first - 1])
+        down = np.interp(place, np.arange(len(force)), displacement)
+        if pulse == 0 or displacement[last] - down > pulse:
+            return place
+        if not len(back):
+            return None
+        row = last
 
 
 def stillGrows(displacement: Numbers, force: Numbers) -> bool:

@@ -18,42 +18,12 @@ from typing import Any, Iterator
 
 import numpy as np
 
-from ..arguments import FilePath, Numbers
+from ..arguments import FilePath
 from ..basics import say
-from . import loops
-from .cracks import (
-    crushing,
-    diagonal,
-    failureMode,
-    layOut,
-    mirrored,
-    patternNumbers,
-)
-from .curves import stillGrows
+from . import cracks, quantities
 from .files import filesOf, onFolder, readCurve, readRun
 from .frames import readFrame
-
-LOST = 0.05  # of the peak force: a larger loss is a drop, a smaller one may be the scatter by single bricks at the toe
-
-
-def force(displacement: Numbers, shear: Numbers) -> dict[str, float]:
-    """Numbers of a force-displacement curve after its peak, from displacements [mm] and forces.
-
-    - force_drop [-]: share of the peak that is lost at the end
-    - drop_at_mm: first displacement after the peak with less than 0.95 of it; infinite if there is none
-    """
-    at = int(np.argmax(shear))
-    after = np.flatnonzero(np.asarray(shear[at:]) < (1 - LOST) * shear[at])
-    return {
-        "force_drop": 1 - shear[-1] / shear[at],
-        "drop_at_mm": displacement[at + after[0]] if len(after) else float("inf"),
-    }
-
-
-def pushNumbers(displacement: Numbers, shear: Numbers) -> dict[str, float]:
-    """Numbers of a push: its work, and those of :func:`force`. Parameters are displacements [mm] and forces [kN]."""
-    work = float(np.trapz(shear, displacement))
-    return {"push_work_J": work, **force(displacement, shear)}
+from .quantities import RunData
 
 
 def frameAt(directory: FilePath, time: float) -> int:
@@ -64,58 +34,17 @@ def frameAt(directory: FilePath, time: float) -> int:
 
 def wallNumbers(directory: FilePath) -> dict[str, Any]:
     """All numbers of a wall's run. Those of the crack pattern are left out if there are no ParaView files."""
-    run, curve = readRun(directory), readCurve(directory)
-    shear, moved = curve["base_shear_kN"], curve["displacement_mm"]
-    at = int(np.argmax(shear))
-    numbers = {"top_less_base_shear_kN": curve["top_shear_kN"][at] - shear[at]}
-    if "history" in run:
-        numbers.update(loopNumbers(run, moved, shear))
-    else:
-        numbers.update(pushNumbers(moved, shear))
+    data = RunData.read(directory)
+    at = data.peak()
+    top, base, times = (data[n] for n in (quantities.TOP, quantities.BASE, "time_s"))
+    more = {"top_less_base_shear_kN": top[at] - base[at]}
     if glob.glob(os.path.join(directory, "joints_*.vtp")):
-        grid = lambda number: layOut(
-            readFrame(directory, "joints", number), run["wall"]
-        )
-        bed, upright = grid(-1)
-        numbers.update(patternNumbers(bed, upright))
-        if "history" in run:
-            bed, upright = mirrored(bed), mirrored(upright)
-            other = {**diagonal(bed, upright), **crushing(bed)}
-            numbers.update((name + "_mirrored", v) for name, v in other.items())
-        atPeak = diagonal(*grid(frameAt(directory, curve["time_s"][at])))
-        numbers["diagonal_reach_at_peak"] = atPeak["diagonal_reach"]
-    return numbers
-
-
-def loopNumbers(
-    run: dict[str, Any], displacement: Numbers, shear: Numbers
-) -> dict[str, Any]:
-    """Numbers of loops, from run.json and from displacements [mm] and forces [kN].
-
-    - cycle_count: whole cycles; cycle_work_J: work of all of them; loop_work_J: work of the whole curve
-    - largest_amplitude_mm: of a cycle; largest_damping, smallest_damping [-]: the ratio of equivalent viscous damping
-    - force_drop, drop_at_mm: as of a push, along the envelope of the positive side; force_drop_negative,
-      drop_at_negative_mm: along that of the negative side, as positive numbers
-    """
-    cycles = run["cycles"]
-    numbers = {
-        "cycle_count": len(cycles),
-        "cycle_work_J": sum(cycle["work_J"] for cycle in cycles),
-        "loop_work_J": loops.work(displacement, shear),
-    }
-    damping = [c["damping"] for c in cycles if c["damping"] is not None]
-    if damping:
-        numbers["largest_amplitude_mm"] = max(c["amplitude_mm"] for c in cycles)
-        numbers["largest_damping"] = max(damping)
-        numbers["smallest_damping"] = min(damping)
-    moved, forces = np.array(displacement), np.array(shear)
-    sides = (("", 1), ("_negative", -1))
-    for rows, (name, side) in zip(loops.envelope(displacement), sides):
-        if len(rows) and (side * forces[rows]).max() > 0:
-            found = force(side * moved[rows], side * forces[rows])
-            numbers["force_drop" + name] = found["force_drop"]
-            numbers[f"drop_at{name}_mm"] = found["drop_at_mm"]
-    return numbers
+        frame = lambda number: readFrame(directory, "joints", number)
+        data.joints = frame(-1)
+        atPeak = cracks.layOut(frame(frameAt(directory, times[at])), data.run["wall"])
+        more["diagonal_reach_at_peak"] = cracks.diagonal(*atPeak)["diagonal_reach"]
+        more.update(data.pattern)
+    return {**quantities.known(data), **more}
 
 
 def jointNumbers(directory: FilePath, name: str) -> dict[str, Any]:
@@ -146,18 +75,18 @@ def measure(directory: FilePath) -> dict[str, Any]:
     ``balance_error`` is the ``energy_balance_error`` of run.json.
     """
     run = readRun(directory)
-    numbers = {
-        name: value
-        for name, value in run.items()
-        if isinstance(value, (int, float)) and not isinstance(value, bool)
-    }
     with filesOf(directory):
-        numbers["balance_error"] = numbers.pop("energy_balance_error")
+        numbers = {**run, "balance_error": run["energy_balance_error"]}
+        del numbers["energy_balance_error"]
         if "wall" in run:
             numbers.update(wallNumbers(directory))
         for joint in run.get("recorded_joints", []):
             numbers.update(jointNumbers(directory, joint))
-    return numbers
+    return {
+        name: value
+        for name, value in numbers.items()
+        if isinstance(value, (int, float)) and not isinstance(value, bool) or name == "failure_mode"
+    }  # fmt: skip
 
 
 #: Columns of the table of cycles: the head, the key in run.json, and the format of the numbers.
@@ -191,13 +120,8 @@ def cycleTable(cycles: list[dict[str, Any]]) -> Iterator[str]:
 
 def show(directory: FilePath) -> None:
     """Print all numbers of a run, and a table of its cycles if there are any."""
-    numbers, wall = measure(directory), readRun(directory).get("wall")
-    for name, value in numbers.items():
-        say(f"{name:34} {value:.6g}")
-    if wall and "slid_share" in numbers:
-        looped, curve = readRun(directory).get("history"), readCurve(directory)
-        grows = not looped and stillGrows(curve["displacement_mm"], curve["base_shear_kN"])  # fmt: skip
-        say(f"{'failure_mode':34} {failureMode(numbers, wall, grows)}")
+    for name, value in measure(directory).items():
+        say(f"{name:34} {value if isinstance(value, str) else f'{value:.6g}'}")
     cycles = readRun(directory).get("cycles")
     if cycles:
         with filesOf(directory):

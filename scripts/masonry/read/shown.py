@@ -13,7 +13,6 @@
 ``scene.curve()`` gives the same of a scene between its stages, or after its end.
 """
 
-import math
 import os
 import re
 
@@ -22,7 +21,7 @@ import numpy as np
 from .. import notebook
 from ..arguments import nearest, path, takes
 from ..basics import Refused
-from . import crack_figure, curve_figure, drawing
+from . import crack_figure, curve_figure, drawing, quantities
 from .files import filesOf, readCurve, readRun
 from .frames import readFrame
 
@@ -191,25 +190,6 @@ class RunFolder:
             return notebook.titled(title, self._cracks(), curve, results)
 
 
-#: Entries of run.json for the table of results: the key, what it is, its unit, and how the number is written.
-RESULTS = (
-    ("peak_base_shear_kN", "peak of the force at the supports, along the push", "kN", ".4g"),
-    ("displacement_at_peak_mm", "displacement there", "mm", ".4g"),
-    ("base_shear_end_kN", "force at the end", "kN", ".4g"),
-    ("displacement_end_mm", "displacement at the end", "mm", ".4g"),
-    ("initial_stiffness_kN_per_mm", "initial stiffness", "kN/mm", ".4g"),
-    ("displacement_at_first_crack_mm", "displacement at the first crack", "mm", ".4g"),
-    ("bound_base_shear_kN", "limit analysis of the push", "kN", ".4g"),
-    ("bound_acceleration", "limit analysis of the acceleration", "g", ".4g"),
-    ("largest_crack_mm", "widest crack at the end", "mm", ".3g"),
-    ("dynamic_imbalance", "dynamic imbalance of the push", "-", ".2g"),
-    ("energy_balance_error", "largest error of the energy balance", "-", ".2g"),
-    ("steps", "time steps", "-", "d"),
-    ("microseconds_per_step", "time of a step", "µs", ".3g"),
-    ("wall_clock_s", "time of the run", "s", ".3g"),
-)  # fmt: skip
-
-
 def resultsOf(run):
     """Rows of the table of results, from the entries of run.json: what it is, its value and its unit."""
     rows = []
@@ -225,8 +205,7 @@ def resultsOf(run):
             value += f" ± {one['uncertainty']:.2g}"
         what = f"{one['stage']}: {one['name'].replace('_', ' ')}"
         rows.append((what, value, "" if one["unit"] == "-" else one["unit"]))
-    for key, what, unit, kind in RESULTS:
-        value = run.get(key)
-        if value is not None and math.isfinite(value):
-            rows.append((what, format(value, kind), "" if unit == "-" else unit))
+    for one in quantities.shown(run, brief=True):
+        value = one.value if isinstance(one.value, int) else f"{one.value:.4g}"
+        rows.append((one.name, str(value), "" if one.unit == "-" else one.unit))
     return rows

@@ -229,21 +229,20 @@ def _describe(run, scene):
         host=socket.gethostname(),
         **scene.outcome.describe(),
     )
-    if run.results.rows:
-        entries.update(
-            energy_balance_error=scene.model.energy.largestError,
-            energy_made=scene.model.energy.largestMade,
-            **scene.outcome.summary(),
-        )
     entries.update(
         collapsed=run.collapsed,
         interrupted=run.interrupted,
         resumed_at_s=at.resumed,
         steps=at.steps,
-        stages=_stages(at),
+        stages=at.listed(),
         kinds=run.vtk.kinds if run.vtk else [],
         seconds={part: round(s, 3) for part, s in at.seconds.items()},
     )
+    if run.results.rows:
+        energy = scene.model.energy
+        entries["energy_balance_error"] = energy.largestError
+        entries["energy_made"] = energy.largestMade
+        scene.outcome.summarise()
     if run.args.blocks == "rigid" and not scene.description.functors:
         entries["refined_joints"] = scene.model.refinedJoints()
     if at.steps:
@@ -253,7 +252,7 @@ def _describe(run, scene):
             1e9 * perStep / scene.model.subcontacts
         )
     entries["notes"] = at.notes
-    entries["warnings"] = [w.removeprefix("warning: ") for w in _warnings(run, scene)]
+    entries["warnings"] = list(_warnings(run, scene))
 
 
 def _options(run):
@@ -264,33 +263,9 @@ def _options(run):
     return options
 
 
-def _stages(at):
-    ends = [*at.stages[1:], ["", at.steps, at.seconds["steps"], 0]]
-    return [
-        {
-            "stage": name,
-            "steps": after[1] - steps,
-            "seconds": after[2] - seconds,
-            "first_row": row,
-            "load": at.loads.get(str(number)),
-        }
-        for number, ((name, steps, seconds, row), after) in enumerate(
-            zip(at.stages, ends), start=1
-        )
-    ]
-
-
 def _warnings(run, scene):
-    """Sentences on what the numbers of a run suffer from, for run.json."""
+    """Sentences on what the numbers of a run suffer from, for run.json and the terminal."""
     entries = run.results.run
-    if wrong := _ofBalance(entries):
-        yield wrong
-    if run.results.rows:
-        yield from scene.outcome.warnings(entries)
-
-
-def _ofBalance(entries):
-    """The warning of an energy balance that is off, or nothing."""
     off, made = entries.get("energy_balance_error", 0), entries.get("energy_made", 0)
     wrong = []
     if off > OFF:
@@ -299,17 +274,18 @@ def _ofBalance(entries):
         wrong.append(
             f"joints that open or close within a step made {100 * made:.1f} % of the work done"
         )
-    return wrong and (
-        f"warning: {', and '.join(wrong)}: a smaller --dt-fraction or --rate or more --damping helps"
-    )
+    if wrong:
+        yield f"{', and '.join(wrong)}: a smaller --dt-fraction or --rate or more --damping helps"
+    if run.results.rows:
+        yield from scene.outcome.warnings(entries)
 
 
 def _report(run, scene):
     entries = run.results.run
     if not run.args.lean and (run.results.rows or not run.interrupted):
         _draw(run, scene)
-    if wrong := _ofBalance(entries):
-        say(wrong)
+    for sentence in entries["warnings"]:
+        say(f"warning: {sentence}")
     if run.results.rows:
         for line in scene.outcome.report(entries):
             say(line)

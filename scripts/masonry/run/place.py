@@ -52,6 +52,22 @@ class Place:
     supportsMoved: bool = False  # whether a stage has moved supports
     resumed: list = field(default_factory=list)  # times at which it was taken up [s]
 
+    def listed(self):
+        """The entry ``stages`` of run.json."""
+        ends = [*self.stages[1:], ["", self.steps, self.seconds["steps"], 0]]
+        return [
+            {
+                "stage": name,
+                "steps": after[1] - steps,
+                "seconds": after[2] - seconds,
+                "first_row": row,
+                "load": self.loads.get(str(number)),
+            }
+            for number, ((name, steps, seconds, row), after) in enumerate(
+                zip(self.stages, ends), start=1
+            )
+        ]
+
 
 def otherVersion(why):
     """The refusal of a checkpoint that this version of the plugin does not leave."""

@@ -35,7 +35,7 @@ def check(saved, at):
         and _grow([s[3] for s in at.stages], rows),
         # their times may fall: a trial of a bracket begins at the time of the last state at rest
         "the frames": all(t >= 0 for t in at.frames),
-        "where pushes began": all(alike(o, [0.0, 0.0]) for o in at.origins.values()),
+        "where pushes began": all(alike(o, [0.0] * 3) for o in at.origins.values()),
         "the bounds": all(map(_isBound, at.bounds.values())),
         "the swings": all(map(_isNumber, at.swings))
         and all(
@@ -105,7 +105,7 @@ IN_LISTS = {
     "places": 0.0,
 }
 #: How long other lists are, if they are not empty.
-LONG = {"held": 2, "lost": 4, "origin": 2}
+LONG = {"held": 2, "lost": 4, "origin": 3}
 
 
 def _isMemory(entry):

@@ -20,8 +20,6 @@
 - ``versions``: of ``yade``, ``python`` and ``masonry``; ``commit``: of the plugin; ``threads``: how many
   steps may use; ``host``: its name; ``date``: when the run ended, in UTC, as 2026-05-31T12:00:00Z
 - ``steps_by_threads``: what :func:`masonry.assembly.threads.used` says, of the process that ended the run
-- ``time_step_s``, ``time_step_limit_s``: the time step and its stable limit
-- ``steps``: how many were taken; ``microseconds_per_step``, ``nanoseconds_per_subcontact_step``: their mean cost
 - ``stages``: a list with the name of every ``stage``, its ``steps`` and their ``seconds`` of wall-clock time, the number
   ``first_row`` of its first row of curve.csv, from 0, and ``load``: its kind, its name, and that of the load back; None if it has
   none
@@ -32,9 +30,7 @@
 - ``notes``: warnings and notes that the run said while it went on, but for those of ``bounds``: a list of dicts with ``text``,
   the ``stage`` in which it was said and its ``number``, and ``time_s`` in the scene. Before the first stage these are empty and
   0; what the process said before the run began stands there, too. Each text stands there once, when it was said first
-- ``seconds``: wall-clock time of ``setup``, ``steps``, ``rows`` and ``frames`` [s]; ``wall_clock_s``: of all
-- ``energy_balance_error``: largest error of the energy balance, relative to the work done [-]
-- ``energy_made``: most energy that joints made by opening or closing within a step, relative to the work done [-]
+- ``seconds``: wall-clock time of ``setup``, ``steps``, ``rows`` and ``frames`` [s]
 - ``kinds``: names of the kinds of joints, in the order of the numbers in the ParaView files
 - ``collapsed``: whether what was built has fallen; ``interrupted``: whether Ctrl-C or SIGTERM ended the run
 - ``resumed_at_s``: the times in the scene at which the run was taken up from a checkpoint
@@ -63,7 +59,8 @@
   run, from 1; ``name`` of the answer, its ``unit`` and ``value``, which is None if it was not found; ``uncertainty``, half the
   width of the interval that the run itself found about it, or None if it has no measure of it; and ``how``, a sentence on
   how both were found
-- ``recorded_joints``: names of the joints whose means are recorded
+- ``recorded_joints``: names of the joints whose means are recorded; ``recorded_drifts``, ``recorded_sections``: columns of curve.csv that
+  have drifts [mrad], and forces and moments of sections
 - ``ties``: of every tie, and of every bundle of fibres that is no longer elastic, a dict: ``name``, ``ends_m``, ``bodies`` (-1: the
   ground) and ``between`` of its ends, ``stiffness_N_per_m``, ``strength_N``, ``prestress_N``, ``slack_m``, ``breaking_strain``,
   ``compression``, ``state`` (elastic, yielded or broken), ``force_N`` and ``plastic_elongation_m``; ``springs``: of every spring
@@ -77,7 +74,6 @@
 - ``collapse``: what has fallen, and how far; None if nothing has
 - ``held``: names of the platens and bricks that are held; ``targets``: of all platens and bricks that are held, loaded or
   watched, a list of dicts with ``name``, the id of its ``body`` and whether it is ``held``
-- ``factor``: as of :class:`masonry.scene.scene.Scene`, of a run that found one
 
 A run that pushes, leans or tilts has these, if limit analysis (:mod:`masonry.limit`) applies:
 
@@ -90,67 +86,28 @@ A run that pushes, leans or tilts has these, if limit analysis (:mod:`masonry.li
   ``without_dilatancy_settled``. An entry of ``scene.domain`` has ``pressed_kN``, the normal force that was given, and ``normal_kN``,
   that at the supports
   The process that finds the bound draws its mechanism at its end, so a run that was killed and resumed has no picture of it
-- ``bound_base_shear_kN``, ``negative_bound_base_shear_kN``: of the first push, and of the way back; ``bound_acceleration``:
-  of the first lean, horizontal over vertical
 
 A run with a push has these, too:
 
-- ``peak_base_shear_kN``, ``displacement_at_peak_mm``: the largest force along the push at all that
-  is held, and where it is reached
-- ``peak_at_both_ends_kN``: the largest force that the loaded point and the supports carried at once
-  (:func:`masonry.read.curves.peakAtBothEnds`)
-- ``base_shear_end_kN``, ``displacement_end_mm``: the last row
-- ``first_period_s``: the first period along the push, measured as it began (:mod:`masonry.assembly.period`); None if
-  none was found
-- ``base_weight``: w of the shear force V_s = (1 - w) top + w base, which leaves out the inertia of the structure's own mass
-  (:func:`masonry.read.curves.quasiStatic`); from the shape in which the structure moved as the push began, else 2/3 [-]
-- ``initial_stiffness_kN_per_mm``: of V_s, as of :func:`masonry.read.curves.stiffness`
-- ``displacement_at_first_crack_mm``: where the first crack of the push is seen: the first row at which the joints have
-  dissipated, in tension and shear since the push began, more than 1e-5 of the elastic energy
-  (:func:`masonry.read.curves.firstCrack`); None if there is none. Of dry joints it is where slip begins to count
-- ``drift_at_first_crack_mrad``: that displacement over the height of the recorded point above the lowest brick; None without
-  a crack, or if the push is not horizontal
-- ``recorded_height_m``: height of the recorded point above the lowest brick, over which displacements are
-  drifts; None if the push is not horizontal
-- ``collapse_displacement_mm``: the last row of a push that ended in a collapse; None if it did not
-- ``largest_crack_mm``: largest opening of a point of any joint at the end of the run, also of those to platens; slide does not
-  count; 0 if none is open
-- ``largest_crack_at_m``, ``largest_crack_bodies``: that point as it was built (x, y, z), and the ids of both bodies of its
-  joint; None if none is open
-- with --lean, which leaves no frames to measure: the numbers of :func:`masonry.read.measure.pushNumbers`, and of a wall in running
-  bond those of :func:`masonry.read.cracks.patternNumbers` and its ``failure_mode`` (:func:`masonry.read.cracks.failureMode`)
-- with --accuracy: ``push_work_J``, the area under the curve of the push; ``peak_half_width_kN`` and ``work_half_width_J``, half the
-  widths of the intervals of ``peak_at_both_ends_kN`` and of that work; and ``accuracy``: ``asked_percent``; ``reached``, whether
+- ``largest_crack_at_m``, ``largest_crack_bodies``: the point of the widest crack as it was built (x, y, z), and the ids of both bodies
+  of its joint; None if none is open
+- with --accuracy: ``peak_half_width_kN`` and ``work_half_width_J``, half the widths of the intervals of ``peak_at_both_ends_kN`` and of
+  ``push_work_J``; and ``accuracy``: ``asked_percent``; ``reached``, whether
   both are within it; ``fidelity``, what was chosen; ``quantities``, a list with ``name``, ``unit``, ``value``, ``half_width``,
   ``half_width_percent``, ``parts_percent`` by the source of the error, and ``how`` it was found; ``not_covered``; and
   ``companions``, the runs beside this one: ``name``, ``options``, ``peak`` [kN], ``work`` [J], ``seconds``, ``collapsed``, ``folder``
-- ``sudden_loss``, ``sudden_loss_at_mm``: of a push in one direction, as of :func:`masonry.read.curves.suddenLoss` [-]; above 0.1
-  the run says that its answer can depend on chance
-- ``dynamic_imbalance``: as of :func:`masonry.read.curves.dynamicImbalance` [-]; ``too_fast``: whether it is more than a push
-  may have
 - ``wall``, of a whole wall in running bond in the x-z plane that a platen pushes: ``length_m``, ``height_m``,
   ``thickness_m``, ``courses``, ``half_units`` (the length, in half units), ``unit_m`` (length, thickness and height of a
   unit), ``precompression_Pa``, ``load_height_m`` (height of the push above the base, None if the platen cannot turn),
   ``measure_height_m`` (height of the displacement above the base) and ``load_line_fixed`` (whether the vertical load
   keeps its line in space)
-
-A run that follows a history has these, too:
-
-- ``history``: ``text``, what the option said; ``points``, how many points it has; ``turning_points``, how often it turns;
-  ``path_mm``, the length of the way; ``noise_mm``, up to which an excursion is no half cycle; of a list
+- ``history``, of one that follows one: ``text``, what the option said; ``points``, how many points it has; ``turning_points``, how often
+  it turns; ``path_mm``, the length of the way; ``noise_mm``, up to which an excursion is no half cycle; of a list
   ``amplitudes_mm``, pairs of an amplitude [mm] and its number of cycles; of a file its path ``file`` and the fingerprint
-  ``sha256`` of its contents
-- ``negative_peak_base_shear_kN``, ``displacement_at_negative_peak_mm``: the smallest force, which is the peak of the
-  other side
-- ``cycles``: a list with the numbers of every whole cycle, as :func:`masonry.read.curves.cycleNumbers` finds them
-- ``damped_share``: as of :func:`masonry.read.curves.dampedShare` [-]
+  ``sha256`` of its contents. Then also ``cycles``: a list with the numbers of every whole cycle, as
+  :func:`masonry.read.curves.cycleNumbers` finds them
 
-A run that records the means of a joint has these, with its name before them if it has one:
-
-- ``peak_normal_stress_MPa``, ``peak_compressive_stress_MPa``, ``peak_shear_stress_MPa``: largest means over the joint
-- ``end_normal_stress_MPa``, ``end_shear_stress_MPa``: the last row
-- ``dissipated_tension_J_per_m2``, ``dissipated_shear_J_per_m2``, ``dissipated_compression_J_per_m2``: energy that the
-  joint dissipated, over its area
+Numbers, one a line with its source and unit, are those of :mod:`masonry.read.quantities`.
 """
 
 import contextlib
@@ -167,7 +124,10 @@ import time
 
 from .. import folders
 from ..basics import Refused, Unwritable, say
+from ..read import quantities
 from ..read.files import readWhole
+
+__doc__ = f"{__doc__}{quantities.described()}"
 
 #: Files that a run writes, and those that are drawn of it; * is a number.
 FILES = [

@@ -410,7 +410,7 @@ class Bounds:
             most = allowed + (run.get("dynamic_imbalance", 0.0) if unit == "kN" else 0)
             if reached > most * bound:
                 yield (
-                    f"warning: {what}, {reached:.4g} {unit}, is more than {100 * (most - 1):.1f} % above the upper bound "
+                    f"{what}, {reached:.4g} {unit}, is more than {100 * (most - 1):.1f} % above the upper bound "
                     f"of limit analysis, {bound:.4g} {unit}: is the run too fast, or does the structure move far?"
                 )
 

@@ -144,11 +144,12 @@ class Description:
         """The target on which blocks fall in a scene whose collapse is followed, or None."""
         return next((t for t in self.targets.values() if not t.joined), None)
 
-    def followed(self):
-        """The target whose displacement is drawn under a load that grows: the first that is watched, else the first that
-        moves, or None."""
+    def followed(self, loaded=None):
+        """The target whose displacement is drawn under a load that grows: the first that is watched, else the one on which the load
+        is, else the first that moves, or None."""
         moving = [t for t in self.targets.values() if not t.fixed]
-        return next((t for t in moving if not t.loaded), moving[0] if moving else None)
+        watched = [t for t in moving if not t.loaded]
+        return next(iter(watched + [loaded] * bool(loaded) + moving), None)
 
     def loaded(self):
         """Names of what has loads that grow in a stage."""
@@ -188,6 +189,8 @@ class Description:
         :param looped: whether the drive follows a history
         """
         found = [*columns.PUSH, *accelerations(structure, self.plane)]
+        if any(target.box and not target.fixed for target in self.targets.values()):
+            found += columns.OF_PLATEN
         for target in self.targets.values():
             found += target.columns(self.plane)
         for drift in self.drifts:

@@ -4,24 +4,14 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Iterable, NamedTuple, Sequence
+from typing import Any, Iterable, Sequence
 
 from ..escaping import Html, escaped, joined, tag
+from ..quantities import Number
 
 UNKNOWN = "not known"
 DIGITS = 4
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-
-class Number(NamedTuple):
-    """A row of a table of numbers."""
-
-    what: str  #: name
-    value: Any  #: a number, None if it is not known, or a text
-    unit: str  #: ``"-"`` if it has none
-    meaning: str  #: definition in one sentence
-    source: str  #: the file and the entry or column from which it comes
-    note: str = ""  #: why there is no value, or what it does not say
 
 
 def isNumber(value: Any) -> bool:
@@ -74,7 +64,7 @@ def numbers(rows: Iterable[Number], caption: str) -> Html:
             value = "none"
         note = tag("span", " " + row.note, class_="note") if row.note else None
         lines.append(
-            tag("tr", tag("th", row.what, scope="row"), tag("td", value, class_="value"),
+            tag("tr", tag("th", row.name, scope="row"), tag("td", value, class_="value"),
                 tag("td", row.meaning, note), tag("td", row.source, class_="source"))
         )  # fmt: skip
     head = ("quantity", "value", "what it is", "source")

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...arguments import FilePath
 from ...basics import Refused
-from .. import bilinear
+from .. import bilinear, quantities
 from ..curve_figure import plan
 from ..files import filesOf, readCurve, readRun, readWhole
 from ..motion import Motion
@@ -168,9 +168,24 @@ class Record:
         found = self.run.get("stages")
         return [s for s in found if isinstance(s, dict)] if isinstance(found, list) else []  # fmt: skip
 
+    @functools.cached_property
+    def data(self) -> quantities.RunData:
+        """What the numbers of the run are found from: rows whose forces are no finite numbers are left out."""
+        data = quantities.RunData(self.run, lambda name: self.columns.get(name))
+        heads = (quantities.MOVED, quantities.BASE, quantities.TOP)
+        with filesOf(self.directory):
+            rows = [n for n in data.rows if all(math.isfinite(self.columns[head][n]) for head in heads if head in self.columns)]  # fmt: skip
+        data.rows = rows  # type: ignore[misc]
+        return data
+
+    @functools.cached_property
+    def numbers(self) -> dict[str, Any]:
+        """All numbers of the run, by their entries in run.json."""
+        return quantities.known(self.data)
+
     @property
     def pushes(self) -> list[int]:
-        """Numbers of the stages that push, from 1. Empty, too, if run.json of an older version does not say."""
+        """Numbers of the stages that push, from 1."""
         return [
             n
             for n, stage in enumerate(self.stages, start=1)
@@ -180,7 +195,7 @@ class Record:
     @property
     def isPush(self) -> bool:
         """Whether the numbers of a push are there."""
-        return "peak_base_shear_kN" in self.run
+        return bool(self.data.pushes)
 
     @property
     def isLooped(self) -> bool:

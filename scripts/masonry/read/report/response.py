@@ -9,9 +9,8 @@ from typing import Any, Iterator
 
 import numpy as np
 
-from .. import bilinear, loops
+from .. import bilinear, loops, quantities
 from ..curve_figure import energies, limits, unitOf
-from ..measure import TABLE
 from .charts import Chart, Line, svg
 
 from .pieces import Number, figure, folded, isNumber, joined, note, numbers, share, table, tag, withUnit, written  # fmt: skip
@@ -148,132 +147,47 @@ def _places(record, x, y):
 
 # -- what the run found -----------------------------------------------------------------------------------------------
 
-#: Numbers of a push: key of run.json, name, unit and definition.
-OF_PUSH = (
-    ("peak_base_shear_kN", "peak", "kN", "Largest force along the push at all that is held."),
-    ("displacement_at_peak_mm", "displacement at the peak", "mm", "Displacement of the recorded point along the push where the supports carried most."),
-    ("peak_at_both_ends_kN", "peak at both ends", "kN", "Largest force that the loaded point and the supports carried at once, without waves that pass through."),
-    ("negative_peak_base_shear_kN", "peak of the other side", "kN", "Smallest force along the push at all that is held."),
-    ("displacement_at_negative_peak_mm", "displacement at the peak of the other side", "mm", "Displacement of the recorded point there."),
-    ("base_shear_end_kN", "force at the end", "kN", "Force at the supports in the last row."),
-    ("displacement_end_mm", "displacement at the end", "mm", "Displacement in the last row."),
-    ("initial_stiffness_kN_per_mm", "initial stiffness", "kN/mm", "Slope of the line through the beginning of the push that fits its first part best, without the inertia of the structure."),
-    ("push_work_J", "work of the push", "J", "Area under the curve of the push."),
-    ("first_period_s", "first period along the push", "s", "First period of the structure along the push, measured as the push began."),
-    ("largest_crack_mm", "widest crack at the end", "mm", "Largest opening of a point of any joint at the end; slide does not count."),
-)  # fmt: skip
-
 
 def found(record: Record) -> Iterator[Any]:
     """Drifts and other numbers of a push, drifts that were recorded, and what the stages were run for."""
-    run = record.run
     if record.isPush:
         yield from _states(record)
-        rows = [
-            Number(what, run[key], unit, meaning, f"run.json: {key}")
-            for key, what, unit, meaning in OF_PUSH
-            if run.get(key) is not None
-        ]
-        yield numbers(rows, "Numbers of the push")
+        yield numbers(quantities.shown(record.numbers, "push", "loops", "one way"), "Numbers of the push")  # fmt: skip
     else:
         yield note(f"{NO_PUSH}, so there are no drifts at a peak or at a first crack.", kind="missing")  # fmt: skip
     yield from _drifts(record)
-    yield from _answers(run)
+    yield from _answers(record.run)
 
 
 def _states(record):
     """First crack, peak, loss of force and collapse: displacement, drift and force."""
-    run = record.run
-    height, whence = _height(run)
-    moved, force = record.column("displacement_mm"), record.column("base_shear_kN")
-    fallen, why = _fallen(record)
-    firsts, last = run.get("displacement_at_first_crack_mm"), run.get("collapse_displacement_mm")  # fmt: skip
-    states = (
-        ("first crack", firsts, "First row at which the joints have dissipated in tension and shear more than 1e-5 of the elastic energy.", "run.json: displacement_at_first_crack_mm", "no crack was seen"),
-        ("peak", run.get("displacement_at_peak_mm"), "The largest force at the supports.", "run.json: displacement_at_peak_mm", ""),
-        ("0.8 of the peak", fallen, "Where the force that both ends carry at once has fallen to 0.8 of its peak, after it; of cycles on the envelope of the supports' force.", "curve.csv: displacement_mm, base_shear_kN, top_shear_kN", why),
-        ("collapse", last, "The last row of a push that ended in a collapse.", "run.json: collapse_displacement_mm", "the push did not end in a collapse"),
-    )  # fmt: skip
-    lines = []
-    for what, at, meaning, source, missing in states:
-        if not isNumber(at):
-            lines.append((what, "none", "none", "none", f"{meaning} Here: {missing or 'not known'}.", source))  # fmt: skip
+    data, entries, lines = record.data, record.numbers, []
+    for state in quantities.STATES:
+        moved, drift = entries.get(state.displacement), entries.get(state.drift)
+        source = f"run.json: {state.displacement}"
+        if not isNumber(moved):
+            lines.append((state.name, "none", "none", "none", f"{state.meaning} Here: {state.missing}.", source))  # fmt: skip
             continue
-        drift = withUnit(at / height, "mrad") if height else written(None)
-        carried = _forceAt(moved, force, at, record.isLooped)
-        lines.append((what, withUnit(at, "mm"), drift, withUnit(carried, "kN"), meaning, source))  # fmt: skip
-    heads = ("state", "displacement", "drift", "force at the supports", "what it is", "source")  # fmt: skip
+        carried = data.at(data.carried(), data.place(state))
+        lines.append((state.name, withUnit(moved, "mm"), withUnit(drift, "mrad"), withUnit(carried, "kN"), state.meaning, source))  # fmt: skip
+    heads = ("state", "displacement", "drift", "force at both ends", "what it is", "source")  # fmt: skip
     yield table(heads, lines, "Drifts of the push", "states")
-    if height:
-        yield note(f"The drift is the displacement over the height of the recorded point above the lowest brick, {written(height)} m ({whence}); 1 mrad is 0.1 %.")  # fmt: skip
+    if data.height:
+        yield note(f"The drift is the displacement of the masonry, without what a platen slips on it, over its height above the lowest brick, {written(data.height)} m; 1 mrad is 0.1 %. The displacement is that of the pushed point.")  # fmt: skip
     else:
         yield note("The height of the recorded point is not known, or the push is not horizontal, so there are no drifts.", kind="missing")  # fmt: skip
-
-
-def _height(run):
-    """Height of the recorded point above the lowest brick [m] and where it is from; None if it is not known."""
-    high = run.get("recorded_height_m")
-    if isNumber(high) and high > 0:
-        return high, "run.json: recorded_height_m"
-    moved, drift = run.get("displacement_at_first_crack_mm"), run.get("drift_at_first_crack_mrad")  # fmt: skip
-    if isNumber(moved) and isNumber(drift) and drift:
-        return moved / drift, "run.json: displacement_at_first_crack_mm over drift_at_first_crack_mrad"  # fmt: skip
-    return None, ""
-
-
-def _forceAt(moved, force, at, looped):
-    """Force where the displacement is first reached; None if that is not clear."""
-    if moved is None or force is None or not len(moved):
-        return None
-    near = np.flatnonzero(np.abs(moved - at) <= 1e-6 + 1e-6 * abs(at))
-    if len(near):
-        return float(force[near[0]])
-    if looped or at > np.nanmax(moved):
-        return None
-    after = int(np.argmax(moved >= at))
-    if after == 0:
-        return float(force[0])
-    return float(np.interp(at, moved[after - 1 : after + 1], force[after - 1 : after + 1]))  # fmt: skip
-
-
-def _fallen(record):
-    """Displacement at which the force has fallen to 0.8 of its peak [mm], or None and why. Of cycles it is that of the envelope of
-    the positive side."""
-    moved, force = record.column("displacement_mm"), record.column("base_shear_kN")
-    if moved is None or force is None or not len(force):
-        return None, "curve.csv does not have the columns"
-    if not record.isLooped:
-        ideal = record.ideals["masonry"]
-        if isinstance(ideal, str):
-            return None, ideal
-        if not ideal.reached:
-            return None, ideal.notes[0].removeprefix("not reached: ").partition(", so ")[0]  # fmt: skip
-        return ideal.ultimateDisplacement, ""
-    rows = loops.envelope(moved)[0]
-    moved, force = moved[rows], force[rows]
-    if not len(force) or np.nanmax(force) <= 0:
-        return None, "the force is never positive"
-    at = int(np.nanargmax(force))
-    below = np.flatnonzero(force[at:] <= 0.8 * force[at])
-    if not len(below):
-        return (
-            None,
-            f"the force stays above 0.8 of its peak up to {written(float(np.nanmax(moved)))} mm",
-        )
-    return float(moved[at + below[0]]), ""
 
 
 def _drifts(record):
     """Columns of drifts that the script recorded: their extremes."""
     meanings = record.run.get("columns") or {}
     rows = []
-    for name, values in record.columns.items():
-        if not name.endswith("_mrad") or "over the height between them" not in str(meanings.get(name)):  # fmt: skip
-            continue
+    for name in record.run.get("recorded_drifts") or []:
+        values = record.columns.get(name, np.zeros(0))
         values = values[np.isfinite(values)]
         if len(values):
             at = int(np.abs(values).argmax())
-            rows.append(Number(f"largest {name.removesuffix('_mrad')}", float(values[at]), "mrad", f"Of all rows the one with the largest size: {_bare(meanings[name])}.", f"curve.csv: {name}"))  # fmt: skip
+            rows.append(Number(f"largest {name.removesuffix('_mrad')}", float(values[at]), "mrad", f"Of all rows the one with the largest size: {_bare(meanings.get(name))}.", f"curve.csv: {name}"))  # fmt: skip
     if rows:
         yield numbers(rows, "Drifts that were recorded")
 
@@ -330,10 +244,10 @@ def bound(record: Record) -> Iterator[Any]:
     heads = ("load", "factor", "joints of the mechanism", "what it is")
     yield table(heads, lines, "Limit analysis of the same blocks, rigid and with small displacements. Source: run.json: bounds")  # fmt: skip
     pairs = (
-        ("peak_base_shear_kN", "bound_base_shear_kN", "peak over bound"),
-        ("negative_peak_base_shear_kN", "negative_bound_base_shear_kN", "peak of the other side over its bound"),
+        ("peak_at_both_ends_kN", "bound_base_shear_kN", "peak over bound"),
+        ("negative_peak_at_both_ends_kN", "negative_bound_base_shear_kN", "peak of the other side over its bound"),
     )  # fmt: skip
-    run, rows = record.run, []
+    run, rows = record.numbers, []
     for peak, limit, what in pairs:
         if isNumber(run.get(peak)) and isNumber(run.get(limit)) and run[limit]:
             rows.append(Number(what, abs(run[peak] / run[limit]), "-", "Of an upper bound it cannot be much above 1; a run warns where it is.", f"run.json: {peak}, {limit}"))  # fmt: skip
@@ -366,26 +280,23 @@ def energy(record: Record) -> Iterator[Any]:
         return
     stack, work = energies(columns)
     change = lambda name: float(columns[name][-1] - columns[name][0])
-    meanings = record.run.get("columns") or {}
-    rare = (
-        "refining_J",
-        "handing_J",
-    )  # of joints that get more points, and of those whose place contacts take
+    known = {**quantities.ENERGIES, **quantities.OF_CONNECTORS, **quantities.OF_CONTACTS}  # fmt: skip
+    kinds = {f"{name}_J": kind for name, (_, kind) in known.items()}
+    rare = ("refining_J", "handing_J")  # where joints get points, or turn into contacts
     columns = {n: v for n, v in columns.items() if n not in rare or v.any()}
-    inputs = [n for n in ("external_J", "gravity_J", *rare) if n in columns]
-    elastic = [n for n in columns if n.startswith("elastic_")]
-    spent = [n for n in columns if n.startswith("dissipated_") or n in ("friction_contacts_J", "damping_contacts_J", "damping_J", "impacts_J", "kinetic_J")]  # fmt: skip
+    of = lambda kind: [n for n in kinds if n in columns and kinds[n] == kind]
+    inputs, elastic, spent = of("in"), of("stored"), of("spent")
     total = sum(map(change, inputs))
     part = lambda value: share(value / total) if total > 0 else written(None)
     lines = [
-        (_energyOf(meanings, n), withUnit(change(n), "J"), part(change(n)), f"curve.csv: {n}")
+        (known[n[:-2]][0], withUnit(change(n), "J"), part(change(n)), f"curve.csv: {n}")
         for n in inputs
     ]  # fmt: skip
     lines.append((tag("strong", "all that was put in"), withUnit(total, "J"), part(total), "sum of these"))  # fmt: skip
     stored = sum(map(change, elastic))
     lines.append(("elastic energy of all parts", withUnit(stored, "J"), part(stored), f"curve.csv: {', '.join(elastic)}"))  # fmt: skip
     lines += [
-        (_energyOf(meanings, n), withUnit(change(n), "J"), part(change(n)), f"curve.csv: {n}")
+        (known[n[:-2]][0], withUnit(change(n), "J"), part(change(n)), f"curve.csv: {n}")
         for n in spent
     ]  # fmt: skip
     rest = total - stored - sum(map(change, spent))
@@ -411,11 +322,6 @@ def energy(record: Record) -> Iterator[Any]:
     yield figure(svg(Chart("Energies", about, label, "energy [J]", drawn)), f"{about} Work done is that of loads and gravity. Source: curve.csv.")  # fmt: skip
 
 
-def _energyOf(meanings, name):
-    """What an energy is."""
-    return _bare(meanings.get(name, name)).removesuffix(" since the scene was built")
-
-
 # -- cycles -----------------------------------------------------------------------------------------------------------
 
 
@@ -439,17 +345,12 @@ def cycles(record: Record) -> Iterator[Any]:
         ("stiffness_kN_per_mm", "stiffness K [kN/mm]"), ("damping", "equivalent damping ξ [%]"),
         ("dissipated_J", "joints took [J]"), ("damped_J", "damping took [J]"),
     )  # fmt: skip
-    known = {key for _, key, _ in TABLE}
-    assert all(key in known for key, _ in keys)
     lines = []
     for n, one in enumerate(entries, start=1):
         cells = [100 * one[key] if key == "damping" and isNumber(one.get(key)) else one.get(key) for key, _ in keys]  # fmt: skip
         lines.append((n, *(written(v) for v in cells)))
     yield table(("cycle", *(text for _, text in keys)), lines, "Cycles. Source: run.json: cycles", "cycles")  # fmt: skip
     yield note(ABOUT_CYCLES)
-    damped = record.run.get("damped_share")
-    if isNumber(damped):
-        yield numbers([Number("share of damping", 100 * damped, "%", "Of what joints and the damping of the run took in all, the share of the damping, which a real wall does not have.", "run.json: damped_share")], "Damping of the run")  # fmt: skip
 
 
 # -- forces at the base -----------------------------------------------------------------------------------------------
@@ -457,23 +358,14 @@ def cycles(record: Record) -> Iterator[Any]:
 
 def base(record: Record) -> Iterator[Any]:
     """Normal force, shear force and moment: of the sections that were recorded, else forces on what is held."""
-    meanings = record.run.get("columns") or {}
     names = [
-        n
-        for n in record.columns
-        if re.search(r"_(N|V_[xy])_kN$|_M_[xy]_kNm$", n)
-        and " on the section at " in str(meanings.get(n))
+        n for n in record.run.get("recorded_sections") or [] if n in record.columns
     ]
     if names:
         yield _forces(record, names, "Forces of the sections that were recorded")
         return
-    reactions = [
-        n
-        for n in record.columns
-        if re.search(r"_force_[xyz]_kN$", n)
-        and str(meanings.get(n)).startswith("force of the structure on")
-        and any(n.startswith(f"{held}_force") for held in record.run.get("held") or [])
-    ]
+    names = [f"{held}_force_{axis}_kN" for held in record.run.get("held") or [] for axis in "xyz"]  # fmt: skip
+    reactions = [name for name in names if name in record.columns]
     yield note("The moment at the base is not known: no section was recorded. scene.section(z) in the script records the normal force, the shear force and the moment of a horizontal section.", kind="missing")  # fmt: skip
     if not reactions and "base_shear_kN" in record.columns and record.isPush:
         reactions = ["base_shear_kN"]
@@ -483,14 +375,14 @@ def base(record: Record) -> Iterator[Any]:
 
 def _forces(record, names, caption):
     meanings = record.run.get("columns") or {}
-    places = {"first row": 0, "last row": -1}
-    if record.isPush and record.column("base_shear_kN") is not None and len(record.rows):  # fmt: skip
-        places = {"first row": 0, "at the peak": int(np.nanargmax(record.column("base_shear_kN"))), "last row": -1}  # fmt: skip
+    places = {"first row": record.rows[0], "last row": record.rows[-1]}
+    if record.isPush and record.data.rows:
+        at = record.data.rows[record.data.peak()]
+        places = {"first row": record.rows[0], "at the peak": at, "last row": record.rows[-1]}  # fmt: skip
     lines = []
     for name in names:
-        values = record.column(name)
-        unit = name.rpartition("_")[2]
-        finite = values[np.isfinite(values)]
+        values, unit = record.columns[name], name.rpartition("_")[2]
+        finite = values[record.rows][np.isfinite(values[record.rows])]
         ends = [finite.min(), finite.max()] if len(finite) else [np.nan] * 2
         most = max(map(abs, ends))
         texts = [

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from typing import Any, Iterator
 
+from .. import quantities
+
 from .pieces import Number, figure, folded, isNumber, joined, listed, note, numbers, row, table, tag, withUnit, written  # fmt: skip
 from .record import Record
 
@@ -41,7 +43,7 @@ def head(record: Record) -> Iterator[Any]:
         for name, value, source in facts
     ]
     yield tag("dl", *pairs, class_="facts")
-    yield _state(run)
+    yield _state(record)
     warnings = [str(w) for w in run.get("warnings") or []] + record.problems
     if warnings:
         more = f", and {len(warnings) - 1} more" if len(warnings) > 1 else ""
@@ -49,8 +51,9 @@ def head(record: Record) -> Iterator[Any]:
         yield note(tag("strong", "Warning: "), warnings[0], more, ". ", link, kind="warning")  # fmt: skip
 
 
-def _state(run):
+def _state(record):
     """How the run ended, and the numbers that it was run for."""
+    run = record.run
     if run.get("error"):
         state = note(tag("strong", "The run ended by an error: "), run["error"], kind="warning")  # fmt: skip
     elif run.get("interrupted"):
@@ -62,8 +65,9 @@ def _state(run):
         state = note(f"The last stage ended: {run['ended']}.")
     else:
         state = note("The run has no rows: it took no time steps, or ended before there was one.")  # fmt: skip
-    if isNumber(run.get("peak_base_shear_kN")):
-        return joined(state, note(_ofPush(run), kind="lead"))
+    lead = quantities.headline({**run, **record.numbers})
+    if lead:
+        return joined(state, note(_firstUpper(lead), ".", kind="lead"))
     found = [f"{what} {valueOf(one)}" for one, what in sought(run)]
     if not found:
         answers = [a for a in answersOf(run) if isNumber(a.get("value"))]
@@ -106,18 +110,6 @@ def sought(run: dict[str, Any]) -> list[tuple[dict[str, Any], str]]:
         if ones and len({(a.get("stage"), a.get("unit")) for a in ones}) == 1:
             found.append((choose(ones, key=lambda a: a["value"]), what))
     return found
-
-
-def _ofPush(run):
-    """The peak of a push, and its bound, in a sentence."""
-    text = f"Peak {withUnit(run['peak_base_shear_kN'], 'kN')} at {withUnit(run.get('displacement_at_peak_mm'), 'mm')}"
-    if isNumber(run.get("negative_peak_base_shear_kN")):
-        text += f" and {withUnit(run['negative_peak_base_shear_kN'], 'kN')} at {withUnit(run.get('displacement_at_negative_peak_mm'), 'mm')}"
-    if isNumber(run.get("bound_base_shear_kN")):
-        bounds = [b for b in run.get("bounds") or [] if isinstance(b, dict)]
-        most = "" if bounds and all(b.get("exact") for b in bounds) else "at most "
-        text += f"; limit analysis: {most}{withUnit(run['bound_base_shear_kN'], 'kN')}"
-    return text + "."
 
 
 # -- what was built ---------------------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Any, Iterator
 
 from ..escaping import Html
+from .. import quantities
 from ..page import fragmentOf
 
 from .pieces import UNKNOWN, Number, figure, isNumber, listed, note, numbers, table, tag, withUnit, written  # fmt: skip
@@ -28,15 +29,6 @@ def pictures(record: Record) -> Iterator[Any]:
         yield figure(tag("img", src=cracks, alt="The structure at the end of the run with its cracks: open joints red, slid joints blue, crushed joints black."), "Cracks at the end of the run. Source: cracks.png.", "image")  # fmt: skip
 
 
-#: Measures of the run itself: key of run.json, name, factor, unit and definition.
-MEASURES = (
-    ("energy_balance_error", "error of the energy balance", 100, "%", "Largest error of the balance in all rows, relative to the work done. It shows errors of the scheme, as a time step that is too long, and not those of mesh or law."),
-    ("energy_made", "energy that joints made", 100, "%", "Most energy that joints made by opening or closing within a step, relative to the work done."),
-    ("dynamic_imbalance", "dynamic imbalance", 100, "%", "Root mean square of the force that did not arrive at the supports, from half of the peak to the peak, over the largest force. A slow test has nearly none."),
-    ("damped_share", "share of damping", 100, "%", "Of what joints and damping took in all, the share of damping."),
-)  # fmt: skip
-
-
 def trust(record: Record) -> Iterator[Any]:
     """How far to trust it: errors that the run knows of itself, promises, warnings, and what is not known."""
     run = record.run
@@ -49,17 +41,10 @@ def trust(record: Record) -> Iterator[Any]:
     else:
         yield note("The run has no warnings. Source: run.json: warnings.")
     yield from _said(run)
-    rows = [
-        Number(what, factor * run[key], unit, meaning, f"run.json: {key}")
-        for key, what, factor, unit, meaning in MEASURES
-        if isNumber(run.get(key))
-    ]
+    rows = quantities.shown(record.numbers, "every")
     step, limit = run.get("time_step_s"), run.get("time_step_limit_s")
     if isNumber(step) and isNumber(limit) and limit > 0:
         rows.append(Number("time step", 1e6 * step, "µs", f"{written(100 * step / limit, 3)} % of the largest stable one.", "run.json: time_step_s, time_step_limit_s"))  # fmt: skip
-    for key, what in (("steps", "time steps"), ("wall_clock_s", "time of the run")):
-        if isNumber(run.get(key)):
-            rows.append(Number(what, run[key], "s" if key.endswith("_s") else "-", "How many were taken." if key == "steps" else "On the clock of the machine, with set-up and files.", f"run.json: {key}"))  # fmt: skip
     if rows:
         yield numbers(rows, "What the run knows of its own errors")
     yield from _accuracy(run)

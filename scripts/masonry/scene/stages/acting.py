@@ -20,6 +20,7 @@ class Acting:
 
     def __init__(self, name, most, unit):
         self.name, self.most, self.unit = name, most, unit
+        self.target = None  # the platen or brick on which it acts, if it is one
 
     def now(self):
         """Its present values: a list of numbers."""

@@ -143,7 +143,8 @@ def putOn(scene, name, load, towards, longest, over=0.0):
     """
     running, model, scene.loadUnit = scene.running, scene.model, load.unit
     running.note("lean", load.name)
-    follow(scene, f"{name} {[round(v, 9) for v in towards]}", towards)
+    on = load.target.name if load.target else ""
+    follow(scene, f"{name} {on}{[round(v, 9) for v in towards]}", towards, load.target)
     at = running.stage(name, Resting())
     at.goal = load.factor(1.0)
     if at.begun is None:

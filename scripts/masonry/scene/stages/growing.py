@@ -87,7 +87,7 @@ def grow(scene, name, load, duration, towards, within=WITHIN):
         return DONE
     running, scene.loadUnit = scene.running, load.unit
     running.note("growth", load.name)
-    follow(scene, f"stage {running.entered + 1}", towards)
+    follow(scene, f"stage {running.entered + 1}", towards, load.target)
     _noteDrives(scene, name)
     at = running.stage(name, Growing())
     if at.begun is None:
@@ -132,16 +132,17 @@ def _compare(scene, name, load, at):
         )
 
 
-def follow(scene, name, towards):
+def follow(scene, name, towards, loaded):
     """From now on record the displacement of what is watched along a load, from where it was when that began.
 
     :param name: under which the run keeps where that was
+    :param loaded: the target on which the load is, or None
     """
-    target, origins = scene.description.followed(), scene.running.at.origins
+    target, origins = scene.description.followed(loaded), scene.running.at.origins
     if target and name not in origins:
         origin = scene.model.loading.follow(target, towards)
         scene.running.at.origins = {**origins, name: origin}
-    origin = scene.running.at.origins.get(name, (0, 0))
+    origin = scene.running.at.origins.get(name, (0, 0, 0))
     scene.model.loading.followFrom(target, towards, origin)
 
 

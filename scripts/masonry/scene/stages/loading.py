@@ -46,7 +46,9 @@ def _forceOn(scene, target, force, name):
     along = force if force.norm() > 0 else engine.force
     towards = along.normalized() if along.norm() > 0 else Vector3.UnitZ
     what = f"load on {target.name} along {nameOf(towards)}"
-    return Forces([engine], [1e3 * towards], what, "kN", 1e-3 * force.norm()), towards
+    made = Forces([engine], [1e3 * towards], what, "kN", 1e-3 * force.norm())
+    made.target = target
+    return made, towards
 
 
 @stage(bounded=True, answers=putOnAnswers)
@@ -175,7 +177,9 @@ def _pressOn(scene, platen, stress, name):
     engine, area = scene.model.loading.pressOf(platen)
     down = -1e6 * area * Vector3.UnitZ
     what = f"press of {platen.name}"
-    return Forces([engine], [down], what, "MPa", 1e-6 * stress)
+    made = Forces([engine], [down], what, "MPa", 1e-6 * stress)
+    made.target = platen
+    return made
 
 
 @stage(bounded=True, answers=putOnAnswers)

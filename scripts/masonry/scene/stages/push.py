@@ -11,7 +11,8 @@ from ...arguments import flag, listOf, number, orNone, takes, whole
 from ...arguments import path as pathOf
 from ...assembly.blocks import vector
 from ...basics import Refused, say
-from ...read.curves import dynamicImbalance, peakAtBothEnds
+from ...read import curves
+from ...read.quantities import BASE, MOVED, TOP, RunData
 from .. import history
 from ..bounds import nameOfPush
 from ..parsing import RATE
@@ -26,26 +27,23 @@ OPTIONS = "until", "history", "rate"
 
 
 def peaks(scene, rows):
-    """The largest force at the supports, of both directions if the push goes there and back, with the displacement there."""
-    base, top = rows.column("base_shear_kN"), rows.column("top_shear_kN")
-    moved = rows.column("displacement_mm")
-    if not base or not top or not moved:
+    """The largest force that both ends carried, on either side if the push goes there and back, with the displacement there."""
+    looped, run = bool(scene.pushed.history), {"stages": [{"load": ["push"], "first_row": 0}]}  # fmt: skip
+    run.update({"history": {}} if looped else {})
+    data = RunData(run, lambda name: rows.column(name) or None)
+    if not all(map(data.column, (BASE, TOP, MOVED))):
         return []
-    found = []
-    for name, sign in (("peak", 1), ("negative_peak", -1)):
-        if sign < 0 and not scene.pushed.history:
-            continue
-        forces = [sign * force for force in base]
-        at = max(range(len(forces)), key=forces.__getitem__)
-        ends = peakAtBothEnds([sign * force for force in top], forces)
+    found, imbalance = [], curves.dynamicImbalance(data[TOP], data[BASE])
+    for name, side in (("peak", 1), ("negative_peak", -1))[: 1 + looped]:
+        at = data.peak(side)
         how = (
-            f"the largest force at the supports; supports and loaded point carried at most {ends:.4g} kN at once, and "
-            f"{100 * dynamicImbalance(top, base):.1f} % of the force did not reach the supports on the way there. How far rate, "
-            "mesh and points change it is not known from one run"
+            f"the largest force that supports and loaded point carried at once; the supports alone had {data[BASE][at]:.4g} kN then, and "
+            f"{100 * imbalance:.1f} % of the force did not reach them on the way there. How far rate, mesh and points change it is "
+            "not known from one run"
         )
-        found.append(Answer(name, "kN", sign * forces[at], how))
-        how = "displacement of the pushed point where the supports carried most"
-        found.append(Answer(f"displacement_at_{name}", "mm", moved[at], how))
+        found.append(Answer(name, "kN", data.peakForce(side), how))
+        how = "displacement of the pushed point at the peak"
+        found.append(Answer(f"displacement_at_{name}", "mm", data[MOVED][at], how))
     return found
 
 

@@ -12,6 +12,7 @@ from yade import O
 from ...assembly.period import firstPeriod
 from ...basics import Collapsed, Refused, say
 from ...read import curves
+from ...read.quantities import IMBALANCE
 from ...run.presets import USUAL
 from ..history import aim, pathLength, turns
 from .rest import rampTime
@@ -25,7 +26,6 @@ LONGEST = 5  # the longest first period that is looked for, over rampTime() [-]
 SHARE = 1.0
 #: Frames for ParaView along a history, beside those at its turning points and zeros.
 FRAMES = 200
-IMBALANCE = 0.1  # a push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more
 SUDDEN = 0.1  # of the peak: a larger fall within a tenth of a millimetre is few bricks that give way at once
 DAMPED = 0.1  # of what loops lose: a larger share of damping is a warning, because the loops are too fat by it
 
@@ -34,7 +34,9 @@ DAMPED = 0.1  # of what loops lose: a larger share of damping is a warning, beca
 class Pushing:
     """What a push remembers. Pairs are of the negative and of the positive side, and positive outwards."""
 
-    origin: list | None = None  # displacement of the loading block when the push began, along it and up [m]
+    origin: list | None = (
+        None  # as of Structure.topDisplacement() when the push began [m]
+    )
     now: float = 0.0  # time of the last row [s]
     moved: float = 0.0  # displacement there [mm]
     passed: int = 0  # points of the history that lie behind
@@ -322,7 +324,7 @@ def tooFast(args, imbalance):
     if args.dt_fraction > max(fours, usual):
         cure = f"--dt-fraction {usual:g}"
     return (
-        f"warning: the push is too fast: {100 * imbalance:.0f} % of the force does not reach the supports, "
+        f"the push is too fast: {100 * imbalance:.0f} % of the force does not reach the supports, "
         f"more than {100 * IMBALANCE:.0f} % spoil the peak; {cure} would do"
     )
 
@@ -331,7 +333,7 @@ def tooDamped(args, share):
     """The warning of loops that lose much by damping, which grows with the rate."""
     slower = float(f"{args.rate * DAMPED / share:.2g}")
     return (
-        f"warning: damping, not the wall, took {100 * share:.0f} % of what the loops lost; more than "
+        f"damping, not the wall, took {100 * share:.0f} % of what the loops lost; more than "
         f"{100 * DAMPED:.0f} % spoil the work of the cycles; try --rate {slower:g}"
     )
 
@@ -340,7 +342,7 @@ def tooSudden(args, run):
     """The warning of a push whose force falls at once, from the entries of run.json."""
     check = "--preset accurate" if args.blocks == "rigid" else "--dt-fraction 0.78"
     return (
-        f"warning: the force fell by {100 * run['sudden_loss']:.0f} % of its peak within {curves.SUDDEN:g} mm at "
+        f"the force fell by {100 * run['sudden_loss']:.0f} % of its peak within {curves.SUDDEN:g} mm at "
         f"{run['sudden_loss_at_mm']:.2f} mm: a few bricks gave way at once, and which ones can depend on the block model, the points of "
         f"joints and the time step; {check} is the cheapest check"
     )

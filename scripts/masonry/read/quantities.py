@@ -1,0 +1,505 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The numbers that a run answers with: one list, which run.json and its documentation, the terminal, the report, notebooks, studies
+and capacity read. This module needs no YADE.
+
+To add a number is to add a :class:`Quantity` to :data:`QUANTITIES`: its entry in run.json, its name, its unit, what it is, where it
+comes from, and the function that finds it from a :class:`RunData`. That is what a run has at its end, and what its folder has later, so
+both give the same number. The module stands in this room and not in that of runs, because the report must be able to read it.
+
+A *push* below is the last one of the run, with those before it along the same line. Forces along it are at its two ends: those of
+all supports (``base_shear_kN``) and that of the drive (``top_shear_kN``).
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+from typing import Any, Callable, NamedTuple, Sequence
+
+import numpy as np
+
+from ..arguments import FilePath
+from . import cracks, curves, loops
+from .files import readCurve, readRun
+
+LOST = 0.05  # of the peak: a larger loss is a drop, a smaller one may be the scatter by single bricks at the toe
+FALL = 0.8  # of the peak: where the force has fallen to it, a wall of masonry is said to have reached its ultimate displacement
+IMBALANCE = 0.1  # a push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more
+MOVED, BASE, TOP = "displacement_mm", "base_shear_kN", "top_shear_kN"
+MASONRY = "masonry_displacement_mm"  # of the bricks at the pushed platen
+
+#: Energies of the balance by their names in curve.csv, without the unit: what each is, and whether it is put in, stored or spent.
+ENERGIES = {
+    "external": ("work of the loads", "in"),
+    "gravity": ("work of gravity", "in"),
+    "refining": ("elastic energy that joints got when they were given more points", "in"),
+    "kinetic": ("energy of motion", "spent"),
+    "damping": ("energy taken by damping", "spent"),
+    "impacts": ("energy taken by impacts of joints that close", "spent"),
+    "elastic_units": ("elastic energy in deformable units", "stored"),
+    "elastic_tension": ("elastic energy in joints, from tension", "stored"),
+    "elastic_shear": ("elastic energy in joints, from shear", "stored"),
+    "elastic_compression": ("elastic energy in joints, from compression", "stored"),
+    "dissipated_tension": ("energy that joints dissipated in tension", "spent"),
+    "dissipated_shear": ("energy that joints dissipated in shear", "spent"),
+    "dissipated_compression": ("energy that joints dissipated in compression", "spent"),
+}  # fmt: skip
+#: Likewise of ties and springs, and of contacts, in scenes that have some.
+OF_CONNECTORS = {
+    "elastic_connectors": ("elastic energy in ties and springs", "stored"),
+    "dissipated_connectors": ("energy that ties dissipated", "spent"),
+}
+OF_CONTACTS = {
+    "handing": ("energy that the change from joints to contacts gave", "in"),
+    "elastic_contacts": ("elastic energy in contacts", "stored"),
+    "friction_contacts": ("energy that friction of contacts took", "spent"),
+    "damping_contacts": ("energy that damping of contacts took", "spent"),
+}
+
+
+class Number(NamedTuple):
+    """A number that is shown."""
+
+    name: str  #: a name in words, or that of an entry
+    value: Any  #: None if there is none; ``note`` says why
+    unit: str  #: ``"-"`` if it has none
+    meaning: str  #: one sentence
+    source: str  #: equation, or file and entry
+    note: str = ""  #: what the number does not say, or why there is none
+
+    def entry(self) -> dict[str, Any]:
+        """The number as an entry of a JSON file."""
+        return self._asdict()
+
+
+class RunData:
+    """What the numbers of a run are found from.
+
+    :param run: entries of run.json, those that are no numbers of this list at least
+    :param column: function of the name of a column of curve.csv that gives its values, or None if there is no such column
+    :param joints: frame of the joints at the end, as of :mod:`masonry.read.cracks`; None: crack patterns are not measured
+    :param height: of the recorded point above the base [m], in place of what run.json says
+    """
+
+    def __init__(
+        self,
+        run: dict[str, Any],
+        column: Callable[[str], Any],
+        joints: dict[str, Any] | None = None,
+        height: float | None = None,
+    ) -> None:
+        self.run, self.column, self.joints, self._height = run, column, joints, height
+
+    @classmethod
+    def read(cls, directory: FilePath, height: float | None = None) -> RunData:
+        """That of a folder of results. Raises Refused."""
+        return cls(readRun(directory), readCurve(directory).get, height=height)
+
+    # -- which rows
+
+    @functools.cached_property
+    def _stages(self):
+        """Loads of the stages, and their rows: lists of the load, the first row and the row after the last."""
+        found = self.run.get("stages") or []
+        ends = [*(one["first_row"] for one in found[1:]), self._count]
+        return [(one.get("load"), one["first_row"], end) for one, end in zip(found, ends)]  # fmt: skip
+
+    @functools.cached_property
+    def _count(self):
+        columns = (self.column(name) for name in (MOVED, "time_s"))
+        return len(next((values for values in columns if values is not None), ()))
+
+    @functools.cached_property
+    def pushes(self) -> list[tuple[int, int]]:
+        """Rows of the pushes, the first one and the one after the last: of the last push, and of those along its line since another
+        one."""
+        pushed = [one for one in self._stages if one[0] and one[0][0] == "push"]
+        others = [first for load, first, _ in pushed if load != pushed[-1][0]]
+        since = max(others, default=-1)
+        return [(first, end) for load, first, end in pushed if load == pushed[-1][0] and first > since]  # fmt: skip
+
+    @functools.cached_property
+    def rows(self) -> list[int]:
+        """Numbers of the rows of the push, from 0. If the run loads in no other way, what comes before belongs to it."""
+        loads = [load for load, _, _ in self._stages if load]
+        if self.pushes and all(load == loads[-1] for load in loads):
+            return list(range(self._count))
+        return [n for first, end in self.pushes for n in range(first, end)]
+
+    def whole(self, name: str) -> Any:
+        """A column in all rows. Raises KeyError if curve.csv does not have it."""
+        values = self.column(name)
+        if values is None:
+            raise KeyError(name)
+        return values
+
+    def __getitem__(self, name: str) -> list[float]:
+        """A column in the rows of the push. Raises KeyError if curve.csv does not have it."""
+        values = self.whole(name)
+        return [values[n] for n in self.rows]
+
+    # -- what kind of run it is
+
+    @property
+    def isPush(self) -> bool:
+        """Whether the run has a push with rows."""
+        return bool(self.rows)
+
+    @property
+    def isLooped(self) -> bool:
+        """Whether the push goes there and back."""
+        return "history" in self.run
+
+    # -- force, peak and drift: each is found here and nowhere else
+
+    def carried(self, side: int = 1) -> np.ndarray:
+        """The force of the push [kN]: what both ends carry at once, in every row the one that is less along the side. A wave that
+        passes through is felt at one of them.
+
+        :param side: 1, or -1 for the way back
+        """
+        return side * np.minimum(side * np.array(self[BASE]), side * np.array(self[TOP]))  # fmt: skip
+
+    def peak(self, side: int = 1) -> int:
+        """Where this force is largest, a number of a row among those of the push; in loops on its side of the displacement."""
+        towards = side * self.carried(side)
+        if self.isLooped:
+            towards = np.where(side * np.array(self[MOVED]) >= 0, towards, -math.inf)
+        return int(towards.argmax())
+
+    def peakForce(self, side: int = 1) -> float:
+        """The force at the peak of a side [kN]."""
+        return float(self.carried(side)[self.peak(side)])
+
+    @property
+    def pulse(self) -> float:
+        """Displacement of the drive within the first period of the structure [mm]; 0 if that is not known."""
+        period, times = self.run.get("first_period_s"), self.column("time_s")
+        if not period or times is None or len(self.rows) < 2:
+            return 0.0
+        lasted = np.ptp([times[n] for n in self.rows])
+        return float(period * np.ptp(self[MOVED]) / lasted) if lasted > 0 else 0.0
+
+    @property
+    def height(self) -> float | None:
+        """Height over which displacements of the push are drifts [m]; None if it is not known, or if the push is not horizontal."""
+        known = [self._height, self.run.get("drift_height_m"), self.run.get("recorded_height_m")]  # fmt: skip
+        return next((h for h in known if isinstance(h, (int, float)) and 0 < h < math.inf), None)  # fmt: skip
+
+    @functools.cached_property
+    def ofDrift(self) -> list[float]:
+        """The displacements that are drifts over :attr:`height` [mm]: of the masonry where the platen touches it, so that what
+        the platen slips is no drift; of the pushed point where there is no platen, or where another height is given.
+        """
+        own = self.column(MASONRY)
+        return self[MOVED] if own is None or self._height else self[MASONRY]
+
+    def at(self, values: Sequence[float], place: float | None) -> float | None:
+        """A value between rows, along a straight line. ``place``: a number of a row with a fraction, or None."""
+        if place is None:
+            return None
+        return float(np.interp(place, np.arange(len(values)), values))
+
+    def place(self, state: State) -> float | None:
+        """Where a state is in the rows of the push, None if it is not reached or curve.csv does not have its columns."""
+        try:
+            return state.find(self) if self.rows else None
+        except LookupError:
+            return None
+
+    def drift(self, place: float | None) -> float | None:
+        """The drift at a place in the rows of the push [mrad]."""
+        moved = self.at(self.ofDrift, place)
+        return moved / self.height if moved is not None and self.height else None
+
+    # -- states of a push: places in its rows, or None
+
+    @functools.cached_property
+    def firstCrack(self) -> int | None:
+        """Where the first crack of the push is seen."""
+        found = (curves.firstCrack(self.whole, slice(*push)) for push in self.pushes)
+        row = next((row for row in found if row is not None), None)
+        return None if row is None else self.rows.index(row)
+
+    @functools.cached_property
+    def fallen(self) -> float | None:
+        """Where the force has fallen to :data:`FALL` of its peak, after it."""
+        return self.fallenTo(FALL)
+
+    def fallenTo(self, share: float) -> float | None:
+        """As :attr:`fallen`, of another share; in loops on the envelope of the positive side."""
+        moved, force = np.array(self[MOVED]), self.carried(1)
+        rows = loops.envelope(moved)[0] if self.isLooped else np.arange(len(moved))
+        if not len(rows) or force[rows].max() <= 0:
+            return None
+        force, at = force[rows], int(force[rows].argmax())
+        pulse = 0.0 if self.isLooped else self.pulse
+        place = curves.fallen(np.maximum.accumulate(moved[rows]), force, at, share * force[at], pulse)  # fmt: skip
+        return None if place is None else float(np.interp(place, np.arange(len(rows)), rows))  # fmt: skip
+
+    @functools.cached_property
+    def collapse(self) -> int | None:
+        """The last row, if the push ended in a collapse."""
+        load = self._stages[-1][0] if self._stages else None
+        fell = self.run.get("collapsed") and load and load[0] == "push"
+        return len(self.rows) - 1 if fell else None
+
+    # -- what several numbers share
+
+    @functools.cached_property
+    def sudden(self) -> tuple[float, float]:
+        """As of :func:`masonry.read.curves.suddenLoss`."""
+        return curves.suddenLoss(self[MOVED], self[TOP], self[BASE])
+
+    @functools.cached_property
+    def stillGrows(self) -> bool:
+        """Whether nothing has given way at the end of the push."""
+        return not self.isLooped and curves.stillGrows(self[MOVED], self[BASE])
+
+    @functools.cached_property
+    def stiffness(self) -> float:
+        """As of :func:`masonry.read.curves.stiffness`, of the force without the inertia of the structure's own mass."""
+        grown = self.run.get("velocity_grown_at_s") or 0.0
+        ramp = next((n for n, time in enumerate(self["time_s"]) if time >= grown), 0)
+        weight = self.run.get("base_weight") or curves.SHEAR
+        return curves.stiffness(self[MOVED], curves.quasiStatic(self[TOP], self[BASE], weight), ramp)  # fmt: skip
+
+    def dropped(self, side: int = 1) -> tuple[float, float | None]:
+        """Share of the peak that is lost at the end, and the first displacement after the peak with less than 0.95 of it [mm], None
+        if there is none; in loops along the envelope of a side, positive outwards."""
+        moved, force = side * np.array(self[MOVED]), side * self.carried(side)
+        if self.isLooped:
+            rows = loops.envelope(self[MOVED])[0 if side > 0 else 1]
+            moved, force = moved[rows], force[rows]
+        if not len(force) or not force.max() > 0:
+            raise LookupError("the force is never to this side")
+        at = int(force.argmax())
+        after = np.flatnonzero(force[at:] < (1 - LOST) * force[at])
+        return 1 - float(force[-1] / force[at]), float(moved[at + after[0]]) if len(after) else None  # fmt: skip
+
+    @functools.cached_property
+    def cycles(self) -> list[dict[str, Any]]:
+        """As of :func:`masonry.read.curves.cycleNumbers`, with rows of curve.csv."""
+        found = curves.cycleNumbers(self.__getitem__, self.run["history"]["noise_mm"])
+        for one in found:
+            one["rows"] = [self.rows[n] for n in one["rows"]]
+        return found
+
+    @functools.cached_property
+    def pattern(self) -> dict[str, Any]:
+        """Numbers of the crack pattern of a wall, and how it failed."""
+        found = cracks.pattern(self.joints, self.run["wall"], self.isLooped)
+        lost = self.dropped()[0] > LOST
+        mode = cracks.failureMode(found, self.run["wall"], self.stillGrows, lost)
+        return {**found, "failure_mode": mode}
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number of a run.
+
+    :param key: its entry in run.json
+    :param name: in words; empty: only run.json has it
+    :param unit: ``"-"`` if it has none
+    :param meaning: what it is, a sentence
+    :param source: columns of curve.csv, an equation or a function
+    :param of: function of :class:`RunData`; None: the run itself writes it
+    :param group: one of :data:`GROUPS`, which says in which runs it is
+    :param brief: whether it is among the few that a notebook shows, and that stand first in study.csv
+    :param share: whether it is shown in per cent
+    """
+
+    key: str
+    name: str
+    unit: str
+    meaning: str
+    source: str
+    of: Callable[[RunData], Any] | None = None
+    group: str = "push"
+    brief: bool = False
+    share: bool = False
+
+    def shown(self, value: Any) -> Number:
+        """The number as it is shown."""
+        percent = self.share and isinstance(value, (int, float))
+        return Number(
+            self.name,
+            100 * value if percent else value,
+            "%" if self.share else self.unit,
+            self.meaning,
+            f"run.json: {self.key}",
+        )
+
+
+class State(NamedTuple):
+    """A state of a push that is looked for in its rows."""
+
+    name: str  #: in words
+    displacement: str  #: entry of run.json
+    drift: str  #: entry of run.json
+    find: Callable[[RunData], float | None]  #: a number of a row with a fraction
+    meaning: str
+    missing: str = ""  #: why there may be none
+    share: bool = False  #: whether it is a fall to :data:`FALL` of the peak
+
+
+#: States of a push; for each there is a displacement and a drift.
+STATES = (
+    State("first crack", "displacement_at_first_crack_mm", "drift_at_first_crack_mrad", lambda d: d.firstCrack,
+          "The first row at which the joints have dissipated, in tension and shear since the push began, more than 1e-5 of the elastic energy; of dry joints it is where slip begins to count.",
+          "no crack was seen in the push"),
+    State("peak", "displacement_at_peak_mm", "drift_at_peak_mrad", lambda d: d.peak(), "The largest force that both ends carry at once."),
+    State("0.8 of the peak", "displacement_at_fall_mm", "drift_at_fall_mrad", lambda d: d.fallen,
+          "Where the force that both ends carry at once has fallen to 0.8 of its peak, after it, for longer than a first period; of cycles on the envelope.",
+          "the force never falls to 0.8 of its peak", True),
+    State("collapse", "collapse_displacement_mm", "drift_at_collapse_mrad", lambda d: d.collapse, "The last row of a push that ended in a collapse.",
+          "the push did not end in a collapse"),
+)  # fmt: skip
+
+
+def _ofStates():
+    """The displacement and the drift of every state."""
+    for state in STATES:
+        moved = lambda d, state=state: d.at(d[MOVED], d.place(state))
+        drift = lambda d, state=state: d.drift(d.place(state))
+        where = f"at the state: {state.name}" if state.name == "collapse" else f"at the {state.name}"  # fmt: skip
+        yield Quantity(state.displacement, f"displacement {where}", "mm", f"Displacement of the pushed point. {state.meaning}", f"curve.csv: {MOVED}", moved, "state", state.name == "first crack" or state.name == "peak")  # fmt: skip
+        yield Quantity(state.drift, f"drift {where}", "mrad", f"Drift of the masonry. {state.meaning}", f"curve.csv: {MASONRY}, or {MOVED}, over drift_height_m", drift, "state")  # fmt: skip
+
+
+_BOTH = f"curve.csv: {BASE}, {TOP}"
+#: In which runs a quantity is: what they are called, and whether a run is one of them.
+GROUPS: dict[str, tuple[str, Callable[[RunData], bool]]] = {
+    "every": ("Every run has these", lambda d: True),
+    "push": ("A run with a push has these, too", lambda d: d.isPush),
+    "state": ("and these, which are None where the state is not reached or the push is not horizontal", lambda d: d.isPush),
+    "one way": ("A push in one direction has these, too", lambda d: d.isPush and not d.isLooped),
+    "loops": ("A push that follows a history has these, too", lambda d: d.isPush and d.isLooped),
+    "wall": ("A whole wall in running bond that a platen pushes has these with --lean, which leaves no frames; masonry.read.measure finds them from frames",
+             lambda d: d.isPush and d.joints is not None and "wall" in d.run),
+    "joint": ("A run that records the means of a joint has these, with its name before them if it has one", lambda d: False),
+    "bound": ("A run that pushes, leans or tilts has these, if limit analysis (masonry.limit) applies", lambda d: False),
+}  # fmt: skip
+
+Q = Quantity
+QUANTITIES: tuple[Quantity, ...] = (
+    Q("peak_at_both_ends_kN", "peak", "kN", "Largest force along the push that the loaded point and the supports carry at once, so without waves that pass through; of loops where the displacement is positive.", _BOTH, lambda d: d.peakForce(), brief=True),
+    Q("peak_base_shear_kN", "force at the supports at the peak", "kN", "Force along the push at all that is held, at the peak.", f"curve.csv: {BASE}", lambda d: d[BASE][d.peak()], brief=True),
+    *_ofStates(),
+    Q("drift_height_m", "height of drifts", "m", "Height above the lowest brick of the points whose displacement is the drift of the masonry; None if the push is not horizontal.", "the bricks at the pushed platen, or the pushed point", group="state"),
+    Q("recorded_height_m", "height of the pushed point", "m", "Height above the lowest brick of the point whose displacement is recorded; None if the push is not horizontal.", "the platen or brick", group="state"),
+    Q("negative_peak_at_both_ends_kN", "peak of the other side", "kN", "As the peak, of the way back, where the displacement is negative.", _BOTH, lambda d: d.peakForce(-1), "loops"),
+    Q("negative_peak_base_shear_kN", "force at the supports at the peak of the other side", "kN", "Force along the push at all that is held, at that peak.", f"curve.csv: {BASE}", lambda d: d[BASE][d.peak(-1)], "loops"),
+    Q("displacement_at_negative_peak_mm", "displacement at the peak of the other side", "mm", "Displacement of the pushed point there.", f"curve.csv: {MOVED}", lambda d: d[MOVED][d.peak(-1)], "loops"),
+    Q("drift_at_negative_peak_mrad", "drift at the peak of the other side", "mrad", "Drift of the masonry there.", f"curve.csv: {MASONRY}, or {MOVED}, over drift_height_m", lambda d: d.drift(d.peak(-1)), "loops"),
+    Q("base_shear_end_kN", "force at the end", "kN", "Force at the supports in the last row.", f"curve.csv: {BASE}", lambda d: d[BASE][-1], brief=True),
+    Q("displacement_end_mm", "displacement at the end", "mm", "Displacement of the pushed point in the last row.", f"curve.csv: {MOVED}", lambda d: d[MOVED][-1], brief=True),
+    Q("initial_stiffness_kN_per_mm", "initial stiffness", "kN/mm", "Slope of the line through the beginning of the push that fits its first part best, without the inertia of the structure.", "masonry.read.curves.stiffness", lambda d: d.stiffness, brief=True),
+    Q("push_work_J", "work of the push", "J", "Area under the curve of the push.", f"curve.csv: {BASE}, {MOVED}", lambda d: float(np.trapz(d[BASE], d[MOVED])), brief=True),
+    Q("first_period_s", "first period along the push", "s", "First period of the structure along the push, measured as it began; None if none was found.", "masonry.assembly.period"),
+    Q("base_weight", "", "-", "w of the shear force V_s = (1 - w) top + w base, which leaves out the inertia of the structure's own mass; from the shape in which the structure moved as the push began, else 2/3.", "masonry.read.curves.quasiStatic"),
+    Q("velocity_grown_at_s", "", "s", "Time at which the velocity of the drive had grown in the first of these pushes; 0 if no first period was found.", "the drive"),
+    Q("dynamic_imbalance", "dynamic imbalance", "-", "Root mean square of the force that did not arrive at the supports, from half of the peak to the peak, over the largest force. A slow test has nearly none.", "masonry.read.curves.dynamicImbalance", lambda d: curves.dynamicImbalance(d[TOP], d[BASE]), brief=True, share=True),
+    Q("too_fast", "", "-", "Whether the dynamic imbalance is more than a push may have, 0.1.", "dynamic_imbalance", lambda d: curves.dynamicImbalance(d[TOP], d[BASE]) > IMBALANCE),
+    Q("largest_crack_mm", "widest crack at the end", "mm", "Largest opening of a point of any joint at the end of the run, also of those to platens; slide does not count; 0 if none is open.", "the joints at the end", brief=True),
+    Q("sudden_loss", "sudden loss of force", "-", "Largest fall of the force within a tenth of a millimetre, over its peak; above 0.1 the answer can depend on chance.", "masonry.read.curves.suddenLoss", lambda d: d.sudden[0], "one way", share=True),
+    Q("sudden_loss_at_mm", "displacement at the sudden loss", "mm", "Displacement at which that begins.", "masonry.read.curves.suddenLoss", lambda d: d.sudden[1], "one way"),
+    Q("force_drop", "force lost at the end", "-", "Share of the peak that is lost at the end; of loops along the envelope of the positive side.", _BOTH, lambda d: d.dropped()[0], share=True),
+    Q("drop_at_mm", "displacement at the drop of force", "mm", "First displacement after the peak with less than 0.95 of it; None if there is none.", _BOTH, lambda d: d.dropped()[1]),
+    Q("force_drop_negative", "force lost at the end of the other side", "-", "Likewise along the envelope of the negative side.", _BOTH, lambda d: d.dropped(-1)[0], "loops", share=True),
+    Q("drop_at_negative_mm", "displacement at the drop of force of the other side", "mm", "Likewise, as a positive number.", _BOTH, lambda d: d.dropped(-1)[1], "loops"),
+    Q("damped_share", "share of damping", "-", "Of what the joints and the damping of the run took in all, the share of the damping, which a real wall does not have.", "masonry.read.curves.dampedShare", lambda d: curves.dampedShare(d.__getitem__), "loops", share=True),
+    Q("cycle_count", "whole cycles", "-", "How many cycles are whole.", "cycles", lambda d: len(d.cycles), "loops"),
+    Q("cycle_work_J", "work of all cycles", "J", "Sum of their works at the base.", "cycles", lambda d: sum(one["work_J"] for one in d.cycles), "loops"),
+    Q("loop_work_J", "work of the whole curve", "J", "Integral of the base shear over the displacement.", f"curve.csv: {BASE}, {MOVED}", lambda d: loops.work(d[MOVED], d[BASE]), "loops"),
+    Q("largest_amplitude_mm", "largest amplitude", "mm", "Of a cycle.", "cycles", lambda d: max(one["amplitude_mm"] for one in d.cycles), "loops"),
+    Q("largest_damping", "largest equivalent damping", "-", "Ratio of equivalent viscous damping of a cycle.", "masonry.read.loops.equivalentDamping", lambda d: max(_damping(d)), "loops", share=True),
+    Q("smallest_damping", "smallest equivalent damping", "-", "Likewise.", "masonry.read.loops.equivalentDamping", lambda d: min(_damping(d)), "loops", share=True),
+    Q("bound_base_shear_kN", "limit analysis of the push", "kN", "Bound of the force of the first push.", "masonry.limit", group="bound", brief=True),
+    Q("negative_bound_base_shear_kN", "limit analysis of the way back", "kN", "Likewise of the way back.", "masonry.limit", group="bound"),
+    Q("bound_acceleration", "limit analysis of the acceleration", "g", "Bound of the first lean or tilt, horizontal over vertical.", "masonry.limit", group="bound", brief=True),
+    *(Q(key, "", "-", f"As of {where}.", where, lambda d, key=key: d.pattern[key], "wall") for key, where in cracks.MEASURED.items()),
+    *(Q(f"peak_{what}_stress_MPa", "", "MPa", f"Largest mean {what} stress of the joint.", f"curve.csv: {what}_stress_MPa", group="joint") for what in ("normal", "compressive", "shear")),
+    *(Q(f"end_{what}_stress_MPa", "", "MPa", f"Mean {what} stress of the joint in the last row.", f"curve.csv: {what}_stress_MPa", group="joint") for what in ("normal", "shear")),
+    *(Q(f"dissipated_{mode}_J_per_m2", "", "J/m²", f"Energy that the joint dissipated in {mode}, over its area.", "the joint", group="joint") for mode in ("tension", "shear", "compression")),
+    Q("factor", "", "-", "Largest load factor under which the structure came to rest, in the last stage that found one.", "answers", group="every"),
+    Q("energy_balance_error", "largest error of the energy balance", "-", "Largest error of the balance in all rows, relative to the work done. It shows errors of the scheme, as a time step that is too long, and not those of mesh or law.", "curve.csv: balance_error", group="every", brief=True, share=True),
+    Q("energy_made", "energy that joints made", "-", "Most energy that joints made by opening or closing within a step, relative to the work done.", "the energy balance", group="every", share=True),
+    Q("time_step_s", "", "s", "The time step.", "the run", group="every"),
+    Q("time_step_limit_s", "", "s", "The limit of the time step with the present damping.", "the run", group="every"),
+    Q("steps", "time steps", "-", "How many were taken.", "the run", group="every", brief=True),
+    Q("microseconds_per_step", "time of a step", "µs", "Mean on the clock of the machine.", "the run", group="every", brief=True),
+    Q("nanoseconds_per_subcontact_step", "time of a step and a point of a joint", "ns", "Mean on the clock of the machine.", "the run", group="every"),
+    Q("wall_clock_s", "time of the run", "s", "On the clock of the machine, with set-up and files.", "the run", group="every", brief=True),
+)  # fmt: skip
+#: Those by their entries in run.json.
+BY_KEY = {one.key: one for one in QUANTITIES}
+
+
+def _damping(data):
+    return [one["damping"] for one in data.cycles if one["damping"] is not None]
+
+
+def found(data: RunData) -> dict[str, Any]:
+    """All numbers that can be found from what a run has, by their entries in run.json. What needs a column that curve.csv does not
+    have, or a cycle of a run without one, is left out."""
+    entries = {}
+    for one in QUANTITIES:
+        if one.of and GROUPS[one.group][1](data):
+            try:
+                entries[one.key] = one.of(data)
+            except (LookupError, ValueError):
+                continue
+    return entries
+
+
+def known(data: RunData) -> dict[str, Any]:
+    """All numbers of a run: those of run.json and, where it does not have them, those that can be found."""
+    return {**found(data), **{k: v for k, v in data.run.items() if k in BY_KEY}}
+
+
+def shown(entries: dict[str, Any], *groups: str, brief: bool = False) -> list[Number]:
+    """Those of some groups that have a name and a value, as they are shown.
+
+    :param entries: of :func:`known`, or of run.json
+    :param brief: whether only those are wanted that a notebook shows
+    """
+    fine = lambda v: isinstance(v, (int, float)) and not isinstance(v, bool) and math.isfinite(v)  # fmt: skip
+    return [
+        one.shown(entries[one.key])
+        for one in QUANTITIES
+        if one.name and (not groups or one.group in groups) and (one.brief or not brief) and fine(entries.get(one.key))
+    ]  # fmt: skip
+
+
+def headline(run: dict[str, Any], end: bool = False) -> str:
+    """The peak of a push and its bound in a line, from the entries of run.json; empty if there was no push.
+
+    :param end: whether the force at the end stands there, too, and how many cycles there were
+    """
+    at = lambda force, moved: f"{run[force]:.4g} kN at {run[moved]:.4g} mm"
+    keys = ("peak_at_both_ends_kN", "displacement_at_peak_mm")
+    if run.get(keys[0]) is None or run.get(keys[1]) is None:
+        return ""
+    text = f"peak {at(*keys)}"
+    if run.get("negative_peak_at_both_ends_kN") is not None:
+        other = at("negative_peak_at_both_ends_kN", "displacement_at_negative_peak_mm")
+        text = f"{len(run['cycles'])} cycles, peaks {at(*keys)} and {other}"
+    if end:
+        text += f", {at('base_shear_end_kN', 'displacement_end_mm')}"
+    elif run.get("bound_base_shear_kN") is not None:
+        bounds = [b for b in run.get("bounds") or [] if isinstance(b, dict)]
+        most = "" if bounds and all(b.get("exact") for b in bounds) else "at most "
+        text += f"; limit analysis: {most}{run['bound_base_shear_kN']:.4g} kN"
+    return text
+
+
+def described() -> str:
+    """What run.json has of these, for its documentation: a list of reStructuredText for every group."""
+    text = ""
+    for group, (title, _) in GROUPS.items():
+        ones = [one for one in QUANTITIES if one.group == group]
+        lines = (f"- ``{one.key}``: {one.meaning} Source: {one.source} [{one.unit}]" for one in ones)  # fmt: skip
+        text += "\n".join(["", f"{title}:", "", *lines, ""])
+    return text
