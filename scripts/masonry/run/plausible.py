@@ -102,6 +102,7 @@ IN_LISTS = {
     "rows": [0.0] * 3,
     "trials": [0.0] * 2,
     "marks": 0.0,
+    "recent": [0.0] * 2,
     "places": 0.0,
 }
 #: How long other lists are, if they are not empty.

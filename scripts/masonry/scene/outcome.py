@@ -14,6 +14,7 @@ from yade.wrapper import MasonryVtkRecorder
 
 from ..assembly import blocks
 from ..assembly.blocks import units
+from ..assembly.engines import LAWS
 from ..basics import Unwritable, say, withoutCollector
 from ..memory import FULL
 from ..packages import Missing
@@ -111,6 +112,9 @@ class Outcome:
             joints=joints,
             joint_units=units(type(next(iter(model.joints.values())))),
             joint_meanings=_meanings(type(next(iter(model.joints.values())))),
+            properties_of_laws={
+                name: sorted(law["properties"]) for name, law in LAWS.items()
+            },  # fmt: skip
             unit_material={
                 "young_Pa": model.unit.young,
                 "poisson": model.unit.poisson,
