@@ -86,17 +86,6 @@ class Reading:
         self.energy = structure.energy.balance()
         self.goal = structure.loading.goal
 
-    @property
-    def masonryAlong(self):
-        """Displacement of the bricks at the followed platen since the push or load began, along it [m]."""
-        loading = self.structure.loading
-        if not loading.followed:
-            return 0.0
-        moved = self.structure.supports.masonryMoved(
-            loading.followed, loading.direction
-        )
-        return moved - loading.origin[2]
-
     def moved(self, target):
         """Displacement of a target's recorded point since the scene was built [m], and its rotation [rad]."""
         if target.name not in self._moved:
@@ -184,7 +173,7 @@ OF_PLATEN = [
         "masonry_displacement",
         "mm",
         "displacement of the bricks at the pushed or watched platen along the push or load since that began; elsewhere of that point",
-        lambda r: 1e3 * r.masonryAlong,
+        lambda r: 1e3 * r.structure.loading.masonryAlong(),
     )
 ]
 #: Of a push that follows a history.

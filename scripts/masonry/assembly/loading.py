@@ -222,11 +222,17 @@ class Loading:
         self.pushing = False
 
     def topDisplacement(self):
-        """Displacement since the scene was built [m] of the followed point, along the push or load and upwards, and of the
-        bricks at the followed platen along it."""
+        """Displacement since the scene was built [m] of the followed point, along the push or load and upwards, and of the bricks at
+        the followed platen along it."""
         moved = self.supports.moved(self.followed)[0]
-        bricks = self.supports.masonryMoved(self.followed, self.direction)
-        return moved.dot(self.direction), moved[2], bricks
+        return moved.dot(self.direction), moved[2], self._masonryMoved()
+
+    def _masonryMoved(self):
+        return self.supports.masonryMoved(self.followed, self.direction)
+
+    def masonryAlong(self):
+        """Displacement of the bricks at the followed platen along the push or load since that began [m]; 0 if none is followed."""
+        return self._masonryMoved() - self.origin[2] if self.followed else 0.0
 
     def alongNow(self):
         """Displacement of the followed point along the push or load since that began [m]; 0 if none is followed."""

@@ -37,11 +37,10 @@ class Supports:
         return state, state.refPos, arm, upright * arm, upright
 
     def _faceOf(self, target):
-        """The middles of a platen's joints, as points of the bricks there: pairs of what their motion is found from, and the
-        share of the platen's area. Of a deformable brick its own middle stands for that.
-        """
-        zones = self.structure.zones
-        found, deformable = [], set(zones.bodies) if zones else ()
+        """The middles of a platen's joints, as points of the bricks there: pairs of what their motion is found from, and the share of
+        the platen's area. Of a deformable brick its own middle stands for that."""
+        zones, found = self.structure.zones, []
+        deformable = set(zones.bodies) if zones else ()
         for one in self.structure.interactions:
             if target.body not in (one.id1, one.id2):
                 continue
@@ -52,24 +51,6 @@ class Supports:
             found.append((self._placeOf(brick, middle), area))
         whole = sum(area for _, area in found)
         return [(place, area / whole) for place, area in found]
-
-    def masonryMoved(self, target, direction):
-        """Displacement of the bricks at a platen along a direction since the scene was built [m]; of a brick that is held or
-        watched, that of its point."""
-        face = self._faces.get(target.name)
-        if not face:
-            return self.moved(target)[0].dot(direction)
-        return sum(
-            share * (state.pos + state.ori * ownArm - place - arm).dot(direction)
-            for (state, place, arm, ownArm, _), share in face
-        )
-
-    def driftHeight(self, target):
-        """Height of the points of which :meth:`masonryMoved` is [m]."""
-        face = self._faces.get(target.name)
-        if not face:
-            return target.recorded[2]
-        return sum(share * (place[2] + arm[2]) for (_, place, arm, *_), share in face)
 
     def holdAlso(self, target, axes):
         """Count a target as one that is held along more axes."""
@@ -109,6 +90,23 @@ class Supports:
         if self.description.plane:
             angle *= axis[1]
         return state.pos + turn * ownArm - place - arm, angle
+
+    def masonryMoved(self, target, direction):
+        """Displacement of the bricks at a platen along a direction since the scene was built [m]; of a brick, that of its point."""
+        face = self._faces.get(target.name)
+        if not face:
+            return self.moved(target)[0].dot(direction)
+        return sum(
+            share * (state.pos + state.ori * ownArm - place - arm).dot(direction)
+            for (state, place, arm, ownArm, _), share in face
+        )
+
+    def driftHeight(self, target):
+        """Height of the points of which :meth:`masonryMoved` is [m]."""
+        face = self._faces.get(target.name)
+        if not face:
+            return target.recorded[2]
+        return sum(share * (place[2] + arm[2]) for (_, place, arm, *_), share in face)
 
     def applied(self):
         """Sum of the weights of what is free to follow them, and of the loads without drives [N]."""

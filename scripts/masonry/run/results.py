@@ -10,7 +10,7 @@
 - ``preset``: None, or what :func:`masonry.run.presets.presetOf` says; ``preset_note``: what it promises, a sentence
 - ``columns``: what each column of curve.csv means
 - ``joints``: the properties of every kind of joint [SI units]; ``joint_units``: the units by property; ``joint_meanings``: what
-  each property means
+  each property means; ``properties_of_laws``: which of them each law reads, beside those that all read
 - ``unit_material``: ``young_Pa``, ``poisson`` and ``density_kg_per_m3`` of the bricks
 - ``assumed``: properties of the materials that were not given: a list of dicts with ``name``, as ``bed.residualFriction``,
   ``value``, ``unit`` and ``source``. An entry with the name ``support`` says that these joints take the bed joint

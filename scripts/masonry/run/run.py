@@ -34,7 +34,6 @@ from .presets import presetNote, presetOf
 from .progress import Progress
 from .results import Results
 
-COLLAPSE = "collapsed:"  # how MasonryEnergy begins its message when a block has fallen
 FLUSH_EVERY = 0.2  # [s] of wall-clock time: rows are on the disk after it
 SHOW_EVERY = 0.05  # [s] of wall-clock time: what is shown on the terminal is not older
 LOOK_EVERY = 0.5  # [s] of wall-clock time: within slow steps a checkpoint that is due is made no later
@@ -309,11 +308,10 @@ class Run:
                 now = time.perf_counter()
                 if now - began > LOOK_EVERY:
                     break
-        except RuntimeError as error:
-            before, collapsed, what = str(error).partition(COLLAPSE)
-            if not collapsed:
+        except RuntimeError:
+            if self.model.energy.collapsedBlock < 0:
                 raise
-            raise Collapsed(what.strip()) from None
+            raise Collapsed(self.model.energy.collapse) from None
         finally:
             self._now = now
             at.seconds["steps"] += now - began

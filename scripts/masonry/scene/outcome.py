@@ -14,6 +14,7 @@ from yade.wrapper import MasonryVtkRecorder
 
 from ..assembly import blocks
 from ..assembly.blocks import units
+from ..assembly.engines import LAWS
 from ..basics import Unwritable, say, withoutCollector
 from ..memory import FULL
 from ..packages import Missing
@@ -111,6 +112,9 @@ class Outcome:
             joints=joints,
             joint_units=units(type(next(iter(model.joints.values())))),
             joint_meanings=_meanings(type(next(iter(model.joints.values())))),
+            properties_of_laws={
+                name: sorted(law["properties"]) for name, law in LAWS.items()
+            },  # fmt: skip
             unit_material={
                 "young_Pa": model.unit.young,
                 "poisson": model.unit.poisson,
@@ -194,10 +198,8 @@ class Outcome:
         """Entries that the numbers of a push are found from, and what the joints say."""
         model = self.model
         period, weight, grown = self._swing()
-        sways = abs(model.loading.direction[2]) < 1e-9
-        heights = model.loading.target.recorded[2], model.supports.driftHeight(
-            model.loading.followed
-        )
+        target, sways = model.loading.target, abs(model.loading.direction[2]) < 1e-9
+        heights = target.recorded[2], model.supports.driftHeight(target)
         recorded, drift = (z - self.description.low[2] for z in heights)
         joints = (
             ((i.id1, i.id2), i.phys.opening, i.geom.centres) for i in model.interactions

@@ -17,7 +17,6 @@ OF_CAP = {"compressiveStrength", "elasticLimitRatio", "residualStrengthRatio", "
 #: Energies that count where there is the strength that they soften.
 SOFTENING = {"modeIFractureEnergy": "tensileStrength", "modeIIFractureEnergy": "cohesion"}  # fmt: skip
 STIFFNESSES = {"normalStiffness", "shearStiffness"}
-CYCLIC = "cyclic"
 MOST_WORDS = 12  # of a script that are shown at once
 MOST_LEADING = 3  # answers at the head of a report
 OLDER = "The run was made by an older version of the plugin, whose run.json does not say this."
@@ -193,15 +192,17 @@ def _joints(run):
     joints = {kind: found for kind, found in joints.items() if kind in counted}
     assumed, kinds = _namesOf(run), list(joints)
     names = dict.fromkeys(n for p in joints.values() for n in p if n in units)
-    cyclic = any(p.get("law") == CYCLIC for p in joints.values())
+    ofLaws = run.get("properties_of_laws") or {}
+    particular = {name for read in ofLaws.values() for name in read}
+    counts = lambda name, joint: name not in particular or name in ofLaws.get(joint.get("law"), ())  # fmt: skip
     shown, others = [], []
     for name in names:
         meaning = str(meanings.get(name, "")).partition(". ")[0].rstrip(".")
         unit, factor = SHOWN.get(units[name], (units[name], 1))
         cells = [_cell(joints[kind], name, factor, f"{kind}.{name}" in assumed) for kind in kinds]  # fmt: skip
         line = row((tag("span", meaning or name, title=name), unit, *cells))
-        used = any(joints[kind].get(name) for kind in kinds)
-        used = used and set(cells) != {"–"} and (cyclic or "Read by the cyclic law" not in str(meanings.get(name)))  # fmt: skip
+        used = any(joints[kind].get(name) and counts(name, joints[kind]) for kind in kinds)  # fmt: skip
+        used = used and set(cells) != {"–"}
         (shown if used else others).append(line)
     laws = [_lawOf(joints[kind]) for kind in kinds]
     heads = ("property", "unit", *kinds)

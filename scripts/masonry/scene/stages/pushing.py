@@ -27,6 +27,7 @@ SHARE = 1.0
 #: Frames for ParaView along a history, beside those at its turning points and zeros.
 FRAMES = 200
 SUDDEN = 0.1  # of the peak: a larger fall within a tenth of a millimetre is few bricks that give way at once
+AVERAGED = 1.0  # [mm] of a push, or a first period: over it the mean of the force tells a collapse
 DAMPED = 0.1  # of what loops lose: a larger share of damping is a warning, because the loops are too fat by it
 
 
@@ -51,7 +52,9 @@ class Pushing:
     since: float = 0.0  # time from which the velocity grows [s]
     #: velocity then, in the present direction, over the full one [-]
     growth: float = 0.0
-    peaks: Sequence[float] = (0.0, 0.0)  # largest base shear so far [kN]
+    #: Of the last rows, as far as AVERAGED says: time [s] and base shear [kN]; the mean of these is what a collapse is told from.
+    recent: Sequence[Sequence[float]] = ()
+    peaks: Sequence[float] = (0.0, 0.0)  # largest mean so far [kN]
     peaksAt: Sequence[float] = (0.0, 0.0)  # displacement there [mm]
     reach: Sequence[float] = (0.0, 0.0)  # farthest turning point so far [mm]
     nextFrame: float = 0.0  # length of the path up to the next ParaView frame [mm]
@@ -60,22 +63,31 @@ class Pushing:
         """Length of the path so far [mm]."""
         return self.path + direction * (self.moved - self.last)
 
-    def note(self, shear):
-        """Keep the peaks, with the base shear of the last row [kN]."""
+    def note(self, shear, span):
+        """Keep the peaks, with the base shear of the last row [kN]. Returns its mean over a time [s], or None when that is not over:
+        what vibrates dips below any share of its peak, and a spike when the drive begins is no strength.
+        """
+        whole = bool(self.recent) and self.recent[0][0] <= self.now - span
+        before = [one for one in self.recent if one[0] > self.now - span]
+        self.recent = [*self.recent[: len(self.recent) - len(before)][-1:], *before, [self.now, shear]]  # fmt: skip
+        if not whole:
+            return None
+        mean = sum(force for _, force in self.recent) / len(self.recent)
         for side, sign in enumerate((-1, 1)):
-            if sign * shear > self.peaks[side]:
-                self.peaks = _exchanged(self.peaks, side, sign * shear)
+            if sign * mean > self.peaks[side]:
+                self.peaks = _exchanged(self.peaks, side, sign * mean)
                 self.peaksAt = _exchanged(self.peaksAt, side, sign * self.moved)
+        return mean
 
     def retreats(self, direction, whole):
         """Whether the wall is a tenth of the whole path [mm], and 1 mm at least, behind where it turned or began."""
         return self.path - self.travelled(direction) > max(1.0, 0.1 * whole)
 
     def hasLost(self, direction, shear):
-        """Whether the wall is farther out than ever before, and has lost its force [kN] there."""
+        """Whether the wall is farther out than ever before, and has lost its force there, a mean [kN]."""
         side, out = direction > 0, direction * self.moved
         beyond = out > self.reach[side] and out > self.peaksAt[side] + 1
-        return beyond and direction * shear < 0.2 * self.peaks[side]
+        return beyond and shear is not None and direction * shear < 0.2 * self.peaks[side]  # fmt: skip
 
     def passOn(self, goals):
         """Go on to the first point that is not reached yet. Returns whether there is one, and whether the drive turns."""
@@ -119,8 +131,8 @@ def drivePush(scene, name, args, began, continued=False):
     it passes through zero, unless the frame before is less than half of this away.
 
     A wall has collapsed if the loading block has come down by half a course, if less than a fifth of the peak of a side
-    is left, a millimetre or more beyond that peak and farther out than the wall has turned before, or if it moves against
-    its push by a tenth of the path, a millimetre or more. So a loop that unloads is no collapse.
+    is left in the mean over a first period or a millimetre, a millimetre or more beyond that peak and farther out than the wall has turned before, or
+    if it moves against its push by a tenth of the path, a millimetre or more. So a loop that unloads is no collapse.
 
     :param name: of the stage
     :param args: the options of the run, with the ``until``, ``history`` and ``rate`` of this push
@@ -190,9 +202,9 @@ def drivePush(scene, name, args, began, continued=False):
         if at.places and not undamped:
             _noteSwing(run, model, at)
         shear, travelled = 1e-3 * reading.baseShear, at.travelled(goal.direction)
-        at.note(shear)
+        mean = at.note(shear, max(at.period, AVERAGED / args.rate))
         how = None
-        if at.hasLost(goal.direction, shear):
+        if at.hasLost(goal.direction, mean):
             how = "less than a fifth of the peak of its force is left"
         elif model.loading.hasSunk(reading.sunk + min(0.0, reading.along * model.loading.direction[2])):  # fmt: skip
             how = "the pushed point has come down by half a course"
