@@ -52,7 +52,7 @@ Version: $version
 Architecture: $architecture
 Maintainer: $name <$address>
 Installed-Size: $(du -sk "$root/usr" | cut -f 1)
-Depends: yade (= $yade), python3 (>= $python), python3 (<< $next), python3-matplotlib, python3-meshio, python3-numpy, python3-scipy, coinor-libclp1, $libraries
+Depends: yade (= $yade), python3 (>= $python), python3 (<< $next), python3-jinja2, python3-matplotlib, python3-meshio, python3-numpy, python3-scipy, coinor-libclp1, $libraries
 Suggests: libjs-three, python3-openturns, slurm-client
 Section: science
 Priority: optional

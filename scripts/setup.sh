@@ -20,7 +20,7 @@ case $release in
             "packages may have other names, and its YADE may be refused." >&2 ;;
 esac
 # Python's numpy, scipy and matplotlib and the libraries of VTK come with yade, so figures and bounds need little more.
-runs=(yade python3-matplotlib python3-numpy python3-scipy python3-meshio coinor-libclp1)
+runs=(yade python3-jinja2 python3-matplotlib python3-numpy python3-scipy python3-meshio coinor-libclp1)
 builds=(cmake g++ make libboost-python-dev libboost-serialization-dev libeigen3-dev libcgal-dev libgl-dev python3-dev)
 tests=OFF target=masonry_module_fit packages=("${runs[@]}" "${builds[@]}")
 case "${1:-}" in

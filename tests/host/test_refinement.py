@@ -9,9 +9,6 @@ from masonry import addBlock, connect, engine, engines, loadCheckpoint, saveChec
 from masonry._masonry import allowThreads
 from masonry.assembly.engines import functorLoop
 from masonry.bricks import boxCorners as corners
-from masonry.read.cracks import centresOf
-from masonry.read.frames import asFrame
-from masonry.read.motion import pointsFor
 from yade import O, Vector3
 from yade.wrapper import *
 
@@ -389,27 +386,3 @@ def test_without_a_word_joints_get_eight_points_and_five_a_side_in_space():
         joint = couplet(0, inPlane=inPlane, cap=False)
         ramp(-0.95 * 0.1e6 * AREA)
         assert len(joint.geom.areas) == count
-
-
-def test_an_earlier_frame_is_shown_at_the_points_of_the_last():
-    """What reads several frames takes, where a joint had fewer points, the nearest of these."""
-    pushed()
-    recorder, frames = MasonryVtkRecorder(), []
-    for steps in (5, 10, 60):
-        run(steps)
-        frames.append(asFrame(recorder.joints()))
-    counts = [len(f["cells"]) for f in frames]
-    assert counts == sorted(set(counts))
-    last = frames[-1]
-    places = centresOf(last["points"], last["cells"])
-    for frame in frames:
-        found = pointsFor(last, frame)
-        assert np.array_equal(frame["bodies"][found], last["bodies"])
-        apart = centresOf(frame["points"], frame["cells"])[found] - places
-        assert np.abs(apart).max() < 0.5 * 0.11  # at most half of a joint
-        assert set(found) == set(range(len(frame["cells"])))
-    assert np.array_equal(pointsFor(last, last), np.arange(counts[-1]))
-    assert pointsFor(frames[0], last) is None  # fewer points later
-    other = {**last, "bodies": last["bodies"] + 1}
-    other["points"] = last["points"] + 1.0
-    assert pointsFor(last, other) is None

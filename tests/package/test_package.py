@@ -348,7 +348,7 @@ def test_the_damped_share_is_that_of_damping_in_what_was_taken_since_the_first_r
     assert curves.dampedShare(bounced.get) == 0
 
 
-@pytest.mark.parametrize("reader", ["curve_figure", "crack_figure", "measure"])
+@pytest.mark.parametrize("reader", ["curve_figure", "elevation", "measure"])
 def test_readers_ask_only_for_keys_of_run_json_that_are_documented(reader):
     source = open(
         os.path.join(ROOT, "scripts", "masonry", "read", reader + ".py")
@@ -361,7 +361,7 @@ def test_readers_ask_only_for_keys_of_run_json_that_are_documented(reader):
     assert asked and not asked - documented
 
 
-@pytest.mark.parametrize("reader", ["crack_figure", "measure"])
+@pytest.mark.parametrize("reader", ["elevation", "measure"])
 def test_readers_ask_only_for_columns_that_are_described(reader):
     source = open(
         os.path.join(ROOT, "scripts", "masonry", "read", reader + ".py")

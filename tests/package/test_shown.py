@@ -1,15 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Curves as arrays with units, and pictures of blocks before a run."""
+"""Curves as arrays with units, and the table of results."""
 
 import numpy as np
 import pytest
-from masonry import bricks
 from masonry.basics import Refused
-from masonry.read import block_figure
-from masonry.read.crack_figure import BRICK
 from masonry.read.shown import Curve, RunFolder, resultsOf, unitOf
-from matplotlib.collections import PolyCollection
-from matplotlib.colors import to_rgba
 
 
 @pytest.mark.parametrize(
@@ -56,21 +51,3 @@ def test_results_that_were_not_found_are_not_shown():
         ("push: peak", "12.35 ± 0.5", "kN"),
         ("time steps", "7", ""),
     ]
-
-
-def test_what_is_nearer_to_the_viewer_is_drawn_later():
-    """A dome is seen from above, and the platen below it lies behind all stones."""
-    dome = bricks.Dome(radius=2.0, thickness=0.25, courses=4, stones=12, oculus=0.4)
-    platen = bricks.boxCorners((-2.2, -2.2, -0.2), (2.2, 2.2, 0.0))
-    blocks = [(block.corners, None) for block in dome] + [(list(platen), "held")]
-    blocks.append((dome[0].corners, "watched"))
-    figure = block_figure.figureOf({"dome": blocks}, "a dome")
-    (axes,) = figure.axes
-    assert "from above" in axes.get_title()
-    _, moved, *_ = [c for c in axes.collections if isinstance(c, PolyCollection)]
-    colours = [tuple(colour) for colour in moved.get_facecolor()]
-    assert len(colours) == len(dome) + 2
-    assert colours[0] == to_rgba(block_figure.SHADES["held"])
-    assert colours.count(to_rgba(BRICK)) == len(dome)
-    labels = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert labels == ["held", "watched"]

@@ -12,7 +12,7 @@ from masonry import COLLAPSED, Scene, bricks, materials
 from masonry._masonry import allowThreads
 from masonry.basics import GRAVITY, Refused
 from masonry.read import files
-from masonry.read.crack_figure import frameOfCracks
+from masonry.read.elevation import frameOfCracks
 from masonry.read.files import readRun
 from masonry.read.frames import readFrame
 from yade import O

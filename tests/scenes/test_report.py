@@ -20,8 +20,6 @@ from small import SMALL, carryOut, parsed
 
 MOST = 3e6  # [bytes] of the report of COMP-4
 BRICK, RED = (232, 215, 184), (214, 39, 40)
-#: Numbers of the picture, whose last digits depend on where LAPACK finds its arrays in the memory.
-PICTURE = re.compile(r"<script type.*?</script>", re.S)
 needsBrowser = pytest.mark.skipif(bool(browser.MISSING), reason=browser.MISSING)
 
 
@@ -37,7 +35,7 @@ def test_a_run_leaves_its_report_beside_its_figures(scene, tmp_path):
     assert run["warnings"] == [] or all(isinstance(w, str) for w in run["warnings"])
     assert ["base", "platen, held"] in run["held_and_loaded"]
     assert [(t["name"], t["held"]) for t in run["targets"]] == [("base", True), ("top", False)]  # fmt: skip
-    assert text.count('class="held"') == 1 and "What is held is hatched" in text
+    assert ">held<" in text and ">base<" in text  # in the drawing
     assert [word for word, _ in run["script"]] == ["platen", "platen", "press", "settle", "push"]  # fmt: skip
     assert [stage["load"] and stage["load"][0] for stage in run["stages"]] == [None, "push"]  # fmt: skip
     rows = readCurve(str(tmp_path))["displacement_mm"]
@@ -47,7 +45,7 @@ def test_a_run_leaves_its_report_beside_its_figures(scene, tmp_path):
     # written again from the folder it is the same
     again = tmp_path / "again.html"
     report.write(report.read(str(tmp_path)), str(again))
-    assert PICTURE.sub("", again.read_text()) == PICTURE.sub("", text)
+    assert again.read_text() == text
 
 
 def test_a_lean_run_leaves_none_and_no_words_for_it(scene, tmp_path):
@@ -150,31 +148,25 @@ class TestInABrowser:
         assert opened.value("view.frame") == 0 and opened.value(RING) != last
         start = seen(opened, tmp_path, ".masonry-view")
         assert near(start, RED) < near(end, RED) / 2
-        places = opened.value("document.querySelector('svg.chart').dataset.frames").split()  # fmt: skip
+        places = opened.value("document.querySelector('[data-frames]').dataset.frames").split()  # fmt: skip
         assert len(places) == opened.value("view.head.frames.length")
         moved(opened, 3)
         assert opened.value(RING) == pytest.approx([*map(float, places[3].split(","))])
 
     def test_a_click_on_the_curve_shows_the_nearest_frame(self, opened):
         moved(opened, 0)
-        opened.value("(document.querySelector('svg.chart').scrollIntoView(), 0)")
-        place = opened.value("""(() => { const chart = document.querySelector('svg.chart'), [x, y] = chart.dataset.frames.split(' ')[4].split(',').map(Number);
+        opened.value("(document.querySelector('[data-frames]').scrollIntoView(), 0)")
+        place = opened.value("""(() => { const figure = document.querySelector('[data-frames]'), chart = figure.querySelector('svg');
+            const [x, y] = figure.dataset.frames.split(' ')[4].split(',').map(Number);
             const at = new DOMPoint(x + 2, y).matrixTransform(chart.getScreenCTM()); return [at.x, at.y] })()""")  # fmt: skip
         opened.drag(place, place)
         assert opened.value("new Promise(done => setTimeout(() => done(view.frame), 100))") == 4  # fmt: skip
-
-    def test_joints_are_coloured_by_damage_opening_and_slide(self, opened):
-        for name in ("damage", "opening", "slide"):
-            opened.value(f"""(() => {{ const list = [...document.querySelectorAll('label')].find(l => l.textContent.startsWith('joints')).querySelector('select');
-                list.value = '{name}'; list.dispatchEvent(new Event('change')); return 0 }})()""")  # fmt: skip
-            assert name in opened.value("view.legend.innerText")
-        assert opened.problems == []
 
     def test_all_that_can_be_set_has_a_name_and_all_pictures_have_a_text(self, opened):
         names = opened.value("[...document.querySelectorAll('canvas, input, select, button, summary')].map(e => e.getAttribute('aria-label') || (e.labels && e.labels[0] ? e.labels[0].textContent : e.textContent))")  # fmt: skip
         assert all(names)
         assert opened.value("[...document.images].every(i => i.alt && i.naturalWidth > 0)")  # fmt: skip
-        assert opened.value("[...document.querySelectorAll('svg[role=img]')].every(s => s.getAttribute('aria-label'))")  # fmt: skip
+        assert opened.value("[...document.querySelectorAll('[role=img]')].every(s => s.getAttribute('aria-label'))")  # fmt: skip
         assert opened.value("document.images.length") == 2  # mechanism and cracks
 
     def test_light_dark_and_a_narrow_screen(self, chromium, comp4, tmp_path):
@@ -205,18 +197,10 @@ class TestInABrowser:
         assert {(round(float(w)), round(float(h))) for w, h in boxes} == {(595, 842)}
         assert 3 <= len(re.findall(rb"/Type\s*/Page\b", printed)) <= 16
 
-    def test_without_webgl_a_sentence_stands_in_place_of_the_picture(self, comp4):
-        with browser.browser("--disable-3d-apis") as chromium:
-            chromium.open(comp4)
-            text = chromium.value("document.body.innerText")
-            assert "This browser shows no 3-D pictures, because WebGL" in text
-            assert "How far to trust it" in text and chromium.problems == []
-
 
 def test_the_program_needs_no_yade(comp4, tmp_path):
     path = str(tmp_path / "wall.html")
     code = "import sys; from masonry.read.report.__main__ import main; assert main(sys.argv[1:]) == 0; assert 'yade' not in sys.modules"  # fmt: skip
     done = subprocess.run([sys.executable, "-c", code, os.path.dirname(comp4), "-o", path], capture_output=True, text=True)  # fmt: skip
     assert done.returncode == 0, done.stderr
-    texts = [PICTURE.sub("", open(name).read()) for name in (path, comp4)]
-    assert texts[0] == texts[1]
+    assert open(path).read() == open(comp4).read()

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Runs in ParaView, with the real pvpython where it is installed."""
 
+import json
 import os
+import shutil
 import subprocess
 import sys
 
@@ -9,13 +11,10 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from masonry.read import viewer
+from masonry.read.frames import readFrame
 from masonry.basics import Refused
 
-try:
-    viewer.findPvpython()
-    MISSING = ""
-except Refused as refused:
-    MISSING = str(refused).splitlines()[0]
+MISSING = "" if shutil.which("pvpython") or os.path.exists(os.path.join(viewer.UNPACKED, "usr", "bin", "pvpython")) else "ParaView is not installed"  # fmt: skip
 
 needsParaView = pytest.mark.skipif(bool(MISSING), reason=MISSING)
 
@@ -83,24 +82,26 @@ def test_a_film_has_all_frames(wall, tmp_path):
 
 
 @needsParaView
-def test_the_window_gets_a_state_that_shows_the_run(wall, monkeypatch):
-    called = []
-    monkeypatch.setattr(os, "execvp", lambda *words: called.append(words))
-    viewer.show([wall])
-    ((program, (_, state)),) = called
-    assert program == "paraview" and state == "--state=" + os.path.join(wall, "view.pvsm")  # fmt: skip
-    text = open(os.path.join(wall, "view.pvsm")).read()
-    for words in ("blocks.pvd", "joints.pvd", "WarpVector", "opening [mm]"):
-        assert words in text
-
-
-@needsParaView
 def test_what_paraview_says_comes_back(wall, tmp_path, monkeypatch):
-    scene = viewer.sceneOf(wall)
-    scene["blocks"] = str(tmp_path / "nothing.vtu")
-    job = dict(picture=str(tmp_path / "p.png"), film=None, state=None, size=[300, 200], rate=10)  # fmt: skip
-    with pytest.raises(Refused, match="ParaView ended with an error:"):
-        viewer._run({**job, "views": [scene]})
+    monkeypatch.setattr(viewer, "sceneOf", lambda *words: {"widest_mm": 1.0})
+    with pytest.raises(Refused, match="ParaView ended with an error:(.|\n)*KeyError"):
+        viewer.inParaView([wall], None, None, str(tmp_path / "p.png"))
+
+
+def test_the_window_is_opened_on_the_macro(wall, monkeypatch):
+    called = []
+
+    def run(words, env, **settings):
+        called.append((words, json.load(open(env["MASONRY_VIEW"]))))
+
+    monkeypatch.setattr(viewer.shutil, "which", lambda name: "/bin/true")
+    monkeypatch.setattr(viewer.subprocess, "run", run)
+    assert viewer.main([wall, "--at", "3mm", "--magnify", "7"]) == 0
+    (((program, script), job),) = called
+    assert program == "/bin/true" and script.endswith("paraview_macro.py")
+    (run,) = job["runs"]
+    assert run["folder"] == wall and run["magnification"] == 7
+    assert job["picture"] is None and job["time"] in viewer.frameTimes(wall)
 
 
 def test_places_in_a_run(wall):
@@ -124,23 +125,22 @@ def test_places_in_a_run(wall):
 
 
 def test_the_camera_shows_all_of_the_run(wall):
-    scene = viewer.sceneOf(wall, shape=1.5)
-    frame = viewer.readFrame(wall, "blocks")
+    scene = viewer.sceneOf(wall, len(viewer.frameTimes(wall)) - 1, None, 1.5, True)
+    frame = readFrame(wall, "blocks")
     points = frame["points"] + scene["magnification"] * frame["displacement"]
-    middle, up = np.array(scene["middle"]), np.array(scene["up"])
-    away = np.array(scene["eye"]) - middle
-    right = np.cross(up, away / np.linalg.norm(away))
-    assert np.abs((points - middle) @ up).max() < scene["half_height"]
-    assert np.abs((points - middle) @ right).max() < 1.5 * scene["half_height"]
-    length = np.linalg.norm(np.subtract(*scene["scale"]))
-    assert length == pytest.approx(scene["scale_m"]) and length < 2
+    away = np.array(scene["towards"])
+    right = np.cross((0, 0, 1), away)
+    right /= np.linalg.norm(right)
+    seen = (points - scene["middle"]) @ np.transpose([right, np.cross(away, right)])
+    assert np.abs(seen[:, 0]).max() < 1.5 * scene["half_height"]
+    assert np.abs(seen[:, 1]).max() < scene["half_height"]
 
 
-def test_without_paraview_the_packages_are_named(tmp_path, monkeypatch):
+def test_without_paraview_the_packages_are_named(wall, monkeypatch):
     monkeypatch.setattr(viewer.shutil, "which", lambda name: None)
-    monkeypatch.setattr(viewer, "UNPACKED", str(tmp_path))
+    monkeypatch.setattr(viewer, "UNPACKED", "/nowhere")
     with pytest.raises(Refused, match="apt-get install --no-install-recommends paraview xvfb"):  # fmt: skip
-        viewer.findPvpython()
+        viewer.inParaView([wall], None, None)
 
 
 @pytest.mark.parametrize(
@@ -149,8 +149,7 @@ def test_without_paraview_the_packages_are_named(tmp_path, monkeypatch):
         (["nowhere"], "cannot read nowhere/run.json: No such file"),
         (["RUN", "--size", "big"], "'big' must be WIDTHxHEIGHT"),
         (["RUN", "--picture", "p.jpg"], "p.jpg must end in .png"),
-        (["RUN", "--picture", "no/p.png"], "there is no folder"),
-        (["RUN", "--film", "p.mp4"], "p.mp4 must end in .avi, .ogv, or be a folder"),
+        (["RUN", "--film", "p.mp4"], "p.mp4 must end in .avi or .ogv"),
         (["RUN", "--picture", "p.png", "--at", "x"], "--at: 'x' must be a number"),
         (["RUN", "--magnify", "-1"], "--magnify: -1 must be at least 0"),
         (["RUN", "--rate", "0"], "--rate: 0 must be from 1 to 100"),

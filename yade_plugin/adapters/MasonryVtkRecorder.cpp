@@ -42,7 +42,13 @@ struct Field { // a column of numbers in the files; those that laws show come be
 };
 
 const Field fields[] = {
-    {"displacement", 3, number("m", "Displacement since the reference state, in which the points stand")},
+    {"displacement", 3,
+     number("m", "Displacement since the reference state, in which the points stand; of a point of a joint that of the "
+                 "first of its `bodies`")},
+    {"second_displacement", 3, number("m", "Displacement of a point of a joint with the second of its `bodies`")},
+    {"rotation", 3,
+     number("rad", "Rotation of a rigid unit since the reference state, a vector along its axis of the length of the "
+                   "angle; its corners tell how far it moved. Zero in the zones of deformable units")},
     {"velocity", 3, number("m/s", "Velocity")},
     {"body", 1, described("Id of the unit's body")},
     {"stress", 6, number("Pa", "Stress of a zone of a deformable unit: xx, yy, zz, xy, yz, xz; zero in rigid units")},
@@ -133,10 +139,16 @@ py::list tuples(vtkDataArray& array) {
     return rows;
 }
 
-// Displacement of a point of the reference state that moves with a body. For a deformable unit this is the rigid part
-// of the motion.
-Vector3r moved(const yade::State& s, const Vector3r& position, const Quaternionr& orientation, const Vector3r& point) {
-    return s.pos + s.ori * orientation.conjugate() * (point - position) - point;
+// Displacement of a place on a subcontact with the body of a side. With a deformable unit it is that of the
+// subcontact's point, and what the unit's rotation adds beside this point.
+Vector3r moved(const SceneStore& store, const JointGeometry& geom, int side, int point, const Vector3r& place) {
+    const auto& r = geom.reference();
+    const auto& from = r.sides[side];
+    const auto& s = store.bodies.state(from.body);
+    const Quaternionr turn = s.ori * from.orientation.conjugate();
+    if (r.rigid(side)) return s.pos + turn * (place - from.position) - place;
+    const Vector3r arm = place - geom.centre(point);
+    return r.attached->zones->displacementAt(r.attached->sides[side][point]) + turn * arm - arm;
 }
 
 // Throws std::runtime_error for a file that cannot be written. Removes what was written of it, so that a full disk has
@@ -244,6 +256,7 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
     auto* displacement = column<vtkDoubleArray>(grid->GetPointData(), "displacement");
     auto* velocity = column<vtkDoubleArray>(grid->GetPointData(), "velocity");
     auto* ids = column<vtkIntArray>(grid->GetCellData(), "body");
+    auto* rotations = column<vtkDoubleArray>(grid->GetCellData(), "rotation");
     auto* stress = column<vtkDoubleArray>(grid->GetCellData(), "stress");
     auto* principal = column<vtkDoubleArray>(grid->GetCellData(), "principal_stress");
     const double none[6] = {};
@@ -280,6 +293,7 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
                         corners[i] = first + zone[i];
                     grid->InsertNextCell(VTK_TETRA, 4, corners);
                     ids->InsertNextValue(unit.body);
+                    rotations->InsertNextTuple(none);
                     stress->InsertNextTuple(six);
                     principal->InsertNextTuple(three.data());
                 }
@@ -307,6 +321,8 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
         }
         grid->InsertNextCell(VTK_POLYHEDRON, faces);
         ids->InsertNextValue(body->id);
+        const Eigen::AngleAxisd turn(s.ori * s.refOri.conjugate());
+        rotations->InsertNextTuple(Vector3r(turn.angle() * turn.axis()).data());
         stress->InsertNextTuple(none);
         principal->InsertNextTuple(none);
     }
@@ -319,7 +335,8 @@ vtkSmartPointer<vtkPolyData> MasonryVtkRecorder::jointData() {
     vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
     vtkNew<vtkCellArray> cells;
-    auto* displacement = column<vtkDoubleArray>(data->GetPointData(), "displacement");
+    auto* first = column<vtkDoubleArray>(data->GetPointData(), "displacement");
+    auto* second = column<vtkDoubleArray>(data->GetPointData(), "second_displacement");
     auto* values = data->GetCellData();
     auto* opening = column<vtkDoubleArray>(values, "opening");
     auto* slide = column<vtkDoubleArray>(values, "slide");
@@ -340,8 +357,6 @@ vtkSmartPointer<vtkPolyData> MasonryVtkRecorder::jointData() {
         const auto& geom = *joint.geom;
         const auto& phys = *joint.phys;
         const auto& r = geom.reference();
-        const auto& s1 = store.bodies.state(joint.interaction->id1);
-        const auto& s2 = store.bodies.state(joint.interaction->id2);
         const auto& name = phys.propertySet()->name;
         const auto known = std::find(kinds.begin(), kinds.end(), name);
         const int number = int(known - kinds.begin());
@@ -357,11 +372,8 @@ vtkSmartPointer<vtkPolyData> MasonryVtkRecorder::jointData() {
             cells->InsertNextCell(int(parts[p].size()));
             for (const auto& corner : parts[p]) {
                 cells->InsertCellPoint(points->InsertNextPoint(corner.data()));
-                const Vector3r first = moved(s1, r.sides[0].position, r.sides[0].orientation, corner);
-                const Vector3r second = moved(s2, r.sides[1].position, r.sides[1].orientation, corner);
-                // Where blocks have parted, the crack stays on one of them.
-                displacement->InsertNextTuple(
-                    Vector3r(joint.geom->converted() ? first : 0.5 * (first + second)).data());
+                first->InsertNextTuple(moved(store, geom, 0, p, corner).data());
+                second->InsertNextTuple(moved(store, geom, 1, p, corner).data());
             }
             const auto s = phys.state(p);
             const Vector3r jump = geom.jump(p);

@@ -11,7 +11,8 @@ import numpy as np
 
 from ..arguments import FilePath
 from ..packages import needed
-from ..read.crack_figure import mechanism
+from ..read import drawing
+from ..read.elevation import Structure, figureOf
 from .programme import FACETS
 
 SLIDES = 1e-4  # share of the power of a mechanism that is friction, from which its joints slide [-]
@@ -251,11 +252,11 @@ class Bound:
         sizes = [len(p) for p in a.polygons]
         corners, which = np.concatenate(a.polygons), np.repeat(np.arange(count), sizes)
         one, two = a.pairs[which].T
-        middle = 0.5 * (self.motion(one, corners) + self.motion(two, corners))
         opens, slides = states == "opens", states == "slides"
         joints = {
             "points": corners,
-            "displacement": scale * middle,
+            "displacement": scale * self.motion(one, corners),
+            "second_displacement": scale * self.motion(two, corners),
             "cells": np.split(np.arange(len(corners)), np.cumsum(sizes)[:-1]),
             "bodies": np.array(a.ids)[a.pairs],
             "normal": a.normals,
@@ -294,7 +295,7 @@ class Bound:
         Mesh(
             joints["points"],
             [("triangle", np.array(fans))],
-            point_data={"displacement": joints["displacement"]},
+            point_data={n: joints[n] for n in ("displacement", "second_displacement")},
             cell_data={name: [joints[name][owner]] for name in names},
         ).write(os.path.join(directory, MECHANISM[1]))
 
@@ -312,4 +313,10 @@ class Bound:
         :param parts: dict of name -> ids of bodies, a panel each; None: all in one
         :param views: directions of sight by part, as of run.json
         """
-        mechanism(path, *self.frames(), title, parts, views)
+        with drawing.style():
+            blocks, joints = self.frames()
+            masonry = {body for part in (parts or {}).values() for body in part}
+            shades = {int(b): "platen" for b in blocks["body"] if masonry and b not in masonry}  # fmt: skip
+            structure = Structure(blocks, joints, parts or {}, shades, sights=views or {})  # fmt: skip
+            figure = figureOf(structure, title, 1)
+            drawing.save(figure, path, 90)

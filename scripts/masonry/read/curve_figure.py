@@ -84,7 +84,7 @@ def figureOf(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> 
     Loops have axes through zero and their envelope in bold, and their energies are drawn over the length of the way.
     Without columns of energies there is no panel of them.
 
-    :param run: entries of run.json: ``figure`` and ``title``, and ``wall`` of a wall
+    :param run: entries of run.json: ``figure`` and ``title``
     :param data: dict of column name -> numbers
     :param directory: folder, for messages
     """
@@ -95,36 +95,60 @@ def figureOf(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> 
     looped, x = spec["looped"], data[spec["x"]["column"]]
     used = {axis["column"] for axis in spec["y"]}
     stack, work = energies({k: v for k, v in data.items() if k not in used})
-    if stack:
-        figure = drawing.empty(7, 7)
-        top, bottom = figure.subplots(2, 1, sharex=not looped, height_ratios=[3, 2])
-    else:
-        figure = drawing.empty(7, 4.6)
-        top, bottom = figure.subplots(), None
+    if not stack:
+        figure = panelOf(spec, data)
+        figure.axes[0].set_title(run["title"])
+        return figure
+    figure = drawing.empty(7, 7)
+    top, bottom = figure.subplots(2, 1, sharex=not looped, height_ratios=[3, 2])
     _curves(top, spec, data, x)
     top.set_title(run["title"])
     label = spec["x"]["label"]
-    if bottom is None or looped:
+    if looped:
         top.set_xlabel(label)
-    if bottom:
-        over = np.append(0, np.cumsum(np.abs(np.diff(x)))) if looped else x
-        for name, values in stack.items():
-            bottom.plot(over, values, lw=1, label=name)
-        if work is not None:
-            bottom.plot(over, work, color="black", lw=1, ls="--", label="work done")
-        unit = unitOf(spec["x"])
-        bottom.set_xlabel(
-            f"length of the way there and back [{unit}]" if looped else label
-        )
-        first = "the push began" if "wall" in run else "the first row"
-        bottom.set_ylabel(f"energy since {first} [J]")
-        bottom.legend(fontsize=8)
-        bottom.grid(alpha=0.3)
+        x = np.append(0, np.cumsum(np.abs(np.diff(x))))
+        label = f"length of the way there and back [{unitOf(spec['x'])}]"
+    _energies(bottom, x, label, stack, work)
     figure.tight_layout()
     return figure
 
 
-def _curves(axes, spec, data, x):
+def panelOf(spec: dict[str, Any], data: dict[str, Any], ideal: Any = None) -> Any:
+    """A figure of the curve alone.
+
+    :param spec: as :func:`plan` completes it
+    :param data: dict of column name -> array, of the rows that are shown
+    :param ideal: points of an idealised curve, x and y
+    """
+    figure = drawing.empty(7, 4.2)
+    axes = figure.subplots()
+    _curves(axes, spec, data, data[spec["x"]["column"]], ideal)
+    axes.set_xlabel(spec["x"]["label"])
+    figure.tight_layout()
+    return figure
+
+
+def energiesOf(x: Any, label: str, stack: dict[str, Any], work: Any) -> Any:
+    """A figure of the energies alone, over x; ``stack`` and ``work`` are as of :func:`energies`."""
+    figure = drawing.empty(7, 3.4)
+    _energies(figure.subplots(), x, label, stack, work)
+    figure.tight_layout()
+    return figure
+
+
+def _energies(axes, x, label, stack, work):
+    """The lower panel of curve.png."""
+    for name, values in stack.items():
+        axes.plot(x, values, lw=1, label=name)
+    if work is not None:
+        axes.plot(x, work, color="black", lw=1, ls="--", label="work done")
+    axes.set_xlabel(label)
+    axes.set_ylabel("energy since the first row [J]")
+    axes.legend(fontsize=8)
+    axes.grid(alpha=0.3)
+
+
+def _curves(axes, spec, data, x, ideal=None):
     """The upper panel of curve.png."""
     looped = spec["looped"]
     first = data[spec["y"][0]["column"]]
@@ -138,6 +162,8 @@ def _curves(axes, spec, data, x):
             label=axis["label"],
             zorder=1 if n else 2,
         )
+    if ideal:
+        axes.plot(*ideal, color="tab:blue", lw=1.6, ls=(0, (5, 3)), label="bilinear")
     if looped:
         for rows, label in zip(loops.envelope(x), ("envelope", None)):
             axes.plot(x[rows], first[rows], color="tab:blue", lw=1.8, label=label)
@@ -175,7 +201,7 @@ def _curves(axes, spec, data, x):
             color="0.25",
         )
     axes.set_ylabel(spec["y_label"])
-    if len(spec["y"]) > 1 or looped:
+    if len(spec["y"]) > 1 or looped or ideal:
         axes.legend(loc="lower right")
     axes.grid(alpha=0.3)
 
@@ -184,8 +210,8 @@ def limits(spec: dict[str, Any], data: dict[str, Any]) -> tuple[float, float]:
     """Range of the upper panel that has all of the first curve, and of the others what is more than single swings."""
     columns = [data[axis["column"]] for axis in spec["y"]]
     marks = [thing["y"] for key in ("marks", "bounds") for thing in spec[key]]
-    low = min([columns[0].min(), *(np.quantile(c, 0.01) for c in columns), *marks])
-    high = max([columns[0].max(), *(np.quantile(c, 0.99) for c in columns), *marks])
+    low = min([np.nanmin(columns[0]), *(np.nanquantile(c, 0.01) for c in columns), *marks])  # fmt: skip
+    high = max([np.nanmax(columns[0]), *(np.nanquantile(c, 0.99) for c in columns), *marks])  # fmt: skip
     reach = max(high, 0) - min(low, 0) or 1.0
     if low >= -0.02 * reach:
         return 0, 1.15 * reach

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Pictures by matplotlib without a window, written whole or not at all. This module needs no YADE."""
 
+import io
 import os
 
 from ..folders import replaced
@@ -28,3 +29,31 @@ def save(figure, path, dpi):
     kind = os.path.splitext(path)[1][1:]
     with replaced(path, "wb") as file:
         figure.savefig(file, dpi=dpi, format=kind)
+
+
+def svg(figure, name):
+    """A figure as an element ``svg`` of a page, always the same one of the same figure.
+
+    :param name: that no other figure of the page has
+    """
+    from markupsafe import Markup
+    from matplotlib import rc_context
+
+    text = io.StringIO()
+    with rc_context({"svg.hashsalt": name, "svg.fonttype": "none"}):
+        figure.savefig(text, format="svg", dpi=150, metadata={"Date": None})
+    found = text.getvalue()
+    return Markup(found[found.index("<svg") :])
+
+
+def placesOn(figure, points):
+    """Places in the first axes of a figure in the units of its :func:`svg`: a text "x,y x,y".
+
+    :param points: pairs of x and y
+    """
+    if not points:
+        return ""
+    axes = figure.axes[0]
+    share = figure.transFigure.inverted().transform(axes.transData.transform(points))
+    wide, high = 72 * figure.get_size_inches()
+    return " ".join(f"{wide * x:.1f},{high * (1 - y):.1f}" for x, y in share)

@@ -17,7 +17,7 @@ import sys
 
 from .. import folders, memory
 from ..arguments import FilePath
-from .crack_figure import cracks
+from .elevation import cracks
 from .curve_figure import curve
 from .files import filesOf, onFolder
 

@@ -11,19 +11,13 @@ import numpy as np
 
 from ..basics import Refused, plain
 from ..folders import replaced
-from .motion import CRUSHED_TOO, OPEN, SLID, Cracks, Motion
+from .model import BRICK, CRUSHED_TOO, GROUND, OPEN, PLATEN, SLID, Model
 
 FLOAT, BYTE = 5126, 5121  # numbers of glTF for types of numbers
-VERTICES = 34962  # number of glTF for an array of vertices
-UP = [
-    -(0.5**0.5),
-    0.0,
-    0.0,
-    0.5**0.5,
-]  # the rotation that turns z to y, (x, y, z, w)
+UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # turns z to y, (x, y, z, w)
 
-#: Colours as a screen shows them, from 0 to 255; those of joints are as in cracks.png.
-BRICK, PLATEN = (240, 222, 191), (185, 189, 194)
+#: Names and colours as a screen shows them, from 0 to 255; those of joints are as in cracks.png.
+LOOKS = {BRICK: ("brick", (240, 222, 191)), PLATEN: ("platen", (185, 189, 194)), GROUND: ("ground", (141, 134, 116))}  # fmt: skip
 KINDS = {OPEN: (214, 39, 40), SLID: (31, 119, 180), CRUSHED_TOO: (16, 16, 16)}
 
 
@@ -38,27 +32,27 @@ def write(directory, path, number=None, magnification=1.0, rate=10):
         and it turns by so many times the angle
     :param rate: frames of the animation a second
     :returns: a sentence on what is in the file
-    :raises Refused: as of :class:`masonry.read.motion.Motion`
+    :raises Refused: as of :class:`masonry.read.model.Model`
     :raises OSError: if the file cannot be written, or if its name is that of a symbolic link
     """
-    motion = Motion(directory, number)
-    if number is None and (len(motion.times) == 1 or not motion.rigid.all()):
-        motion = Motion(directory, motion.numbers[-1])
-    model = _Model(motion.title)
-    blocks = f"{len(motion.bodies):,} blocks"
-    if len(motion.times) == 1:
-        faces = model.still(motion, magnification)
-        says = f"{blocks} in frame {motion.numbers[0]}, {faces:,} points of joints that are cracked or crushed"
+    model = Model(directory, number)
+    if number is None and (len(model.times) == 1 or not model.rigid.all()):
+        model = Model(directory, model.numbers[-1])
+    file = _File(model.title)
+    blocks = f"{len(model.bodies):,} blocks"
+    if len(model.times) == 1:
+        faces = file.still(model, magnification)
+        says = f"{blocks} in frame {model.numbers[0]}, {faces:,} points of joints that are cracked or crushed"
     else:
-        model.animation(motion, magnification, rate)
-        says = f"{blocks}, an animation of {len(motion.times)} frames at {rate} a second, without cracks"
-    data = model.bytes()
-    with replaced(path, "wb") as file:
-        file.write(data)
+        file.animation(model, magnification, rate)
+        says = f"{blocks}, an animation of {len(model.times)} frames at {rate} a second, without cracks"
+    data = file.bytes()
+    with replaced(path, "wb") as target:
+        target.write(data)
     return f"{path}: {says}, displacements × {magnification:g}, {len(data) / 1e6:.2f} MB"  # fmt: skip
 
 
-class _Model:
+class _File:
     """What goes into a file."""
 
     def __init__(self, title):
@@ -69,10 +63,7 @@ class _Model:
             "scene": 0,
             "scenes": [{"nodes": [0], "name": plain(title)}],
             "nodes": [self._root],
-            "meshes": [],
-            "materials": [],
-            "accessors": [],
-            "bufferViews": [],
+            **{name: [] for name in ("meshes", "materials", "accessors", "bufferViews")},  # fmt: skip
         }
 
     def _add(self, name, value):
@@ -80,99 +71,85 @@ class _Model:
         self._json[name].append(value)
         return len(self._json[name]) - 1
 
-    def _array(self, values, kind, of, vertices=False, bounds=False, normalized=False):
+    def _array(self, values, of, kind=FLOAT):
         """Append an array of rows; the number of its accessor."""
         data = np.ascontiguousarray(values, "<f4" if kind == FLOAT else "u1")
         view = {"buffer": 0, "byteOffset": self._size, "byteLength": data.nbytes}
-        accessor = {
-            "bufferView": self._add("bufferViews", {**view, **({"target": VERTICES} if vertices else {})}),
-            "componentType": kind,
-            "count": len(data),
-            "type": of,
-        }  # fmt: skip
-        if bounds:
-            rows = data.reshape(len(data), -1)
+        rows = data.reshape(len(data), -1)
+        accessor = {"bufferView": self._add("bufferViews", view), "componentType": kind, "count": len(data), "type": of}  # fmt: skip
+        if kind == FLOAT:
             accessor.update(min=rows.min(axis=0).tolist(), max=rows.max(axis=0).tolist())  # fmt: skip
-        if normalized:
+        else:
             accessor["normalized"] = True
         self._parts.append(data.tobytes() + b"\0" * (-data.nbytes % 4))
         self._size += len(self._parts[-1])
         return self._add("accessors", accessor)
 
-    def _material(self, name, colour, bothSides=False):
-        made = {"name": name, "pbrMetallicRoughness": {"baseColorFactor": [*linear(colour), 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0}}  # fmt: skip
-        if bothSides:
-            made["doubleSided"] = True
-        return self._add("materials", made)
+    def _material(self, name, colour):
+        look = {"baseColorFactor": [*linear(colour), 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0}  # fmt: skip
+        return self._add("materials", {"name": name, "pbrMetallicRoughness": look, "doubleSided": name == "joints"})  # fmt: skip
 
-    def _primitive(self, corners, material, colours=None):
-        """Triangles with flat sides, of an array (n, 3, 3) of their corners."""
+    def _mesh(self, corners, material, colours=None):
+        """Triangles with flat sides, of an array (n, 3, 3) of their corners; the number of the mesh."""
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         lengths = np.linalg.norm(normals, axis=1)
         fine = lengths > 0
         corners, normals = corners[fine], normals[fine] / lengths[fine, None]
         attributes = {
-            "POSITION": self._array(corners.reshape(-1, 3), FLOAT, "VEC3", True, True),
-            "NORMAL": self._array(np.repeat(normals, 3, axis=0), FLOAT, "VEC3", True),
+            "POSITION": self._array(corners.reshape(-1, 3), "VEC3"),
+            "NORMAL": self._array(np.repeat(normals, 3, axis=0), "VEC3"),
         }
         if colours is not None:
-            attributes["COLOR_0"] = self._array(np.repeat(colours[fine], 3, axis=0), BYTE, "VEC4", True, normalized=True)  # fmt: skip
-        return {"attributes": attributes, "material": material}
+            attributes["COLOR_0"] = self._array(np.repeat(colours[fine], 3, axis=0), "VEC4", BYTE)  # fmt: skip
+        return self._add("meshes", {"primitives": [{"attributes": attributes, "material": material}]})  # fmt: skip
 
-    def _node(self, node):
+    def _node(self, **node):
         self._root["children"].append(self._add("nodes", node))
 
-    def still(self, motion, magnification):
+    def still(self, model, magnification):
         """The deformed shape of the only frame; returns how many points of joints are drawn."""
-        points = motion.points + magnification * motion.displacements(0)
-        brick = motion.brick[motion.owner[motion.triangles[:, 0]]]
-        for name, chosen, colour in (("bricks", brick, BRICK), ("platens", ~brick, PLATEN)):  # fmt: skip
-            if chosen.any():
-                part = self._primitive(points[motion.triangles[chosen]], self._material(name, colour))  # fmt: skip
-                mesh = self._add("meshes", {"name": name, "primitives": [part]})
-                self._node({"name": name, "mesh": mesh})
-        cracks = Cracks(motion)
-        kinds = cracks.kind[0]
-        shown = np.flatnonzero(kinds)
-        if len(shown):
-            corners = cracks.points + magnification * cracks.displacements(motion, 0)
-            fans, colours = [], []
-            for n in shown:
-                cell = cracks.cells[n]
-                bit = next(b for b in (CRUSHED_TOO, OPEN, SLID) if kinds[n] & b)
-                colour = np.append(np.rint(255 * linear(KINDS[bit])), 255)
-                for a, b in zip(cell[1:], cell[2:]):
-                    fans.append((cell[0], a, b))
-                    colours.append(colour)
-            part = self._primitive(corners[np.array(fans)], self._material("joints", (255, 255, 255), True), np.array(colours))  # fmt: skip
-            mesh = self._add("meshes", {"name": "joints", "primitives": [part]})
-            self._node({"name": "joints", "mesh": mesh})
-        return len(shown)
+        points = model.points + magnification * model.displacements(0)
+        looks = model.looks[model.owner[model.triangles[:, 0]]]
+        for look, (name, colour) in LOOKS.items():
+            chosen = model.triangles[looks == look]
+            if len(chosen):
+                self._node(name=name, mesh=self._mesh(points[chosen], self._material(name, colour)))  # fmt: skip
+        joints = model.joints
+        fans, colours = [], []
+        for n in np.flatnonzero(joints.kind[0]):
+            cell = np.flatnonzero(joints.owner == n)
+            bit = next(b for b in (CRUSHED_TOO, OPEN, SLID) if joints.kind[0, n] & b)
+            colour = np.append(np.rint(255 * linear(KINDS[bit])), 255)
+            fans += [(cell[0], a, b) for a, b in zip(cell[1:], cell[2:])]
+            colours += [colour] * (len(cell) - 2)
+        if fans:
+            # on the faces of both blocks
+            corners = joints.corners + magnification * joints.displacements(0)
+            both = np.concatenate([side[np.array(fans)] for side in corners])
+            mesh = self._mesh(both, self._material("joints", (255, 255, 255)), np.tile(colours, (2, 1)))  # fmt: skip
+            self._node(name="joints", mesh=mesh)
+        return int((joints.kind[0] > 0).sum())
 
-    def animation(self, motion, magnification, rate):
+    def animation(self, model, magnification, rate):
         """Every block as a node that moves. Blocks of one shape share a mesh."""
-        materials = [self._material("platens", PLATEN), self._material("bricks", BRICK)]
-        times = self._array(np.arange(len(motion.times)) / rate, FLOAT, "SCALAR", bounds=True)  # fmt: skip
+        materials = {look: self._material(*about) for look, about in LOOKS.items()}
+        times = self._array(np.arange(len(model.times)) / rate, "SCALAR")
         channels, samplers, meshes = [], [], {}
-        order = np.argsort(motion.owner[motion.triangles[:, 0]], kind="stable")
-        triangles = motion.triangles[order]
-        starts = np.searchsorted(motion.owner[triangles[:, 0]], np.arange(len(motion.bodies) + 1))  # fmt: skip
-        for block, body in enumerate(motion.bodies.tolist()):
-            centre = motion.centres[block]
-            corners = motion.points[triangles[starts[block] : starts[block + 1]]] - centre  # fmt: skip
-            brick = bool(motion.brick[block])
-            key = brick, np.rint(corners / 1e-7).astype(int).tobytes()
+        order = np.argsort(model.owner[model.triangles[:, 0]], kind="stable")
+        triangles = model.triangles[order]
+        starts = np.searchsorted(model.owner[triangles[:, 0]], np.arange(len(model.bodies) + 1))  # fmt: skip
+        for block, body in enumerate(model.bodies.tolist()):
+            centre, look = model.centres[block], int(model.looks[block])
+            corners = model.points[triangles[starts[block] : starts[block + 1]]] - centre  # fmt: skip
+            key = look, np.rint(corners / 1e-7).astype(int).tobytes()
             if key not in meshes:
-                part = self._primitive(corners, materials[brick])
-                meshes[key] = self._add("meshes", {"primitives": [part]})
-            name = f"{'brick' if brick else 'platen'} {body}"
-            node = {"name": name, "mesh": meshes[key], "translation": centre.tolist(), "extras": {"body": body}}  # fmt: skip
-            self._node(node)
-            shift = magnification * motion.shift[:, block]
-            turn = magnification * motion.turn[:, block]
-            for values, path, of in ((centre + shift, "translation", "VEC3"), (quaternions(turn), "rotation", "VEC4")):  # fmt: skip
-                if (np.ptp(values, axis=0) > 0).any() or np.any(shift if of == "VEC3" else turn):  # fmt: skip
-                    samplers.append({"input": times, "output": self._array(values, FLOAT, of)})  # fmt: skip
+                meshes[key] = self._mesh(corners, materials[look])
+            self._node(name=f"{LOOKS[look][0]} {body}", mesh=meshes[key], translation=centre.tolist(), extras={"body": body})  # fmt: skip
+            shift = magnification * model.shift[:, block]
+            turn = magnification * model.turn[:, block]
+            for moves, values, path, of in ((shift, centre + shift, "translation", "VEC3"), (turn, quaternions(turn), "rotation", "VEC4")):  # fmt: skip
+                if moves.any():
+                    samplers.append({"input": times, "output": self._array(values, of)})
                     target = {"node": len(self._json["nodes"]) - 1, "path": path}
                     channels.append({"sampler": len(samplers) - 1, "target": target})
         if channels:

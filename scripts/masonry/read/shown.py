@@ -21,7 +21,7 @@ import numpy as np
 from .. import notebook
 from ..arguments import nearest, path, takes
 from ..basics import Refused
-from . import crack_figure, curve_figure, drawing, quantities
+from . import curve_figure, drawing, elevation, quantities
 from .files import filesOf, readCurve, readRun
 from .frames import readFrame
 
@@ -145,8 +145,8 @@ def curveOf(columns, run, directory):
 
 
 def cracksOf(run, blocks, joints, when, directory):
-    """The picture of cracks.png as HTML; parameters as of :func:`masonry.read.crack_figure.figureOf`."""
-    return _drawn(lambda: crack_figure.figureOf(run, blocks, joints, when, directory))
+    """The picture of cracks.png as HTML; parameters as of :func:`masonry.read.elevation.cracksOf`."""
+    return _drawn(lambda: elevation.cracksOf(run, blocks, joints, when, directory))
 
 
 class RunFolder:
@@ -168,11 +168,11 @@ class RunFolder:
 
     def _cracks(self):
         try:
-            last = crack_figure.frameOfCracks(self.numbers, self.directory)
+            last = elevation.frameOfCracks(self.numbers, self.directory)
         except Refused:  # there are none with --no-vtk
             return ""
         blocks, joints = (readFrame(self.directory, kind, last) for kind in ("blocks", "joints"))  # fmt: skip
-        when = crack_figure.whenOf(self.numbers, self.directory, last)
+        when = elevation.whenOf(self.numbers, self.directory, last)
         return cracksOf(self.numbers, blocks, joints, when, self.directory)
 
     def __repr__(self):

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs in ParaView: in its window in a ready state, or as a picture and a film without a display; and in a browser, or as a
-3-D model, without ParaView. No YADE is needed.
+"""Runs in ParaView: in its window, or as a picture and a film without a display; and in a browser, or as a 3-D model, without
+ParaView. No YADE is needed.
 
-``scripts/view.py`` is the program. ParaView's own Python works in a process of its own (:mod:`masonry.read.viewer_scene`).
+``scripts/view.py`` is the program. In ParaView's own Python works :mod:`masonry.read.paraview_macro`.
 """
 
 from __future__ import annotations
 
 import argparse
-import contextlib
 import json
 import os
 import re
@@ -24,35 +23,21 @@ from .. import folders, memory
 from ..arguments import FilePath
 from ..basics import Refused, say
 from . import gltf, page
-from .crack_figure import magnificationOf, whenOf
 from .cracks import CRACK, DAMAGED
+from .elevation import whenOf
 from .files import filesOf, readCurve, readRun
-from .frames import framePaths, frameTimes, readFrame
-from .views import viewOf
+from .frames import frameTimes
+from .model import GROUND, OPEN, PLATEN, Model
 
 #: Folder into which python3-paraview can be unpacked where it cannot be installed beside python3-vtk9.
 UNPACKED = os.path.expanduser("~/.local/share/masonry/paraview")
 FILMS = (".avi", ".ogv")  # what ParaView of Debian 12 writes; it has no .mp4
+DISPLAY = "-screen 0 1600x1200x24 -nolisten tcp -noreset"  # that nobody sees
 
-MISSING = f"""ParaView's Python (pvpython) is not there. As root:
-  apt-get install --no-install-recommends paraview xvfb
+MISSING = f"""ParaView's Python (pvpython) or a display that nobody sees is not there. As root:
+  apt-get install --no-install-recommends paraview xvfb xauth
 and, since the package python3-paraview would remove python3-vtk9, on which other programs may depend, as yourself:
   cd /tmp && apt-get download python3-paraview && dpkg -x python3-paraview_*.deb {UNPACKED}"""
-
-
-def findPvpython() -> tuple[str, str | None] | None:
-    """Path of pvpython, and the folder of its Python modules if they are not where it looks itself, else None.
-
-    :raises Refused: if there is none, with the packages to install
-    """
-    installed = shutil.which("pvpython")
-    if installed:
-        return installed, None
-    unpacked = os.path.join(UNPACKED, "usr")
-    path = os.path.join(unpacked, "bin", "pvpython")
-    if os.path.exists(path) and shutil.which("paraview"):
-        return path, os.path.join(unpacked, "lib", "python3", "dist-packages")
-    raise Refused(MISSING)
 
 
 def frameNear(directory: FilePath, at: Any) -> int:
@@ -90,236 +75,90 @@ def frameNear(directory: FilePath, at: Any) -> int:
     return int(np.argmin(np.abs(np.array(times) - value)))
 
 
-def _nice(value):
-    """The largest of 1, 2 and 5 times a power of ten that is not above a value."""
-    power = 10.0 ** np.floor(np.log10(value))
-    return max(step * power for step in (1, 2, 5) if step * power <= value * 1.0001)
+def sceneOf(directory: FilePath, number: int, magnification: float | None, shape: float, still: bool) -> dict[str, Any]:  # fmt: skip
+    """What ParaView shall show of a run: an entry ``runs`` for :mod:`masonry.read.paraview_macro`.
 
-
-def sceneOf(
-    directory: FilePath,
-    at: Any = None,
-    magnification: float | None = None,
-    shape: float = 1.5,
-    still: bool = True,
-) -> dict[str, Any]:
-    """What ParaView shall show of a run: a dict for :mod:`masonry.read.viewer_scene`.
-
-    :param directory: folder of the run
-    :param at: as of :func:`frameNear`
-    :param magnification: of displacements; None: chosen as for cracks.png
+    :param number: of the frame after which camera, magnification and the range of colours are chosen
     :param shape: width of the picture over its height
-    :param still: whether one frame is shown, whose place the title then tells
+    :param still: whether this frame alone is shown, whose place the title then tells
     """
-    run, number = readRun(directory), frameNear(directory, at)
-    blocks = readFrame(directory, "blocks", number)
-    joints = readFrame(directory, "joints", number)
-    framed = np.ones(len(blocks["points"]), bool)
-    for body, cell in zip(blocks["body"], blocks["cells"]):
-        framed[cell] = body != run.get("ground_body")
-    points, moved = blocks["points"][framed], blocks["displacement"][framed]
-    size = np.ptp(points, axis=0).max()
-    if magnification is None:
-        magnification = magnificationOf(size, np.linalg.norm(moved, axis=1))
-    part = viewOf(points, joints["normal"], joints["area"])
-    flat = part.towards[2] > 0.9
-    away = (
-        np.array([-0.45, -1.0, 0.9])
-        if flat
-        else part.towards - 0.16 * part.right + 0.13 * part.up
-    )
-    away /= np.linalg.norm(away)
-    right = np.cross([0, 0, 1], away)
-    right /= np.linalg.norm(right)
-    up = np.cross(away, right)
-    corners = np.concatenate([points, points + magnification * moved])
-    # what flew away is left out of the picture, as in cracks.png
-    low, high = points.min(axis=0) - 0.6 * size, points.max(axis=0) + 0.6 * size
-    corners = np.clip(corners, low, high)
-    seen = np.column_stack([corners @ right, corners @ up, corners @ away])
-    middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
-    wide, tall = np.ptp(seen[:, 0]), np.ptp(seen[:, 1])
-    half = 0.5 * max(1.26 * tall, 1.34 * wide / shape)
-    # the legend stands at the right
-    beside = middle[0] + 0.09 * half * shape
-    centre = beside * right + middle[1] * up + middle[2] * away
-    length = float(_nice(0.3 * np.ptp(seen[:, 0])))
-    begin = (
-        centre - 0.5 * length * right - (0.5 * tall + 0.11 * half) * up + size * away
-    )
-    opening = joints["opening"][
-        np.maximum(joints["damage_tension"], joints["damage_shear"]) > DAMAGED
-    ]
-    widest = 1e3 * float(np.quantile(opening, 0.995)) if len(opening) else 0.0
-    widest = max(widest, 4e3 * CRACK)
-    step = _nice(widest / 4)
-    title = str(run.get("title", os.path.basename(os.path.abspath(directory))))
-    when = ""
-    if still:
-        when = whenOf(run, directory, number) + ", "
-    bodies = np.unique(blocks["body"])
-    course = size / max(2.0, np.sqrt(len(bodies)))
+    model = Model(directory, number)
+    sight = model.sight(magnification)
+    towards = sight.towards + (0, 0, 0.15)
+    towards /= np.linalg.norm(towards)
+    right = np.cross((0, 0, 1), towards) / np.hypot(*towards[:2])
+    axes = np.array([right, np.cross(towards, right)])
+    middle, extent = 0.5 * (sight.low + sight.high), sight.high - sight.low
+    wide, tall = np.abs(axes) @ extent
+    half = 0.5 * max(1.4 * tall, 1.5 * wide / shape)
+    middle = middle + 0.1 * half * shape * right  # the legend stands at the right
+    opening = model.joints.opening[0][(model.joints.kind[0] & OPEN) > 0]
+    widest = float(np.quantile(opening, 0.995)) if len(opening) else 0.0
+    when = whenOf(model.run, directory, number) + ", " if still else ""
+    bodies = lambda look: model.bodies[model.looks == look].tolist()
     return {
-        **{
-            kind: os.path.abspath(
-                framePaths(directory, kind)[number]
-                if still
-                else os.path.join(directory, kind + ".pvd")
-            )
-            for kind in ("blocks", "joints", *["connectors"] * bool(run.get("ties")))
-        },
-        "still": still,
-        "title": f"{title}\n{when}displacements × {magnification:g}, slid joints in blue",
-        "time": frameTimes(directory)[number],
-        "magnification": magnification,
+        "folder": os.path.abspath(directory),
+        "title": f"{model.title}\n{when}displacements × {sight.magnification:g}, slid joints in blue, scale in m",
+        "magnification": sight.magnification,
+        "ground": bodies(GROUND),
+        "platens": bodies(PLATEN),
+        "widest_mm": page.data.nice(1e3 * max(widest, 4 * CRACK)),
         "crack": CRACK,
         "damaged": DAMAGED,
-        "widest_mm": float(np.ceil(widest / step) * step),
-        "tube": float(np.clip(0.05 * course, 0.0008 * size, 0.0035 * size)),
-        "line": 1.0,
-        "forward": (0.002 * size * away).tolist(),
-        "scale": [begin.tolist(), (begin + length * right).tolist()],
-        "scale_m": length,
-        "eye": (centre + 4 * size * away).tolist(),
-        "middle": centre.tolist(),
-        "up": up.tolist(),
+        "bounds": np.column_stack([sight.low, sight.high]).ravel().tolist(),
+        "middle": middle.tolist(),
+        "towards": towards.tolist(),
         "half_height": float(half),
     }
 
 
-@contextlib.contextmanager
-def _display():
-    """A display of its own that nobody sees, for as long as the context lasts: its name.
+def inParaView(directories: Sequence[FilePath], at: Any, magnification: float | None, target: str | None = None, film: bool = False, size: Sequence[int] = (1500, 1000), rate: int = 10) -> None:  # fmt: skip
+    """Show runs side by side in ParaView's window, or draw them to a picture or a film.
 
-    xvfb-run is not used: its display starts anew whenever its last window is closed, and is away for a moment then.
-    """
-    if not shutil.which("Xvfb"):
-        raise Refused("to draw without a display: apt-get install xvfb")
-    answers, tells = os.pipe()
-    server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(tells), "-screen", "0", "1600x1200x24", "-nolisten", "tcp", "-noreset"],
-        pass_fds=[tells],
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )  # fmt: skip
-    try:
-        os.close(tells)
-        with os.fdopen(answers) as answer:  # it comes when the display is ready
-            number = answer.readline().strip()
-        if not number:
-            raise Refused("Xvfb, the display that nobody sees, does not start")
-        yield ":" + number
-    finally:
-        server.terminate()
-        server.wait()
-
-
-def _run(job):
-    """Let pvpython carry out a job, without a display. Raises Refused with what it said."""
-    pvpython, job["path"] = findPvpython()
-    # one scale of colours for all
-    widest = max(view["widest_mm"] for view in job["views"])
-    for view in job["views"]:
-        view["widest_mm"] = widest
-    inside = os.path.join(os.path.dirname(__file__), "viewer_scene.py")
-    elsewhere = dict(os.environ)
-    for name in ("PYTHONPATH", "PYTHONHOME"):  # they are of another Python
-        elsewhere.pop(name, None)
-    with tempfile.TemporaryDirectory() as folder, _display() as display:
-        path = os.path.join(folder, "job.json")
-        with open(path, "w") as f:
-            json.dump(job, f)
-        made = subprocess.run(
-            [pvpython, inside, path],
-            capture_output=True,
-            text=True,
-            env={**elsewhere, "DISPLAY": display},
-        )
-    if made.returncode:
-        said = (made.stderr + made.stdout).strip().splitlines()
-        raise Refused("ParaView ended with an error:\n" + "\n".join(said[-15:]))
-
-
-def _fresh(path):
-    """A path that can be written, without an older file in its place. Raises Refused if its folder is missing."""
-    path = os.path.abspath(path)
-    if not os.path.isdir(os.path.dirname(path)):
-        raise Refused(f"cannot write {path}: there is no folder {os.path.dirname(path)}")  # fmt: skip
-    if os.path.lexists(path) and not os.path.isdir(path):
-        os.remove(path)  # also a link, which would lead elsewhere
-    return path
-
-
-def render(
-    directories: Sequence[FilePath],
-    picture: str | None = None,
-    film: str | None = None,
-    at: Any = None,
-    magnification: float | None = None,
-    size: Sequence[int] = (1500, 1000),
-    rate: int = 10,
-) -> None:
-    """Draw runs, side by side, to a picture, a film or both.
-
-    :param directories: folders of runs
-    :param picture: path of a .png file
-    :param film: path of an .avi or .ogv file, or of a folder, which gets a .png file for every frame
-    :param at: the frame of the picture, as of :func:`frameNear`
+    :param at: the frame, as of :func:`frameNear`
     :param magnification: of displacements; None: chosen for each run
+    :param target: path of a .png file or, of a ``film``, of an .avi or .ogv file, or of a folder, which gets a .png file for
+        every frame; None: the window
     :param size: of the picture [pixels]
     :param rate: frames of the film a second
     :raises Refused: if something is missing, or if ParaView ends with an error
     """
+    numbers = [frameNear(d, at) for d in directories]
     shape = size[0] / len(directories) / size[1]
-    for path, what in ((picture, "picture"), (film, "film")):
-        if not path:
-            continue
-        job: dict[str, Any] = dict(
-            picture=None, film=None, state=None, size=list(size), rate=rate
-        )
-        if what == "film" and not path.lower().endswith(FILMS):
-            if os.path.splitext(path)[1]:
-                raise Refused(f"--film: {path} must end in {', '.join(FILMS)}, or be a folder")  # fmt: skip
-            os.makedirs(path, exist_ok=True)
-            folders.check(path)
-            target = os.path.join(os.path.abspath(path), "frame.png")
-        else:
-            if what == "picture" and not path.lower().endswith(".png"):
-                raise Refused(f"--picture: {path} must end in .png")
-            target = _fresh(path)
-        still = what == "picture"
-        job[what] = target
-        job["views"] = [
-            sceneOf(d, at if still else None, magnification, shape, still)
-            for d in directories
-        ]
-        _run(job)
-        written = os.listdir(path) if os.path.isdir(path) else os.path.exists(target)
-        if not written:
-            raise Refused(f"ParaView wrote no {what} {path}")
-
-
-def show(
-    directories: Sequence[FilePath], at: Any = None, magnification: float | None = None
-) -> None:
-    """Open ParaView's window on runs. The state is kept as view.pvsm in the folder of the first run."""
-    if not shutil.which("paraview"):
+    still = bool(target) and not film
+    job = {
+        "runs": [sceneOf(d, n, magnification, shape, still) for d, n in zip(directories, numbers)],
+        "time": frameTimes(directories[0])[numbers[0]],
+        "size": size,
+        "rate": rate,
+        "picture": target if still else None,
+        "film": target if film else None,
+    }  # fmt: skip
+    widest = max(
+        run["widest_mm"] for run in job["runs"]
+    )  # one scale of colours for all
+    for run in job["runs"]:
+        run["widest_mm"] = widest
+    unpacked = os.path.join(UNPACKED, "usr")
+    program = "pvpython" if target else "paraview"
+    path = shutil.which(program) or os.path.join(unpacked, "bin", program)
+    if not os.path.exists(path) or target and not shutil.which("xvfb-run"):
         raise Refused(MISSING)
-    state = _fresh(os.path.join(directories[0], "view.pvsm"))
-    shape = 1.6 / len(directories)
-    views = [sceneOf(d, at, magnification, shape, False) for d in directories]
-    job = dict(picture=None, film=None, state=state, size=[1600, 1000], rate=10)
-    _run({**job, "views": views})
-    os.execvp("paraview", ["paraview", "--state=" + state])
-
-
-def _onePlace(directory, number, at):
-    """Number of the frame that --frame or --at names, or None if neither does."""
-    if number is not None and at is not None:
-        raise Refused("--frame and --at both name a frame; give one of them")
-    if at is not None:
-        return frameNear(directory, at)
-    return number
+    macro = os.path.join(os.path.dirname(__file__), "paraview_macro.py")
+    words = ["xvfb-run", "-a", "-s", DISPLAY, path, macro] if target else [path, "--script=" + macro]  # fmt: skip
+    modules = os.path.join(unpacked, "lib", "python3", "dist-packages")
+    with tempfile.TemporaryDirectory() as folder:
+        said = os.path.join(folder, "view.json")
+        with open(said, "w") as file:
+            json.dump(job, file)
+        # PYTHONPATH and PYTHONHOME are of another Python
+        elsewhere = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PYTHONHOME")}  # fmt: skip
+        if os.path.isdir(modules):
+            elsewhere["PYTHONPATH"] = modules
+        done = subprocess.run(words, text=True, capture_output=bool(target), env={**elsewhere, "MASONRY_VIEW": said})  # fmt: skip
+    if target and (done.returncode or not os.path.exists(os.path.dirname(target) if film else target)):  # fmt: skip
+        lines = (done.stderr + done.stdout).strip().splitlines()
+        raise Refused("ParaView ended with an error:\n" + "\n".join(lines[-15:]))
 
 
 def _writable(path, directory, name, endings):
@@ -332,10 +171,22 @@ def _writable(path, directory, name, endings):
         path = os.path.join(directory, name)
     if os.path.isdir(path):
         raise Refused(f"{path} is a folder; name a file that ends in {' or '.join(endings)}")  # fmt: skip
-    if not path.endswith(endings):
+    if not path.lower().endswith(endings):
         raise Refused(f"{path} must end in {' or '.join(endings)}")
     if not os.path.isdir(os.path.dirname(path) or "."):
         raise Refused(f"cannot write {path}: there is no folder {os.path.dirname(path)}")  # fmt: skip
+    return path
+
+
+def _drawn(path, isFilm):
+    """The path that ParaView shall write, without an older file in its place."""
+    if isFilm and not os.path.splitext(path)[1]:
+        os.makedirs(path, exist_ok=True)
+        folders.check(path)
+        return os.path.join(os.path.abspath(path), "frame.png")
+    path = os.path.abspath(_writable(path, None, None, FILMS if isFilm else (".png",)))
+    if os.path.lexists(path):
+        os.remove(path)  # also a link, which would lead elsewhere
     return path
 
 
@@ -343,8 +194,10 @@ def _handOn(args):
     """--html and --gltf: a file that needs no ParaView."""
     if args.picture or args.film or len(args.result) > 1:
         raise Refused("--html and --gltf write one file of one run; start view.py again for other files or runs")  # fmt: skip
+    if args.frame is not None and args.at is not None:
+        raise Refused("--frame and --at both name a frame; give one of them")
     (directory,) = args.result
-    number = _onePlace(directory, args.frame, args.at)
+    number = args.frame if args.at is None else frameNear(directory, args.at)
     try:
         if args.html is not False:
             path = _writable(args.html, directory, "view.html", (".html", ".htm"))
@@ -381,18 +234,18 @@ def main(words: Sequence[str] | None = None) -> int:
             raise Refused(f"--magnify: {args.magnify:g} must be at least 0")
         if not 1 <= args.rate <= 100:
             raise Refused(f"--rate: {args.rate} must be from 1 to 100 frames a second")
-        for directory in args.result:
-            readRun(directory)
         with filesOf(", ".join(args.result)):
             if args.html is not False or args.gltf:
                 _handOn(args)
             elif args.frame is not None:
                 raise Refused("--frame is for --html and --gltf; --at names a frame for ParaView")  # fmt: skip
-            elif args.picture or args.film:
-                pixels = tuple(int(n) for n in size.groups())
-                render(args.result, args.picture, args.film, args.at, args.magnify, pixels, args.rate)  # fmt: skip
             else:
-                show(args.result, args.at, args.magnify)
+                pixels = tuple(map(int, size.groups()))
+                for path, isFilm in ((args.picture, False), (args.film, True)):
+                    if path:
+                        inParaView(args.result, args.at, args.magnify, _drawn(path, isFilm), isFilm, pixels, args.rate)  # fmt: skip
+                if not args.picture and not args.film:
+                    inParaView(args.result, args.at, args.magnify)
     except (Refused, OSError) as problem:
         say(problem, sys.stderr)
         return 2

@@ -1,10 +1,20 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""From where a part of a structure is seen in a picture. This module needs no YADE."""
+"""From where a structure is seen in a picture, and how much its displacements are magnified. This module needs no YADE."""
+
+from __future__ import annotations
 
 from collections import namedtuple
+from typing import Any
 
 import numpy as np
 
+MAGNIFICATION = 30  # of displacements in cracks.png, as in figure 6 of the paper (see yade_plugin/law/README.md)
+
+#: Smallest and largest size of the drawn displacements over the size of the structure with the usual magnification. Outside
+#: these limits another magnification is chosen, so that they are about as large as :data:`SHOWN`.
+SEEN = 0.002, 0.6
+SHOWN = 0.06
+REACH = 1.5  # how far what moved is in a picture, over the size of what was built
 #: How a part is seen. ``right`` and ``up`` are unit vectors of the picture, ``towards`` is that to the viewer; ``labels``
 #: are those of the axes, and ``name`` says where the viewer stands. A point p lies at ((p - start)·right, (p - start)·up).
 View = namedtuple("View", "right up towards start labels name")
@@ -128,3 +138,23 @@ def outline(flat, depth):
     ranks = np.argsort(place, kind="stable")
     keep = np.append(True, np.diff(place[ranks]) > 1e-6)
     return order[ranks][keep]
+
+
+def magnificationOf(size: float, moved: Any) -> int:
+    """How much displacements are magnified: as usual, or by 1, 2 or 5 times a power of ten if that would be absurd.
+
+    :param size: largest extent of the structure [m]
+    :param moved: displacements of the corners of its blocks [m]. If some are far too large, as those of bricks that fell,
+        one in fifty is left out of consideration
+    """
+    far = max(moved, default=0.0)
+    if MAGNIFICATION * far > SEEN[1] * size:
+        most = float(np.quantile(moved, 0.98))
+        if MAGNIFICATION * most >= SEEN[0] * size:
+            far = most
+    if not far or SEEN[0] * size <= MAGNIFICATION * far <= SEEN[1] * size:
+        return MAGNIFICATION
+    wanted = SHOWN * size / far
+    power = 10 ** np.floor(np.log10(wanted))
+    nice = max(step * power for step in (1, 2, 5) if step * power <= wanted)
+    return max(1, int(nice))

@@ -136,7 +136,6 @@ FILES = [
     "run.json",
     "report.html",
     "run.checkpoint",
-    "view.pvsm",
     "view.html",
     "capacity.json",
     "capacity.png",

@@ -3,6 +3,7 @@
 
 import tempfile
 
+import numpy as np
 from yade.wrapper import MasonryVtkRecorder
 
 from .. import notebook
@@ -11,7 +12,8 @@ from ..assembly import columns
 from ..assembly.blocks import units
 from ..basics import Refused
 from ..bricks import Bricks, boxCorners
-from ..read import block_figure, drawing
+from ..read import drawing
+from ..read.elevation import Structure, figureOf
 from ..read.frames import readFrame
 from ..read.shown import DPI, RunFolder, Curve, cracksOf, curveOf, resultsOf
 from .facts import held, sizes
@@ -92,7 +94,7 @@ def _standing(scene):
 def _built(scene):
     description = scene.description
     with drawing.style():
-        figure = block_figure.figureOf(_parts(description), description.title, description.views)  # fmt: skip
+        figure = figureOf(_structure(description), description.title, 0)
         drawn = notebook.picture(figure, DPI)
     materials = notebook.folded("materials", _materials(scene))
     return notebook.titled(
@@ -103,39 +105,33 @@ def _built(scene):
     )
 
 
-def _parts(description):
-    """Whole bricks of every part, and blocks that are held, loaded or watched with their shades, as of
-    :mod:`masonry.read.block_figure`; a platen is drawn with the parts that it touches.
-    """
+def _structure(description):
+    """Whole bricks of every part, with blocks that are held, loaded or watched in their shades."""
     targets, bricks = description.targets.values(), Bricks(description.bricks)
-    parts = {}
+    parts, shades, corners = {}, {}, []
+
+    def add(block, shade=None):
+        if shade:
+            shades[len(corners)] = shade
+        corners.append(np.array(list(map(tuple, block)), float))
+        return len(corners) - 1
+
     for block in bricks.whole() if description.halves else bricks:
-        parts.setdefault(block.part, []).append((block.corners, None))
+        parts.setdefault(block.part, []).append(add(block.corners))
     for target in targets:
         if target.brick is not None:
             block = bricks[target.brick]
-            parts[block.part].append((block.corners, _shade(target)))
-    for target in targets:
-        if target.box:
-            for blocks in parts.values():
-                if _touches(target.box, blocks):
-                    blocks.append((list(boxCorners(*target.box)), _shade(target)))
-    return parts
+            parts[block.part].append(add(block.corners, _shade(target)))
+        elif target.box:
+            add(boxCorners(*target.box), _shade(target))
+    points = np.concatenate(corners)
+    cells = np.split(np.arange(len(points)), np.cumsum(list(map(len, corners)))[:-1])
+    blocks = {"points": points, "displacement": 0 * points, "body": range(len(corners)), "cells": cells}  # fmt: skip
+    return Structure(blocks, None, parts, shades, sights=description.views)
 
 
 def _shade(target):
     return "held" if target.fixed else "loaded" if target.loaded else "watched"
-
-
-def _touches(box, blocks):
-    """Whether a box touches the box around some blocks."""
-    points = [p for corners, _ in blocks for p in corners]
-    near = 1e-6 * (1 + max(abs(v) for corner in box for v in corner))
-    return all(
-        min(p[i] for p in points) - near <= box[1][i]
-        and box[0][i] <= max(p[i] for p in points) + near
-        for i in range(3)
-    )
 
 
 def _counted(description):

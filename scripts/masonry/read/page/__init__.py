@@ -14,51 +14,31 @@ this module are ours. :mod:`masonry.read.page.data` turns frames into numbers fo
 finds three.js.
 """
 
-import html
-import os
+from __future__ import annotations
 
-from ...arguments import whole
+import html
+
+from ...arguments import FilePath, whole
 from ...basics import Refused
 from ...folders import replaced
-from ..escaping import asJson, escaped
+from ..pages import rendered
 from .data import dataOf
 from .library import three
 
-#: What a whole page may do: run what stands in it. The browser refuses every request to a network.
-POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
 HEIGHT = 620  # of a picture in a notebook [pixels]
 
 
-def _own(name):
-    with open(os.path.join(os.path.dirname(__file__), name), encoding="utf-8") as file:
-        return file.read()
-
-
-def asScript(code):
-    """A text that can stand in a script element: nothing in it ends or comments out the element."""
-    return code.replace("</script", "<\\/script").replace("<!--", "<\\!--")
-
-
-def assets():
+def assets() -> str:
     """What a page with pictures needs once, before the first of them: style, three.js with its licence, and the viewer.
 
     :returns: HTML, some 0.9 MB
     :raises Refused: if three.js is not installed, with the package that has it
     """
-    code, licence = three()
-    return (
-        f"<style>{_own('viewer.css')}</style>\n"
-        f"<!-- three.js, which the first script below is:\n{_comment(licence)}\n-->\n"
-        f"<script>{asScript(code)}</script>\n"
-        f"<script>{asScript(_own('viewer.js'))}</script>\n"
-    )
+    library, licence = three()
+    return rendered("page/assets.html", library=library, licence=licence)
 
 
-def _comment(text):
-    return text.replace("--", "- -")
-
-
-def fragment(directory, number=None, magnification=None):
+def fragment(directory: FilePath, number: int | None = None, magnification: float | None = None) -> str:  # fmt: skip
     """The picture of a run as an element ``<div class="masonry-view">`` with its data, for a page that has :func:`assets`.
 
     It is as wide as what it stands in, and 70 % of that high. All frames of the run are in it.
@@ -69,37 +49,18 @@ def fragment(directory, number=None, magnification=None):
     :returns: HTML
     :raises Refused: if the folder has no frames or is no folder of results
     """
-    return fragmentOf(*dataOf(directory, number, magnification))
-
-
-def fragmentOf(head, numbers):
-    """As :func:`fragment`, of the head and the arrays that :func:`masonry.read.page.data.dataOf` gives."""
-    title = escaped(head["title"])
-    return (
-        f'<div class="masonry-view" role="group" aria-label="{title}, in 3-D">\n'
-        '<p class="masonry-note">This picture needs JavaScript and WebGL, and there is no JavaScript here.</p>\n'
-        f'<script type="application/json">{asJson(head)}</script>\n'
-        f'<script type="text/plain">{numbers}</script>\n'
-        "</div>\n"
-    )
-
-
-def page(directory, number=None, magnification=None):
-    """A whole page with the picture of a run; parameters and errors as of :func:`fragment` and :func:`assets`."""
     head, numbers = dataOf(directory, number, magnification)
-    title = escaped(head["title"])
-    return (
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        '<meta name="color-scheme" content="light dark">\n'
-        '<link rel="icon" href="data:,">\n'
-        f"<title>{title}</title>\n{assets()}</head>\n"
-        f'<body class="masonry-page">\n<h1>{title}</h1>\n{fragmentOf(head, numbers)}</body>\n</html>\n'
-    )
+    return rendered("page/fragment.html", head=head, numbers=numbers)
 
 
-def write(directory, path, number=None, magnification=None):
+def page(directory: FilePath, number: int | None = None, magnification: float | None = None) -> str:  # fmt: skip
+    """A whole page with the picture of a run; parameters and errors as of :func:`fragment` and :func:`assets`."""
+    library, licence = three()
+    head, numbers = dataOf(directory, number, magnification)
+    return rendered("page/page.html", head=head, numbers=numbers, library=library, licence=licence)  # fmt: skip
+
+
+def write(directory: FilePath, path: FilePath, number: int | None = None, magnification: float | None = None) -> None:  # fmt: skip
     """Write :func:`page` to a file, whole or not at all; the other parameters and errors are those of :func:`page`.
 
     :raises OSError: if the file cannot be written, or if its name is that of a symbolic link

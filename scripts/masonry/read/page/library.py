@@ -8,7 +8,9 @@ from ...basics import Refused
 
 #: Where the package puts it; and where it can be unpacked by those who cannot install packages.
 PLACES = ("/", os.path.expanduser("~/.local/share/masonry/three"))
-CODE = "usr/share/javascript/three/three.min.js"
+HERE = "usr/share/javascript/three/"
+#: The library, and of its examples: turning and zooming, and lines of any width.
+CODE = "three.min.js", "examples/js/controls/OrbitControls.js", *(f"examples/js/lines/{n}.js" for n in ("LineSegmentsGeometry", "LineMaterial", "LineSegments2"))  # fmt: skip
 COPYRIGHT = "usr/share/doc/libjs-three/copyright"
 
 MISSING = f"""pictures in a browser need three.js, once. As root:
@@ -18,20 +20,22 @@ or as yourself:
 
 
 def three():
-    """The library and its licence, two texts.
+    """The files of the library, a list of texts, and its licence.
 
     :raises Refused: if it is not there, with the package that has it
     """
     for place in PLACES:
         try:
-            with open(os.path.join(place, CODE), encoding="utf-8") as file:
-                code = file.read()
-            with open(os.path.join(place, COPYRIGHT), encoding="utf-8") as file:
-                licence = _licence(file.read())
+            *code, copyright = (_read(place, path) for path in (*(HERE + name for name in CODE), COPYRIGHT))  # fmt: skip
         except OSError:
             continue
-        return code, licence
+        return code, _licence(copyright)
     raise Refused(MISSING)
+
+
+def _read(place, path):
+    with open(os.path.join(place, path), encoding="utf-8") as file:
+        return file.read()
 
 
 def _licence(copyright):

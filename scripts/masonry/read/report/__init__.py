@@ -17,14 +17,13 @@ that of :mod:`masonry.read.page`, and needs the Debian package libjs-three; with
 
 from __future__ import annotations
 
-import os
 from typing import Any, Callable, Iterable
 
 from ...arguments import FilePath
 from ...basics import Refused
 from ...folders import replaced
-from ..escaping import escaped, joined, tag
-from ..page import POLICY, asScript, assets
+from ..page.library import three
+from ..pages import rendered
 from . import response, structure, trust
 from .pieces import note
 from .record import Record
@@ -60,46 +59,25 @@ def page(record: Record) -> str:
 
     :param record: what :func:`read` gave
     """
-    library = _library(record)
-    parts = []
-    for place, heading, part in PARTS:
-        named = f"{place}-heading"
-        inside = tag("h2", heading, id=named), *_made(part, record)
-        parts.append(tag("section", *inside, id=place, aria_labelledby=named))
-    links = [tag("a", heading, href=f"#{place}") for place, heading, _ in PARTS]
-    title = escaped(record.title)
-    # the script of the report comes first: the picture tells it which frame is shown
-    return (
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        '<meta name="color-scheme" content="light dark">\n'
-        '<link rel="icon" href="data:,">\n'
-        f"<title>{title}: report</title>\n<style>{_own('report.css')}</style>\n"
-        f"<script>{asScript(_own('report.js'))}</script>\n{library}</head>\n"
-        f'<body class="masonry-report">\n<header>{joined(*_made(structure.head, record))}</header>\n'
-        f"{tag('nav', *links, aria_label='parts of the report')}\n"
-        f"<main>\n{joined(*parts)}</main>\n</body>\n</html>\n"
-    )
-
-
-def _own(name):
-    with open(os.path.join(os.path.dirname(__file__), name), encoding="utf-8") as file:
-        return file.read()
+    library, licence = _library(record)
+    parts = [(place, heading, _made(part, record)) for place, heading, part in PARTS]
+    return rendered(
+        "report/report.html", title=record.title, facts=structure.facts(record), head=_made(structure.head, record),
+        parts=parts, library=library, licence=licence,
+    )  # fmt: skip
 
 
 def _library(record):
     """What the 3-D picture needs in the page. Where it is missing, the record has no picture, and says why."""
-    if not record.picture:
-        return ""
-    try:
-        return assets()
-    except Refused as missing:
-        record.picture, record.missing = None, (
-            "three.js is not installed, which draws it. The Debian package is libjs-three; then python3 -m masonry.read.report "
-            f"writes the report again. {missing}"
-        )
-        return ""
+    if record.picture:
+        try:
+            return three()
+        except Refused as missing:
+            record.picture, record.missing = None, (
+                "three.js is not installed, which draws it. The Debian package is libjs-three; then python3 -m masonry.read.report "
+                f"writes the report again. {missing}"
+            )
+    return [], ""
 
 
 def _made(part, record):
@@ -107,10 +85,10 @@ def _made(part, record):
     found = []
     try:
         for piece in part(record):
-            found.append(escaped(piece))
+            found.append(piece)
     except (LookupError, AttributeError, TypeError, ValueError, ArithmeticError) as problem:  # fmt: skip
         found.append(
-            note(f"This part is not whole, because run.json is damaged or of another version ({type(problem).__name__}: {problem}).", kind="missing")
+            note(f"This part is not whole, because run.json is damaged or of another version ({type(problem).__name__}: {problem}).", "missing")
         )  # fmt: skip
     return found
 

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pieces of a report: numbers with their units, tables of them, sections and notes. This module needs no YADE."""
+"""Pieces of a report, which its template turns into HTML, and numbers as a person writes them. This module needs no YADE."""
 
 from __future__ import annotations
 
 import math
-from typing import Any, Iterable, Sequence
+from typing import Any, Iterable, NamedTuple, Sequence
 
-from ..escaping import Html, escaped, joined, tag
 from ..quantities import Number
 
 UNKNOWN = "not known"
@@ -55,59 +54,61 @@ def share(value: Any, digits: int = 2) -> str:
     return withUnit(100 * value if isNumber(value) else None, "%", digits)
 
 
-def numbers(rows: Iterable[Number], caption: str) -> Html:
+class Badged(NamedTuple):
+    """A text in a table with a word beside it in a frame, as "assumed"."""
+
+    text: Any
+    badge: str
+
+
+class Piece(NamedTuple):
+    """What stands in a part of a report: ``form`` names a macro of ``report.html``, and ``about`` are its arguments."""
+
+    form: str
+    about: dict[str, Any]
+
+
+def numbers(rows: Iterable[Number], caption: str) -> Piece:
     """A table of numbers: what, value, definition and source."""
     lines = []
     for row in rows:
         value = withUnit(row.value, row.unit)
         if value == UNKNOWN and row.note:
             value = "none"
-        note = tag("span", " " + row.note, class_="note") if row.note else None
-        lines.append(
-            tag("tr", tag("th", row.name, scope="row"), tag("td", value, class_="value"),
-                tag("td", row.meaning, note), tag("td", row.source, class_="source"))
-        )  # fmt: skip
+        lines.append((row.name, value, f"{row.meaning} {row.note}".strip(), row.source))
     head = ("quantity", "value", "what it is", "source")
     return table(head, lines, caption, "numbers")
 
 
-def table(
-    heads: Sequence[Any], lines: Iterable[Any], caption: str, kind: str | None = None
-) -> Html:
-    """A table with a caption; lines are elements ``tr``, or sequences of cells, the first of which is the head of its line."""
-    rows = [line if isinstance(line, Html) else row(line) for line in lines]
-    head = tag("tr", *(tag("th", h, scope="col") for h in heads))
-    inside = joined(tag("caption", caption), tag("thead", head), tag("tbody", *rows))
-    return tag("div", tag("table", inside, class_=kind), class_="wide")
+def table(heads: Sequence[str], lines: Iterable[Sequence[Any]], caption: str, kind: str = "") -> Piece:  # fmt: skip
+    """A table with a caption; lines are sequences of cells, texts or :class:`Badged`, the first of which is the head of its
+    line."""
+    return Piece("table", {"heads": heads, "lines": list(map(tuple, lines)), "caption": caption, "kind": kind})  # fmt: skip
 
 
-def row(cells: Sequence[Any]) -> Html:
-    """A line of a table, from texts and HTML."""
-    first, *others = cells
-    return tag("tr", tag("th", first, scope="row"), *(tag("td", cell) for cell in others))  # fmt: skip
+def note(text: str, kind: str = "note", strong: str = "") -> Piece:
+    """A paragraph; ``kind`` is ``note``, ``warning``, or ``missing`` for what a report would have and the run has not.
+
+    :param strong: what stands before the text in bold
+    """
+    return Piece("note", {"text": text, "kind": kind, "strong": strong})
 
 
-def note(*inside: Any, kind: str = "note") -> Html:
-    """A paragraph; ``kind`` is ``note``, ``warning``, or ``missing`` for what a report would have and the run has not."""
-    return tag("p", *inside, class_=kind)
+def figure(picture: Any, caption: str, alt: str = "", frames: str = "") -> Piece:
+    """A picture, SVG or the address of an image, with its caption.
+
+    :param alt: what it shows, for those who do not see it
+    :param frames: places of the frames of the 3-D picture on it, "x,y x,y"
+    """
+    return Piece("figure", {"picture": picture, "caption": caption, "alt": alt or caption, "frames": frames})  # fmt: skip
 
 
-def figure(picture: Html, caption: Any, kind: str | None = None) -> Html:
-    """A picture with its caption."""
-    return tag("figure", picture, tag("figcaption", caption), class_=kind)
-
-
-def folded(
-    title: str, *inside: Any, kind: str | None = None, opened: bool = False
-) -> Html:
+def folded(title: str, *inside: Piece, kind: str = "", opened: bool = False) -> Piece:
     """What is seen after a click on its title, and on paper; of the kind ``screen`` not on paper. ``opened``: it is seen at once,
     and a click hides it."""
-    return tag("details", tag("summary", title), *inside, class_=kind, open="" if opened else None)  # fmt: skip
+    return Piece("folded", {"title": title, "inside": inside, "kind": kind, "opened": opened})  # fmt: skip
 
 
-def listed(texts: Iterable[Any], kind: str | None = None) -> Html:
-    """A list with bullets."""
-    return tag("ul", *(tag("li", text) for text in texts), class_=kind)
-
-
-__all__ = ["Html", "Number", "UNKNOWN", "escaped", "figure", "folded", "isNumber", "joined", "listed", "note", "numbers", "row", "share", "table", "tag", "withUnit", "written"]  # fmt: skip
+def listed(texts: Iterable[Any], title: str = "", kind: str = "") -> Piece:
+    """A list with bullets below a title; of the kind ``script`` code without bullets, and ``warning``."""
+    return Piece("listed", {"texts": list(texts), "title": title, "kind": kind})

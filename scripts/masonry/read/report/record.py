@@ -18,13 +18,14 @@ from ...basics import Refused
 from .. import bilinear, quantities
 from ..curve_figure import plan
 from ..files import filesOf, readCurve, readRun, readWhole
-from ..motion import Motion
-from ..page.data import dataOfMotion
-from .elevation import drawing
+from .. import drawing, elevation
+from ..frames import readFrame
+from ..model import Model, chosenFrames
+from ..page.data import dataOfModel
+from .pieces import written
 
-#: Frames times blocks that a report shows at most: reading them takes seconds, and they take some 12 bytes each.
-MOST_PLACES = 80_000
-FEWEST = 10  # frames that it shows at least, if there are as many
+CRACK_SURFACE = "crack"  # the kind of joint between the halves of a brick
+MOST_NAMES = 12  # of blocks in the drawing
 LARGEST_PICTURE = 600e3  # [bytes] of a figure that goes into a report
 
 
@@ -37,7 +38,8 @@ class Record:
     - ``spec``: the entry ``figure`` of run.json as :func:`masonry.read.curve_figure.plan` completes it, or None
     - ``rows``: numbers of the rows that it shows; ``whole``: whether these are all
     - ``picture``: head and numbers of the 3-D picture, or None; ``missing``: why there is none
-    - ``elevation``: the drawing of what was built and a sentence about it, or None
+    - ``elevation``: the drawing of what was built as SVG and a sentence about it, or None
+    - ``whenCracked``: the moment that cracks.png shows
     """
 
     def __init__(self, directory: FilePath):
@@ -54,7 +56,9 @@ class Record:
         self.spec, self.rows = None, np.zeros(0, int)
         self._plan()
         self.picture: Any = None
-        self.missing, self.elevation, self.frameTimes = "", None, []
+        self.missing, self.whenCracked = "", "of the run"
+        self.elevation: Any = None
+        self.frameTimes: list[float] = []
         self.frameCount = 0
         self._frames()
 
@@ -125,16 +129,55 @@ class Record:
 
     def _frames(self):
         try:
-            motion = Motion(self.directory, chosen=chosenFrames)
             with filesOf(self.directory):
-                self.elevation = drawing(motion)
-                self.picture = dataOfMotion(motion, curve=self.columns)
+                model = Model(self.directory, chosen=chosenFrames)
+                self.elevation = self._drawing(model)
+                self.picture = dataOfModel(model, curve=self.columns)
+                number = elevation.frameOfCracks(self.run, self.directory)
+                last = number == model.count - 1
+                when = elevation.whenOf(self.run, self.directory, number)
+                self.whenCracked = f"{'at the end of the run' if last else 'when the collapse began'}, {when}"
         except Refused as refused:
             self.missing = str(refused)
         except (ValueError, ArithmeticError, np.linalg.LinAlgError, OSError) as error:
             self.missing = f"{self.directory}: its frames cannot be read ({type(error).__name__}: {error})"  # fmt: skip
         else:
-            self.frameTimes, self.frameCount = motion.times, motion.count
+            self.frameTimes, self.frameCount = model.times, model.count
+
+    def _drawing(self, model):
+        """What was built as SVG, and a sentence on it."""
+        blocks, joints = (readFrame(self.directory, kind, 0) for kind in ("blocks", "joints"))  # fmt: skip
+        run = {
+            **self.run,
+            "views": {},
+        }  # seen from the front, also where cracks.png looks askew
+        structure = elevation.structureOf(run, blocks, None, self.directory)
+        structure = self._whole(structure, joints)
+        targets = self.run.get("targets") or []
+        for one in targets:
+            structure.shades[one["body"]] = "held" if one.get("held") else "loaded or watched"  # fmt: skip
+            if len(targets) <= MOST_NAMES:
+                structure.names[one["body"]] = str(one["name"])
+        bricks = [b for b in structure.corners if b not in structure.shades]
+        low, high = (f(blocks["points"][structure.points(bricks)], axis=0) for f in (np.min, np.max))  # fmt: skip
+        size = " × ".join(written(float(v), 3) for v in high - low)
+        about = (
+            f"The {len(bricks):,} units of the masonry as built, {size} m (x × y × z)."
+        )
+        with drawing.style():
+            return drawing.svg(elevation.figureOf(structure, "", 0), "built"), about
+
+    def _whole(self, structure, joints):
+        """A structure whose bricks are whole that the model has in halves: those on both sides of a crack surface."""
+        kinds = self.run.get("kinds") or []
+        if CRACK_SURFACE in kinds:
+            inside = joints["kind"] == kinds.index(CRACK_SURFACE)
+            for a, b in np.unique(np.sort(joints["bodies"][inside], axis=1), axis=0):
+                if a in structure.corners and b in structure.corners:
+                    both = structure.corners[int(a)], structure.corners.pop(int(b))
+                    structure.corners[int(a)] = np.concatenate(both)
+        structure.parts = {n: [b for b in part if b in structure.corners] for n, part in structure.parts.items()}  # fmt: skip
+        return structure
 
     # -- figures, date
 
@@ -231,11 +274,3 @@ def _finite(text):
     except ValueError:
         return math.nan
     return value if math.isfinite(value) else math.nan
-
-
-def chosenFrames(count: int, blocks: int) -> list[int]:
-    """The frames that a report shows of so many, the first and the last among them, evenly spaced."""
-    most = max(FEWEST, MOST_PLACES // max(blocks, 1))
-    if count <= most:
-        return list(range(count))
-    return sorted({round(n * (count - 1) / (most - 1)) for n in range(most)})

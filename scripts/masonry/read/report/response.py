@@ -9,11 +9,9 @@ from typing import Any, Iterator
 
 import numpy as np
 
-from .. import bilinear, loops, quantities
-from ..curve_figure import energies, limits, unitOf
-from .charts import Chart, Line, svg
-
-from .pieces import Number, figure, folded, isNumber, joined, note, numbers, share, table, tag, withUnit, written  # fmt: skip
+from .. import bilinear, curve_figure, drawing, quantities
+from ..curve_figure import energies, unitOf
+from .pieces import Badged, Number, figure, folded, isNumber, note, numbers, share, table, withUnit, written  # fmt: skip
 from .record import Record
 from .structure import answersOf, nameOf, sought, valueOf
 
@@ -31,50 +29,25 @@ def curve(record: Record) -> Iterator[Any]:
         return
     x = record.column(spec["x"]["column"])
     data = {name: values[record.rows] for name, values in record.columns.items()}
-    lines = []
-    drawn = [a for a in spec["y"] if np.isfinite(data[a["column"]]).any()]
-    for n, axis in enumerate(drawn):
-        kind = ("thin" if spec["looped"] else "line") + str(min(n, 7))
-        lines.append(Line(x, data[axis["column"]], str(axis["label"]), kind))
-    if spec["looped"]:
-        first = lines[0].y
-        for rows, label in zip(loops.envelope(x), ("envelope", "")):
-            lines.append(Line(x[rows], first[rows], label, "envelope"))
-        low = high = None
-    else:
-        low, high = limits({**spec, "y": drawn}, {n: v[np.isfinite(v)] for n, v in data.items()})  # fmt: skip
-    ideal = record.ideals["masonry"]
+    ideal, line = record.ideals["masonry"], None
     if not isinstance(ideal, str):
         dy, du, force = ideal.yieldDisplacement, ideal.ultimateDisplacement, ideal.yieldForce  # fmt: skip
-        lines.append(Line([0, dy, du], [0, force, force], "bilinear", "ideal"))
-    marks = [
-        (m["x"], m["y"], str(m["text"]), bool(m.get("below")) or m["y"] < 0)
-        for m in spec["marks"]
-        if isNumber(m.get("x")) and isNumber(m.get("y"))
-    ]
-    levels = [(b["y"], str(b["text"])) for b in spec["bounds"] if isNumber(b.get("y"))]
-    chart = Chart(
-        title="Curve of the run",
-        about=_aboutCurve(spec, x, lines),
-        xLabel=str(spec["x"]["label"]),
-        yLabel=str(spec["y_label"]),
-        lines=lines,
-        marks=marks,
-        levels=levels,
-        low=low,
-        high=high,
-        frames=_places(record, x, lines[0].y),
-        zero=bool(spec["looped"]),
-    )
+        line = [0, dy, du], [0, force, force]
+    with drawing.style():
+        drawn = curve_figure.panelOf(spec, data, line)
+        y = data[spec["y"][0]["column"]]
+        about = _aboutCurve(spec, y)
+        frames = drawing.placesOn(drawn, _places(record, x, y))
+        svg = drawing.svg(drawn, "curve")
     sources = ", ".join([spec["x"]["column"], *(axis["column"] for axis in spec["y"])])
-    text = f"{chart.about} Source: curve.csv: {sources}."
-    if record.picture and chart.frames:
+    text = f"{about} Source: curve.csv: {sources}."
+    if record.picture and frames:
         text += " The ring is the frame that the turning picture shows; a click on the curve shows the nearest one there."
-    yield figure(svg(chart), text)
+    yield figure(svg, text, about, frames)
     yield from _ideal(record)
     picture = record.image("capacity.png")
     if picture:
-        yield figure(tag("img", src=picture, alt="The capacity curve and the demand of a spectrum."), "Capacity and demand, as masonry.capacity drew them. Source: capacity.png.", "image")  # fmt: skip
+        yield figure(picture, "Capacity curve and demand of a spectrum, as masonry.capacity drew them. Source: capacity.png.")  # fmt: skip
     pushes = record.pushes
     if len(pushes) > 1:
         numbered = ", ".join(map(str, pushes))
@@ -114,24 +87,23 @@ def _ideal(record):
     said = dict.fromkeys(n for one in ideals.values() if not isinstance(one, str) for n in one.notes)  # fmt: skip
     said.update((f"{bilinear.RULES[rule]}: none, because {one}", None) for rule, one in ideals.items() if isinstance(one, str))  # fmt: skip
     for text in said:
-        yield note(text[:1].upper() + text[1:], ".")
+        yield note(f"{text[:1].upper()}{text[1:]}.")
 
 
 def _idealOf(number):
     """A number of a bilinear curve; one that ends before the force has fallen is marked."""
     if number is None:
         return "none"
-    mark = tag("span", "not reached", class_="badge") if number.note else None
-    return joined(withUnit(number.value, number.unit), mark)
+    value = withUnit(number.value, number.unit)
+    return Badged(value, "not reached") if number.note else value
 
 
-def _aboutCurve(spec, x, lines):
+def _aboutCurve(spec, y):
     """What the curve shows, in a sentence for those who do not see it."""
-    y = lines[0].y
-    unit = unitOf({"label": str(spec["y_label"]), "column": spec["y"][0]["column"]})
     label = str(spec["y_label"])
+    unit = unitOf({"label": label, "column": spec["y"][0]["column"]})
     return (
-        f"{label[:1].upper() + label[1:]}, {lines[0].label}, over {spec['x']['label']}: {len(x):,} rows, from {withUnit(float(y.min()), unit)} to "
+        f"{label[:1].upper() + label[1:]}, {spec['y'][0]['label']}, over {spec['x']['label']}: {len(y):,} rows, from {withUnit(float(y.min()), unit)} to "
         f"{withUnit(float(y.max()), unit)}."
     )
 
@@ -255,14 +227,10 @@ def bound(record: Record) -> Iterator[Any]:
         yield numbers(rows, "The run beside its bound")
     picture = record.image("mechanism.png")
     if picture:
-        yield figure(tag("img", src=picture, alt="The mechanism with which the structure gives way in limit analysis."), "How the structure gives way in limit analysis. Source: mechanism.png.", "image")  # fmt: skip
+        yield figure(picture, "How the structure gives way in limit analysis. Source: mechanism.png.")  # fmt: skip
 
 
 # -- energies ---------------------------------------------------------------------------------------------------------
-
-
-#: Energies in the legend of the chart, by their names in :func:`masonry.read.curve_figure.energies`.
-ENERGIES = {"tension": "dissipated in tension", "shear": "dissipated in shear", "compression": "dissipated in compression", "damping": "taken by damping", "impacts": "taken by impacts", "kinetic": "motion", "friction contacts": "friction of contacts", "damping contacts": "damping of contacts"}  # fmt: skip
 
 
 def energy(record: Record) -> Iterator[Any]:
@@ -292,7 +260,7 @@ def energy(record: Record) -> Iterator[Any]:
         (known[n[:-2]][0], withUnit(change(n), "J"), part(change(n)), f"curve.csv: {n}")
         for n in inputs
     ]  # fmt: skip
-    lines.append((tag("strong", "all that was put in"), withUnit(total, "J"), part(total), "sum of these"))  # fmt: skip
+    lines.append(("all that was put in", withUnit(total, "J"), part(total), "sum of these"))  # fmt: skip
     stored = sum(map(change, elastic))
     lines.append(("elastic energy of all parts", withUnit(stored, "J"), part(stored), f"curve.csv: {', '.join(elastic)}"))  # fmt: skip
     lines += [
@@ -311,15 +279,10 @@ def energy(record: Record) -> Iterator[Any]:
     if record.isLooped:
         x = np.append(0, np.cumsum(np.abs(np.diff(x))))
         label = "length of the path there and back [mm]"
-    seen = [(name, values) for name, values in stack.items() if values.any()]
-    drawn = [
-        Line(x, values, ENERGIES.get(name, name), f"line{min(n + 1, 7)}")
-        for n, (name, values) in enumerate(seen)
-    ]
-    if work is not None:
-        drawn.insert(0, Line(x, work, "work done", "ideal"))
-    about = f"Energies since the first row that the curve shows, up to {withUnit(max(float(line.y.max()) for line in drawn), 'J')}."  # fmt: skip
-    yield figure(svg(Chart("Energies", about, label, "energy [J]", drawn)), f"{about} Work done is that of loads and gravity. Source: curve.csv.")  # fmt: skip
+    with drawing.style():
+        svg = drawing.svg(curve_figure.energiesOf(x, label, stack, work), "energies")
+    about = "Energies since the first row that the curve shows. Work done is that of loads and gravity."
+    yield figure(svg, f"{about} Source: curve.csv.")
 
 
 # -- cycles -----------------------------------------------------------------------------------------------------------

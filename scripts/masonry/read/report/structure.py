@@ -7,7 +7,7 @@ from typing import Any, Iterator
 
 from .. import quantities
 
-from .pieces import Number, figure, folded, isNumber, joined, listed, note, numbers, row, table, tag, withUnit, written  # fmt: skip
+from .pieces import Badged, Number, figure, folded, isNumber, listed, note, numbers, table, withUnit, written  # fmt: skip
 from .record import Record
 
 #: Units in which properties are shown, and the factor from SI units.
@@ -22,58 +22,49 @@ MOST_LEADING = 3  # answers at the head of a report
 OLDER = "The run was made by an older version of the plugin, whose run.json does not say this."
 
 
-def head(record: Record) -> Iterator[Any]:
-    """Title, date, versions and how the run ended."""
-    yield tag("h1", record.title)
+def facts(record: Record) -> list[tuple[str, str, str]]:
+    """Name, value and source of what stands below the title."""
     run = record.run
     when, whence = record.date()
     versions = run.get("versions")
     versions = versions if isinstance(versions, dict) else {}
     names = (("masonry", "masonry"), ("yade", "YADE"), ("python", "Python"))
     made = [f"{name} {versions[key]}" for key, name in names if key in versions]
-    facts = [
-        ("scene", run.get("scene", "not known"), "run.json: scene"),
+    return [
+        ("scene", str(run.get("scene", "not known")), "run.json: scene"),
         ("run ended", when, whence),
         ("versions", ", ".join(made) or "not known", "run.json: versions"),
-        ("commit", run.get("commit", "not known"), "run.json: commit"),
+        ("commit", str(run.get("commit", "not known")), "run.json: commit"),
     ]
-    pairs = [
-        tag("div", tag("dt", name), tag("dd", value, title=source))
-        for name, value, source in facts
-    ]
-    yield tag("dl", *pairs, class_="facts")
-    yield _state(record)
-    warnings = [str(w) for w in run.get("warnings") or []] + record.problems
-    if warnings:
-        more = f", and {len(warnings) - 1} more" if len(warnings) > 1 else ""
-        link = tag("a", "How far to trust it", href="#trust")
-        yield note(tag("strong", "Warning: "), warnings[0], more, ". ", link, kind="warning")  # fmt: skip
 
 
-def _state(record):
+def head(record: Record) -> Iterator[Any]:
     """How the run ended, and the numbers that it was run for."""
     run = record.run
     if run.get("error"):
-        state = note(tag("strong", "The run ended by an error: "), run["error"], kind="warning")  # fmt: skip
+        yield note(run["error"], "warning", "The run ended by an error:")
     elif run.get("interrupted"):
-        state = note(tag("strong", "The run was interrupted. "), "All numbers are those up to there; --resume goes on.", kind="warning")  # fmt: skip
+        yield note("All numbers are those up to there; --resume goes on.", "warning", "The run was interrupted.")  # fmt: skip
     elif run.get("collapsed"):
-        fell = run.get("collapse") or "the structure has fallen"
-        state = note(tag("strong", "Collapsed: "), fell, ".", kind="warning")
+        yield note(f"{run.get('collapse') or 'the structure has fallen'}.", "warning", "Collapsed:")  # fmt: skip
     elif run.get("ended"):
-        state = note(f"The last stage ended: {run['ended']}.")
+        yield note(f"The last stage ended: {run['ended']}.")
     else:
-        state = note("The run has no rows: it took no time steps, or ended before there was one.")  # fmt: skip
+        yield note("The run has no rows: it took no time steps, or ended before there was one.")  # fmt: skip
     lead = quantities.headline({**run, **record.numbers})
     if lead:
-        return joined(state, note(_firstUpper(lead), ".", kind="lead"))
-    found = [f"{what} {valueOf(one)}" for one, what in sought(run)]
-    if not found:
-        answers = [a for a in answersOf(run) if isNumber(a.get("value"))]
-        found = [f"{nameOf(a)} {valueOf(a)}" for a in answers[-MOST_LEADING:]]
-    if not found:
-        return state
-    return joined(state, note(_firstUpper("; ".join(found)), ".", kind="lead"))
+        yield note(f"{_firstUpper(lead)}.", "lead")
+    else:
+        found = [f"{what} {valueOf(one)}" for one, what in sought(run)]
+        if not found:
+            answers = [a for a in answersOf(run) if isNumber(a.get("value"))]
+            found = [f"{nameOf(a)} {valueOf(a)}" for a in answers[-MOST_LEADING:]]
+        if found:
+            yield note(_firstUpper("; ".join(found)) + ".", "lead")
+    warnings = [str(w) for w in run.get("warnings") or []] + record.problems
+    if warnings:
+        more = f", and {len(warnings) - 1} more" if len(warnings) > 1 else ""
+        yield note(f"{warnings[0]}{more}. The part “How far to trust it” has all.", "warning", "Warning:")  # fmt: skip
 
 
 def _firstUpper(text):
@@ -118,8 +109,7 @@ def built(record: Record) -> Iterator[Any]:
     """What was built: a drawing, counts, and materials with what was assumed."""
     run = record.run
     if record.elevation:
-        drawn, about = record.elevation
-        yield figure(drawn, f"{about} Lengths of the masonry in m.")
+        yield figure(*record.elevation)
     else:
         yield note(f"There is no drawing of what was built: {record.missing}", kind="missing")  # fmt: skip
     rows = [(name, text, "run.json: built") for name, text in run.get("built") or []]
@@ -157,7 +147,7 @@ def _units(run):
     )  # fmt: skip
     found = [
         Number(
-            joined(what, _badge(f"unit.{name}" in assumed)),
+            _marked(what, f"unit.{name}" in assumed),
             factor * unit[key] if isNumber(unit.get(key)) else None,
             shown,
             meaning,
@@ -168,8 +158,8 @@ def _units(run):
     yield numbers(found, "Units")
 
 
-def _badge(isAssumed):
-    return tag("span", "assumed", class_="badge") if isAssumed else None
+def _marked(text, isAssumed):
+    return Badged(text, "assumed") if isAssumed else text
 
 
 def _namesOf(run):
@@ -200,14 +190,14 @@ def _joints(run):
         meaning = str(meanings.get(name, "")).partition(". ")[0].rstrip(".")
         unit, factor = SHOWN.get(units[name], (units[name], 1))
         cells = [_cell(joints[kind], name, factor, f"{kind}.{name}" in assumed) for kind in kinds]  # fmt: skip
-        line = row((tag("span", meaning or name, title=name), unit, *cells))
+        line = meaning or name, unit, *cells
         used = any(joints[kind].get(name) and counts(name, joints[kind]) for kind in kinds)  # fmt: skip
         used = used and set(cells) != {"–"}
         (shown if used else others).append(line)
     laws = [_lawOf(joints[kind]) for kind in kinds]
     heads = ("property", "unit", *kinds)
     caption = "Joints, by kind. A dash: the property does not count for this kind. Source: run.json: joints"
-    yield table(heads, [row(("law", "", *laws)), *shown], caption, "joints")
+    yield table(heads, [("law", "", *laws), *shown], caption, "joints")
     if others:
         inside = table(heads, others, "Other properties of the joints", "joints")
         yield folded("Properties that are zero, or of no meaning for these joints", inside, kind="screen")  # fmt: skip
@@ -230,7 +220,7 @@ def _cell(joint, name, factor, isAssumed):
         return "–"
     value = joint.get(name)
     text = written(factor * value) if isNumber(value) else written(None)
-    return joined(text, _badge(isAssumed))
+    return _marked(text, isAssumed)
 
 
 def _assumed(run):
@@ -281,7 +271,7 @@ def loaded(record: Record) -> Iterator[Any]:
         yield table(("number", "stage", "load", "time steps", "what it found"), lines, "Stages in their order. Source: run.json: stages, answers", "stages")  # fmt: skip
     words = [w for w in run.get("script") or [] if isinstance(w, list) and len(w) == 2]
     if words:
-        said = listed((tag("code", spoken(word, arguments)) for word, arguments in words), "script")  # fmt: skip
+        said = listed((spoken(*word) for word in words), kind="script")
         about = note("Stresses are in Pa, forces in N, lengths in m, and displacements of pushes and supports in mm; help(masonry.Scene) describes the words. Source: run.json: script.")  # fmt: skip
         few = len(words) <= MOST_WORDS
         yield folded("The words of the script, in their order", said, about, opened=few)
@@ -289,7 +279,7 @@ def loaded(record: Record) -> Iterator[Any]:
     if isinstance(options, dict):
         units = run.get("option_units") or {}
         text = "; ".join(f"{name} {_said(value)} {units.get(name, '')}".strip() for name, value in options.items())  # fmt: skip
-        yield folded("All options of the run", note(text, ". Source: run.json: options."))  # fmt: skip
+        yield folded("All options of the run", note(f"{text}. Source: run.json: options."))  # fmt: skip
 
 
 #: Units at the end of names in entries of ties and springs, the longest first.

@@ -5,18 +5,16 @@ from __future__ import annotations
 
 from typing import Any, Iterator
 
-from ..escaping import Html
 from .. import quantities
-from ..page import fragmentOf
 
-from .pieces import UNKNOWN, Number, figure, isNumber, listed, note, numbers, table, tag, withUnit, written  # fmt: skip
+from .pieces import UNKNOWN, Number, Piece, figure, isNumber, listed, note, numbers, table, withUnit, written  # fmt: skip
 from .record import Record
 
 
 def pictures(record: Record) -> Iterator[Any]:
     """The turning picture, and the cracks at the end."""
     if record.picture:
-        yield tag("div", Html(fragmentOf(*record.picture)), class_="turning")
+        yield Piece("turning", {"picture": record.picture})
         shown, count = len(record.frameTimes), record.frameCount
         text = "The sliders are for the frame and for the magnification of displacements; joints are coloured by what they did, by opening, slide, damage or plastic closure. Source: the frames for ParaView."  # fmt: skip
         if shown < count:
@@ -26,7 +24,7 @@ def pictures(record: Record) -> Iterator[Any]:
         yield note(f"There is no turning picture: {record.missing}", kind="missing")
     cracks = record.image("cracks.png")
     if cracks:
-        yield figure(tag("img", src=cracks, alt="The structure at the end of the run with its cracks: open joints red, slid joints blue, crushed joints black."), "Cracks at the end of the run. Source: cracks.png.", "image")  # fmt: skip
+        yield figure(cracks, f"Cracks {record.whenCracked}: open joints red, slid joints blue, crushed joints black. Source: cracks.png.")  # fmt: skip
 
 
 def trust(record: Record) -> Iterator[Any]:
@@ -35,7 +33,7 @@ def trust(record: Record) -> Iterator[Any]:
     warnings = run.get("warnings")
     said = [str(w) for w in warnings or []] + record.problems
     if said:
-        yield tag("div", tag("strong", "Warnings"), listed(said), class_="warning", role="note")  # fmt: skip
+        yield listed(said, "Warnings", "warning")
     elif warnings is None:
         yield note("run.json of this older version does not list the warnings of the run.", kind="missing")  # fmt: skip
     else:
@@ -51,7 +49,7 @@ def trust(record: Record) -> Iterator[Any]:
     preset = run.get("preset")
     if isinstance(preset, dict):
         promise = run.get("preset_note") or f"preset {preset.get('name')}: run.json of this older version does not say what it promises"  # fmt: skip
-        yield note("The ", promise, ". Source: run.json: preset_note.")
+        yield note(f"The {promise}. Source: run.json: preset_note.")
     elif "accuracy" not in run:
         yield note("No preset and no --accuracy was chosen, so no error of peak or work is promised. Source: run.json: preset.")  # fmt: skip
     unknown = [
@@ -62,8 +60,7 @@ def trust(record: Record) -> Iterator[Any]:
         unknown.insert(0, "How far rate, mesh and points of joints change the result: one run does not tell. --accuracy 2 finds it for peak and work of a push.")  # fmt: skip
     if run.get("assumed"):
         unknown.append("What the properties change that were assumed; the table of what was built lists them.")  # fmt: skip
-    yield tag("h3", "What is not known from this run")
-    yield listed(unknown)
+    yield listed(unknown, "What is not known from this run")
 
 
 def _said(run):

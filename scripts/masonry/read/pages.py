@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pages from templates of jinja2. Texts of files of a run are text in them: none becomes a tag or a script. This module needs
+no YADE."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from ..basics import plain
+from ..packages import needed
+
+#: What a whole page may do: run what stands in it. The browser refuses every request to a network.
+POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
+
+
+def rendered(path: str, **values: Any) -> str:
+    """A page, or a part of one, from a template of this folder, with control characters of texts written out.
+
+    :param path: of the template; texts of other files beside it are ``own("name")`` there
+    :param values: of its names; what is no ``markupsafe.Markup`` is escaped
+    """
+    jinja2 = needed("jinja2")
+    here = os.path.dirname(__file__)
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(here), autoescape=True, undefined=jinja2.StrictUndefined,
+        finalize=lambda value: plain(value) if type(value) is str else value, trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip
+
+    def own(name):
+        return environment.loader.get_source(environment, name)[0]
+
+    environment.filters["script"] = asScript
+    return environment.get_template(path).render(own=own, policy=POLICY, **values)
+
+
+def asScript(code: str) -> Any:
+    """A text that can stand in a script element: nothing in it ends or comments out the element."""
+    markup = needed("markupsafe").Markup
+    return markup(code.replace("</script", "<\\/script").replace("<!--", "<\\!--"))
