@@ -5,11 +5,8 @@ import os
 import subprocess
 import sys
 
-import numpy as np
-import pytest
-from conftest import ROOT
+from hosted import *
 from masonry.read import viewer
-from masonry.basics import Refused
 
 try:
     viewer.findPvpython()
