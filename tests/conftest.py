@@ -8,6 +8,7 @@ worker has a YADE of its own; what shares an expensive fixture stays in one work
 """
 
 import contextlib
+import glob
 import importlib
 import importlib.util
 import os
@@ -100,6 +101,10 @@ settings.load_profile("busy")
 
 sys.path.insert(1, "/usr/lib/x86_64-linux-gnu/yade-double/py")  # as /usr/bin/yade does
 sys.path.insert(1, os.path.join(ROOT, "tests", "references"))
+sys.path += [
+    os.path.join(ROOT, "validation"),
+    *sorted(glob.glob(os.path.join(ROOT, "validation", "*", ""))),
+]
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # as /usr/bin/yade does
 if importlib.util.find_spec("masonry") is None:  # nothing is installed
     sys.path.append(os.path.join(ROOT, "scripts"))

@@ -1,36 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Blocks of our own beside YADE's Polyhedra: the same numbers, the same runs, saved and loaded."""
 
-import math
 import random
 
-import pytest
 import yade.wrapper
-from masonry import (
-    MasonryBlock,
-    MasonryJoint,
-    MasonryLoad,
-    MasonryMat,
-    addBlock,
-    connect,
-    criticalTimeStep,
-    engines,
-)
-from yade import O, Quaternion, Vector3
-from yade.wrapper import *
-
-BRICK = (0.220, 0.102, 0.081)
+from hosted import *
 
 polyhedra = pytest.mark.skipif(
     not hasattr(yade.wrapper, "Polyhedra"), reason="this YADE has no Polyhedra"
 )
-
-
-def box(low, size=BRICK):
-    return [
-        Vector3(*(low[i] + size[i] * c[i] for i in range(3)))
-        for c in [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
-    ]
 
 
 def samples():
@@ -93,7 +71,7 @@ def test_a_block_has_every_bit_of_a_polyhedra_of_the_same_points():
 
 
 def test_volume_centroid_and_inertia_are_those_of_a_box():
-    a, b, c = BRICK
+    a, b, c = UNIT
     block, centroid, orientation = MasonryBlock.around(box((1, -2, 3)))
     assert block.volume == pytest.approx(a * b * c, rel=1e-12)
     assert (centroid - Vector3(1 + a / 2, -2 + b / 2, 3 + c / 2)).norm() < 1e-12
@@ -142,7 +120,7 @@ def test_points_without_volume_are_refused():
 
 def test_a_body_with_a_block_without_corners_is_refused(scene):
     addBlock(box((0, 0, 0)), MasonryMat(density=1800))
-    addBlock(box((0, 0, BRICK[2])), MasonryMat(density=1800))
+    addBlock(box((0, 0, UNIT[2])), MasonryMat(density=1800))
     O.bodies[1].shape = MasonryBlock()
     engines([MasonryJoint()])
     with pytest.raises(ValueError, match="body 1 has a MasonryBlock without corners"):
@@ -165,10 +143,10 @@ def addPolyhedra(points, material):
 def stack(kinds, functors=False, zones=False, steps=1500):
     """Three turned bricks, the lowest held, the highest driven sideways until joints are damaged. All state at the end."""
     O.reset()
-    turn = Quaternion(Vector3(1, 2, 0.5).normalized(), 0.7)
+    turn = IN_SPACE
     material = MasonryMat(density=1800)
     for course, make in enumerate(kinds):
-        make([turn * p for p in box((0.03 * course, 0, BRICK[2] * course))], material)
+        make([turn * p for p in box((0.03 * course, 0, UNIT[2] * course))], material)
     O.bodies[0].state.blockedDOFs = "xyzXYZ"
     held = MasonryZones(bodies=[1], divisions=[2, 1, 1]) if zones else None
     load = MasonryLoad(
@@ -182,8 +160,7 @@ def stack(kinds, functors=False, zones=False, steps=1500):
     engines([MasonryJoint()], loads=[load], zones=held, functors=functors)
     connect()
     O.dt = 0.5 * criticalTimeStep()[0]
-    for _ in range(steps):
-        O.step()
+    run(steps)
     return state()
 
 
@@ -240,7 +217,7 @@ def test_a_scene_with_the_functor_for_polyhedra_goes_on_working(scene):
     """Engines as users wrote them when there was no MasonryBlock."""
     material = MasonryMat(density=1800)
     for course in range(2):
-        addPolyhedra(box((0, 0, BRICK[2] * course)), material)
+        addPolyhedra(box((0, 0, UNIT[2] * course)), material)
     O.bodies[0].state.blockedDOFs = "xyzXYZ"
     geometry = Ig2_Polyhedra_Polyhedra_MasonryJointGeom(subcontacts=4, rows=2)
     physics = Ip2_MasonryMat_MasonryMat_MasonryJointPhys(joints=[MasonryJoint()])
@@ -254,8 +231,7 @@ def test_a_scene_with_the_functor_for_polyhedra_goes_on_working(scene):
     (interaction,) = connect()
     assert len(interaction.geom.areas) == 8
     O.dt = 0.5 * criticalTimeStep()[0]
-    for _ in range(200):
-        O.step()
+    run(200)
     assert O.forces.f(1, True)[2] > 0
 
 
@@ -278,14 +254,12 @@ def test_a_saved_block_is_the_same_block(scene, tmp_path, extension):
     ]
     before = shapes()
     O.save(path)
-    for _ in range(300):
-        O.step()
+    run(300)
     later = state()
     O.load(path)
     assert shapes() == before
     assert all(isinstance(b.shape, MasonryBlock) for b in O.bodies)
-    for _ in range(300):
-        O.step()
+    run(300)
     assert state() == later
 
 

@@ -8,7 +8,7 @@ import struct
 import numpy as np
 import pytest
 from masonry import loadCheckpoint, readCheckpoint, saveCheckpoint
-from test_joint_loop import CASES, energy, panel, state
+from test_joint_loop import CASES, balance as energy, panel, state
 from yade import O, Vector3
 from yade.wrapper import *
 

@@ -4,23 +4,10 @@
 Rocking and sliding within a face do not end it.
 """
 
-import math
 import re
 
-import pytest
-from masonry import (
-    MasonryJoint,
-    addBlock,
-    connect,
-    criticalTimeStep,
-    engine,
-    engines,
-)
-from masonry.bricks import boxCorners as corners
-from yade import O, Quaternion, Vector3
-from yade.wrapper import *
+from hosted import *
 
-G = 9.81
 B, H = 0.25, 1.0  # of the free block [m]
 ALPHA = math.atan(B / H)
 FUNCTORS = pytest.mark.parametrize("functors", [False, True], ids=["loop", "functors"])
@@ -58,8 +45,7 @@ def standing(joint=None, size=(B, 0.25, H), base=0.2, gravity=(0, 0, -G), **arou
 
 
 def go(seconds):
-    for _ in range(int(seconds / O.dt)):
-        O.step()
+    run(int(seconds / O.dt))
 
 
 def collapses(seconds, message):
@@ -142,7 +128,7 @@ def test_a_joint_crushed_to_nothing_is_reported_when_one_block_lies_in_the_other
 
 @pytest.mark.parametrize("direction", ["loop", "functors", "deformable"])
 def test_a_stack_pulled_apart_is_reported_when_a_block_has_left(scene, direction):
-    mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    mat = unitMaterial()
     size = (0.22, 0.102, 0.081)
     for k in range(3):
         addBlock(corners((0, 0, k * size[2]), (*size[:2], (k + 1) * size[2])), mat)

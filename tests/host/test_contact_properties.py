@@ -6,17 +6,11 @@ of each, or anyhow. Where they touch follows here from the hull of all differenc
 engine: both overlap if and only if the difference of their places lies inside.
 """
 
-import math
-
-import numpy as np
-import pytest
+from hosted import *
 from hypothesis import assume, given, settings
 from hypothesis import strategies as some
-from masonry import addBlock, criticalTimeStep
 from scipy.integrate import quad
 from scipy.spatial import ConvexHull
-from yade import O, Quaternion, Vector3
-from yade.wrapper import *
 
 STIFF = 1e10  # [Pa/m]
 
@@ -152,7 +146,7 @@ class Rig:
 
     def __init__(self, pair, friction=0.0, swapped=False, shift=(0, 0, 0), turn=Quaternion.Identity):  # fmt: skip
         O.reset()
-        stone = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+        stone = unitMaterial()
         self.pair, self.shift, self.turn = pair, Vector3(*shift), turn
         self.ids = {}
         for n in (1, 0) if swapped else (0, 1):

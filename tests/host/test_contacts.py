@@ -1,20 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Rigid blocks that meet without a joint: they fall, rest, slide, collide, rock and lie in heaps."""
 
-import math
 import os
 import subprocess
 import sys
 
-import numpy as np
-import pytest
-from masonry import addBlock, criticalTimeStep, loadCheckpoint, saveCheckpoint
-from masonry._masonry import allowThreads
-from yade import O, Quaternion, Vector3
-from yade.wrapper import *
+from hosted import *
 
-G = 9.81
-BRICK = (0.22, 0.102, 0.081)
 STIFF = 1e10  # Pa/m
 CUBE = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
 
@@ -52,17 +44,9 @@ def prepare(step=0.5, gravity=(0, 0, -G), **properties):
     return contacts
 
 
-def balance():
-    return next(e for e in O.engines if e.label == "energy").balance()
-
-
-def until(time):
-    O.run(max(1, math.ceil((time - O.time) / O.dt)), True)
-
-
 def test_a_brick_falls_freely_then_comes_to_rest_and_does_not_sink(scene):
     ground()
-    brick = box(BRICK, (0.3, 0.1, 0.05 + BRICK[2] / 2))
+    brick = box(UNIT, (0.3, 0.1, 0.05 + UNIT[2] / 2))
     contacts = prepare()
     s = O.bodies[brick].state
     start = s.pos[2]
@@ -77,8 +61,8 @@ def test_a_brick_falls_freely_then_comes_to_rest_and_does_not_sink(scene):
     assert contacts.touching() == 1
     assert contacts.forceOf(0, brick)[2] == pytest.approx(weight, rel=1e-6)
     assert s.vel.norm() < 1e-9
-    depth = BRICK[2] / 2 - s.pos[2]
-    assert depth == pytest.approx(weight / (STIFF * BRICK[0] * BRICK[1]), rel=1e-3)
+    depth = UNIT[2] / 2 - s.pos[2]
+    assert depth == pytest.approx(weight / (STIFF * UNIT[0] * UNIT[1]), rel=1e-3)
     there = Vector3(s.pos)
     until(2.5)
     assert (s.pos - there).norm() < 1e-12
@@ -88,7 +72,7 @@ def test_a_brick_falls_freely_then_comes_to_rest_and_does_not_sink(scene):
 def test_a_block_rests_on_an_incline_below_the_angle_of_friction(scene, angle):
     turn = Quaternion(Vector3(0, 1, 0), math.radians(angle))
     ground(turn)
-    brick = box(BRICK, turn * Vector3(0, 0, BRICK[2] / 2), turn)
+    brick = box(UNIT, turn * Vector3(0, 0, UNIT[2] / 2), turn)
     prepare()
     s = O.bodies[brick].state
     until(0.5)
@@ -103,7 +87,7 @@ def test_a_block_rests_on_an_incline_below_the_angle_of_friction(scene, angle):
 def test_a_block_on_an_incline_does_not_creep_in_a_minute(scene):
     turn = Quaternion(Vector3(0, 1, 0), math.radians(20))
     ground(turn)
-    brick = box(BRICK, turn * Vector3(0, 0, BRICK[2] / 2), turn)
+    brick = box(UNIT, turn * Vector3(0, 0, UNIT[2] / 2), turn)
     prepare(0.9)
     s = O.bodies[brick].state
     until(0.5)
@@ -117,9 +101,9 @@ def test_a_block_slides_down_an_incline_as_friction_says(scene, angle):
     slope = math.radians(angle)
     turn = Quaternion(Vector3(0, 1, 0), slope)
     ground(turn, (8, 2, 0.4))
-    depth = 1800 * BRICK[2] * G * math.cos(slope) / STIFF
-    place = turn * Vector3(-3, 0, BRICK[2] / 2 - depth)
-    s = O.bodies[box(BRICK, place, turn)].state
+    depth = 1800 * UNIT[2] * G * math.cos(slope) / STIFF
+    place = turn * Vector3(-3, 0, UNIT[2] / 2 - depth)
+    s = O.bodies[box(UNIT, place, turn)].state
     prepare()
     down = turn * Vector3(1, 0, 0)
     until(0.05)
@@ -325,13 +309,13 @@ def test_what_cannot_be_is_refused(scene, made, message):
 
 def test_the_engine_stands_after_the_resetter_and_refuses_deformable_units(scene):
     ground()
-    brick = box(BRICK, (0, 0, 0.2))
+    brick = box(UNIT, (0, 0, 0.2))
     O.engines = [contacts(), MasonryIntegrator()]
     with pytest.raises(ValueError, match="must stand after a ForceResetter"):
         O.step()
     O.reset()
     ground()
-    brick = box(BRICK, (0, 0, 0.2))
+    brick = box(UNIT, (0, 0, 0.2))
     O.engines = [
         ForceResetter(),
         contacts(),
@@ -354,7 +338,7 @@ def test_polyhedra_of_yade_are_blocks_too(scene, shapes):
             size, middle = (0.2, 0.1, 0.1), (0.02 * n, 0, 0.1001 * n)
             if poly:
                 corners = [[m + s * (c - 0.5) for m, s, c in zip(middle, size, p)] for p in CUBE]  # fmt: skip
-                mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+                mat = unitMaterial()
                 O.bodies.append(polyhedra_utils.polyhedra(mat, v=corners))
             else:
                 box(size, middle)

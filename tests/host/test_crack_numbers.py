@@ -3,12 +3,9 @@
 
 from types import SimpleNamespace
 
-import pytest
-from masonry import Scene, bricks, materials
+from hosted import *
 from masonry.read import cracks, curves, quantities
-from masonry.read.files import readCurve, readRun
 from masonry.scene.figure import restsUnder
-from yade import O
 
 WIDTH, HEIGHT, COURSE = 0.4, 0.6, 0.2  # [m] of a pile of three blocks
 

@@ -1,21 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The cyclic law in YADE: files, properties, and scenes of two laws."""
 
-import math
-
-import pytest
-from masonry import (
-    MasonryJoint,
-    MasonryLoad,
-    MasonryMat,
-    addBlock,
-    connect,
-    criticalTimeStep,
-    engines,
-    loadCheckpoint,
-    saveCheckpoint,
-)
-from yade import O
+from hosted import *
 
 CYCLIC = dict(law="cyclic", shearStiffnessLoss=0.3)
 

@@ -1,40 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Deformable units in the engine loop: closed forms, energy, saving, and agreement with rigid ones."""
 
-import os
-import sys
-
-import numpy as np
-import pytest
-from conftest import ROOT
-from masonry import (
-    MasonryJoint,
-    MasonryLoad,
-    MasonryMat,
-    MasonryZones,
-    addBlock,
-    connect,
-    criticalTimeStep,
-    engines,
-)
-from masonry.bricks import boxCorners as corners
-from yade import O, Vector3
-
-sys.path.insert(0, os.path.join(ROOT, "validation", "closed_forms"))
-from elastic_cases import deflection, frequency, together  # noqa: E402
+from hosted import *
+from elastic_cases import deflection, frequency, together
 
 E, NU, RHO = 4.8e9, 0.16, 1800.0
-BRICK = (0.220, 0.102, 0.081)
 
 
 def stiff(stiffness=1e14, **kw):
     return MasonryJoint(
         elastic=True, normalStiffness=stiffness, shearStiffness=stiffness, **kw
     )
-
-
-def energy():
-    return next(e for e in O.engines if e.label == "energy").balance()
 
 
 def bar(length, cells, damping, section=0.05, poisson=0.0):
@@ -86,24 +62,22 @@ def test_energy_without_damping_is_kept_over_a_hundred_thousand_steps(scene):
         + b["elastic_shear"]
         + b["elastic_compression"]
     )
-    start = total(energy())
+    start = total(balance())
     for _ in range(10):
-        for _ in range(10000):
-            O.step()
-        assert total(energy()) == pytest.approx(start, rel=1e-3)
+        run(10000)
+        assert total(balance()) == pytest.approx(start, rel=1e-3)
 
 
 def test_a_deformable_unit_falls_freely(scene):
     mat = MasonryMat(density=RHO)
-    unit = addBlock(corners((0, 0, 0), BRICK), mat)
+    unit = addBlock(corners((0, 0, 0), UNIT), mat)
     zones = MasonryZones(bodies=[unit], damping=0)
     engines([MasonryJoint()], zones=zones)
     O.dt = 0.5 * criticalTimeStep()[0]
-    for _ in range(1000):
-        O.step()
+    run(1000)
     s = O.bodies[unit].state
     assert s.pos[2] - s.refPos[2] == pytest.approx(-0.5 * 9.81 * O.time**2, rel=2e-3)
-    assert abs(energy()["error"]) < 1e-6
+    assert abs(balance()["error"]) < 1e-6
 
 
 def couplet(deformable, joint, young=E, divisions=(2, 1, 1)):
@@ -112,7 +86,7 @@ def couplet(deformable, joint, young=E, divisions=(2, 1, 1)):
     mat, plate = MasonryMat(density=RHO, young=young, poisson=NU), MasonryMat(
         density=RHO, young=1e16, jointSet="plate"
     )
-    x, y, z = BRICK
+    x, y, z = UNIT
     base = addBlock(corners((0, 0, -0.05), (x, y, 0)), plate, inPlane=True)
     units = [
         addBlock(corners((0, 0, k * z), (x, y, (k + 1) * z)), mat, inPlane=True)
@@ -159,8 +133,7 @@ def pull(load, distance, duration):
 
 def hold(load, steps=20000):
     load.velocity = 0
-    for _ in range(steps):
-        O.step()
+    run(steps)
     return load.reaction
 
 
@@ -178,10 +151,8 @@ def test_two_deformable_bricks_pulled_apart_carry_ft_and_take_the_mode_I_energy(
     assert pull(load, 8e-6, 0.02).max() == pytest.approx(0.1e6, rel=0.005)
     load = couplet(True, MasonryJoint(name="bed"))
     pull(load, 3e-3, 0.05)
-    b = energy()
-    assert b["dissipated_tension"] / (BRICK[0] * BRICK[1]) == pytest.approx(
-        16, rel=0.01
-    )
+    b = balance()
+    assert b["dissipated_tension"] / (UNIT[0] * UNIT[1]) == pytest.approx(16, rel=0.01)
     assert abs(b["error"]) < 1e-4
 
 
@@ -197,7 +168,7 @@ def test_rigid_and_stiff_deformable_bricks_agree(scene):
 
 def test_bricks_that_slide_on_each_other_keep_momentum_and_energy(scene):
     mat = MasonryMat(young=E, poisson=NU, density=RHO)
-    x, y, z = BRICK
+    x, y, z = UNIT
     units = [addBlock(corners((0, 0, k * z), (x, y, (k + 1) * z)), mat) for k in (0, 1)]
     zones = MasonryZones(bodies=units, divisions=[2, 1, 1], damping=0)
     engines([MasonryJoint()], gravity=(0, 0, 0), damping=0, zones=zones)
@@ -219,7 +190,7 @@ def test_bricks_that_slide_on_each_other_keep_momentum_and_energy(scene):
 
     O.step()
     p0, spin0 = momenta()
-    start = energy()["kinetic"]
+    start = balance()["kinetic"]
     moved = lambda: next(iter(O.interactions)).geom.jumps[0][1]
     while abs(moved()) < 0.01 and O.time < 0.005:
         O.step()
@@ -227,7 +198,7 @@ def test_bricks_that_slide_on_each_other_keep_momentum_and_energy(scene):
     p1, spin1 = momenta()
     assert (p1 - p0).norm() < 1e-9
     assert (spin1 - spin0).norm() < 2e-3 * spin0.norm()
-    b = energy()
+    b = balance()
     there = sum(b[k] for k in b if k.startswith(("kinetic", "elastic", "dissipated")))
     assert b["dissipated_shear"] > 0.03 * start
     assert there == pytest.approx(start, rel=1e-4)
@@ -238,8 +209,8 @@ def test_the_stiffness_of_a_pair_is_that_of_bricks_and_joint_in_series(scene):
     elastic = MasonryJoint(name="bed", elastic=True)
     load = couplet(True, elastic, divisions=(2, 1, 2))
     pull(load, -2e-6, 0.02)
-    area = BRICK[0] * BRICK[1]
-    series = area / (2 * BRICK[2] / E + 1 / elastic.normalStiffness)
+    area = UNIT[0] * UNIT[1]
+    series = area / (2 * UNIT[2] / E + 1 / elastic.normalStiffness)
     # The plates hold the ends of the bricks sideways. That can only make them stiffer, by a part of nu².
     assert 1 < hold(load) / (series * load.displacement()[2]) < 1 + 2 * NU**2
 
@@ -256,7 +227,7 @@ def test_local_damping_drags_a_moving_unit_and_combined_does_not(scene):
         for _ in range(2000):
             O.step()
             extra.append(
-                load.reaction / (BRICK[0] * BRICK[1])
+                load.reaction / (UNIT[0] * UNIT[1])
                 - np.average(
                     [s[0] for s in joint().phys.stress], weights=joint().geom.areas
                 )
@@ -273,7 +244,7 @@ def test_a_deformable_run_saved_in_the_middle_goes_on_the_same(
     pull(load, 4e-6, 0.005)
     path = str(tmp_path / ("run" + extension))
     O.save(path)
-    go = lambda: [(O.step(), energy())[1] for _ in range(500)][-1]
+    go = lambda: [(O.step(), balance())[1] for _ in range(500)][-1]
     there = go()
     O.load(path)
     # The host calculates the centre of a block again when it loads a scene, so the nodes move by round-off.

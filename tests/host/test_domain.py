@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The N-V domain of a pier by limit analysis, against closed forms and against runs."""
 
-import numpy as np
-import pytest
-from masonry import Scene, bricks, capacity, materials
-from masonry.basics import Refused
-from masonry.read.files import readRun
-from yade import O
+from hosted import *
+from masonry import capacity
 
 WIDTH, THICK, COURSE, FRICTION, DENSITY = 0.6, 0.3, 0.2, 0.4, 2600.0
 NORMALS = [5.0, 20.0, 80.0]  # [kN]

@@ -1,35 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Work of a gravity that changes during a run: raised step by step, turned, and under blocks that were moved before."""
 
-import math
-import os
-import sys
+from hosted import *
+from motion_cases import gravityWork
 
-import pytest
-from conftest import ROOT
-from masonry import (
-    MasonryJoint,
-    addBlock,
-    connect,
-    criticalTimeStep,
-    engines,
-    loadCheckpoint,
-    saveCheckpoint,
-)
-from masonry.bricks import boxCorners as corners
-from yade import O, Vector3
-from yade.wrapper import *
-
-sys.path.insert(0, os.path.join(ROOT, "validation", "closed_forms"))
-from motion_cases import gravityWork  # noqa: E402
-
-UNIT = (0.22, 0.102, 0.081)
-G = 9.81
 WAYS = pytest.mark.parametrize("direction", ["rigid", "deformable", "functors"])
-
-
-def engine(kind):
-    return next((e for e in O.engines if isinstance(e, kind)), None)
 
 
 def integrator():
@@ -41,7 +16,7 @@ def stack(
 ):
     """Two bricks on a fixed one. ``way``: rigid or deformable units, or YADE's own loop and integrator."""
     O.reset()
-    mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    mat = unitMaterial()
     for k in range(3):
         body = addBlock(
             corners((0, 0, k * UNIT[2]), (*UNIT[:2], (k + 1) * UNIT[2])), mat
@@ -60,10 +35,6 @@ def stack(
     if joined:
         connect()
         O.dt = 0.5 * criticalTimeStep()[0]
-
-
-def balance():
-    return engine(MasonryEnergy).balance()
 
 
 def weight():
@@ -96,7 +67,7 @@ def test_the_balance_closes_while_gravity_turns(scene, direction):
     assert b["gravity"] > 0
     assert abs(b["error"]) < 1e-6
     if direction == "deformable":
-        assert engine(MasonryZones).gravity == integrator().gravity
+        assert ofKind(MasonryZones).gravity == integrator().gravity
 
 
 @pytest.mark.parametrize("direction", ["rigid", "functors"])
@@ -107,8 +78,7 @@ def test_blocks_moved_before_the_first_step_fall_from_where_they_are(scene, dire
     for k in (1, 2):
         O.bodies[k].state.pos += Vector3(0, 0, 0.05 * k)
     start = [O.bodies[k].state.pos[2] for k in (1, 2)]
-    for _ in range(1000):
-        O.step()
+    run(1000)
     # The balance belongs to the beginning of the last step.
     fallen = sum(
         O.bodies[k].state.mass
@@ -128,8 +98,7 @@ def test_held_blocks_that_go_down_do_the_work_of_their_weight(scene, direction):
     O.dt, bodies = 1e-5, [O.bodies[k].state for k in range(3)]
     for state in bodies:
         state.vel = Vector3(0, 0, -0.05)
-    for _ in range(500):
-        O.step()
+    run(500)
     # the balance belongs to the beginning of the last step
     down, b = 0.05 * (O.time - O.dt), balance()
     whole = G * sum(state.mass for state in bodies)
@@ -139,15 +108,14 @@ def test_held_blocks_that_go_down_do_the_work_of_their_weight(scene, direction):
     assert b["external"] == pytest.approx(-whole * down, abs=1.001 * half)
     for state in bodies:
         state.vel = Vector3.Zero
-    for _ in range(20):
-        O.step()
+    run(20)
     stayed = 0.05 * 500 * O.dt  # when they stand again, their work stays
     assert balance()["gravity"] == pytest.approx(whole * stayed, rel=1e-9)
 
 
 def test_deformable_units_know_one_gravity(scene):
     stack("deformable", gravity=(0, 0, -G))
-    zones = engine(MasonryZones)
+    zones = ofKind(MasonryZones)
     zones.gravity = (0, 0, -1)  # before the run the integrator's is taken over
     O.step()
     assert zones.gravity == Vector3(0, 0, -G)
@@ -178,8 +146,7 @@ def test_the_work_goes_on_after_saving_and_loading(scene, direction, through, tm
             stack(direction)
             loadCheckpoint(path)
         integrator().gravity = (0.5, 0, -12)
-        for _ in range(200):
-            O.step()
+        run(200)
         ends.append(balance())
     if through == "file" or direction == "functors":  # sums in another order
         assert ends[0] == pytest.approx(ends[1], rel=1e-9, abs=1e-12)
@@ -195,8 +162,8 @@ def test_a_load_on_a_block_that_vibrates_does_force_times_displacement(
     stack(direction, damping=0, joined=False)
     load = MasonryLoad(body=2, force=(0, 0, -500), point=(0.11, 0.051, 3 * UNIT[2]))
     if direction == "deformable":  # loads act on rigid bodies
-        engine(MasonryZones).bodies = [1]
-    at = O.engines.index(engine(MasonryEnergy))
+        ofKind(MasonryZones).bodies = [1]
+    at = O.engines.index(ofKind(MasonryEnergy))
     O.engines = [*O.engines[:at], load, *O.engines[at:]]
     connect()
     O.dt = 0.2 * criticalTimeStep()[0]

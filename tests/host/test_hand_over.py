@@ -2,26 +2,9 @@
 """Joints that are handed over to contact: blocks that tip over or slide off go on, land and come to rest."""
 
 import hashlib
-import math
 
-import numpy as np
-import pytest
-from masonry import (
-    MasonryJoint,
-    addBlock,
-    connect,
-    criticalTimeStep,
-    engine,
-    engines,
-    loadCheckpoint,
-    saveCheckpoint,
-)
-from masonry._masonry import allowThreads
-from masonry.bricks import boxCorners as corners
-from yade import O
-from yade.wrapper import *
+from hosted import *
 
-G = 9.81
 B, H = 0.25, 1.0  # of what stands on the ground [m]
 STIFF = 1e10  # [Pa/m]
 
@@ -63,14 +46,6 @@ def standing(count=1, push=1.2, step=0.5, joint=joint, follow=True, **around):
     connect()
     O.dt = step * criticalTimeStep()[0]
     return contacts
-
-
-def balance():
-    return engine("energy").balance()
-
-
-def until(time):
-    O.run(max(1, math.ceil((time - O.time) / O.dt)), True)
 
 
 def bits():

@@ -1,28 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Impacts of joints that close: what a block that rocks keeps, and that they take energy and never give any."""
 
-import os
 import random
-import sys
 
-import numpy as np
-import pytest
-from conftest import ROOT
-from masonry import (
-    MasonryJoint,
-    connect,
-    criticalTimeStep,
-    engine,
-    engines,
-    loadCheckpoint,
-    saveCheckpoint,
-)
-from masonry._masonry import allowThreads
-from yade import O, Vector3
-
-sys.path.insert(0, os.path.join(ROOT, "validation", "closed_forms"))
-from motion_cases import restitution  # noqa: E402
-from structures import box, dry, fix, mat  # noqa: E402
+from hosted import *
+from motion_cases import restitution
+from structures import box, dry, fix, mat
 
 B, H = 0.25, 1.0  # of a stack [m]
 
@@ -50,11 +33,6 @@ def shake(seconds, seed=1):
 
 def isPlane():
     return "y" in O.bodies[1].state.blockedDOFs
-
-
-def run(steps):
-    for _ in range(steps):
-        O.step()
 
 
 def untilImpact():

@@ -1,16 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Joints that have always been elastic are advanced without their points, and nobody sees a difference."""
 
-import numpy as np
-import pytest
-from masonry import loadCheckpoint, saveCheckpoint
-from yade import O, Quaternion, Vector3
-from yade.wrapper import *
-
+from hosted import *
 from test_checkpoint import bits
 from test_joint_loop import panel, state
 
-IN_SPACE = Quaternion(Vector3(1, 2, 0.5).normalized(), 0.7)
 STRONG = dict(
     cap=False,
     tensileStrength=5e7,
@@ -28,11 +22,6 @@ CASES = {
 
 def loop():
     return next(e for e in O.engines if isinstance(e, MasonryJointLoop))
-
-
-def run(steps):
-    for _ in range(steps):
-        O.step()
 
 
 @pytest.mark.parametrize("case", CASES)

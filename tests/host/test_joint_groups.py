@@ -1,19 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Joints are grouped by the values of their properties, whether these stand in one MasonryJoint or in many."""
 
-import pytest
-from masonry import MasonryJoint, addBlock, connect, engines
-from masonry.bricks import boxCorners as corners
-from yade import O, Vector3
-from yade.wrapper import *
-
-UNIT = (0.22, 0.102, 0.081)
+from hosted import *
 
 
 def couplets(count, joint):
     """Separate couplets whose upper bricks are pulled up. ``joint``: gives the MasonryJoint of each."""
     O.reset()
-    mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    mat = unitMaterial()
     for n in range(count):
         for k in (0, 1):
             low = (0.25 * n, 0, k * UNIT[2])

@@ -4,15 +4,8 @@
 import os
 import subprocess
 
-import numpy as np
-import pytest
-from masonry import addBlock, bricks, connect, criticalTimeStep, engines
-from masonry.bricks import boxCorners as corners
+from hosted import *
 from masonry.assembly.engines import ROTATION
-from yade import O, Quaternion, Vector3
-from yade.wrapper import *
-
-UNIT = (0.22, 0.102, 0.081)
 
 
 def panel(
@@ -28,7 +21,7 @@ def panel(
 ):
     """A small panel that is pressed and torn at once, so that joints open, slip and crush within some hundred steps."""
     O.reset()
-    unit = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    unit = unitMaterial()
     plate = MasonryMat(density=1800, young=1e16, jointSet="plate")
     length, height = size * UNIT[0] / 2, size * UNIT[2]
     put = lambda low, high, mat: addBlock(
@@ -80,10 +73,6 @@ def panel(
     return made
 
 
-def energy():
-    return next(e for e in O.engines if isinstance(e, MasonryEnergy)).balance()
-
-
 def state(interactions):
     """All that must agree between two runs: stresses, jumps, damages, energies and places, each over its own size."""
     columns = {
@@ -100,18 +89,16 @@ def state(interactions):
 
 CASES = {
     "rigid": {},
-    "rigid in space": dict(turn=Quaternion(Vector3(1, 2, 0.5).normalized(), 0.7)),
+    "rigid in space": dict(turn=IN_SPACE),
     "cyclic": dict(law="cyclic", shearStiffnessLoss=0.3),
     "cyclic in space": dict(
         law="cyclic",
         dilatancyDecay=100,
-        turn=Quaternion(Vector3(1, 2, 0.5).normalized(), 0.7),
+        turn=IN_SPACE,
     ),
     "deformable": dict(blocks="deformable"),
     "deformable, meshes that do not match": dict(blocks="deformable", halves=False),
-    "deformable in space": dict(
-        blocks="deformable", turn=Quaternion(Vector3(1, 2, 0.5).normalized(), 0.7)
-    ),
+    "deformable in space": dict(blocks="deformable", turn=IN_SPACE),
 }
 
 
@@ -125,7 +112,7 @@ def test_the_loop_gives_the_functors_run(case):
         for _ in range(400):
             O.step()
         runs.append(state(interactions))
-        balances.append(energy())
+        balances.append(balance())
     one, other = runs
     size = max(abs(v) for v in balances[0].values())
     for name, value in balances[0].items():
@@ -205,7 +192,7 @@ def test_damping_calms_everything_up_to_the_undamped_limit_of_the_time_step(
 ):
     """A chain of bricks on elastic joints, thrown at random, comes to rest."""
     O.reset()
-    mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    mat = unitMaterial()
     unit = lambda k: corners((0, 0, k * UNIT[2]), (*UNIT[:2], (k + 1) * UNIT[2]))
     bricks = [addBlock(unit(k), mat, inPlane=True) for k in range(6)]
     O.bodies[bricks[0]].state.blockedDOFs = "xyzXYZ"
@@ -225,9 +212,9 @@ def test_damping_calms_everything_up_to_the_undamped_limit_of_the_time_step(
     for n in range(len(zones.masses) if zones else 0):
         zones.setVelocity(n, throw())
     O.step()
-    start = energy()["kinetic"]
+    start = balance()["kinetic"]
     O.run(5000, True)
-    assert abs(energy()["kinetic"]) < 1e-6 * start
+    assert abs(balance()["kinetic"]) < 1e-6 * start
 
 
 def test_combined_damping_calms_what_swings_about_a_steady_motion_and_local_does_not():
@@ -235,7 +222,7 @@ def test_combined_damping_calms_what_swings_about_a_steady_motion_and_local_does
     swing = {}
     for kind in ("local", "combined"):
         O.reset()
-        mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+        mat = unitMaterial()
         driver, block = [
             addBlock(corners((0, 0, k * UNIT[2]), (*UNIT[:2], (k + 1) * UNIT[2])), mat)
             for k in (0, 1)
@@ -326,7 +313,7 @@ def test_a_run_is_the_same_bit_for_bit_with_any_number_of_threads(blocks, tmp_pa
         f"interactions = panel(False, {blocks!r}, size=12, damping=0.8)\n"
         "for _ in range(200):\n    O.step()\n"
         "values = b''.join(v.tobytes() for v in state(interactions).values())\n"
-        "print('threads', O.numThreads, 'state', hashlib.sha256(values).hexdigest(), energy())\n"
+        "print('threads', O.numThreads, 'state', hashlib.sha256(values).hexdigest(), balance())\n"
     )
     states = []
     for threads in (1, 2, 3):

@@ -1,28 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Damping, drives, prescribed places and neighbours of another kind, against numbers that follow by hand."""
 
-import math
-
-import numpy as np
-import pytest
-from masonry import addBlock, connect, criticalTimeStep, engines
-from yade import O, Quaternion, Vector3
-from yade.wrapper import *
-
-UNIT = (0.22, 0.102, 0.081)
-TURN = Quaternion(Vector3(1, 2, 0.5).normalized(), 0.7)
-
-
-def box(low=(0, 0, 0), size=UNIT, turn=Quaternion.Identity):
-    return [
-        turn * Vector3(*[low[i] + size[i] * c[i] for i in range(3)])
-        for c in [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
-    ]
-
-
-def brick(**kw):
-    return MasonryMat(**{**dict(density=1800, young=4.8e9, poisson=0.16), **kw})
-
+from hosted import *
 
 # -- damping ---------------------------------------------------------------------------------------------------------
 
@@ -39,7 +18,7 @@ ALPHA, DT = 0.3, 1e-4
 @pytest.mark.parametrize("kind", HISTORY)
 @pytest.mark.parametrize("blocked", ["", "XYZ", "yXZ"], ids=lambda b: b or "free")
 def test_damping_takes_its_share_of_a_blocks_force(scene, blocked, kind):
-    body = addBlock(box(), brick())
+    body = addBlock(box(), unitMaterial())
     s = O.bodies[body].state
     s.blockedDOFs = blocked
     s.vel = Vector3(5, 0, 5)
@@ -62,7 +41,7 @@ def test_damping_takes_its_share_of_a_blocks_force(scene, blocked, kind):
 @pytest.mark.parametrize("kind", HISTORY)
 @pytest.mark.parametrize("blocked", ["", "xyz", "yXZ"], ids=lambda b: b or "free")
 def test_damping_takes_its_share_of_a_blocks_torque(scene, blocked, kind):
-    body = addBlock(box(), brick())
+    body = addBlock(box(), unitMaterial())
     s = O.bodies[body].state
     s.blockedDOFs = blocked
     inertia = Vector3(s.inertia)
@@ -86,7 +65,7 @@ def test_damping_takes_its_share_of_a_blocks_torque(scene, blocked, kind):
 
 @pytest.mark.parametrize("kind", HISTORY)
 def test_damping_takes_its_share_of_the_weight_of_nodes(scene, kind):
-    unit = addBlock(box(), brick())
+    unit = addBlock(box(), unitMaterial())
     zones = MasonryZones(bodies=[unit], damping=ALPHA, dampingKind=kind)
     engines([MasonryJoint()], zones=zones)
     O.dt = 1e-7
@@ -103,16 +82,10 @@ def test_damping_takes_its_share_of_the_weight_of_nodes(scene, kind):
 # -- limit of the time step ------------------------------------------------------------------------------------------
 
 
-def steps(count):
-    # O.run(count, True) may end before it waits, and then only prints an error.
-    for _ in range(count):
-        O.step()
-
-
 def stack(count=4, deformable=False, joint=None, **around):
     """Bricks on each other, the lowest fixed."""
     low = lambda k: (0, 0, k * UNIT[2])
-    bricks = [addBlock(box(low(k)), brick(), inPlane=True) for k in range(count)]
+    bricks = [addBlock(box(low(k)), unitMaterial(), inPlane=True) for k in range(count)]
     O.bodies[0].state.blockedDOFs = "xyzXYZ"
     zones = MasonryZones(bodies=bricks[1:], blocked="y") if deformable else None
     if zones:
@@ -131,23 +104,23 @@ def test_a_run_finds_by_itself_that_more_damping_makes_its_time_step_too_long(
 ):
     zones = stack(deformable=deformable, functors=functors, damping=0)
     O.dt = 0.97 * criticalTimeStep()[0]
-    steps(20)
+    run(20)
     damped = zones or next(e for e in O.engines if e.label == "integrator")
     # Changed without asking for the limit, which falls by the square root of 1.8.
     damped.damping = 0.8
     with pytest.raises(RuntimeError, match="unstable: the time step is"):
-        steps(20)
+        run(20)
 
 
 def test_a_run_finds_by_itself_that_a_lighter_block_makes_its_time_step_too_long(scene):
     stack(damping=0)
     O.dt = 0.97 * criticalTimeStep()[0]
-    steps(20)
+    run(20)
     O.bodies[3].state.mass *= 0.5
     O.bodies[3].state.inertia *= 0.5
     O.dt *= 0.9999  # a new time step is checked in the next step
     with pytest.raises(RuntimeError, match="unstable"):
-        steps(120)
+        run(120)
 
 
 # -- drives ----------------------------------------------------------------------------------------------------------
@@ -199,12 +172,12 @@ def test_a_load_that_is_dead_does_no_work(scene):
     stack(count=2, damping=0.1)
     load = MasonryLoad(body=1, point=O.bodies[1].state.pos, force=(100, 0, -500))
     O.engines = O.engines[:2] + [load] + O.engines[2:]
-    steps(50)
+    run(50)
     assert load.work != 0
     load.dead = True
-    steps(1)  # the other half of the last step's work
+    run(1)  # the other half of the last step's work
     work = load.work
-    steps(50)
+    run(50)
     assert load.work == work
 
 
@@ -227,7 +200,7 @@ def couplets(other, functors, turn, joint=None):
     for number in range(70):
         about = UNLIKE[other] if number == 69 else {}
         size = about.get("size", UNIT)
-        mat = brick(young=about.get("young", 4.8e9))
+        mat = unitMaterial(young=about.get("young", 4.8e9))
         for level in (0, 1):
             low = (0.25 * number, 0, level * size[2])
             body = addBlock(
@@ -246,18 +219,19 @@ def couplets(other, functors, turn, joint=None):
         [joint or MasonryJoint(elastic=True)],
         damping=0,
         gravity=turn * Vector3(0, 0, -9.81),
-        rows=2 if turn == TURN else 1,
+        rows=2 if turn == IN_SPACE else 1,
         inPlane=turn == Quaternion.Identity,
         functors=functors,
     )
     made = connect()
     O.dt = 2e-5
-    for _ in range(30):
-        O.step()
+    run(30)
     return made
 
 
-@pytest.mark.parametrize("turn", [Quaternion.Identity, TURN], ids=["plane", "space"])
+@pytest.mark.parametrize(
+    "turn", [Quaternion.Identity, IN_SPACE], ids=["plane", "space"]
+)
 @pytest.mark.parametrize("other", UNLIKE)
 def test_one_couplet_of_seventy_that_is_one_per_cent_other_keeps_its_own_numbers(
     scene, other, turn
@@ -296,19 +270,19 @@ def test_a_block_whose_joint_is_erased_in_the_middle_of_a_run_falls_freely(
     scene, functors
 ):
     stack(count=3, damping=0, functors=functors)
-    steps(50)
+    run(50)
     O.interactions.erase(1, 2)
     # Until now YADE has only noted that the interaction is to be erased.
     O.interactions.eraseNonReal()
     before = O.bodies[2].state.vel[2]
-    steps(100)
+    run(100)
     fall = O.bodies[2].state.vel[2] - before
     assert fall == pytest.approx(-9.81 * 100 * O.dt, rel=1e-9)
 
 
 def test_deformable_units_of_one_shape_and_two_materials_have_their_own_numbers(scene):
-    dense = brick(density=2400, young=9.6e9)
-    units = [addBlock(box((k, 0, 0)), brick() if k else dense) for k in (0, 1)]
+    dense = unitMaterial(density=2400, young=9.6e9)
+    units = [addBlock(box((k, 0, 0)), unitMaterial() if k else dense) for k in (0, 1)]
     zones = MasonryZones(bodies=units)
     volume = UNIT[0] * UNIT[1] * UNIT[2]
     for unit, density in zip(units, (2400, 1800)):
@@ -342,11 +316,9 @@ def test_a_block_taken_out_of_the_plane_in_a_planar_run_is_followed(scene, move)
     for functors in (True, False):
         O.reset()
         stack(damping=0, functors=functors)
-        for _ in range(50):
-            O.step()
+        run(50)
         move(O.bodies[2].state)
-        for _ in range(5):
-            O.step()
+        run(5)
         across = [j[2] for i in O.interactions for j in i.geom.jumps]
         stress = [s[2] for i in O.interactions for s in i.phys.stress]
         push = [O.forces.f(b.id, True)[1] for b in O.bodies]
@@ -360,15 +332,13 @@ def test_a_block_taken_out_of_the_plane_in_a_planar_run_is_followed(scene, move)
 
 def test_a_rotation_that_is_freed_in_a_planar_run_is_followed(scene):
     stack(damping=0, joint=MasonryJoint(elastic=True))
-    for _ in range(50):
-        O.step()
+    run(50)
     s = O.bodies[3].state
     s.blockedDOFs = ""
     # The torque is set by hand, and its work is not counted.
     next(e for e in O.engines if e.label == "energy").watch = False
     O.forces.setPermT(3, Vector3(5, 0, 0))
-    for _ in range(50):
-        O.step()
+    run(50)
     assert abs(s.angVel[0]) > 1e-4
     top = O.interactions[2, 3]
     assert max(abs(m[2]) for m in top.phys.stress) > 1
@@ -376,7 +346,7 @@ def test_a_rotation_that_is_freed_in_a_planar_run_is_followed(scene):
 
 def test_a_planar_run_and_the_same_run_in_space_agree(scene):
     ends = []
-    for turn in (Quaternion.Identity, TURN):
+    for turn in (Quaternion.Identity, IN_SPACE):
         joints = couplets("length", False, turn, MasonryJoint(elastic=True))
         back = turn.conjugate()
         ends.append(np.array([list(back * b.state.vel) for b in O.bodies]))

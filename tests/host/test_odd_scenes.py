@@ -4,10 +4,7 @@
 import gc
 import os
 
-import pytest
-from masonry import addBlock, connect, criticalTimeStep, engines
-from yade import O, Vector3
-from yade.wrapper import *
+from hosted import *
 
 SIDE = 0.1  # [m]
 
@@ -45,8 +42,7 @@ def stack(number=3, zones=(), lone=False, functors=False, reset=True):
 
 
 def steps(count=2):
-    for _ in range(count):
-        O.step()
+    run(count)
 
 
 def refused(message, act=steps):

@@ -1,45 +1,24 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The plugin in the running YADE: self-check, registration, dispatch, joints between polyhedra, saving."""
 
-import math
 import os
 import random
 import re
 import subprocess
 import sys
 
-import pytest
 import yade
-from conftest import BUILD, ROOT
-from masonry import (
-    MasonryJoint,
-    MasonryLoad,
-    MasonryMat,
-    addBlock,
-    classes,
-    connect,
-    criticalTimeStep,
-    engines,
-    touchingPairs,
-)
-from yade import O, Quaternion, Vector3, utils
-from yade.wrapper import *
-
-BRICK = (0.220, 0.102, 0.081)
-
-
-def box(low, size=BRICK):
-    return [
-        tuple(low[i] + size[i] * c[i] for i in range(3))
-        for c in [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
-    ]
+from hosted import *
+from conftest import BUILD
+from masonry import classes, touchingPairs
+from yade import utils
 
 
 def turned(points, turn, shift=(0, 0, 0)):
     return [turn * Vector3(*p) + Vector3(*shift) for p in points]
 
 
-def pair(turn=Quaternion.Identity, offset=(0, 0, BRICK[2]), joints=None, **kw):
+def pair(turn=Quaternion.Identity, offset=(0, 0, UNIT[2]), joints=None, **kw):
     """A fixed brick and a free one on it; returns the interaction."""
     mat = MasonryMat(density=1800)
     addBlock(turned(box((0, 0, 0)), turn), mat)
@@ -302,7 +281,7 @@ def test_a_joint_in_any_orientation_has_the_overlap_as_area(scene, seed):
     rng = random.Random(seed)
     turn = Quaternion(*[rng.gauss(0, 1) for _ in range(4)])
     turn.normalize()
-    interaction = pair(turn, offset=(0.07, 0.03, BRICK[2]), subcontacts=3, rows=2)
+    interaction = pair(turn, offset=(0.07, 0.03, UNIT[2]), subcontacts=3, rows=2)
     geom = interaction.geom
     assert len(geom.areas) == 6
     assert sum(geom.areas) == pytest.approx((0.22 - 0.07) * (0.102 - 0.03), rel=1e-9)
@@ -329,7 +308,7 @@ def test_a_joint_takes_the_face_that_connect_has_found_as_the_functor_alone_find
     def geometry(geom):
         return geom.normal, geom.tangent, geom.polygon, geom.centres, geom.areas
 
-    offset = (0.07, 0.03, BRICK[2])
+    offset = (0.07, 0.03, UNIT[2])
     connected = geometry(pair(turn, offset, functors=True).geom)
     O.interactions.erase(0, 1)
     O.interactions.eraseNonReal()
@@ -504,7 +483,7 @@ def swing(fraction):
     largest = 0
     for _ in range(400):
         O.step()
-        largest = max(largest, abs(O.bodies[1].state.pos[2] - 1.5 * BRICK[2]))
+        largest = max(largest, abs(O.bodies[1].state.pos[2] - 1.5 * UNIT[2]))
     return largest / (0.001 * O.dt)
 
 
@@ -534,11 +513,9 @@ def test_the_time_step_bound_holds_with_damping(scene, damping, fraction):
     swing = 1.05 * sag / math.sqrt(1 - fraction**2)
     for _ in range(5000):
         O.step()
-        assert abs(O.bodies[1].state.pos[2] - 1.5 * BRICK[2] + sag) < swing
+        assert abs(O.bodies[1].state.pos[2] - 1.5 * UNIT[2] + sag) < swing
     if damping:
-        assert O.bodies[1].state.pos[2] - 1.5 * BRICK[2] == pytest.approx(
-            -sag, rel=1e-3
-        )
+        assert O.bodies[1].state.pos[2] - 1.5 * UNIT[2] == pytest.approx(-sag, rel=1e-3)
 
 
 def test_the_balance_closes_for_a_block_that_turns_about_axes_of_its_own(scene):

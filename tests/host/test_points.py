@@ -8,30 +8,11 @@ structure to rest, and slows the fall of a mechanism, but cannot hold one: witho
 stack of four dry blocks took ten seconds to fall; with 0.3 it takes half a second, and what stands is at rest as soon.
 """
 
-import os
-import sys
-
-import pytest
-from conftest import ROOT
-from masonry import MasonryMat, MasonryZones, connect, engines
-from yade import O, Vector3
-
-sys.path.insert(0, os.path.join(ROOT, "validation", "closed_forms"))
-from arch_cases import oppenheim  # noqa: E402
-from elastic_cases import jointMoment  # noqa: E402
-from structures import (  # noqa: E402
-    DAMPING,
-    DENSITY,
-    G,
-    arch,
-    box,
-    dry,
-    falls,
-    fix,
-    mat,
-    semicircle,
-)
-from wall_cases import prismTips, tips  # noqa: E402
+from hosted import *
+from arch_cases import oppenheim
+from elastic_cases import jointMoment
+from structures import DAMPING, DENSITY, G, arch, box, dry, falls, fix, mat, semicircle
+from wall_cases import prismTips, tips
 
 
 # -- stiffness -------------------------------------------------------------------------------------------------------

@@ -1,19 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The files of MasonryVtkRecorder hold, column by column, what Python reads of the same instant."""
 
-import math
-
-import numpy as np
-import pytest
 import references
-from masonry import MasonryVtkRecorder
+from hosted import *
 from masonry.read.frames import asFrame, readFrame
 from test_joint_loop import CASES, panel
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
-from yade import O, Quaternion, Vector3
-from yade.wrapper import MasonryZones
 
 REGIMES = ["elastic", "opening", "slipping", "crushing"]
 
@@ -49,8 +43,7 @@ def written(folder, name):
 def frame(request, tmp_path):
     """A panel whose joints have opened, slipped and crushed, and the folder with its frame."""
     interactions = panel(False, **CASES[request.param])
-    for _ in range(400):
-        O.step()
+    run(400)
     recorder = MasonryVtkRecorder(directory=str(tmp_path))
     recorder()
     yield interactions, tmp_path, recorder

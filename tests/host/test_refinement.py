@@ -1,17 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Joints that are about to yield get more points: what they take over, and that the rest of a run does not notice."""
 
-import math
-
-import numpy as np
-import pytest
-from masonry import addBlock, connect, engine, engines, loadCheckpoint, saveCheckpoint
-from masonry._masonry import allowThreads
+from hosted import *
 from masonry.assembly.engines import functorLoop
 from masonry.bricks import boxCorners as corners
-from yade import O, Vector3
-from yade.wrapper import *
-
 from test_checkpoint import bits
 from test_joint_loop import panel
 
@@ -62,11 +54,6 @@ def press(force, lever=0.0, shear=0.0):
     load = engine("load")
     load.force = Vector3(shear, 0, -force)
     load.point = (LENGTH / 2 + lever, WIDTH / 2, HEIGHT)
-
-
-def run(steps):
-    for _ in range(steps):
-        O.step()
 
 
 def resultants(joint):

@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Points of the joints of a scene: ``--points``, in the plane along a joint, in space along each side of its face."""
 
-import pytest
-from masonry import Scene, bricks, materials
-from masonry.read.files import readRun
+from hosted import *
 
-UNIT = (0.22, 0.102, 0.081)
 #: The points of Gauss and Lobatto between 0 and 1.
 RULES = {3: [0, 0.5, 1], 5: [0, 0.5 - (3 / 28) ** 0.5, 0.5, 0.5 + (3 / 28) ** 0.5, 1]}
 

@@ -2,18 +2,16 @@
 """What acts in a stage whose load grows, and the search for the load that is held, on structures that are known."""
 
 import base64
-import math
 from types import SimpleNamespace
 
-import pytest
+from hosted import *
 from hypothesis import given, settings
 from hypothesis import strategies as some
+from masonry.assembly.motion import REST
 from masonry.basics import GRAVITY, Collapsed
 from masonry.scene.stages import growing
 from masonry.scene.stages.acting import Acceleration, Forces, Tilting
-from masonry.assembly.motion import REST
 from masonry.scene.stages.rest import CALM, EVERY, LOOKS, rampTime
-from yade import O, Vector3
 
 X = Vector3.UnitX
 

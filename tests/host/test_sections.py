@@ -1,30 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What horizontal sections transmit, against statics: weight and loads above, and the reaction of the base."""
 
-import math
-import os
-import sys
-
-import numpy as np
-import pytest
-from conftest import ROOT
-from masonry import (
-    AT_REST,
-    MasonryJoint,
-    MasonryVtkRecorder,
-    Scene,
-    bricks,
-    engine,
-    materials,
-)
+from hosted import *
+from masonry import AT_REST
 from masonry._masonry import loadScene, resultant, saveScene
-from masonry.basics import GRAVITY, Refused
-from masonry.read.files import readCurve, readRun
+from masonry.basics import GRAVITY
 from masonry.read.frames import asFrame
-from yade import O, Quaternion, Vector3
-
-sys.path.insert(0, os.path.join(ROOT, "validation", "closed_forms"))
-from motion_cases import oscillator  # noqa: E402
+from motion_cases import oscillator
 
 DENSITY = 1800.0  # [kg/m³] of calcium silicate
 LEVELS = (

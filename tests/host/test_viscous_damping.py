@@ -1,39 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Viscous damping, proportional to mass and to the stiffness of joints, against closed forms."""
 
-import math
-import os
-import sys
-
-import numpy as np
-import pytest
-from conftest import ROOT
+from hosted import *
 from kept import records
-from masonry import (
-    MasonryJoint,
-    addBlock,
-    criticalTimeStep,
-    engines,
-    loadCheckpoint,
-    rayleigh,
-    saveCheckpoint,
-)
+from masonry import rayleigh
 from masonry._masonry import loadScene, saveScene
-from masonry.bricks import boxCorners as corners
-from yade import O, Vector3
-from yade.wrapper import *
-
-sys.path.insert(0, os.path.join(ROOT, "validation", "closed_forms"))
-from motion_cases import UNIT, damped, oscillator  # noqa: E402
-from structures import G  # noqa: E402
-
-
-def engine(kind):
-    return next((e for e in O.engines if isinstance(e, kind)), None)
-
-
-def balance():
-    return engine(MasonryEnergy).balance()
+from motion_cases import UNIT, damped, oscillator
 
 
 @pytest.mark.parametrize("ratio", [0.02, 0.1])
@@ -60,12 +32,10 @@ def test_a_falling_block_comes_to_gravity_over_mass_damping(scene, blocked):
     ]
     O.dt = 1e-3
     speed = lambda t: -G / 5 * (1 - math.exp(-5 * t))
-    for _ in range(100):
-        O.step()
+    run(100)
     s = O.bodies[body].state
     assert s.vel[2] == pytest.approx(speed(O.time), rel=1e-3)
-    for _ in range(4000):
-        O.step()
+    run(4000)
     assert s.vel[2] == pytest.approx(-G / 5, rel=1e-8)
     assert abs(balance()["error"]) < 1e-12
 
@@ -85,24 +55,21 @@ def test_a_spin_dies_away_with_mass_damping(scene, blocked):
         MasonryIntegrator(damping=0, massDamping=5, gravity=(0, 0, 0)),
     ]
     O.dt = 1e-3
-    for _ in range(400):
-        O.step()
+    run(400)
     assert s.angVel[1] == pytest.approx(3 * math.exp(-5 * O.time), rel=1e-3)
     assert abs(balance()["error"]) < 1e-9
 
 
 def test_driven_bodies_and_prescribed_motions_keep_their_velocity(scene):
     oscillator(blocked="xyXYZ")
-    engine(MasonryIntegrator).massDamping = 50
+    ofKind(MasonryIntegrator).massDamping = 50
     load = MasonryLoad(body=1, direction=(0, 0, 1), driven=True, velocity=0.001)
     O.engines = O.engines[:2] + [load] + O.engines[2:]
     O.dt = 1e-6
-    for _ in range(200):
-        O.step()
+    run(200)
     assert O.bodies[1].state.vel[2] == pytest.approx(0.001, rel=1e-12)
     O.bodies[0].state.vel = Vector3(0.5, 0, 0)
-    for _ in range(20):
-        O.step()
+    run(20)
     assert O.bodies[0].state.vel[0] == 0.5
 
 
@@ -110,12 +77,11 @@ def test_nodes_of_deformable_units_lose_momentum_at_the_same_rate(scene):
     body = addBlock(corners((0, 0, 0), UNIT), MasonryMat(density=1800, young=4.8e9))
     zones = MasonryZones(bodies=[body], damping=0)
     engines([MasonryJoint()], damping=0, gravity=(0, 0, 0), zones=zones)
-    engine(MasonryIntegrator).massDamping = 200
+    ofKind(MasonryIntegrator).massDamping = 200
     for node in range(*zones.nodesOf(body)):
         zones.setVelocity(node, Vector3(0, 0, 0.01))
     O.dt = 1e-6
-    for _ in range(2000):
-        O.step()
+    run(2000)
     expected = 0.01 * math.exp(-200 * O.time)
     assert all(v[2] == pytest.approx(expected, rel=1e-4) for v in zones.velocities)
     assert abs(balance()["error"]) < 1e-9
@@ -143,9 +109,9 @@ def test_rayleigh_damping_has_its_ratio_at_both_frequencies_and_less_between(
 def swing(fraction, ratio):
     """Largest displacement after many steps over that of the first one."""
     omega = oscillator()
-    engine(MasonryJointLoop).stiffnessDamping = 2 * ratio / omega
+    ofKind(MasonryJointLoop).stiffnessDamping = 2 * ratio / omega
     O.dt = fraction * criticalTimeStep()[0]
-    engine(MasonryEnergy).watch = False
+    ofKind(MasonryEnergy).watch = False
     s = O.bodies[1].state
     s.vel = Vector3(0, 0, 1e-3)
     largest = 0
@@ -158,7 +124,7 @@ def swing(fraction, ratio):
 @pytest.mark.parametrize("ratio", [0.05, 0.5, 2])
 def test_the_limit_of_the_time_step_is_sharp_with_stiffness_damping(scene, ratio):
     omega = oscillator()
-    engine(MasonryJointLoop).stiffnessDamping = 2 * ratio / omega
+    ofKind(MasonryJointLoop).stiffnessDamping = 2 * ratio / omega
     limit = (math.sqrt(1 + ratio**2) - ratio) * 2 / omega
     assert criticalTimeStep()[0] == pytest.approx(limit, rel=1e-9)
     assert swing(0.99, ratio) < 5
@@ -168,12 +134,10 @@ def test_the_limit_of_the_time_step_is_sharp_with_stiffness_damping(scene, ratio
 def test_the_watch_knows_the_limit_with_stiffness_damping(scene):
     omega = oscillator()
     O.dt = 0.9 * criticalTimeStep()[0]
-    for _ in range(20):
-        O.step()
-    engine(MasonryJointLoop).stiffnessDamping = 1 / omega
+    run(20)
+    ofKind(MasonryJointLoop).stiffnessDamping = 1 / omega
     with pytest.raises(RuntimeError, match="unstable: the time step is"):
-        for _ in range(20):
-            O.step()
+        run(20)
 
 
 @pytest.mark.parametrize("inPlane", [False, True], ids=["space", "plane"])
@@ -184,12 +148,11 @@ def test_an_open_joint_transmits_nothing_and_a_pressed_dry_one_does_not_pull(
         tensileStrength=0, cohesion=0, friction=0.6, residualFriction=0.6
     )
     omega = oscillator(dry, blocked="xyzXYZ", inPlane=inPlane)
-    engine(MasonryJointLoop).stiffnessDamping = 2 / omega
+    ofKind(MasonryJointLoop).stiffnessDamping = 2 / omega
     O.dt = 1e-6
     s = O.bodies[1].state
     s.vel = Vector3(0, 0, -5e-3)
-    for _ in range(200):
-        O.step()
+    run(200)
     made = O.interactions[0, 1]
     pressed = -O.forces.f(0, True)[2]
     assert pressed > 0
@@ -209,7 +172,7 @@ def test_an_open_joint_transmits_nothing_and_a_pressed_dry_one_does_not_pull(
 
 def test_an_intact_bond_is_damped_in_tension_and_a_torn_one_is_not(scene):
     omega = oscillator(MasonryJoint(), blocked="xyzXYZ")
-    engine(MasonryJointLoop).stiffnessDamping = 0.01 / omega
+    ofKind(MasonryJointLoop).stiffnessDamping = 0.01 / omega
     O.dt = 1e-6
     s = O.bodies[1].state
     phys = O.interactions[0, 1].phys
@@ -237,13 +200,12 @@ def test_a_damped_run_goes_on_bit_for_bit_after_saving_and_loading(
 
         def build():
             omega = oscillator(blocked="", gravity=(100, 200, -1000))
-            engine(MasonryJointLoop).stiffnessDamping = 0.1 / omega
-            engine(MasonryIntegrator).massDamping = 0.1 * omega
+            ofKind(MasonryJointLoop).stiffnessDamping = 0.1 / omega
+            ofKind(MasonryIntegrator).massDamping = 0.1 * omega
             O.dt = 0.5 * criticalTimeStep()[0]
 
         build()
-        for _ in range(150):
-            O.step()
+        run(150)
         if interrupted and through == "file":
             O.save(path)
             O.load(path)
@@ -251,8 +213,7 @@ def test_a_damped_run_goes_on_bit_for_bit_after_saving_and_loading(
             saveCheckpoint(path)
             build()
             loadCheckpoint(path)
-        for _ in range(150):
-            O.step()
+        run(150)
         ends.append((balance(), [tuple(b.state.pos) for b in O.bodies]))
     assert ends[0] == ends[1]
     assert ends[0][0]["damping"] > 0 and abs(ends[0][0]["error"]) < 1e-5
@@ -269,15 +230,13 @@ def dampingStresses():
 def vibrating(blocked=""):
     """A block on a damped joint in the middle of its vibration."""
     omega = oscillator(blocked=blocked, gravity=(100, 200, -1000))
-    engine(MasonryJointLoop).stiffnessDamping = 0.1 / omega
+    ofKind(MasonryJointLoop).stiffnessDamping = 0.1 / omega
     O.dt = 0.5 * criticalTimeStep()[0]
-    for _ in range(30):
-        O.step()
+    run(30)
 
 
 def ended(steps):
-    for _ in range(steps):
-        O.step()
+    run(steps)
     return balance(), [tuple(b.state.pos) for b in O.bodies]
 
 
@@ -285,7 +244,7 @@ def test_damping_that_is_switched_off_is_gone_after_the_next_step(scene):
     """Half of the work of its last stress is done in that step, and the balance stays closed."""
     vibrating("xyXYZ")
     assert dampingStresses()[:, 0].all()
-    engine(MasonryJointLoop).stiffnessDamping = 0
+    ofKind(MasonryJointLoop).stiffnessDamping = 0
     last = balance()["damping"]
     O.step()
     assert not dampingStresses().any()
@@ -305,7 +264,7 @@ def test_a_state_right_after_damping_goes_on_bit_for_bit_in_a_scene_that_ran_on(
     scene, steps
 ):
     vibrating("xyXYZ")
-    engine(MasonryJointLoop).stiffnessDamping = 0
+    ofKind(MasonryJointLoop).stiffnessDamping = 0
     saved = saveScene("")
     whole = ended(20)
     loadScene(saved)

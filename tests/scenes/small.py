@@ -7,8 +7,7 @@ import sys
 from dataclasses import dataclass
 from typing import Callable
 
-from conftest import ROOT
-from masonry import Scene, bricks, materials
+from hosted import *
 from masonry.assembly import columns
 from masonry.scene import options
 

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What the stages of a scene answer, in run.json, on the terminal and in the table of a study."""
 
-import pytest
-from masonry import AT_REST, COLLAPSED, Scene, bricks, materials
-from masonry.read.files import readRun
+from hosted import *
+from masonry import AT_REST, COLLAPSED
 from masonry.run import run
 from masonry.scene.stages.answers import answersText
 from masonry.study.gathering import _answerName
 from small import SMALL, carryOut, parsed
-from yade import O
 
 STONE = dict(friction=0.7, normalStiffness=2e9)
 

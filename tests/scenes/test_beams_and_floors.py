@@ -3,10 +3,8 @@
 
 import re
 
-import pytest
-from masonry import Scene, bricks, materials
-from masonry.basics import GRAVITY, Refused
-from yade import O
+from hosted import *
+from masonry.basics import GRAVITY
 
 LEAN = ["--lean", "--checkpoint-every", "0"]
 LENGTH, WIDTH, HEIGHT, YOUNG = 2.0, 0.1, 0.2, 10e9

@@ -1,19 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Ties and springs: what they carry against statics, what a run says of them, and what is refused."""
 
-import math
 import re
 
-import numpy as np
-import pytest
-from masonry import COLLAPSED, Scene, bricks, materials
-from masonry.basics import GRAVITY, Refused
-from masonry.read.files import readRun
+from hosted import *
+from masonry import COLLAPSED
+from masonry.basics import GRAVITY
 from masonry.read import files
 from masonry.read.frames import readFrame
 from masonry.read.page.data import dataOf
-from yade import O
-from yade.wrapper import MasonryVtkRecorder
 
 LEAN = ["--lean", "--checkpoint-every", "0"]
 WIDTH, DEPTH, HEIGHT = 0.4, 0.3, 1.6  # of a block [m]

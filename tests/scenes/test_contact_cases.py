@@ -1,18 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The quick variants of the cases of contact hold their limits, or miss them for the reason that the program says."""
 
-import os
-import sys
-
-import pytest
-from conftest import ROOT
-
-sys.path.insert(0, os.path.join(ROOT, "validation"))
-sys.path.insert(0, os.path.join(ROOT, "validation", "contact"))
-import contact  # noqa: E402
-from contact_arch import largestSpread, statics  # noqa: E402
-from contact_motion import theory  # noqa: E402
-from contact_rows import CASES, Row  # noqa: E402
+import contact
+from hosted import *
+from contact_arch import largestSpread, statics
+from contact_motion import theory
+from contact_rows import CASES, Row
 
 
 @pytest.mark.parametrize("name", CASES)

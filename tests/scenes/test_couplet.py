@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Two bricks through the whole of the host against the closed forms of the law, with both block models."""
 
-import numpy as np
-import pytest
-from masonry.read.files import readCurve, readRun
+from hosted import *
 
 
 @pytest.fixture(params=["rigid", "deformable"])

@@ -5,9 +5,7 @@ import os
 import subprocess
 import sys
 
-import numpy as np
-import pytest
-from conftest import ROOT
+from hosted import *
 
 FOLDER = os.path.join(ROOT, "validation", "cyclic")
 sys.path.insert(0, FOLDER)

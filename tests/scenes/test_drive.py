@@ -1,17 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The first period along a push, and what begins with it."""
 
-import math
 from types import SimpleNamespace
 
-import pytest
-from masonry import Scene, bricks, materials
+from hosted import *
 from masonry._masonry import saveScene
 from masonry.assembly.period import firstPeriod
-from masonry.read.files import readRun
 from masonry.scene.stages import pushing
 from small import SMALL, carryOut, parsed
-from yade import Vector3
 
 LEAN = ["--lean", "--checkpoint-every", "0"]
 

@@ -8,12 +8,10 @@ import sys
 import threading
 import time
 
-import pytest
 import yade
-from masonry import Scene
+from hosted import *
 from masonry.limit import solver
 from masonry.memory import FULL
-from masonry.read.files import readRun
 from masonry.run.run import Run
 from masonry.scene import outcome
 from masonry.scene.bounds import GIVEN_UP

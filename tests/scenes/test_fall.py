@@ -2,20 +2,15 @@
 """Scenes whose collapse is followed to the ground: what they say of it, against what stands in YADE, and how they go on."""
 
 import csv
-import math
 import signal
 
-import numpy as np
-import pytest
 import stopped
-from masonry import COLLAPSED, Scene, bricks, materials
-from masonry._masonry import allowThreads
-from masonry.basics import GRAVITY, Refused
+from hosted import *
+from masonry import COLLAPSED
+from masonry.basics import GRAVITY
 from masonry.read import files
 from masonry.read.elevation import frameOfCracks
-from masonry.read.files import readRun
 from masonry.read.frames import readFrame
-from yade import O
 
 DENSITY = 2200
 SIDE = 0.3  # [m] of a cubic half stone

@@ -12,10 +12,8 @@ import sys
 import time
 
 import masonry
-import numpy as np
-import pytest
-from conftest import BUILD, ROOT
-from masonry.read.files import readRun
+from hosted import *
+from conftest import BUILD
 from masonry.read.frames import readFrame
 from test_checkpoints import files
 

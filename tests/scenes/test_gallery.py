@@ -5,9 +5,7 @@ import glob
 import os
 import re
 
-import pytest
-from conftest import ROOT
-from masonry.read.files import readCurve, readRun
+from hosted import *
 
 #: The scenes of the gallery, which have a picture.
 GALLERY = [os.path.basename(p)[:-4] for p in sorted(glob.glob(os.path.join(ROOT, "scripts", "gallery", "*.png")))]  # fmt: skip

@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Loads that grow and the search for the one that is held; loads in later stages; pushes of any direction."""
 
-import math
 import os
 import subprocess
 import sys
 import time
 
-import pytest
-from conftest import ROOT
-from masonry import AT_REST, COLLAPSED, DONE, Scene, bricks, materials
+from hosted import *
+from masonry import AT_REST, COLLAPSED, DONE
 from masonry._masonry import saveScene
 from masonry.basics import Collapsed
-from masonry.read.files import readCurve, readRun
 from masonry.scene.stages import gravity, loading
-from yade import O, Vector3
 
 sys.path[:0] = [os.path.join(ROOT, "validation", *f) for f in (["held_loads"], [])]
 import held_loads  # noqa: E402

@@ -11,16 +11,13 @@ import threading
 import time
 from types import SimpleNamespace
 
-import pytest
-from conftest import ROOT
+from hosted import *
 from masonry import readCheckpoint
-from masonry.run import results, run as running
-from masonry.run.run import Run
-from masonry.basics import Refused
-from masonry.read import files
-from masonry.read.files import readRun
-from masonry.run.results import Results
 from masonry.assembly.structure import Structure
+from masonry.read import files
+from masonry.run import results, run as running
+from masonry.run.results import Results
+from masonry.run.run import Run
 from masonry.scene.outcome import Outcome
 from small import SMALL, Wall, carryOut, parsed
 

@@ -3,11 +3,9 @@
 
 import os
 
-import pytest
-from masonry import Scene, basics, bricks, materials
-from masonry.basics import Refused
+from hosted import *
+from masonry import basics
 from masonry.read import report
-from masonry.read.files import readCurve, readRun
 from masonry.run.place import Place, Saved
 from masonry.run.run import Run
 

@@ -6,12 +6,9 @@ import re
 import subprocess
 import sys
 
-import pytest
-from masonry import Scene, bricks, materials
-from masonry.basics import GRAVITY, Refused
-from masonry.read.files import readRun
+from hosted import *
+from masonry.basics import GRAVITY
 from masonry.scene import fields
-from yade import O
 
 WIDTH, DEPTH, HEIGHT = 0.4, 0.3, 1.6  # of a block [m]
 WEIGHT = WIDTH * DEPTH * HEIGHT * 2600 * GRAVITY  # [N]

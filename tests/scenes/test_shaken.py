@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes that are shaken: the record and its strength from the command line, and what a run says of a record."""
 
-import math
-
-import pytest
-
-from masonry import Scene, bricks, materials
+from hosted import *
 from masonry.scene import accelerograms
 
 EVERY = 0.005

@@ -5,19 +5,16 @@ Commands run in the order of the documents, in one folder, as a reader types the
 tenth of their way, and names such as FILE get a meaning. Those of the tutorial are run by test_tutorial.py.
 """
 
-import math
 import os
 import re
 import subprocess
 import sys
 import time
 
-import pytest
-from conftest import ROOT
+from hosted import *
 
 sys.path.insert(1, os.path.join(ROOT, "tests", "gates"))
-
-import tree
+import tree  # noqa: E402
 
 TUTORIAL = ("scripts/docs/",)
 PROGRAMS = ("yade", "bash", "/usr/bin/python3", "python3", "jupyter", "for", "cd", "seq", "squeue", "apt-get", "unshare")  # fmt: skip

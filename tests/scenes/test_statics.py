@@ -3,14 +3,10 @@
 
 import os
 import random
-import sys
 import time
 
-import pytest
-from conftest import ROOT
-
-sys.path.insert(0, os.path.join(ROOT, "validation", "statics"))
-import statics  # noqa: E402
+import statics
+from hosted import *
 
 SEED = int(
     os.environ.get("STATICS_SEED", time.time() // 86400)

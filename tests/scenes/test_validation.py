@@ -4,22 +4,15 @@
 import glob
 import importlib.util
 import os
-import sys
 
-import pytest
-from conftest import ROOT
-from masonry import materials
+import invariance
+import observed
+import stability
+import studies
+import validate
+from hosted import *
 from masonry.scene import options
 from masonry.scene.settings import applySettings
-
-sys.path.insert(0, os.path.join(ROOT, "validation"))
-sys.path.insert(0, os.path.join(ROOT, "validation", "sensitivity"))
-sys.path.insert(0, os.path.join(ROOT, "validation", "stability"))
-import invariance  # noqa: E402
-import observed  # noqa: E402
-import stability  # noqa: E402
-import studies  # noqa: E402
-import validate  # noqa: E402
 
 # There is also a package of this name, which notebooks import.
 _spec = importlib.util.spec_from_file_location("sensitivity_tornado", os.path.join(ROOT, "validation", "sensitivity", "tornado.py"))  # fmt: skip

@@ -7,12 +7,8 @@ import shutil
 import subprocess
 import sys
 
-import numpy as np
-import pytest
-from conftest import ROOT
+from hosted import *
 from masonry.read import viewer
-from masonry.read.frames import readFrame
-from masonry.basics import Refused
 
 MISSING = "" if shutil.which("pvpython") or os.path.exists(os.path.join(viewer.UNPACKED, "usr", "bin", "pvpython")) else "ParaView is not installed"  # fmt: skip
 

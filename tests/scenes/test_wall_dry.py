@@ -3,9 +3,7 @@
 
 from functools import partial
 
-import pytest
-from masonry import materials
-from masonry.read.files import readCurve, readRun
+from hosted import *
 from small import Wall, settled
 
 GRANITE = Wall(

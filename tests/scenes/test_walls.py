@@ -10,17 +10,13 @@ import subprocess
 import time
 
 import masonry
-import numpy as np
-import pytest
-from conftest import ROOT
+from hosted import *
+from masonry.assembly.structure import Structure
+from masonry.read.frames import readFrame
 from masonry.run import results
 from masonry.scene import options
 from masonry.scene.stages import rest
-from masonry.read.frames import readFrame
-from masonry.read.files import readCurve, readRun
-from masonry.assembly.structure import Structure
 from small import SMALL, carryOut, parsed, settled
-from yade import O
 
 ENERGY_IN = "external_J", "gravity_J", "refining_J"
 ENERGY_OUT = "kinetic_J", "damping_J", "impacts_J"

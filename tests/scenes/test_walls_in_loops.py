@@ -7,18 +7,14 @@ import signal
 import subprocess
 import time
 
-import numpy as np
-import pytest
-from conftest import ROOT
+from hosted import *
 from masonry import readCheckpoint
 from masonry.read import drawing, figures, loops, measure
 from masonry.run import results
 from masonry.scene import history
 from masonry.scene.stages import pushing, rest
-from masonry.read.files import readCurve, readRun
 from small import SMALL, parsed
 from test_checkpoints import CANTILEVER, files, interrupt, refused, run
-from test_checkpoints import at  # noqa: F401: a fixture
 
 LOOPS = ["--history", "0.1,0.25x2", "--rate", "40", "--vtk-every", "0.1"]
 
