@@ -5,7 +5,7 @@ A fixed block holds the lower brick, a driven one that does not turn the upper. 
 yade_plugin/law/README.md (yield surfaces, softening tables, compression).
 """
 
-from masonry import Scene, bricks, materials
+from masonry import Scene, arguments, bricks, materials
 from masonry.scene import options
 from yade import O
 
@@ -21,14 +21,14 @@ parser.add_argument(
 parser.add_argument(
     "--normal-stress",
     metavar="MPA",
-    type=lambda text: options.number(text, -1000, 0),
+    type=options.reading(arguments.number("MPa", -1000, 0)),
     default=-0.5,
     help="constant normal stress in shear [MPa], negative if it presses",
 )
 parser.add_argument(
     "--closure",
     metavar="MM",
-    type=lambda text: options.number(text, 0, 1000, above=True),
+    type=options.reading(arguments.number("mm", 0, 1000, above=True)),
     default=1.0,
     help="closure before shear [mm]",
 )

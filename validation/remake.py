@@ -33,7 +33,8 @@ import time
 from dataclasses import dataclass, replace  # noqa: F401
 
 import studies
-from masonry.run.presets import PRESETS, USUAL
+from masonry.run.options import USUAL
+from masonry.run.presets import PRESETS
 from studies import HERE, RESULTS, ROOT
 
 MADE = os.path.join(HERE, "made.json")

@@ -62,7 +62,7 @@ def _kindsOf(word):
     """The kinds of the arguments of a word, also under its decorators."""
     while word is not None:
         if hasattr(word, "kinds"):
-            return word.kinds
+            return word.kinds()
         word = getattr(word, "__wrapped__", None)
     return {}
 

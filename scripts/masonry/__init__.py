@@ -211,8 +211,7 @@ def _register():
         memory.reserve()
     except MemoryError as error:
         end(error)
-    # joints and materials note what is given from here on
-    from .assembly import given, ports, threads  # noqa: F401
+    from .assembly import ports, threads
 
     ports.close()
     threads.limit()

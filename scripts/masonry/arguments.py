@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a script says to a word is checked here: every argument, before the word does anything. This module needs no YADE.
+"""What a script says to a command is checked here: every argument, before the command does anything. This module needs no YADE.
 
-A word names a kind for each of its parameters::
+Type hints say what a parameter takes::
 
-    @takes(platen=MOVING, stress=number("Pa", 0), riding=flag)
-    def press(description, platen, stress, riding=True): ...
+    Stress = Annotated[float, number("Pa", 0, 1e12)]
 
-A kind is a function of a value and of the first argument of the word, the scene or its description. It returns the value as
-the word uses it, or raises ValueError with a sentence that goes on behind the name: "-1 Pa must be at least 0". All problems of
-a word are in one error, and an argument that is not known is answered with the nearest name.
+    @validated
+    def press(description: Any, platen: MovingPlaten, stress: Stress, riding: bool = True) -> None: ...
+
+A hint is ``Annotated`` with a kind: a function of a value and of the first argument of the command, the scene or its description.
+It returns the value as the command uses it, or raises ValueError with a sentence that goes on behind the name: "-1 Pa must be at
+least 0". Kinds of numbers have their ``unit``, and ``of``, the type of Python; kinds of some texts have ``choices``. Texts, switches and functions need no kind; hints of other types without one are not checked. All problems of a call are
+in one error, and an argument that is not known is answered with the nearest name.
 """
 
 from __future__ import annotations
@@ -19,22 +22,21 @@ import inspect
 import math
 import os
 from numbers import Integral, Real
-from typing import Any, Callable, ParamSpec, Sequence, TypeVar, Union
+from types import UnionType
+from typing import Annotated, Any, Callable, Sequence, TypeVar, Union
+from typing import cast, get_args, get_origin, get_type_hints
 
 import numpy as np
 
 from .basics import Refused
 
-#: What a user gives, as type hints name it: some numbers, some axes, a file or a folder.
+#: What a user gives, as type hints name it: some numbers, some axes.
 Numbers = Union[Sequence[float], np.ndarray[Any, Any]]
 Axes = Union[str, Sequence[str]]
-FilePath = Union[str, os.PathLike[str]]
 #: A kind of argument, as this module describes it.
 Kind = Callable[..., Any]
 
-P = ParamSpec("P")
-R = TypeVar("R")
-C = TypeVar("C", bound=type)
+F = TypeVar("F", bound=Callable[..., Any])
 
 LONGEST_NAME, LONGEST_TEXT = 100, 1000  # characters of a name, and of a text
 SHORTEST, FARTHEST = 1e-100, 1e100  # lengths of a direction [-]
@@ -107,6 +109,7 @@ def number(unit="", low=-math.inf, high=math.inf, above=False, below=False):
             raise ValueError(f"{shown(value)}{of} must be {bounds}")
         return found
 
+    vars(take).update(unit=unit, of=float)
     return take
 
 
@@ -120,6 +123,7 @@ def whole(low=0, high=None):
             raise ValueError(f"{shown(value)} must be a whole number {bounds}")
         return int(value)
 
+    vars(take).update(of=int)
     return take
 
 
@@ -191,18 +195,22 @@ def oneOf(*choices):
             raise ValueError(f"{shown(value)} must be one of {named}{close}")
         return value
 
+    vars(take).update(choices=choices)
     return take
 
 
 def isA(cls, what=None):
     """The kind of an object of a class.
 
-    :param what: the words for it; None: the name of the class
+    :param cls: or a tuple of classes
+    :param what: the words for it; None: the names of the classes
     """
+    classes = cls if isinstance(cls, tuple) else (cls,)
+    what = what or " or ".join(one.__name__ for one in classes)
 
     def take(value, first=None):
         if not isinstance(value, cls):
-            raise ValueError(f"{shown(value)} must be a {what or cls.__name__}")
+            raise ValueError(f"{shown(value)} must be a {what}")
         return value
 
     return take
@@ -333,77 +341,74 @@ def orFunction(kind):
     return lambda value, first=None: value if callable(value) else kind(value, first)
 
 
-def anything(value, first=None):
-    """The kind of what the word checks by itself."""
-    return value
+# -- hints ------------------------------------------------------------------------------------------------------------
+
+#: What a user gives, with its kind.
+Name = Annotated[str, name]
+Names = Annotated[Union[str, Sequence[str]], names]
+FilePath = Annotated[Union[str, os.PathLike[str]], path]
+Direction = Annotated[Numbers, direction()]
+Level = Annotated[Numbers, direction(level=True)]
+Freedoms = Annotated[Axes, axes("xyzXYZ")]
+
+#: Kinds of hints that need not name one.
+PLAIN = {bool: flag, str: text}
 
 
-def plainly(value, first=None):
-    """The kind of what the word checks by itself, after real numbers have become Python's own."""
-    return plain(value) if isNumber(value) else value
+def kindOf(hint: Any) -> Kind | None:
+    """The kind that a type hint has; None: it is not checked."""
+    if get_origin(hint) is Annotated:
+        return get_args(hint)[1]
+    if get_origin(hint) in (Union, UnionType):
+        one, *others = [a for a in get_args(hint) if a is not type(None)]
+        kind = None if others else kindOf(one)
+        return kind and orNone(kind)
+    if getattr(get_origin(hint), "__name__", "") == "Callable":
+        return function
+    return PLAIN.get(hint)
 
 
-# -- checks -----------------------------------------------------------------------------------------------------------
+def kindsOf(act: Callable[..., Any]) -> dict[str, Kind]:
+    """The kinds of the parameters of a function by their names."""
+    hints = get_type_hints(act, include_extras=True)
+    hints.pop("return", None)
+    return {n: kind for n, hint in hints.items() if (kind := kindOf(hint))}
 
 
-def misfits(word, kinds, values):
-    """Sentences on values that are not of their kinds.
+def validated(act: F) -> F:
+    """Let a function, or a class, check its arguments by the kinds of its hints.
 
-    :param word: that begins each sentence, as ``"Masonry: "``
-    :param kinds: dict of kinds by name; ``values``: likewise
+    A function gets ``kinds``, which returns them by name, and ``checked``, a function of its positional and its named arguments that
+    gives both as the kinds return them.
+
+    :raises Refused: from the function, with all problems
     """
-    found = []
-    for one, kind in kinds.items():
-        if one in values:
-            try:
-                kind(values[one])
-            except ValueError as error:
-                found.append(f"{word}{one} {error}")
-    return found
+    if isinstance(act, type):
+        setattr(act, "__init__", validated(vars(act)["__init__"]))
+        return act
+    signature = inspect.signature(act)
+    called = act.__qualname__.removesuffix(".__init__").rpartition(".")[2]
+    kinds = functools.cache(
+        lambda: kindsOf(act)
+    )  # its hints name classes that are made later
 
+    def checked(args, settings):
+        return _checked(called, signature, kinds(), args, settings)
 
-# -- words ------------------------------------------------------------------------------------------------------------
+    @functools.wraps(act)
+    def command(*args: Any, **settings: Any) -> Any:
+        args, settings = checked(args, settings)
+        return act(*args, **settings)
 
-
-def takes(**kinds: Kind) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Let a word check its arguments, each by the kind with its name.
-
-    The word gets ``kinds``, and ``checked``, a function of its positional and its named arguments that gives both as the
-    kinds return them.
-
-    :raises Refused: from the word, with all problems
-    """
-
-    def made(act: Callable[P, R]) -> Callable[P, R]:
-        signature = inspect.signature(act)
-
-        name = act.__qualname__.removesuffix(".__init__").rpartition(".")[2]
-
-        def checked(args, settings):
-            return _checked(name, signature, kinds, args, settings)
-
-        @functools.wraps(act)
-        def word(*args: Any, **settings: Any) -> R:
-            args, settings = checked(args, settings)
-            return act(*args, **settings)
-
-        vars(word).update(kinds=kinds, checked=checked)
-        return word
-
-    return made
-
-
-def named(cls: C) -> C:
-    """Let a class answer an argument that it does not know with the nearest name."""
-    setattr(cls, "__init__", takes()(vars(cls)["__init__"]))
-    return cls
+    vars(command).update(kinds=kinds, checked=checked)
+    return cast(F, command)
 
 
 def _checked(word, signature, kinds, args, settings):
     parameters, problems = signature.parameters, []
     more = {p.name for p in parameters.values() if p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD)}  # fmt: skip
     known = {n: v for n, v in settings.items() if more or n in parameters}
-    offered = [n for n in parameters if n in kinds or not kinds and n != "self"]
+    offered = [n for n in parameters if n not in more | {"self", "scene", "description"}]  # fmt: skip
     for unknown in settings.keys() - known.keys():
         close = nearest(unknown, offered) or f"; there are {', '.join(offered)}"
         problems.append(f"{word}: no argument {unknown!r}{close}")
@@ -423,7 +428,10 @@ def _checked(word, signature, kinds, args, settings):
     for one, value in bound.arguments.items():
         if one in kinds:
             try:
-                bound.arguments[one] = kinds[one](value, first)
+                if parameters[one].kind is inspect.Parameter.VAR_POSITIONAL:
+                    bound.arguments[one] = tuple(listOf(kinds[one], 0)(value, first))
+                else:
+                    bound.arguments[one] = kinds[one](value, first)
             except ValueError as error:
                 problems.append(f"{word}: {one} {error}")
     if problems:

@@ -78,7 +78,7 @@ def test_stages_have_hints(module):
     found = {
         name: withoutHint(node)
         for name, node in functions(source(f"scene.stages.{module}"))
-        if any("takes" in ast.unparse(d) for d in node.decorator_list)
+        if any("validated" in ast.unparse(d) for d in node.decorator_list)
     }
     assert found
     assert {name: missing for name, missing in found.items() if missing} == {}

@@ -102,7 +102,6 @@ def test_a_yade_that_was_imported_before_has_one_thread(tmp_path):
         "import masonry, yade; from yade import O; yade.wrapper.MasonryMat",
         "from masonry import *; MasonryMat, Scene, engines, window",
         "import masonry.assembly.blocks, masonry; masonry.MasonryJoint.set",
-        "import masonry.assembly.given, masonry; masonry.MasonryJoint.set",
         "from masonry import _masonry; import masonry; masonry.commit, masonry.Scene",
         "from masonry.scene.materials import dry; dry(friction=0.6).joints['bed'].set(friction=0.5, residualFriction=0.5)",
         "from masonry.run.checkpoints import readCheckpoint; import masonry; masonry.MasonryJoint.set",

@@ -9,9 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 
 import masonry
-from masonry import MasonryJoint, MasonryMat, Scene, bricks, materials
-from masonry.assembly.given import DESCRIBED, assumed, copied, state
+from masonry import MasonryJoint, MasonryMat, Scene, addBlock, bricks, materials
 from masonry.basics import GRAVITY
+from masonry.scene.materials.assumptions import DESCRIBED, copied
+from yade import O
 
 #: Values that are no defaults, of every number of a joint that goes with the others.
 OTHER = {
@@ -81,7 +82,7 @@ def test_all_that_was_not_given_is_noted(given_by, brittle):
     if brittle:
         joint = joint.brittleCoulomb()
         rest -= {"cap", "tensionTable", "shearTable"}
-    assert set(assumed(joint)) == rest
+    assert set(joint.assumed()) == rest
     entries = materials.Masonry(
         MasonryMat(density=1, young=1e9, poisson=0), {"bed": joint, "support": joint}
     ).assumed()
@@ -99,7 +100,7 @@ def test_a_value_that_is_refused_is_not_given():
         joint.friction = -1
     with pytest.raises(ValueError):
         joint.set(friction=-1)
-    assert "friction" in assumed(joint)
+    assert "friction" in joint.assumed()
 
 
 @pytest.mark.parametrize(
@@ -328,14 +329,14 @@ def test_properties_are_set_together_in_any_order(order):
 
 def test_what_cannot_be_set_together_has_all_problems_and_changes_nothing():
     joint = MasonryJoint()
-    before, noted = joint.dict(), dict(assumed(joint))
+    before, noted = joint.dict(), dict(joint.assumed())
     with pytest.raises(ValueError) as refused:
         joint.set(residualFrictoin=0.1, friction=-1, cohesion=2e5)
-    assert "no property 'residualFrictoin', did you mean 'residualFriction'?" in str(refused.value)  # fmt: skip
+    assert "no attribute 'residualFrictoin', did you mean 'residualFriction'?" in str(refused.value)  # fmt: skip
     assert "friction -1 must be at least 0" in str(refused.value)
     with pytest.raises(ValueError, match="residual friction 0.43 must be at most 0.3"):
         joint.set(friction=0.3)
-    assert joint.dict() == before and assumed(joint) == noted
+    assert joint.dict() == before and joint.assumed() == noted
 
 
 @pytest.mark.parametrize(
@@ -366,7 +367,10 @@ def test_the_manual_of_a_joint_is_found_as_the_package_tells():
 
 
 def test_what_yade_has_loaded_counts_as_given():
-    joint = MasonryJoint()
-    del joint.__dict__["_assumed"]
-    assert assumed(joint) == {} and assumed(copied(joint)) == {}
-    assert assumed(state(joint, friction="a test")) == {"friction": "a test"}
+    O.reset()
+    addBlock(bricks.boxCorners((0, 0, 0), (1, 1, 1)), MasonryMat(density=1800))
+    assert "young" in O.bodies[0].mat.assumed()
+    O.saveTmp()
+    O.loadTmp()
+    assert O.bodies[0].mat.assumed() == {} and copied(O.bodies[0].mat).assumed() == {}
+    O.reset()

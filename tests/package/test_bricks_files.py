@@ -279,16 +279,6 @@ def test_a_file_without_solids_is_refused(tmp_path, name, text, said):
         fromFile(tmp_path / name)
 
 
-def test_bad_arguments_are_refused(tmp_path):
-    with pytest.raises(
-        ValueError,
-        match="scale .* got 0; kind 3 must be a text; a.obj: no such file",
-    ):
-        fromFile("a.obj", scale=0, kind=3)
-    with pytest.raises(ValueError, match="path 7.5 must be the name of a file"):
-        fromFile(7.5)
-
-
 def test_a_corner_beyond_all_masonry_is_refused(tmp_path):
     path = tmp_path / "far.obj"
     writePlainObj(path, stack(2, (0.4, 0.2, 0.1)))

@@ -203,7 +203,6 @@ def test_laws_have_their_equations_as_mathematics(pages):
             "a list with at least 1 value; each is a number at least 1 mm",
         ),
         (arguments.orFunction(arguments.flag), "True or False, or a function"),
-        (arguments.anything, ""),
     ],
 )
 def test_what_a_word_takes_is_what_its_check_says(kind, text):

@@ -42,19 +42,6 @@ def test_a_seed_gives_the_same_field_again_and_another_seed_another_one():
         assert (a == b).all() and (a != c).any()
 
 
-@pytest.mark.parametrize(
-    "wrong, message",
-    [
-        (dict(cov=0), "cov 0 must be above 0"),
-        (dict(cov=0.1, length=-1), "length -1 m must be at least 0"),
-        (dict(cov=0.1, seed=1.5), "seed 1.5 must be a whole number"),
-    ],
-)
-def test_wrong_parameters_are_refused(wrong, message):
-    with pytest.raises(ValueError, match=message):
-        fields.lognormal(**wrong)
-
-
 def test_residual_friction_that_is_the_friction_varies_with_it():
     joints = {
         "bed": SimpleNamespace(friction=0.43, residualFriction=0.43),

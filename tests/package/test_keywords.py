@@ -129,7 +129,7 @@ def test_keywords_are_checked_with_all_problems_at_once(form):
     said = str(refused.value)
     for part in (
         "scene said: joints: 'britle' must be one of softening, cyclic, brittle, did you mean 'brittle'?",
-        "rate [mm/s]: -50 must be at least 0.001 and at most 1000",
+        "rate: -50.0 mm/s must be at least 0.001 and at most 1000",
         "no option rat; did you mean rate?",
         "lean: 1 must be True or False",
         "no option resume; --resume is for the command line alone",

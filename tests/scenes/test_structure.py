@@ -192,12 +192,6 @@ def test_two_scenes_at_once_are_refused(tmp_path):
 @pytest.mark.parametrize(
     "act, message",
     [
-        (
-            lambda s, t: s.push(t, 0.1, rate=0),
-            "push: rate 0 mm/s must be at least 0.001",
-        ),
-        (lambda s, t: s.accelerate(0.3, rate=-1), "accelerate: rate -1 g/s must be"),
-        (lambda s, t: s.tilt(5, rate=0), "tilt: rate 0 degrees/s must be at least"),
         (lambda s, t: s.bracket(lambda f: f < 0.1, 0.2, 0.3), "does not carry 0.2"),
         (
             lambda s, t: s.bracket(lambda f: True, 0.2, 0.3),
@@ -297,38 +291,17 @@ def test_nothing_held_is_refused(tmp_path):
             lambda s: s.hold(0, name="my brick"),
             "must be a name of letters, digits and underscores",
         ),
-        (lambda s: s.column("x", "", 3), "column: value 3 must be a function"),
-        (
-            lambda s: s.column("my x", "", lambda: 1),
-            "name 'my x' must be a name of letters",
-        ),
         (
             lambda s: s.load(s.platen("top"), (0, 9, 0)),
             "load: the scene is in the x-z plane",
         ),
         (lambda s: s.hold(0, axes="y"), "in the x-z plane no block moves along y"),
-        (lambda s: s.platen("top", part="roof"), "part 'roof' must be one of stack"),
     ],
 )
 def test_wrong_words_are_refused(tmp_path, act, message):
     scene = made(tmp_path, bricks.stack(2, (0.2, 0.2, 0.2)))
     with pytest.raises(ValueError, match=message):
         act(scene)
-
-
-@pytest.mark.parametrize(
-    "wrong, message",
-    [
-        (dict(name="a/b"), "name must be a text that can name a folder"),
-        (dict(bricks=[]), "bricks must be a list of blocks"),
-        (dict(materials=5), "materials must be a masonry.materials.Masonry, got 5"),
-        (dict(gravity=-1), "gravity -1 m/s² must be at least 0"),
-    ],
-)
-def test_wrong_scenes_are_refused(wrong, message):
-    right = dict(name="a", bricks=bricks.stack(1, (1, 1, 1)), materials=materials.dry())
-    with pytest.raises(Refused, match=message):
-        Scene(**{**right, **wrong})
 
 
 # -- supports that go, wind, drift, pushes that go on, records --------------------------------------------------------
@@ -440,13 +413,8 @@ def test_wind_overturns_a_wall_at_the_pressure_of_statics(tmp_path):
 def test_wind_that_cannot_be_is_refused(tmp_path):
     blocks = bricks.Wall(0.44, 0.81, halves=False)
     scene = made(tmp_path, blocks, materials.dry(), plane=False)
-    for pressure, sign, message in (
-        (0, (0, 1, 0), "pressure 0 Pa must be other than 0"),
-        (500, (0, 0, 1), "must be a horizontal direction"),
-        (500, (0, 0, 0), "must be a direction, whose length is not zero"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            scene.wind(pressure, sign)
+    with pytest.raises(ValueError, match="pressure 0 Pa must be other than 0"):
+        scene.wind(0, (0, 1, 0))
     scene = made(tmp_path, blocks, materials.dry(), ["--blocks", "deformable"])
     with pytest.raises(Refused, match="wind: it loads rigid bricks"):
         scene.wind(500, (1, 0, 0))

@@ -24,7 +24,8 @@ import numpy as np
 from masonry.read.curves import dynamicImbalance
 from masonry.read.cracks import CRACK, layOut
 from masonry.read.frames import readFrame
-from masonry.run.presets import PRESETS, USUAL, asOption
+from masonry.run.options import USUAL, asOption
+from masonry.run.presets import PRESETS
 from masonry.read.files import readCurve, readRun
 
 HERE = os.path.dirname(os.path.abspath(__file__))

@@ -15,11 +15,12 @@
 //     std::string title()                           gives the name of the object in messages
 //     template <class PyClass> static void extras(PyClass&)    adds more properties and functions for Python
 #pragma once
-#include "Attribute.hpp"
+#include "Assumptions.hpp"
 #include "host/Yade.hpp"
 #include "scene/Changes.hpp"
 #include "scene/StepGate.hpp"
 #include <boost/mpl/vector.hpp>
+#include <boost/python/raw_function.hpp>
 #include <boost/serialization/export.hpp>
 
 namespace masonry {
@@ -76,6 +77,17 @@ public:
                 "The description of every attribute: a list of dicts with name, unit, meaning, source, low, high, "
                 "usual_low, usual_high and other_unit (the unit that an unusual value is probably given in).")
             .staticmethod("properties");
+        if constexpr (notes()) {
+            cls.def("assumed", &Derived::sources, "What nobody has given: a dict of attribute -> source of its value.")
+                .def("assume", &Derived::assume, py::args("sources"),
+                     "Note that these attributes are assumed, with the source of each, and that all others are given.");
+            py::objects::add_to_namespace(
+                cls, "set", py::raw_function(&Adapter::setTogether, 1),
+                "Set properties together: set(friction=0.6, residualFriction=0.6). They are checked together, as "
+                "values "
+                "that depend on each other must be. If something is wrong, the error has all problems, and the object "
+                "stays as it was. Returns the object.");
+        }
         Derived::extras(cls);
     }
 
@@ -110,6 +122,9 @@ protected:
 private:
     Derived& self() { return static_cast<Derived&>(*this); }
 
+    // Whether the class notes what nobody has given.
+    static constexpr bool notes() { return std::is_base_of<Assumptions, Derived>::value; }
+
     static const Attributes& all() {
         static const auto attributes = Attributes::of<Derived>();
         return attributes;
@@ -129,7 +144,21 @@ private:
             cls.add_property(attribute.name, get, about.c_str());
             return;
         }
-        const auto set = [&attribute](Derived& object, const py::object& value) { object.set(attribute.name, value); };
+        const auto set = [&attribute](Derived& object, const py::object& value) {
+            try {
+                object.set(attribute.name, value);
+            } catch (const WrongProperties& error) {
+                // a number within its own bounds, and a switch, are wrong because of other properties
+                const auto& own = attribute.property;
+                const bool fine =
+                    own.isNumber() ? own.problem("", py::extract<double>(value)).empty() : PyBool_Check(value.ptr());
+                if (!fine) throw;
+                throw std::invalid_argument(
+                    std::string(error.what()) +
+                    "; properties that depend on each other are set together, as in joint.set(" + attribute.name +
+                    "=..., ...)");
+            }
+        };
         cls.add_property(attribute.name, get,
                          py::make_function(set, py::default_call_policies(),
                                            boost::mpl::vector<void, Derived&, const py::object&>()),
@@ -147,6 +176,14 @@ private:
     void set(const py::dict& values) {
         const BetweenSteps still;
         all().setAll(Derived::className, &self(), *this, Base::pyDict(), values);
+        if constexpr (notes()) self().noteGiven(values);
+    }
+
+    static py::object setTogether(const py::tuple& args, const py::dict& values) {
+        if (py::len(args) > 1)
+            throw std::invalid_argument(std::string(Derived::className) + ".set takes keyword arguments only");
+        static_cast<Derived&>(py::extract<Derived&>(args[0])).set(values);
+        return args[0];
     }
 
     static shared_ptr<Derived> construct(py::tuple args, py::dict keywords) {
@@ -154,6 +191,7 @@ private:
         made->pyHandleCustomCtorArgs(args, keywords);
         if (py::len(args) > 0)
             throw std::invalid_argument(std::string(Derived::className) + " takes keyword arguments only");
+        if constexpr (notes()) made->assumed = all().defaults(Derived::className);
         if (py::len(keywords) > 0) made->set(keywords);
         return made;
     }

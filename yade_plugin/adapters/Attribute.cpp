@@ -17,9 +17,28 @@ template class AttributeOf<std::vector<Vector3r>>;
 template class AttributeOf<std::vector<TableRow>>;
 
 std::string shown(const py::object& value) {
-    const std::string text = py::extract<std::string>(py::str(value));
-    return text.size() > 80 ? text.substr(0, 80) + "..." : text;
+    const py::str whole(value);
+    py::object some = whole.slice(0, 80);
+    if (!py::extract<bool>(some.attr("isprintable")())) some = py::object(py::handle<>(PyObject_ASCII(some.ptr())));
+    const std::string text = py::extract<std::string>(some);
+    return py::len(whole) > 80 ? text + "..." : text;
 }
+
+bool isText(const py::object& value) {
+    return PyUnicode_Check(value.ptr()) && py::len(value) <= 4096 && py::extract<bool>(value.attr("isprintable")());
+}
+
+namespace {
+
+// The message of the error of Python that has been raised, which is over then.
+std::string takenError() {
+    PyObject *type, *value, *trace;
+    PyErr_Fetch(&type, &value, &trace);
+    const py::handle<> kept(type), error(py::allow_null(value)), where(py::allow_null(trace));
+    return error ? py::extract<std::string>(py::str(py::object(error)))() : "";
+}
+
+} // namespace
 
 bool Attributes::set(const char* className, void* object, const std::string& name, const py::object& value) const {
     for (const auto& one : all_) {
@@ -37,30 +56,48 @@ void Attributes::setAll(const char* className, void* object, yade::Serializable&
     for (const auto& one : all_)
         if (!(one->flags & Hidden) && values.has_key(one->name)) before[one->name] = one->value(object);
     const py::list keys = values.keys();
-    std::vector<std::string> wrong;
+    std::vector<std::string> wrong, unknown;
     const auto put = [&](const py::object& key, const py::object& value) {
         const std::string name = py::extract<std::string>(key);
         try {
             same.pySetAttr(name, value);
         } catch (const std::invalid_argument& error) {
             wrong.push_back(error.what());
-        } catch (const py::error_already_set&) { // raised by the host for an attribute of its own
-            if (!PyErr_ExceptionMatches(PyExc_TypeError)) throw;
-            PyErr_Clear();
-            wrong.push_back(std::string(className) + "." + name + ": cannot be " + shown(value));
+        } catch (const py::error_already_set&) {
+            if (PyErr_ExceptionMatches(PyExc_AttributeError))
+                unknown.push_back(takenError());
+            else if (PyErr_ExceptionMatches(PyExc_TypeError) || PyErr_ExceptionMatches(PyExc_UnicodeError)) {
+                PyErr_Clear(); // raised by the host for an attribute of its own
+                wrong.push_back(std::string(className) + "." + name + ": cannot be " + shown(value));
+            } else
+                throw;
         }
     };
+    bool followed = false; // whether what follows from the values was made
     try {
         for (py::ssize_t i = 0; i < py::len(keys); ++i)
             put(keys[i], values[keys[i]]);
-        if (!wrong.empty()) throw std::invalid_argument(joined(wrong));
-        same.callPostLoad();
+        const bool allSet = wrong.empty() && unknown.empty();
+        try {
+            same.callPostLoad();
+            followed = true;
+        } catch (const std::invalid_argument& error) {
+            if (allSet) throw;
+            wrong.push_back(error.what());
+        }
+        if (wrong.empty() && !unknown.empty()) {
+            PyErr_SetString(PyExc_AttributeError, joined(unknown).c_str());
+            py::throw_error_already_set();
+        }
+        unknown.insert(unknown.end(), wrong.begin(), wrong.end());
+        if (!allSet) throw std::invalid_argument(joined(unknown));
     } catch (...) {
         // An error of Python is put aside while the old values are set again, which calls Python, too.
         PyObject *type, *value, *trace;
         PyErr_Fetch(&type, &value, &trace);
         for (py::ssize_t i = 0; i < py::len(keys); ++i)
             if (before.has_key(keys[i])) put(keys[i], before[keys[i]]);
+        if (followed) same.callPostLoad();
         PyErr_Restore(type, value, trace);
         throw;
     }
@@ -102,7 +139,16 @@ std::vector<std::string> Attributes::problems(void* object) const {
 
 void Attributes::transfer(void* object, Transfer& to) const {
     for (const auto& one : all_)
-        if (!(one->flags & (Given | Shown))) one->transfer(object, to);
+        if (!(one->flags & (Given | Shown | OfHost))) one->transfer(object, to);
+}
+
+std::map<std::string, std::string> Attributes::defaults(const std::string& className) const {
+    std::map<std::string, std::string> sources;
+    for (const auto& one : all_) {
+        const std::string from = *one->property.from ? one->property.from : "none";
+        sources[one->name] = "default of " + className + ", for calcium silicate: " + from;
+    }
+    return sources;
 }
 
 void refuseAttribute(const std::string& className, const py::object& ofClass, const std::string& name) {

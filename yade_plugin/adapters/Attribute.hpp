@@ -14,6 +14,7 @@
 #include <boost/serialization/shared_ptr.hpp>
 #include <boost/serialization/string.hpp>
 #include <boost/serialization/vector.hpp>
+#include <map>
 #include <memory>
 
 namespace masonry {
@@ -62,13 +63,19 @@ template <class T> std::string expectedType() {
 // The first 80 characters of a value as text.
 std::string shown(const py::object& value);
 
+// Whether a value is a text of at most 4096 characters, all of which can be printed.
+bool isText(const py::object& value);
+
 // Converts what Python gives for an attribute to the attribute's type. Throws std::invalid_argument, which names the
 // expected type and the value, where that cannot be done.
 template <class T> T given(const std::string& name, const py::object& value) {
     py::extract<T> extracted(value);
-    const bool fits = !std::is_arithmetic<T>::value || PyBool_Check(value.ptr()) == std::is_same<T, bool>::value;
+    const bool fits = std::is_same<T, std::string>::value
+                          ? isText(value)
+                          : !std::is_arithmetic<T>::value || PyBool_Check(value.ptr()) == std::is_same<T, bool>::value;
     try {
-        if (fits && extracted.check()) return extracted();
+        if (fits && extracted.check() && !PyErr_Occurred()) return extracted();
+        PyErr_Clear();                       // of an array without dimensions
     } catch (const py::error_already_set&) { // an entry of a list has another type
         PyErr_Clear();
     } catch (const std::bad_cast&) { // a whole number is out of range
@@ -223,11 +230,13 @@ public:
                 const py::dict& values) const;
     void addTo(py::dict& all, void* object) const;
     py::list descriptions() const;
+    // Notes of every attribute that it has the default of a class, with the source of that.
+    std::map<std::string, std::string> defaults(const std::string& className) const;
     std::vector<std::string> problems(void* object) const;
     void transfer(void* object, Transfer& to) const;
     template <class Archive> void archive(void* object, Archive& ar) const {
         for (const auto& one : all_)
-            if (!(one->flags & Shown)) one->archive(object, ar);
+            if (!(one->flags & (Shown | OfHost))) one->archive(object, ar);
     }
     auto begin() const { return all_.begin(); }
     auto end() const { return all_.end(); }

@@ -10,8 +10,18 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJoint)
 namespace masonry {
 
 void MasonryJoint::postLoad() {
-    if (!direction.allFinite()) throw std::invalid_argument("joint \"" + name + "\": direction must be finite numbers");
+    if (!std::isfinite(direction.norm()))
+        throw std::invalid_argument("joint \"" + name + "\": direction must be finite numbers");
     makeLaw();
+    describe([&](const char* property, auto member, const Property& own) {
+        // what only other laws read is checked here, so that it does not wait for the law to be chosen
+        if constexpr (std::is_same_v<std::decay_t<decltype(this->*member)>, double>) {
+            const auto reads = [&](const LawEntry& one) { return one.reads(property); };
+            if (laws().front().reads(property) || std::none_of(laws().begin(), laws().end(), reads)) return;
+            const auto problem = own.problem(inWords(property), this->*member);
+            if (!problem.empty()) throw std::invalid_argument("joint \"" + name + "\": " + problem);
+        }
+    });
 }
 
 bool MasonryJoint::appliesTo(const std::string& set1, const std::string& set2, const Vector3r& normal) const {
@@ -65,6 +75,9 @@ shared_ptr<MasonryJoint> MasonryJoint::brittle() const {
     made->jointSet = jointSet;
     made->direction = direction;
     made->postLoad();
+    made->assumed = assumed;
+    for (const auto* chosen : {"tensionTable", "shearTable", "cap"})
+        made->assumed.erase(chosen);
     return made;
 }
 

@@ -5,7 +5,7 @@
 
 namespace masonry {
 
-class MasonryJoint : public Adapter<MasonryJoint, yade::Serializable>, public PropertySet {
+class MasonryJoint : public Adapter<MasonryJoint, yade::Serializable>, public PropertySet, public Assumptions {
 public:
     static constexpr const char* className = "MasonryJoint";
     static constexpr const char* baseName = "Serializable";

@@ -5,7 +5,7 @@
 
 namespace masonry {
 
-class MasonryMat : public Adapter<MasonryMat, yade::Material>, public UnitMaterial {
+class MasonryMat : public Adapter<MasonryMat, yade::Material>, public UnitMaterial, public Assumptions {
     MASONRY_DISPATCHED(MasonryMat, yade::Material)
     static constexpr const char* className = "MasonryMat";
     static constexpr const char* baseName = "Material";
@@ -24,24 +24,12 @@ class MasonryMat : public Adapter<MasonryMat, yade::Material>, public UnitMateri
         visit("poisson", &M::poisson,
               number("-", "Poisson's ratio of the unit").above(-1).below(0.5).source("paper table 2"));
         visit("jointSet", &M::jointSet, described("Name by which MasonryJoint.jointSet picks the joints of this unit"));
-    }
-
-    // Replaces the host's attribute `density`, which accepts any number.
-    template <class PyClass> static void extras(PyClass& cls) {
-        cls.add_property(
-            "density", +[](const MasonryMat& mat) { return mat.density; },
-            +[](MasonryMat& mat, const py::object& value) { mat.set("density", value); },
-            (densityOf().documentation() + " Default: 1000.").c_str());
+        visit("density", &M::density, number("kg/m³", "Density").above(0), OfHost); // the host accepts any number
     }
 
     MasonryMat() { createIndex(); }
 
-    std::vector<std::string> problems() const {
-        auto all = changedTooLate();
-        const auto wrong = densityOf().problem("density", density);
-        if (!wrong.empty()) all.push_back(wrong);
-        return all;
-    }
+    std::vector<std::string> problems() const { return changedTooLate(); }
     std::string title() const { return "MasonryMat \"" + label + "\""; }
 
     // Puts the States of units beside each other in memory, because every step reads and writes all of them.
@@ -49,7 +37,6 @@ class MasonryMat : public Adapter<MasonryMat, yade::Material>, public UnitMateri
 
 private:
     static constexpr double infinity = Property::infinity;
-    static Property densityOf() { return number("kg/m³", "Density").above(0); }
 };
 
 } // namespace masonry

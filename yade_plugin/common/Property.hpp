@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ enum Flags {
     Hidden = 2,   // saved and in checkpoints, but not shown to Python
     Given = 4,    // set by the script that builds the scene; not part of the state, so checkpoints do not hold it
     Shown = 8,    // Python reads it, but cannot set it; not saved by itself, because another attribute holds its value
+    OfHost = 16,  // a value of the host's class, which saves it
 };
 
 struct Property {
@@ -101,6 +103,11 @@ private:
         change(copy);
         return copy;
     }
+};
+
+// Properties that a law cannot have: one is out of its bounds, or some do not go together.
+struct WrongProperties : std::invalid_argument {
+    using std::invalid_argument::invalid_argument;
 };
 
 constexpr Property number(const char* unit, const char* meaning) {

@@ -3,7 +3,6 @@
 
 - :mod:`masonry.assembly.blocks`: ``addBlock``; :mod:`masonry.assembly.engines`: ``engines`` and ``advance``;
   :mod:`masonry.assembly.connecting`: ``connect``: for scenes that are built body by body
-- :mod:`masonry.assembly.given`: which properties of joints and units were given, and ``set``, which takes several together
 - :mod:`masonry.assembly.structure`: what a scene is in YADE; :mod:`masonry.assembly.motion`: how its blocks move
 - :mod:`masonry.assembly.period`: the first period of a structure
 - :mod:`masonry.assembly.columns`: what a row of curve.csv holds

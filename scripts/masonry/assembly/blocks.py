@@ -4,14 +4,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Sequence
+from typing import Annotated, Any, Sequence
 
 from yade import Body, O, Vector3
 from yade.wrapper import MasonryBlock, MasonryMat
 
-from ..arguments import Numbers, flag, misfits, shown, takes
-
-LONGEST = 200  # characters of a value that a message shows
+from ..arguments import Numbers, isA, listOf, shown, validated
+from ..arguments import vector as coordinates
 
 #: The colour of a block in YADE's 3-D view: red, green and blue [-].
 PALE = (0.75, 0.7, 0.65)
@@ -33,14 +32,6 @@ def units(cls) -> dict[str, str]:
     return {p["name"]: p["unit"] for p in properties(cls) if p["unit"]}
 
 
-def printed(value: object) -> str:
-    """A value as a message has it: as ``print`` shows it, not too long."""
-    try:
-        return str(value)[:LONGEST]
-    except Exception:  # of a class of the user's own
-        return shown(value)
-
-
 def refuse(problems: list[str], hint: str | None = None, most: int = 10) -> None:
     """Raise ValueError with the first problems of a list, if there are any, and what helps against them."""
     if problems:
@@ -50,22 +41,15 @@ def refuse(problems: list[str], hint: str | None = None, most: int = 10) -> None
         )
 
 
-def vector(value: Any, what: str, problems: list[str] | None = None) -> Any:
-    """Three finite numbers as a Vector3.
-
-    :param what: begins the sentence that refuses anything else
-    :param problems: list to which that sentence is added, and None returned; None: it is raised as ValueError
-    """
+def vector(value: Any, what: str) -> Any:
+    """Three finite numbers as a Vector3. ``what`` begins the sentence that refuses anything else."""
     try:
         found = Vector3(*value)
         if len(value) == 3 and math.isfinite(found.norm()):
             return found
     except Exception:  # Boost.Python's ArgumentError has no name in Python
         pass
-    message = f"{what} must be three finite numbers, got {printed(value)}"
-    if problems is None:
-        raise ValueError(message)
-    problems.append(message)
+    raise ValueError(f"{what} must be three finite numbers, got {shown(value)}")
 
 
 def _extent(points):
@@ -77,12 +61,12 @@ def _extent(points):
     return away.norm(), height / side.norm() if side.norm() > 0 else 0.0
 
 
-@takes()
+@validated
 def addBlock(
-    vertices: Sequence[Numbers] | Numbers,
-    material: MasonryMat,
+    vertices: Annotated[Sequence[Numbers] | Numbers, listOf(coordinates("m"), 4)],
+    material: Annotated[MasonryMat, isA(MasonryMat)],
     inPlane: bool = False,
-    color: Numbers = PALE,
+    color: Annotated[Numbers, coordinates()] = PALE,
 ) -> int:
     """Append a convex block to the scene. Returns its body id.
 
@@ -90,48 +74,24 @@ def addBlock(
     :param material: MasonryMat
     :param inPlane: only x, z and the rotation about y stay free: a wall in the x-z plane
     """
-    problems = misfits("block: ", {"inPlane": flag}, {"inPlane": inPlane})
-    return placeBlock(vertices, material, inPlane, color, problems)
+    return placeBlock(vertices, material, inPlane, color)
 
 
 def placeBlock(
-    vertices: Any,
-    material: Any,
-    inPlane: bool,
-    color: Any = PALE,
-    problems: Sequence[str] = (),
+    vertices: Sequence[Any], material: Any, inPlane: bool, color: Any = PALE
 ) -> int:
-    """As :func:`addBlock`, for those who know that the arguments have these names. It checks them otherwise.
-
-    :param problems: what has been found before, to be named with the others
-    """
-    problems = list(problems)
-    if not isinstance(material, MasonryMat):
+    """As :func:`addBlock`, of arguments that are known to be such."""
+    problems = []
+    points = [vector(v, f"block: corner {n} [m]") for n, v in enumerate(vertices)]
+    length, thickness = _extent(points)
+    if not thickness > THINNEST * length:
         problems.append(
-            f"block: material must be a MasonryMat, got {printed(material)}"
+            f"block: its {len(points)} corners span {length:g} m but only {thickness:g} m out of a plane: no volume"
         )
-    color = vector(color, "block: color", problems)
-    try:
-        vertices = list(vertices)
-    except TypeError:
-        problems.append(f"block: corners must be a list of points, got {printed(vertices)}")  # fmt: skip
-        vertices = []
-    else:
-        if len(vertices) < 4:
-            problems.append(f"block: needs at least 4 corners, got {len(vertices)}")
-    points = [
-        vector(v, f"block: corner {n} [m]", problems) for n, v in enumerate(vertices)
-    ]
-    if not problems:
-        length, thickness = _extent(points)
-        if not thickness > THINNEST * length:
-            problems.append(
-                f"block: its {len(points)} corners span {length:g} m but only {thickness:g} m out of a plane: no volume"
-            )
-        elif length < 1e-8 * max(map(Vector3.norm, points)):
-            problems.append(
-                f"block: {length:g} m is too small to be told so far from the origin, corner 0 at {vertices[0]} m"
-            )
+    elif length < 1e-8 * max(map(Vector3.norm, points)):
+        problems.append(
+            f"block: {length:g} m is too small to be told so far from the origin, corner 0 at {vertices[0]} m"
+        )
     refuse(problems)
     shape, centroid, orientation = MasonryBlock.around(points)
     shape.color = color

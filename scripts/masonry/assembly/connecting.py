@@ -4,7 +4,7 @@ once."""
 
 from __future__ import annotations
 
-from typing import Any, Callable
+from typing import Annotated, Any, Callable
 
 from yade import O, utils
 from yade.wrapper import (
@@ -20,26 +20,26 @@ from yade.wrapper import (
 
 from .. import _masonry
 from .._masonry import connected, dropFaces, gather, neighbours
-from ..arguments import anything, flag, number, shown, takes
+from ..arguments import number, validated
 from ..basics import say
 from .blocks import properties, refuse
 from .engines import LAWS, functorLoop
 
 
-#: The kind of the largest gap or overlap of faces that coincide, over the size of the smaller block.
-TOLERANCE = number("", 0, 0.01, above=True)
+#: The largest gap or overlap of faces that coincide, over the size of the smaller block [-].
+Tolerance = Annotated[float, number("", 0, 0.01, above=True)]
 
 
-@takes(tolerance=TOLERANCE)
-def touchingPairs(tolerance: float = 1e-4) -> list[tuple[int, int]]:
+@validated
+def touchingPairs(tolerance: Tolerance = 1e-4) -> list[tuple[int, int]]:
     """Pairs of ids of the blocks that share a face, smaller id first. Parameters as of :func:`connect`."""
     return _masonry.touchingPairs(tolerance)
 
 
-@takes(rule=anything, tolerance=TOLERANCE, allowGaps=flag)
+@validated
 def connect(
     rule: Callable[..., Any] | None = None,
-    tolerance: float = 1e-4,
+    tolerance: Tolerance = 1e-4,
     allowGaps: bool = False,
 ) -> list[Any]:
     """Make the joints between all blocks that share a face. The present state is the reference. Returns the interactions.
@@ -61,10 +61,6 @@ def connect(
     if loop is None:
         raise ValueError(
             "connect() needs the joints' engine in O.engines: call masonry.engines() first"
-        )
-    if rule is not None and not callable(rule):
-        raise ValueError(
-            f"rule must be a function (body1, body2, geom) or None, got {shown(rule)}"
         )
     if isinstance(loop, InteractionLoop):
         geometry, physics = (
@@ -193,10 +189,11 @@ def _warn(pairs, joints, sizes, engines):
         for p in properties(type(thing)):
             value = getattr(thing, p["name"]) if p["other_unit"] else 0
             if value > 0 and not p["usual_low"] <= value <= p["usual_high"]:
-                hints.append(
-                    f'{type(thing).__name__} "{name}": {p["name"]} {value:g} {p["unit"]}: is it in {p["unit"]}, '
-                    f'not {p["other_unit"]}?'
-                )
+                unit, other = p["unit"], p["other_unit"]
+                what = f"{value:g}: is it a tangent, not an angle in {other}?"
+                if unit != "-":
+                    what = f"{value:g} {unit}: is it in {unit}, not {other}?"
+                hints.append(f'{type(thing).__name__} "{name}": {p["name"]} {what}')
     usual, read = MasonryJoint(), [law["properties"] for law in LAWS.values()]
     for joint in joints:
         own = LAWS[joint.law]["properties"]

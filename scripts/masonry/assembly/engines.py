@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Sequence
+from typing import Annotated, Any, Sequence
 
 from yade import O, wrapper
 from yade.wrapper import (
@@ -23,8 +23,7 @@ from yade.wrapper import (
     NewtonIntegrator,
 )
 
-from ..arguments import Numbers, flag, isListed, items, misfits, shown, takes
-from .blocks import refuse
+from ..arguments import Numbers, isA, listOf, number, oneOf, shown, validated, vector, whole  # fmt: skip
 
 MOST_STEPS = 10**15  # that no run has time for
 
@@ -41,25 +40,26 @@ if hasattr(NewtonIntegrator, "rotAlgorithm"):
     ROTATION["rotAlgorithm"] = "Fincham1992"
 
 
-#: Kinds of the arguments of :func:`engines` that no class of the plugin checks.
-OWN = {"inPlane": flag, "functors": flag}
+Damping = Annotated[float, number("", 0, 0.99)]
 
 
-@takes()
+@validated
 def engines(
-    joints: Sequence[Any],
-    damping: float = 0.8,
-    gravity: Numbers = (0, 0, -9.81),
-    points: int | None = None,
-    subcontacts: int | None = None,
-    rows: int | None = None,
+    joints: Annotated[Sequence[Any], listOf(isA(MasonryJoint))],
+    damping: Damping = 0.8,
+    gravity: Annotated[Numbers, vector("m/s²")] = (0, 0, -9.81),
+    points: Annotated[int, whole(0, 100)] | None = None,
+    subcontacts: Annotated[int, whole(1, 1000)] | None = None,
+    rows: Annotated[int, whole(0, 1000)] | None = None,
     inPlane: bool = False,
-    loads: Sequence[Any] = (),
-    zones: Any = None,
+    loads: Annotated[Sequence[Any], listOf(isA(MasonryLoad), 0)] = (),
+    zones: Annotated[Any, isA(MasonryZones)] | None = None,
     functors: bool = False,
-    dampingKind: str | None = None,
-    connectors: Sequence[Any] = (),
-    contacts: Any = None,
+    dampingKind: Annotated[str, oneOf("combined", "local")] | None = None,
+    connectors: Annotated[
+        Sequence[Any], listOf(isA((MasonryTies, MasonrySprings)), 0)
+    ] = (),  # fmt: skip
+    contacts: Annotated[Any, isA(MasonryContacts)] | None = None,
 ) -> None:
     """Fill O.engines for a masonry scene: joints, loads, energy balance and integration. There is no collider.
 
@@ -95,62 +95,19 @@ def engines(
     :param connectors: MasonryTies and MasonrySprings engines
     :param contacts: MasonryContacts of the blocks that no joint connects, if there are some
     """
-    problems = misfits("engines: ", OWN, {"inPlane": inPlane, "functors": functors})
-    down: Any = gravity
-    if isListed(gravity) and items(gravity) is None:
-        down = shown(gravity)  # an array without dimensions, which no class answers
-    kinds = ("local",) if functors is True else ("combined", "local")
-    if dampingKind is not None and not (isinstance(dampingKind, str) and dampingKind in kinds):  # fmt: skip
-        problems.append(
-            f"engines: dampingKind must be {' or '.join(kinds)}"
-            + (" with functors" if functors else "")
-            + f", got {shown(dampingKind)}"
-        )
-        dampingKind = None
-
-    def made(make):
-        try:
-            return make()
-        except UnicodeError as error:
-            problems.append(f"engines: {shown(error.object)} must be a number")
-        except ValueError as error:
-            problems.append(str(error))
-
-    def listed(values, what, kind):
-        found = items(values)
-        wrong = [values] if found is None else [v for v in found if not isinstance(v, kind)]  # fmt: skip
-        if wrong:
-            names = " and ".join(one.__name__ for one in (kind if isinstance(kind, tuple) else (kind,)))  # fmt: skip
-            problems.append(
-                f"engines: {what} must be a list of {names}, got {shown(wrong[0])}"
-            )
-        return found or []
-
-    joints = listed(joints, "joints", MasonryJoint)
-    loads = listed(loads, "loads", MasonryLoad)
-    connectors = listed(connectors, "connectors", (MasonryTies, MasonrySprings))
-    if not joints:
-        problems.append("engines: joints must not be empty")
-    if contacts is not None and not isinstance(contacts, MasonryContacts):
-        problems.append(f"engines: contacts must be a MasonryContacts or None, got {shown(contacts)}")  # fmt: skip
-    if zones is not None and not isinstance(zones, MasonryZones):
-        problems.append(f"engines: zones must be a MasonryZones or None, got {zones!r}")
-    integrator = made(
-        lambda: MasonryIntegrator(
-            damping=damping,
-            dampingKind=dampingKind or kinds[0],
-            gravity=down,
-            label="integrator",
-        )
+    if functors and dampingKind == "combined":
+        raise ValueError("engines: dampingKind must be local with functors")
+    integrator = MasonryIntegrator(
+        damping=damping,
+        dampingKind=dampingKind or ("local" if functors else "combined"),
+        gravity=gravity,
+        label="integrator",
     )
     counts = {"subcontacts": subcontacts, "rows": rows}
-    geometry = made(
-        lambda: Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom(
-            **{name: n for name, n in counts.items() if n is not None},
-            rowDirection=(0, 1, 0) if inPlane is True else (0, 0, 0),
-        )
+    geometry = Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom(
+        **{name: n for name, n in counts.items() if n is not None},
+        rowDirection=(0, 1, 0) if inPlane else (0, 0, 0),
     )
-    refuse(problems)
     physics = Ip2_MasonryMat_MasonryMat_MasonryJointPhys(joints=joints)
     if zones:
         zones.gravity = integrator.gravity
@@ -164,12 +121,9 @@ def engines(
             **ROTATION,
         )
     else:
-        loop = made(
-            lambda: MasonryJointLoop(
-                geometry=geometry, physics=physics, points=points or 0, label="joints"
-            )
+        loop = MasonryJointLoop(
+            geometry=geometry, physics=physics, points=points or 0, label="joints"
         )
-        refuse(problems)
     O.engines = [
         ForceResetter(),
         loop,
@@ -181,18 +135,19 @@ def engines(
     ] + ([zones] if zones else [])
 
 
-@takes()
+@validated
 def engine(label: str) -> Any:
     """The engine of O.engines with this label. Raises ValueError, with the labels that there are."""
     found = {e.label: e for e in O.engines if e.label}
-    if not isinstance(label, str) or label not in found:
+    if label not in found:
         raise ValueError(
             f"no engine has the label {shown(label)}; there are {', '.join(found) or 'none'}"
         )
     return found[label]
 
 
-def advance(steps: int) -> None:
+@validated
+def advance(steps: Annotated[int, whole(0, MOST_STEPS)]) -> None:
     """Take time steps, in this thread, as fast as the engines go. Ctrl-C stops between two steps.
 
     YADE's ``O.run(steps, True)`` waits for another thread and looks every 40 ms whether it has finished, so short runs
@@ -200,10 +155,6 @@ def advance(steps: int) -> None:
 
     :param steps: how many, a whole number from 0 on
     """
-    if isinstance(steps, bool) or not isinstance(steps, int) or not 0 <= steps < MOST_STEPS:  # fmt: skip
-        raise ValueError(
-            f"advance: steps must be a whole number from 0 on, below {MOST_STEPS:g}, got {shown(steps)}"
-        )
     step = O.step
     for _ in range(steps):
         step()

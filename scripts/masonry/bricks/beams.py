@@ -4,10 +4,13 @@
 
 from __future__ import annotations
 
-from ..arguments import Numbers, number, oneOf, takes, text, vector, whole
+from typing import Annotated
+
+from ..arguments import Numbers, number, oneOf, validated, vector, whole
 from .blocks import Block, Bricks, boxCorners
 
-START, LENGTH = vector("m", 1e6), number("m", 0, 1e6, above=True)
+Place = Annotated[Numbers, vector("m", 1e6)]
+Length = Annotated[float, number("m", 0, 1e6, above=True)]
 MOST = 100_000  # pieces
 
 
@@ -22,14 +25,14 @@ def _row(start, size, pieces, axis, name):
     return Bricks(found)
 
 
-@takes(start=START, length=LENGTH, width=LENGTH, height=LENGTH, along=oneOf("x", "y"), pieces=whole(1, MOST), name=text)  # fmt: skip
+@validated
 def Beam(
-    start: Numbers,
-    length: float,
-    width: float,
-    height: float,
-    along: str = "x",
-    pieces: int = 8,
+    start: Place,
+    length: Length,
+    width: Length,
+    height: Length,
+    along: Annotated[str, oneOf("x", "y")] = "x",
+    pieces: Annotated[int, whole(1, MOST)] = 8,
     name: str = "beam",
 ) -> Bricks:
     """A beam that bends, as a ring beam, a lintel or a wall plate: a row of pieces, a :class:`Bricks`.
@@ -48,14 +51,14 @@ def Beam(
     return _row(start, size, pieces, "xy".index(along), name)
 
 
-@takes(start=START, length=LENGTH, width=LENGTH, height=LENGTH, along=oneOf("x", "y"), strips=whole(2, MOST), name=text)  # fmt: skip
+@validated
 def Floor(
-    start: Numbers,
-    length: float,
-    width: float,
-    height: float,
-    along: str = "x",
-    strips: int = 8,
+    start: Place,
+    length: Length,
+    width: Length,
+    height: Length,
+    along: Annotated[str, oneOf("x", "y")] = "x",
+    strips: Annotated[int, whole(2, MOST)] = 8,
     name: str = "floor",
 ) -> Bricks:
     """A floor or a roof that spans one way, and shears in its plane: strips side by side, a :class:`Bricks`.

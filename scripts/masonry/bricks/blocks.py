@@ -7,27 +7,47 @@ import math
 from collections import Counter
 from dataclasses import dataclass, replace
 from numbers import Integral
-from typing import Any, Callable, Iterable, Iterator
+from typing import Annotated, Any, Callable, Iterable, Iterator
 
 import numpy as np
 
-from ..arguments import (
-    Kind,
-    Numbers,
-    anything,
-    flag,
-    isA,
-    items,
-    misfits,
-    shown,
-    takes,
-    text,
-)
+from ..arguments import Direction, Numbers, isA, items, isNumber, number, oneOf, shown, text, validated, vector, whole  # fmt: skip
 from . import checks
 from .geometry import COINCIDENT, Solids, cutCorners, measures
 
 #: No corner of masonry is farther from the origin [m].
 FARTHEST = 1e6
+
+#: A length, one that may be 0, a coordinate, a point [m], and a number of things.
+Length = Annotated[float, number("m", 0, FARTHEST, above=True)]
+Gap = Annotated[float, number("m", 0, FARTHEST)]
+Coordinate = Annotated[float, number("m", -FARTHEST, FARTHEST)]
+Point = Annotated[Numbers, vector("m", FARTHEST)]
+Count = Annotated[int, whole(1, 10**9)]
+
+
+def sides(value: Any, first: Any = None) -> tuple[float, ...]:
+    """The kind of the length, thickness and height of a block."""
+    try:
+        found = tuple(map(number("m", 0, FARTHEST, above=True), items(value)))
+    except (TypeError, ValueError):
+        found = ()
+    if len(found) != 3:
+        raise ValueError(
+            f"{shown(value)} must be a length, thickness and height above 0 and at most {FARTHEST:g} m"
+        )
+    return found
+
+
+def corner(value: Any, first: Any = None) -> tuple[float, ...]:
+    """The kind of a corner of a box, which may be infinitely far away."""
+    found = items(value) or ()
+    if len(found) != 3 or not all(isNumber(v) and v == v for v in found):
+        raise ValueError(f"{shown(value)} must be three numbers [m]")
+    return tuple(found)
+
+
+Sides = Annotated[Numbers, sides]
 
 LOOKING = math.cos(math.radians(45))  # of the angle between a face and where it looks
 ALONG = 1 - 1e-6  # of the angle between normals of one face of a convex block
@@ -77,7 +97,10 @@ class Block:
             if not isinstance(value, Integral) or isinstance(value, bool):
                 problems.append(f"{what} must be a whole number, got {shown(value)}")
         for what in ("part", "kind"):
-            fits(text, getattr(self, what), what, problems)
+            try:
+                text(getattr(self, what))
+            except ValueError as error:
+                problems.append(f"{what} {error}")
         refuse("block", problems)
         object.__setattr__(self, "corners", corners)
 
@@ -106,7 +129,7 @@ class Bricks:
     :param blocks: the :class:`Block` records
     """
 
-    @takes()
+    @validated
     def __init__(self, blocks: Iterable[Any] = ()) -> None:
         try:
             self._blocks = tuple(blocks)
@@ -210,15 +233,17 @@ class Bricks:
 
     # -- moving and naming ----------------------------------------------------------------------------------------
 
-    @takes()
-    def moved(self, dx: float = 0.0, dy: float = 0.0, dz: float = 0.0) -> Bricks:
+    @validated
+    def moved(self, dx: Coordinate = 0.0, dy: Coordinate = 0.0, dz: Coordinate = 0.0) -> Bricks:
         """The blocks moved along the axes [m]."""
-        by = _vector((dx, dy, dz), "moved: way [m]")
-        return self._mapped(lambda c: tuple(x + d for x, d in zip(c, by)))
+        return self._mapped(lambda c: tuple(x + d for x, d in zip(c, (dx, dy, dz))))
 
-    @takes()
+    @validated
     def turned(
-        self, degrees: float, axis: str = "z", about: Numbers = (0, 0, 0)
+        self,
+        degrees: Annotated[float, number("°", -FARTHEST, FARTHEST)],
+        axis: Annotated[str, oneOf("x", "y", "z")] = "z",
+        about: Point = (0, 0, 0),
     ) -> Bricks:
         """The blocks turned about an axis through a point, by the right-hand rule. Quarter turns are exact.
 
@@ -226,13 +251,6 @@ class Bricks:
         :param axis: "x", "y" or "z"
         :param about: point of the axis [m]
         """
-        problems = []
-        if not (_isNumber(degrees) and abs(degrees) <= FARTHEST):
-            problems.append(f"angle [°] must be at most {FARTHEST:g}, and a finite number, got {shown(degrees)}")  # fmt: skip
-        if not isinstance(axis, str) or axis not in ("x", "y", "z"):
-            problems.append(f'axis must be "x", "y" or "z", got {shown(axis)}')
-        refuse("turned", problems)
-        about = _vector(about, "turned: about [m]")
         quarters = degrees / 90
         cos: float
         sin: float
@@ -251,12 +269,12 @@ class Bricks:
 
         return self._mapped(turn)
 
-    @takes()
+    @validated
     def named(self, part: str) -> Bricks:
         """The blocks as a part of this name."""
         return Bricks(replace(b, part=part) for b in self._blocks)
 
-    @takes()
+    @validated
     def ofKind(self, kind: str) -> Bricks:
         """The blocks as blocks of this kind."""
         return Bricks(replace(b, kind=kind) for b in self._blocks)
@@ -268,24 +286,20 @@ class Bricks:
 
     # -- choosing -------------------------------------------------------------------------------------------------
 
-    @takes()
+    @validated
     def where(self, function: Callable[[Block], bool]) -> Bricks:
         """The blocks for which a function of the :class:`Block` is true, with their numbers of bricks."""
-        if not callable(function):
-            raise ValueError(
-                f"where: needs a function of a block, got {shown(function)}"
-            )
         return Bricks([b for b in self._blocks if function(b)])
 
-    @takes()
-    def within(self, low: Numbers, high: Numbers) -> Bricks:
+    @validated
+    def within(
+        self, low: Annotated[Numbers, corner], high: Annotated[Numbers, corner]
+    ) -> Bricks:
         """The blocks whose middle lies in a box, its sides included.
 
         :param low: opposite corners of the box [m]; ``math.inf`` is allowed
         :param high:
         """
-        low = _vector(low, "within: low corner [m]", finite=False)
-        high = _vector(high, "within: high corner [m]", finite=False)
         if not all(a <= b for a, b in zip(low, high)):
             raise ValueError(
                 f"within: low corner {low} m must lie below high corner {high} m"
@@ -311,8 +325,8 @@ class Bricks:
 
     # -- cutting --------------------------------------------------------------------------------------------------
 
-    @takes(point=anything, normal=anything, own=flag)
-    def cut(self, point: Numbers, normal: Numbers, own: bool = False) -> Bricks:
+    @validated
+    def cut(self, point: Point, normal: Direction, own: bool = False) -> Bricks:
         """The blocks, with every one that a plane crosses cut in two. Order and numbers of bricks stay.
 
         :param point: a point of the plane [m]
@@ -321,11 +335,7 @@ class Bricks:
             other parts of its brick there, so that the cut is a mortar joint; else the parts stay pieces of one brick
             and the cut is a crack surface
         """
-        point = _vector(point, "cut: point [m]")
-        normal = _vector(normal, "cut: normal")
         length = math.hypot(*normal)
-        if not length > 0:
-            raise ValueError("cut: normal must not be of length 0")
         normal = tuple(n / length for n in normal)
         solids = self._solids()
         refuse("cut", self._degenerate(solids))
@@ -406,18 +416,16 @@ class Bricks:
         """
         return list(self._pairs()[0])
 
-    @takes()
+    @validated
     def freeFaces(
-        self, direction: Numbers
+        self, direction: Direction
     ) -> list[tuple[int, tuple[float, ...], float, tuple[float, ...]]]:
         """Faces that look in a direction, within 45 degrees, with what no joint covers of them.
 
         :param direction: three numbers, of any length
         :returns: list of (number of the block, outward normal, free area [m²], centroid of the free part [m])
         """
-        sight = np.array(_vector(direction, "freeFaces: direction"), float)
-        if not np.linalg.norm(sight) > 0:
-            raise ValueError("freeFaces: direction must not be of length 0")
+        sight = np.array(direction, float)
         sight /= np.linalg.norm(sight)
         solids = self._solids()
         refuse("freeFaces", self._degenerate(solids))
@@ -467,8 +475,10 @@ class Bricks:
         return list(self._found["problems"])
 
 
-@takes(bricks=lambda value, first=None: isA(Bricks)(value))
-def summary(bricks: Bricks) -> dict[str, Any]:
+@validated
+def summary(
+    bricks: Annotated[Bricks, lambda value, first=None: isA(Bricks)(value)]
+) -> dict[str, Any]:
     """Counts and sizes of a collection of blocks: a dict with units in its names."""
     count = lambda what: dict(Counter(getattr(b, what) for b in bricks))
     return dict(
@@ -506,59 +516,6 @@ def refuse(what: str, problems: list[str], most: int = 10) -> None:
         raise ValueError(f"{what}: " + "; ".join([*problems[:most], *more]))
 
 
-def fits(kind: Kind, value: object, name: str, problems: list[str]) -> bool:
-    """Whether a value is of a kind of :mod:`masonry.arguments`; else a sentence is added to the problems."""
-    found = misfits("", {name: kind}, {name: value})
-    problems += found
-    return not found
-
-
-def positive(
-    value: Any, name: str, problems: list[str], unit: str = "m", zero: bool = False
-) -> bool:
-    """Whether a value is a number above 0 (or 0, too) and not more than any length of masonry; else a sentence is added to the
-    problems."""
-    fine = _isNumber(value) and (value >= 0 if zero else value > 0) and value < math.inf
-    if fine and value > FARTHEST:
-        problems.append(f"{name} {shown(value)} {unit} must be at most {FARTHEST:g} {unit}: is it in {unit}?")  # fmt: skip
-        return False
-    if not fine:
-        bound = "0 or more" if zero else "above 0"
-        problems.append(f"{name} [{unit}] must be a number {bound}, got {shown(value)}")
-    return fine
-
-
-def wholeNumber(
-    value: Any, name: str, problems: list[str], least: int = 1, most: int = 10**9
-) -> bool:
-    """Whether a value is a whole number of at least `least`; else a sentence is added to the problems."""
-    fine = isinstance(value, Integral) and not isinstance(value, bool)
-    fine = fine and value >= least
-    if fine and value > most:
-        problems.append(f"{name} {shown(value)} must be at most {most}")
-        return False
-    if not fine:
-        problems.append(
-            f"{name} must be a whole number of at least {least}, got {shown(value)}"
-        )
-    return fine
-
-
 def _isNumber(value):
     floats = (int, float, np.integer, np.floating)
     return isinstance(value, floats) and not isinstance(value, bool)
-
-
-def _vector(value, what, finite=True):
-    try:
-        found = tuple(value)
-        good = len(found) == 3 and all(map(_isNumber, found))
-        good = good and not any(v != v for v in found)
-        good = good and (not finite or all(abs(v) <= FARTHEST for v in found))
-    except Exception:  # arrays without dimensions, classes of the user's own
-        good = False
-    if not good:
-        raise ValueError(
-            f"{what} must be three finite numbers, each at most {FARTHEST:g}, got {shown(value)}"
-        )
-    return found

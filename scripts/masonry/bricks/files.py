@@ -14,10 +14,11 @@ from collections import namedtuple
 
 import numpy as np
 
-from ..arguments import FilePath, path as pathOf
-from ..arguments import takes, text
+from typing import Annotated
+
+from ..arguments import FilePath, number, validated
 from ..packages import needed
-from .blocks import FARTHEST, Block, Bricks, fits, positive, refuse
+from .blocks import FARTHEST, Block, Bricks, refuse
 from .checks import where
 from .geometry import FLAT
 
@@ -33,8 +34,12 @@ COINCIDE = 1e-3
 _Surface = namedtuple("_Surface", "name points faces")
 
 
-@takes()
-def fromFile(path: FilePath, scale: float = 1.0, kind: str = "block") -> Bricks:
+@validated
+def fromFile(
+    path: FilePath,
+    scale: Annotated[float, number("m", 0, 1e6, above=True)] = 1.0,
+    kind: str = "block",
+) -> Bricks:
     """Blocks from a file, one for each closed convex surface in it: a :class:`Bricks`, each block a brick of its own.
 
     Formats: ``.obj`` (each ``g`` or ``o`` is a group), ``.off``, ``.stl`` (as text, each ``solid`` is a group, or as
@@ -48,11 +53,6 @@ def fromFile(path: FilePath, scale: float = 1.0, kind: str = "block") -> Bricks:
         each is named by its group and its number there, with the face and its place
     """
     problems = []
-    positive(scale, "scale", problems, "m")
-    fits(text, kind, "kind", problems)
-    if not fits(pathOf, path, "path", problems):
-        refuse("fromFile", problems)
-    path = os.fspath(path)
     ending = os.path.splitext(path)[1].lower()
     readers = {
         ".obj": _readObj,

@@ -4,17 +4,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Annotated
 
-from ..arguments import items, named, shown
+from ..arguments import isA, validated
 from ..basics import withoutCollector
-from .blocks import Block, Bricks, boxCorners, positive, refuse
+from .blocks import Block, Bricks, Gap, Length, boxCorners, refuse
 from .checks import components, where
 
 #: Lengths are whole units if they are by this share of a quarter unit.
 WHOLE = 1e-6
 
 
-@named
+@validated
 @dataclass(frozen=True)
 class Lintel:
     """One block over an opening.
@@ -23,11 +24,11 @@ class Lintel:
     :param height: [m]
     """
 
-    bearing: float
-    height: float
+    bearing: Length
+    height: Length
 
 
-@named
+@validated
 @dataclass(frozen=True)
 class Opening:
     """A rectangular hole through a wall. Bricks inside are left out, those at its edge are cut.
@@ -39,11 +40,11 @@ class Opening:
     :param lintel: :class:`Lintel`; None: none
     """
 
-    x: float
-    z: float
-    width: float
-    height: float
-    lintel: Lintel | None = None
+    x: Gap
+    z: Gap
+    width: Length
+    height: Length
+    lintel: Annotated[Lintel, isA(Lintel)] | None = None
 
 
 @dataclass(frozen=True)
@@ -72,12 +73,6 @@ def opened(bricks, openings, unit, levels, ends, ys, part, crossed=None):
     :param bricks: a number each
     :param ends: from where to where openings may be [m]
     """
-    found = items(openings)
-    if found is None:
-        raise ValueError(
-            f"{part}: openings must be a list of Opening, got {shown(openings)}"
-        )
-    openings = tuple(found)
     if not openings:
         return bricks, []
     problems = []
@@ -114,30 +109,7 @@ def _holes(openings, unit, levels, ends, crossed, problems):
     holes, lintels = [], []
     for n, opening in enumerate(openings):
         name = f"opening {n}"
-        if not isinstance(opening, Opening):
-            problems.append(f"{name} must be an Opening, got {shown(opening)}")
-            continue
-        good = [
-            positive(opening.x, f"{name}: x", problems, zero=True),
-            positive(opening.z, f"{name}: z", problems, zero=True),
-            positive(opening.width, f"{name}: width", problems),
-            positive(opening.height, f"{name}: height", problems),
-        ]
         lintel = opening.lintel
-        if lintel is not None and not isinstance(lintel, Lintel):
-            problems.append(
-                f"{name}: lintel must be a Lintel or None, got {shown(lintel)}"
-            )
-            good.append(False)
-        elif lintel is not None:
-            good.append(
-                positive(lintel.bearing, f"{name}: bearing of its lintel", problems)
-            )
-            good.append(
-                positive(lintel.height, f"{name}: height of its lintel", problems)
-            )
-        if not all(good):
-            continue
         x0, x1 = alongWall(opening.x), alongWall(opening.x + opening.width)
         z0, z1 = upWall(opening.z), upWall(opening.z + opening.height)
         if x0 < ends[0] or x1 > ends[1]:

@@ -5,22 +5,27 @@ from __future__ import annotations
 
 import math
 
-from ..arguments import flag, takes, text
-from .blocks import Block, Bricks, fits, positive, refuse, wholeNumber
+from typing import Annotated
+
+from ..arguments import number, validated, whole
+from .blocks import Block, Bricks, Length, refuse
 
 #: No arch, vault or dome has more stones.
 MOST_STONES = 100_000
 
+Stones = Annotated[int, whole(1, MOST_STONES)]
+CentreAngle = Annotated[float, number("°", 1, 180)]
 
-@takes()
+
+@validated
 def Arch(
-    thickness: float,
-    depth: float,
-    stones: int,
-    span: float | None = None,
-    radius: float | None = None,
-    angle: float = 180.0,
-    skewback: float | None = None,
+    thickness: Length,
+    depth: Length,
+    stones: Stones,
+    span: Length | None = None,
+    radius: Length | None = None,
+    angle: CentreAngle = 180.0,
+    skewback: Length | None = None,
     part: str = "arch",
 ) -> Bricks:
     """A circular arch from equal voussoirs: a :class:`Bricks` of kind "voussoir", numbered from left to right.
@@ -45,11 +50,7 @@ def Arch(
     :raises ValueError: with all problems
     """
     problems = []
-    radius = _circle(thickness, stones, span, radius, angle, problems)
-    positive(depth, "depth", problems)
-    if skewback is not None:
-        positive(skewback, "skewback", problems)
-    fits(text, part, "part", problems)
+    radius = _circle(stones, span, radius, angle, problems)
     refuse("arch", problems)
     points = _ring(radius, thickness, stones, angle)
     voussoirs = [
@@ -69,15 +70,15 @@ def Arch(
     return Bricks(voussoirs)
 
 
-@takes()
+@validated
 def BarrelVault(
-    thickness: float,
-    length: float,
-    stones: int,
-    rows: int,
-    span: float | None = None,
-    radius: float | None = None,
-    angle: float = 180.0,
+    thickness: Length,
+    length: Length,
+    stones: Stones,
+    rows: Stones,
+    span: Length | None = None,
+    radius: Length | None = None,
+    angle: CentreAngle = 180.0,
     staggered: bool = True,
     part: str = "vault",
 ) -> Bricks:
@@ -95,12 +96,8 @@ def BarrelVault(
     :raises ValueError: with all problems
     """
     problems = []
-    radius = _circle(thickness, stones, span, radius, angle, problems)
-    positive(length, "length", problems)
-    if wholeNumber(rows, "rows", problems) and not problems:
-        _few(stones * rows, problems)
-    fits(text, part, "part", problems)
-    fits(flag, staggered, "staggered", problems)
+    radius = _circle(stones, span, radius, angle, problems)
+    _few(stones * rows, problems)
     refuse("vault", problems)
     points = _ring(radius, thickness, stones, angle)
     blocks = []
@@ -115,14 +112,14 @@ def BarrelVault(
     return Bricks(blocks)
 
 
-@takes()
+@validated
 def Dome(
-    radius: float,
-    thickness: float,
-    courses: int,
-    stones: int,
-    oculus: float | None = None,
-    angle: float = 180.0,
+    radius: Length,
+    thickness: Length,
+    courses: Stones,
+    stones: Stones,
+    oculus: Length | None = None,
+    angle: CentreAngle = 180.0,
     staggered: bool = False,
     part: str = "dome",
 ) -> Bricks:
@@ -144,21 +141,16 @@ def Dome(
     :raises ValueError: with all problems
     """
     problems = []
-    good = positive(radius, "radius", problems)
-    positive(thickness, "thickness", problems)
-    fine = wholeNumber(courses, "courses", problems)
-    fine &= wholeNumber(stones, "stones", problems, 2 if staggered is True else 3)
-    if fine:
-        _few(2 * courses * stones, problems)
-    opening = _angle(angle, problems)
-    if oculus is not None and positive(oculus, "oculus", problems) and good and opening:
+    least = 2 if staggered else 3
+    if stones < least:
+        problems.append(f"stones {stones} must be at least {least}")
+    _few(2 * courses * stones, problems)
+    if oculus is not None:
         most = radius * math.sin(math.radians(angle / 2))
         if oculus >= most:
             problems.append(
                 f"oculus {oculus:g} m must be smaller than the springing's radius, {most:g} m"
             )
-    fits(text, part, "part", problems)
-    fits(flag, staggered, "staggered", problems)
     refuse("dome", problems)
     lowest = math.radians(angle / 2)
     # polar angles of the bed joints, from below
@@ -199,42 +191,22 @@ def Dome(
 # -- circles ----------------------------------------------------------------------------------------------------------
 
 
-def _angle(angle, problems):
-    if not positive(angle, "angle", problems, "°"):
-        return False
-    if angle > 180:
-        problems.append(f"angle {angle:g}° must be at most 180°")
-    elif angle < 1:
-        problems.append(f"angle {angle:g}° must be at least 1°: is it in degrees?")
-    return 1 <= angle <= 180
-
-
 def _few(count, problems):
     if count > MOST_STONES:
         problems.append(f"{count} stones are more than {MOST_STONES}")
 
 
-def _circle(thickness, stones, span, radius, angle, problems):
+def _circle(stones, span, radius, angle, problems):
     """The inner radius [m] of a ring, or None with sentences."""
-    positive(thickness, "thickness", problems)
-    if wholeNumber(stones, "stones", problems):
-        _few(stones, problems)
-    good = _angle(angle, problems)
     if (span is None) == (radius is None):
         problems.append("either span or radius [m] must be given")
         return None
-    if span is not None:
-        if not (positive(span, "span", problems) and good):
-            return None
+    if radius is None:
         radius = span / 2 / math.sin(math.radians(angle / 2))
-    elif not positive(radius, "radius", problems):
-        return None
-    if good and not problems:
-        half = math.radians(angle / stones / 2)
-        if half > math.pi / 4:
-            problems.append(
-                f"{stones} voussoirs are too few for {angle:g}°: each may take 90° at most"
-            )
+    if math.radians(angle / stones / 2) > math.pi / 4:
+        problems.append(
+            f"{stones} voussoirs are too few for {angle:g}°: each may take 90° at most"
+        )
     return radius
 
 

@@ -9,10 +9,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Iterable
+from typing import Annotated, Iterable, Sequence
 
-from ..arguments import Numbers, anything, flag, items, nearest, shown, takes, text
-from .blocks import Block, Bricks, boxCorners, fits, positive, refuse, wholeNumber
+from ..arguments import isA, listOf, number, oneOf, validated, whole
+from .blocks import (
+    FARTHEST,
+    Block,
+    Bricks,
+    Gap,
+    Length,
+    Point,
+    Sides,
+    boxCorners,
+    refuse,
+)
 from .bonds import layout
 from .geometry import FLAT
 from .openings import WHOLE, LaidBrick, Opening, finished, numbered, opened
@@ -25,20 +35,24 @@ MOST_BRICKS = 100_000
 
 BONDS = ("running", "stack", "header", "english", "flemish")
 
+#: Heights of courses [m], and openings.
+Courses = Annotated[Sequence[float], listOf(number("m", 0, FARTHEST, above=True))]
+Openings = Annotated[Iterable[Opening], listOf(isA(Opening, "bricks.Opening"), 0)]
 
-@takes()
+
+@validated
 def Wall(
-    length: float,
-    height: float | None = None,
-    unit: Numbers = UNIT,
-    bond: str = "running",
-    wythes: int = 1,
-    openings: Iterable[Opening] = (),
-    courses: int | None = None,
+    length: Length,
+    height: Length | None = None,
+    unit: Sides = UNIT,
+    bond: Annotated[str, oneOf(*BONDS)] = "running",
+    wythes: Annotated[int, whole(1, 100)] = 1,
+    openings: Openings = (),
+    courses: Courses | None = None,
     halves: bool = True,
-    collar: float | None = None,
+    collar: Gap | None = None,
     part: str = "wall",
-    joint: float = 0.0,
+    joint: Gap = 0.0,
 ) -> Bricks:
     """A straight wall, its lower left front corner at the origin: a :class:`Bricks`.
 
@@ -73,20 +87,12 @@ def Wall(
     :raises ValueError: with all problems
     """
     problems = []
-    unit = _unit(unit, problems, joint=joint)
-    known = isinstance(bond, str) and bond in BONDS
-    if not known:
-        problems.append(f"bond must be one of {', '.join(BONDS)}, got {shown(bond)}{nearest(bond, BONDS) if isinstance(bond, str) else ''}")  # fmt: skip
-    through = known and bond in ("header", "english", "flemish")
-    if wholeNumber(wythes, "wythes", problems, most=100) and known:
-        if through and wythes != 2:
-            problems.append(
-                f"{bond} bond has headers that go through the wall and needs wythes=2, got {wythes}"
-            )
-    if collar is not None:
-        positive(collar, "collar", problems, zero=True)
-    fits(text, part, "part", problems)
-    fits(flag, halves, "halves", problems)
+    unit = _laid(unit, joint, problems)
+    through = bond in ("header", "english", "flemish")
+    if through and wythes != 2:
+        problems.append(
+            f"{bond} bond has headers that go through the wall and needs wythes=2, got {wythes}"
+        )
     step = 4 if bond == "stack" else 2
     quarters = _quarters(length, unit, "length", step, problems)
     levels = _levels(height, courses, unit, problems)
@@ -135,17 +141,17 @@ def Wall(
     return finished(kept + lintels)
 
 
-@takes()
+@validated
 def Corner(
-    length: float,
-    length2: float,
-    height: float | None = None,
-    unit: Numbers = UNIT,
-    openings: Iterable[Opening] = (),
-    openings2: Iterable[Opening] = (),
-    courses: int | None = None,
+    length: Length,
+    length2: Length,
+    height: Length | None = None,
+    unit: Sides = UNIT,
+    openings: Openings = (),
+    openings2: Openings = (),
+    courses: Courses | None = None,
     halves: bool = True,
-    joint: float = 0.0,
+    joint: Gap = 0.0,
 ) -> Bricks:
     """Two walls of one wythe in running bond that meet at a right angle at the origin, with interlocking courses.
 
@@ -161,11 +167,10 @@ def Corner(
     :raises ValueError: with all problems
     """
     problems = []
-    unit = _unit(unit, problems, joint=joint)
+    unit = _laid(unit, joint, problems)
     one = _quarters(length, unit, "length", 2, problems, least=6)
     two = _quarters(length2, unit, "length2", 2, problems, least=6)
     levels = _levels(height, courses, unit, problems)
-    fits(flag, halves, "halves", problems)
     refuse("corner", problems)
     _few(one + two, levels, 1, problems)
     refuse("corner", problems)
@@ -177,18 +182,18 @@ def Corner(
     return finished(_joined([walls[0], _along(walls[1])]))
 
 
-@takes()
+@validated
 def Tee(
-    length: float,
-    length2: float,
-    at: float,
-    height: float | None = None,
-    unit: Numbers = UNIT,
-    openings: Iterable[Opening] = (),
-    openings2: Iterable[Opening] = (),
-    courses: int | None = None,
+    length: Length,
+    length2: Length,
+    at: Length,
+    height: Length | None = None,
+    unit: Sides = UNIT,
+    openings: Openings = (),
+    openings2: Openings = (),
+    courses: Courses | None = None,
     halves: bool = True,
-    joint: float = 0.0,
+    joint: Gap = 0.0,
 ) -> Bricks:
     """A wall of one wythe in running bond along x, part "wall", and another, part "stem", that meets it from behind.
 
@@ -204,12 +209,12 @@ def Tee(
     :raises ValueError: with all problems
     """
     problems = []
-    unit = _unit(unit, problems, joint=joint)
+    unit = _laid(unit, joint, problems)
     one = _quarters(length, unit, "length", 2, problems, least=8)
     two = _quarters(length2, unit, "length2", 2, problems, least=6)
     levels = _levels(height, courses, unit, problems)
     middle = None
-    if positive(at, "at", problems) and unit and one:
+    if unit and one:
         middle = at / unit[0] - 0.5
         nearest = round(middle)
         most = one // 4 - 1 if one % 4 == 0 else (one - 2) // 4 - 1
@@ -224,7 +229,6 @@ def Tee(
         problems.append(
             f"a junction needs a unit no thicker than 0.75 of its length, got {unit[1]:g} m and {unit[0]:g} m"
         )
-    fits(flag, halves, "halves", problems)
     refuse("tee", problems)
     _few(one + two, levels, 1, problems)
     refuse("tee", problems)
@@ -238,19 +242,19 @@ def Tee(
     return finished(_joined([walls[0], _along(walls[1])]))
 
 
-@takes()
+@validated
 def Room(
-    length: float,
-    width: float,
-    height: float | None = None,
-    unit: Numbers = UNIT,
-    front: Iterable[Opening] = (),
-    right: Iterable[Opening] = (),
-    back: Iterable[Opening] = (),
-    left: Iterable[Opening] = (),
-    courses: int | None = None,
+    length: Length,
+    width: Length,
+    height: Length | None = None,
+    unit: Sides = UNIT,
+    front: Openings = (),
+    right: Openings = (),
+    back: Openings = (),
+    left: Openings = (),
+    courses: Courses | None = None,
     halves: bool = True,
-    joint: float = 0.0,
+    joint: Gap = 0.0,
 ) -> Bricks:
     """Four walls of one wythe in running bond around a rectangle, with interlocking courses at its four corners.
 
@@ -265,7 +269,7 @@ def Room(
     :raises ValueError: with all problems
     """
     problems = []
-    unit = _unit(unit, problems, joint=joint)
+    unit = _laid(unit, joint, problems)
     one = _quarters(length, unit, "length", 4, problems, least=12)
     two = _quarters(width, unit, "width", 4, problems, least=12)
     levels = _levels(height, courses, unit, problems)
@@ -273,7 +277,6 @@ def Room(
         problems.append(
             f"a room needs a unit no thicker than its length, got {unit[1]:g} m and {unit[0]:g} m"
         )
-    fits(flag, halves, "halves", problems)
     refuse("room", problems)
     _few(2 * (one + two), levels, 1, problems)
     refuse("room", problems)
@@ -295,20 +298,15 @@ def Room(
     )
 
 
-@takes()
-def stack(count: int, size: Numbers, part: str = "stack") -> Bricks:
+@validated
+def stack(
+    count: Annotated[int, whole(1, MOST_BRICKS)], size: Sides, part: str = "stack"
+) -> Bricks:
     """Blocks on top of each other, the lowest one's lower left front corner at the origin: a :class:`Bricks`.
 
     :param count: number of blocks
     :param size: length, thickness and height of a block [m]
     """
-    problems = []
-    wholeNumber(count, "count", problems)
-    size = _unit(size, problems, "size")
-    fits(text, part, "part", problems)
-    refuse("stack", problems)
-    if count > MOST_BRICKS:
-        raise ValueError(f"stack: {count} blocks are more than {MOST_BRICKS}")
     return Bricks(
         Block(
             boxCorners((0.0, 0.0, n * size[2]), (size[0], size[1], (n + 1) * size[2])),
@@ -321,51 +319,27 @@ def stack(count: int, size: Numbers, part: str = "stack") -> Bricks:
     )
 
 
-@takes(low=anything, high=anything, part=text, kind=text)
-def block(
-    low: Numbers, high: Numbers, part: str = "block", kind: str = "block"
-) -> Bricks:
+@validated
+def block(low: Point, high: Point, part: str = "block", kind: str = "block") -> Bricks:
     """One block, a box between two opposite corners [m]: a :class:`Bricks`. It can be a platen, a pier or a beam."""
-    low, high = _triple(low, "low"), _triple(high, "high")
-    found = Block(boxCorners(low, high), 0, part, -1, kind)
     if not all(a < b for a, b in zip(low, high)):
         raise ValueError(
             f"block: low corner {tuple(low)} m must lie below high corner {tuple(high)} m on every axis"
         )
-    return Bricks([found])
+    return Bricks([Block(boxCorners(low, high), 0, part, -1, kind)])
 
 
 # -- checks of what a user gives --------------------------------------------------------------------------------------
 
 
-def _triple(value, what):
-    found = items(value) or ()
-    if len(found) != 3:
-        raise ValueError(
-            f"block: {what} corner [m] must be three numbers, got {shown(value)}"
-        )
-    return tuple(found)
-
-
-def _unit(unit, problems, what="unit", joint=0.0):
-    """Three lengths, to which the thickness of a joint is added, or None with a sentence."""
-    found = []
-    thick = positive(joint, "joint", problems, zero=True)
-    try:
-        sides = tuple(unit)
-        if len(sides) == 3 and all(positive(side, what, found) for side in sides):
-            if not thick or joint == 0:
-                return sides
-            if joint < min(sides[0], sides[2]):
-                return (sides[0] + joint, sides[1], sides[2] + joint)
-            problems.append(
-                f"joint {joint:g} m must be below length and height of the {what} {sides} m"
-            )
-            return None
-    except TypeError:
-        pass
+def _laid(unit, joint, problems):
+    """The sides of a unit with its joints, or None with a sentence."""
+    if joint == 0:
+        return unit
+    if joint < min(unit[0], unit[2]):
+        return (unit[0] + joint, unit[1], unit[2] + joint)
     problems.append(
-        f"{what} must be a length, thickness and height above 0 m, got {shown(unit)}"
+        f"joint {joint:g} m must be below length and height of the unit {unit} m"
     )
 
 
@@ -376,7 +350,7 @@ def _quarters(length, unit, what, step, problems, least=None):
     :param least: smallest number of quarter units; None: one step, or two for half units
     """
     least = least or 4
-    if not positive(length, what, problems) or not unit:
+    if not unit:
         return None
     units = length / unit[0]
     steps = 4 * units / step
@@ -403,16 +377,6 @@ def _quarters(length, unit, what, step, problems, least=None):
 def _levels(height, courses, unit, problems):
     """Heights of all bed joints, from 0 to the top [m], or None with a sentence."""
     if courses is not None:
-        try:
-            courses = tuple(courses)
-        except TypeError:
-            courses = ()
-        if not courses:
-            problems.append("courses must be a list of at least one height [m]")
-            return None
-        checks = [positive(h, f"course {n}", problems) for n, h in enumerate(courses)]
-        if not all(checks):
-            return None
         # a block as flat as corners may lie off their face's plane has no volume
         least = FLAT * max(unit) if unit else 0.0
         low = [n for n, h in enumerate(courses) if h <= least]
@@ -424,16 +388,15 @@ def _levels(height, courses, unit, problems):
         levels = [0.0]
         for h in courses:
             levels.append(levels[-1] + h)
-        if height is not None and positive(height, "height", problems):
-            if abs(height - levels[-1]) > WHOLE * levels[-1]:
-                problems.append(
-                    f"height {height:g} m differs from the sum of all courses, {levels[-1]:g} m"
-                )
+        if height is not None and abs(height - levels[-1]) > WHOLE * levels[-1]:
+            problems.append(
+                f"height {height:g} m differs from the sum of all courses, {levels[-1]:g} m"
+            )
         return levels
     if height is None:
         problems.append("height [m] or courses must be given")
         return None
-    if not positive(height, "height", problems) or not unit:
+    if not unit:
         return None
     count = height / unit[2]
     if not count < MOST_BRICKS:

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
-from ..arguments import Numbers, isA, items, isNumber, number, flag, takes
+from ..arguments import Numbers, isA, items, isNumber, number, validated
 from ..basics import Refused
 from ..read.bilinear import Bilinear, Pushover
 from ..read.bilinear import ofRun as bilinearOf
@@ -36,8 +36,11 @@ class Equivalent:
     source: str  #: where both come from, a sentence
 
 
-@takes(mass=number("kg", 0, 1e12, above=True), gamma=number("-", 0, 100, above=True))
-def equivalent(mass: float, gamma: float) -> Equivalent:
+@validated
+def equivalent(
+    mass: Annotated[float, number("kg", 0, 1e12, above=True)],
+    gamma: Annotated[float, number("-", 0, 100, above=True)],
+) -> Equivalent:
     """The equivalent system of a mass and a transformation factor that are known.
 
     :param mass: m* [kg]
@@ -149,9 +152,12 @@ class Demand:
         ]  # fmt: skip
 
 
-@takes(curve=isA(Bilinear), system=isA(Equivalent), spectrum=isA(Spectrum), limited=flag)  # fmt: skip
+@validated
 def demand(
-    curve: Bilinear, system: Equivalent, spectrum: Spectrum, limited: bool = False
+    curve: Annotated[Bilinear, isA(Bilinear)],
+    system: Annotated[Equivalent, isA(Equivalent)],
+    spectrum: Annotated[Spectrum, isA(Spectrum)],
+    limited: bool = False,
 ) -> Demand:
     """The target displacement that a spectrum demands of a structure, EN 1998-1:2004, annex B.
 

@@ -6,11 +6,11 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
-from ..arguments import FilePath, Numbers, number, oneOf, orNone, path as pathOf, takes
+from ..arguments import FilePath, Numbers, number, oneOf, validated
 from ..basics import ACCELERATION_UNITS, GRAVITY, Refused
 from ..read.files import readWhole
 
@@ -77,19 +77,14 @@ def checkedUnit(unit: Any) -> float:
     return UNITS[unit]
 
 
-@takes(
-    ag=number("", 0, 1e4, above=True),
-    ground=oneOf(*"ABCDE"),
-    importance=number("-", 0.1, 10),
-    damping=number("%", 0, 100, above=True),
-)
+@validated
 def elastic(
-    ag: float,
+    ag: Annotated[float, number("", 0, 10000, above=True)],
     unit: str,
     type: int,
-    ground: str,
-    importance: float = 1.0,
-    damping: float = 5.0,
+    ground: Annotated[str, oneOf(*"ABCDE")],
+    importance: Annotated[float, number("-", 0.1, 10)] = 1.0,
+    damping: Annotated[float, number("%", 0, 100, above=True)] = 5.0,
     parameters: Numbers | None = None,
 ) -> Spectrum:
     """The horizontal elastic response spectrum of EN 1998-1:2004, 3.2.2.2, equations (3.2) to (3.5).
@@ -153,8 +148,12 @@ def _four(parameters):
     return soil, tb, tc, td
 
 
-@takes(path=pathOf, corner=orNone(number("s", 0, 1e3, above=True)))
-def readSpectrum(path: FilePath, unit: str, corner: float | None = None) -> Spectrum:
+@validated
+def readSpectrum(
+    path: FilePath,
+    unit: str,
+    corner: Annotated[float, number("s", 0, 1000, above=True)] | None = None,
+) -> Spectrum:
     """A spectrum from a file of two columns: period [s] and acceleration. Between its rows it is a line.
 
     Columns are apart by commas, semicolons, tabs or blanks; lines that begin with # and a first line of names are left out.

@@ -28,11 +28,11 @@ from __future__ import annotations
 import math
 import sys
 from dataclasses import dataclass, replace
-from typing import Any, Sequence
+from typing import Annotated, Any, Sequence
 
 import numpy as np
 
-from ..arguments import FilePath, Numbers, number, oneOf, orNone, takes
+from ..arguments import FilePath, Numbers, number, oneOf, validated
 from ..basics import Refused, say
 from . import curves, quantities
 from .files import filesOf, onFolder
@@ -185,21 +185,15 @@ def _checkPeak(moved, force, stiffness):
         )
 
 
-@takes(
-    rule=oneOf(*RULES),
-    secant=number("-", 0, 1, above=True, below=True),
-    fall=number("-", 0, 1, above=True, below=True),
-    mechanism=orNone(number("mm", 0, above=True)),
-    pulse=number("mm", 0),
-)
+@validated
 def bilinear(
     displacement: Numbers,
     force: Numbers,
-    rule: str = "masonry",
-    secant: float = SECANT,
-    fall: float = FALL,
-    mechanism: float | None = None,
-    pulse: float = 0.0,
+    rule: Annotated[str, oneOf(*RULES)] = "masonry",
+    secant: Annotated[float, number("-", 0, 1, above=True, below=True)] = SECANT,
+    fall: Annotated[float, number("-", 0, 1, above=True, below=True)] = FALL,
+    mechanism: Annotated[float, number("mm", 0, above=True)] | None = None,
+    pulse: Annotated[float, number("mm", 0)] = 0.0,
 ) -> Bilinear:
     """The bilinear curve of a push, by one of the rules that the module describes.
 
@@ -402,9 +396,11 @@ def ofRun(
     return replace(found, unreached=unreached, remarks=remarks)
 
 
-@takes(height=orNone(number("m", 0, above=True)))
+@validated
 def drifts(
-    directory: FilePath | Pushover, height: float | None = None, fall: float = FALL
+    directory: FilePath | Pushover,
+    height: Annotated[float, number("m", 0, above=True)] | None = None,
+    fall: float = FALL,
 ) -> list[Number]:
     """Drifts of the push of a run [mrad] at the first crack, at the peak, where the force has fallen to a share of the peak, and at
     the collapse: displacement of the masonry over its height.

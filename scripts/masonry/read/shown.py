@@ -19,7 +19,7 @@ import re
 import numpy as np
 
 from .. import notebook
-from ..arguments import nearest, path, takes
+from ..arguments import nearest, validated
 from ..basics import Refused
 from . import curve_figure, drawing, elevation, quantities
 from .files import filesOf, readCurve, readRun
@@ -156,7 +156,7 @@ class RunFolder:
     :raises Refused: if there are no files of a run
     """
 
-    @takes(directory=path)
+    @validated
     def __init__(self, directory):
         self.directory = os.fspath(directory)
         #: entries of run.json, as :mod:`masonry.run.results` lists them

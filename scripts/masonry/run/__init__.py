@@ -5,7 +5,8 @@
   :mod:`masonry.run.ending`: how it ends
 - :mod:`masonry.run.results`: the files that a run leaves, and the keys of run.json
 - :mod:`masonry.run.checkpoints`: the state of a scene on disk
-- :mod:`masonry.run.presets`: options that trade accuracy for time, and :mod:`masonry.run.accuracy`: a push whose error is found
+- :mod:`masonry.run.options`: the options that all scenes share; :mod:`masonry.run.presets`: those that trade accuracy for time, and
+  :mod:`masonry.run.accuracy`: a push whose error is found
 - :mod:`masonry.run.batch`: rows of a table for ``yade-batch``
 - :mod:`masonry.run.progress`, :mod:`masonry.run.plotting`: a run on the terminal, and in ``yade.plot``
 """

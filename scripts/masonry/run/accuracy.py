@@ -28,7 +28,8 @@ from ..basics import Refused, say
 from ..folders import check, inside, replaced
 from ..read.files import readRun
 from . import batch
-from .presets import CHOSEN, COMPANIONS, FIDELITIES, MAIN, asOption, fidelityOf
+from .options import asOption
+from .presets import CHOSEN, COMPANIONS, FIDELITIES, MAIN, fidelityOf
 
 FOLDER = "accuracy"  # of the companions, in that of the results
 PLAN = "plan.json"  # there: what was run, while it goes on

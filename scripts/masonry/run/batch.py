@@ -24,9 +24,10 @@ import re
 
 from ..basics import Refused
 from ..read.files import readRun, readText
+from .options import OPTIONS, asOption, those
 
 #: Options that a study itself gives, or that a row of it cannot have.
-OWN = {"out", "resume", "lean", "set", "field", "no_vtk", "vtk_every", "help"}
+OWN = {"help", *OPTIONS} - those("ofStudy")
 VARIABLE = "YADE_BATCH"  # of the environment: path of the table and number of the line
 ROWS = "rows"  # folder of the results, beside the table
 FIELD = "field:"  # begins the name of a column
@@ -85,9 +86,9 @@ def optionWords(row):
         elif "." in name:
             words += [f"--set={one}={found}" for one in name.split("+")]
         elif found is True:
-            words.append("--" + name.replace("_", "-"))
+            words.append(asOption(name))
         elif found is not False and found is not None:
-            words.append(f"--{name.replace('_', '-')}={found}")
+            words.append(f"{asOption(name)}={found}")
     return words
 
 

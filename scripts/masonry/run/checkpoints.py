@@ -13,9 +13,7 @@ import os
 from typing import Any
 
 from .._masonry import loadScene, saveScene, savedText
-from ..arguments import FilePath, anything
-from ..arguments import path as pathOf
-from ..arguments import shown, takes
+from ..arguments import FilePath, shown, validated
 from ..folders import fromJson, replaced
 from ..read.files import readWhole
 
@@ -23,7 +21,7 @@ NAME = "run.checkpoint"  # in the folder of a run
 LARGEST = 1e100  # no number of a run is beyond; its square can be computed
 
 
-@takes(path=pathOf, extra=anything)
+@validated
 def saveCheckpoint(path: FilePath, extra: Any = None) -> None:
     """Save the state of the scene in a file, so that :func:`loadCheckpoint` goes on from it bit for bit.
 
@@ -50,7 +48,7 @@ def saveCheckpoint(path: FilePath, extra: Any = None) -> None:
         os.close(folder)
 
 
-@takes(path=pathOf)
+@validated
 def loadCheckpoint(path: FilePath) -> Any:
     """Give the scene, built by the same script with the same parameters, the state of a checkpoint.
 
@@ -64,7 +62,7 @@ def loadCheckpoint(path: FilePath) -> Any:
     return extra
 
 
-@takes(path=pathOf)
+@validated
 def readCheckpoint(path: FilePath) -> Any:
     """The ``extra`` of a checkpoint alone, of a file that is whole. Raises what :func:`loadCheckpoint` raises."""
     return _read(path)[1]

@@ -5,17 +5,7 @@ This module needs no YADE."""
 from dataclasses import dataclass
 from typing import Any
 
-#: The options that a preset chooses, as they are without one. A scene may have another rate.
-USUAL = {
-    "blocks": "rigid",
-    "divisions": 1,
-    "points": None,
-    "rate": 20.0,
-    "damping": 0.8,
-    "damping_kind": "combined",
-    "dt_fraction": 0.8,
-    "mass_scaling": 0.0,
-}
+from .options import USUAL, asOption
 
 #: Options by preset, the same for all walls. A scene of one's own may take them from here.
 PRESETS: dict[str, dict[str, Any]] = {
@@ -78,18 +68,6 @@ RANGE: dict[str, tuple[float, float]] = {
     "tensile strength of bed joints [MPa]": (0, 0.15),
     "cohesion of bed joints [MPa]": (0, 0.165),
     "friction of bed joints": (0.43, 0.65),
-}
-
-#: Options that leave a preset's promise alone.
-HARMLESS = {
-    "preset",
-    "accuracy",
-    "until",
-    "out",
-    "vtk_every",
-    "no_vtk",
-    "checkpoint_every",
-    "lean",
 }
 
 # -- fidelities: what --accuracy chooses from ---------------------------------------------------------------------------
@@ -220,11 +198,6 @@ def fidelityOf(args):
         if all(getattr(args, n) == v for n, v in {**CHOSEN, **fidelity.options}.items()):  # fmt: skip
             return fidelity
     return None
-
-
-def asOption(name):
-    """The name of an option as the user writes it."""
-    return "--" + name.replace("_", "-")
 
 
 def outsideOf(properties):

@@ -3,19 +3,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any, Union
 
 import numpy as np
 
-from ..arguments import Numbers, direction, flag, number, oneOf, orNone, takes
-from ..arguments import name as nameOf
+from ..arguments import Direction, Name, Numbers, number, oneOf, validated
 from ..arguments import vector as numbers
 from ..assembly.blocks import vector
 from ..basics import Refused
 from ..bricks import Block, Bricks
-from .supports import POINT
-from .targets import Target, brick
-from .targets import part as partName
+from .supports import Point
+from .targets import Part, Target, brick
 from .ties import MOST, OF_OVERLAY, OF_TIE, End, Overlay, Spring, Tie
 from .words import describes
 
@@ -28,6 +26,9 @@ def end(value: Any, first: Any) -> Any:
             raise ValueError(f"{value.name!r}, which is of another scene, must be of this one")  # fmt: skip
         return value
     return brick(value, first)
+
+
+EndAt = Annotated[Union[Target, Numbers, int, Block], end]
 
 
 def _endOf(description, where):
@@ -48,31 +49,20 @@ def _inPlane(description, ends):
 
 
 @describes
-@takes(
-    one=end,
-    other=orNone(end),
-    anchor=orNone(POINT),
-    stiffness=OF_TIE["stiffness"].kind,
-    strength=orNone(OF_TIE["strength"].kind),
-    prestress=OF_TIE["prestress"].kind,
-    slack=OF_TIE["slack"].kind,
-    breaking=orNone(OF_TIE["breaking"].kind),
-    compression=flag,
-    name=orNone(nameOf),
-)
+@validated
 def tie(
     description: Any,
-    one: Target | Numbers | int | Block,
-    other: Target | Numbers | int | Block | None = None,
+    one: EndAt,
+    other: EndAt | None = None,
     *,
-    stiffness: float,
-    strength: float | None = None,
-    prestress: float = 0.0,
-    slack: float = 0.0,
-    breaking: float | None = None,
+    stiffness: Annotated[float, OF_TIE["stiffness"].kind],
+    strength: Annotated[float, OF_TIE["strength"].kind] | None = None,
+    prestress: Annotated[float, OF_TIE["prestress"].kind] = 0.0,
+    slack: Annotated[float, OF_TIE["slack"].kind] = 0.0,
+    breaking: Annotated[float, OF_TIE["breaking"].kind] | None = None,
     compression: bool = False,
-    anchor: Numbers | None = None,
-    name: str | None = None,
+    anchor: Point | None = None,
+    name: Name | None = None,
 ) -> Tie:
     """A bar between a point of a brick and another one, or the ground: a tie rod, an anchor, a strut.
 
@@ -128,16 +118,19 @@ def springs(value: Any, first: Any = None) -> Any:
     return tuple(found)
 
 
+Springs = Annotated[Numbers, springs]
+
+
 @describes
-@takes(one=end, other=orNone(end), stiffness=springs, rotation=springs, name=orNone(nameOf))  # fmt: skip
+@validated
 def spring(
     description: Any,
-    one: Target | Numbers | int | Block,
-    other: Target | Numbers | int | Block | None = None,
+    one: EndAt,
+    other: EndAt | None = None,
     *,
-    stiffness: Numbers = (0.0, 0.0, 0.0),
-    rotation: Numbers = (0.0, 0.0, 0.0),
-    name: str | None = None,
+    stiffness: Springs = (0.0, 0.0, 0.0),
+    rotation: Springs = (0.0, 0.0, 0.0),
+    name: Name | None = None,
 ) -> Spring:
     """Linear springs at a point, along and about x, y and z, between two bricks or platens, or one and the ground.
 
@@ -180,27 +173,18 @@ NEAR = (
 
 
 @describes
-@takes(
-    side=direction(),
-    stiffness=OF_OVERLAY["stiffness"].kind,
-    strength=OF_OVERLAY["strength"].kind,
-    gauge=number("m", 0, 10, above=True),
-    strain=orNone(OF_OVERLAY["strain"].kind),
-    fibres=oneOf("both", "vertical", "horizontal"),
-    part=orNone(partName),
-    name=orNone(nameOf),
-)
+@validated
 def overlay(
     description: Any,
-    side: Numbers,
+    side: Direction,
     *,
-    stiffness: float,
-    strength: float,
-    gauge: float,
-    strain: float | None = None,
-    fibres: str = "both",
-    part: str | None = None,
-    name: str | None = None,
+    stiffness: Annotated[float, OF_OVERLAY["stiffness"].kind],
+    strength: Annotated[float, OF_OVERLAY["strength"].kind],
+    gauge: Annotated[float, number("m", 0, 10, above=True)],
+    strain: Annotated[float, OF_OVERLAY["strain"].kind] | None = None,
+    fibres: Annotated[str, oneOf("both", "vertical", "horizontal")] = "both",
+    part: Part | None = None,
+    name: Name | None = None,
 ) -> Overlay:
     """A fibre layer on a face: textile or steel in mortar. Its fibres cross every joint that ends at that face.
 

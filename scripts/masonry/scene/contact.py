@@ -6,8 +6,8 @@ from __future__ import annotations
 import itertools
 from typing import Any, Callable
 
-from ..arguments import name as nameOf
-from ..arguments import number, orNone, takes
+from ..arguments import Name, validated
+from .supports import Coordinate
 from ..basics import Refused
 from .settings import Property, Settable
 from .targets import Target
@@ -93,8 +93,8 @@ def problems(description: Any, args: Any) -> list[str]:
 
 
 @describes
-@takes(level=number("m", -1e6, 1e6), name=orNone(nameOf))
-def ground(description: Any, level: float, name: str | None = None) -> Target:
+@validated
+def ground(description: Any, level: Coordinate, name: Name | None = None) -> Target:
     """The ground on which blocks fall in a scene with ``collapse="follow"``: a block that is held and reaches far out, without
     joints. A scene that does not say this has it just below everything else.
 

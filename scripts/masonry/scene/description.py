@@ -10,41 +10,17 @@ from numbers import Integral
 
 import numpy as np
 
-from ..arguments import (
-    flag,
-    listOf,
-    misfits,
-    number,
-    oneOf,
-    orNone,
-    shown,
-    text,
-    vector,
-)
+from ..arguments import shown, vector
 from ..assembly import columns
 from ..basics import GRAVITY, Refused
 from .contact import Contact
-from .materials import Masonry
-
-
-#: Kinds of what a scene is given beside bricks and materials.
-KINDS = {
-    "title": orNone(text),
-    "plane": orNone(flag),
-    "gravity": number("m/s²", 0, 1e6),
-    "columns": orNone(listOf(text)),
-    "functors": flag,
-    "allowGaps": flag,
-    "collapse": oneOf("end", "follow"),
-}
 
 
 class Description:
     """Bricks, materials and everything that a scene says before its first stage.
 
     :param name: of the scene
-    :param bricks: blocks, as of :class:`masonry.scene.scene.Scene`; the other parameters, too
-    :raises Refused: with all problems
+    :param bricks: blocks, as of :class:`masonry.scene.scene.Scene`, which checks all parameters
     """
 
     def __init__(
@@ -61,22 +37,7 @@ class Description:
         allowGaps=False,
         collapse="end",
     ):
-        problems = []
-        try:
-            self.bricks = list(bricks)
-            self.bricks[0].corners[0][2]
-        except Exception:
-            problems.append(
-                f"scene {name}: bricks must be a list of blocks, as masonry.bricks makes them, got {shown(bricks)}"
-            )
-        if not isinstance(materials, Masonry):
-            problems.append(
-                f"scene {name}: materials must be a masonry.materials.Masonry, got {shown(materials)}"
-            )
-        given = dict(title=title, plane=plane, gravity=gravity, columns=choice, functors=functors, allowGaps=allowGaps, collapse=collapse)  # fmt: skip
-        problems += misfits(f"scene {name}: ", KINDS, given)
-        if problems:
-            raise Refused("\n".join(problems))
+        self.bricks = bricks
         self.name, self.title = name, title or name
         self.materials, self.gravity = materials, gravity  # [m/s²], downwards
         self.functors = functors  # as of masonry.assembly.engines.engines

@@ -13,11 +13,11 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Any, Callable
+from typing import Annotated, Any, Callable
 
 import numpy as np
 
-from ..arguments import number, shown, takes, whole
+from ..arguments import number, shown, validated, whole
 
 WAVES = 512  # cosines of a field: its moments are off by some 1/sqrt(WAVES) at most
 
@@ -40,15 +40,15 @@ def _standard(length, seed):
     )
 
 
-#: Kinds of what a random field takes: coefficient of variation, correlation length and seed.
-OF_FIELDS = dict(
-    cov=number("", 0, 100, above=True), length=number("m", 0, 1e6), seed=whole()
-)
+#: What a random field takes: coefficient of variation, correlation length and seed.
+Cov = Annotated[float, number("", 0, 100, above=True)]
+Correlation = Annotated[float, number("m", 0, 1e6)]
+Seed = Annotated[int, whole()]
 
 
-@takes(**OF_FIELDS)
+@validated
 def lognormal(
-    cov: float, length: float = 0.0, seed: int = 0
+    cov: Cov, length: Correlation = 0.0, seed: Seed = 0
 ) -> Callable[[float, float, float], float]:
     """Factors that are lognormally distributed about the mean 1.
 
@@ -63,9 +63,12 @@ def lognormal(
 LEAST = 0.05  # factor below which a normal field does not go
 
 
-@takes(least=number("", 0, 1, above=True, below=True), **OF_FIELDS)
+@validated
 def normal(
-    cov: float, length: float = 0.0, seed: int = 0, least: float = LEAST
+    cov: Cov,
+    length: Correlation = 0.0,
+    seed: Seed = 0,
+    least: Annotated[float, number("", 0, 1, above=True, below=True)] = LEAST,
 ) -> Callable[[float, float, float], float]:
     """Factors that are normally distributed about the mean 1, but not below ``least``. Other parameters: :func:`lognormal`."""
     field = _standard(length, seed)

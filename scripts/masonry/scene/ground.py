@@ -5,19 +5,23 @@ from __future__ import annotations
 
 import math
 import os
-from typing import Any
+from typing import Annotated, Any
 
-from ..arguments import FilePath, Numbers, listOf, number, path, takes
+from ..arguments import FilePath, Numbers, listOf, number, path, validated
 from ..basics import Refused
 from . import accelerograms
 from .accelerograms import UNEVEN, UNITS
 
 
-HERTZ = number("Hz", 0, 1e6, above=True)  # the kind of a frequency
+Frequency = Annotated[float, number("Hz", 0, 1e6, above=True)]
 
 
-@takes(ratio=number("", 0, 1, below=True), low=HERTZ, high=HERTZ)
-def rayleigh(ratio: float, low: float, high: float) -> tuple[float, float]:
+@validated
+def rayleigh(
+    ratio: Annotated[float, number("", 0, 1, below=True)],
+    low: Frequency,
+    high: Frequency,
+) -> tuple[float, float]:
     """Viscous damping for :meth:`masonry.scene.scene.Scene.shake`: mass damping [1/s] and stiffness damping [s].
 
     :param ratio: share of critical damping at two frequencies [-]; between them it is less

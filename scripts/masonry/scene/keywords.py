@@ -7,11 +7,12 @@ import os
 
 from ..arguments import flag, isNumber, oneOf, plain, shown
 from ..basics import Refused, say
-from ..run.presets import HARMLESS, PRESETS, asOption
-from .parsing import UNITS, Options
+from ..run.options import OPTIONS, asOption, those
+from ..run.presets import PRESETS
+from .parsing import Options
 
 #: What a script cannot say: it is about the run at hand.
-OF_THE_RUN = {"help", "resume"}
+OF_THE_RUN = {"help", *OPTIONS} - those("ofScript")
 
 
 #: Names that a scene takes beside its options.
@@ -51,8 +52,7 @@ def checked(parser, name, usual):
         try:
             found[option] = _value(actions[option], value)
         except (argparse.ArgumentTypeError, ValueError) as error:
-            unit = f" [{UNITS[option]}]" if option in UNITS else ""
-            problems.append(f"{option}{unit}: {error}")
+            problems.append(f"{option}: {error}")
     if usual.get("until") is not None and usual.get("history") is not None:
         problems.append("until and history: give one of them")
     if problems:
@@ -131,7 +131,7 @@ def keep(args, name, usual):
     now["overrides"] = [
         option
         for option, value in given.items()
-        if option not in HARMLESS and value != expected[option]
+        if option not in those("harmless") and value != expected[option]
     ]
     args.replaced = {option: getattr(args, option) for option in now}
     vars(args).update(now)

@@ -3,23 +3,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
-from ..arguments import Numbers, direction, flag, number, orNone, takes
+from ..arguments import Level, Numbers, number, validated
 from ..arguments import vector as numbers
 from ..assembly.blocks import vector
 from ..basics import Refused, say
 from ..bricks import Bricks
-from .targets import LOADED, MOVING_PLATEN, Target
-from .targets import part as partName
+from .targets import Loaded, MovingPlaten, Part
 from .words import describes
 
 
-#: Kinds of arguments: a mean stress, a force and the pressure of a wind, as of :mod:`masonry.arguments`. More than these would
-#: crush or throw over any masonry.
-STRESS = number("Pa", 0, 1e12)
-FORCE = numbers("N", 1e15)
-PRESSURE = number("Pa", -1e9, 1e9)
+#: A mean stress, a force and the pressure of a wind. More than these would crush or throw over any masonry.
+Stress = Annotated[float, number("Pa", 0, 1e12)]
+Force = Annotated[Numbers, numbers("N", 1e15)]
+Pressure = Annotated[float, number("Pa", -1e9, 1e9)]
 
 
 def doubtPress(stress: float, name: str) -> None:
@@ -63,8 +61,10 @@ def windFaces(
 
 
 @describes
-@takes(platen=MOVING_PLATEN, stress=STRESS, riding=flag)
-def press(description: Any, platen: Target, stress: float, riding: bool = True) -> None:
+@validated
+def press(
+    description: Any, platen: MovingPlaten, stress: Stress, riding: bool = True
+) -> None:
     """Press a platen on the bricks below it. The load grows in :meth:`settle`, and stays.
 
     :param stress: mean vertical stress that the bricks feel [Pa]; the weight of the platen is part of it
@@ -75,8 +75,8 @@ def press(description: Any, platen: Target, stress: float, riding: bool = True) 
 
 
 @describes
-@takes(target=LOADED, force=FORCE)
-def load(description: Any, target: Target, force: Numbers) -> None:
+@validated
+def load(description: Any, target: Loaded, force: Force) -> None:
     """A dead load on a target. It grows in :meth:`settle`, and stays; loads on one target add up.
 
     :param force: three numbers [N]
@@ -87,9 +87,9 @@ def load(description: Any, target: Target, force: Numbers) -> None:
 
 
 @describes
-@takes(pressure=PRESSURE, towards=direction(level=True), part=orNone(partName))
+@validated
 def wind(
-    description: Any, pressure: float, towards: Numbers, part: str | None = None
+    description: Any, pressure: Pressure, towards: Level, part: Part | None = None
 ) -> float:
     """A pressure on the faces that look against a horizontal direction. It grows in :meth:`settle`, and stays.
 

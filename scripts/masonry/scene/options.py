@@ -4,31 +4,45 @@
 import argparse
 import os
 import sys
+from dataclasses import replace
 
 from .. import notebook
 from .._masonry import commit, version
-from ..arguments import shown
+from ..arguments import oneOf, shown
 from ..assembly.engines import LAWS
 from ..basics import Refused
-from ..run.presets import BOUND, PRESETS, USUAL
-from . import keywords
-from .parsing import (
-    DAMPINGS,
-    RATES,
-    Parser,
-    count,
-    field,
-    folder,
-    massScaling,
-    number,
-    pathOf,
-    points,
-)
-from .fields import read as readField
+from ..run import options
+from ..run.options import USUAL, reading
+from ..run.presets import BOUND, PRESETS
+from . import fields, history, keywords
+from .parsing import Parser
 from .settings import scatterAll, setting
 
-#: The largest half-width that --accuracy takes [%]: what is less certain is no number.
-MOST_PERCENT = 50
+#: The options of a scene: those of the table, with the laws of the plugin and the presets.
+OPTIONS = {
+    **options.OPTIONS,
+    "preset": replace(options.OPTIONS["preset"], kind=oneOf(BOUND, *PRESETS)),
+    "joints": replace(
+        options.OPTIONS["joints"],
+        kind=oneOf(*LAWS, "brittle"),
+        default=next(iter(LAWS)),
+        meaning="; ".join([*(law["meaning"] for law in LAWS.values()), "brittle Coulomb slip"]),  # fmt: skip
+    ),
+}
+
+
+def ofField(text):
+    """The text of ``--field``, if it can be read. Raises ValueError."""
+    fields.read(text)
+    return text
+
+
+#: What is made of the text of an option where it is used.
+READ = {
+    "history": reading(history.parse),
+    "field": reading(ofField),
+    "set": reading(setting),
+}
 
 
 def parser(description, until, rate=USUAL["rate"], loops=True):
@@ -47,202 +61,16 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
         f"Computers & Structures 303 (2024) 107499, doi 10.1016/j.compstruc.2024.107499. masonry {version}, commit {commit}",
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
     )
-    mm = lambda text: number(text, 0, 1000, above=True)
-    p.add_argument(
-        "--preset",
-        choices=[BOUND, *PRESETS],
-        help="blocks, divisions, points, rate, damping and mass scaling with a promise of error and time; "
-        "an option given beside it wins, and drops the promise; bound is limit analysis alone, without a run",
-    )
-    p.add_argument(
-        "--accuracy",
-        metavar="PERCENT",
-        type=lambda text: number(text, 0, MOST_PERCENT, above=True),
-        default=None,
-        help="of a push: peak and work within this half-width [%%], by the cheapest block model, mesh and rate that reach it; "
-        "cheaper runs beside it, on all cores, show the error, which the results have. It says nothing of the crack pattern, "
-        "of the end of the curve, and of materials and real walls",
-    )
-    end = p.add_mutually_exclusive_group()
-    end.add_argument(
-        "--until",
-        metavar="MM",
-        type=mm,
-        default=until,
-        help="displacement to stop at [mm]",
-    )
-    p.set_defaults(history=None)
-    if loops:
-        end.add_argument(
-            "--history",
-            metavar="SPEC",
-            type=pathOf,
-            help="loops in place of --until: amplitudes in mm with repeats, as 1,2x3,4, each cycle 0, +A, -A, 0; or a "
-            "CSV file with a column displacement_mm",
-        )
-    p.add_argument(
-        "--record",
-        metavar="FILE",
-        type=folder,
-        default=None,
-        help="file of PEER (AT2) or ESM, or a text that has times and a unit, in place of the record of the scene's first shake(), with its factor",
-    )
-    p.add_argument(
-        "--scale",
-        metavar="S",
-        type=lambda text: number(text, -1e6, 1e6),
-        default=1.0,
-        help="how many times as strong the scene's first shake() is [-]",
-    )
-    p.add_argument(
-        "--rate",
-        metavar="MM_PER_S",
-        type=lambda text: number(text, *RATES),
-        default=rate,
-        help="loading rate [mm/s]",
-    )
-    p.add_argument(
-        "--blocks",
-        choices=["rigid", "deformable"],
-        default=USUAL["blocks"],
-        help="block model",
-    )
-    p.add_argument(
-        "--divisions",
-        metavar="N",
-        type=lambda t: count(t, 10),
-        default=USUAL["divisions"],
-        help="cells of a deformable half brick along its length, and as many along its height, one through its thickness; "
-        "in the x-z plane a joint has points at both ends and in the middle of every cell's face, in space at the corners "
-        "and in the middle of both triangles of that face, so through the thickness at its faces and thirds, whatever N",
-    )
-    p.add_argument(
-        "--damping-kind",
-        choices=["local", "combined"],
-        default=USUAL["damping_kind"],
-        help="local damping (the paper's eq. (3)), which brakes a push, as validation/convergence measures, or combined "
-        "damping, which does not brake a steady motion",
-    )
-    p.add_argument(
-        "--points",
-        metavar="N",
-        type=points,
-        default=USUAL["points"],
-        help="points along a joint of rigid units from when it is about to yield, at its ends and between them "
-        "(Gauss-Lobatto), in space along each side of its face; None: 8, and 5 in space. Until then a joint has three, with "
-        "which an elastic joint is exact; N,M gives all joints M points from the beginning. How few are enough: "
-        "validation/convergence",
-    )
-    p.add_argument(
-        "--damping",
-        metavar="A",
-        type=lambda t: number(t, *DAMPINGS),
-        default=USUAL["damping"],
-        help="damping constant, the paper's eq. (3) [-]",
-    )
-    p.add_argument(
-        "--dt-fraction",
-        metavar="F",
-        type=lambda t: number(t, 1e-3, 1),
-        default=USUAL["dt_fraction"],
-        help="time step over its stable limit [-]; above 0.94 combined damping may brake the push",
-    )
-    p.add_argument(
-        "--density-scaling",
-        metavar="F",
-        type=lambda t: number(t, 1e-6, 1e6),
-        default=1.0,
-        help="masses over their true values, weights kept [-]: a run as with the rate times sqrt(F), in time steps "
-        "sqrt(F) as long",
-    )
-    p.add_argument(
-        "--mass-scaling",
-        metavar="BETA",
-        type=massScaling,
-        default=0.0,
-        help="selective mass scaling of deformable units in all stages but shake and run: 1 + BETA is the factor on the masses "
-        "in every motion of a brick but rigid ones, which keep their inertia, so that the time step is longer [-]; auto: as "
-        "much as the time step that the joints allow between rigid bricks can use; none if all units are rigid",
-    )
-    p.add_argument(
-        "--crack-surfaces",
-        choices=["on", "off"],
-        default="on",
-        help="whether bricks can crack in half. on: each is two blocks with a crack surface between them; off: it is one block",
-    )
-    p.add_argument(
-        "--joints",
-        choices=[*LAWS, "brittle"],
-        default=next(iter(LAWS)),
-        help="; ".join(
-            [*(law["meaning"] for law in LAWS.values()), "brittle Coulomb slip"]
-        ),
-    )
-    p.add_argument(
-        "--set",
-        metavar="NAME.PROPERTY=VALUE",
-        type=setting,
-        action="append",
-        default=[],
-        help="change a property of the bed, head, crack or support joints, in SI units; repeatable "
-        "(help(masonry.MasonryJoint) lists them); where friction and residual friction are one value, they stay one. NAME can "
-        "be a tie, springs, a fibre layer or a beam, too, as in wire.strength=2e3",
-    )
-    p.add_argument(
-        "--field",
-        metavar="NAME.PROPERTY=FIELD",
-        type=field,
-        action="append",
-        default=[],
-        help="let a property vary from place to place, as in bed.cohesion=lognormal(cov=0.3,length=0.5,seed=1): a random "
-        "field about its value, with a correlation length [m]; properties joined by + vary alike; repeatable",
-    )
-    p.add_argument(
-        "--out",
-        metavar="DIR",
-        type=folder,
-        default=None,
-        help="folder of the results (default: results/SCENE)",
-    )
-    p.add_argument(
-        "--checkpoint-every",
-        metavar="MINUTES",
-        type=lambda t: number(t, 0, 1e6),
-        default=5.0,
-        help="wall-clock time between checkpoints [min]; there is one at the end, on Ctrl-C and on an error, too; with 0 "
-        "there is none at all",
-    )
-    p.add_argument(
-        "--resume",
-        metavar="DIR",
-        type=folder,
-        default=None,
-        help="go on from the checkpoint in this folder of results, with the options of its run; only --until, "
-        "--checkpoint-every, --vtk-every and --no-vtk can be changed, and --history can be extended",
-    )
-    p.add_argument(
-        "--vtk-every",
-        metavar="MM",
-        type=mm,
-        default=1.0,
-        help="displacement between ParaView frames [mm]; with --history the path between them",
-    )
-    p.add_argument(
-        "--quick",
-        action="store_true",
-        help="a tenth of every displacement, time and load that grows, and wide brackets, to see whether the scene works",
-    )
-    p.add_argument(
-        "--no-vtk",
-        action="store_true",
-        help="write no ParaView files and no crack figure",
-    )
-    p.add_argument(
-        "--lean",
-        action="store_true",
-        help="for many runs: no ParaView files, no figures, no bound beside the run, and no checkpoint once it has ended; "
-        "run.json has the numbers of the crack pattern of a wall and its failure mode",
-    )
+    for name, option in OPTIONS.items():
+        if name == "until":
+            end = p.add_mutually_exclusive_group()
+            replace(option, default=until).addTo(end)
+        elif name == "history" and not loops:
+            p.set_defaults(history=None)
+        elif name == "rate":
+            replace(option, default=rate).addTo(p)
+        else:
+            option.addTo(end if name == "history" else p, READ.get(name))
     return p
 
 
@@ -299,7 +127,7 @@ def check(args, masonry, more=(), plane=False, connectors=None):
         problems.append(str(refused))
     for text in args.field:
         try:
-            scatterAll(connectors, *readField(text))
+            scatterAll(connectors, *fields.read(text))
         except ValueError as error:
             problems.append(f"--field {text}: {error}")
     problems += masonry.missing()

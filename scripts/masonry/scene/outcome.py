@@ -24,7 +24,7 @@ from ..read.quantities import RunData
 from ..run import accuracy
 from . import facts, history
 from .figure import figureOf
-from .parsing import UNITS
+from ..run.options import UNITS
 from .stages import pushing
 from .stages.answers import answersText
 from .wall import wallOf

@@ -1,115 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How the command line of a scene is read: kinds of values, presets, and the options of a run that is resumed."""
+"""How the command line of a scene is read: presets, and the options of a run that is resumed."""
 
 import argparse
-import math
 import re
 
-from .. import arguments
 from ..basics import Refused, plain
 from ..run import batch
 from ..run.place import Saved
-from ..run.presets import HARMLESS, PRESETS, asOption
-from . import fields, history
-
-#: Units of the options that have one.
-UNITS = {
-    "until": "mm",
-    "rate": "mm/s",
-    "vtk_every": "mm",
-    "checkpoint_every": "min",
-    "accuracy": "%",
-}
-
-#: Kinds of arguments with the bounds of the options ``--rate`` and ``--damping``, as of :mod:`masonry.arguments`.
-RATES, DAMPINGS = (1e-3, 1000.0), (0.0, 0.99)
-RATE, DAMPING = arguments.number("mm/s", *RATES), arguments.number("", *DAMPINGS)
-
-#: Fewest points along a side that give a joint its stiffness against rotation: two give three times that, one none.
-FEWEST = 3
-
-#: Options that can be changed when a run is resumed.
-FREE = {"until", "history", "checkpoint_every", "vtk_every", "no_vtk", "lean"}
-
-
-def number(text, low=-math.inf, high=math.inf, above=False):
-    """The number that a text stands for.
-
-    :param above: whether it must be above ``low``, not at least
-    :raises argparse.ArgumentTypeError: if it is none, or out of its bounds
-    """
-    try:
-        value = float(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a number") from None
-    if (
-        not math.isfinite(value)
-        or value < low
-        or value > high
-        or (above and value == low)
-    ):
-        bound = f"above {low:g}" if above else f"at least {low:g}"
-        raise argparse.ArgumentTypeError(
-            f"{text} must be {bound}"
-            + (f" and at most {high:g}" if high < math.inf else "")
-        )
-    return value
-
-
-def count(text, high, low=1):
-    """The whole number from ``low`` to ``high`` that a text stands for. Raises argparse.ArgumentTypeError."""
-    if not text.isdecimal() or not low <= int(text) <= high:
-        raise argparse.ArgumentTypeError(
-            f"'{text}' must be a whole number from {low} to {high}"
-        )
-    return int(text)
-
-
-def points(text):
-    """The text of ``--points``: one number of points, or two of which the first is not below the second. Raises
-    argparse.ArgumentTypeError."""
-    numbers = [count(part, 100, FEWEST) for part in text.split(",")]
-    if len(numbers) > 2:
-        raise argparse.ArgumentTypeError(f"'{text}' must be one or two whole numbers")
-    if numbers[-1] > numbers[0]:
-        raise argparse.ArgumentTypeError(
-            f"'{text}': a joint cannot have fewer points from when it yields than before"
-        )
-    return text
-
-
-def massScaling(text):
-    """The selective mass scaling that a text stands for: a number of at least 0, or ``auto``. Raises
-    argparse.ArgumentTypeError."""
-    return text if text == "auto" else number(text, 0, 1e6)
-
-
-def field(text):
-    """The text of ``--field``, if it can be read. Raises argparse.ArgumentTypeError."""
-    try:
-        fields.read(text)
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
-    return text
-
-
-def pathOf(text):
-    """The history that ``--history`` names. Raises argparse.ArgumentTypeError."""
-    try:
-        return history.parse(text)
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
-
-
-def folder(text):
-    """The name of a folder. Raises argparse.ArgumentTypeError."""
-    if not text.strip():
-        raise argparse.ArgumentTypeError("must not be empty")
-    try:
-        text.encode()
-    except UnicodeEncodeError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not UTF-8") from None
-    return text
+from ..run.options import asOption, those
+from ..run.presets import PRESETS
+from . import history
 
 
 class Options(argparse.Namespace):
@@ -141,7 +41,7 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, **settings):
         super().__init__(allow_abbrev=False, **settings)
         self.problems = []
-        self.free = set(FREE)
+        self.free = those("free")
         # argparse knows no exponents and no lists: -5e-1 and -1,2x3 would be options
         self._negative_number_matcher = re.compile(
             r"-(\d+\.?\d*|\.\d+)(e[+-]?\d+)?([x,].*)?$|-(inf|nan)$", re.IGNORECASE
@@ -201,7 +101,7 @@ class Parser(argparse.ArgumentParser):
         found.overrides = [
             name
             for name, value in given.items()
-            if name not in HARMLESS and value != usual[name]
+            if name not in those("harmless") and value != usual[name]
         ]
         return found
 

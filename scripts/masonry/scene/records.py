@@ -4,18 +4,15 @@
 from __future__ import annotations
 
 import itertools
-from typing import Any, Callable
+from typing import Annotated, Any, Callable
 
-from ..bricks import Block
-from ..arguments import Numbers, direction as directionOf
-from ..arguments import function, orNone, shown, takes, text
+from ..arguments import Direction, Name, shown, validated
 from ..arguments import name as nameOf
 from ..assembly.blocks import vector
 from ..assembly.columns import Column
 from .sections import BASE, ENDS, Section
-from .supports import COORDINATE
-from .targets import ANY, Drift, JointRecord, Target, brick
-from .targets import part as partName
+from .supports import Coordinate
+from .targets import AnyTarget, BrickAt, Drift, JointRecord, Part
 from .words import describes
 
 
@@ -25,9 +22,9 @@ def nameOrNothing(value: Any, first: Any = None) -> Any:
 
 
 @describes
-@takes(lower=ANY, upper=ANY, name=orNone(nameOf))
+@validated
 def drift(
-    description: Any, lower: Target, upper: Target, name: str | None = None
+    description: Any, lower: AnyTarget, upper: AnyTarget, name: Name | None = None
 ) -> None:
     """Record how far a target moves horizontally against a lower one, for example two floors.
 
@@ -46,9 +43,9 @@ def drift(
 
 
 @describes
-@takes(name=nameOf, meaning=text, value=function)
+@validated
 def column(
-    description: Any, name: str, meaning: str, value: Callable[[], float]
+    description: Any, name: Name, meaning: str, value: Callable[[], float]
 ) -> None:
     """Record something of one's own: a column of curve.csv.
 
@@ -68,12 +65,12 @@ def column(
 
 
 @describes
-@takes(one=brick, two=brick, name=orNone(nameOrNothing))
+@validated
 def joint(
     description: Any,
-    one: Numbers | int | Block,
-    two: Numbers | int | Block,
-    name: str | None = None,
+    one: BrickAt,
+    two: BrickAt,
+    name: Annotated[str, nameOrNothing] | None = None,
 ) -> JointRecord:
     """Record the means of a joint: opening, slide, normal and shear stress, as columns of curve.csv.
 
@@ -90,9 +87,9 @@ def joint(
 
 
 @describes
-@takes(z=COORDINATE, part=orNone(partName), name=orNone(nameOf))
+@validated
 def section(
-    description: Any, z: float, part: str | None = None, name: str | None = None
+    description: Any, z: Coordinate, part: Part | None = None, name: Name | None = None
 ) -> Section:
     """Record what a horizontal section transmits: normal force, shear force and moment, as columns of curve.csv.
 
@@ -166,8 +163,8 @@ def recordBase(description: Any) -> None:
 
 
 @describes
-@takes(direction=directionOf(), part=orNone(partName))
-def view(description: Any, direction: Numbers, part: str | None = None) -> None:
+@validated
+def view(description: Any, direction: Direction, part: Part | None = None) -> None:
     """From where the crack figure sees the structure: the direction of sight, for example (1, 0, 0) for a panel that
     bows out of its plane.
 

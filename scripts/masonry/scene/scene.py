@@ -30,6 +30,7 @@ import os
 import sys
 import time
 from typing import (
+    Annotated,
     Any,
     Callable,
     Concatenate,
@@ -43,10 +44,8 @@ from typing import (
 )
 
 from .._masonry import loadScene, saveScene
-from ..arguments import LONGEST_NAME, Numbers
-from ..arguments import direction as directionOf
-from ..arguments import name as nameOf
-from ..arguments import listOf, number, orNone, shown, takes, text
+from ..arguments import LONGEST_NAME, Direction, Level, Name, Numbers
+from ..arguments import isA, listOf, number, oneOf, shown, text, validated
 from .. import notebook
 from ..assembly.blocks import vector
 from ..assembly.structure import Structure
@@ -78,7 +77,7 @@ from .parsing import Parser
 from .resuming import State
 from .stages import AT_REST, STAGES, gravity, prepare
 from .stages.answers import Answer
-from .targets import LOADED, MOVING_PLATEN, Target
+from .targets import Loaded, MovingPlaten, Target
 from .words import RESULT, SHAKES, Call, Script
 
 
@@ -135,6 +134,24 @@ def _either(
     return either
 
 
+def ofFolder(value: Any, first: Any = None) -> str:
+    """The kind of a name of a scene, which names a folder, too."""
+    fine = isinstance(value, str) and value.strip(". ") and value.isprintable()
+    if not fine or "/" in value or len(value.encode()) > LONGEST_NAME:
+        raise ValueError(f"{shown(value)} must be a text that can name a folder")
+    return value
+
+
+def blocksOf(value: Any, first: Any = None) -> list[Any]:
+    """The kind of the bricks of a scene."""
+    try:
+        found = list(value)
+        found[0].corners[0][2]
+    except Exception:  # of a class of the user's own
+        raise ValueError(f"{shown(value)} must be a list of blocks, as masonry.bricks makes them") from None  # fmt: skip
+    return found
+
+
 class Scene:
     """A structure of bricks, how it is held and loaded, and the stages of its test; the module shows how to write one.
 
@@ -168,29 +185,24 @@ class Scene:
 
     present: Scene | None = None  # the scene that stands in YADE
 
-    @takes()
+    @validated
     def __init__(
         self,
-        name: str,
-        bricks: Iterable[Any],
-        materials: Masonry,
+        name: Annotated[str, ofFolder],
+        bricks: Annotated[Iterable[Any], blocksOf],
+        materials: Annotated[Masonry, isA(Masonry, "masonry.materials.Masonry")],
         title: str | None = None,
         plane: bool | None = None,
-        gravity: float = GRAVITY,
-        columns: Sequence[str] | None = None,
+        gravity: Annotated[float, number("m/s²", 0, 1e6)] = GRAVITY,
+        columns: Annotated[Sequence[str], listOf(text)] | None = None,
         functors: bool = False,
         arguments: Any = None,
         allowGaps: bool = False,
-        collapse: str = "end",
+        collapse: Annotated[str, oneOf("end", "follow")] = "end",
         **usual: Any,
     ) -> None:
         #: what it was made with, its name first, for :meth:`resume`
         self._made = (name, bricks, materials, title, plane, gravity, columns, functors), dict(allowGaps=allowGaps, collapse=collapse)  # fmt: skip
-        fine = isinstance(name, str) and name.strip(". ") and name.isprintable()
-        if not fine or "/" in name or len(name.encode()) > LONGEST_NAME:
-            raise Refused(
-                f"scene: name must be a text that can name a folder, got {shown(name)}"
-            )
         self.description = Description(
             name,
             bricks,
@@ -316,11 +328,11 @@ class Scene:
         numbers = [number for number in sorted(kept, key=int) if int(number) <= entered]
         return [one for number in numbers for one in kept[number]]
 
-    @takes(name=nameOf, value=finding, unit=text, how=text)
+    @validated
     def result(
         self,
-        name: str,
-        value: float | None,
+        name: Name,
+        value: Annotated[float | None, finding],
         unit: str = "-",
         how: str = "the script found it",
     ) -> None:
@@ -482,16 +494,12 @@ class Scene:
         self.script.compare(self.running.scriptBefore)
         return len(self.script.words) <= len(self.running.scriptBefore)
 
-    @takes(
-        target=orNone(LOADED),
-        direction=directionOf(),
-        towards=orNone(directionOf(level=True)),
-    )
+    @validated
     def bound(
         self,
-        target: Target | None = None,
-        direction: Numbers = (1, 0, 0),
-        towards: Numbers | None = None,
+        target: Loaded | None = None,
+        direction: Direction = (1, 0, 0),
+        towards: Level | None = None,
     ) -> Any:
         """Limit analysis of the scene as it stands, with a collapse without dilatancy: see :mod:`masonry.limit`.
 
@@ -532,13 +540,12 @@ class Scene:
             return known
         return self._find("lean", towards, lowerUpTo=EVERY)
 
-    @takes(
-        target=MOVING_PLATEN,
-        normal=listOf(number("kN", 0, 1e9, above=True)),
-        direction=directionOf(level=True),
-    )
+    @validated
     def domain(
-        self, target: Target, normal: Numbers, direction: Numbers = (1, 0, 0)
+        self,
+        target: MovingPlaten,
+        normal: Annotated[Numbers, listOf(number("kN", 0, 1e9, above=True))],
+        direction: Level = (1, 0, 0),
     ) -> list[dict[str, Any]]:
         """The N-V domain of a pier: limit analysis of a push under several normal forces, as :meth:`bound` for one.
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import argparse
 from typing import Any, Callable, NamedTuple
 
 from ..arguments import nearest, number
@@ -135,11 +134,11 @@ def _noSuch(what, thing, attribute):
 
 
 def setting(text):
-    """The joint, the property and the text of the value of ``--set``. Raises argparse.ArgumentTypeError."""
+    """The joint, the property and the text of the value of ``--set``. Raises ValueError."""
     target, equals, value = text.partition("=")
     joint, dot, attribute = target.partition(".")
     if not (equals and dot and joint and attribute):
-        raise argparse.ArgumentTypeError(
+        raise ValueError(
             f"'{text}' must read JOINT.PROPERTY=VALUE, for example bed.tensileStrength=2e5"
         )
     return joint, attribute, value

@@ -7,7 +7,7 @@ import numpy as np
 from yade.wrapper import MasonryVtkRecorder
 
 from .. import notebook
-from ..arguments import takes
+from ..arguments import validated
 from ..assembly import columns
 from ..assembly.blocks import units
 from ..basics import Refused
@@ -25,7 +25,7 @@ OF_JOINTS = "normalStiffness", "shearStiffness", "tensileStrength", "cohesion", 
 OF_UNITS = "density", "young", "poisson"
 
 
-@takes()
+@validated
 def curve(scene):
     """The columns of curve.csv so far: a :class:`masonry.read.shown.Curve`, arrays of numpy by name with their units.
 

@@ -16,28 +16,27 @@ from __future__ import annotations
 
 import cmath
 import math
+from typing import Annotated
 
 import numpy as np
 
-from ..arguments import Numbers, listOf, number, takes
+from ..arguments import Numbers, listOf, number, validated
 
 DAMPING = 0.05  # share of critical damping of the usual spectra [-]
 #: Points of a period at least at which the displacement is looked at: its largest is missed by less than 1 - cos(π/100).
 POINTS = 100
 SHORTEST, LONGEST = 0.01, 100.0  # periods [s]
 
-PERIOD = number("s", SHORTEST, LONGEST)
-RATIO = number("", 0, 1, below=True)
+Period = Annotated[float, number("s", SHORTEST, LONGEST)]
+Ratio = Annotated[float, number("", 0, 1, below=True)]
 
 
-@takes(
-    values=listOf(number("m/s²", -1e6, 1e6), 2),
-    every=number("s", 0, 86400, above=True),
-    period=PERIOD,
-    damping=RATIO,
-)
+@validated
 def spectralAcceleration(
-    values: Numbers, every: float, period: float, damping: float = DAMPING
+    values: Annotated[Numbers, listOf(number("m/s²", -1e6, 1e6), 2)],
+    every: Annotated[float, number("s", 0, 86400, above=True)],
+    period: Period,
+    damping: Ratio = DAMPING,
 ) -> float:
     """The pseudo spectral acceleration of a record [m/s²]: ω² times the largest displacement.
 

@@ -3,23 +3,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
-from ..bricks import Block
-from ..arguments import Axes, Numbers, axes, byName, number, oneOf, orNone, shown, takes
-from ..arguments import name as nameOf
+from ..arguments import Axes, Freedoms, Name, Numbers, axes, byName, number, oneOf, shown, validated  # fmt: skip
 from ..arguments import vector as numbers
 from ..assembly.blocks import vector
 from ..basics import Refused
-from .targets import Target, brick
-from .targets import part as partName
+from .targets import BrickAt, Part, Target
 from .ties import MOST, End, Spring
 from .words import describes
 
 PLATEN = 0.2  # [m] height of a platen
 
-#: Kinds of arguments: a coordinate and a point, not farther from the origin than any masonry.
-COORDINATE, POINT = number("m", -1e6, 1e6), numbers("m", 1e6)
+#: A coordinate and a point, not farther from the origin than any masonry.
+Coordinate = Annotated[float, number("m", -1e6, 1e6)]
+Point = Annotated[Numbers, numbers("m", 1e6)]
 
 
 def stiffnesses(value: Any, first: Any = None) -> Any:
@@ -32,32 +30,20 @@ def stiffnesses(value: Any, first: Any = None) -> Any:
 
 
 @describes
-@takes(
-    where=oneOf("bottom", "top"),
-    rotation=orNone(oneOf("held", "free")),
-    height=number("m", 1e-6, 1e6),
-    name=orNone(nameOf),
-    point=orNone(POINT),
-    guided=axes("xy", none=True),
-    part=orNone(partName),
-    upTo=orNone(COORDINATE),
-    recorded=orNone(COORDINATE),
-    drive=axes("xyz", none=True),
-    springs=orNone(stiffnesses),
-)
+@validated
 def platen(
     description: Any,
-    where: str,
-    rotation: str | None = None,
-    height: float = PLATEN,
-    name: str | None = None,
-    point: Numbers | None = None,
-    guided: Axes = "",
-    part: str | None = None,
-    upTo: float | None = None,
-    recorded: float | None = None,
-    drive: Axes = "",
-    springs: dict[str, float] | None = None,
+    where: Annotated[str, oneOf("bottom", "top")],
+    rotation: Annotated[str, oneOf("held", "free")] | None = None,
+    height: Annotated[float, number("m", 1e-6, 1e6)] = PLATEN,
+    name: Name | None = None,
+    point: Point | None = None,
+    guided: Annotated[Axes, axes("xy", none=True)] = "",
+    part: Part | None = None,
+    upTo: Coordinate | None = None,
+    recorded: Coordinate | None = None,
+    drive: Annotated[Axes, axes("xyz", none=True)] = "",
+    springs: Annotated[dict[str, float], stiffnesses] | None = None,
 ) -> Target:
     """A stiff block over the whole lower or upper side of the structure.
 
@@ -167,12 +153,12 @@ def _standOn(description, target, springs, point):
 
 
 @describes
-@takes(where=brick, name=orNone(nameOf), axes=axes("xyzXYZ"))
+@validated
 def hold(
     description: Any,
-    where: Numbers | int | Block,
-    name: str | None = None,
-    axes: Axes = "xyzXYZ",
+    where: BrickAt,
+    name: Name | None = None,
+    axes: Freedoms = "xyzXYZ",
 ) -> Target:
     """Hold a brick, so that it neither moves nor turns but by :meth:`move`.
 
@@ -193,19 +179,15 @@ def hold(
 
 
 @describes
-@takes(where=brick, name=orNone(nameOf))
-def watch(
-    description: Any, where: Numbers | int | Block, name: str | None = None
-) -> Target:
+@validated
+def watch(description: Any, where: BrickAt, name: Name | None = None) -> Target:
     """Record the motion of a brick. Parameters as of :meth:`hold`; a point is the one that is recorded."""
     return _brick(description, where, name, fixed=False, loaded=False)
 
 
 @describes
-@takes(where=brick, name=orNone(nameOf))
-def handle(
-    description: Any, where: Numbers | int | Block, name: str | None = None
-) -> Target:
+@validated
+def handle(description: Any, where: BrickAt, name: Name | None = None) -> Target:
     """A brick that loads act on, at its centre or at the point that is given. Parameters as of :meth:`hold`."""
     return _brick(description, where, name, fixed=False)
 

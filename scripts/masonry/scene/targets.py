@@ -5,10 +5,11 @@ and the kinds of arguments that name them."""
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Iterator
+from typing import Annotated, Any, Iterator, Union
 
-from ..arguments import oneOf, shown
+from ..arguments import Numbers, oneOf, shown
 from ..assembly.columns import Column
+from ..bricks import Block
 
 
 @dataclass
@@ -193,21 +194,6 @@ def _target(what, fits):
     return take
 
 
-ANY = _target(
-    "a target of this scene, as platen(), hold(), watch() or handle() give it",
-    lambda target: True,
-)
-LOADED = _target(
-    "a platen that moves, or a handle(), of this scene", lambda target: target.loaded
-)
-MOVING_PLATEN = _target(
-    "a platen of this scene that moves", lambda target: target.box and not target.fixed
-)
-HELD = _target(
-    "a platen or brick of this scene that is held", lambda target: target.fixed
-)
-
-
 def recordedJoint(value: Any, first: Any) -> Any:
     """The kind of a joint of the scene, as :meth:`masonry.scene.scene.Scene.joint` gave it."""
     if not any(value is one for one in _descriptionOf(first).joints):
@@ -225,3 +211,27 @@ def brick(value: Any, first: Any) -> Any:
     """The kind of a brick: its index, a point in it or near it [m], or the block itself."""
     _descriptionOf(first).find(value)
     return value
+
+
+#: What the user says to a command of a scene, as type hints name it.
+AnyTarget = Annotated[
+    Target,
+    _target(
+        "a target of this scene, as platen(), hold(), watch() or handle() give it",
+        lambda target: True,
+    ),
+]
+Loaded = Annotated[
+    Target,
+    _target("a platen that moves, or a handle(), of this scene", lambda t: t.loaded),
+]
+MovingPlaten = Annotated[
+    Target,
+    _target("a platen of this scene that moves", lambda t: t.box and not t.fixed),
+]
+HeldTarget = Annotated[
+    Target, _target("a platen or brick of this scene that is held", lambda t: t.fixed)
+]
+RecordedJoint = Annotated[JointRecord, recordedJoint]
+Part = Annotated[str, part]
+BrickAt = Annotated[Union[Numbers, int, Block], brick]

@@ -17,11 +17,11 @@ import re
 from dataclasses import dataclass
 from typing import Any, Iterable, Sequence
 
-from ..arguments import FilePath, isNumber, listOf, misfits, number, shown
+from ..arguments import FilePath, isNumber, listOf, number, shown, validated
 from ..basics import GRAVITY, Refused
 from ..scene import accelerograms
 from ..scene.ground import UNITS, readRecord
-from ..scene.spectrum import DAMPING, LONGEST, PERIOD, RATIO, SHORTEST
+from ..scene.spectrum import DAMPING, LONGEST, Period, Ratio, SHORTEST
 from ..scene.spectrum import spectralAcceleration
 
 FOLDER = "records"  # in the folder of a study: the records as it read them
@@ -60,16 +60,14 @@ class Measure:
         return float(f"{found:.12g}")
 
 
-def Sa(period: float, damping: float = DAMPING) -> Measure:
+@validated
+def Sa(period: Period, damping: Ratio = DAMPING) -> Measure:
     """Spectral acceleration as the measure of intensity: see :func:`masonry.scene.spectrum.spectralAcceleration`.
 
     :param period: of the oscillator [s]
     :param damping: share of critical damping [-]
     :raises Refused: if one is out of its bounds
     """
-    problems = misfits("Sa: ", {"period": PERIOD, "damping": RATIO}, {"period": period, "damping": damping})  # fmt: skip
-    if problems:
-        raise Refused("\n".join(problems))
     return Measure(float(period), float(damping))
 
 

@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Sequence
+from typing import Annotated, Any, Sequence
 
-from ..arguments import plainly, isNumber, listOf, misfits, number, shown, takes, text
+from ..arguments import isA, isNumber, listOf, number, shown, validated, text
 from ..scene import fields
 from ..basics import Refused
 from ..packages import needed
@@ -22,10 +22,7 @@ def openturns() -> Any:
     return needed("openturns")
 
 
-def _finite(**values):
-    problems = misfits("", dict.fromkeys(values, number()), values)
-    if problems:
-        raise Refused("\n".join(problems))
+Finite = Annotated[float, number()]
 
 
 @dataclass(frozen=True)
@@ -81,7 +78,6 @@ def _interval(low, high):
 def _aboutMean(kind, mean, cov, low, high):
     parameters = {"mean": mean, "cov": cov}
     ends = {n: v for n, v in (("low", low), ("high", high)) if v is not None}
-    _finite(**parameters, **ends)
     if not cov >= LEAST_COV:
         raise Refused(f"{kind}: coefficient of variation {cov} must be above 0, and at least {LEAST_COV:g}")  # fmt: skip
     if mean == 0 or (kind == "lognormal" and mean < 0):
@@ -99,9 +95,9 @@ def _aboutMean(kind, mean, cov, low, high):
     return made
 
 
-@takes(mean=plainly, cov=plainly, low=plainly, high=plainly)
+@validated
 def lognormal(
-    mean: float, cov: float, low: float | None = None, high: float | None = None
+    mean: Finite, cov: Finite, low: Finite | None = None, high: Finite | None = None
 ) -> Distribution:
     """A lognormal distribution.
 
@@ -113,18 +109,17 @@ def lognormal(
     return _aboutMean("lognormal", mean, cov, low, high)
 
 
-@takes(mean=plainly, cov=plainly, low=plainly, high=plainly)
+@validated
 def normal(
-    mean: float, cov: float, low: float | None = None, high: float | None = None
+    mean: Finite, cov: Finite, low: Finite | None = None, high: Finite | None = None
 ) -> Distribution:
     """A normal distribution. Parameters are those of :func:`lognormal`. Most properties need a ``low`` end."""
     return _aboutMean("normal", mean, cov, low, high)
 
 
-@takes(low=plainly, high=plainly)
-def uniform(low: float, high: float) -> Distribution:
+@validated
+def uniform(low: Finite, high: Finite) -> Distribution:
     """All values between two ends alike."""
-    _finite(low=low, high=high)
     if not low < high:
         raise Refused(f"uniform: low {low:g} must be below high {high:g}")
     return Distribution("uniform", (("low", low), ("high", high)))
@@ -154,9 +149,6 @@ class Choice:
         }
 
 
-WEIGHT = number("", 0, 1e9, above=True)
-
-
 def _chosen(value, first=None):
     """The kind of a value of a choice."""
     if isinstance(value, (bool, str)):
@@ -166,23 +158,20 @@ def _chosen(value, first=None):
     raise ValueError(f"{shown(value)} must be a number, a text, or True or False")
 
 
-@takes()
-def choice(*values: Any, weights: Sequence[float] | None = None) -> Choice:
+@validated
+def choice(
+    *values: Annotated[Any, _chosen],
+    weights: Annotated[Sequence[float], listOf(number("", 0, 1e9, above=True))]
+    | None = None,
+) -> Choice:
     """One of some values, for example ``choice("softening", "brittle")``. A list in ``vary`` means the same.
 
     :param weights: how often each comes, relative to the others; None: all alike. A grid leaves them alone
     """
     if not values:
         raise Refused("choice: needs at least one value")
-    problems = [p for v in values for p in misfits("choice: ", {"value": _chosen}, {"value": v})]  # fmt: skip
-    if problems:
-        raise Refused("\n".join(problems))
     if len(set(values)) != len(values):
         raise Refused(f"choice: {list(values)} has a value twice")
-    if weights is not None:
-        problems = misfits("choice: ", {"weights": listOf(WEIGHT)}, {"weights": weights})  # fmt: skip
-        if problems:
-            raise Refused(problems[0])
     weights = [1] * len(values) if weights is None else list(weights)
     if len(weights) != len(values):
         raise Refused(f"choice: {len(values)} values need as many weights above 0")
@@ -212,11 +201,11 @@ class Field:
         return fields.written(self.kind, self.cov, self.length, seed)
 
 
-@takes(distribution=plainly, length=plainly, cov=plainly)
+@validated
 def field(
-    distribution: Distribution | None = None,
-    length: float = 0.0,
-    cov: float | None = None,
+    distribution: Annotated[Distribution, isA(Distribution)] | None = None,
+    length: fields.Correlation = 0.0,
+    cov: fields.Cov | None = None,
 ) -> Field:
     """A property that varies from joint to joint, with another field in every row.
 
@@ -225,20 +214,13 @@ def field(
     :param length: correlation length [m], see :mod:`masonry.scene.fields`; 0: every joint has its own value
     :param cov: coefficient of variation [-], where there is no distribution
     """
-    _finite(length=length)
-    if length < 0:
-        raise Refused(f"field: correlation length {length:g} m must be at least 0")
     if distribution is None:
-        _finite(cov=cov)
-        if not cov > 0:
-            raise Refused(f"field: coefficient of variation {cov} must be above 0")
+        if cov is None:
+            raise Refused("field: cov must be given, where there is no distribution")
         return Field("lognormal", None, float(cov), float(length))
     if cov is not None:
         raise Refused("field: cov goes with no distribution, which has its own")
-    if (
-        not isinstance(distribution, Distribution)
-        or distribution.kind not in fields.KINDS
-    ):
+    if distribution.kind not in fields.KINDS:
         raise Refused(f"field: {shown(distribution)} must be lognormal or normal")
     p = dict(distribution.parameters)
     if "low" in p or "high" in p:

@@ -107,14 +107,19 @@ template <class Visit> void JointProperties::describe(Visit&& visit) {
               .atLeast(0)
               .source("paper eq. (17a); value [decided]: law/README.md, Parameters"));
     visit("friction", &P::friction,
-          number("-", "Peak friction coefficient tan(phi_p)").atLeast(0).source("paper table 2"));
+          number("-", "Peak friction coefficient tan(phi_p)")
+              .atLeast(0)
+              .usually(0, 5, "degrees")
+              .source("paper table 2"));
     visit("residualFriction", &P::residualFriction,
           number("-", "Residual friction coefficient tan(phi_r), at most the peak one")
               .atLeast(0)
+              .usually(0, 5, "degrees")
               .source("paper eq. (17b); value [decided]: law/README.md, Parameters"));
     visit("dilatancy", &P::dilatancy,
           number("-", "Dilatancy tan(psi), at most the residual friction coefficient")
               .atLeast(0)
+              .usually(0, 5, "degrees")
               .source("paper eq. (9); value [decided]: law/README.md, Parameters"));
     visit("dilatancyDecay", &P::dilatancyDecay,
           number("1/m", "Decay delta of the dilatancy with slip s, tan(psi)·exp(-delta·s); 0 keeps it constant")

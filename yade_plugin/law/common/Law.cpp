@@ -7,7 +7,7 @@ namespace masonry {
 Law::Law(const JointProperties& properties, const std::vector<std::string>& problems) : properties_(properties) {
     if (problems.empty()) return;
     const auto kind = "joint \"" + properties.name + "\": ";
-    throw std::invalid_argument(kind + joined(problems, ("\n" + kind).c_str()));
+    throw WrongProperties(kind + joined(problems, ("\n" + kind).c_str()));
 }
 
 const SofteningTable& Law::tension() const {

@@ -1,15 +1,32 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What of a masonry was assumed because it was not given, and what cannot be assumed."""
+"""What of a masonry was assumed because it was not given, and what cannot be assumed.
+
+A MasonryJoint and a MasonryMat note themselves which of their properties nobody has given (``assumed``): what is given when an
+object is made, set as an attribute or with ``set`` or ``updateAttrs`` later, counts as given. ``brittleCoulomb`` and :func:`copied`
+keep the note. An object that YADE has loaded from a file has none: everything counts as given.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
-from yade.wrapper import MasonryJoint
+from yade.wrapper import MasonryJoint, MasonryMat
 
-from ...arguments import flag, isA, listOf, takes
+from ...arguments import isA, listOf, validated
+from ...assembly.blocks import properties
 from ...assembly.engines import LAWS
-from ...assembly.given import DESCRIBED, NEEDED, assumed, isDefault
+
+#: Descriptions of the properties by class and name.
+DESCRIBED = {cls: {p["name"]: p for p in properties(cls)} for cls in (MasonryJoint, MasonryMat)}  # fmt: skip
+
+#: Where the default of a property is from, by class and name; the paper is that of yade_plugin/law/README.md.
+DEFAULTS = {cls: cls().assumed() for cls in DESCRIBED}
+
+#: Properties without a default that fits any masonry.
+NEEDED = {
+    MasonryMat: ["density"],
+    MasonryJoint: ["tensileStrength", "cohesion", "friction", "compressiveStrength"],
+}
 
 #: Source of every property of a joint ``support`` that takes the bed joint.
 AS_BED = "as of the bed joint"
@@ -44,6 +61,24 @@ OF_STRENGTH = {
 TABLES = {"modeIFractureEnergy": "tensionTable", "modeIIFractureEnergy": "shearTable"}
 
 
+def state(thing: Any, **sources: str) -> Any:
+    """Note of an object that these properties are assumed, with the source of each, and that all others are given. Returns the
+    object."""
+    thing.assume(sources)
+    return thing
+
+
+def copied(thing: Any) -> Any:
+    """Another material or joint with the same attributes and the same note."""
+    made = type(thing)(**{k: v for k, v in thing.dict().items() if k != "id"})
+    return state(made, **thing.assumed())
+
+
+def isDefault(thing: Any, name: str) -> bool:
+    """Whether a property has the default of its class because nobody has given it."""
+    return thing.assumed().get(name) == DEFAULTS[type(thing)][name]
+
+
 def acts(joint: Any, name: str) -> bool:
     """Whether a number among the properties of a joint has an effect on it."""
     if name in ("normalStiffness", "shearStiffness"):
@@ -70,7 +105,7 @@ def entriesOf(masonry: Any) -> list[dict[str, Any]]:
     ``source``. Properties without an effect are left out."""
     found = []
     for name, thing in _things(masonry):
-        sources = assumed(thing)
+        sources = thing.assumed()
         if AS_BED in sources.values():
             entry = {"name": name, "value": "bed", "unit": "", "source": SUPPORT}
             found.append(entry)
@@ -106,8 +141,10 @@ def missing(masonry: Any) -> list[str]:
     return problems
 
 
-@takes(entries=listOf(isA(dict), 0), brief=flag)
-def linesOf(entries: list[dict[str, Any]], brief: bool) -> list[str]:
+@validated
+def linesOf(
+    entries: Annotated[list[dict[str, Any]], listOf(isA(dict), 0)], brief: bool
+) -> list[str]:
     """What a scene prints of its entries ``assumed``: lines of text.
 
     :param brief: whether their number is enough

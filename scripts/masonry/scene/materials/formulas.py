@@ -3,14 +3,15 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
+from typing import Annotated
 
 from yade.wrapper import MasonryJoint, MasonryMat
 
-from ...arguments import Numbers, isNumber, number, plain, plainly, shown, takes
-from ...assembly.given import DEFAULTS, state
+from ...arguments import number, validated
 from ...basics import Refused, say
+from ...bricks.blocks import Sides
+from .assumptions import state
 from .kinds import Masonry
 
 #: Flexural strength of a bond over its direct tensile strength [-]: van der Pluijm, Out-of-plane bending of masonry
@@ -30,40 +31,19 @@ BELOW_RANGE, ABOVE_RANGE = 1.6e-3, 0.33e-3
 #: By how much an assumed fracture energy is above the least that the law can follow [-].
 MARGIN = 1.1
 
-#: Lowest and highest value of each number, and its unit. Beyond them it is probably given in another unit.
-RANGES = {
-    "E": (1e6, 1e12, "Pa"),
-    "unit_E": (1e6, 1e12, "Pa"),
-    "G": (1e6, 1e12, "Pa"),
-    "head_E": (1e6, 1e12, "Pa"),
-    "fm": (1e4, 1e9, "Pa"),
-    "fv0": (0, 1e8, "Pa"),
-    "friction": (0, 5, "-"),
-    "ft": (0, 1e8, "Pa"),
-    "bond_wrench": (0, 1e8, "Pa"),
-    "bond_ratio": (1, 5, "-"),
-    "joint": (0, 0.1, "m"),
-    "density": (100, 1e4, "kg/m³"),
-    "poisson": (0, 0.49, "-"),
-    "GfI": (0.1, 1e5, "J/m²"),
-    "GfII": (0.1, 1e5, "J/m²"),
-    "Gc": (10, 1e7, "J/m²"),
-    "peak_strain": (1e-5, 0.1, "-"),
-    "residual_friction": (0, 5, "-"),
-    "dilatancy": (0, 5, "-"),
-    "head_share": (0, 1, "-"),
-    "unit_ft": (1e3, 1e9, "Pa"),
-    "unit_GfI": (0.1, 1e6, "J/m²"),
-    "unit_fv0": (1e3, 1e9, "Pa"),
-    "unit_GfII": (0.1, 1e6, "J/m²"),
-    "unit_friction": (0, 5, "-"),
-}
-
-REQUIRED = ["E", "unit_E", "fm", "fv0", "friction", "unit", "joint", "density"]
+#: What the user gives. Beyond these bounds it is probably in another unit.
+Modulus = Annotated[float, number("Pa", 1e6, 1e12)]
+Crushing = Annotated[float, number("Pa", 1e4, 1e9)]
+OfBond = Annotated[float, number("Pa", 0, 1e8)]  # a strength
+OfBrick = Annotated[float, number("Pa", 1e3, 1e9)]  # likewise
+Friction = Annotated[float, number("", 0, 5)]
+Energy = Annotated[float, number("J/m²", 0.1, 1e5)]
+EnergyOfBrick = Annotated[float, number("J/m²", 0.1, 1e6)]
+Mortar = Annotated[float, number("m", 0, 0.1)]
 
 
-@takes(fm=number("Pa", *RANGES["fm"][:2]))
-def compressiveFractureEnergy(fm: float) -> tuple[float, str]:
+@validated
+def compressiveFractureEnergy(fm: Crushing) -> tuple[float, str]:
     """Compressive fracture energy of masonry [J/m²], and where it is from.
 
     Gc = 15 + 0.43 fm - 0.0036 fm² with fm in MPa and Gc in N/mm, for fm from 12 to 80 MPa, after Model Code 90; below and
@@ -83,12 +63,12 @@ def compressiveFractureEnergy(fm: float) -> tuple[float, str]:
     )
 
 
-@takes(
-    strength=number("Pa", 0, 1e12),
-    stiffness=number("Pa/m", 0, above=True),
-    lumped=number("m/Pa", 0),
-)
-def leastEnergy(strength: float, stiffness: float, lumped: float = 0.0) -> float:
+@validated
+def leastEnergy(
+    strength: Annotated[float, number("Pa", 0, 1e12)],
+    stiffness: Annotated[float, number("Pa/m", 0, above=True)],
+    lumped: Annotated[float, number("m/Pa", 0)] = 0.0,
+) -> float:
     """The least fracture energy [J/m²] with which the law softens as it is asked to.
 
     Below strength²/stiffness, twice the elastic energy at the peak, the law takes another energy; below half of that no
@@ -147,40 +127,38 @@ class _Kind:
     def made(self):
         """The MasonryJoint. Raises ValueError."""
         joint = MasonryJoint(name=self.name, **self.values)
-        defaults = DEFAULTS[MasonryJoint].items()
-        rest = {n: s for n, s in defaults if n not in {"name", *self.values}}
-        return state(joint, **{**rest, **self.sources})
+        return state(joint, **joint.assumed(), **self.sources)
 
 
-@takes(**dict.fromkeys([*RANGES, "unit"], plainly))
+@validated
 def masonry(
     *,
-    E: float | None = None,
-    unit_E: float | None = None,
-    fm: float | None = None,
-    fv0: float | None = None,
-    friction: float | None = None,
-    unit: Numbers | None = None,
-    joint: float | None = None,
-    density: float | None = None,
-    ft: float | None = None,
-    bond_wrench: float | None = None,
-    bond_ratio: float | None = None,
-    G: float | None = None,
-    head_E: float | None = None,
-    poisson: float | None = None,
-    GfI: float | None = None,
-    GfII: float | None = None,
-    Gc: float | None = None,
-    peak_strain: float | None = None,
-    residual_friction: float | None = None,
-    dilatancy: float | None = None,
-    head_share: float | None = None,
-    unit_ft: float | None = None,
-    unit_GfI: float | None = None,
-    unit_fv0: float | None = None,
-    unit_friction: float | None = None,
-    unit_GfII: float | None = None,
+    E: Modulus,
+    unit_E: Modulus,
+    fm: Crushing,
+    fv0: OfBond,
+    friction: Friction,
+    unit: Sides,
+    joint: Mortar,
+    density: Annotated[float, number("kg/m³", 100, 1e4)],
+    ft: OfBond | None = None,
+    bond_wrench: OfBond | None = None,
+    bond_ratio: Annotated[float, number("", 1, 5)] | None = None,
+    G: Modulus | None = None,
+    head_E: Modulus | None = None,
+    poisson: Annotated[float, number("", 0, 0.49)] | None = None,
+    GfI: Energy | None = None,
+    GfII: Energy | None = None,
+    Gc: Annotated[float, number("J/m²", 10, 1e7)] | None = None,
+    peak_strain: Annotated[float, number("", 1e-5, 0.1)] | None = None,
+    residual_friction: Friction | None = None,
+    dilatancy: Friction | None = None,
+    head_share: Annotated[float, number("", 0, 1)] | None = None,
+    unit_ft: OfBrick | None = None,
+    unit_GfI: EnergyOfBrick | None = None,
+    unit_fv0: OfBrick | None = None,
+    unit_friction: Friction | None = None,
+    unit_GfII: EnergyOfBrick | None = None,
 ) -> Masonry:
     """Masonry of one's own, from what a data sheet and tests of the masonry say. Returns a :class:`Masonry`.
 
@@ -360,43 +338,25 @@ def masonry(
     if problems:
         raise Refused("\n".join(f"materials.masonry: {one}" for one in problems))
     if unit_ft is None:
-        joints["crack"].__dict__["_assumed"][
-            "elastic"
-        ] = "unit_ft was not given: bricks do not crack"
+        why = "unit_ft was not given: bricks do not crack"
+        state(joints["crack"], **{**joints["crack"].assumed(), "elastic": why})
     brick = MasonryMat(label="brick", young=unit_E, poisson=poisson, density=density)
     usual = {} if "poisson" in given else {"poisson": "usual for masonry units"}
     return Masonry(state(brick, **usual), joints, course=height)
 
 
 def _problems(given):
-    """Sentences on what is missing or out of its bounds."""
+    """Sentences on what does not go together."""
     found = []
-    missing = [name for name in REQUIRED if name not in given]
-    if missing:
-        found.append(f"{', '.join(missing)} must be given")
     if ("ft" in given) == ("bond_wrench" in given):
         found.append(
             "give either ft, the direct tensile strength of bed joints, or bond_wrench, that of a bond wrench test"
         )
-    numbers = {}
-    for name, (low, high, unit) in RANGES.items():
-        if name not in given:
-            continue
-        value, what = given[name], "" if unit == "-" else f" {unit}"
-        if not isNumber(value):
-            found.append(
-                f"{name} must be a number{what and f' in{what}'}, got {shown(value)}"
-            )
-        elif not low <= value <= high:
-            hint = f": is it in{what}?" if unit != "-" else ""
-            found.append(
-                f"{name} {plain(value):g}{what} must be {low:g} to {high:g}{what}{hint}"
-            )
-        else:
-            numbers[name] = value
-    if "unit" in given:
-        found += _ofUnit(given["unit"], numbers.get("joint", 0.0))
-    n = numbers.get
+    n, length, height = given.get, given["unit"][0], given["unit"][2]
+    if max(given["unit"]) > 5:
+        found.append(f"unit {given['unit']} m must be at most 5 m: is it in m?")
+    elif given["joint"] >= min(length, height):
+        found.append(f"joint {given['joint']:g} m must be below length and height of the unit {given['unit']} m")  # fmt: skip
     pairs = [("E", "unit_E"), ("head_E", "unit_E")]
     for one, other in pairs:
         if n(one) is not None and n(other) is not None and not n(one) < n(other):
@@ -453,22 +413,3 @@ def _problems(given):
     if alone and "unit_ft" not in given:
         found.append(f"{', '.join(alone)} without unit_ft: bricks do not crack then")
     return found
-
-
-def _ofUnit(unit, joint):
-    """Sentences on the size of a brick [m], and on the thickness of its mortar [m]."""
-    try:
-        sides = [float(side) for side in unit]
-    except (TypeError, ValueError):
-        sides = []
-    if len(sides) != 3 or not all(0 < side < math.inf for side in sides):
-        return [
-            f"unit must be length, thickness and height of a brick without mortar above 0 m, got {shown(unit)}"
-        ]
-    if max(sides) > 5:
-        return [f"unit {unit} m must be at most 5 m: is it in m?"]
-    if joint >= min(sides[0], sides[2]):
-        return [
-            f"joint {joint:g} m must be below length and height of the unit {unit} m"
-        ]
-    return []

@@ -6,33 +6,26 @@ from __future__ import annotations
 import math
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import Any, Callable, Iterable, Sequence
+from typing import Annotated, Any, Callable, Iterable
 
 from yade.wrapper import MasonryJoint, MasonryMat
 
 from .. import fields
 from ...arguments import (
+    Names,
     byName as dictOf,
-    flag,
-    function,
     isA,
     isNumber,
-    misfits,
-    named,
-    names,
     nearest,
     number,
-    orNone,
-    plainly,
     shown,
-    takes,
+    validated,
 )
 from ...assembly.engines import LAWS
 from ...bricks import Bricks
-from ...assembly.given import assumed, copied, isDefault, state
 from ...basics import Refused
 from ..settings import Property, Settable, applySettings
-from .assumptions import AS_BED, entriesOf, missing
+from .assumptions import AS_BED, copied, entriesOf, isDefault, missing, state
 
 FACTOR = number("", 0, above=True)  # the kind of what a variation gives
 
@@ -47,8 +40,10 @@ def _slides(value, first=None):
     return value
 
 
-@takes(names=names, joints=dictOf(_slides))
-def withResidual(names: Iterable[str], joints: dict[str, MasonryJoint]) -> list[str]:
+@validated
+def withResidual(
+    names: Names, joints: Annotated[dict[str, MasonryJoint], dictOf(_slides)]
+) -> list[str]:
     """Names of properties that change alike, and with them the residual friction of joints that have one value of friction.
 
     :param names: as ``"bed.friction"``
@@ -91,24 +86,15 @@ def _bearing(value, first=None):
     return value if value is None or value == "fixed" else number("", 0, 5)(value)
 
 
-MODULUS, DENSITY = number("Pa", 0, 1e15, above=True), number("kg/m³", 0, 1e6, above=True)  # fmt: skip
+Modulus = Annotated[float, number("Pa", 0, 1e15, above=True)]
+Density = Annotated[float, number("kg/m³", 0, 1e6, above=True)]
+Poisson = Annotated[float, number("", -1, 0.5, above=True, below=True)]
+InPlane = Annotated[float, number("N/m", 0, 1e15, above=True)]  # a stiffness of a floor
 STIFFER = 1e4  # how much stiffer than the pieces of a beam the joints are that stand for nothing else [-]
 RIGID = 1e14  # Young's modulus of a piece that does not deform [Pa]
 
-#: Kinds of what a :class:`Masonry` is made of.
-KINDS = {
-    "unit": isA(MasonryMat),
-    "joints": dictOf(isA(MasonryJoint), "bed"),
-    "units": dictOf(isA(MasonryMat)),
-    "choose": orNone(function),
-    "varied": _varied,
-    "brief": flag,
-    "course": orNone(number("m", 0, above=True)),
-    "stiff": isA(frozenset),
-}
 
-
-@named
+@validated
 @dataclass
 class Masonry:
     """Bricks and joints of a structure, and which joint a pair of blocks gets.
@@ -119,7 +105,7 @@ class Masonry:
     of a structure, such as the wythes of a wall, get ``collar`` if there is one. Without ``head`` all are bed joints.
 
     Properties that were not given have the default of their class. A scene prints them once, and run.json has them under
-    ``assumed``; :mod:`masonry.assembly.given` says what counts as given. What has no default that fits any masonry must be
+    ``assumed``; :mod:`masonry.scene.materials.assumptions` says what counts as given. What has no default that fits any masonry must be
     given: the density of units, and strengths (tensileStrength, cohesion, friction, and compressiveStrength unless
     cap=False) of joints that are not elastic.
 
@@ -134,22 +120,19 @@ class Masonry:
     :param brief: whether a scene prints only how many properties are assumed, as of a published set
     """
 
-    unit: MasonryMat
-    joints: dict
-    units: dict = field(default_factory=dict)
+    unit: Annotated[MasonryMat, isA(MasonryMat)]
+    joints: Annotated[dict, dictOf(isA(MasonryJoint), "bed")]
+    units: Annotated[dict, dictOf(isA(MasonryMat))] = field(default_factory=dict)
     choose: Callable[..., str | None] | None = None
     #: What :meth:`vary` was given: joint, property, function and step.
-    varied: list = field(default_factory=list)
+    varied: Annotated[list, _varied] = field(default_factory=list)
     brief: bool = False
     #: Height of a course for which the stiffness of the joints was made [m]; None: for any.
-    course: float | None = None
+    course: Annotated[float, number("m", 0, above=True)] | None = None
     #: Kinds of blocks that are rigid also with ``--blocks deformable``: pieces of beams and floors.
-    stiff: frozenset[str] = frozenset()
+    stiff: Annotated[frozenset, isA(frozenset)] = frozenset()
 
     def __post_init__(self):
-        problems = misfits("Masonry: ", KINDS, vars(self))
-        if problems:
-            raise ValueError("\n".join(problems))
         for name, joint in self.joints.items():
             if isDefault(joint, "name"):
                 joint.name = name
@@ -162,7 +145,7 @@ class Masonry:
     def _follow(self):
         """Give a support joint that takes the bed joint what the bed joint has now."""
         support, bed = self.joints["support"], self.joints["bed"]
-        sources = dict(assumed(support))
+        sources = support.assumed()
         values = {n: getattr(bed, n) for n, s in sources.items() if s == AS_BED}
         if values:
             support.updateAttrs(values)
@@ -191,12 +174,12 @@ class Masonry:
         """Sentences on what must be given, and is not."""
         return missing(self)
 
-    @takes(name=names, value=function, step=number("", 1e-6, 1, below=True))
+    @validated
     def vary(
         self,
-        name: str | Sequence[str],
+        name: Names,
         value: Callable[[float, float, float], float],
-        step: float = 0.01,
+        step: Annotated[float, number("", 1e-6, 1, below=True)] = 0.01,
     ) -> Masonry:
         """Let a property change from place to place. Returns the same masonry.
 
@@ -228,14 +211,14 @@ class Masonry:
         self.varied += found
         return self
 
-    @takes(beam=_pieces, young=MODULUS, density=DENSITY, poisson=number("", -1, 0.5, above=True, below=True), bearing=_bearing)  # fmt: skip
+    @validated
     def withBeam(
         self,
-        beam: Any,
-        young: float,
-        density: float,
-        poisson: float = 0.2,
-        bearing: float | str | None = None,
+        beam: Annotated[Any, _pieces],
+        young: Modulus,
+        density: Density,
+        poisson: Poisson = 0.2,
+        bearing: Annotated[float | str | None, _bearing] = None,
     ) -> Masonry:
         """Say what a beam of :func:`masonry.bricks.Beam` is made of. It is elastic. Returns the same masonry.
 
@@ -255,14 +238,14 @@ class Masonry:
         unit = MasonryMat(label=name, young=young, poisson=poisson, density=density)
         return self._take(name, unit, glue, bearing)
 
-    @takes(floor=_pieces, shear=number("N/m", 0, 1e15, above=True), mass=number("kg/m²", 0, 1e6, above=True), across=orNone(number("N/m", 0, 1e15, above=True)), bearing=_bearing)  # fmt: skip
+    @validated
     def withFloor(
         self,
-        floor: Any,
-        shear: float,
-        mass: float,
-        across: float | None = None,
-        bearing: float | str | None = 0.5,
+        floor: Annotated[Any, _pieces],
+        shear: InPlane,
+        mass: Annotated[float, number("kg/m²", 0, 1e6, above=True)],
+        across: InPlane | None = None,
+        bearing: Annotated[float | str | None, _bearing] = 0.5,
     ) -> Masonry:
         """Say what a floor of :func:`masonry.bricks.Floor` is. It shears elastically in its plane. Returns the same masonry.
 
@@ -329,8 +312,10 @@ class Masonry:
         values = self.joints[joint].dict() if joint in self.joints else {}
         return [n for n, v in values.items() if isNumber(v)]
 
-    @takes(args=_options, connectors=plainly)
-    def variant(self, args: Any, connectors: Any = None) -> Masonry:
+    @validated
+    def variant(
+        self, args: Annotated[Any, _options], connectors: Any = None
+    ) -> Masonry:
         """A copy for the options ``--joints`` and ``--field``; this one stays as it is.
 
         :param connectors: names of ties, springs and fibre layers of the scene, whose fields are none of the joints, or None

@@ -6,14 +6,14 @@ The paper: see yade_plugin/law/README.md.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 from yade import Vector3
 from yade.wrapper import MasonryJoint, MasonryMat
 
-from ...arguments import flag, isNumber, number, orNone, shown, takes
-from ...assembly.given import state
-from .kinds import Masonry, byName
+from ...arguments import isNumber, number, shown, validated
+from .assumptions import state
+from .kinds import Masonry, Poisson, byName
 
 
 def calciumSilicate() -> Masonry:
@@ -33,17 +33,18 @@ def tested(value: Any, first: Any = None) -> Any:
     return value
 
 
-OF_GRANITE = dict(level=tested, height=number("m", 1e-3, 10))
+Level = Annotated[int, tested]
+Course = Annotated[float, number("m", 1e-3, 10)]
 
 
-@takes(**OF_GRANITE)
-def dryGranite(level: int, height: float) -> Masonry:
+@validated
+def dryGranite(level: Level, height: Course) -> Masonry:
     """Granite blocks with dry joints, for :class:`masonry.scene.scene.Scene`. Parameters as of :func:`dryGraniteJoints`."""
     return Masonry(graniteUnit(), dryGraniteJoints(level, height), brief=True)
 
 
 MOST_FRICTION = 5.0  # [-] of a joint: a larger one is an angle
-STIFFNESS_RANGE = number("Pa/m", 0, 1e20, above=True)  # the kind of an argument
+Stiffness = Annotated[float, number("Pa/m", 0, 1e20, above=True)]
 #: What stones with dry joints have if nothing else is said.
 DRY = {
     "friction": 0.7,
@@ -54,21 +55,14 @@ DRY = {
 }
 
 
-@takes(
-    friction=orNone(number("", 0, MOST_FRICTION)),
-    normalStiffness=orNone(STIFFNESS_RANGE),
-    shearStiffness=orNone(STIFFNESS_RANGE),
-    density=orNone(number("kg/m³", 0, above=True)),
-    young=orNone(number("Pa", 0, above=True)),
-    poisson=orNone(number("", -1, 0.5, above=True, below=True)),
-)
+@validated
 def dry(
-    friction: float | None = None,
-    normalStiffness: float | None = None,
-    shearStiffness: float | None = None,
-    density: float | None = None,
-    young: float | None = None,
-    poisson: float | None = None,
+    friction: Annotated[float, number("", 0, MOST_FRICTION)] | None = None,
+    normalStiffness: Stiffness | None = None,
+    shearStiffness: Stiffness | None = None,
+    density: Annotated[float, number("kg/m³", 0, above=True)] | None = None,
+    young: Annotated[float, number("Pa", 0, above=True)] | None = None,
+    poisson: Poisson | None = None,
 ) -> Masonry:
     """Stones with dry joints that do not crush: no tension, no cohesion, Coulomb friction without dilatancy.
 
@@ -160,7 +154,7 @@ CRACK_ASSUMED = [
 ]
 
 
-@takes(brittle=flag)
+@validated
 def calciumSilicateJoints(brittle: bool = False) -> dict[str, MasonryJoint]:
     """Support, bed, head and crack joints of the calcium-silicate walls, as a dict by name.
 
@@ -229,9 +223,9 @@ def graniteUnit() -> MasonryMat:
     return state(unit, poisson=usual, density=usual)
 
 
-@takes(brittle=flag, **OF_GRANITE)
+@validated
 def dryGraniteJoints(
-    level: int, height: float, brittle: bool = False
+    level: Level, height: Course, brittle: bool = False
 ) -> dict[str, MasonryJoint]:
     """Support, bed and head joints of the dry-joint granite walls, as a dict by name.
 

@@ -4,19 +4,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable
+from typing import Annotated, Any, Callable, Union
 
 from yade import O
 
-from ...arguments import number, orFunction, takes
+from ...arguments import number, orFunction, validated
 from ...basics import Refused
-from ..targets import ANY, JointRecord, Target, recordedJoint
+from ..targets import AnyTarget, RecordedJoint
 from .answers import DONE, Answer
 from .stage import stage
-from .supports import MILLIMETRES, letGo
+from .supports import letGo, millimetres
 
 ROWS = 2000  # of curve.csv while a block is driven over a distance
-DISTANCE = orFunction(MILLIMETRES)  # the kind of an argument
+Distance = Annotated[Union[float, Callable[[], float]], orFunction(millimetres)]
 
 
 @dataclass
@@ -45,13 +45,13 @@ def stresses(scene, rows):
 
 
 @stage(options=("rate",), answers=stresses)
-@takes(target=ANY, x=DISTANCE, y=DISTANCE, z=DISTANCE)
+@validated
 def drive(
     scene: Any,
-    target: Target,
-    x: float | Callable[[], float] = 0.0,
-    y: float | Callable[[], float] = 0.0,
-    z: float | Callable[[], float] = 0.0,
+    target: AnyTarget,
+    x: Distance = 0.0,
+    y: Distance = 0.0,
+    z: Distance = 0.0,
 ) -> str:
     """Drive a target along an axis at ``--rate`` from the first step on, for example two bricks and their joint.
 
@@ -76,7 +76,7 @@ def drive(
 def _distance(axis, value):
     """A displacement [mm], which a function may give. Raises ValueError."""
     try:
-        found = MILLIMETRES(value() if callable(value) else value)
+        found = millimetres(value() if callable(value) else value)
     except ValueError as error:
         raise ValueError(f"drive: {axis} {error}") from None
     if not found:
@@ -95,8 +95,13 @@ def checkStress(scene, target, joint, stress):
 
 
 @stage(options=("rate",), check=checkStress, answers=stresses)
-@takes(target=ANY, joint=recordedJoint, stress=number("Pa", -1e12, 1e12))
-def pressJoint(scene: Any, target: Target, joint: JointRecord, stress: float) -> str:
+@validated
+def pressJoint(
+    scene: Any,
+    target: AnyTarget,
+    joint: RecordedJoint,
+    stress: Annotated[float, number("Pa", -1e12, 1e12)],
+) -> str:
     """Bring a bed joint to a mean normal stress by a drive along z, then hold that by its force: nothing swings.
 
     :param target: a platen with a drive along z, above bricks on one column

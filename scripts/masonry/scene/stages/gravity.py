@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Callable
+from typing import Annotated, Any, Callable
 
-from ...arguments import Numbers, direction, function, number, orNone, takes
+from ...arguments import Level, number, validated
 from ...assembly.blocks import vector
 from ..bounds import nameOfLean
 from .acting import Acceleration, Tilting
@@ -14,7 +14,7 @@ from .growing import TRIAL, WITHIN, ends, follow, found, grow
 from .rest import Resting, waitForRest
 from .answers import AT_REST, MOVING
 from .stage import stage
-from .timed import DURATION
+from .timed import Duration
 
 LEAN_GROWS = 0.2  # [s] in which a lean grows
 
@@ -40,24 +40,18 @@ def sideways(scene, towards, name):
 
 
 #: Kinds of arguments: a horizontal direction, the width of a bracket, and an acceleration.
-LEVEL = direction(level=True)
-WIDTH = number("", 1e-4, 1, below=True)
-ACCELERATION = number("g", 0, 1e3, above=True)
+Width = Annotated[float, number("", 1e-4, 1, below=True)]
+InG = Annotated[float, number("g", 0, 1e3, above=True)]
 
 
 @stage(bounded=True, answers=found)
-@takes(
-    degrees=number("degrees", 0, 90, above=True, below=True),
-    towards=LEVEL,
-    rate=number("degrees/s", 1e-6, 1e6),
-    within=WIDTH,
-)
+@validated
 def tilt(
     scene: Any,
-    degrees: float,
-    towards: Numbers = (1, 0, 0),
-    rate: float = 1.0,
-    within: float = WITHIN,
+    degrees: Annotated[float, number("degrees", 0, 90, above=True, below=True)],
+    towards: Level = (1, 0, 0),
+    rate: Annotated[float, number("degrees/s", 1e-6, 1e6)] = 1.0,
+    within: Width = WITHIN,
 ) -> str:
     """Tilt the ground, and with it gravity, until the structure falls or the angle is reached; then search for the tilt that
     it holds.
@@ -77,13 +71,13 @@ def tilt(
 
 
 @stage(bounded=True, answers=found)
-@takes(most=ACCELERATION, towards=LEVEL, rate=number("g/s", 1e-6, 1e6), within=WIDTH)
+@validated
 def accelerate(
     scene: Any,
-    most: float,
-    towards: Numbers = (1, 0, 0),
-    rate: float = 0.5,
-    within: float = WITHIN,
+    most: InG,
+    towards: Level = (1, 0, 0),
+    rate: Annotated[float, number("g/s", 1e-6, 1e6)] = 0.5,
+    within: Width = WITHIN,
 ) -> str:
     """Let a horizontal acceleration grow evenly, until the structure falls or ``most`` is reached; then search for the one
     that it holds.
@@ -102,12 +96,12 @@ def accelerate(
 
 
 @stage(bounded=True, answers=putOnAnswers)
-@takes(factor=number("g", 0, 1e3), towards=LEVEL, longest=orNone(DURATION))
+@validated
 def lean(
     scene: Any,
-    factor: float,
-    towards: Numbers = (1, 0, 0),
-    longest: float | None = None,
+    factor: Annotated[float, number("g", 0, 1000)],
+    towards: Level = (1, 0, 0),
+    longest: Duration | None = None,
 ) -> str:
     """Put a horizontal acceleration on the structure, and wait until it is at rest or falls.
 
@@ -162,15 +156,13 @@ def putOn(scene, name, load, towards, longest, over=0.0):
     return ended
 
 
-@takes(
-    carries=function, low=number("", 0), high=number("", 0, above=True), within=WIDTH
-)
+@validated
 def bracket(
     scene: Any,
     carries: Callable[[float], bool],
-    low: float,
-    high: float,
-    within: float = 0.01,
+    low: Annotated[float, number("", 0)],
+    high: Annotated[float, number("", 0, above=True)],
+    within: Width = 0.01,
 ) -> tuple[float, float]:
     """Find the largest load that the structure carries, by halving: each trial starts from the last state at rest.
 

@@ -14,21 +14,19 @@ from typing import Any
 
 from yade import O, Vector3
 
-from ...arguments import Axes, Numbers, axes as axesOf
-from ...arguments import orNone, takes
+from ...arguments import Freedoms, Level, validated
 from ...assembly.blocks import vector
 from ...basics import Refused
 from ..bounds import nameOf
-from ..loads import FORCE, PRESSURE, STRESS, checkedForce, doubtPress, windFaces
-from ..targets import ANY, LOADED, MOVING_PLATEN, Target
-from ..targets import part as partName
+from ..loads import Force, Pressure, Stress, checkedForce, doubtPress, windFaces
+from ..targets import AnyTarget, Loaded, MovingPlaten, Part
 from .acting import Forces
-from .gravity import LEVEL, WIDTH, boundAlone, putOn, putOnAnswers
+from .gravity import Width, boundAlone, putOn, putOnAnswers
 from .growing import WITHIN, found, grow
 from .answers import AT_REST
 from .stage import stage
 from .supports import atOnce
-from .timed import DURATION
+from .timed import Duration
 
 GROWS = 2.0  # [s] in which a load grows to its whole
 
@@ -52,9 +50,9 @@ def _forceOn(scene, target, force, name):
 
 
 @stage(bounded=True, answers=putOnAnswers)
-@takes(target=LOADED, force=FORCE, longest=orNone(DURATION))
+@validated
 def load(
-    scene: Any, target: Target, force: Numbers, longest: float | None = None
+    scene: Any, target: Loaded, force: Force, longest: Duration | None = None
 ) -> str:
     """Give a target another dead load, and wait until the structure is at rest or falls.
 
@@ -71,13 +69,13 @@ def load(
 
 
 @stage(bounded=True, answers=found)
-@takes(target=LOADED, force=FORCE, over=DURATION, within=WIDTH)
+@validated
 def growLoad(
     scene: Any,
-    target: Target,
-    force: Numbers,
-    over: float = GROWS,
-    within: float = WITHIN,
+    target: Loaded,
+    force: Force,
+    over: Duration = GROWS,
+    within: Width = WITHIN,
 ) -> str:
     """Let a dead load grow evenly beside what is there, until the structure falls or the force is reached; then search for the
     load that is held.
@@ -115,15 +113,13 @@ def windLabel(towards, part):
 
 
 @stage(bounded=True, answers=putOnAnswers)
-@takes(
-    pressure=PRESSURE, towards=LEVEL, part=orNone(partName), longest=orNone(DURATION)
-)
+@validated
 def wind(
     scene: Any,
-    pressure: float,
-    towards: Numbers,
-    part: str | None = None,
-    longest: float | None = None,
+    pressure: Pressure,
+    towards: Level,
+    part: Part | None = None,
+    longest: Duration | None = None,
 ) -> str:
     """Give the faces that look against a horizontal direction another pressure, and wait until the structure is at rest or
     falls.
@@ -140,20 +136,14 @@ def wind(
 
 
 @stage(bounded=True, answers=found)
-@takes(
-    pressure=PRESSURE,
-    towards=LEVEL,
-    part=orNone(partName),
-    over=DURATION,
-    within=WIDTH,
-)
+@validated
 def growWind(
     scene: Any,
-    pressure: float,
-    towards: Numbers,
-    part: str | None = None,
-    over: float = GROWS,
-    within: float = WITHIN,
+    pressure: Pressure,
+    towards: Level,
+    part: Part | None = None,
+    over: Duration = GROWS,
+    within: Width = WITHIN,
 ) -> str:
     """Let a wind grow evenly until the structure falls or the pressure is reached; then search for the one that is held.
 
@@ -183,9 +173,9 @@ def _pressOn(scene, platen, stress, name):
 
 
 @stage(bounded=True, answers=putOnAnswers)
-@takes(platen=MOVING_PLATEN, stress=STRESS, longest=orNone(DURATION))
+@validated
 def press(
-    scene: Any, platen: Target, stress: float, longest: float | None = None
+    scene: Any, platen: MovingPlaten, stress: Stress, longest: Duration | None = None
 ) -> str:
     """Press a platen with another mean stress on the bricks below it, and wait until the structure is at rest or falls.
 
@@ -201,13 +191,13 @@ def press(
 
 
 @stage(bounded=True, answers=found)
-@takes(platen=MOVING_PLATEN, stress=STRESS, over=DURATION, within=WIDTH)
+@validated
 def growPress(
     scene: Any,
-    platen: Target,
-    stress: float,
-    over: float = GROWS,
-    within: float = WITHIN,
+    platen: MovingPlaten,
+    stress: Stress,
+    over: Duration = GROWS,
+    within: Width = WITHIN,
 ) -> str:
     """Let a press grow evenly beside what presses already, until the structure falls or the stress is reached; then search for
     the one that is held.
@@ -244,8 +234,8 @@ def _grow(scene, name, made, towards, over, within):
 
 
 @stage()
-@takes(target=ANY, axes=axesOf("xyzXYZ"))
-def hold(scene: Any, target: Target, axes: Axes = "xyzXYZ") -> str:
+@validated
+def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
     """Hold a target where it is now. What follows is the next stage's.
 
     Before the first stage :meth:`hold` describes a brick that is held from the beginning.

@@ -4,19 +4,17 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Any
+from typing import Annotated, Any
 
-from ...arguments import FilePath, Numbers, direction as directionOf
-from ...arguments import flag, listOf, number, orNone, takes, whole
-from ...arguments import path as pathOf
+from ...arguments import Direction, FilePath, Numbers, listOf, number, validated, whole
 from ...assembly.blocks import vector
 from ...basics import Refused, say
 from ...read import curves
 from ...read.quantities import BASE, MOVED, TOP, RunData
 from .. import history
 from ..bounds import nameOfPush
-from ..parsing import RATE
-from ..targets import LOADED, Target
+from ...run.options import Rate
+from ..targets import Loaded
 from ..words import PUSHES
 from .pushing import SHORT, drivePush
 from .answers import DONE, Answer
@@ -48,22 +46,16 @@ def peaks(scene, rows):
 
 
 #: What pushes take beside their aim: kinds of arguments. A rate is bounded as ``--rate`` is.
-PUSHED = dict(
-    target=LOADED,
-    direction=directionOf(),
-    rate=orNone(RATE),
-    continued=flag,
-)
 
 
 @stage(bounded=True, farther=("until",), options=OPTIONS, answers=peaks)
-@takes(until=orNone(number("mm", 0, history.MOST, above=True)), **PUSHED)
+@validated
 def push(
     scene: Any,
-    target: Target,
-    until: float | None = None,
-    direction: Numbers = (1, 0, 0),
-    rate: float | None = None,
+    target: Loaded,
+    until: Annotated[float, number("mm", 0, history.MOST, above=True)] | None = None,
+    direction: Direction = (1, 0, 0),
+    rate: Rate | None = None,
     continued: bool = False,
 ) -> str:
     """Push a target at a constant velocity, as the drive of a testing machine does.
@@ -82,18 +74,14 @@ def push(
 
 
 @stage(bounded=True, farther=("amplitudes", "repeats"), options=OPTIONS, answers=peaks)
-@takes(
-    amplitudes=listOf(number("mm", history.LEAST, history.MOST)),
-    repeats=whole(1, history.CYCLES),
-    **PUSHED,
-)
+@validated
 def cycle(
     scene: Any,
-    target: Target,
-    amplitudes: Numbers,
-    repeats: int = 1,
-    direction: Numbers = (1, 0, 0),
-    rate: float | None = None,
+    target: Loaded,
+    amplitudes: Annotated[Numbers, listOf(number("mm", history.LEAST, history.MOST))],
+    repeats: Annotated[int, whole(1, history.CYCLES)] = 1,
+    direction: Direction = (1, 0, 0),
+    rate: Rate | None = None,
     continued: bool = False,
 ) -> str:
     """Push a target to and fro: each amplitude A is a cycle from 0 to +A, to -A and back to 0.
@@ -108,13 +96,13 @@ def cycle(
 
 
 @stage(bounded=True, farther=("path",), options=OPTIONS, answers=peaks)
-@takes(path=pathOf, **PUSHED)
+@validated
 def follow(
     scene: Any,
-    target: Target,
+    target: Loaded,
     path: FilePath,
-    direction: Numbers = (1, 0, 0),
-    rate: float | None = None,
+    direction: Direction = (1, 0, 0),
+    rate: Rate | None = None,
     continued: bool = False,
 ) -> str:
     """Push a target through the displacements of a CSV file, which has a column ``displacement_mm``.

@@ -13,7 +13,7 @@ from ...assembly.period import firstPeriod
 from ...basics import Collapsed, Refused, say
 from ...read import curves
 from ...read.quantities import IMBALANCE
-from ...run.presets import USUAL
+from ...run.options import USUAL
 from ..history import aim, pathLength, turns
 from .rest import rampTime
 

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 from yade import O
 
-from ...arguments import flag, number, oneOf, orNone, takes
+from ...arguments import number, oneOf, validated
 from ...assembly.motion import FAR, REST
 from ...basics import Collapsed, Refused, say
 from .answers import AT_REST, MOVING
@@ -41,15 +41,11 @@ class Resting:
 
 
 @stage(bounded=True, grows=True)
-@takes(
-    longest=orNone(number("s", 0, 86400, above=True)),
-    damping=orNone(oneOf("local", "combined")),
-    record=flag,
-)
+@validated
 def settle(
     scene: Any,
-    longest: float | None = None,
-    damping: str | None = None,
+    longest: Annotated[float, number("s", 0, 86400, above=True)] | None = None,
+    damping: Annotated[str, oneOf("local", "combined")] | None = None,
     record: bool = True,
 ) -> str:
     """Let gravity, presses and dead loads act until the structure is at rest.

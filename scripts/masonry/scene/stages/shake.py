@@ -5,21 +5,21 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 from yade import O, Vector3
 
-from ...arguments import FilePath, Numbers, number, oneOf, orNone, takes
+from ...arguments import FilePath, Level, Numbers, number, oneOf, validated
 from ...basics import Refused, say
 from ...run import batch
 from ..accelerograms import drift
 from ..ground import UNITS, readRecord, record
-from ..parsing import DAMPING
+from ...run.options import Damping
 from ..words import SHAKES
-from .gravity import LEVEL, sideways
+from .gravity import sideways
 from .answers import DONE, Answer
 from .stage import stage
-from .timed import DURATION, TIME, Timed, timed
+from .timed import Duration, Time, Timed, timed
 
 
 def displacements(scene, rows):
@@ -75,28 +75,18 @@ class Damped(Timed):
 
 
 @stage(options=("record", "scale"), real=True, answers=displacements)
-@takes(
-    accelerations=record,
-    every=orNone(DURATION),
-    direction=LEVEL,
-    scale=number("", -1e6, 1e6),
-    unit=orNone(oneOf(*UNITS)),
-    after=TIME,
-    damping=DAMPING,
-    massDamping=number("1/s", 0, 1e6),
-    stiffnessDamping=number("s", 0, 1),
-)
+@validated
 def shake(
     scene: Any,
-    accelerations: Numbers | FilePath,
-    every: float | None = None,
-    direction: Numbers = (1, 0, 0),
-    scale: float = 1.0,
-    unit: str | None = None,
-    after: float = 0.0,
-    damping: float = 0.0,
-    massDamping: float = 0.0,
-    stiffnessDamping: float = 0.0,
+    accelerations: Annotated[Numbers | FilePath, record],
+    every: Duration | None = None,
+    direction: Level = (1, 0, 0),
+    scale: Annotated[float, number("", -1e6, 1e6)] = 1.0,
+    unit: Annotated[str, oneOf(*UNITS)] | None = None,
+    after: Time = 0.0,
+    damping: Damping = 0.0,
+    massDamping: Annotated[float, number("1/s", 0, 1e6)] = 0.0,
+    stiffnessDamping: Annotated[float, number("s", 0, 1)] = 0.0,
 ) -> str:
     """Shake the ground by a record.
 
@@ -164,8 +154,8 @@ def shake(
 
 
 @stage(farther=("seconds",), real=True, answers=displacements)
-@takes(seconds=DURATION, damping=orNone(DAMPING))
-def run(scene: Any, seconds: float, damping: float | None = None) -> str:
+@validated
+def run(scene: Any, seconds: Duration, damping: Damping | None = None) -> str:
     """Let time pass.
 
     :param seconds: time in the scene [s]

@@ -71,8 +71,8 @@ class Traits:
 
 
 def stage(**traits: Any) -> Callable[[Stage[P]], Stage[P]]:
-    """Make a stage of a function of the scene and what the user says, which has its kinds of arguments from
-    :func:`masonry.arguments.takes`; the keywords are those of :class:`Traits`.
+    """Make a stage of a function of the scene and what the user says, which is
+    :func:`masonry.arguments.validated`; the keywords are those of :class:`Traits`.
 
     The stage builds the scene if it is the first, is left out after a collapse, and ends the run in order on errors.
     """

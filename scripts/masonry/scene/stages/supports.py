@@ -4,30 +4,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 from yade import O, Vector3
 
-from ...arguments import Axes, Numbers, axes as axesOf
-from ...arguments import number, orNone, takes
+from ...arguments import Freedoms, number, validated
 from ...assembly.blocks import vector
 from ..history import MOST
-from ..loads import FORCE
-from ..parsing import RATE
-from ..targets import ANY, HELD, Target
+from ..loads import Force
+from ...run.options import Rate
+from ..targets import AnyTarget, HeldTarget
 from .rest import rampTime
 from .answers import DONE, Answer
 from .stage import stage
 from .timed import Timed, timed
 
-#: The kind of a displacement.
-MILLIMETRES = number("mm", -MOST, MOST)
+millimetres = number("mm", -MOST, MOST)  # the kind of a displacement
+Millimetres = Annotated[float, millimetres]
 
 
 @stage()
-@takes(target=ANY, axes=axesOf("xyzXYZ"), force=orNone(FORCE))
+@validated
 def release(
-    scene: Any, target: Target, axes: Axes, force: Numbers | None = None
+    scene: Any, target: AnyTarget, axes: Freedoms, force: Force | None = None
 ) -> str:
     """Take a support away, or let the drive of a platen go. What follows is the next stage's, for example ``settle``.
 
@@ -99,14 +98,14 @@ def displacement(scene, rows):
 
 
 @stage(farther=("x", "y", "z"), options=("rate",), answers=displacement)
-@takes(target=HELD, x=MILLIMETRES, y=MILLIMETRES, z=MILLIMETRES, rate=orNone(RATE))
+@validated
 def move(
     scene: Any,
-    target: Target,
-    x: float = 0.0,
-    y: float = 0.0,
-    z: float = 0.0,
-    rate: float | None = None,
+    target: HeldTarget,
+    x: Millimetres = 0.0,
+    y: Millimetres = 0.0,
+    z: Millimetres = 0.0,
+    rate: Rate | None = None,
 ) -> str:
     """Move a fixed target by a displacement [mm], in a straight line: settlement or spreading of a support.
 

@@ -2,6 +2,7 @@
 """Stages that last for a given time: steps, rows and frames evenly in time."""
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from yade import O
 
@@ -21,7 +22,8 @@ class Timed:
 
 
 #: Kinds of arguments: a time that is not longer than a day, and one above 0 [s].
-TIME, DURATION = number("s", 0, 86400), number("s", 0, 86400, above=True)
+Time = Annotated[float, number("s", 0, 86400)]
+Duration = Annotated[float, number("s", 0, 86400, above=True)]
 
 
 def timed(scene, at, duration, before, after=None, each=None):
