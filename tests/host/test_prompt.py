@@ -34,7 +34,8 @@ import gc, hashlib, os, threading, time
 import numpy as np
 from yade import O, Vector3
 from masonry import *
-from test_joint_loop import CASES, energy, state
+from hosted import balance as energy
+from test_joint_loop import CASES, state
 from test_joint_loop import panel as made
 from yade.wrapper import *
 
