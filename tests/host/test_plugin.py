@@ -227,32 +227,6 @@ def test_the_description_of_an_attribute_is_what_its_docs_say(name):
             assert p["low"] <= value <= p["high"], p["name"]
 
 
-def test_wrong_attributes_are_refused_and_change_nothing():
-    joint = MasonryJoint(name="bed")
-    with pytest.raises(ValueError, match='joint "bed": friction -1 must be at least 0'):
-        joint.friction = -1
-    assert joint.friction == 0.43
-    with pytest.raises(
-        ValueError, match="MasonryJoint.tensileStrength: expected a number, got much"
-    ):
-        MasonryJoint(tensileStrength="much")
-    with pytest.raises(
-        ValueError,
-        match=r"MasonryJoint.tensionTable: expected a list of \(ratio, damage\) rows",
-    ):
-        MasonryJoint(tensionTable=[1, 2])
-    with pytest.raises(ValueError) as refused:
-        MasonryJoint(name="b", tensileStrength=-1, friction=-1)
-    assert str(refused.value).count('joint "b": ') == 2
-    with pytest.raises(
-        ValueError,
-        match="young -1 Pa must be above 0; poisson 0.5 must be above -1 and below 0.5",
-    ):
-        MasonryMat(young=-1, poisson=0.5)
-    with pytest.raises(ValueError, match="subcontacts 0 must be 1 to 1000"):
-        Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom(subcontacts=0)
-
-
 def test_tables_of_the_user_are_kept_and_used():
     joint = MasonryJoint(tensionTable=[(1, 0), (3, 0.5), (9, 1)])
     assert (

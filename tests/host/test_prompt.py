@@ -533,17 +533,6 @@ def misspelt(name):
     return name[:k] + name[k + 1] + name[k] + name[k + 2 :]
 
 
-def test_a_misspelt_property_of_a_joint_is_an_error_that_names_the_right_one():
-    joint = MasonryJoint()
-    with pytest.raises(AttributeError, match="tensileStrenght.*tensileStrength"):
-        joint.tensileStrenght = 0
-    with pytest.raises(AttributeError, match="tensileStrenght.*tensileStrength"):
-        MasonryJoint(tensileStrenght=0)
-    with pytest.raises(AttributeError, match="tensileStrenght.*tensileStrength"):
-        joint.updateAttrs(dict(tensileStrenght=0))
-    assert joint.tensileStrength == MasonryJoint().tensileStrength
-
-
 @pytest.mark.parametrize("name", classes)
 def test_a_misspelt_property_is_an_error_that_names_the_right_one(name):
     cls = getattr(wrapper, name)
@@ -557,15 +546,8 @@ def test_a_misspelt_property_is_an_error_that_names_the_right_one(name):
             setattr(instance, wrong, 0)
         with pytest.raises(AttributeError, match=f"{wrong}.*{right}"):
             cls(**{wrong: 0})
-
-
-@pytest.mark.parametrize("name", classes)
-def test_a_property_that_does_not_exist_cannot_be_set(name):
-    instance = getattr(wrapper, name)()
-    with pytest.raises(AttributeError, match="nonsense"):
-        instance.nonsense = 1
-    with pytest.raises(AttributeError, match="nonsense"):
-        instance.updateAttrs(dict(nonsense=1))
+        with pytest.raises(AttributeError, match=f"{wrong}.*{right}"):
+            instance.updateAttrs({wrong: 0})
 
 
 def test_every_property_of_an_object_of_no_scene_can_be_read_and_set_to_what_it_is():

@@ -303,15 +303,6 @@ def test_the_unit_of_a_study_is_for_files_that_do_not_say_theirs(tmp_path):
     assert [m.intensity for m in made.ida.read("")] == pytest.approx([0.4, 0.5])
 
 
-@pytest.mark.parametrize("period, damping, message", [
-    (0, 0.05, "Sa: period 0 s must be at least 0.01"),
-    (1, 1, "Sa: damping 1 must be at least 0 and below 1"),
-])  # fmt: skip
-def test_a_spectral_acceleration_that_cannot_be_is_refused(period, damping, message):
-    with pytest.raises(Refused, match=message):
-        Sa(period, damping)
-
-
 def test_rows_of_one_record_follow_each_other():
     plan = {"levels": [1, 2, 3], "scales": None, "records": [{}, {}], "measure": "PGA_g"}  # fmt: skip
     chains = Chains({"runs": 6, "ida": plan})

@@ -234,7 +234,9 @@ class Bricks:
     # -- moving and naming ----------------------------------------------------------------------------------------
 
     @validated
-    def moved(self, dx: Coordinate = 0.0, dy: Coordinate = 0.0, dz: Coordinate = 0.0) -> Bricks:
+    def moved(
+        self, dx: Coordinate = 0.0, dy: Coordinate = 0.0, dz: Coordinate = 0.0
+    ) -> Bricks:
         """The blocks moved along the axes [m]."""
         return self._mapped(lambda c: tuple(x + d for x, d in zip(c, (dx, dy, dz))))
 
