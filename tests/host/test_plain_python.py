@@ -88,6 +88,11 @@ def test_threads_are_those_that_are_asked_for(tmp_path):
     assert done(code) == "1\n"
 
 
+def test_a_process_without_a_home_starts_yade():
+    env = {name: value for name, value in environment().items() if name != "HOME"}
+    assert done("from masonry import Scene; print('yes')", env=env) == "yes\n"
+
+
 @pytest.mark.slow
 def test_a_yade_that_was_imported_before_has_one_thread(tmp_path):
     end = "import ctypes; print('threads', ctypes.CDLL(None).omp_get_max_threads())"

@@ -182,6 +182,16 @@ scene.finish()
     assert "the work of a run that collapses ends there" in done.stdout
 
 
+@pytest.mark.parametrize("name", ["accuracy", "accuracy/rigid_50_mm_s.log"])
+def test_nothing_is_written_through_a_link(pier, name):
+    (pier / "other").mkdir()
+    (pier / "out" / name).parent.mkdir(parents=True)
+    os.symlink(pier / "other", pier / "out" / name)
+    done = run(pier, "--accuracy", "20")
+    assert done.returncode == 2 and "a symbolic link" in done.stderr
+    assert os.listdir(pier / "other") == []
+
+
 def companions():
     """Ids of processes that are companions of this test's runs."""
     found = []

@@ -432,6 +432,27 @@ def test_a_curve_with_a_second_name_is_not_written(broken, tmp_path, capsys):
     assert (tmp_path / "backup.csv").read_bytes() == before
 
 
+def test_a_script_whose_last_word_was_refused_goes_on_when_it_is_mended(
+    tmp_path, scene
+):
+    text = """
+from masonry import Scene, bricks, materials
+scene = Scene("s", bricks.Wall(0.44, 0.162), materials.calciumSilicate(), arguments=["--no-vtk", {!r}, {!r}])
+base, top = scene.platen("bottom"), scene.platen("top")
+scene.press(top, 1e5)
+scene.settle()
+{}
+scene.finish()
+"""
+    push = "scene.push(top, 0.05, rate=20)"
+    exec(text.format("--out", str(tmp_path / "whole"), push), {})
+    refused = "try: scene.release(top, 'x')\nexcept ValueError: pass"
+    exec(text.format("--out", str(tmp_path / "mended"), refused), {})
+    assert readRun(tmp_path / "mended")["error"] == "release: top is not held along x"
+    exec(text.format("--resume", str(tmp_path / "mended"), push), {})
+    assert files(tmp_path / "mended") == files(tmp_path / "whole")
+
+
 def test_options_that_say_the_same_are_welcome(broken):
     words = ["--rate", "40", "--set", "bed.cohesion=2e5", "--checkpoint-every", "1"]
     assert run(broken, *words, resume=True) == 0

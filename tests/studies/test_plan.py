@@ -122,8 +122,16 @@ WRONG = {
     ),
     "has a blank or #": dict(runs=1, vary={"joints": ["soft ening"]}),
     "is no number, list, distribution": dict(runs=1, vary={"rate": {}}),
-    "of two names that have distributions": dict(
+    "rate is a choice; .* until does not vary": dict(
         runs=1, vary={"rate": [1]}, correlation={("rate", "until"): 0.5}
+    ),
+    r"bed.friction varies with others: name it by its key in vary, \('bed.friction', 'bed.residualFriction'\)": dict(
+        runs=1,
+        vary={
+            ("bed.friction", "bed.residualFriction"): uniform(0.4, 0.5),
+            "bed.cohesion": uniform(1, 2),
+        },
+        correlation={("bed.cohesion", "bed.friction"): -0.5},
     ),
     "must be an option, with underscores": dict(runs=1, vary={"no-vtk": [True]}),
 }
@@ -131,7 +139,7 @@ WRONG = {
 
 @pytest.mark.parametrize("message", WRONG)
 def test_a_wrong_study_is_refused(message):
-    with pytest.raises(Refused, match=message):
+    with pytest.raises(Refused, match=f"(?s){message}"):
         Study("any", **WRONG[message])
 
 
