@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The plugin in the running YADE: self-check, registration, dispatch, joints between polyhedra, saving."""
+"""The plugin in the running YADE: registration, dispatch, joints between polyhedra, saving."""
 
 import os
 import random
@@ -39,129 +39,7 @@ def drive(velocity):
     return load
 
 
-# -- self-check and registration --------------------------------------------------------------------------------------
-
-
-def inFreshYade(code):
-    program = (
-        "import sys; sys.path.insert(1, '/usr/lib/x86_64-linux-gnu/yade-double/py')\nimport yade\n"
-        + code
-    )
-    return subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True
-    )
-
-
-def test_a_yade_that_does_not_fit_is_refused_with_one_import_error_and_stays_usable():
-    run = inFreshYade(
-        f"""
-from yade import *
-import importlib.util, yade.wrapper
-O.bodies.append(Body())
-before, scenes = O.engines, O.thisScene
-spec = importlib.util.spec_from_file_location("_masonry", {os.path.join(BUILD, "misfit", "_masonry.so")!r})
-try:
-    importlib.util.module_from_spec(spec)
-except ImportError as error:
-    print("REFUSED:", error)
-assert not hasattr(yade.wrapper, "MasonryMat")
-assert O.engines == before and len(O.bodies) == 1 and O.thisScene == scenes
-O.reset()
-O.bodies.append(utils.sphere((0, 0, 0), 1))
-O.engines = [ForceResetter(), NewtonIntegrator(gravity=(0, 0, -10), damping=0)]
-O.dt = 0.1
-O.step()
-assert abs(O.bodies[0].state.vel[2] + 1) < 1e-12
-print("USABLE")
-"""
-    )
-    assert run.returncode == 0, run.stdout + run.stderr
-    assert "State.mass: expected offset 176, found offset 168" in run.stdout
-    assert (
-        "knows YADE 2023.02a" in run.stdout and "nothing was registered" in run.stdout
-    )
-    assert "USABLE" in run.stdout
-
-
-UNKNOWN = """
-import yade.config
-yade.config.version = "2099.1"
-import warnings
-with warnings.catch_warnings(record=True) as told:
-    warnings.simplefilter("always")
-    try:
-        import masonry
-        print("TAKEN", masonry.MasonryMat().young)
-    except ImportError as error:
-        print("REFUSED:", error)
-for warning in told:
-    print("WARNED:", warning.category.__name__, warning.message)
-"""
-
-
-@pytest.mark.slow
-def test_a_yade_of_an_unknown_version_is_used_on_the_users_word_only(monkeypatch):
-    monkeypatch.delenv("MASONRY_UNKNOWN_YADE", raising=False)
-    run = inFreshYade(UNKNOWN)
-    assert "REFUSED: " in run.stdout, run.stdout + run.stderr
-    assert "YADE version: 2099.1 is not known" in run.stdout
-    assert "MASONRY_UNKNOWN_YADE=1" in run.stdout and "TAKEN" not in run.stdout
-    monkeypatch.setenv("MASONRY_UNKNOWN_YADE", "1")
-    run = inFreshYade(UNKNOWN)
-    assert "TAKEN 4800000000.0" in run.stdout, run.stdout + run.stderr
-    assert "WARNED: RuntimeWarning YADE 2099.1 is not known" in run.stdout
-
-
-@pytest.mark.slow
-def test_an_unknown_version_with_another_layout_is_refused_whatever_the_user_says(
-    monkeypatch,
-):
-    monkeypatch.setenv("MASONRY_UNKNOWN_YADE", "1")
-    misfit = os.path.join(BUILD, "misfit", "_masonry.so")
-    load = (
-        "import importlib.util\n"
-        f"spec = importlib.util.spec_from_file_location('_masonry', {misfit!r})\n"
-    )
-    run = inFreshYade(
-        load
-        + UNKNOWN.replace("import masonry\n", "importlib.util.module_from_spec(spec)\n")
-    )
-    assert "REFUSED: " in run.stdout, run.stdout + run.stderr
-    assert "YADE version: 2099.1 is not known" in run.stdout
-    assert "State.mass: expected offset 176, found offset 168" in run.stdout
-
-
-@pytest.mark.slow
-def test_the_running_version_is_a_known_one_without_a_warning():
-    run = inFreshYade(UNKNOWN.replace('yade.config.version = "2099.1"', ""))
-    assert "TAKEN" in run.stdout and "WARNED" not in run.stdout, run.stdout
-
-
-def test_the_fitting_module_leaves_the_users_scene_alone():
-    run = inFreshYade(
-        """
-from yade import *
-O.bodies.append(utils.sphere((0, 0, 0), 1))
-engines = O.engines
-import masonry
-assert len(O.bodies) == 1 and O.engines == engines and O.thisScene == 0
-print("ALONE")
-"""
-    )
-    assert "ALONE" in run.stdout, run.stdout + run.stderr
-
-
-def test_without_yade_the_package_still_reads_results():
-    run = subprocess.run(
-        [
-            sys.executable,
-            "-c",
-            "import masonry.run.results, sys; print('yade' in sys.modules)",
-        ],
-        capture_output=True,
-        text=True,
-    )
-    assert run.stdout.strip() == "False", run.stderr
+# -- registration -----------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", classes)

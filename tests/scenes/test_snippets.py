@@ -31,7 +31,7 @@ REASONS = {
     r".*validation/\w+/?\w*\.py": "minutes or hours; tests/scenes/test_validation.py and its like run parts of them",
     r".*(masonry\.study|masonry\.study\.report) (validation|results/validation)/": "minutes or hours: a study of validation/",
     r".*wall_comp4\.py --accuracy": "minutes: tests/scenes/test_accuracy.py has a small wall",
-    r".*vtable\.py FOLDER": "needs an unpacked YADE of another release",
+    r".*check_host\.py (FOLDER|libyade)": "needs an unpacked YADE of another release",
     r".*-m masonry\.capacity": "a tenth of a push has no peak: tests/package/test_capacity.py",
     r"jupyter": "opens a browser",
     r"unshare": "needs namespaces of users, which containers may refuse",
@@ -100,7 +100,7 @@ def test_commands_are_found():
 
 def test_every_reason_is_for_a_command_and_names_tests_that_are_there():
     every = [c for found in ALL.values() for c in found]
-    may = {"jupyter", r".*vtable\.py FOLDER"}
+    may = {"jupyter", r".*check_host\.py (FOLDER|libyade)"}
     for pattern, why in REASONS.items():
         assert pattern in may or any(re.match(pattern, c) for c in every), pattern
         for path in re.findall(r"tests/[\w/]+\.py", why):

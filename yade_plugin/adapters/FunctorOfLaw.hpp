@@ -33,7 +33,7 @@ public:
                      *interaction, Derived::law);
         return true;
     }
-    using yade::LawFunctor::FunctorCalls::go;
+    using yade::LawFunctor::FunctorWrapper::go;
 };
 
 // What brings the functors of laws into YADE: each has entered itself here when the module is loaded.

@@ -33,7 +33,7 @@ public:
     void initgl() override {}
     void go(const shared_ptr<yade::Shape>&, const shared_ptr<yade::State>&, bool wire,
             const yade::GLViewInfo&) override;
-    using FunctorCalls::go;
+    using FunctorWrapper::go;
 
 private:
     std::string colours();

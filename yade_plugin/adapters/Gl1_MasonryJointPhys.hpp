@@ -35,7 +35,7 @@ public:
     void initgl() override {}
     void go(const shared_ptr<yade::IPhys>&, const shared_ptr<yade::Interaction>&, const shared_ptr<yade::Body>&,
             const shared_ptr<yade::Body>&, bool wire) override;
-    using FunctorCalls::go;
+    using FunctorWrapper::go;
 
 private:
     std::string colours();

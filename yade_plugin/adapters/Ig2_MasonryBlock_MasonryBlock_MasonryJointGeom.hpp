@@ -63,7 +63,7 @@ public:
     void preStep() override;
     bool go(const shared_ptr<yade::Shape>&, const shared_ptr<yade::Shape>&, const yade::State&, const yade::State&,
             const Vector3r& shift, const bool& force, const shared_ptr<yade::Interaction>&) override;
-    using FunctorCalls::go;
+    using FunctorWrapper::go;
 
 private:
     struct Grid {

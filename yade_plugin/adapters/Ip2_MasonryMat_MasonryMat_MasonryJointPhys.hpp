@@ -32,7 +32,7 @@ public:
     std::string checkOrder() const override { return "MasonryMat MasonryMat"; }
     void go(const shared_ptr<yade::Material>&, const shared_ptr<yade::Material>&,
             const shared_ptr<yade::Interaction>&) override;
-    using FunctorCalls::go;
+    using FunctorWrapper::go;
 
 private:
     void assign(const MasonryMat&, const MasonryMat&, yade::Interaction&, const shared_ptr<MasonryJoint>&) const;

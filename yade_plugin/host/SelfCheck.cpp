@@ -8,14 +8,26 @@
 #include <cstdlib>
 #include <cstring>
 #include <dlfcn.h>
-
-// Bytes added to the expected offset of State.mass. The tests build a second module with 8, which must refuse to
-// import.
-#ifndef MASONRY_FALSIFY
-#define MASONRY_FALSIFY 0
-#endif
+#include <link.h>
+#include <typeinfo>
 
 namespace masonry::host {
+
+// A class with nothing of its own: its virtual function table is the one that the compiler made of the declaration of
+// T. It is exported, so that the loader gives the address and size of this table as it gives those of YADE's.
+template <class T> struct __attribute__((visibility("default"))) Declared : T {};
+
+// All classes of Yade.hpp and YadeGl.hpp that have virtual functions, but for Polyhedra, which not every YADE has, and
+// InteractionContainer, of which only members are used.
+#define MASONRY_HOST_TABLES(X)                                                                                         \
+    X(Factorable)                                                                                                      \
+    X(Serializable) X(State) X(Shape) X(Material) X(IGeom) X(IPhys) X(Interaction) X(Body) X(BodyContainer) X(Engine)  \
+        X(GlobalEngine) X(NewtonIntegrator) X(Scene) X(Functor) X(LawFunctor) X(IPhysFunctor) X(IGeomFunctor)          \
+            X(GlShapeFunctor) X(GlIPhysFunctor) X(GlExtraDrawer)
+
+#define MASONRY_MAKE_TABLE(Class) template struct Declared<yade::Class>;
+MASONRY_HOST_TABLES(MASONRY_MAKE_TABLE)
+#undef MASONRY_MAKE_TABLE
 
 namespace {
 
@@ -34,7 +46,7 @@ struct Member {
 const Member members[] = {
     {"State", "se3", offsetof(State, pos)},
     AT(State, vel),
-    {"State", "mass", offsetof(State, mass) + MASONRY_FALSIFY},
+    AT(State, mass),
     AT(State, angVel),
     AT(State, angMom),
     AT(State, inertia),
@@ -48,11 +60,6 @@ const Member members[] = {
     AT(Material, id),
     AT(Material, label),
     AT(Material, density),
-    {"CpmState", "epsVolumetric", sizeof(State)}, // the first member of a derived class gives the size of its base
-    {"Sphere", "radius", sizeof(Shape)},
-    {"LudingMat", "k1", sizeof(Material)},
-    {"NormPhys", "kn", sizeof(IPhys)},
-    {"PartialEngine", "ids", sizeof(Engine)},
     AT(Body, id),
     AT(Body, groupMask),
     AT(Body, flags),
@@ -84,82 +91,25 @@ const Member members[] = {
 #undef AT
 #pragma GCC diagnostic pop
 
-struct Slot {
-    const char* ofClass;
-    int index;
-    const char* function; // part of the demangled name of the function that the slot must point to
+// The size of a base class is where the first member of a class of YADE that derives from it lies.
+struct Size {
+    const char* base;
+    std::size_t size;
+    const char *derived, *first;
 };
 
-const Slot slots[] = {
-#ifdef MASONRY_HOST_HAS_VOLUME
-    {"Shape", 12, "getVolume"},
-#else
-    {"Shape", 12, "modifyClassIndex"},
-#endif
-    {"Serializable", 2, "getBaseClassName"},
-    {"Serializable", 3, "getBaseClassNumber"},
-    {"Serializable", 4, "getClassName"},
-    {"Serializable", 5, "pySetAttr"},
-    {"Serializable", 6, "pyDict()"},
-    {"Serializable", 7, "pyDictCustom"},
-    {"Serializable", 8, "callPostLoad"},
-    {"Serializable", 9, "checkPyClassRegistersItself"},
-    {"Serializable", 10, "pyRegisterClass"},
-    {"Serializable", 11, "pyHandleCustomCtorArgs"},
-    {"IGeom", 12, "modifyClassIndex"},
-    {"IGeom", 13, "getClassIndex"},
-    {"IGeom", 14, "getBaseClassIndex"},
-    {"IGeom", 15, "getMaxCurrentlyUsedClassIndexOfKin"},
-    {"IGeom", 16, "incrementMaxCurrentlyUsedClassIndexOfKin"},
-    {"IGeom", 19, "incrementMaxCurrentlyUsedClassIndexOfKin"},
-    {"IGeom", 20, "modifyClassIndex"},
-    {"IGeom", 23, "getClassIndex"},
-    {"IGeom", 24, "getBaseClassIndex"},
-    {"IPhys", 12, "modifyClassIndex"},
-    {"IPhys", 16, "incrementMaxCurrentlyUsedClassIndexOfKin"},
-    {"IPhys", 19, "incrementMaxCurrentlyUsedClassIndexOfKin"},
-    {"IPhys", 24, "getBaseClassIndex"},
-    {"Material", 12, "newAssocState"},
-    {"Material", 13, "stateTypeOk"},
-    {"Material", 14, "modifyClassIndex"},
-    {"Material", 18, "incrementMaxCurrentlyUsedClassIndexOfKin"},
-    {"Material", 21, "incrementMaxCurrentlyUsedClassIndexOfKin"},
-    {"Material", 26, "getBaseClassIndex"},
-    {"Engine", 12, "isActivated"},
-    {"Engine", 13, "action"},
-    {"GlobalEngine", 13, "action"},
-    {"LawFunctor", 12, "getFunctorTypes"},
-    {"LawFunctor", 13, "get2DFunctorType1"},
-    {"LawFunctor", 14, "get2DFunctorType2"},
-    {"LawFunctor", 19, "checkOrder"},
-    {"LawFunctor", 22, "::go(boost::shared_ptr<yade::IGeom>&, boost::shared_ptr<yade::IPhys>&, yade::Interaction*)"},
-    {"IPhysFunctor", 19, "checkOrder"},
-    {"IPhysFunctor", 22,
-     "::go(boost::shared_ptr<yade::Material> const&, boost::shared_ptr<yade::Material> const&, "
-     "boost::shared_ptr<yade::Interaction> const&)"},
-    {"GlShapeFunctor", 12, "getFunctorTypes"},
-    {"GlShapeFunctor", 13, "get1DFunctorType1"},
-    {"GlShapeFunctor", 14, "renders"},
-    {"GlShapeFunctor", 15, "initgl"},
-    {"GlShapeFunctor", 20, "checkOrder"},
-    {"GlShapeFunctor", 24,
-     "::go(boost::shared_ptr<yade::Shape> const&, boost::shared_ptr<yade::State> const&, bool, "
-     "yade::GLViewInfo const&)"},
-    {"GlIPhysFunctor", 12, "getFunctorTypes"},
-    {"GlIPhysFunctor", 13, "get1DFunctorType1"},
-    {"GlIPhysFunctor", 14, "renders"},
-    {"GlIPhysFunctor", 15, "initgl"},
-    {"GlIPhysFunctor", 20, "checkOrder"},
-    {"GlIPhysFunctor", 25,
-     "::go(boost::shared_ptr<yade::IPhys> const&, boost::shared_ptr<yade::Interaction> const&, "
-     "boost::shared_ptr<yade::Body> const&, boost::shared_ptr<yade::Body> const&, bool)"},
-    {"GlExtraDrawer", 12, "render()"},
-    {"IGeomFunctor", 15, "preStep"},
-    {"IGeomFunctor", 20, "checkOrder"},
-    {"IGeomFunctor", 27,
-     "::go(boost::shared_ptr<yade::Shape> const&, boost::shared_ptr<yade::Shape> const&, "
-     "yade::State const&, yade::State const&, Eigen::Matrix<double, 3, 1, 0, 3, 1> const&, "
-     "bool const&, boost::shared_ptr<yade::Interaction> const&)"},
+const Size sizes[] = {
+    {"State", sizeof(State), "CpmState", "epsVolumetric"},
+    {"Shape", sizeof(Shape), "Sphere", "radius"},
+    {"Material", sizeof(Material), "LudingMat", "k1"},
+    {"IGeom", sizeof(IGeom), "GenericSpheresContact", "normal"},
+    {"IPhys", sizeof(IPhys), "NormPhys", "kn"},
+    {"Engine", sizeof(Engine), "PartialEngine", "ids"},
+    {"GlobalEngine", sizeof(GlobalEngine), "PeriodicEngine", "virtPeriod"},
+    {"LawFunctor", sizeof(LawFunctor), "Law2_ScGeom_CpmPhys_Cpm", "yieldSurfType"},
+    {"IPhysFunctor", sizeof(IPhysFunctor), "Ip2_FrictMat_FrictMat_FrictPhys", "kn"},
+    {"IGeomFunctor", sizeof(IGeomFunctor), "Ig2_Box_Sphere_ScGeom", "interactionDetectionFactor"},
+    {"GlExtraDrawer", sizeof(GlExtraDrawer), "GlExtra_LawTester", "tester"},
 };
 
 // What is particular to each version that this plugin knows. README.md says how to make the entry of another one.
@@ -183,30 +133,90 @@ const Version* known(const std::string& name) {
 // The variable by which a user takes the word for a version that is not in the list.
 constexpr const char* onOwnRisk = "MASONRY_UNKNOWN_YADE";
 
-// Slot 0 of the virtual function table of a YADE class; null if YADE exports no such table. The two words before it
-// hold the distance to the beginning of the object and the type information.
-void** tableOf(const std::string& name) {
-    const auto symbol = "_ZTVN4yade" + std::to_string(name.size()) + name + "E";
-    auto* table = static_cast<void**>(dlsym(RTLD_DEFAULT, symbol.c_str()));
-    return table ? table + 2 : nullptr;
+// A virtual function table with its head: two words before the functions of each base.
+struct Table {
+    void* const* words = nullptr;
+    std::size_t count = 0;
+    void* at(std::size_t i) const { return i < count ? words[i] : nullptr; }
+};
+constexpr int head = 2; // words [-]: the distance to the beginning of the object, the type information
+
+Table tableOf(const std::type_info& type) {
+    Table table;
+    Dl_info info{};
+    void* entry = nullptr;
+    void* found = dlsym(RTLD_DEFAULT, (std::string("_ZTV") + type.name()).c_str());
+    if (!found || !dladdr1(found, &info, &entry, RTLD_DL_SYMENT) || !entry) return table;
+    table.words = static_cast<void* const*>(found);
+    table.count = static_cast<const ElfW(Sym)*>(entry)->st_size / sizeof(void*);
+    return table;
+}
+
+// One of the two destructors of a class, or what shifts an object to it from a base so many bytes further on.
+void* destructor(const std::type_info& type, long base, const char* kind) {
+    const std::string name = type.name(), shift = base ? "Thn" + std::to_string(base) + "_" : "";
+    return dlsym(RTLD_DEFAULT, ("_Z" + shift + name.substr(0, name.size() - 1) + kind).c_str());
+}
+
+std::string functionName(void* address) {
+    Dl_info info{};
+    return address && dladdr(address, &info) && info.dli_sname ? boost::core::demangle(info.dli_sname) : "nothing";
+}
+
+// The function without its class: a class of YADE may override what we declare for its base alone.
+std::string withoutClass(const std::string& function) {
+    const auto name = function.rfind("::", function.find('('));
+    return name == std::string::npos ? function : function.substr(name);
+}
+
+// Compares all words of YADE's table with those that the compiler made of our declaration. Both name the same
+// functions, apart from what `Declared` has of its own: destructors and type information.
+void compare(const char* name, const std::type_info& real, const std::type_info& ours,
+             std::vector<std::string>& wrong) {
+    const Table found = tableOf(real), expected = tableOf(ours);
+    long base = 0;
+    for (std::size_t i = 0; i < std::max(found.count, expected.count); ++i) {
+        if (found.at(i) == &real && expected.at(i) == &ours) {
+            base = -reinterpret_cast<long>(found.at(i - 1));
+            continue;
+        }
+        if (found.at(i) == expected.at(i)) continue;
+        const auto both = [&](const char* kind) {
+            return found.at(i) && found.at(i) == destructor(real, base, kind) &&
+                   expected.at(i) == destructor(ours, base, kind);
+        };
+        if (both("D1Ev") || both("D0Ev")) continue;
+        const auto there = functionName(found.at(i)), here = functionName(expected.at(i));
+        if (withoutClass(there) == withoutClass(here)) continue;
+        wrong.push_back(std::string(name) + ", virtual function " + std::to_string(long(i) - head) + " of " +
+                        std::to_string(long(found.count) - head) + ": expected " + here + ", found " + there);
+        return;
+    }
 }
 
 // The offset [bytes] that Python reads an attribute at, or -1 if its getter is no function of Boost.Python. The
 // function object holds the address of its caller after its header of 16 bytes, and the caller holds the offset after
 // the address of its virtual function table.
-long offsetSeenByPython(const py::object& wrapper, const Member& m) {
-    const py::object property = wrapper.attr(m.ofClass).attr("__dict__")[m.name];
-    const py::object getter = property.attr("fget");
-    if (std::strcmp(Py_TYPE(getter.ptr())->tp_name, "Boost.Python.function") != 0) return -1;
-    const char* caller = *reinterpret_cast<char* const*>(reinterpret_cast<const char*>(getter.ptr()) + 16);
-    return *reinterpret_cast<const long*>(caller + 8);
+long offsetSeenByPython(const py::object& wrapper, const char* ofClass, const char* member) {
+    try {
+        const py::object property = wrapper.attr(ofClass).attr("__dict__")[member];
+        const py::object getter = property.attr("fget");
+        if (std::strcmp(Py_TYPE(getter.ptr())->tp_name, "Boost.Python.function") != 0) return -1;
+        const char* caller = *reinterpret_cast<char* const*>(reinterpret_cast<const char*>(getter.ptr()) + 16);
+        return *reinterpret_cast<const long*>(caller + 8);
+    } catch (const py::error_already_set&) {
+        PyErr_Clear();
+        return -1;
+    }
 }
 
 std::string found(long offset) { return offset < 0 ? "no such data member" : "offset " + std::to_string(offset); }
 
-// Whether an object is exactly of the YADE class of that name, by the address of its virtual function table.
+// Whether an object is of the YADE class of that name; what is no object may lie there.
 template <class T> bool isReally(const T* object, const char* name) {
-    return object && *reinterpret_cast<void** const*>(object) == tableOf(name);
+    const auto symbol = "_ZTVN4yade" + std::to_string(std::strlen(name)) + name + "E";
+    auto* const* table = static_cast<void* const*>(dlsym(RTLD_DEFAULT, symbol.c_str()));
+    return object && table && *reinterpret_cast<void* const* const*>(object) == table + head;
 }
 
 // Tries out members of Scene that Python cannot see: the containers of bodies, interactions, engines and forces. This
@@ -276,25 +286,20 @@ std::vector<std::string> differences() {
             maybeAbsent.insert(maybeAbsent.end(), v.maybeAbsent.begin(), v.maybeAbsent.end());
     for (const auto& m : members) {
         if (std::count(maybeAbsent.begin(), maybeAbsent.end(), m.ofClass) && !has(m.ofClass)) continue;
-        long offset = -1;
-        try {
-            offset = offsetSeenByPython(wrapper, m);
-        } catch (const py::error_already_set&) {
-            PyErr_Clear();
-        }
+        const long offset = offsetSeenByPython(wrapper, m.ofClass, m.name);
         if (offset != long(m.offset))
             wrong.push_back(std::string(m.ofClass) + "." + m.name + ": expected offset " + std::to_string(m.offset) +
                             ", found " + found(offset));
     }
-    for (const auto& s : slots) {
-        void** table = tableOf(s.ofClass);
-        Dl_info info{};
-        const bool known = table && dladdr(table[s.index], &info) && info.dli_sname;
-        const auto name = known ? boost::core::demangle(info.dli_sname) : std::string("nothing");
-        if (name.find(s.function) == std::string::npos)
-            wrong.push_back(std::string(s.ofClass) + ", virtual function " + std::to_string(s.index) + ": expected " +
-                            s.function + ", found " + name);
+    for (const auto& s : sizes) {
+        const long size = offsetSeenByPython(wrapper, s.derived, s.first);
+        if (size != long(s.size))
+            wrong.push_back(std::string(s.base) + ": expected a size of " + std::to_string(s.size) + ", found " +
+                            s.derived + "." + s.first + " at " + found(size));
     }
+#define MASONRY_COMPARE(Class) compare(#Class, typeid(Class), typeid(Declared<Class>), wrong);
+    MASONRY_HOST_TABLES(MASONRY_COMPARE)
+#undef MASONRY_COMPARE
     const char* word = std::getenv(onOwnRisk);
     const bool trusted = version || (word && std::string(word) == "1");
     if (!trusted && wrong.empty())

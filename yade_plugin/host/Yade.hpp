@@ -9,6 +9,8 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <boost/enable_shared_from_this.hpp>
+#include <boost/mpl/at.hpp>
+#include <boost/mpl/vector.hpp>
 #include <boost/python.hpp>
 #include <boost/serialization/access.hpp>
 #include <boost/shared_ptr.hpp>
@@ -188,6 +190,7 @@ class Scene;
 
 class Body : public Serializable {
     MASONRY_HOST_CLASS(Body)
+    virtual void userForcedDisplacementRedrawHook();
     static const shared_ptr<Body>& byId(int id, Scene* scene);
     int id, groupMask, flags, subdomain;
     shared_ptr<Material> material;
@@ -313,55 +316,54 @@ class Functor : public Serializable {
 };
 
 // The functions that a dispatcher calls on a functor, in the order of its table: checkOrder, then go and goReverse,
-// each with one to seven arguments. Laws and physics functors use the go with three arguments, geometry functors the
-// one with seven. The other ones only fill their slots of the table.
-struct NoArgument {};
+// each with one to seven arguments, of which those beyond the list of arguments are of MPL's void_. Laws and physics
+// functors override the go with three arguments, geometry functors the one with seven.
+template <class R, class Arguments> class FunctorWrapper {
+    template <int i> using A = typename boost::mpl::at_c<Arguments, i>::type;
 
-template <class R, class A, class B, class C, class D = NoArgument, class E = NoArgument, class F = NoArgument,
-          class G = NoArgument>
-class FunctorCalls {
 public:
-    virtual ~FunctorCalls() = default;
-    virtual std::string checkOrder() const { unexpected(); }
-#define MASONRY_CALLS(name)                                                                                            \
-    virtual R name(A) { unexpected(); }                                                                                \
-    virtual R name(A, B) { unexpected(); }                                                                             \
-    virtual R name(A, B, C) { unexpected(); }                                                                          \
-    virtual R name(A, B, C, D) { unexpected(); }                                                                       \
-    virtual R name(A, B, C, D, E) { unexpected(); }                                                                    \
-    virtual R name(A, B, C, D, E, F) { unexpected(); }                                                                 \
-    virtual R name(A, B, C, D, E, F, G) { unexpected(); }
-    MASONRY_CALLS(go)
-    MASONRY_CALLS(goReverse)
-#undef MASONRY_CALLS
-
-private:
-    [[noreturn]] static void unexpected() { throw std::logic_error("functor called with arguments it does not take"); }
+    virtual ~FunctorWrapper() = default;
+    virtual std::string checkOrder() const;
+#define MASONRY_HOST_CALLS(name)                                                                                       \
+    virtual R name(A<0>);                                                                                              \
+    virtual R name(A<0>, A<1>);                                                                                        \
+    virtual R name(A<0>, A<1>, A<2>);                                                                                  \
+    virtual R name(A<0>, A<1>, A<2>, A<3>);                                                                            \
+    virtual R name(A<0>, A<1>, A<2>, A<3>, A<4>);                                                                      \
+    virtual R name(A<0>, A<1>, A<2>, A<3>, A<4>, A<5>);                                                                \
+    virtual R name(A<0>, A<1>, A<2>, A<3>, A<4>, A<5>, A<6>);
+    MASONRY_HOST_CALLS(go)
+    MASONRY_HOST_CALLS(goReverse)
+#undef MASONRY_HOST_CALLS
 };
 
-class LawFunctor : public Functor, public FunctorCalls<bool, shared_ptr<IGeom>&, shared_ptr<IPhys>&, Interaction*> {
+template <class Kind1, class Kind2, class R, class Arguments>
+class Functor2D : public Functor, public FunctorWrapper<R, Arguments> {
+public:
+    std::vector<std::string> getFunctorTypes() const override;
+    virtual std::string get2DFunctorType1() const;
+    virtual std::string get2DFunctorType2() const;
+};
+
+class LawFunctor
+    : public Functor2D<IGeom, IPhys, bool, boost::mpl::vector<shared_ptr<IGeom>&, shared_ptr<IPhys>&, Interaction*>> {
     MASONRY_HOST_CLASS(LawFunctor)
-    virtual std::string get2DFunctorType1() const { return {}; }
-    virtual std::string get2DFunctorType2() const { return {}; }
     LawFunctor() = default;
 };
 
-class IPhysFunctor : public Functor,
-                     public FunctorCalls<void, const shared_ptr<Material>&, const shared_ptr<Material>&,
-                                         const shared_ptr<Interaction>&> {
+class IPhysFunctor : public Functor2D<Material, Material, void,
+                                      boost::mpl::vector<const shared_ptr<Material>&, const shared_ptr<Material>&,
+                                                         const shared_ptr<Interaction>&>> {
     MASONRY_HOST_CLASS(IPhysFunctor)
-    virtual std::string get2DFunctorType1() const { return {}; }
-    virtual std::string get2DFunctorType2() const { return {}; }
     IPhysFunctor() = default;
 };
 
-class IGeomFunctor : public Functor,
-                     public FunctorCalls<bool, const shared_ptr<Shape>&, const shared_ptr<Shape>&, const State&,
-                                         const State&, const Vector3r&, const bool&, const shared_ptr<Interaction>&> {
+class IGeomFunctor
+    : public Functor2D<Shape, Shape, bool,
+                       boost::mpl::vector<const shared_ptr<Shape>&, const shared_ptr<Shape>&, const State&,
+                                          const State&, const Vector3r&, const bool&, const shared_ptr<Interaction>&>> {
     MASONRY_HOST_CLASS(IGeomFunctor)
-    virtual std::string get2DFunctorType1() const { return {}; }
-    virtual std::string get2DFunctorType2() const { return {}; }
-    virtual void preStep() {}
+    virtual void preStep();
     IGeomFunctor() = default;
 };
 

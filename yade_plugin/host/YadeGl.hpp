@@ -8,23 +8,28 @@ namespace yade {
 // What the view tells about itself. Nothing of it is used here, so its members are not declared.
 struct GLViewInfo;
 
+template <class Kind, class R, class Arguments> class Functor1D : public Functor, public FunctorWrapper<R, Arguments> {
+public:
+    std::vector<std::string> getFunctorTypes() const override;
+    virtual std::string get1DFunctorType1() const;
+};
+
 // Draws shapes of one class. The view has moved the axes to those of the body when it calls `go`.
 class GlShapeFunctor
-    : public Functor,
-      public FunctorCalls<void, const shared_ptr<Shape>&, const shared_ptr<State>&, bool, const GLViewInfo&> {
+    : public Functor1D<
+          Shape, void,
+          boost::mpl::vector<const shared_ptr<Shape>&, const shared_ptr<State>&, bool, const GLViewInfo&>> {
     MASONRY_HOST_CLASS(GlShapeFunctor)
-    virtual std::string get1DFunctorType1() const { return {}; }
     virtual std::string renders() const;
     virtual void initgl();
     GlShapeFunctor() = default;
 };
 
 // Draws the physics of interactions of one class, in global axes.
-class GlIPhysFunctor : public Functor,
-                       public FunctorCalls<void, const shared_ptr<IPhys>&, const shared_ptr<Interaction>&,
-                                           const shared_ptr<Body>&, const shared_ptr<Body>&, bool> {
+class GlIPhysFunctor : public Functor1D<IPhys, void,
+                                        boost::mpl::vector<const shared_ptr<IPhys>&, const shared_ptr<Interaction>&,
+                                                           const shared_ptr<Body>&, const shared_ptr<Body>&, bool>> {
     MASONRY_HOST_CLASS(GlIPhysFunctor)
-    virtual std::string get1DFunctorType1() const { return {}; }
     virtual std::string renders() const;
     virtual void initgl();
     GlIPhysFunctor() = default;
