@@ -25,7 +25,13 @@ MAY_INCLUDE = {
 WITH_YADE = ("host", "scene", "adapters")
 
 #: What registered classes share, so it is in adapters/ without being one.
-SHARED = {"Adapter.hpp", "Attribute.hpp", "Colours.hpp", "FunctorOfLaw.hpp"}
+SHARED = {
+    "Adapter.hpp",
+    "Assumptions.hpp",
+    "Attribute.hpp",
+    "Colours.hpp",
+    "FunctorOfLaw.hpp",
+}
 
 
 def sources(folder):

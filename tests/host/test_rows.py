@@ -72,7 +72,7 @@ def test_a_strip_that_bends_cracks_at_a_force_that_settles_with_more_points(
     "words, plane, message",
     [
         (("--points", "5", "--blocks", "deformable"), False, "--points 5: joints of deformable units have the points of"),
-        (("--points", "2"), False, "'2' must be a whole number from 3 to 100"),
+        (("--points", "2"), False, "--points: 2 must be a whole number from 3 to 100"),
         (("--points", "12,4,4"), True, "'12,4,4' must be one or two whole numbers"),
         (("--points", "5,6"), True, "'5,6': a joint cannot have fewer points from when it yields than before"),
     ],

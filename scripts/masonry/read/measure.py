@@ -19,7 +19,7 @@ from typing import Any, Iterator
 import numpy as np
 
 from ..arguments import FilePath
-from ..basics import say
+from ..basics import Refused, say
 from . import cracks, quantities
 from .files import filesOf, onFolder, readCurve, readRun
 from .frames import readFrame
@@ -35,6 +35,8 @@ def frameAt(directory: FilePath, time: float) -> int:
 def wallNumbers(directory: FilePath) -> dict[str, Any]:
     """All numbers of a wall's run. Those of the crack pattern are left out if there are no ParaView files."""
     data = RunData.read(directory)
+    if not data.isPush:
+        raise Refused(f"{directory}: nothing was pushed in this run")
     at = data.peak()
     top, base, times = (data[n] for n in (quantities.TOP, quantities.BASE, "time_s"))
     more = {"top_less_base_shear_kN": top[at] - base[at]}
