@@ -11,6 +11,7 @@ import numpy as np
 
 from .. import bilinear, curve_figure, drawing, quantities
 from ..curve_figure import energies, unitOf
+
 from .pieces import Badged, Number, figure, folded, isNumber, note, numbers, share, table, withUnit, written  # fmt: skip
 from .record import Record
 from .structure import answersOf, nameOf, sought, valueOf
