@@ -13,7 +13,6 @@ from .basics import Refused
 #: Module -> (its Debian package, what needs it).
 NEEDED_FOR = {
     "jinja2": ("python3-jinja2", "reports and pages need"),
-    "markupsafe": ("python3-markupsafe", "reports and pages need"),
     "matplotlib": ("python3-matplotlib", "figures need"),
     "meshio": (
         "python3-meshio",

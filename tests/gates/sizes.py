@@ -22,7 +22,7 @@ import tree
 BUDGET = os.path.join(os.path.dirname(os.path.abspath(__file__)), "budget.json")
 #: What is weighed: names of parts, and how the paths of their files begin and end.
 PARTS = {
-    "package": (("scripts/",), (".py", ".js", ".css", ".sh")),
+    "package": (("scripts/",), (".py", ".js", ".css", ".html", ".sh")),
     "plugin": (("yade_plugin/",), tree.CPP + (".py",)),
     "tests": (("tests/",), tree.CPP + (".py",)),
     "manual": ((), (".md",)),

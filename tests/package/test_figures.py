@@ -269,7 +269,7 @@ def test_a_corner_has_an_elevation_for_each_wall_and_shows_its_joint_in_both(sce
     lines = crackLines(panels["side"])["open"]
     places = lines[:, :, 0].mean(axis=1)
     assert sorted(set(places.round(3))) == pytest.approx([T, T + 30 * 2e-3], abs=5e-3)
-    faces = [c for c in panels["front"].collections if c.get_label() == "open, seen face-on"]  # fmt: skip
+    faces = [c for c in panels["front"].collections if c.get_label() == "open, its face"]  # fmt: skip
     assert (
         len(faces[0].get_paths()) == 2 * 25
     )  # its points, five a side, on both blocks

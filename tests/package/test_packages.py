@@ -35,6 +35,7 @@ def sentence(module):
 
 
 @pytest.mark.parametrize("module, use", [
+    ("jinja2", "from masonry.read import pages; pages.rendered('page/page.html')"),
     ("matplotlib", "from masonry.read import drawing; drawing.empty(1, 1)"),
     ("meshio", "open('a.ply', 'w').write('ply'); from masonry import bricks; bricks.fromFile('a.ply')"),
     ("openturns", "from masonry.study import variables; variables.openturns()"),

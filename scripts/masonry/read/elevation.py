@@ -18,7 +18,7 @@ from .files import readCurve, readRun
 from .frames import frameTimes, readFrame
 from .views import REACH, magnificationOf, outline, viewOf
 
-FACING = 0.87  # cosine from which a joint that faces the viewer is drawn as an area, not as a line: less than 30°
+ASKEW = 0.14  # cosine from which a joint is drawn as an area, not as a line: 8° between its face and the line of sight
 #: A block of a part is in an elevation if it reaches into the depth of the façade by this share of its own depth or of the
 #: façade's; what belongs to no part, as a platen, if it touches this depth.
 INSIDE = 0.25
@@ -186,14 +186,14 @@ class Elevation:
                     spots.append((*now.mean(axis=0), 12 + 8e3 * j["crushing"][i]))
                 if not cracked[i]:
                     continue
-                if np.linalg.norm(along) < np.sqrt(1 - FACING**2):
+                if abs(j["normal"][i] @ self.view.towards) > ASKEW:
                     areas[kind].append(now)
                     continue
-                way = flat @ (along @ self.view.right, along @ self.view.up)
-                lines.append((now[[way.argmin(), way.argmax()]], kind))
+                reach = flat @ (along @ self.view.right, along @ self.view.up)
+                lines.append((now[[reach.argmin(), reach.argmax()]], kind))
         for kind, colour in CRACKS.items():
             if areas[kind]:
-                axes.add_collection(PolyCollection(areas[kind], facecolor=colour, alpha=0.25, lw=0, label=kind + ", seen face-on"))  # fmt: skip
+                axes.add_collection(PolyCollection(areas[kind], facecolor=colour, alpha=0.35, lw=0, label=kind + ", its face"))  # fmt: skip
             axes.add_collection(LineCollection([], color=colour, lw=bold, label=kind))
         axes.add_collection(LineCollection([ends for ends, _ in lines], colors=[CRACKS[kind] for _, kind in lines], lw=bold))  # fmt: skip
         if spots:

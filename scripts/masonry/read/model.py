@@ -197,6 +197,8 @@ class Model:
             magnification = magnificationOf(size, np.linalg.norm(moved, axis=1))
         seen = np.clip(points + magnification * moved, low - REACH * size, high + REACH * size)  # fmt: skip
         low, high = np.minimum(low, seen.min(axis=0)), np.maximum(high, seen.max(axis=0))  # fmt: skip
+        if moved.mean(axis=0) @ towards < -0.1 * size:  # it fell to the other side
+            towards = -towards
         flat = bool(abs(towards[2]) < 0.9)
         return Sight(magnification, low, high, towards if flat else np.array([0.0, -1.0, 0.0]), flat)  # fmt: skip
 

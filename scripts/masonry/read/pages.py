@@ -36,5 +36,6 @@ def rendered(path: str, **values: Any) -> str:
 
 def asScript(code: str) -> Any:
     """A text that can stand in a script element: nothing in it ends or comments out the element."""
-    markup = needed("markupsafe").Markup
-    return markup(code.replace("</script", "<\\/script").replace("<!--", "<\\!--"))
+    from markupsafe import Markup  # jinja2 has it
+
+    return Markup(code.replace("</script", "<\\/script").replace("<!--", "<\\!--"))

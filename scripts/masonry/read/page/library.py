@@ -2,7 +2,6 @@
 """three.js, as the Debian package libjs-three has it, and its licence. This module needs no YADE."""
 
 import os
-import re
 
 from ...basics import Refused
 
@@ -20,7 +19,7 @@ or as yourself:
 
 
 def three():
-    """The files of the library, a list of texts, and its licence.
+    """The files of the library, a list of texts, and its licences, as Debian's copyright file has them.
 
     :raises Refused: if it is not there, with the package that has it
     """
@@ -29,27 +28,10 @@ def three():
             *code, copyright = (_read(place, path) for path in (*(HERE + name for name in CODE), COPYRIGHT))  # fmt: skip
         except OSError:
             continue
-        return code, _licence(copyright)
+        return code, copyright
     raise Refused(MISSING)
 
 
 def _read(place, path):
     with open(os.path.join(place, path), encoding="utf-8") as file:
         return file.read()
-
-
-def _licence(copyright):
-    """Of a copyright file of Debian: who holds the rights in the library, and the text of its licence."""
-    paragraphs = re.split(r"\n\s*\n", copyright)
-    about = next((p for p in paragraphs if p.startswith("Files: *\n")), "")
-    name = re.search(r"^License: *(\S+)$", about, re.M)
-    text = name and next(
-        (p for p in paragraphs if p.startswith(f"License: {name[1]}\n")), None
-    )
-    if not text:
-        raise Refused(f"{COPYRIGHT} does not hold the licence of three.js")
-    holders = re.search(r"^Copyright: *(.*)$", about, re.M)[1]
-    lines = [line.strip() for line in text.splitlines()[1:]]
-    return f"Copyright {holders}\nLicence: {name[1]}\n\n" + "\n".join(
-        "" if line == "." else line for line in lines
-    )

@@ -365,18 +365,18 @@
     }
 
     turn(right, up) {
-      const way = this.camera.position.clone().sub(this.target), [across] = this.directions();
-      way.applyAxisAngle(across, -up).applyAxisAngle(this.camera.up, -right);
-      this.camera.position.copy(this.target).add(way);
+      const arm = this.camera.position.clone().sub(this.target), [across] = this.directions();
+      arm.applyAxisAngle(across, -up).applyAxisAngle(this.camera.up, -right);
+      this.camera.position.copy(this.target).add(arm);
       this.orbit.update();
     }
 
     /** Moves what is seen by pixels. */
     move(right, up) {
       const [x, y] = this.directions();
-      const way = x.multiplyScalar(-right * this.metres).addScaledVector(y, -up * this.metres);
-      this.target.add(way);
-      this.camera.position.add(way);
+      const arm = x.multiplyScalar(-right * this.metres).addScaledVector(y, -up * this.metres);
+      this.target.add(arm);
+      this.camera.position.add(arm);
       this.orbit.update();
     }
 

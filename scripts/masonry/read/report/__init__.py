@@ -86,6 +86,8 @@ def _made(part, record):
     try:
         for piece in part(record):
             found.append(piece)
+    except Refused as missing:
+        found.append(note(str(missing), "missing"))
     except (LookupError, AttributeError, TypeError, ValueError, ArithmeticError) as problem:  # fmt: skip
         found.append(
             note(f"This part is not whole, because run.json is damaged or of another version ({type(problem).__name__}: {problem}).", "missing")

@@ -36,7 +36,7 @@ class Record:
     - ``columns``: arrays of curve.csv by name; what is no finite number there is NaN. Empty without rows
     - ``problems``: sentences on what is damaged or missing in the files
     - ``spec``: the entry ``figure`` of run.json as :func:`masonry.read.curve_figure.plan` completes it, or None
-    - ``rows``: numbers of the rows that it shows; ``whole``: whether these are all
+    - ``rows``: numbers of the rows that it shows
     - ``picture``: head and numbers of the 3-D picture, or None; ``missing``: why there is none
     - ``elevation``: the drawing of what was built as SVG and a sentence about it, or None
     - ``whenCracked``: the moment that cracks.png shows
@@ -106,19 +106,13 @@ class Record:
                 spec = plan(self.run, self.columns, self.directory)
                 rows = np.array(spec.get("rows", self.rows), int)
                 shown = [axis["column"] for axis in (spec["x"], *spec["y"])]
-                labels = [axis["label"] for axis in (spec["x"], *spec["y"])]
                 if rows.size and (rows.min() < 0 or rows.max() >= count):
                     raise Refused(f"run.json: figure shows rows up to {rows.max()}, and curve.csv has {count}")  # fmt: skip
         except (Refused, ValueError) as refused:
             self.problems.append(f"the curve is not drawn: {self._bare(refused)}")
             return
         good = np.isfinite([self.columns[name][rows] for name in shown[:2]]).all(axis=0)
-        self.spec, self.rows = {**spec, "labels": labels}, rows[good]
-
-    @property
-    def whole(self) -> bool:
-        """Whether the figure shows all rows."""
-        return self.spec is None or "rows" not in self.spec
+        self.spec, self.rows = spec, rows[good]
 
     def column(self, name: str) -> np.ndarray | None:
         """A column in the rows that the figure shows, or None."""
@@ -147,19 +141,17 @@ class Record:
     def _drawing(self, model):
         """What was built as SVG, and a sentence on it."""
         blocks, joints = (readFrame(self.directory, kind, 0) for kind in ("blocks", "joints"))  # fmt: skip
-        run = {
-            **self.run,
-            "views": {},
-        }  # seen from the front, also where cracks.png looks askew
+        # it is seen from the front, also where cracks.png looks askew
+        run = {**self.run, "views": {}}
         structure = elevation.structureOf(run, blocks, None, self.directory)
         structure = self._whole(structure, joints)
+        bricks = [b for b in structure.corners if b not in structure.shades]
+        low, high = (f(blocks["points"][structure.points(bricks)], axis=0) for f in (np.min, np.max))  # fmt: skip
         targets = self.run.get("targets") or []
         for one in targets:
             structure.shades[one["body"]] = "held" if one.get("held") else "loaded or watched"  # fmt: skip
             if len(targets) <= MOST_NAMES:
                 structure.names[one["body"]] = str(one["name"])
-        bricks = [b for b in structure.corners if b not in structure.shades]
-        low, high = (f(blocks["points"][structure.points(bricks)], axis=0) for f in (np.min, np.max))  # fmt: skip
         size = " × ".join(written(float(v), 3) for v in high - low)
         about = (
             f"The {len(bricks):,} units of the masonry as built, {size} m (x × y × z)."
