@@ -5,7 +5,6 @@ import copy
 import glob
 import importlib.util
 import os
-import sys
 
 import pytest
 import yade.config

@@ -4,12 +4,9 @@
 import os
 import random
 import re
-import subprocess
-import sys
 
 import yade
 from hosted import *
-from conftest import BUILD
 from masonry import classes, touchingPairs
 from yade import utils
 

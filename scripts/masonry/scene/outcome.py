@@ -20,7 +20,7 @@ from ..memory import FULL
 from ..packages import Missing
 from ..read import cracks, crew, curves, quantities
 from ..read.frames import asFrame
-from ..read.quantities import RunData
+from ..read.run_data import RunData
 from ..run import accuracy
 from . import facts, history
 from .figure import figureOf
