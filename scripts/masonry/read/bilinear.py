@@ -173,6 +173,17 @@ def _checked(displacement, force):
     return np.maximum.accumulate(moved), force
 
 
+def _secant(moved, force, share):
+    """The secant stiffness at a share of the peak, on the way to it."""
+    level = share * float(force.max())
+    upper = _crossing(moved, force, level, int(np.flatnonzero(force >= level)[0]))
+    if upper <= 0:
+        raise Refused(
+            f"the curve has {share:g} of its peak at its first row: there is no stiffness"
+        )
+    return level / upper
+
+
 def _checkPeak(moved, force, stiffness):
     """Refuse a curve that still grows at its end."""
     end = float(moved[-1])
@@ -212,13 +223,7 @@ def bilinear(
     moved, forces = _checked(displacement, force)
     at = int(forces.argmax())
     peak = float(forces[at])
-    level = secant * peak
-    upper = _crossing(moved, forces, level, int(np.flatnonzero(forces >= level)[0]))
-    if upper <= 0:
-        raise Refused(
-            f"the curve has {secant:g} of its peak at its first row: there is no stiffness"
-        )
-    stiffness = level / upper
+    stiffness = _secant(moved, forces, secant)
     _checkPeak(moved, forces, stiffness)
     end, unreached, notes = _end(moved, forces, at, fall, pulse)
     if at >= len(forces) - 3:

@@ -76,7 +76,7 @@ class Quantity:
     :param unit: ``"-"`` if it has none
     :param meaning: what it is, a sentence
     :param source: columns of curve.csv, an equation or a function
-    :param of: function of :class:`RunData`; None: the run itself writes it
+    :param of: function of :class:`RunData`, or of a function that gives the columns of a joint; None: the run itself writes it
     :param group: one of :data:`GROUPS`, which says in which runs it is
     :param brief: whether it is among the few that a notebook shows, and that stand first in study.csv
     :param share: whether it is shown in per cent
@@ -87,7 +87,7 @@ class Quantity:
     unit: str
     meaning: str
     source: str
-    of: Callable[[RunData], Any] | None = None
+    of: Callable[[Any], Any] | None = None
     group: str = "push"
     brief: bool = False
     share: bool = False
@@ -169,7 +169,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q("base_shear_end_kN", "force at the end", "kN", "Force at the supports in the last row.", f"curve.csv: {BASE}", lambda d: d[BASE][-1], brief=True),
     Q("displacement_end_mm", "displacement at the end", "mm", "Displacement of the pushed point in the last row.", f"curve.csv: {MOVED}", lambda d: d[MOVED][-1], brief=True),
     Q("initial_stiffness_kN_per_mm", "initial stiffness", "kN/mm", "Slope of the line through the beginning of the push that fits its first part best, without the inertia of the structure.", "masonry.read.curves.stiffness", lambda d: d.stiffness, brief=True),
-    Q("push_work_J", "work of the push", "J", "Area under the curve of the push.", f"curve.csv: {BASE}, {MOVED}", lambda d: float(np.trapz(d[BASE], d[MOVED])), brief=True),
+    Q("push_work_J", "work of the push", "J", "Area under the curve of the push.", f"curve.csv: {BASE}, {MOVED}", lambda d: float(np.trapz(d[BASE], d[MOVED])), "one way", True),
     Q("first_period_s", "first period along the push", "s", "First period of the structure along the push, measured as it began; None if none was found.", "masonry.assembly.period"),
     Q("base_weight", "", "-", "w of the shear force V_s = (1 - w) top + w base, which leaves out the inertia of the structure's own mass; from the shape in which the structure moved as the push began, else 2/3.", "masonry.read.curves.quasiStatic"),
     Q("velocity_grown_at_s", "", "s", "Time at which the velocity of the drive had grown in the first of these pushes; 0 if no first period was found.", "the drive"),
@@ -193,8 +193,11 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q("negative_bound_base_shear_kN", "limit analysis of the way back", "kN", "Likewise of the way back.", "masonry.limit", group="bound"),
     Q("bound_acceleration", "limit analysis of the acceleration", "g", "Bound of the first lean or tilt, horizontal over vertical.", "masonry.limit", group="bound", brief=True),
     *(Q(key, "", "-", f"As of {where}.", where, lambda d, key=key: d.pattern[key], "wall") for key, where in cracks.MEASURED.items()),
-    *(Q(f"peak_{what}_stress_MPa", "", "MPa", f"Largest mean {what} stress of the joint.", f"curve.csv: {what}_stress_MPa", group="joint") for what in ("normal", "compressive", "shear")),
-    *(Q(f"end_{what}_stress_MPa", "", "MPa", f"Mean {what} stress of the joint in the last row.", f"curve.csv: {what}_stress_MPa", group="joint") for what in ("normal", "shear")),
+    Q("peak_normal_stress_MPa", "largest normal stress", "MPa", "Largest mean normal stress of the joint, positive in tension.", "curve.csv: normal_stress_MPa", lambda c: max(c("normal_stress_MPa")), "joint", True),
+    Q("peak_compressive_stress_MPa", "largest compression", "MPa", "Largest mean compression of the joint, as a positive number.", "curve.csv: normal_stress_MPa", lambda c: -min(c("normal_stress_MPa")), "joint", True),
+    Q("peak_shear_stress_MPa", "largest shear stress", "MPa", "Largest mean shear stress of the joint.", "curve.csv: shear_stress_MPa", lambda c: max(c("shear_stress_MPa")), "joint", True),
+    Q("end_normal_stress_MPa", "normal stress at the end", "MPa", "Mean normal stress of the joint in the last row.", "curve.csv: normal_stress_MPa", lambda c: c("normal_stress_MPa")[-1], "joint"),
+    Q("end_shear_stress_MPa", "shear stress at the end", "MPa", "Mean shear stress of the joint in the last row.", "curve.csv: shear_stress_MPa", lambda c: c("shear_stress_MPa")[-1], "joint", True),
     *(Q(f"dissipated_{mode}_J_per_m2", "", "J/m²", f"Energy that the joint dissipated in {mode}, over its area.", "the joint", group="joint") for mode in ("tension", "shear", "compression")),
     Q("factor", "", "-", "Largest load factor under which the structure came to rest, in the last stage that found one.", "answers", group="every"),
     Q("energy_balance_error", "largest error of the energy balance", "-", "Largest error of the balance in all rows, relative to the work done. It shows errors of the scheme, as a time step that is too long, and not those of mesh or law.", "curve.csv: balance_error", group="every", brief=True, share=True),
@@ -239,6 +242,21 @@ def found(data: RunData) -> dict[str, Any]:
             except (LookupError, ValueError):
                 continue
     return entries
+
+
+def ofJoint(column: Callable[[str], Any], prefixed: Callable[[str], str], brief: bool = False) -> dict[str, Any]:  # fmt: skip
+    """Numbers of a joint whose means are recorded, by their entries in run.json.
+
+    :param column: function of the name of a column of curve.csv that gives its values
+    :param prefixed: function of a name that gives it with that of the joint before it
+    :param brief: whether only those are wanted that the terminal shows
+    """
+    own = lambda head: column(prefixed(head))
+    return {
+        prefixed(one.key): one.of(own)  # type: ignore[arg-type]
+        for one in QUANTITIES
+        if one.group == "joint" and one.of and (one.brief or not brief)
+    }
 
 
 def known(data: RunData) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from .. import folders
 from ..basics import Refused, Unwritable
 from ..read.files import filesOf, readWhole
 from ..read.quantities import measures
-from ..run.results import held
+from ..run.lock import held
 from .incremental import FOLDER, Chains, fell, isPlan, shaken
 
 TABLE, STUDY, CSV, TIMES = "table.txt", "study.json", "study.csv", "times.csv"
