@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 from hosted import *
 from masonry.read import cracks, curves, quantities
+from masonry.read.run_data import RunData
 from masonry.scene.figure import restsUnder
 
 WIDTH, HEIGHT, COURSE = 0.4, 0.6, 0.2  # [m] of a pile of three blocks
@@ -108,7 +109,7 @@ def numbers(loads, columns, **run):
     stages = [{"load": [*load, ""], "first_row": 2 * n} for n, load in enumerate(loads)]
     column = lambda head: columns.get(head, zero)
     run = {"stages": stages, "drift_height_m": 2.0, **run}
-    return quantities.found(quantities.RunData(run, column))
+    return quantities.found(RunData(run, column))
 
 
 def test_what_is_lost_between_two_pushes_is_no_crack_of_theirs():

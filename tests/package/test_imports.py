@@ -29,7 +29,13 @@ WITHOUT_YADE = [
     "run.batch",
     "run.presets",
 ]
-WITHOUT_YADE += ["run.progress", "run.results", "scene.fields", "scene.history"]
+WITHOUT_YADE += [
+    "run.progress",
+    "run.lock",
+    "run.results",
+    "scene.fields",
+    "scene.history",
+]
 PACKAGES = [name for name in LAYERS if os.path.isdir(os.path.join(PACKAGE, name))]
 MODULES = ["__init__"] + sorted(
     os.path.relpath(os.path.join(folder, name), PACKAGE)[:-3].replace(os.sep, ".")

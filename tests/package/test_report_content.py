@@ -393,7 +393,7 @@ def test_cycles_have_their_damping_and_what_took_their_work(tmp_path):
     cycle = {"rows": [0, 399], "largest_mm": 2.0, "smallest_mm": -2.0, "amplitude_mm": 2.0, "work_J": 12.5, "largest_kN": 10.0, "smallest_kN": -10.0, "stiffness_kN_per_mm": 5.0,
              "damping": 12.5 / (40 * np.pi), "residual_positive_mm": None, "residual_negative_mm": 0.1, "dissipated_J": 11.0, "damped_J": 1.5}  # fmt: skip
     found = page(folder(tmp_path, columns=columns, figure={**RUN["figure"], "looped": True}, cycles=[cycle, {**cycle, "damping": None}], history={}, damped_share=0.12))  # fmt: skip
-    assert found.row("1", 10) == ["1", "2", "−2", "10", "−10", "12.5", "5", "9.947", "11", "1.5"]  # fmt: skip
+    assert found.row("1", 10) == ["1", "−2", "2", "−10", "10", "12.5", "5", "9.947", "11", "1.5"]  # fmt: skip
     assert [r for r in found.rows if r and r[0] == "2"][-1][7] == "not known"
     said = found.said()
     assert "ξ = W/(4π·½·K·A²)" in said and "goes along a history" in said

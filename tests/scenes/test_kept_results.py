@@ -15,7 +15,7 @@ from hosted import *
 from masonry import readCheckpoint
 from masonry.assembly.structure import Structure
 from masonry.read import files
-from masonry.run import results, run as running
+from masonry.run import lock, run as running
 from masonry.run.results import Results
 from masonry.run.run import Run
 from masonry.scene.outcome import Outcome
@@ -120,7 +120,7 @@ def test_a_folder_is_for_one_run_at_a_time(finished, monkeypatch, capsys, locks)
         def none(file, how):
             raise OSError(errno.ENOLCK, "No locks available")
 
-        monkeypatch.setattr(results.fcntl, "flock", none)
+        monkeypatch.setattr(lock.fcntl, "flock", none)
     report, tell = os.pipe()
     child = os.fork()
     if child == 0:

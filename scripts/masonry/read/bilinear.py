@@ -36,7 +36,8 @@ from ..arguments import FilePath, Numbers, number, oneOf, validated
 from ..basics import Refused, say
 from . import curves, quantities
 from .files import filesOf, onFolder
-from .quantities import FALL, Number, RunData
+from .quantities import Number
+from .run_data import BASE, FALL, MOVED, TOP, RunData
 
 SECANT = 0.7  # of the peak: where the secant stiffness is taken
 #: What a curve may begin with, of the peak and of the displacement there [-].
@@ -172,6 +173,17 @@ def _checked(displacement, force):
     return np.maximum.accumulate(moved), force
 
 
+def _secant(moved, force, share):
+    """The secant stiffness at a share of the peak, on the way to it."""
+    level = share * float(force.max())
+    upper = _crossing(moved, force, level, int(np.flatnonzero(force >= level)[0]))
+    if upper <= 0:
+        raise Refused(
+            f"the curve has {share:g} of its peak at its first row: there is no stiffness"
+        )
+    return level / upper
+
+
 def _checkPeak(moved, force, stiffness):
     """Refuse a curve that still grows at its end."""
     end = float(moved[-1])
@@ -211,31 +223,9 @@ def bilinear(
     moved, forces = _checked(displacement, force)
     at = int(forces.argmax())
     peak = float(forces[at])
-    level = secant * peak
-    upper = _crossing(moved, forces, level, int(np.flatnonzero(forces >= level)[0]))
-    if upper <= 0:
-        raise Refused(
-            f"the curve has {secant:g} of its peak at its first row: there is no stiffness"
-        )
-    stiffness = level / upper
+    stiffness = _secant(moved, forces, secant)
     _checkPeak(moved, forces, stiffness)
-    place, notes, unreached = curves.fallen(moved, forces, at, fall * peak, pulse), [], ""  # fmt: skip
-    if place is None:
-        end = float(moved[-1])
-        dips = (forces[at:] < fall * peak).any()
-        wave = f" for longer than a wave of {pulse:.2g} mm" if dips else ""
-        unreached = (
-            f"not reached: the force never falls to {fall:g} of its peak{wave}, so the ultimate displacement is the end of the curve, and "
-            "the ductility is that of the part which was run"
-        )
-    else:
-        end = float(np.interp(place, np.arange(len(moved)), moved))
-        again = (moved > end + pulse) & (forces >= fall * peak)
-        if again.any():
-            notes.append(
-                f"after it fell to {fall:g} of its peak at {end:.4g} mm, the force came back above that, up to "
-                f"{moved[again].max():.4g} mm"
-            )
+    end, unreached, notes = _end(moved, forces, at, fall, pulse)
     if at >= len(forces) - 3:
         notes.append(
             "the force is largest at the end of the curve, on a plateau: farther on it may be larger"
@@ -245,18 +235,7 @@ def bilinear(
     if rule == "masonry":
         yieldForce = _equalArea(stiffness, end, area)
     else:
-        if forms > end * (1 + SMALL):
-            raise Refused(
-                f"the plastic mechanism forms at {forms:.4g} mm, which is beyond the ultimate displacement, {end:.4g} mm"
-            )
-        work, yieldForce = _area(moved, forces, forms)
-        yields = 2 * (forms - work / yieldForce) if yieldForce > 0 else -1.0
-        if not 0 < yields <= forms * (1 + SMALL):
-            raise Refused(
-                f"equation (B.6) of EN 1998-1:2004 gives no yield displacement between 0 and {forms:.4g} mm, where the mechanism "
-                f"forms with {yieldForce:.4g} kN: the area up to there is {work:.4g} J"
-            )
-        stiffness = yieldForce / yields
+        stiffness, yieldForce = _annexB(moved, forces, forms, end)
         if mechanism is None:
             notes += _onPlateau(moved, forces, forms, stiffness)
     if yieldForce > peak * (1 + SMALL):
@@ -278,6 +257,41 @@ def bilinear(
         unreached=unreached,
         remarks=tuple(notes),
     )
+
+
+def _end(moved, force, at, fall, pulse):
+    """The ultimate displacement; a sentence if the force does not fall so far, else an empty text; and further sentences."""
+    level = fall * float(force[at])
+    place = curves.fallen(moved, force, at, level, pulse)
+    if place is None:
+        wave = f" for longer than a wave of {pulse:.2g} mm" if (force[at:] < level).any() else ""  # fmt: skip
+        unreached = (
+            f"not reached: the force never falls to {fall:g} of its peak{wave}, so the ultimate displacement is the end of the curve, and "
+            "the ductility is that of the part which was run"
+        )
+        return float(moved[-1]), unreached, []
+    end = float(np.interp(place, np.arange(len(moved)), moved))
+    again = (moved > end + pulse) & (force >= level)
+    notes = [
+        f"after it fell to {fall:g} of its peak at {end:.4g} mm, the force came back above that, up to {moved[again].max():.4g} mm"
+    ] * again.any()
+    return end, "", notes
+
+
+def _annexB(moved, force, forms, end):
+    """Stiffness and yield force by equation (B.6), for a mechanism that forms at a displacement."""
+    if forms > end * (1 + SMALL):
+        raise Refused(
+            f"the plastic mechanism forms at {forms:.4g} mm, which is beyond the ultimate displacement, {end:.4g} mm"
+        )
+    work, yieldForce = _area(moved, force, forms)
+    yields = 2 * (forms - work / yieldForce) if yieldForce > 0 else -1.0
+    if not 0 < yields <= forms * (1 + SMALL):
+        raise Refused(
+            f"equation (B.6) of EN 1998-1:2004 gives no yield displacement between 0 and {forms:.4g} mm, where the mechanism "
+            f"forms with {yieldForce:.4g} kN: the area up to there is {work:.4g} J"
+        )
+    return yieldForce / yields, yieldForce
 
 
 def _onPlateau(moved, force, forms, stiffness):
@@ -345,7 +359,7 @@ def pushover(directory: FilePath) -> Pushover:
         raise Refused(
             f"{directory}: the run goes along a history of loading, there and back, and a bilinear curve is of one push"
         )
-    heads = (quantities.MOVED, quantities.BASE, quantities.TOP)
+    heads = (MOVED, BASE, TOP)
     missing = [head for head in heads if data.column(head) is None]
     with filesOf(directory):
         if missing or not data.isPush:
@@ -356,7 +370,7 @@ def pushover(directory: FilePath) -> Pushover:
             notes.append(
                 f"the push was too fast: {100 * run['dynamic_imbalance']:.2g} % of the force did not reach the supports"
             )
-        moved = np.array(data[quantities.MOVED])
+        moved = np.array(data[MOVED])
         return Pushover(str(directory), data, moved, data.carried(), tuple(notes))
 
 
@@ -420,7 +434,7 @@ def drifts(
         )
     found = []
     for state in quantities.STATES:
-        place = data.fallenTo(fall) if state.share else data.place(state)
+        place = data.fallenTo(fall) if state.share else data.place(state.find)
         one = Number(state.drift, data.drift(place), "mrad", f"Over the height, {data.height:.4g} m. {state.meaning}", "displacement over height")  # fmt: skip
         found.append(one if place is not None else one._replace(note=state.missing))
     return found

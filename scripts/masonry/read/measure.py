@@ -23,7 +23,7 @@ from ..basics import Refused, say
 from . import cracks, quantities
 from .files import filesOf, onFolder, readCurve, readRun
 from .frames import readFrame
-from .quantities import RunData
+from .run_data import BASE, TOP, RunData
 
 
 def frameAt(directory: FilePath, time: float) -> int:
@@ -38,7 +38,7 @@ def wallNumbers(directory: FilePath) -> dict[str, Any]:
     if not data.isPush:
         raise Refused(f"{directory}: nothing was pushed in this run")
     at = data.peak()
-    top, base, times = (data[n] for n in (quantities.TOP, quantities.BASE, "time_s"))
+    top, base, times = (data[n] for n in (TOP, BASE, "time_s"))
     more = {"top_less_base_shear_kN": top[at] - base[at]}
     if glob.glob(os.path.join(directory, "joints_*.vtp")):
         frame = lambda number: readFrame(directory, "joints", number)
@@ -91,33 +91,18 @@ def measure(directory: FilePath) -> dict[str, Any]:
     }  # fmt: skip
 
 
-#: Columns of the table of cycles: the head, the key in run.json, and the format of the numbers.
-TABLE = (
-    ("from mm", "smallest_mm", ".3f"),
-    ("to mm", "largest_mm", ".3f"),
-    ("from kN", "smallest_kN", ".2f"),
-    ("to kN", "largest_kN", ".2f"),
-    ("work J", "work_J", ".2f"),
-    ("kN/mm", "stiffness_kN_per_mm", ".2f"),
-    ("damping", "damping", ".3f"),
-    ("left + mm", "residual_positive_mm", ".3f"),
-    ("left - mm", "residual_negative_mm", ".3f"),
-    ("joints J", "dissipated_J", ".2f"),
-    ("damped J", "damped_J", ".2f"),
-)
-
-
 def cycleTable(cycles: list[dict[str, Any]]) -> Iterator[str]:
-    """The cycles of run.json as lines of a table: displacement and base shear from and to, work at the base, secant
-    stiffness, equivalent damping, residual displacements, and what joints and damping took.
-    """
-    yield " cycle" + "".join(f"{head:>11}" for head, _, _ in TABLE)
+    """The cycles of run.json as lines of a table, with the numbers of :data:`masonry.read.quantities.OF_CYCLES`."""
+    columns = quantities.OF_CYCLES
+    heads = [name if unit == "-" else f"{name} [{unit}]" for _, name, unit, *_ in columns]  # fmt: skip
+    wide = [max(len(head), 9) + 2 for head in heads]
+    yield " cycle" + "".join(f"{head:>{w}}" for head, w in zip(heads, wide))
     for n, cycle in enumerate(cycles, 1):
         texts = (
-            "-" if cycle[key] is None else format(cycle[key], kind)
-            for _, key, kind in TABLE
+            "-" if cycle[key] is None else f"{cycle[key]:.{digits}f}"
+            for key, _, _, digits, _ in columns
         )
-        yield f"{n:6}" + "".join(f"{text:>11}" for text in texts)
+        yield f"{n:6}" + "".join(f"{text:>{w}}" for text, w in zip(texts, wide))
 
 
 def show(directory: FilePath) -> None:

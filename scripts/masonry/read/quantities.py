@@ -12,22 +12,16 @@ all supports (``base_shear_kN``) and that of the drive (``top_shear_kN``).
 
 from __future__ import annotations
 
-import functools
 import math
 from dataclasses import dataclass
-from typing import Any, Callable, NamedTuple, Sequence
+from typing import Any, Callable, NamedTuple
 
 import numpy as np
 
-from ..arguments import FilePath
 from . import cracks, curves, loops
-from .files import readCurve, readRun
+from .run_data import BASE, MASONRY, MOVED, TOP, RunData
 
-LOST = 0.05  # of the peak: a larger loss is a drop, a smaller one may be the scatter by single bricks at the toe
-FALL = 0.8  # of the peak: where the force has fallen to it, a wall of masonry is said to have reached its ultimate displacement
 IMBALANCE = 0.1  # a push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more
-MOVED, BASE, TOP = "displacement_mm", "base_shear_kN", "top_shear_kN"
-MASONRY = "masonry_displacement_mm"  # of the bricks at the pushed platen
 
 #: Energies of the balance by their names in curve.csv, without the unit: what each is, and whether it is put in, stored or spent.
 ENERGIES = {
@@ -73,228 +67,6 @@ class Number(NamedTuple):
         return self._asdict()
 
 
-class RunData:
-    """What the numbers of a run are found from.
-
-    :param run: entries of run.json, those that are no numbers of this list at least
-    :param column: function of the name of a column of curve.csv that gives its values, or None if there is no such column
-    :param joints: frame of the joints at the end, as of :mod:`masonry.read.cracks`; None: crack patterns are not measured
-    :param height: of the recorded point above the base [m], in place of what run.json says
-    """
-
-    def __init__(
-        self,
-        run: dict[str, Any],
-        column: Callable[[str], Any],
-        joints: dict[str, Any] | None = None,
-        height: float | None = None,
-    ) -> None:
-        self.run, self.column, self.joints, self._height = run, column, joints, height
-
-    @classmethod
-    def read(cls, directory: FilePath, height: float | None = None) -> RunData:
-        """That of a folder of results. Raises Refused."""
-        return cls(readRun(directory), readCurve(directory).get, height=height)
-
-    # -- which rows
-
-    @functools.cached_property
-    def _stages(self):
-        """Loads of the stages, and their rows: lists of the load, the first row and the row after the last."""
-        found = self.run.get("stages") or []
-        ends = [*(one["first_row"] for one in found[1:]), self._count]
-        return [(one.get("load"), one["first_row"], end) for one, end in zip(found, ends)]  # fmt: skip
-
-    @functools.cached_property
-    def _count(self):
-        columns = (self.column(name) for name in (MOVED, "time_s"))
-        return len(next((values for values in columns if values is not None), ()))
-
-    @functools.cached_property
-    def pushes(self) -> list[tuple[int, int]]:
-        """Rows of the pushes, the first one and the one after the last: of the last push, and of those along its line since another
-        one."""
-        pushed = [one for one in self._stages if one[0] and one[0][0] == "push"]
-        others = [first for load, first, _ in pushed if load != pushed[-1][0]]
-        since = max(others, default=-1)
-        return [(first, end) for load, first, end in pushed if load == pushed[-1][0] and first > since]  # fmt: skip
-
-    @functools.cached_property
-    def rows(self) -> list[int]:
-        """Numbers of the rows of the push, from 0. If the run loads in no other way, what comes before belongs to it."""
-        loads = [load for load, _, _ in self._stages if load]
-        if self.pushes and all(load == loads[-1] for load in loads):
-            return list(range(self._count))
-        return [n for first, end in self.pushes for n in range(first, end)]
-
-    def whole(self, name: str) -> Any:
-        """A column in all rows. Raises KeyError if curve.csv does not have it."""
-        values = self.column(name)
-        if values is None:
-            raise KeyError(name)
-        return values
-
-    def __getitem__(self, name: str) -> list[float]:
-        """A column in the rows of the push. Raises KeyError if curve.csv does not have it."""
-        values = self.whole(name)
-        return [values[n] for n in self.rows]
-
-    # -- what kind of run it is
-
-    @property
-    def isPush(self) -> bool:
-        """Whether the run has a push with rows."""
-        return bool(self.rows)
-
-    @property
-    def isLooped(self) -> bool:
-        """Whether the push goes there and back."""
-        return "history" in self.run
-
-    # -- force, peak and drift: each is found here and nowhere else
-
-    def carried(self, side: int = 1) -> np.ndarray:
-        """The force of the push [kN]: what both ends carry at once, in every row the one that is less along the side. A wave that
-        passes through is felt at one of them.
-
-        :param side: 1, or -1 for the way back
-        """
-        return side * np.minimum(side * np.array(self[BASE]), side * np.array(self[TOP]))  # fmt: skip
-
-    def peak(self, side: int = 1) -> int:
-        """Where this force is largest, a number of a row among those of the push; in loops on its side of the displacement."""
-        towards = side * self.carried(side)
-        if self.isLooped:
-            towards = np.where(side * np.array(self[MOVED]) >= 0, towards, -math.inf)
-        return int(towards.argmax())
-
-    def peakForce(self, side: int = 1) -> float:
-        """The force at the peak of a side [kN]."""
-        return float(self.carried(side)[self.peak(side)])
-
-    @property
-    def pulse(self) -> float:
-        """Displacement of the drive within the first period of the structure [mm]; 0 if that is not known."""
-        period, times = self.run.get("first_period_s"), self.column("time_s")
-        if not period or times is None or len(self.rows) < 2:
-            return 0.0
-        lasted = np.ptp([times[n] for n in self.rows])
-        return float(period * np.ptp(self[MOVED]) / lasted) if lasted > 0 else 0.0
-
-    @property
-    def height(self) -> float | None:
-        """Height over which displacements of the push are drifts [m]; None if it is not known, or if the push is not horizontal."""
-        known = [self._height, self.run.get("drift_height_m"), self.run.get("recorded_height_m")]  # fmt: skip
-        return next((h for h in known if isinstance(h, (int, float)) and 0 < h < math.inf), None)  # fmt: skip
-
-    @functools.cached_property
-    def ofDrift(self) -> list[float]:
-        """The displacements that are drifts over :attr:`height` [mm]: of the masonry where the platen touches it, so that what
-        the platen slips is no drift; of the pushed point where there is no platen, or where another height is given.
-        """
-        own = self.column(MASONRY)
-        return self[MOVED] if own is None or self._height else self[MASONRY]
-
-    def at(self, values: Sequence[float], place: float | None) -> float | None:
-        """A value between rows, along a straight line. ``place``: a number of a row with a fraction, or None."""
-        if place is None:
-            return None
-        return float(np.interp(place, np.arange(len(values)), values))
-
-    def place(self, state: State) -> float | None:
-        """Where a state is in the rows of the push, None if it is not reached or curve.csv does not have its columns."""
-        try:
-            return state.find(self) if self.rows else None
-        except LookupError:
-            return None
-
-    def drift(self, place: float | None) -> float | None:
-        """The drift at a place in the rows of the push [mrad]."""
-        moved = self.at(self.ofDrift, place)
-        return moved / self.height if moved is not None and self.height else None
-
-    # -- states of a push: places in its rows, or None
-
-    @functools.cached_property
-    def firstCrack(self) -> int | None:
-        """Where the first crack of the push is seen."""
-        found = (curves.firstCrack(self.whole, slice(*push)) for push in self.pushes)
-        row = next((row for row in found if row is not None), None)
-        return None if row is None else self.rows.index(row)
-
-    @functools.cached_property
-    def fallen(self) -> float | None:
-        """Where the force has fallen to :data:`FALL` of its peak, after it."""
-        return self.fallenTo(FALL)
-
-    def fallenTo(self, share: float) -> float | None:
-        """As :attr:`fallen`, of another share; in loops on the envelope of the positive side."""
-        moved, force = np.array(self[MOVED]), self.carried(1)
-        rows = loops.envelope(moved)[0] if self.isLooped else np.arange(len(moved))
-        if not len(rows) or force[rows].max() <= 0:
-            return None
-        force, at = force[rows], int(force[rows].argmax())
-        pulse = 0.0 if self.isLooped else self.pulse
-        place = curves.fallen(np.maximum.accumulate(moved[rows]), force, at, share * force[at], pulse)  # fmt: skip
-        return None if place is None else float(np.interp(place, np.arange(len(rows)), rows))  # fmt: skip
-
-    @functools.cached_property
-    def collapse(self) -> int | None:
-        """The last row, if the push ended in a collapse."""
-        load = self._stages[-1][0] if self._stages else None
-        fell = self.run.get("collapsed") and load and load[0] == "push"
-        return len(self.rows) - 1 if fell else None
-
-    # -- what several numbers share
-
-    @functools.cached_property
-    def sudden(self) -> tuple[float, float]:
-        """As of :func:`masonry.read.curves.suddenLoss`."""
-        return curves.suddenLoss(self[MOVED], self[TOP], self[BASE])
-
-    @functools.cached_property
-    def stillGrows(self) -> bool:
-        """Whether nothing has given way at the end of the push."""
-        return not self.isLooped and curves.stillGrows(self[MOVED], self[BASE])
-
-    @functools.cached_property
-    def stiffness(self) -> float:
-        """As of :func:`masonry.read.curves.stiffness`, of the force without the inertia of the structure's own mass."""
-        grown = self.run.get("velocity_grown_at_s") or 0.0
-        ramp = next((n for n, time in enumerate(self["time_s"]) if time >= grown), 0)
-        weight = self.run.get("base_weight") or curves.SHEAR
-        return curves.stiffness(self[MOVED], curves.quasiStatic(self[TOP], self[BASE], weight), ramp)  # fmt: skip
-
-    def dropped(self, side: int = 1) -> tuple[float, float | None]:
-        """Share of the peak that is lost at the end, and the first displacement after the peak with less than 0.95 of it [mm], None
-        if there is none; in loops along the envelope of a side, positive outwards."""
-        moved, force = side * np.array(self[MOVED]), side * self.carried(side)
-        if self.isLooped:
-            rows = loops.envelope(self[MOVED])[0 if side > 0 else 1]
-            moved, force = moved[rows], force[rows]
-        if not len(force) or not force.max() > 0:
-            raise LookupError("the force is never to this side")
-        at = int(force.argmax())
-        after = np.flatnonzero(force[at:] < (1 - LOST) * force[at])
-        return 1 - float(force[-1] / force[at]), float(moved[at + after[0]]) if len(after) else None  # fmt: skip
-
-    @functools.cached_property
-    def cycles(self) -> list[dict[str, Any]]:
-        """As of :func:`masonry.read.curves.cycleNumbers`, with rows of curve.csv."""
-        found = curves.cycleNumbers(self.__getitem__, self.run["history"]["noise_mm"])
-        for one in found:
-            one["rows"] = [self.rows[n] for n in one["rows"]]
-        return found
-
-    @functools.cached_property
-    def pattern(self) -> dict[str, Any]:
-        """Numbers of the crack pattern of a wall, and how it failed."""
-        found = cracks.pattern(self.joints, self.run["wall"], self.isLooped)
-        lost = self.dropped()[0] > LOST
-        mode = cracks.failureMode(found, self.run["wall"], self.stillGrows, lost)
-        return {**found, "failure_mode": mode}
-
-
 @dataclass(frozen=True)
 class Quantity:
     """A number of a run.
@@ -304,7 +76,7 @@ class Quantity:
     :param unit: ``"-"`` if it has none
     :param meaning: what it is, a sentence
     :param source: columns of curve.csv, an equation or a function
-    :param of: function of :class:`RunData`; None: the run itself writes it
+    :param of: function of :class:`RunData`, or of a function that gives the columns of a joint; None: the run itself writes it
     :param group: one of :data:`GROUPS`, which says in which runs it is
     :param brief: whether it is among the few that a notebook shows, and that stand first in study.csv
     :param share: whether it is shown in per cent
@@ -315,7 +87,7 @@ class Quantity:
     unit: str
     meaning: str
     source: str
-    of: Callable[[RunData], Any] | None = None
+    of: Callable[[Any], Any] | None = None
     group: str = "push"
     brief: bool = False
     share: bool = False
@@ -361,8 +133,8 @@ STATES = (
 def _ofStates():
     """The displacement and the drift of every state."""
     for state in STATES:
-        moved = lambda d, state=state: d.at(d[MOVED], d.place(state))
-        drift = lambda d, state=state: d.drift(d.place(state))
+        moved = lambda d, state=state: d.at(d[MOVED], d.place(state.find))
+        drift = lambda d, state=state: d.drift(d.place(state.find))
         where = f"at the state: {state.name}" if state.name == "collapse" else f"at the {state.name}"  # fmt: skip
         yield Quantity(state.displacement, f"displacement {where}", "mm", f"Displacement of the pushed point. {state.meaning}", f"curve.csv: {MOVED}", moved, "state", state.name == "first crack" or state.name == "peak")  # fmt: skip
         yield Quantity(state.drift, f"drift {where}", "mrad", f"Drift of the masonry. {state.meaning}", f"curve.csv: {MASONRY}, or {MOVED}, over drift_height_m", drift, "state")  # fmt: skip
@@ -372,6 +144,7 @@ _BOTH = f"curve.csv: {BASE}, {TOP}"
 #: In which runs a quantity is: what they are called, and whether a run is one of them.
 GROUPS: dict[str, tuple[str, Callable[[RunData], bool]]] = {
     "every": ("Every run has these", lambda d: True),
+    "cost": ("and these, which are no measures of the structure", lambda d: True),
     "push": ("A run with a push has these, too", lambda d: d.isPush),
     "state": ("and these, which are None where the state is not reached or the push is not horizontal", lambda d: d.isPush),
     "one way": ("A push in one direction has these, too", lambda d: d.isPush and not d.isLooped),
@@ -396,7 +169,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q("base_shear_end_kN", "force at the end", "kN", "Force at the supports in the last row.", f"curve.csv: {BASE}", lambda d: d[BASE][-1], brief=True),
     Q("displacement_end_mm", "displacement at the end", "mm", "Displacement of the pushed point in the last row.", f"curve.csv: {MOVED}", lambda d: d[MOVED][-1], brief=True),
     Q("initial_stiffness_kN_per_mm", "initial stiffness", "kN/mm", "Slope of the line through the beginning of the push that fits its first part best, without the inertia of the structure.", "masonry.read.curves.stiffness", lambda d: d.stiffness, brief=True),
-    Q("push_work_J", "work of the push", "J", "Area under the curve of the push.", f"curve.csv: {BASE}, {MOVED}", lambda d: float(np.trapz(d[BASE], d[MOVED])), brief=True),
+    Q("push_work_J", "work of the push", "J", "Area under the curve of the push.", f"curve.csv: {BASE}, {MOVED}", lambda d: float(np.trapz(d[BASE], d[MOVED])), "one way", True),
     Q("first_period_s", "first period along the push", "s", "First period of the structure along the push, measured as it began; None if none was found.", "masonry.assembly.period"),
     Q("base_weight", "", "-", "w of the shear force V_s = (1 - w) top + w base, which leaves out the inertia of the structure's own mass; from the shape in which the structure moved as the push began, else 2/3.", "masonry.read.curves.quasiStatic"),
     Q("velocity_grown_at_s", "", "s", "Time at which the velocity of the drive had grown in the first of these pushes; 0 if no first period was found.", "the drive"),
@@ -420,19 +193,36 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q("negative_bound_base_shear_kN", "limit analysis of the way back", "kN", "Likewise of the way back.", "masonry.limit", group="bound"),
     Q("bound_acceleration", "limit analysis of the acceleration", "g", "Bound of the first lean or tilt, horizontal over vertical.", "masonry.limit", group="bound", brief=True),
     *(Q(key, "", "-", f"As of {where}.", where, lambda d, key=key: d.pattern[key], "wall") for key, where in cracks.MEASURED.items()),
-    *(Q(f"peak_{what}_stress_MPa", "", "MPa", f"Largest mean {what} stress of the joint.", f"curve.csv: {what}_stress_MPa", group="joint") for what in ("normal", "compressive", "shear")),
-    *(Q(f"end_{what}_stress_MPa", "", "MPa", f"Mean {what} stress of the joint in the last row.", f"curve.csv: {what}_stress_MPa", group="joint") for what in ("normal", "shear")),
+    Q("peak_normal_stress_MPa", "largest normal stress", "MPa", "Largest mean normal stress of the joint, positive in tension.", "curve.csv: normal_stress_MPa", lambda c: max(c("normal_stress_MPa")), "joint", True),
+    Q("peak_compressive_stress_MPa", "largest compression", "MPa", "Largest mean compression of the joint, as a positive number.", "curve.csv: normal_stress_MPa", lambda c: -min(c("normal_stress_MPa")), "joint", True),
+    Q("peak_shear_stress_MPa", "largest shear stress", "MPa", "Largest mean shear stress of the joint.", "curve.csv: shear_stress_MPa", lambda c: max(c("shear_stress_MPa")), "joint", True),
+    Q("end_normal_stress_MPa", "normal stress at the end", "MPa", "Mean normal stress of the joint in the last row.", "curve.csv: normal_stress_MPa", lambda c: c("normal_stress_MPa")[-1], "joint"),
+    Q("end_shear_stress_MPa", "shear stress at the end", "MPa", "Mean shear stress of the joint in the last row.", "curve.csv: shear_stress_MPa", lambda c: c("shear_stress_MPa")[-1], "joint", True),
     *(Q(f"dissipated_{mode}_J_per_m2", "", "J/m²", f"Energy that the joint dissipated in {mode}, over its area.", "the joint", group="joint") for mode in ("tension", "shear", "compression")),
     Q("factor", "", "-", "Largest load factor under which the structure came to rest, in the last stage that found one.", "answers", group="every"),
     Q("energy_balance_error", "largest error of the energy balance", "-", "Largest error of the balance in all rows, relative to the work done. It shows errors of the scheme, as a time step that is too long, and not those of mesh or law.", "curve.csv: balance_error", group="every", brief=True, share=True),
     Q("energy_made", "energy that joints made", "-", "Most energy that joints made by opening or closing within a step, relative to the work done.", "the energy balance", group="every", share=True),
-    Q("time_step_s", "", "s", "The time step.", "the run", group="every"),
-    Q("time_step_limit_s", "", "s", "The limit of the time step with the present damping.", "the run", group="every"),
-    Q("steps", "time steps", "-", "How many were taken.", "the run", group="every", brief=True),
-    Q("microseconds_per_step", "time of a step", "µs", "Mean on the clock of the machine.", "the run", group="every", brief=True),
-    Q("nanoseconds_per_subcontact_step", "time of a step and a point of a joint", "ns", "Mean on the clock of the machine.", "the run", group="every"),
-    Q("wall_clock_s", "time of the run", "s", "On the clock of the machine, with set-up and files.", "the run", group="every", brief=True),
+    Q("time_step_s", "", "s", "The time step.", "the run", group="cost"),
+    Q("time_step_limit_s", "", "s", "The limit of the time step with the present damping.", "the run", group="cost"),
+    Q("steps", "time steps", "-", "How many were taken.", "the run", group="cost", brief=True),
+    Q("microseconds_per_step", "time of a step", "µs", "Mean on the clock of the machine.", "the run", group="cost", brief=True),
+    Q("nanoseconds_per_subcontact_step", "time of a step and a point of a joint", "ns", "Mean on the clock of the machine.", "the run", group="cost"),
+    Q("wall_clock_s", "time of the run", "s", "On the clock of the machine, with set-up and files.", "the run", group="cost", brief=True),
 )  # fmt: skip
+#: Numbers of a cycle: key in ``cycles`` of run.json, name, unit, digits behind the point on the terminal, and whether the report has it.
+OF_CYCLES = (
+    ("smallest_mm", "smallest displacement", "mm", 3, True),
+    ("largest_mm", "largest displacement", "mm", 3, True),
+    ("smallest_kN", "smallest force", "kN", 2, True),
+    ("largest_kN", "largest force", "kN", 2, True),
+    ("work_J", "work W", "J", 2, True),
+    ("stiffness_kN_per_mm", "stiffness K", "kN/mm", 2, True),
+    ("damping", "equivalent damping ξ", "-", 3, True),
+    ("residual_positive_mm", "left after +", "mm", 3, False),
+    ("residual_negative_mm", "left after -", "mm", 3, False),
+    ("dissipated_J", "joints took", "J", 2, True),
+    ("damped_J", "damping took", "J", 2, True),
+)
 #: Those by their entries in run.json.
 BY_KEY = {one.key: one for one in QUANTITIES}
 
@@ -454,6 +244,21 @@ def found(data: RunData) -> dict[str, Any]:
     return entries
 
 
+def ofJoint(column: Callable[[str], Any], prefixed: Callable[[str], str], brief: bool = False) -> dict[str, Any]:  # fmt: skip
+    """Numbers of a joint whose means are recorded, by their entries in run.json.
+
+    :param column: function of the name of a column of curve.csv that gives its values
+    :param prefixed: function of a name that gives it with that of the joint before it
+    :param brief: whether only those are wanted that the terminal shows
+    """
+    own = lambda head: column(prefixed(head))
+    return {
+        prefixed(one.key): one.of(own)  # type: ignore[arg-type]
+        for one in QUANTITIES
+        if one.group == "joint" and one.of and (one.brief or not brief)
+    }
+
+
 def known(data: RunData) -> dict[str, Any]:
     """All numbers of a run: those of run.json and, where it does not have them, those that can be found."""
     return {**found(data), **{k: v for k, v in data.run.items() if k in BY_KEY}}
@@ -471,6 +276,19 @@ def shown(entries: dict[str, Any], *groups: str, brief: bool = False) -> list[Nu
         for one in QUANTITIES
         if one.name and (not groups or one.group in groups) and (one.brief or not brief) and fine(entries.get(one.key))
     ]  # fmt: skip
+
+
+def measures(run: dict[str, Any]) -> dict[str, Any]:
+    """Entries of run.json that measure the structure, for a row of study.csv: how it ended, and the numbers of this list, those
+    first that a notebook shows."""
+    names = ["failure_mode", "collapsed", "ended"]
+    for one in sorted(QUANTITIES, key=lambda one: not one.brief):
+        if one.group == "joint":
+            joints = run.get("recorded_joints") or []
+            names += [f"{joint}_{one.key}" if joint else one.key for joint in joints]
+        elif one.group != "cost":
+            names.append(one.key)
+    return {name: run[name] for name in names if name in run}
 
 
 def headline(run: dict[str, Any], end: bool = False) -> str:

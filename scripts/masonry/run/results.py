@@ -111,206 +111,20 @@ Numbers, one a line with its source and unit, are those of :mod:`masonry.read.qu
 """
 
 import contextlib
-import errno
-import fcntl
 import json
 import math
 import os
 import re
 import shutil
-import socket
 import time
 
 from .. import folders
 from ..basics import Refused, Unwritable, say
 from ..read import quantities
 from ..read.files import readWhole
+from .lock import DRAWN, FILES, OURS, Lock, recorded
 
 __doc__ = f"{__doc__}{quantities.described()}"
-
-#: Files that a run writes, and those that are drawn of it; * is a number.
-FILES = [
-    "curve.csv",
-    "curve.png",
-    "cracks.png",
-    "run.json",
-    "report.html",
-    "run.checkpoint",
-    "view.html",
-    "capacity.json",
-    "capacity.png",
-    "domain.json",
-    "domain.png",
-    "blocks.pvd",
-    "joints.pvd",
-    "connectors.pvd",
-    "mechanism.png",
-    "mechanism_blocks.vtu",
-    "mechanism_joints.vtu",
-    "blocks_*.vtu",
-    "joints_*.vtp",
-    "connectors_*.vtp",
-]
-#: Those of them that show how far a run has come: they go when it goes on.
-DRAWN = {"curve.png", "cracks.png", "report.html"}
-OURS = re.compile(
-    "(%s)(\\.new)?" % "|".join(re.escape(f).replace(r"\*", r"\d+") for f in FILES)
-)
-LOCK = "run.lock"  # in the folder of a run while it goes on, and after it was killed
-NO_LOCKS = {errno.ENOLCK, errno.EOPNOTSUPP, errno.ENOSYS}  # of the file system
-
-
-class Lock:
-    """Keeps a folder for one run. The system takes the lock from a process that ends, however it ends.
-
-    The file ``run.lock`` says who holds it. It stays after a kill, and then says that the files beside it are those of a
-    run. Where the file system has no locks, its text alone counts.
-
-    :param directory: folder, which must be there
-    :param scene: name of the scene that runs
-    :raises Refused: if another run holds the folder; the message names its host and process
-    :raises OSError: if the folder cannot be written
-    """
-
-    _held = {}  # by this process: file by path
-
-    def __init__(self, directory, scene):
-        self.path = os.path.join(os.path.realpath(directory), LOCK)
-        # A scene of this process that did not finish is gone: YADE has one at a time.
-        if self.path in Lock._held:
-            Lock._held[self.path].release()
-        self._file = self._open()
-        try:
-            #: whether the files in the folder are those of a run: it was killed, or it is this one
-            self.ours = bool(self._file.read())
-            record = {
-                "scene": scene,
-                "host": socket.gethostname(),
-                "process": os.getpid(),
-            }
-            self._file.seek(0)
-            self._file.truncate()
-            self._file.write(json.dumps(record).encode())
-            self._file.flush()
-        except BaseException:
-            self._file.close()
-            raise
-        Lock._held[self.path] = self
-
-    def _open(self):
-        """The file, locked. Another run may remove it between two of our calls; then there is a new one."""
-        while True:
-            how = os.O_RDWR | os.O_CREAT
-            file = open(folders.inside(self.path, how), "r+b", buffering=0)
-            try:
-                try:
-                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                except BlockingIOError:
-                    self._refuse(file.read())
-                except OSError as error:
-                    if error.errno not in NO_LOCKS:
-                        raise
-                    self._trust(file.read())
-                    file.seek(0)
-                with contextlib.suppress(FileNotFoundError):
-                    if os.path.samestat(os.fstat(file.fileno()), os.stat(self.path)):
-                        return file
-            except BaseException:
-                file.close()
-                raise
-            file.close()
-
-    def _trust(self, text):
-        """Refuse a folder by the text of its lock alone, if the run that wrote it may be alive."""
-        record = _object(text)
-        if record.get("host") == socket.gethostname():
-            try:
-                os.kill(record.get("process"), 0)
-            except PermissionError:
-                pass  # it is alive, and another user's
-            except (OSError, TypeError, OverflowError):
-                return
-        if record:
-            self._refuse(text)
-
-    def _refuse(self, text):
-        record = _object(text)
-        who = (
-            "another run"
-            if not record
-            else "a run of {scene} on host {host}, process {process},".format_map(
-                {"scene": "?", "host": "?", "process": "?", **record}
-            )
-        )
-        raise Refused(
-            f"{who} is writing to {os.path.dirname(self.path)}: wait for its end, or name another folder with --out; "
-            f"if it is gone, remove {LOCK} there"
-        )
-
-    @classmethod
-    def forget(cls):
-        """Let go of all locks in a copy of the process; the process itself keeps them, and others may have its folder when it ends."""
-        for lock in cls._held.values():
-            lock._file.close()
-        cls._held.clear()
-
-    def release(self):
-        """Let others have the folder. The file goes, unless it must say whose files the others are."""
-        if Lock._held.get(self.path) is self:
-            del Lock._held[self.path]
-        if self._file.closed:
-            return
-        folder = os.path.dirname(self.path)
-        with contextlib.suppress(OSError):
-            names = [name for name in os.listdir(folder) if OURS.fullmatch(name)]
-            if not (self.ours and names) or _recorded(folder):
-                os.remove(self.path)
-        self._file.close()
-
-
-os.register_at_fork(after_in_child=Lock.forget)
-
-
-def held(directory):
-    """Whether a run is writing to a folder now, as far as its lock tells."""
-    try:
-        file = open(os.path.join(directory, LOCK), "rb", opener=folders.inside)
-    except OSError:
-        return False
-    with file:
-        record = _object(file.read())
-        if record.get("host") == socket.gethostname() and not os.path.exists(
-            f"/proc/{record.get('process')}"
-        ):
-            return False  # a lock that is tried for a moment would be in the way of a run that begins
-        file.seek(0)
-        try:
-            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
-        except BlockingIOError:
-            return True
-        except OSError:
-            return bool(_object(file.read()))
-        return False
-
-
-def _object(data):
-    """The JSON object in some bytes, or an empty one."""
-    try:
-        record = folders.fromJson(data)
-    except ValueError:
-        record = None
-    return record if isinstance(record, dict) else {}
-
-
-def _recorded(directory):
-    """run.json of a folder, if a run of ours left it; else an empty dict."""
-    try:
-        record = _object(readWhole(os.path.join(directory, "run.json")))
-    except OSError:
-        return {}
-    return (
-        record if isinstance(record.get("columns"), dict) and "scene" in record else {}
-    )
 
 
 class Results:
@@ -358,7 +172,7 @@ class Results:
         names = sorted(n for n in os.listdir(self.directory) if OURS.fullmatch(n))
         if not names or self._lock.ours:
             return names
-        record, strange = _recorded(self.directory), names
+        record, strange = recorded(self.directory), names
         if record:
             head = ",".join(record["columns"]).encode()
             strange = [n for n in names if n == "curve.csv" and not self._begins(head)]

@@ -20,7 +20,7 @@ from ..memory import FULL
 from ..packages import Missing
 from ..read import cracks, crew, curves, quantities
 from ..read.frames import asFrame
-from ..read.quantities import RunData
+from ..read.run_data import RunData
 from ..run import accuracy
 from . import facts, history
 from .figure import figureOf
@@ -175,7 +175,9 @@ class Outcome:
         """Add to the entries of run.json what follows from the rows."""
         scene, run = self.scene, self.results.run
         run.update(collapse=run.get("collapse"), ended=scene.ended)
-        run.update(self._ofJoints())
+        for joint in self.description.joints:
+            run.update(quantities.ofJoint(self.results.column, joint.prefixed))
+            run.update(joint.dissipated())
         if math.isfinite(scene.factor):
             run["factor"] = scene.factor
         run.update(self._connections())
@@ -239,25 +241,6 @@ class Outcome:
         others = [a for a in at.answers.get(number, []) if a["name"] not in names]
         at.answers = {**at.answers, number: [*({**stage, **one} for one in own), *others]}  # fmt: skip
         asked.companions.over()
-
-    def _ofJoints(self):
-        """Entries for the joints whose means are recorded."""
-        for joint in self.description.joints:
-            normal, shear = (
-                self.results.column(joint.prefixed(f"{what}_stress_MPa"))
-                for what in ("normal", "shear")
-            )
-            modes = "tension", "shear", "compression"
-            lost = zip(modes, joint.interaction.phys.dissipated)
-            found = {
-                "peak_normal_stress_MPa": max(normal),
-                "peak_compressive_stress_MPa": -min(normal),
-                "peak_shear_stress_MPa": max(shear),
-                "end_normal_stress_MPa": normal[-1],
-                "end_shear_stress_MPa": shear[-1],
-                **{f"dissipated_{mode}_J_per_m2": j / joint.area for mode, j in lost},
-            }
-            yield from ((joint.prefixed(end), value) for end, value in found.items())
 
     # -- files and terminal ---------------------------------------------------------------------------------------
 
@@ -339,9 +322,8 @@ class Outcome:
         """Lines to print at the end, from the entries of run.json."""
         name = self.scene.name
         for joint in self.description.joints:
-            for end in ("peak_normal", "peak_compressive", "peak_shear", "end_shear"):
-                key = joint.prefixed(f"{end}_stress_MPa")
-                yield f"{key:32} {run[key]:.4f}"
+            found = quantities.ofJoint(self.results.column, joint.prefixed, brief=True)
+            yield from (f"{key:32} {value:.4f}" for key, value in found.items())
         yield from answersText(run["answers"])
         if "accuracy" in run:
             yield from accuracy.lines(run["accuracy"])

@@ -150,6 +150,11 @@ class JointRecord:
         """A name of a column or of an entry of run.json, with that of the joint before it if it has one."""
         return f"{self.name}_{name}" if self.name else name
 
+    def dissipated(self) -> dict[str, float]:
+        """Entries of run.json: what the joint dissipated, over its area [J/m²]."""
+        lost = zip(("tension", "shear", "compression"), self.interaction.phys.dissipated)  # fmt: skip
+        return {self.prefixed(f"dissipated_{mode}_J_per_m2"): j / self.area for mode, j in lost}  # fmt: skip
+
     def columns(self) -> Iterator[Column]:
         """What is recorded of it."""
         between = "the joint between bricks {} and {}".format(*self.bricks)

@@ -14,48 +14,11 @@ from ..run import batch
 from .. import folders
 from ..basics import Refused, Unwritable
 from ..read.files import filesOf, readWhole
-from ..run.results import held
+from ..read.quantities import measures
+from ..run.lock import held
 from .incremental import FOLDER, Chains, fell, isPlan, shaken
 
 TABLE, STUDY, CSV, TIMES = "table.txt", "study.json", "study.csv", "times.csv"
-
-#: Entries of run.json that are no measures of the structure: what was asked for, and what depends on the machine.
-ASIDE = {
-    "scene",
-    "title",
-    "commit",
-    "date",
-    "host",
-    "threads",
-    "interrupted",
-    "units",
-    "nodes",
-    "joint_count",
-    "subcontacts",
-    "time_step_s",
-    "time_step_limit_s",
-    "microseconds_per_step",
-    "nanoseconds_per_subcontact_step",
-    "wall_clock_s",
-    "steps",
-    "preset",
-    "error",
-    "collapse",
-    "reference_body",
-}
-#: Those that stand first, as far as they are there.
-FIRST = (
-    "failure_mode",
-    "collapsed",
-    "ended",
-    "peak_base_shear_kN",
-    "displacement_at_peak_mm",
-    "peak_at_both_ends_kN",
-    "base_shear_end_kN",
-    "displacement_end_mm",
-    "push_work_J",
-)
-
 
 #: Why a run that has ended is no row of an incremental dynamic analysis.
 UNSHAKEN = "it was not shaken: the scene has no shake(), or fell before it"
@@ -228,46 +191,21 @@ def gather(folder, table):
         counts[status] = counts.get(status, 0) + 1
         if status == "above collapse":
             run = {}  # somebody may have run it before the rows below
-        measures = {
-            n: v
-            for n, v in run.items()
-            if n not in ASIDE and (v is None or isinstance(v, (bool, int, float, str)))
-        }
         strength = []
         if chains.plan:
             one = chains.plan["records"][chains.record(number)]["name"]
             strength = [one, row["scale"], _text(chains.intensity(number))]
         with filesOf(folder.row(number)):
-            answers = run.get("answers", [])
-            measures.update((_answerName(a), a["value"]) for a in answers)
-        found.append(
-            (
-                [
-                    batch.named(number),
-                    *(_varied(n, row[n]) for n in names),
-                    *strength,
-                    status,
-                ],
-                measures,
-            )
-        )
+            numbers = measures(run)
+            answers = {_answerName(a): a["value"] for a in run.get("answers", [])}
+        begin = [batch.named(number), *(_varied(n, row[n]) for n in names), *strength, status]  # fmt: skip
+        found.append((begin, {**numbers, **answers}))
         job = folder.lastJob(number)
         why = job.get("told", "") if status == "failed" else ""
         why = UNSHAKEN if status == "failed" and run else why
-        cost = run.get("wall_clock_s")
-        times.append(
-            [
-                batch.named(number),
-                status,
-                job.get("host", run.get("host", "")),
-                _text(cost),
-                _text(job.get("seconds")),
-                run.get("commit", ""),
-                why,
-            ]
-        )
-    known = {n for _, measures in found for n in measures}
-    heads = [n for n in FIRST if n in known] + sorted(known - set(FIRST))
+        host, cost = job.get("host", run.get("host", "")), run.get("wall_clock_s")
+        times.append([batch.named(number), status, host, _text(cost), _text(job.get("seconds")), run.get("commit", ""), why])  # fmt: skip
+    heads = list(dict.fromkeys(name for _, numbers in found for name in numbers))
     lines = [[*begin, *(_text(m.get(n)) for n in heads)] for begin, m in found]
     heads = ["run", *names, *strengths, "status", *heads]
     written(folder.of(CSV), _csv(heads, lines))

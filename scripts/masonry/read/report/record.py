@@ -22,6 +22,7 @@ from .. import drawing, elevation
 from ..frames import readFrame
 from ..model import Model, chosenFrames
 from ..page.data import dataOfModel
+from ..run_data import BASE, MOVED, TOP, RunData
 from .pieces import written
 
 CRACK_SURFACE = "crack"  # the kind of joint between the halves of a brick
@@ -204,10 +205,10 @@ class Record:
         return [s for s in found if isinstance(s, dict)] if isinstance(found, list) else []  # fmt: skip
 
     @functools.cached_property
-    def data(self) -> quantities.RunData:
+    def data(self) -> RunData:
         """What the numbers of the run are found from: rows whose forces are no finite numbers are left out."""
-        data = quantities.RunData(self.run, lambda name: self.columns.get(name))
-        heads = (quantities.MOVED, quantities.BASE, quantities.TOP)
+        data = RunData(self.run, lambda name: self.columns.get(name))
+        heads = (MOVED, BASE, TOP)
         with filesOf(self.directory):
             rows = [n for n in data.rows if all(math.isfinite(self.columns[head][n]) for head in heads if head in self.columns)]  # fmt: skip
         data.rows = rows  # type: ignore[misc]

@@ -141,7 +141,7 @@ def _states(record):
         if not isNumber(moved):
             lines.append((state.name, "none", "none", "none", f"{state.meaning} Here: {state.missing}.", source))  # fmt: skip
             continue
-        carried = data.at(data.carried(), data.place(state))
+        carried = data.at(data.carried(), data.place(state.find))
         lines.append((state.name, withUnit(moved, "mm"), withUnit(drift, "mrad"), withUnit(carried, "kN"), state.meaning, source))  # fmt: skip
     heads = ("state", "displacement", "drift", "force at both ends", "what it is", "source")  # fmt: skip
     yield table(heads, lines, "Drifts of the push", "states")
@@ -303,17 +303,13 @@ def cycles(record: Record) -> Iterator[Any]:
     if not entries:
         yield note("The run has no whole cycles, so there is no equivalent damping.", kind="missing")  # fmt: skip
         return
-    keys = (
-        ("largest_mm", "largest displacement [mm]"), ("smallest_mm", "smallest displacement [mm]"),
-        ("largest_kN", "largest force [kN]"), ("smallest_kN", "smallest force [kN]"), ("work_J", "work W [J]"),
-        ("stiffness_kN_per_mm", "stiffness K [kN/mm]"), ("damping", "equivalent damping ξ [%]"),
-        ("dissipated_J", "joints took [J]"), ("damped_J", "damping took [J]"),
-    )  # fmt: skip
+    columns = [one for one in quantities.OF_CYCLES if one[-1]]
+    heads = [f"{name} [{'%' if key == 'damping' else unit}]" for key, name, unit, *_ in columns]  # fmt: skip
     lines = []
     for n, one in enumerate(entries, start=1):
-        cells = [100 * one[key] if key == "damping" and isNumber(one.get(key)) else one.get(key) for key, _ in keys]  # fmt: skip
+        cells = [100 * one[key] if key == "damping" and isNumber(one.get(key)) else one.get(key) for key, *_ in columns]  # fmt: skip
         lines.append((n, *(written(v) for v in cells)))
-    yield table(("cycle", *(text for _, text in keys)), lines, "Cycles. Source: run.json: cycles", "cycles")  # fmt: skip
+    yield table(("cycle", *heads), lines, "Cycles. Source: run.json: cycles", "cycles")
     yield note(ABOUT_CYCLES)
 
 

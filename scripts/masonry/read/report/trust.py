@@ -39,7 +39,7 @@ def trust(record: Record) -> Iterator[Any]:
     else:
         yield note("The run has no warnings. Source: run.json: warnings.")
     yield from _said(run)
-    rows = quantities.shown(record.numbers, "every")
+    rows = quantities.shown(record.numbers, "every", "cost")
     step, limit = run.get("time_step_s"), run.get("time_step_limit_s")
     if isNumber(step) and isNumber(limit) and limit > 0:
         rows.append(Number("time step", 1e6 * step, "µs", f"{written(100 * step / limit, 3)} % of the largest stable one.", "run.json: time_step_s, time_step_limit_s"))  # fmt: skip

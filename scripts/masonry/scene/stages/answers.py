@@ -8,6 +8,9 @@ from dataclasses import dataclass
 
 #: How a stage ends.
 AT_REST, MOVING, DONE, COLLAPSED = "at rest", "moving", "done", "collapsed"
+#: How a collapse ends that is followed.
+FALLEN_AT_REST, FALLEN_MOVING = f"{COLLAPSED} and at rest", f"{COLLAPSED} and moving"  # fmt: skip
+FALLEN = {COLLAPSED, FALLEN_AT_REST, FALLEN_MOVING}  # ends of what has fallen
 FALL = "fall"  # the stage in which a collapse is followed: masonry.scene.stages.falling
 
 

@@ -13,10 +13,8 @@ from yade import O, Vector3
 
 from ...assembly.motion import REST
 from ...basics import GRAVITY, Unwritable, say
-from .answers import COLLAPSED, FALL, Answer
+from .answers import FALL, FALLEN_AT_REST, FALLEN_MOVING, Answer
 
-#: How such a run ends.
-FALLEN_AT_REST, FALLEN_MOVING = f"{COLLAPSED} and at rest", f"{COLLAPSED} and moving"  # fmt: skip
 LOOK = 0.05  # time between two looks and rows, over √(side/g) of the largest block [-]
 FRAME = 4  # looks from one frame to the next
 CALM = 0.1  # speed of the fastest block of rubble at rest, over that of one that falls [-]: see Motion.fastest()

@@ -10,7 +10,7 @@ from ...arguments import Direction, FilePath, Numbers, listOf, number, validated
 from ...assembly.blocks import vector
 from ...basics import Refused, say
 from ...read import curves
-from ...read.quantities import BASE, MOVED, TOP, RunData
+from ...read.run_data import BASE, MOVED, TOP, RunData
 from .. import history
 from ..bounds import nameOfPush
 from ...run.options import Rate

@@ -16,7 +16,7 @@ from ...run import batch
 from ...run.accuracy import STAGES
 from ..resuming import enter
 from ..words import argumentsOf
-from .answers import COLLAPSED, DONE, FALL
+from .answers import COLLAPSED, DONE, FALL, FALLEN
 from .falling import followFall, writeTable
 from .falling import answers as answersOfFall
 
@@ -217,7 +217,7 @@ def _noteEnd(running, before, ended):
 def _asBefore(scene, ended):
     """What a stage returns that was over before the run was resumed: how it ended then."""
     running = scene.running
-    if ended.startswith(COLLAPSED):
+    if ended in FALLEN:
         running.collapsed, running.results.run["collapse"] = True, running.at.fall
     scene.ended = ended
     return COLLAPSED if running.collapsed else ended

@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the numbers of a run are found from: its rows, its force, its peak, its drift and the states of its push. This module needs no
+YADE."""
+
+from __future__ import annotations
+
+import functools
+import math
+from typing import Any, Callable, Sequence
+
+import numpy as np
+
+from ..arguments import FilePath
+from . import cracks, curves, loops
+from .files import readCurve, readRun
+
+LOST = 0.05  # of the peak: a larger loss is a drop, a smaller one may be the scatter by single bricks at the toe
+FALL = 0.8  # of the peak: where the force has fallen to it, a wall of masonry is said to have reached its ultimate displacement
+MOVED, BASE, TOP = "displacement_mm", "base_shear_kN", "top_shear_kN"
+MASONRY = "masonry_displacement_mm"  # of the bricks at the pushed platen
+
+
+class RunData:
+    """What the numbers of a run are found from.
+
+    :param run: entries of run.json, those that are no numbers of this list at least
+    :param column: function of the name of a column of curve.csv that gives its values, or None if there is no such column
+    :param joints: frame of the joints at the end, as of :mod:`masonry.read.cracks`; None: crack patterns are not measured
+    :param height: of the recorded point above the base [m], in place of what run.json says
+    """
+
+    def __init__(
+        self,
+        run: dict[str, Any],
+        column: Callable[[str], Any],
+        joints: dict[str, Any] | None = None,
+        height: float | None = None,
+    ) -> None:
+        self.run, self.column, self.joints, self._height = run, column, joints, height
+
+    @classmethod
+    def read(cls, directory: FilePath, height: float | None = None) -> RunData:
+        """That of a folder of results. Raises Refused."""
+        return cls(readRun(directory), readCurve(directory).get, height=height)
+
+    # -- which rows
+
+    @functools.cached_property
+    def _stages(self):
+        """Loads of the stages, and their rows: lists of the load, the first row and the row after the last."""
+        found = self.run.get("stages") or []
+        ends = [*(one["first_row"] for one in found[1:]), self._count]
+        return [(one.get("load"), one["first_row"], end) for one, end in zip(found, ends)]  # fmt: skip
+
+    @functools.cached_property
+    def _count(self):
+        columns = (self.column(name) for name in (MOVED, "time_s"))
+        return len(next((values for values in columns if values is not None), ()))
+
+    @functools.cached_property
+    def pushes(self) -> list[tuple[int, int]]:
+        """Rows of the pushes, the first one and the one after the last: of the last push, and of those along its line since another
+        one."""
+        pushed = [one for one in self._stages if one[0] and one[0][0] == "push"]
+        others = [first for load, first, _ in pushed if load != pushed[-1][0]]
+        since = max(others, default=-1)
+        return [(first, end) for load, first, end in pushed if load == pushed[-1][0] and first > since]  # fmt: skip
+
+    @functools.cached_property
+    def rows(self) -> list[int]:
+        """Numbers of the rows of the push, from 0. If the run loads in no other way, what comes before belongs to it."""
+        loads = [load for load, _, _ in self._stages if load]
+        if self.pushes and all(load == loads[-1] for load in loads):
+            return list(range(self._count))
+        return [n for first, end in self.pushes for n in range(first, end)]
+
+    def whole(self, name: str) -> Any:
+        """A column in all rows. Raises KeyError if curve.csv does not have it."""
+        values = self.column(name)
+        if values is None:
+            raise KeyError(name)
+        return values
+
+    def __getitem__(self, name: str) -> list[float]:
+        """A column in the rows of the push. Raises KeyError if curve.csv does not have it."""
+        values = self.whole(name)
+        return [values[n] for n in self.rows]
+
+    # -- what kind of run it is
+
+    @property
+    def isPush(self) -> bool:
+        """Whether the run has a push with rows."""
+        return bool(self.rows)
+
+    @property
+    def isLooped(self) -> bool:
+        """Whether the push goes there and back."""
+        return "history" in self.run
+
+    # -- force, peak and drift: each is found here and nowhere else
+
+    def carried(self, side: int = 1) -> np.ndarray:
+        """The force of the push [kN]: what both ends carry at once, in every row the one that is less along the side. A wave that
+        passes through is felt at one of them.
+
+        :param side: 1, or -1 for the way back
+        """
+        return side * np.minimum(side * np.array(self[BASE]), side * np.array(self[TOP]))  # fmt: skip
+
+    def peak(self, side: int = 1) -> int:
+        """Where this force is largest, a number of a row among those of the push; in loops on its side of the displacement."""
+        towards = side * self.carried(side)
+        if self.isLooped:
+            towards = np.where(side * np.array(self[MOVED]) >= 0, towards, -math.inf)
+        return int(towards.argmax())
+
+    def peakForce(self, side: int = 1) -> float:
+        """The force at the peak of a side [kN]."""
+        return float(self.carried(side)[self.peak(side)])
+
+    @property
+    def pulse(self) -> float:
+        """Displacement of the drive within the first period of the structure [mm]; 0 if that is not known."""
+        period, times = self.run.get("first_period_s"), self.column("time_s")
+        if not period or times is None or len(self.rows) < 2:
+            return 0.0
+        lasted = np.ptp([times[n] for n in self.rows])
+        return float(period * np.ptp(self[MOVED]) / lasted) if lasted > 0 else 0.0
+
+    @property
+    def height(self) -> float | None:
+        """Height over which displacements of the push are drifts [m]; None if it is not known, or if the push is not horizontal."""
+        known = [self._height, self.run.get("drift_height_m"), self.run.get("recorded_height_m")]  # fmt: skip
+        return next((h for h in known if isinstance(h, (int, float)) and 0 < h < math.inf), None)  # fmt: skip
+
+    @functools.cached_property
+    def ofDrift(self) -> list[float]:
+        """The displacements that are drifts over :attr:`height` [mm]: of the masonry where the platen touches it, so that what
+        the platen slips is no drift; of the pushed point where there is no platen, or where another height is given.
+        """
+        own = self.column(MASONRY)
+        return self[MOVED] if own is None or self._height else self[MASONRY]
+
+    def at(self, values: Sequence[float], place: float | None) -> float | None:
+        """A value between rows, along a straight line. ``place``: a number of a row with a fraction, or None."""
+        if place is None:
+            return None
+        return float(np.interp(place, np.arange(len(values)), values))
+
+    def place(self, find: Callable[[RunData], float | None]) -> float | None:
+        """Where a state is in the rows of the push, None if it is not reached or curve.csv does not have its columns.
+
+        :param find: function that finds it
+        """
+        try:
+            return find(self) if self.rows else None
+        except LookupError:
+            return None
+
+    def drift(self, place: float | None) -> float | None:
+        """The drift at a place in the rows of the push [mrad]."""
+        moved = self.at(self.ofDrift, place)
+        return moved / self.height if moved is not None and self.height else None
+
+    # -- states of a push: places in its rows, or None
+
+    @functools.cached_property
+    def firstCrack(self) -> int | None:
+        """Where the first crack of the push is seen."""
+        found = (curves.firstCrack(self.whole, slice(*push)) for push in self.pushes)
+        row = next((row for row in found if row is not None), None)
+        return None if row is None else self.rows.index(row)
+
+    @functools.cached_property
+    def fallen(self) -> float | None:
+        """Where the force has fallen to :data:`FALL` of its peak, after it."""
+        return self.fallenTo(FALL)
+
+    def fallenTo(self, share: float) -> float | None:
+        """As :attr:`fallen`, of another share; in loops on the envelope of the positive side."""
+        moved, force = np.array(self[MOVED]), self.carried(1)
+        rows = loops.envelope(moved)[0] if self.isLooped else np.arange(len(moved))
+        if not len(rows) or force[rows].max() <= 0:
+            return None
+        force, at = force[rows], int(force[rows].argmax())
+        pulse = 0.0 if self.isLooped else self.pulse
+        place = curves.fallen(np.maximum.accumulate(moved[rows]), force, at, share * force[at], pulse)  # fmt: skip
+        return None if place is None else float(np.interp(place, np.arange(len(rows)), rows))  # fmt: skip
+
+    @functools.cached_property
+    def collapse(self) -> int | None:
+        """The last row, if the push ended in a collapse."""
+        load = self._stages[-1][0] if self._stages else None
+        fell = self.run.get("collapsed") and load and load[0] == "push"
+        return len(self.rows) - 1 if fell else None
+
+    # -- what several numbers share
+
+    @functools.cached_property
+    def sudden(self) -> tuple[float, float]:
+        """As of :func:`masonry.read.curves.suddenLoss`."""
+        return curves.suddenLoss(self[MOVED], self[TOP], self[BASE])
+
+    @functools.cached_property
+    def stillGrows(self) -> bool:
+        """Whether nothing has given way at the end of the push."""
+        return not self.isLooped and curves.stillGrows(self[MOVED], self[BASE])
+
+    @functools.cached_property
+    def stiffness(self) -> float:
+        """As of :func:`masonry.read.curves.stiffness`, of the force without the inertia of the structure's own mass."""
+        grown = self.run.get("velocity_grown_at_s") or 0.0
+        ramp = next((n for n, time in enumerate(self["time_s"]) if time >= grown), 0)
+        weight = self.run.get("base_weight") or curves.SHEAR
+        return curves.stiffness(self[MOVED], curves.quasiStatic(self[TOP], self[BASE], weight), ramp)  # fmt: skip
+
+    def dropped(self, side: int = 1) -> tuple[float, float | None]:
+        """Share of the peak that is lost at the end, and the first displacement after the peak with less than 0.95 of it [mm], None
+        if there is none; in loops along the envelope of a side, positive outwards."""
+        moved, force = side * np.array(self[MOVED]), side * self.carried(side)
+        if self.isLooped:
+            rows = loops.envelope(self[MOVED])[0 if side > 0 else 1]
+            moved, force = moved[rows], force[rows]
+        if not len(force) or not force.max() > 0:
+            raise LookupError("the force is never to this side")
+        at = int(force.argmax())
+        after = np.flatnonzero(force[at:] < (1 - LOST) * force[at])
+        return 1 - float(force[-1] / force[at]), float(moved[at + after[0]]) if len(after) else None  # fmt: skip
+
+    @functools.cached_property
+    def cycles(self) -> list[dict[str, Any]]:
+        """As of :func:`masonry.read.curves.cycleNumbers`, with rows of curve.csv."""
+        found = curves.cycleNumbers(self.__getitem__, self.run["history"]["noise_mm"])
+        for one in found:
+            one["rows"] = [self.rows[n] for n in one["rows"]]
+        return found
+
+    @functools.cached_property
+    def pattern(self) -> dict[str, Any]:
+        """Numbers of the crack pattern of a wall, and how it failed."""
+        found = cracks.pattern(self.joints, self.run["wall"], self.isLooped)
+        lost = self.dropped()[0] > LOST
+        mode = cracks.failureMode(found, self.run["wall"], self.stillGrows, lost)
+        return {**found, "failure_mode": mode}
