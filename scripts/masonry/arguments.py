@@ -385,7 +385,7 @@ def validated(act: F) -> F:
     """
     if isinstance(act, type):
         setattr(act, "__init__", validated(vars(act)["__init__"]))
-        return act
+        return cast(F, act)
     signature = inspect.signature(act)
     called = act.__qualname__.removesuffix(".__init__").rpartition(".")[2]
     kinds = functools.cache(

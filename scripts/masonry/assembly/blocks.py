@@ -63,7 +63,7 @@ def _extent(points):
 
 @validated
 def addBlock(
-    vertices: Annotated[Sequence[Numbers] | Numbers, listOf(coordinates("m"), 4)],
+    vertices: Annotated[Any, listOf(coordinates("m"), 4)],
     material: Annotated[MasonryMat, isA(MasonryMat)],
     inPlane: bool = False,
     color: Annotated[Numbers, coordinates()] = PALE,

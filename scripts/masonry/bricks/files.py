@@ -79,7 +79,7 @@ def fromFile(
                 problems.append(str(error))
     if not blocks and not problems:
         problems.append("no faces, so no solids")
-    refuse(path, problems)
+    refuse(os.fspath(path), problems)
     return Bricks(blocks)
 
 
