@@ -162,7 +162,7 @@ def test_a_damaged_file_is_refused_in_words(saved):
         (data[:half], "is cut short: "),
         (data[:-1], "is cut short: "),
         (b"", "is cut short: 0 bytes"),
-        (b"masonry checkpoint, format 2\n" + bytes([0] * 7 + [1]), "is cut short"),
+        (b"masonry checkpoint, format 3\n" + bytes([0] * 7 + [1]), "is cut short"),
         (flipped, "is damaged: its bytes do not give the sum"),
         (data + b"\0", "is damaged: its size"),
         (b"time_s\n", "is no masonry checkpoint"),

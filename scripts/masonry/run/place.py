@@ -92,7 +92,7 @@ HOLDS = {
     "stages": ["", 0, 0.0, 0],
     "seconds": 0.0,
     "frames": 0.0,
-    "origins": [0.0, 0.0],
+    "origins": None,
     "swings": [0.0] * 3,
     "bounds": {},
     "held": 0.0,
