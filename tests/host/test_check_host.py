@@ -40,11 +40,11 @@ def test_three_releases_differ_in_what_is_known_of_them():
 
 
 @pytest.mark.parametrize("version", KNOWN)
-def test_each_fault_in_each_class_is_told_with_its_name(version):
+def test_each_fault_in_each_class_is_shown_with_its_name(version):
     known = KNOWN[version]
     assert list(known.differences(known)) == []
 
-    def told(change):
+    def difference(change):
         other = copy.deepcopy(known)
         change(other)
         (line,) = other.differences(known)
@@ -57,7 +57,7 @@ def test_each_fault_in_each_class_is_told_with_its_name(version):
             def more(other):
                 other.classes[name][1].insert(at, "stranger()")
 
-            assert told(more).startswith(slot), slot
+            assert difference(more).startswith(slot), slot
         last = len(functions) - 1
 
         def fewer(other):
@@ -73,14 +73,20 @@ def test_each_fault_in_each_class_is_told_with_its_name(version):
         def gone(other):
             del other.classes[name]
 
-        assert told(fewer).startswith(f"{name}, virtual function {last} of {last}: ")
+        assert difference(fewer).startswith(
+            f"{name}, virtual function {last} of {last}: "
+        )
         if functions[last] != functions[last - 1]:
-            assert told(exchanged).startswith(f"{name}, virtual function {last - 1} of")
-        assert told(grown).startswith(f"{name}: {size} bytes in")
+            assert difference(exchanged).startswith(
+                f"{name}, virtual function {last - 1} of"
+            )
+        assert difference(grown).startswith(f"{name}: {size} bytes in")
         if name != host.OPTIONAL:
-            assert told(gone) == f"{name}: not in this YADE"
+            assert difference(gone) == f"{name}: not in this YADE"
     for call in known.calls:
-        assert "not in this YADE: " in told(lambda other: other.calls.remove(call))
+        assert "not in this YADE: " in difference(
+            lambda other: other.calls.remove(call)
+        )
 
 
 def test_the_tables_name_all_that_the_module_calls():

@@ -22,9 +22,25 @@ template <class T> struct __attribute__((visibility("default"))) Declared : T {}
 #define MASONRY_HOST_TABLES(X)                                                                                         \
     X(Factorable)                                                                                                      \
     X(Serializable)                                                                                                    \
-    X(State) X(Shape) X(Material) X(IGeom) X(IPhys) X(Interaction) X(Body) X(BodyContainer) X(Engine) X(GlobalEngine)  \
-        X(NewtonIntegrator) X(Scene) X(Functor) X(LawFunctor) X(IPhysFunctor) X(IGeomFunctor) X(GlShapeFunctor)        \
-            X(GlIPhysFunctor) X(GlExtraDrawer)
+    X(State)                                                                                                           \
+    X(Shape)                                                                                                           \
+    X(Material)                                                                                                        \
+    X(IGeom)                                                                                                           \
+    X(IPhys)                                                                                                           \
+    X(Interaction)                                                                                                     \
+    X(Body)                                                                                                            \
+    X(BodyContainer)                                                                                                   \
+    X(Engine)                                                                                                          \
+    X(GlobalEngine)                                                                                                    \
+    X(NewtonIntegrator)                                                                                                \
+    X(Scene)                                                                                                           \
+    X(Functor)                                                                                                         \
+    X(LawFunctor)                                                                                                      \
+    X(IPhysFunctor)                                                                                                    \
+    X(IGeomFunctor)                                                                                                    \
+    X(GlShapeFunctor)                                                                                                  \
+    X(GlIPhysFunctor)                                                                                                  \
+    X(GlExtraDrawer)
 
 #define MASONRY_MAKE_TABLE(Class) template struct Declared<yade::Class>;
 MASONRY_HOST_TABLES(MASONRY_MAKE_TABLE)

@@ -19,7 +19,7 @@ from yade.wrapper import (
 )
 
 from .. import _masonry
-from .._masonry import connected, dropFaces, gather, neighbours
+from .._masonry import connected, dropFaces, gather, neighbours, timeStepLimit
 from ..arguments import number, validated
 from ..basics import say
 from .blocks import properties, refuse
@@ -28,6 +28,8 @@ from .engines import LAWS, functorLoop
 
 #: The largest gap or overlap of faces that coincide, over the size of the smaller block [-].
 Tolerance = Annotated[float, number("", 0, 0.01, above=True)]
+#: The time step that YADE begins with [s]: a thousandth of what a wall needs, or less.
+YADES_TIME_STEP = 1e-8
 
 
 @validated
@@ -49,11 +51,21 @@ def connect(
     Nothing changes then. Values that look like those of another unit, blocks without joints, and properties
     without effect under the law of their joint are printed as warnings.
 
+    If ``O.dt`` is still the 1e-8 s that YADE begins with, it becomes half of the stable limit; see ``criticalTimeStep()``.
+
     :param rule: function (body1, body2, geom) that returns a MasonryJoint, or None to leave the choice to direction and
         joint set
     :param tolerance: largest gap or overlap of coincident faces, relative to the smaller block's size, at most 0.01
     :param allowGaps: whether blocks that nearly share a face stand apart on purpose
     """
+    made = makeJoints(rule, tolerance, allowGaps)
+    if O.dt == YADES_TIME_STEP:
+        O.dt = 0.5 * timeStepLimit()
+    return made
+
+
+def makeJoints(rule, tolerance=1e-4, allowGaps=False):
+    """:func:`connect` without its time step, for who chooses it by other rules."""
     engines = list(O.engines)
     loop = next(
         (e for e in engines if isinstance(e, (MasonryJointLoop, InteractionLoop))), None

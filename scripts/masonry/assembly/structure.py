@@ -9,7 +9,7 @@ from ..bricks import boxCorners
 from . import threads
 from .blocks import placeBlock
 from .columns import Reading
-from .connecting import connect
+from .connecting import makeJoints
 from .connectors import Connectors
 from .engines import engine, engines
 from .loading import Loading
@@ -77,7 +77,7 @@ class Structure:
         self._addEngines()
         self.scheme = Scheme(self.args, self.zones)
         blocks = dict(zip(self.ids, self.description.bricks))
-        self.interactions = connect(
+        self.interactions = makeJoints(
             self.masonry.rule(blocks), allowGaps=self.description.allowGaps
         )
         self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)
