@@ -38,6 +38,7 @@ SECTIONS = {
         "options",
         "scripts/STUDIES",
         "scripts/FILES",
+        "yade_plugin/FOR_YADE_USERS",
     ],
     "Laws": [
         "yade_plugin/law/README",

@@ -52,6 +52,7 @@ BLOCKS = {
     "scripts/FILES.md": ["checkpoint.py"],
     "scripts/STUDIES.md": ["study.py", "ida.py"],
     "scripts/WALL.md": ["my_wall.py"],
+    "yade_plugin/FOR_YADE_USERS.md": ["joints.py"],
 }
 #: A record of the format of PEER: a sine that swells and fades, with another frequency in every file.
 PEER = """PEER NGA STRONG MOTION DATABASE RECORD
@@ -120,6 +121,7 @@ def folder(tmp_path_factory):
         os.symlink(os.path.join(ROOT, name), path / name)
     (path / "my_scene.py").write_text(PYTHON["README.md"][0])
     (path / "my_wall.py").write_text(PYTHON["scripts/WALL.md"][0])
+    (path / "joints.py").write_text(PYTHON["yade_plugin/FOR_YADE_USERS.md"][0])
     study = PYTHON["scripts/STUDIES.md"][0]
     small = study.replace("runs=200", "runs=3").replace('"until": 6', '"until": 0.2')
     assert small.count("runs=3") == 1 and small.count('"until": 0.2') == 1
@@ -154,6 +156,7 @@ def typed(folder, command):
 def test_every_command_that_has_no_reason_runs(folder):
     ran = 0
     typed(folder, "yade -n -x checkpoint.py")
+    typed(folder, "yade -n -x joints.py")
     for document in sorted(
         ALL
     ):  # README.md at the top, then scripts/, which goes on with its results

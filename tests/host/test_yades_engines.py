@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""YADE's own engines beside ours, and the check in YADE's form."""
+
+import builtins
+import os
+import subprocess
+
+from hosted import *
+
+
+def standing(friction):
+    """A block on a held one, without bond; returns its id and the weight that friction carries [N]."""
+    lower, upper = (
+        addBlock(box((0, 0, z), (0.6, 0.3, 0.3)), MasonryMat(density=2500))
+        for z in (0, 0.3)
+    )
+    hold(lower)
+    joint = MasonryJoint(
+        tensileStrength=0, cohesion=0, friction=friction, residualFriction=friction, cap=False
+    )  # fmt: skip
+    engines([joint], damping=0.3)
+    connect()
+    return upper, 0.6 * 0.3 * 0.3 * 2500 * G
+
+
+def test_connect_chooses_the_time_step_that_a_script_has_not(scene):
+    """Of the 1e-8 s that YADE begins with, a wall would need days; one that the script has chosen stays."""
+    standing(0.5)
+    assert O.dt == pytest.approx(0.5 * criticalTimeStep()[0], rel=0.02)
+    O.reset()
+    O.dt = 2e-5
+    standing(0.5)
+    assert O.dt == 2e-5
+
+
+def test_forces_motions_and_records_of_yades_engines_hold_beside_ours(scene, tmp_path, capfd):  # fmt: skip
+    """A force of YADE's that grows to 0.6 of the weight moves a block where friction is 0.5: it slides from there on. Its
+    work is not known, which is said once, and the run goes on."""
+    block, weight = standing(0.5)
+    push = ForceEngine(ids=[block], force=(0, 0, 0))
+    rows = []
+
+    def grow():
+        push.force = (weight * min(0.6, 3 * O.time), 0, 0)
+        rows.append((push.force[0] / weight, O.bodies[block].state.displ()[0]))
+
+    builtins.grow = grow  # where a PyRunner finds it
+    moved = TranslationEngine(ids=[0], velocity=1e-3, translationAxis=(0, 1, 0))
+    recorder = VTKRecorder(fileName=str(tmp_path / "yade-"), recorders=["boxes"], iterPeriod=500)  # fmt: skip
+    ours = list(O.engines)
+    runner = PyRunner(command="grow()", iterPeriod=20)
+    O.engines = [ours[0], runner, push, moved, *ours[1:], recorder]
+    run(int(0.25 / O.dt))
+    del builtins.grow
+    slides = next(force for force, displacement in rows if displacement > 1e-5)
+    assert 0.5 <= slides < 0.55
+    assert rows[-1][1] > 1e-3
+    assert O.bodies[0].state.displ()[1] == pytest.approx(1e-3 * O.time, rel=0.01)
+    assert list(tmp_path.glob("yade-*"))
+    said = capfd.readouterr().err
+    assert said.count("the work of ForceEngine is not known") == 1, said
+
+
+def test_the_check_in_yades_form_passes_and_names_what_is_wrong(tmp_path):
+    path = os.path.join(ROOT, "tests", "host", "checkMasonryJoint.py")
+    again = tmp_path / "checkMasonryJoint.py"
+    with open(path, encoding="utf-8") as file:
+        again.write_text(file.read().replace("4400.0", "4300.0"), encoding="utf-8")
+    ends = [
+        subprocess.run(["yade", "-n", "-x", str(p)], capture_output=True, text=True)
+        for p in (path, again)
+    ]
+    assert ends[0].returncode == 0, ends[0].stderr
+    assert "YadeCheckError: largest force [N]: 43" in ends[1].stderr
+    assert ends[1].returncode == 1
