@@ -9,7 +9,7 @@ namespace masonry {
 
 void MasonryIntegrator::action() {
     const EngineTurn turn(*scene, *this);
-    advance(turn.store());
+    advance(*scene, turn->bodies, turn->loads);
     turn.end();
 }
 

@@ -10,7 +10,7 @@ namespace masonry {
 
 void MasonryJointLoop::action() {
     const EngineTurn turn(*scene, *this);
-    refining_.look(turn.store());
+    if (refining_.look(turn.store())) turn->pointsChanged();
     plan_.advance(turn.store());
     refining_.count(turn.store());
 }

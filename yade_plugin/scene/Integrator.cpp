@@ -3,7 +3,6 @@
 #include "BodyCheck.hpp"
 #include "BodyStep.hpp"
 #include "Load.hpp"
-#include "SceneContents.hpp"
 #include "common/Parallel.hpp"
 #include <cstdint>
 
@@ -31,10 +30,7 @@ void Integrator::setLastForces(const std::vector<Vector3r>& all) {
     }
 }
 
-void Integrator::advance(SceneContents& contents) {
-    auto& scene = contents.scene();
-    auto& bodies = contents.bodies;
-    const auto& loads = contents.loads;
+void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vector<Load*>& loads) {
     const int count = bodies.size();
     if (std::size_t(count) < last_[0].size())
         throw std::invalid_argument("MasonryIntegrator remembers forces of " + std::to_string(last_[0].size()) +

@@ -9,7 +9,6 @@
 namespace masonry {
 
 class Load;
-class SceneContents;
 
 class Integrator : public EnergyLedger, public GravityWork {
 public:
@@ -22,7 +21,7 @@ public:
     std::vector<std::string> problems() const;
 
     // Makes a step of all rigid bodies, and counts its energies and the work of the loads.
-    void advance(SceneContents&);
+    void advance(yade::Scene&, BodyColumns&, const std::vector<Load*>&);
 
     // In saved files and checkpoints: two vectors for each body, force per mass [m/s²] and torque per inertia [1/s²] in
     // the last step.

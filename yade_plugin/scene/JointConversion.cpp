@@ -9,12 +9,12 @@ namespace masonry {
 
 namespace {
 
-Quaternionr turnOf(const SceneStore& store, int body) {
+Quaternionr turnOf(const SceneContents& store, int body) {
     const auto& q = store.bodies.orientation;
     return {q[0][body], q[1][body], q[2][body], q[3][body]};
 }
 
-Vector3r placeOf(const SceneStore& store, int body) {
+Vector3r placeOf(const SceneContents& store, int body) {
     const auto& x = store.bodies.position;
     return {x[0][body], x[1][body], x[2][body]};
 }
@@ -33,7 +33,7 @@ double stored(const JointView& joint) {
 
 } // namespace
 
-void JointConversion::measure(const SceneStore& store) {
+void JointConversion::measure(const SceneContents& store) {
     sizes_.clear();
     for (const auto& joint : store.joints) {
         const auto& r = joint.geom->reference();
@@ -44,7 +44,7 @@ void JointConversion::measure(const SceneStore& store) {
     revision_ = store.stiffnessRevision();
 }
 
-bool JointConversion::isDue(const SceneStore& store, const JointView& joint, const Size& size) const {
+bool JointConversion::isDue(const SceneContents& store, const JointView& joint, const Size& size) const {
     const auto& shapes = *joint.geom->group;
     const auto& r = joint.geom->reference();
     const int j = joint.geom->index;
@@ -70,7 +70,7 @@ bool JointConversion::isDue(const SceneStore& store, const JointView& joint, con
     return w < std::cos(0.5 * turn);
 }
 
-std::vector<JointView> JointConversion::due(const SceneStore& store) {
+std::vector<JointView> JointConversion::due(const SceneContents& store) {
     if (revision_ != store.stiffnessRevision()) measure(store);
     std::vector<JointView> found;
     for (std::size_t n = 0; n < store.joints.size(); ++n)
@@ -93,7 +93,7 @@ double JointConversion::release(const JointView& joint) {
     return before - stored(joint);
 }
 
-void JointConversion::act(SceneStore& store, Contacts& contacts) {
+void JointConversion::act(SceneContents& store, Contacts& contacts) {
     if (!contacts.takesJoints || store.scene().iter % Contacts::lookEvery != 0) return;
     std::vector<Contacts::Joint> all;
     for (const auto& joint : due(store)) {

@@ -4,7 +4,7 @@
 // of the two blocks takes its place (scene/Contacts), and the joint has no forces any more.
 #pragma once
 #include "Contacts.hpp"
-#include "SceneStore.hpp"
+#include "SceneContents.hpp"
 
 namespace masonry {
 
@@ -18,7 +18,7 @@ public:
         0.02; // smallest opening over the larger size of the joint [-]: beyond it a bond does not count
 
     // Hands over the joints between rigid blocks that are due, when all forces of the step are there.
-    void act(SceneStore&, Contacts&);
+    void act(SceneContents&, Contacts&);
 
 private:
     struct Size {
@@ -26,15 +26,15 @@ private:
         yade::Quaternionr back; // rotation from block 2 to block 1 in the reference state
         bool bonded;            // whether the law has a bond at all
     };
-    void measure(const SceneStore&);
-    std::vector<JointView> due(const SceneStore&); // in the host's order
+    void measure(const SceneContents&);
+    std::vector<JointView> due(const SceneContents&); // in the host's order
     // Takes the forces from a joint: what is pressed or sheared is at rest from now on, and what is open stays as it is
     // for files. Returns the elastic energy that it had [J].
     static double release(const JointView&);
-    bool isDue(const SceneStore&, const JointView&, const Size&) const;
+    bool isDue(const SceneContents&, const JointView&, const Size&) const;
 
     long revision_ = -1;      // SceneContents::stiffnessRevision() for which they were measured
-    std::vector<Size> sizes_; // of the joints of SceneStore, in its order
+    std::vector<Size> sizes_; // of the joints of SceneContents, in its order
 };
 
 } // namespace masonry

@@ -57,7 +57,7 @@ void JointPlan::Receivers::fill(const std::vector<std::vector<Item>>& lists) {
 
 // Whether the run is planar: the normal and the first tangent of every joint lie in a plane y = constant, its blocks
 // can only move and turn in that plane, and stress and jump out of it are round-off at most.
-bool JointPlan::liesInPlane(const SceneStore& store) const {
+bool JointPlan::liesInPlane(const SceneContents& store) const {
     double cosine, sine;
     for (const auto& joint : store.joints) {
         const auto& r = joint.geom->reference();
@@ -80,13 +80,13 @@ bool JointPlan::liesInPlane(const SceneStore& store) const {
 }
 
 // In a planar run the law is called without the stress out of the plane. Sets to zero what round-off has left of it.
-void JointPlan::dropStressOutOfPlane(SceneStore& store) {
+void JointPlan::dropStressOutOfPlane(SceneContents& store) {
     for (const auto& joint : store.joints)
         for (int p = 0; p < joint.geom->points(); ++p)
             joint.phys->group->columns->dropShearStressB(p, joint.phys->index);
 }
 
-void JointPlan::build(SceneStore& store, bool mayBePlane) {
+void JointPlan::build(SceneContents& store, bool mayBePlane) {
     zones_ = nullptr;
     for (const auto& kind : store.kinds)
         if (kind.attached) zones_ = kind.shapes->joints[0].attached->zones.get();
@@ -199,7 +199,7 @@ void JointPlan::orderBatches() {
     std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) { return middle[a] < middle[b]; });
 }
 
-void JointPlan::buildKind(SceneStore& store, const JointKind& kind, Kind& made,
+void JointPlan::buildKind(SceneContents& store, const JointKind& kind, Kind& made,
                           std::vector<std::vector<Receivers::Item>>& atBodies) {
     const int count = int(kind.shapes->joints.size());
     const int stride = (count + lanes - 1) / lanes * lanes;
@@ -329,7 +329,7 @@ void JointPlan::shareOut() {
 
 // Takes from the host the bodies that somebody else has moved. Returns false if the plan is for a planar run and a body
 // has left the plane, or is no longer held in it.
-bool JointPlan::noticeBodies(SceneStore& store) {
+bool JointPlan::noticeBodies(SceneContents& store) {
     auto& bodies = store.bodies;
     std::atomic<bool> fits{true};
     Parallel::instance().overPieces(bodies.size(), bodiesAPiece, [&](int first, int beyond) {
@@ -365,7 +365,7 @@ struct JointPlan::Run {
     bool impacts;
     JointFrames frames;
 
-    Run(const JointKind& kind, const Kind& plan, const SceneStore& store)
+    Run(const JointKind& kind, const Kind& plan, const SceneContents& store)
         : kind(kind),
           plan(plan),
           bodies(store.bodies),
@@ -381,7 +381,7 @@ struct JointPlan::Run {
 };
 
 // Joints are advanced in runs of whole lanes, which are either all intact or all not.
-JointPlan::Taken JointPlan::advanceBatch(SceneStore& store, const JointKind& kind, const Kind& plan, int from, int n) {
+JointPlan::Taken JointPlan::advanceBatch(SceneContents& store, const JointKind& kind, const Kind& plan, int from, int n) {
     Run run(kind, plan, store);
     const unsigned char* pointwise = &kind.shapes->pointwise[from];
     Taken taken;
@@ -576,7 +576,7 @@ JointPlan::Taken JointPlan::advancePoints(Run& run) {
 }
 
 // Finds the displacements of all dependent points. In a planar run nothing moves along y.
-void JointPlan::moveDependentPoints(const SceneStore& store) {
+void JointPlan::moveDependentPoints(const SceneContents& store) {
     double* rows = zones_->displacementRows();
     const int count = int(betweenNodes_.size()), next = plane_ ? 2 : 1;
     Parallel::instance().overPieces(count, nodesAPiece, [&](int first, int beyond) {
@@ -646,7 +646,7 @@ void JointPlan::bringToBodies() {
 }
 
 // Sums up for every node the forces of its subcontacts. Those at dependent points go on to their body or nodes.
-void JointPlan::bringToNodes(SceneStore& store) {
+void JointPlan::bringToNodes(SceneContents& store) {
     double* forces = zones_->forceRows();
     const int count = int(toNodes_.receivers.size());
     Parallel::instance().overPieces(count, nodesAPiece, [&](int first, int beyond) {
@@ -693,7 +693,7 @@ void JointPlan::bringToNodes(SceneStore& store) {
     }
 }
 
-void JointPlan::advance(SceneStore& store) {
+void JointPlan::advance(SceneContents& store) {
     const double stiffnessDamping = store.loop->stiffnessDamping;
     if (store_ != &store || revision_ != store.revision()) {
         build(store, true);

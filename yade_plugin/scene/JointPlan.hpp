@@ -10,7 +10,7 @@
 // JointShapes::pointwise says which joints are advanced by points. That is part of the state of a joint, so that a run
 // that was saved goes on in the same bits.
 #pragma once
-#include "SceneStore.hpp"
+#include "SceneContents.hpp"
 #include <array>
 #include <map>
 
@@ -19,7 +19,7 @@ namespace masonry {
 class JointPlan {
 public:
     // Makes a step of the joints of the store's loop, and adds the energies that it takes there.
-    void advance(SceneStore&);
+    void advance(SceneContents&);
 
 private:
     // What a kind of joints (see JointKind) needs beside its columns in the store.
@@ -70,20 +70,20 @@ private:
         void fill(const std::vector<std::vector<Item>>& lists);
     };
 
-    void build(SceneStore&, bool mayBePlane);
-    bool liesInPlane(const SceneStore&) const;
-    void dropStressOutOfPlane(SceneStore&);
-    void buildKind(SceneStore&, const JointKind&, Kind&, std::vector<std::vector<Receivers::Item>>& atBodies);
+    void build(SceneContents&, bool mayBePlane);
+    bool liesInPlane(const SceneContents&) const;
+    void dropStressOutOfPlane(SceneContents&);
+    void buildKind(SceneContents&, const JointKind&, Kind&, std::vector<std::vector<Receivers::Item>>& atBodies);
     void buildPlaces(const JointKind&, Kind&, std::vector<std::vector<Receivers::Item>>& atPlaces,
                      std::map<std::array<double, 6>, int>& known);
-    bool noticeBodies(SceneStore&);
+    bool noticeBodies(SceneContents&);
     void findIntact(const JointKind&, Kind&);
     void endIntact(const JointKind&);
     struct Run;    // joints of a batch that are advanced together
     struct Taken { // energies that a step takes [J]
         double damping = 0, impacts = 0;
     };
-    Taken advanceBatch(SceneStore&, const JointKind&, const Kind&, int from, int count);
+    Taken advanceBatch(SceneContents&, const JointKind&, const Kind&, int from, int count);
     void align(Run&) const;
     bool advanceIntact(Run&, double& taken);
     bool endsIntact(Run&, const IntactFaces&) const;
@@ -91,11 +91,11 @@ private:
     void finish(Run&);
     void shareOut();
     void orderBatches();
-    void moveDependentPoints(const SceneStore&);
+    void moveDependentPoints(const SceneContents&);
     void bringToBodies();
-    void bringToNodes(SceneStore&);
+    void bringToNodes(SceneContents&);
 
-    const SceneStore* store_ = nullptr; // the store for which the plan was made
+    const SceneContents* store_ = nullptr; // the store for which the plan was made
     long revision_ = -1;                // the store's revision for which the plan was made
     bool plane_ = false;                // whether the run is planar: all joints and motions lie in planes y = constant
     std::vector<Kind> kinds_;

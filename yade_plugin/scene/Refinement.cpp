@@ -301,7 +301,7 @@ bool Refinement::isDue(const JointKind& kind, const Limit& limit, double part, i
     return false;
 }
 
-void Refinement::readLimits(const SceneStore& store) {
+void Refinement::readLimits(const SceneContents& store) {
     limits_.clear();
     for (const auto& kind : store.kinds)
         limits_.emplace_back(kind, store.loop->points);
@@ -309,10 +309,10 @@ void Refinement::readLimits(const SceneStore& store) {
     points_ = store.loop->points;
 }
 
-void Refinement::look(SceneStore& store) {
+bool Refinement::look(SceneContents& store) {
     changed_.clear();
     if (store.revision() != revision_ || store.loop->points != points_) readLimits(store);
-    if (store.scene().iter % every != 0) return;
+    if (store.scene().iter % every != 0) return false;
     std::map<std::pair<const JointShapes*, int>, int> due; // joints, and the points that they get
     bool any = false;
     for (std::size_t k = 0; k < store.kinds.size(); ++k) {
@@ -324,7 +324,7 @@ void Refinement::look(SceneStore& store) {
             any = any || isDue(kind, limits_[k], share, j);
         }
     }
-    if (!any) return;
+    if (!any) return false;
     const auto add = [](Changed& to, double sign) {
         const auto& geom = *to.joint.geom;
         for (int p = 0; p < geom.points(); ++p) {
@@ -346,11 +346,10 @@ void Refinement::look(SceneStore& store) {
             changed_.push_back(std::move(change));
         }
     }
-    store.pointsChanged();
-    readLimits(store);
+    return true;
 }
 
-void Refinement::count(SceneStore& store) {
+void Refinement::count(SceneContents& store) {
     for (const auto& change : changed_) {
         const auto& geom = *change.joint.geom;
         std::vector<Vector3r> moved;
@@ -364,7 +363,7 @@ void Refinement::count(SceneStore& store) {
     changed_.clear();
 }
 
-bool Refinement::setPoints(SceneStore& store, const std::vector<int>& refined) {
+bool Refinement::setPoints(SceneContents& store, const std::vector<int>& refined) {
     std::vector<std::pair<const JointView*, int>> change; // joints and their new numbers of points
     for (std::size_t n = 0; n < store.joints.size(); ++n) {
         const auto& joint = store.joints[n];
@@ -374,7 +373,6 @@ bool Refinement::setPoints(SceneStore& store, const std::vector<int>& refined) {
         if (!fits || joint.geom->reference().attached) return false;
         change.emplace_back(&joint, count);
     }
-    if (change.empty()) return true;
     for (const auto& [joint, count] : change) {
         const auto& coarse = joint->geom->refined().coarse;
         const auto first = coarse ? coarse : std::make_shared<const Points>(pointsOf(*joint->geom));
@@ -382,7 +380,6 @@ bool Refinement::setPoints(SceneStore& store, const std::vector<int>& refined) {
         fresh.shapes->refined[0] = {count, count ? first : nullptr};
         fresh.giveTo(*joint);
     }
-    store.pointsChanged();
     return true;
 }
 

@@ -3,7 +3,7 @@
 // say exactly what it does; where crushing or a crack begins and how far it reaches, only many do.
 // yade_plugin/README.md, Points where a joint yields, says what the new points take over.
 #pragma once
-#include "SceneStore.hpp"
+#include "SceneContents.hpp"
 
 namespace masonry {
 
@@ -21,16 +21,18 @@ public:
     static constexpr int most = 100;       // points along a side
 
     // Refines the joints of a scene that are about to yield, as JointLoop::points says, if this is a step to look at
-    // them. Joints with fewer than three points along a side keep them.
-    void look(SceneStore&);
+    // them. Joints with fewer than three points along a side keep them. Returns whether joints got points: SceneStore
+    // must then read them again.
+    bool look(SceneContents&);
     // After the joints have made their step: counts what joints that were refined before it give or take by the forces
     // of the step before, half of which act along this one.
-    void count(SceneStore&);
+    void count(SceneContents&);
 
     // Gives the joints of a scene the numbers of points along them in `refined`, one number a joint in the store's
     // order; 0 stands for the points that a joint was made with. The state of a joint whose points change is that of a
-    // new one. Returns false, and changes nothing, if a joint cannot have these points.
-    static bool setPoints(SceneStore&, const std::vector<int>& refined);
+    // new one, and SceneStore must read the joints again. Returns false, and changes nothing, if a joint cannot have
+    // these points.
+    static bool setPoints(SceneContents&, const std::vector<int>& refined);
 
 private:
     // Stresses of a kind of joints at which one of them gets its points: near the elastic limit of the cap, and, of
@@ -52,7 +54,7 @@ private:
         // Normal and shear stress [Pa] of the bond up to which the law need not be called.
         double tension_ = 0, slip_ = 0;
     };
-    void readLimits(const SceneStore&);
+    void readLimits(const SceneContents&);
     bool isDue(const JointKind&, const Limit&, double part, int joint) const;
 
     // A joint that was refined in this step, with the forces at its points before and after that.

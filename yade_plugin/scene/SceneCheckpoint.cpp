@@ -90,6 +90,7 @@ void transferJoints(SceneStore& store, Transfer& to) {
         }
         if (n.back && !Refinement::setPoints(store, points)) n.refuse();
     });
+    if (to.back) store.pointsChanged();
     to.numbers("joints", [&](StateNumbers& n) {
         for (const auto& joint : store.joints) {
             joint.geom->group->visitState(joint.geom->index, n);
