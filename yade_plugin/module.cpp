@@ -21,12 +21,12 @@
 #include "common/Parallel.hpp"
 #include "common/Text.hpp"
 #include "host/SelfCheck.hpp"
-#include "scene/CriticalTimeStep.hpp"
-#include "scene/Neighbours.hpp"
-#include "scene/Resultant.hpp"
-#include "scene/SceneCheckpoint.hpp"
-#include "scene/SceneStore.hpp"
-#include "scene/StepGate.hpp"
+#include "scene/bodies/StepLock.hpp"
+#include "scene/checks/CriticalTimeStep.hpp"
+#include "scene/checks/SceneCheckpoint.hpp"
+#include "scene/joints/Neighbours.hpp"
+#include "scene/joints/Resultant.hpp"
+#include "scene/store/SceneStore.hpp"
 
 namespace {
 
@@ -234,6 +234,6 @@ extern "C" PyObject* PyInit__masonry() {
                                      nullptr,
                                      nullptr};
     auto* made = py::detail::init_module(definition, &registerAll);
-    if (made) StepGate::watchForks();
+    if (made) StepLock::watchForks();
     return made;
 }

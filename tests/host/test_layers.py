@@ -23,6 +23,7 @@ MAY_INCLUDE = {
     "adapters": BELOW_SCENE | {"scene", "adapters"},
 }
 WITH_YADE = ("host", "scene", "adapters")
+ROOMS = ("bodies", "joints", "contacts", "store", "checks")  # of scene
 
 #: What registered classes share, so it is in adapters/ without being one.
 SHARED = {
@@ -56,6 +57,16 @@ def test_a_layer_includes_only_what_it_may_know(layer):
                 assert (
                     "/" not in path or path.split("/")[0] in known
                 ), f"{name} includes {path}"
+
+
+def test_a_room_of_the_scene_includes_only_those_before_it():
+    folder = os.path.join(PLUGIN, "scene")
+    assert sorted(os.listdir(folder)) == sorted(ROOMS)
+    for n, room in enumerate(ROOMS):
+        for name in sources(os.path.join(folder, room)):
+            for path in included(name):
+                if path.startswith("scene/"):
+                    assert path.split("/")[1] in ROOMS[:n], f"{name} includes {path}"
 
 
 def circles(folder):

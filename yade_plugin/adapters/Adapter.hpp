@@ -17,8 +17,8 @@
 #pragma once
 #include "Assumptions.hpp"
 #include "host/Yade.hpp"
-#include "scene/Changes.hpp"
-#include "scene/StepGate.hpp"
+#include "scene/bodies/Changes.hpp"
+#include "scene/bodies/StepLock.hpp"
 #include <boost/mpl/vector.hpp>
 #include <boost/python/raw_function.hpp>
 #include <boost/serialization/export.hpp>

@@ -5,7 +5,7 @@
 #pragma once
 #include "common/Property.hpp"
 #include "law/common/SofteningTable.hpp"
-#include "scene/Transfer.hpp"
+#include "scene/checks/Transfer.hpp"
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
 #include <boost/archive/xml_iarchive.hpp>

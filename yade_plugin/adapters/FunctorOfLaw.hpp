@@ -14,7 +14,7 @@
 #pragma once
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
-#include "scene/JointFunctor.hpp"
+#include "scene/joints/JointFunctor.hpp"
 
 namespace masonry {
 

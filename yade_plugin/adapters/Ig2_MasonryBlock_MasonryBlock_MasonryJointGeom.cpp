@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom.hpp"
-#include "scene/Blocks.hpp"
-#include "scene/BodyStep.hpp"
-#include "scene/EngineTurn.hpp"
-#include "scene/Neighbours.hpp"
+#include "scene/bodies/Blocks.hpp"
+#include "scene/bodies/BodyStep.hpp"
+#include "scene/checks/EngineScope.hpp"
+#include "scene/joints/Neighbours.hpp"
 
 template class masonry::Adapter<masonry::Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom, yade::IGeomFunctor>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom)
@@ -15,7 +15,7 @@ using yade::State;
 // The host calls this before the interaction loop of every step. It brings the store up to date, so that all joints are
 // in their common groups and have the present properties.
 void Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom::preStep() {
-    if (scene) const EngineTurn turn(*scene);
+    if (scene) const EngineScope turn(*scene);
 }
 
 namespace {

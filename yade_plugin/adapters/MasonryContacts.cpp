@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryContacts.hpp"
-#include "scene/EngineTurn.hpp"
+#include "scene/checks/EngineScope.hpp"
 
 template class masonry::Adapter<masonry::MasonryContacts, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryContacts)
@@ -8,7 +8,7 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryContacts)
 namespace masonry {
 
 void MasonryContacts::action() {
-    const EngineTurn turn(*scene, *this);
+    const EngineScope turn(*scene, *this);
     act(turn.store());
     conversion_.act(turn.store(), *this);
     lookAtFalls(turn.store());
@@ -49,7 +49,7 @@ py::dict MasonryContacts::fallen() {
 py::list MasonryContacts::pairs() {
     const BetweenSteps still;
     py::list found;
-    for (const auto& touch : touches())
+    for (const auto& touch : pairForces())
         found.append(py::make_tuple(touch.one, touch.other, touch.force, touch.torque));
     return found;
 }

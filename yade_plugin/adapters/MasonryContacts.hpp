@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
-#include "scene/Falls.hpp"
-#include "scene/JointConversion.hpp"
-#include "scene/SceneCheck.hpp"
+#include "scene/checks/SceneCheck.hpp"
+#include "scene/contacts/FallenBlocks.hpp"
+#include "scene/contacts/JointConversion.hpp"
 
 namespace masonry {
 
@@ -108,7 +108,7 @@ private:
     }
 
     JointConversion conversion_; // holds no state: what it keeps follows from the scene
-    Falls falls_;
+    FallenBlocks falls_;
     std::vector<unsigned char> held_;     // heldByJoints() ...
     std::pair<long, int> heldFor_{-1, 0}; // ... at this SceneStore::revision(), after so many hand-overs
 };

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryEnergy.hpp"
-#include "scene/BodyCheck.hpp"
-#include "scene/BodyStep.hpp"
-#include "scene/Connectors.hpp"
-#include "scene/Contacts.hpp"
-#include "scene/CriticalTimeStep.hpp"
-#include "scene/EngineTurn.hpp"
-#include "scene/Integrator.hpp"
-#include "scene/Load.hpp"
-#include "scene/Zones.hpp"
+#include "scene/bodies/BodyCheck.hpp"
+#include "scene/bodies/BodyStep.hpp"
+#include "scene/bodies/Integrator.hpp"
+#include "scene/bodies/Load.hpp"
+#include "scene/checks/CriticalTimeStep.hpp"
+#include "scene/checks/EngineScope.hpp"
+#include "scene/contacts/Connectors.hpp"
+#include "scene/contacts/Contacts.hpp"
+#include "scene/joints/Zones.hpp"
 #include <iostream>
 
 template class masonry::Adapter<masonry::MasonryEnergy, yade::GlobalEngine>;
@@ -225,7 +225,7 @@ void MasonryEnergy::given() {
 }
 
 void MasonryEnergy::action() {
-    const EngineTurn turn(*scene, *this);
+    const EngineScope turn(*scene, *this);
     if (!begun) countPresentMotion(turn.store());
     if (watch) {
         lookAtBalance(turn.store());
@@ -235,7 +235,7 @@ void MasonryEnergy::action() {
     turn.end();
 }
 
-void MasonryEnergy::countBodies(const EngineTurn& turn) {
+void MasonryEnergy::countBodies(const EngineScope& turn) {
     const Vector3r gravity = turn->gravity();
     const BodyDamping damping{turn->damping(), turn->hostIntegrator != nullptr, nullptr};
     auto& forces = scene->forces();
@@ -286,7 +286,7 @@ MasonryEnergy::Balance MasonryEnergy::balanceOf(const Inventory& all, const Vect
 py::dict MasonryEnergy::balance() {
     const BetweenSteps still;
     auto& store = SceneStore::present();
-    store.update(SceneStore::Look::AtJoints); // a full look would take too long: every row of curve.csv calls this
+    store.update(SceneStore::ScanScope::Joints); // a full look would take too long: every row of curve.csv calls this
     const auto [inventory, stored, lost, size, error] = presentBalance(store);
     const auto [work, falls, moving, drag, inUnits, given, inConnectors, lostInConnectors, inContacts] = inventory;
     // Dissipated energies should never fall. They can: where a joint opens or closes within a step, the trapezoidal

@@ -2,14 +2,14 @@
 #pragma once
 #include "Adapter.hpp"
 #include "law/common/JointState.hpp"
-#include "scene/Collapse.hpp"
-#include "scene/GravityWork.hpp"
-#include "scene/Ledger.hpp"
-#include "scene/SceneCheck.hpp"
+#include "scene/bodies/GravityWork.hpp"
+#include "scene/bodies/Ledger.hpp"
+#include "scene/checks/SceneCheck.hpp"
+#include "scene/contacts/Collapse.hpp"
 
 namespace masonry {
 
-class EngineTurn;
+class EngineScope;
 class SceneStore;
 
 class MasonryEnergy : public Adapter<MasonryEnergy, yade::GlobalEngine>, public EnergyLedger, public GravityWork {
@@ -164,7 +164,7 @@ private:
     void given();
     void countPresentMotion(SceneStore&);
     void watchOver(SceneStore&);
-    void countBodies(const EngineTurn&);
+    void countBodies(const EngineScope&);
     // Looks whether a block has collapsed. Returns why the run ends, or an empty text.
     std::string findCollapse(SceneStore&);
     // Ends the run at once if a block has collapsed; `besides` says what else is wrong.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryIntegrator.hpp"
-#include "scene/EngineTurn.hpp"
+#include "scene/checks/EngineScope.hpp"
 
 template class masonry::Adapter<masonry::MasonryIntegrator, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryIntegrator)
@@ -8,8 +8,8 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryIntegrator)
 namespace masonry {
 
 void MasonryIntegrator::action() {
-    const EngineTurn turn(*scene, *this);
-    advance(turn.store());
+    const EngineScope turn(*scene, *this);
+    advance(*scene, turn->bodies, turn->loads);
     turn.end();
 }
 

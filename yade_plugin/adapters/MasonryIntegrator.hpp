@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
-#include "scene/Integrator.hpp"
-#include "scene/Ledger.hpp"
-#include "scene/SceneCheck.hpp"
+#include "scene/bodies/Integrator.hpp"
+#include "scene/bodies/Ledger.hpp"
+#include "scene/checks/SceneCheck.hpp"
 
 namespace masonry {
 

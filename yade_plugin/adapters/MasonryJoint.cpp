@@ -2,7 +2,7 @@
 #include "MasonryJoint.hpp"
 #include "law/Laws.hpp"
 #include "law/piecewise_softening/PiecewiseLaw.hpp"
-#include "scene/JointFunctor.hpp"
+#include "scene/joints/JointFunctor.hpp"
 
 template class masonry::Adapter<masonry::MasonryJoint, yade::Serializable>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJoint)

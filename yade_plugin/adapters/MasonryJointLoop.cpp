@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryJointLoop.hpp"
-#include "scene/EngineTurn.hpp"
+#include "scene/checks/EngineScope.hpp"
 #include <algorithm>
 
 template class masonry::Adapter<masonry::MasonryJointLoop, yade::GlobalEngine>;
@@ -9,8 +9,8 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJointLoop)
 namespace masonry {
 
 void MasonryJointLoop::action() {
-    const EngineTurn turn(*scene, *this);
-    refining_.look(turn.store());
+    const EngineScope turn(*scene, *this);
+    if (refining_.look(turn.store())) turn->pointsChanged();
     plan_.advance(turn.store());
     refining_.count(turn.store());
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryLoad.hpp"
-#include "scene/EngineTurn.hpp"
-#include "scene/Integrator.hpp"
-#include "scene/Zones.hpp"
+#include "scene/bodies/Integrator.hpp"
+#include "scene/checks/EngineScope.hpp"
+#include "scene/joints/Zones.hpp"
 
 template class masonry::Adapter<masonry::MasonryLoad, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryLoad)
@@ -10,7 +10,7 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryLoad)
 namespace masonry {
 
 void MasonryLoad::action() {
-    const EngineTurn turn(*scene, *this);
+    const EngineScope turn(*scene, *this);
     if (turn->zones && turn->zones->unitOf(body))
         throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) +
                                     " is a deformable unit; load a rigid block joined to it");

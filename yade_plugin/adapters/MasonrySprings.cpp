@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonrySprings.hpp"
-#include "scene/EngineTurn.hpp"
+#include "scene/checks/EngineScope.hpp"
 
 template class masonry::Adapter<masonry::MasonrySprings, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonrySprings)
@@ -8,7 +8,7 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonrySprings)
 namespace masonry {
 
 void MasonrySprings::action() {
-    const EngineTurn turn(*scene, *this);
+    const EngineScope turn(*scene, *this);
     act(turn.store());
     turn.end();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryTies.hpp"
-#include "scene/EngineTurn.hpp"
+#include "scene/checks/EngineScope.hpp"
 
 template class masonry::Adapter<masonry::MasonryTies, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryTies)
@@ -8,7 +8,7 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryTies)
 namespace masonry {
 
 void MasonryTies::action() {
-    const EngineTurn turn(*scene, *this);
+    const EngineScope turn(*scene, *this);
     act(turn.store());
     turn.end();
 }

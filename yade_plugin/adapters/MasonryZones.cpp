@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryZones.hpp"
-#include "scene/EngineTurn.hpp"
-#include "scene/JointFunctor.hpp"
+#include "scene/checks/EngineScope.hpp"
+#include "scene/joints/JointFunctor.hpp"
 
 template class masonry::Adapter<masonry::MasonryZones, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryZones)
@@ -14,7 +14,7 @@ void MasonryZones::postLoad() {
 }
 
 void MasonryZones::action() {
-    const EngineTurn turn(*scene, *this);
+    const EngineScope turn(*scene, *this);
     if (!turn->loop) gatherFromFunctors(turn->joints, *this);
     followMasses(turn->kinds);
     advance(*scene, turn->bodies, turn->gravity(), turn->massDamping());

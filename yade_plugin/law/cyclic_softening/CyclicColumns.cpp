@@ -11,12 +11,11 @@ using Column = CyclicColumn;
 // Advances the subcontacts at which no strength is exceeded and no stiffness changes. A subcontact that needs the whole
 // law keeps its old state, and its entry of `pending` becomes 1. Returns the number of these subcontacts.
 template <bool spatial, bool yielded, bool curved>
-MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicConsequences& ofAll,
-                                   const Columns& columns, std::size_t at, int count, const Jumps& jumps,
-                                   double* normalStress, Mask* pending) {
+MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicDerived& ofAll, const Columns& columns,
+                                   std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
     CyclicEquations e = given;
     e.curved = curved;
-    const CyclicConsequences same = ofAll;
+    const CyclicDerived same = ofAll;
     double* opening = columns[Column::Opening] + at;
     double* shearStressA = columns[Column::ShearStressA] + at;
     double* shearStressB = columns[Column::ShearStressB] + at;
@@ -66,7 +65,7 @@ MASONRY_INLINED Mask stayElasticAs(const CyclicEquations& given, const CyclicCon
 }
 
 template <bool spatial, bool yielded>
-MASONRY_INLINED Mask stayElasticOn(const CyclicEquations& e, const CyclicConsequences& ofAll, const Columns& columns,
+MASONRY_INLINED Mask stayElasticOn(const CyclicEquations& e, const CyclicDerived& ofAll, const Columns& columns,
                                    std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
     return e.curved
                ? stayElasticAs<spatial, yielded, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
@@ -76,10 +75,10 @@ MASONRY_INLINED Mask stayElasticOn(const CyclicEquations& e, const CyclicConsequ
 } // namespace
 
 MASONRY_VECTORISED
-Mask stayElastic(const CyclicEquations& e, const CyclicConsequences* neverYielded, const Columns& columns,
-                 std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
+Mask stayElastic(const CyclicEquations& e, const CyclicDerived* neverYielded, const Columns& columns, std::size_t at,
+                 int count, const Jumps& jumps, double* normalStress, Mask* pending) {
     const bool yielded = neverYielded == nullptr;
-    const CyclicConsequences ofAll = yielded ? CyclicConsequences{} : *neverYielded;
+    const CyclicDerived ofAll = yielded ? CyclicDerived{} : *neverYielded;
     if (jumps.plane)
         return yielded ? stayElasticOn<false, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
                        : stayElasticOn<false, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
@@ -92,7 +91,7 @@ Mask stayElastic(const CyclicEquations& e, const CyclicConsequences* neverYielde
 namespace {
 
 template <bool spatial>
-MASONRY_INLINED void markYieldingAs(const CyclicEquations& given, const CyclicConsequences& ofAll, int count,
+MASONRY_INLINED void markYieldingAs(const CyclicEquations& given, const CyclicDerived& ofAll, int count,
                                     const double* opening, const double* slideA, const double* slideB, Mask* yielding) {
     const CyclicEquations e = given;
     const double less = 1 - marginOfIntact, more = 1 + marginOfIntact;
@@ -110,7 +109,7 @@ MASONRY_INLINED void markYieldingAs(const CyclicEquations& given, const CyclicCo
 } // namespace
 
 MASONRY_VECTORISED
-void markYielding(const CyclicEquations& e, const CyclicConsequences& neverYielded, int count, const double* opening,
+void markYielding(const CyclicEquations& e, const CyclicDerived& neverYielded, int count, const double* opening,
                   const double* slideA, const double* slideB, Mask* yielding) {
     slideB ? markYieldingAs<true>(e, neverYielded, count, opening, slideA, slideB, yielding)
            : markYieldingAs<false>(e, neverYielded, count, opening, slideA, slideB, yielding);

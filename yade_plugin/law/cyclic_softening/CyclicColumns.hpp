@@ -8,7 +8,7 @@
 
 namespace masonry {
 
-struct CyclicConsequences { // what the columns hold that follow from a state
+struct CyclicDerived { // what the columns hold that follow from a state
     double irreversible, intact, secant, reach, strength, shearing, closing, squaredHardening;
 };
 
@@ -19,7 +19,7 @@ inline double normalStress(const CyclicEquations& e, const Columns& columns, std
                     columns[CyclicColumn::ClosingStiffness][i]);
 }
 
-inline CyclicConsequences consequences(const CyclicEquations& e, const CyclicState& s) {
+inline CyclicDerived consequences(const CyclicEquations& e, const CyclicState& s) {
     const double fc = e.cap ? e.curve.strength(s.largestClosure, e.stretch) : HUGE_VAL;
     const double intact =
         PiecewiseEquations::intact(s.tensionDamage, s.shearDamage) * e.remainingByCrushing(s.largestClosure, fc);
@@ -34,7 +34,7 @@ inline CyclicConsequences consequences(const CyclicEquations& e, const CyclicSta
             e.cap ? e.squaredHardening(s.largestClosure, s.capDisplacement) : HUGE_VAL};
 }
 
-inline void keep(const CyclicConsequences& c, const Columns& columns, std::size_t i) {
+inline void keep(const CyclicDerived& c, const Columns& columns, std::size_t i) {
     columns[CyclicColumn::Irreversible][i] = c.irreversible;
     columns[CyclicColumn::Intact][i] = c.intact;
     columns[CyclicColumn::Secant][i] = c.secant;
@@ -53,11 +53,11 @@ inline bool neverYielded(const CyclicEquations& e, const CyclicState& s) {
 
 // See piecewise_softening/PiecewiseSideBySide.hpp. A joint that closes on a curve is not linear.
 inline bool isLinear(const CyclicEquations& e) { return !e.curved; }
-void markYielding(const CyclicEquations& equations, const CyclicConsequences& neverYielded, int count,
-                  const double* opening, const double* slideA, const double* slideB, Mask* yielding);
+void markYielding(const CyclicEquations& equations, const CyclicDerived& neverYielded, int count, const double* opening,
+                  const double* slideA, const double* slideB, Mask* yielding);
 void rememberElastic(const CyclicEquations& equations, const Columns& columns, std::size_t at, int count,
                      const double* opening);
-Mask stayElastic(const CyclicEquations& equations, const CyclicConsequences* neverYielded, const Columns& columns,
+Mask stayElastic(const CyclicEquations& equations, const CyclicDerived* neverYielded, const Columns& columns,
                  std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending);
 void advanceSideBySide(const CyclicEquations& equations, const SofteningTable& tension, const SofteningTable& shear,
                        const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* pending,

@@ -19,11 +19,11 @@ namespace {
 // conditions of eq. (8). A subcontact that needs the whole law keeps its old state, and its entry of `pending` becomes
 // 1. Returns the number of these subcontacts.
 template <bool spatial, bool yielded, bool residual>
-MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const PiecewiseConsequences& ofAll,
+MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const PiecewiseDerived& ofAll,
                                    const Columns& columns, std::size_t at, int count, const Jumps& jumps,
                                    double* normalStress, Mask* pending) {
     const PiecewiseEquations e = given;
-    const PiecewiseConsequences same = ofAll;
+    const PiecewiseDerived same = ofAll;
     const double limit = e.curve.limit(e.stretch);
     double* opening = columns[Column::Opening] + at;
     double* shearStressA = columns[Column::ShearStressA] + at;
@@ -73,9 +73,8 @@ MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const Piecew
 }
 
 template <bool spatial, bool yielded>
-MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& e, const PiecewiseConsequences& ofAll,
-                                   const Columns& columns, std::size_t at, int count, const Jumps& jumps,
-                                   double* normalStress, Mask* pending) {
+MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& e, const PiecewiseDerived& ofAll, const Columns& columns,
+                                   std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
     return e.cr > 0
                ? stayElasticAs<spatial, yielded, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
                : stayElasticAs<spatial, yielded, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
@@ -84,10 +83,10 @@ MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& e, const PiecewiseC
 } // namespace
 
 MASONRY_VECTORISED
-Mask stayElastic(const PiecewiseEquations& e, const PiecewiseConsequences* neverYielded, const Columns& columns,
+Mask stayElastic(const PiecewiseEquations& e, const PiecewiseDerived* neverYielded, const Columns& columns,
                  std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
     const bool yielded = neverYielded == nullptr;
-    const PiecewiseConsequences ofAll = yielded ? PiecewiseConsequences{} : *neverYielded;
+    const PiecewiseDerived ofAll = yielded ? PiecewiseDerived{} : *neverYielded;
     if (jumps.plane)
         return yielded ? stayElasticAs<false, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
                        : stayElasticAs<false, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
@@ -100,7 +99,7 @@ Mask stayElastic(const PiecewiseEquations& e, const PiecewiseConsequences* never
 namespace {
 
 template <bool spatial>
-MASONRY_INLINED void markYieldingAs(const PiecewiseEquations& given, const PiecewiseConsequences& ofAll, int count,
+MASONRY_INLINED void markYieldingAs(const PiecewiseEquations& given, const PiecewiseDerived& ofAll, int count,
                                     const double* opening, const double* slideA, const double* slideB, Mask* yielding) {
     const PiecewiseEquations e = given;
     const double less = 1 - marginOfIntact, more = 1 + marginOfIntact;
@@ -120,8 +119,8 @@ MASONRY_INLINED void markYieldingAs(const PiecewiseEquations& given, const Piece
 } // namespace
 
 MASONRY_VECTORISED
-void markYielding(const PiecewiseEquations& e, const PiecewiseConsequences& neverYielded, int count,
-                  const double* opening, const double* slideA, const double* slideB, Mask* yielding) {
+void markYielding(const PiecewiseEquations& e, const PiecewiseDerived& neverYielded, int count, const double* opening,
+                  const double* slideA, const double* slideB, Mask* yielding) {
     slideB ? markYieldingAs<true>(e, neverYielded, count, opening, slideA, slideB, yielding)
            : markYieldingAs<false>(e, neverYielded, count, opening, slideA, slideB, yielding);
 }

@@ -17,7 +17,7 @@
 
 namespace masonry {
 
-struct PiecewiseConsequences { // what the columns Irreversible to CapSquared hold, of one subcontact
+struct PiecewiseDerived { // what the columns Irreversible to CapSquared hold, of one subcontact
     double irreversible = 0, intact = 0, secant = 0, reach = 0, capSquared = 0;
 };
 
@@ -27,14 +27,14 @@ inline double normalStress(const PiecewiseEquations& e, const Columns& columns, 
     return e.stiffness(elastic, columns[PiecewiseColumn::Secant][i]) * elastic;
 }
 
-inline PiecewiseConsequences consequences(const PiecewiseEquations& e, const PiecewiseState& s) {
+inline PiecewiseDerived consequences(const PiecewiseEquations& e, const PiecewiseState& s) {
     const double intact = PiecewiseEquations::intact(s.tensionDamage, s.shearDamage);
     const double fc = e.cap ? e.curve.strength(s.largestClosure, e.stretch) : HUGE_VAL;
     return {s.crushing - s.dilation, intact, e.secant(intact, s.largestOpening), e.reach(intact, s.largestOpening),
             fc * fc};
 }
 
-inline void keep(const PiecewiseConsequences& c, const Columns& columns, std::size_t i) {
+inline void keep(const PiecewiseDerived& c, const Columns& columns, std::size_t i) {
     columns[PiecewiseColumn::Irreversible][i] = c.irreversible;
     columns[PiecewiseColumn::Intact][i] = c.intact;
     columns[PiecewiseColumn::Secant][i] = c.secant;
@@ -57,7 +57,7 @@ inline bool hasConvexDomain(const PiecewiseEquations& e) { return !e.cap || e.Cn
 constexpr double marginOfIntact = 1e-9;
 
 // See LawColumns::findYielding() and LawColumns::remember().
-void markYielding(const PiecewiseEquations& equations, const PiecewiseConsequences& neverYielded, int count,
+void markYielding(const PiecewiseEquations& equations, const PiecewiseDerived& neverYielded, int count,
                   const double* opening, const double* slideA, const double* slideB, Mask* yielding);
 void rememberElastic(const PiecewiseEquations& equations, const Columns& columns, std::size_t at, int count,
                      const double* opening);
@@ -65,7 +65,7 @@ void rememberElastic(const PiecewiseEquations& equations, const Columns& columns
 // One step of the subcontacts that stay elastic in it. The others stay as they were and are marked in `pending`; gives
 // how many they are. If none of all has ever yielded, `neverYielded` is what holds for all of them, and their columns
 // from Crushing on are not read; else it is null.
-Mask stayElastic(const PiecewiseEquations& equations, const PiecewiseConsequences* neverYielded, const Columns& columns,
+Mask stayElastic(const PiecewiseEquations& equations, const PiecewiseDerived* neverYielded, const Columns& columns,
                  std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending);
 
 // One step of those of the first `count` subcontacts that are marked in `pending`.

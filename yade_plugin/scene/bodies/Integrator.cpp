@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "Integrator.hpp"
+#include "BodyCheck.hpp"
+#include "BodyStep.hpp"
+#include "Load.hpp"
+#include "common/Parallel.hpp"
+#include <cstdint>
+
+namespace masonry {
+
+std::vector<std::string> Integrator::problems() const {
+    if (combined() || dampingKind == "local") return {};
+    return {"dampingKind '" + dampingKind + "' must be 'combined' or 'local'"};
+}
+
+std::vector<Vector3r> Integrator::lastForces() {
+    std::vector<Vector3r> all;
+    for (std::size_t b = 0; b < last_[0].size(); ++b) {
+        all.emplace_back(last_[0][b], last_[1][b], last_[2][b]);
+        all.emplace_back(last_[3][b], last_[4][b], last_[5][b]);
+    }
+    return all;
+}
+
+void Integrator::setLastForces(const std::vector<Vector3r>& all) {
+    for (int d = 0; d < 6; ++d) {
+        last_[d].assign(all.size() / 2, 0);
+        for (std::size_t b = 0; b < all.size() / 2; ++b)
+            last_[d][b] = all[2 * b + d / 3][d % 3];
+    }
+}
+
+void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vector<Load*>& loads) {
+    const int count = bodies.size();
+    if (std::size_t(count) < last_[0].size())
+        throw std::invalid_argument("MasonryIntegrator remembers forces of " + std::to_string(last_[0].size()) +
+                                    " bodies, the scene has " + std::to_string(count));
+    const auto on = scene.forces().sums(count);
+    combines_ = combined();
+    for (auto& column : last_)
+        if (combined()) column.resize(count, 0);
+    for (auto* load : loads) { // a script may have changed its body since the load acted
+        bodyAt(scene, load->body, "MasonryLoad.body");
+        load->workBefore(scene.dt, bodies.state(load->body));
+    }
+    // The pieces over which energies are summed up do not depend on the number of threads, so neither do the sums.
+    constexpr int piece = RigidMotion::most;
+    const int pieces = (count + piece - 1) / piece;
+    std::vector<Sums> found(pieces);
+    Parallel::instance().overPieces(pieces, 1, [&](int first, int beyond) {
+        for (int n = first; n < beyond; ++n)
+            found[n] = advancePiece(scene, bodies, on.forces, on.torques, n * piece, std::min(count, (n + 1) * piece));
+    });
+    const double before = fallen;
+    Vector3r moment = Vector3r::Zero();
+    beginStep();
+    for (const auto& sum : found) {
+        add(sum.energies);
+        moment += sum.moment;
+    }
+    fallen = workOfGravity(fallen, gravity, moment, before);
+    for (auto* load : loads) {
+        const auto& s = bodies.state(load->body);
+        load->workAfter(scene.dt, s.vel, s.angVel);
+    }
+}
+
+Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns& bodies, const Vector3r* forces,
+                                          const Vector3r* torques, int first, int beyond) {
+    constexpr int ahead = 8;
+    const int count = beyond - first;
+    const bool thoroughly = scene.iter % 10 == 0;
+    Sums all;
+    auto& sum = all.energies;
+    RigidMotion motion;
+    unsigned axes = 0;
+    int spinning = 0;
+    std::uint32_t blocked[RigidMotion::most]; // State.blockedDOFs of a body that RigidMotion moves, else all six
+    for (int i = 0; i < count; ++i) {
+        const int b = first + i;
+        blocked[i] = 63;
+        motion.alpha[i] = motion.viscous[i] = 0;
+        if (i + ahead < count && bodies.has(b + ahead)) bodies.prefetch(b + ahead);
+        if (!bodies.has(b) || bodies.isUnit[b]) continue;
+        thoroughly ? bodies.detectAnyChange(b) : bodies.detectChange(b);
+        if (bodies.spins(b))
+            ++spinning;
+        else {
+            axes |= bodies.axes(b);
+            blocked[i] = bodies.blockedAxes(b);
+            motion.alpha[i] = bodies.isDamped(b) ? damping : 0;
+            motion.viscous[i] = bodies.isDamped(b) ? massDamping : 0;
+        }
+    }
+    findWeights(bodies, first, count, all);
+    if (axes != 0) {
+        const RigidMotion::Around around{scene.dt, {gravity[0], gravity[1], gravity[2]}, combines_};
+        double unused[RigidMotion::most] = {}; // local damping does not use earlier forces
+        double* last[6];
+        for (int d = 0; d < 6; ++d) {
+            last[d] = combines_ ? &last_[d][first] : unused;
+            if (!(axes >> d & 1)) continue;
+            const double* on = (d < 3 ? forces : torques)[first].data() + d % 3;
+            for (int i = 0; i < count; ++i) {
+                motion.force[d][i] = on[3 * i];
+                motion.free[d][i] = blocked[i] >> d & 1 ? 0.0 : 1.0;
+            }
+        }
+        motion.advance(bodies, last, first, count, around, axes);
+        for (int i = 0; i < count; ++i) {
+            const int b = first + i;
+            const bool mine = bodies.has(b) && !bodies.isUnit[b] && !bodies.spins(b) && bodies.axes(b) != 0;
+            if (!mine) continue;
+            bodies.give(b, axes);
+            sum.external += motion.work[i];
+            sum.damped += motion.damped[0][i];
+            sum.pendingDamped += motion.damped[1][i];
+            sum.kinetic += motion.kinetic[i];
+        }
+        sum.pendingExternal = sum.external;
+    }
+    for (int b = first; spinning > 0 && b < beyond; ++b) {
+        if (!bodies.has(b) || bodies.isUnit[b] || !bodies.spins(b)) continue;
+        sum.add(turnFreely(scene.dt, bodies, forces[b], torques[b],
+                           b)); // last, because RigidMotion has written to its columns
+    }
+    return all;
+}
+
+// Sums m g·u and m u of rigid bodies, with their displacements u since the reference state.
+void Integrator::findWeights(const BodyColumns& bodies, int first, int count, Sums& all) const {
+    double masses[RigidMotion::most];     // 0 where there is no rigid body
+    double falls[RigidMotion::most] = {}; // gravity times displacement
+    for (int i = 0; i < count; ++i)
+        masses[i] = bodies.has(first + i) && !bodies.isUnit[first + i] ? bodies.mass[first + i] : 0;
+    for (int d = 0; d < 3; ++d) {
+        const double g = gravity[d], *now = &bodies.position[d][first], *before = &bodies.referencePosition[d][first];
+        double moment = 0;
+        for (int i = 0; i < count; ++i) {
+            const double moved = now[i] - before[i];
+            falls[i] += g * moved;
+            moment += masses[i] * moved;
+        }
+        all.moment[d] = moment;
+    }
+    for (int i = 0; i < count; ++i)
+        all.energies.fallen += masses[i] * falls[i];
+}
+
+// The step is made in the host's State, because only that holds the angular momentum of the body.
+EnergyLedger Integrator::turnFreely(double dt, BodyColumns& bodies, const Vector3r& force, const Vector3r& torque,
+                                    int body) {
+    auto& s = bodies.state(body);
+    BodyForces before{Vector3r::Zero(), Vector3r::Zero()};
+    for (int d = 0; combines_ && d < 3; ++d) {
+        before.force[d] = last_[d][body];
+        before.torque[d] = last_[3 + d][body];
+    }
+    const auto step =
+        stepOf(s, {force, torque}, gravity, dt, {damping, false, combines_ ? &before : nullptr, massDamping});
+    for (int d = 0; combines_ && d < 3; ++d) {
+        last_[d][body] = before.force[d];
+        last_[3 + d][body] = before.torque[d];
+    }
+    s.vel = step.vel;
+    s.pos += dt * s.vel;
+    turnInSpace(s, step, dt);
+    bodies.take(body);
+    return step.energies;
+}
+
+} // namespace masonry

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "FallenBlocks.hpp"
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace masonry {
+
+using yade::Quaternionr;
+using yade::Vector3r;
+
+namespace {
+
+double kineticEnergy(const BodyColumns& bodies, int body) {
+    const auto& s = bodies.state(body);
+    const auto b = std::size_t(body);
+    const Vector3r spin(bodies.velocity[3][b], bodies.velocity[4][b], bodies.velocity[5][b]);
+    double twice = (s.ori.conjugate() * spin).cwiseAbs2().dot(s.inertia);
+    for (int d = 0; d < 3; ++d)
+        twice += s.mass * bodies.velocity[d][b] * bodies.velocity[d][b];
+    return 0.5 * twice;
+}
+
+} // namespace
+
+void FallenBlocks::look(const SceneContents& contents, const std::vector<int>& loose,
+                        const std::vector<double>& diameters) {
+    const double now = contents.scene().time;
+    auto known = all_.begin();
+    for (int body : loose) {
+        known = std::lower_bound(known, all_.end(), body, [](const Fall& fall, int id) { return fall.body < id; });
+        if (known == all_.end() || known->body != body) known = all_.insert(known, {body, now, -1, 0, now});
+        auto& fall = *known;
+        const double energy = kineticEnergy(contents.bodies, body);
+        if (energy > fall.most) {
+            fall.most = energy;
+            fall.at = now;
+        }
+        if (fall.fell >= 0) continue;
+        const auto& s = contents.bodies.state(body);
+        const bool turned = std::abs((s.refOri.conjugate() * s.ori).w()) < std::cos(0.5 * turn);
+        if (turned || (s.pos - s.refPos).norm() > travel * diameters[std::size_t(body)]) fall.fell = now;
+    }
+}
+
+std::vector<unsigned char> heldByJoints(const SceneContents& contents) {
+    constexpr unsigned allAxes = 63;
+    const auto count = std::size_t(contents.bodies.size());
+    // One set for all that is joined: every body points to another one of its set, the first of it to itself.
+    std::vector<std::size_t> next(count);
+    std::iota(next.begin(), next.end(), 0);
+    const auto first = [&](std::size_t body) {
+        while (next[body] != body)
+            body = next[body] = next[next[body]];
+        return body;
+    };
+    contents.eachJoint([&](const JointView& joint) {
+        const auto& sides = joint.geom->reference().sides;
+        next[first(std::size_t(sides[0].body))] = first(std::size_t(sides[1].body));
+    });
+    std::vector<unsigned char> held(count, 0);
+    for (std::size_t b = 0; b < count; ++b)
+        if (contents.bodies.has(int(b)) && contents.bodies.blockedAxes(int(b)) == allAxes) held[first(b)] = 1;
+    for (std::size_t b = 0; b < count; ++b)
+        held[b] = held[first(b)];
+    return held;
+}
+
+} // namespace masonry
