@@ -223,8 +223,9 @@ def dampingStresses():
     """The stresses of damping in the state that a checkpoint keeps [Pa], three for every subcontact."""
     found = records(saveScene(""))
     joints = O.interactions[0, 1].geom.areas
-    numbers = np.frombuffer(found["scene.joints"]).reshape(len(joints), -1)
-    return numbers[:, 3:6]  # after three numbers of the jump
+    numbers = np.frombuffer(found["scene.joints"])
+    # 14 numbers of the joint; then of each point its jump, this stress, and four numbers of impacts
+    return numbers[14 : 14 + 10 * len(joints)].reshape(len(joints), 10)[:, 3:6]
 
 
 def vibrating(blocked=""):

@@ -172,7 +172,8 @@ Checkpoint captured(yade::Scene& scene) {
                joint.phys->stiffness().normal, joint.phys->stiffness().shear);
         // A joint that was refined is still the one that it was made as.
         if (const auto& coarse = joint.geom->refined().coarse)
-            joints(*coarse);
+            for (const auto& point : *coarse)
+                joints(point.offset, point.area);
         else
             for (int p = 0; p < joint.geom->points(); ++p)
                 joints(joint.geom->offset(p), joint.geom->area(p));
