@@ -271,10 +271,11 @@ def _end(moved, force, at, fall, pulse):
         )
         return float(moved[-1]), unreached, []
     end = float(np.interp(place, np.arange(len(moved)), moved))
-    again = (moved > end + pulse) & (force >= level)
-    notes = [
-        f"after it fell to {fall:g} of its peak at {end:.4g} mm, the force came back above that, up to {moved[again].max():.4g} mm"
-    ] * again.any()
+    again, notes = moved[(moved > end + pulse) & (force >= level)], []
+    if len(again):
+        notes = [
+            f"after it fell to {fall:g} of its peak at {end:.4g} mm, the force came back above that, up to {again.max():.4g} mm"
+        ]
     return end, "", notes
 
 
