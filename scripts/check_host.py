@@ -129,16 +129,16 @@ class Yade:
 
     @classmethod
     def ofTable(cls, path):
-        classes, calls = {}, set()
+        classes, calls, table = {}, set(), []
         for line in path.read_text("utf-8").splitlines():
             if line.startswith("  "):
-                classes[name][1].append(line.strip())
+                table.append(line.strip())
             elif line.startswith("_Z"):
                 calls.add(line)
             elif line:
                 name, size, base = line.split()
-                begin = list(classes[base][1]) if base in classes else []
-                classes[name] = int(size) if size.isdigit() else None, begin
+                table = list(classes[base][1]) if base in classes else []
+                classes[name] = int(size) if size.isdigit() else None, table
         return cls(path.stem, classes, calls)
 
     def write(self, module):
