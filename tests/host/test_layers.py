@@ -23,7 +23,7 @@ MAY_INCLUDE = {
     "adapters": BELOW_SCENE | {"scene", "adapters"},
 }
 WITH_YADE = ("host", "scene", "adapters")
-ROOMS = ("bodies", "joints", "contacts", "store", "checks")  # of scene
+FOLDERS = ("bodies", "joints", "contacts", "store", "checks")  # of scene
 
 #: What registered classes share, so it is in adapters/ without being one.
 SHARED = {
@@ -59,14 +59,16 @@ def test_a_layer_includes_only_what_it_may_know(layer):
                 ), f"{name} includes {path}"
 
 
-def test_a_room_of_the_scene_includes_only_those_before_it():
+def test_a_folder_of_the_scene_includes_only_those_before_it():
     folder = os.path.join(PLUGIN, "scene")
-    assert sorted(os.listdir(folder)) == sorted(ROOMS)
-    for n, room in enumerate(ROOMS):
-        for name in sources(os.path.join(folder, room)):
-            for path in included(name):
+    assert sorted(os.listdir(folder)) == sorted(FOLDERS)
+    for n, name in enumerate(FOLDERS):
+        for source in sources(os.path.join(folder, name)):
+            for path in included(source):
                 if path.startswith("scene/"):
-                    assert path.split("/")[1] in ROOMS[:n], f"{name} includes {path}"
+                    assert (
+                        path.split("/")[1] in FOLDERS[:n]
+                    ), f"{source} includes {path}"
 
 
 def circles(folder):

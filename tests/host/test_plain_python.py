@@ -88,7 +88,7 @@ def test_threads_are_those_that_are_asked_for(tmp_path):
     assert done(code) == "1\n"
 
 
-def test_a_process_without_a_home_starts_yade():
+def test_a_process_without_HOME_starts_yade():
     env = {name: value for name, value in environment().items() if name != "HOME"}
     assert done("from masonry import Scene; print('yes')", env=env) == "yes\n"
 

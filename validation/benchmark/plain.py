@@ -19,6 +19,7 @@ sys.path.insert(0, os.path.dirname(HERE))
 import studies  # noqa: E402
 import numpy as np  # noqa: E402
 from masonry.read.files import readCurve, readRun  # noqa: E402
+from scipy.integrate import trapezoid  # noqa: E402
 
 OUT = os.path.join(studies.RESULTS, "benchmark", "plain")
 PLANE = ["--blocks", "deformable", "--divisions", "2"]
@@ -59,7 +60,7 @@ def plugin(until, rate, words):
         stage["steps"],
         stage["seconds"],
         force.max(),
-        np.trapz(force, curve["displacement_mm"]),
+        trapezoid(force, curve["displacement_mm"]),
     )
 
 

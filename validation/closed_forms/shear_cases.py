@@ -15,6 +15,7 @@ from scipy.sparse import coo_matrix, csr_matrix, diags
 from scipy.sparse.linalg import eigsh, splu
 from structures import elastic, mat, semicircle
 from yade import O, Quaternion, Vector3
+from scipy.integrate import trapezoid
 
 UNIT = LENGTH, THICKNESS, COURSE = 0.22, 0.10, 0.081  # [m]
 E, NU, RHO = 5e9, 0.16, 1800.0
@@ -214,7 +215,7 @@ def crown(blocks, thickness, width):
     forces = np.array([[none + 1, 1 - c, -s], [none, -c, -s], [none, s, -c]])
     area = thickness * width
     soft = 1 / np.array([E * area * thickness**2 / 12, E * area, G * area / 1.2])
-    C = np.trapz(np.einsum("iaf,i,ibf->abf", forces, soft, forces), a)
+    C = trapezoid(np.einsum("iaf,i,ibf->abf", forces, soft, forces), a)
     half = C[2, 2] - C[2, :2] @ np.linalg.solve(C[:2, :2], C[:2, 2])
     units, force = Units(blocks), 0
     middles = [np.mean(b.corners, 0) for b in blocks]

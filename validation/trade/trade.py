@@ -32,6 +32,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 import studies
 from studies import run, runMissing, table
+from scipy.integrate import trapezoid
 
 RESULTS = os.path.join(studies.RESULTS, "trade")
 
@@ -157,7 +158,7 @@ def numbers(wall, options):
     lost = [c for name, c in curve.items() if name.startswith("dissipated_")]
     return {
         "peak": entry["peak_base_shear_kN"],
-        "work": float(np.trapz(curve["base_shear_kN"], curve["displacement_mm"])),
+        "work": float(trapezoid(curve["base_shear_kN"], curve["displacement_mm"])),
         "end": entry["base_shear_end_kN"],
         "stiffness": entry["initial_stiffness_kN_per_mm"],
         "dissipated": sum(c[-1] - c[0] for c in lost),

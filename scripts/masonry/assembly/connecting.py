@@ -64,7 +64,11 @@ def connect(
     return made
 
 
-def makeJoints(rule, tolerance=1e-4, allowGaps=False):
+def makeJoints(
+    rule: Callable[..., Any] | None,
+    tolerance: float = 1e-4,
+    allowGaps: bool = False,
+) -> list[Any]:
     """:func:`connect` without its time step, for who chooses it by other rules."""
     engines = list(O.engines)
     loop = next(

@@ -34,7 +34,7 @@ import numpy as np
 
 from ..arguments import FilePath, Numbers, number, oneOf, validated
 from ..basics import Refused, say
-from . import curves, quantities
+from . import curves, loops, quantities
 from .files import filesOf, onFolder
 from .quantities import Number
 from .run_data import BASE, FALL, MOVED, TOP, RunData
@@ -138,7 +138,7 @@ def _area(moved, force, end):
     inside = moved < end
     last = float(np.interp(end, moved, force))
     d, f = np.append(moved[inside], end), np.append(force[inside], last)
-    return float(np.trapz(f, d)), last
+    return loops.area(f, d), last
 
 
 def _checked(displacement, force):

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 from collections import namedtuple
+from typing import Any
 
 import numpy as np
 
@@ -163,6 +164,15 @@ def stretch(values: Numbers, start: float, end: float) -> np.ndarray:
     return np.interp(np.concatenate([[start], between, [end]]), rows, values)
 
 
+def area(force: Any, moved: Any) -> float:
+    """Area under a curve of straight lines, for example the work of a force over its displacement.
+
+    :param force: values; ``moved``: the places of these, of which the unit times that of the force is the unit of the area
+    """
+    force, moved = np.asarray(force, float), np.asarray(moved, float)
+    return float(0.5 * (force[1:] + force[:-1]) @ np.diff(moved))
+
+
 def work(
     displacement: Numbers, force: Numbers, start: float = 0.0, end: float | None = None
 ) -> float:
@@ -170,7 +180,7 @@ def work(
     they are given [J]. Trapezoids between rows."""
     moved, force = _curve(displacement, force)
     end = len(moved) - 1 if end is None else end
-    return float(np.trapz(stretch(force, start, end), stretch(moved, start, end)))
+    return area(stretch(force, start, end), stretch(moved, start, end))
 
 
 def secantStiffness(

@@ -20,7 +20,7 @@ import numpy as np
 
 from ..arguments import FilePath
 from ..basics import Refused, say
-from . import cracks, quantities
+from . import cracks, loops, quantities
 from .files import filesOf, onFolder, readCurve, readRun
 from .frames import readFrame
 from .run_data import BASE, TOP, RunData
@@ -62,7 +62,7 @@ def jointNumbers(directory: FilePath, name: str) -> dict[str, Any]:
         np.array(curve[prefix + end])
         for end in ("opening_mm", "slide_mm", "normal_stress_MPa", "shear_stress_MPa")
     )
-    area = lambda stress, mm: 1e3 * np.trapz(np.maximum(stress, 0), mm)
+    area = lambda stress, mm: 1e3 * loops.area(np.maximum(stress, 0), mm)
     found = {
         "opening_work_J_per_m2": area(normal, opening),
         "closure_work_J_per_m2": area(-normal, -opening),

@@ -16,7 +16,6 @@ import math
 from dataclasses import dataclass
 from typing import Any, Callable, NamedTuple
 
-import numpy as np
 
 from . import cracks, curves, loops
 from .run_data import BASE, MASONRY, MOVED, TOP, RunData
@@ -169,7 +168,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q("base_shear_end_kN", "force at the end", "kN", "Force at the supports in the last row.", f"curve.csv: {BASE}", lambda d: d[BASE][-1], brief=True),
     Q("displacement_end_mm", "displacement at the end", "mm", "Displacement of the pushed point in the last row.", f"curve.csv: {MOVED}", lambda d: d[MOVED][-1], brief=True),
     Q("initial_stiffness_kN_per_mm", "initial stiffness", "kN/mm", "Slope of the line through the beginning of the push that fits its first part best, without the inertia of the structure.", "masonry.read.curves.stiffness", lambda d: d.stiffness, brief=True),
-    Q("push_work_J", "work of the push", "J", "Area under the curve of the push.", f"curve.csv: {BASE}, {MOVED}", lambda d: float(np.trapz(d[BASE], d[MOVED])), "one way", True),
+    Q("push_work_J", "work of the push", "J", "Area under the curve of the push.", f"curve.csv: {BASE}, {MOVED}", lambda d: loops.area(d[BASE], d[MOVED]), "one way", True),
     Q("first_period_s", "first period along the push", "s", "First period of the structure along the push, measured as it began; None if none was found.", "masonry.assembly.period"),
     Q("base_weight", "", "-", "w of the shear force V_s = (1 - w) top + w base, which leaves out the inertia of the structure's own mass; from the shape in which the structure moved as the push began, else 2/3.", "masonry.read.curves.quasiStatic"),
     Q("velocity_grown_at_s", "", "s", "Time at which the velocity of the drive had grown in the first of these pushes; 0 if no first period was found.", "the drive"),

@@ -52,7 +52,7 @@ class Pushing:
     since: float = 0.0  # time from which the velocity grows [s]
     #: velocity then, in the present direction, over the full one [-]
     growth: float = 0.0
-    #: Of the last rows, as far as AVERAGED says: time [s] and base shear [kN]; the mean of these is what a collapse is told from.
+    #: Of the last rows, as far as AVERAGED says: time [s] and base shear [kN]; their mean decides whether it has collapsed.
     recent: Sequence[Sequence[float]] = ()
     peaks: Sequence[float] = (0.0, 0.0)  # largest mean so far [kN]
     peaksAt: Sequence[float] = (0.0, 0.0)  # displacement there [mm]
