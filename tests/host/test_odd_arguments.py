@@ -225,7 +225,7 @@ def nothing():
 
 def sceneOptions():
     """The options that a scene takes as keywords, with values that they may have."""
-    aside = {"resume", "preset", "history", "out", "lean", "quick"}
+    aside = {"resume", "preset", "history", "out", "lean", "quick", "no_vtk"}
     found = {n: [] if o.several else o.default for n, o in options.OPTIONS.items()}
     return {n: value for n, value in found.items() if n not in aside}
 
