@@ -234,6 +234,8 @@ def main(words: Sequence[str] | None = None) -> int:
             raise Refused(f"--magnify: {args.magnify:g} must be at least 0")
         if not 1 <= args.rate <= 100:
             raise Refused(f"--rate: {args.rate} must be from 1 to 100 frames a second")
+        for directory in args.result:
+            readRun(directory)
         with filesOf(", ".join(args.result)):
             if args.html is not False or args.gltf:
                 _handOn(args)
