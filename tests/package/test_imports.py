@@ -43,7 +43,11 @@ MODULES = ["__init__"] + sorted(
     for name in names
     if name.endswith(".py") and folder + name != PACKAGE + "__init__.py"
 )
-SCENES = [n[:-3] for n in os.listdir(os.path.join(ROOT, "scripts")) if n[-3:] == ".py"]
+SCENES = [
+    n[:-3]
+    for n in os.listdir(os.path.join(ROOT, "scripts"))
+    if n[-3:] == ".py" and n != "check_host.py"
+]
 
 
 def source(module):

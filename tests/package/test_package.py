@@ -347,7 +347,7 @@ def test_readers_ask_only_for_keys_of_run_json_that_are_documented(reader):
     assert asked and not asked - documented
 
 
-@pytest.mark.parametrize("reader", ["elevation", "measure"])
+@pytest.mark.parametrize("reader", ["elevation"])
 def test_readers_ask_only_for_columns_that_are_described(reader):
     source = open(
         os.path.join(ROOT, "scripts", "masonry", "read", reader + ".py")

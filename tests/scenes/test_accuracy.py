@@ -123,10 +123,10 @@ def test_what_cannot_be_reached_is_said_with_the_width_that_was_found(pier):
 
 
 @pytest.mark.parametrize("words, sentence", [
-    (["--accuracy", "0"], "0 must be above 0 and at most 50"),
-    (["--accuracy", "-3"], "-3 must be above 0 and at most 50"),
-    (["--accuracy", "60"], "60 must be above 0 and at most 50"),
-    (["--accuracy", "nan"], "nan must be above 0 and at most 50"),
+    (["--accuracy", "0"], "0.0 % must be above 0 and at most 50"),
+    (["--accuracy", "-3"], "-3.0 % must be above 0 and at most 50"),
+    (["--accuracy", "60"], "60.0 % must be above 0 and at most 50"),
+    (["--accuracy", "nan"], "nan % must be a finite number above 0 and at most 50"),
     (["--accuracy", "2", "--preset", "bound"], "leave --preset away"),
     (["--accuracy", "2", "--rate", "20"], "leave --rate away"),
     (["--accuracy", "2", "--history", "1,2"], "loops of --history"),

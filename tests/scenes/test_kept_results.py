@@ -13,7 +13,9 @@ from types import SimpleNamespace
 
 from hosted import *
 from masonry import readCheckpoint
+from masonry.assembly.loading import Loading
 from masonry.assembly.structure import Structure
+from masonry.assembly.supports import Supports
 from masonry.read import files
 from masonry.run import lock, run as running
 from masonry.run.results import Results
@@ -79,7 +81,7 @@ def test_a_run_that_makes_no_row_leaves_the_results_of_an_earlier_one(
     assert spoilt(lambda m: m.setattr(shutil, "disk_usage", full)) == 2
     assert spoilt(lambda m: m.setattr(Structure, "build", unstable)) == "unstable"
     assert spoilt(lambda m: m.setattr(Run, "_take", unstable)) == "unstable"
-    assert spoilt(lambda m: m.setattr(Structure, "unrest", lambda self, *rest: stop(self) or (1.0, 1.0))) == 130  # fmt: skip
+    assert spoilt(lambda m: m.setattr(Supports, "unrest", lambda self, *rest: stop(self) or (1.0, 1.0))) == 130  # fmt: skip
     assert "still has the results of an earlier one" in capsys.readouterr().out
     # The other run has its rows now.
     assert run(finished, *SHORT, "--rate", "30") == 0
@@ -263,7 +265,7 @@ def test_odd_names_and_terminals_end_in_order(tmp_path):
 def test_a_wall_that_falls_before_its_push_ends_with_status_1(
     scene, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(Structure, "hasSunk", lambda self, down=None: True)
+    monkeypatch.setattr(Loading, "hasSunk", lambda self, down=None: True)
     assert run(tmp_path / "r", *SHORT) == 1
     assert readRun(str(tmp_path / "r"))["collapsed"]
 

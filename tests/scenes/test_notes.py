@@ -6,7 +6,6 @@ import os
 from hosted import *
 from masonry import basics
 from masonry.read import report
-from masonry.run.place import Place, Saved
 from masonry.run.run import Run
 
 UNREST = "note: the structure is not at rest after"
@@ -76,11 +75,3 @@ def test_a_run_that_is_resumed_has_the_same_notes(tmp_path, monkeypatch):
     part = str(tmp_path / "part")
     assert readRun(part)["interrupted"] and os.path.exists(os.path.join(part, "run.checkpoint"))  # fmt: skip
     assert carried(part, "--resume", part)["notes"] == whole
-
-
-@pytest.mark.parametrize("notes", [[{"text": 1}], ["a"], [{"stage": "", "number": -1, "time_s": 0.0, "text": "a"}]])  # fmt: skip
-def test_notes_of_a_checkpoint_that_are_none_are_refused(notes):
-    saved = Saved.__new__(Saved)
-    saved.at, saved.rows = {**vars(Place()), "notes": notes}, []
-    with pytest.raises(Refused):
-        saved.place()

@@ -10,6 +10,7 @@ import sys
 from hosted import *
 from masonry.read import viewer
 from masonry.read.frames import readFrame
+from masonry.read.frames import readFrame
 
 MISSING = "" if shutil.which("pvpython") or os.path.exists(os.path.join(viewer.UNPACKED, "usr", "bin", "pvpython")) else "ParaView is not installed"  # fmt: skip
 

@@ -165,7 +165,7 @@ def test_help_prints_the_options_without_running(tmp_path):
 @pytest.mark.parametrize(
     "words, message",
     [
-        (["--dt-fraction", "2"], "2 must be at least 0.001 and at most 1"),
+        (["--dt-fraction", "2"], "2.0 must be at least 0.001 and at most 1"),
         (
             ["--set", "bed.compressiveFractureEnergy=12000"],
             "needs at least 12208 J/m², more between rigid units",

@@ -149,7 +149,7 @@ def test_a_row_by_hand_gives_the_same(whole, tmp_path):
     row = [*csv.DictReader(read(out).decode().splitlines())][1]
     compared = 0
     for name in row.keys() & numbers.keys():
-        if row[name]:
+        if row[name] and not isinstance(numbers[name], str):
             # curve.csv has nine digits, and the frames have all
             assert float(row[name]) == pytest.approx(numbers[name], rel=1e-6), name
             compared += 1

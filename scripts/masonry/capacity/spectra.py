@@ -70,17 +70,10 @@ class Spectrum:
         return 1e3 * self.acceleration(period) * (period / (2 * math.pi)) ** 2
 
 
-def checkedUnit(unit: Any) -> float:
-    """The factor of a unit of acceleration [m/s²]. Raises Refused."""
-    if unit not in UNITS:
-        raise Refused(f"unit must be one of {', '.join(UNITS)}, got {unit!r}: an acceleration has no unit that could be guessed")  # fmt: skip
-    return UNITS[unit]
-
-
 @validated
 def elastic(
     ag: Annotated[float, number("", 0, 10000, above=True)],
-    unit: str,
+    unit: Annotated[str, oneOf(*UNITS)],
     type: int,
     ground: Annotated[str, oneOf(*"ABCDE")],
     importance: Annotated[float, number("-", 0.1, 10)] = 1.0,
@@ -98,7 +91,7 @@ def elastic(
     :param parameters: S [-], TB, TC and TD [s] of a National Annex; None: the recommended values of tables 3.2 and 3.3
     :raises Refused: with what is wrong
     """
-    factor = checkedUnit(unit)
+    factor = UNITS[unit]
     if type not in PARAMETERS or isinstance(type, bool):
         raise Refused(f"elastic: type {type!r} must be 1 or 2")
     soil, tb, tc, td = PARAMETERS[type][ground] if parameters is None else _four(parameters)  # fmt: skip
@@ -151,7 +144,7 @@ def _four(parameters):
 @validated
 def readSpectrum(
     path: FilePath,
-    unit: str,
+    unit: Annotated[str, oneOf(*UNITS)],
     corner: Annotated[float, number("s", 0, 1000, above=True)] | None = None,
 ) -> Spectrum:
     """A spectrum from a file of two columns: period [s] and acceleration. Between its rows it is a line.
@@ -162,7 +155,7 @@ def readSpectrum(
     :param corner: TC, the upper limit of the periods with constant acceleration, which the target displacement needs [s]
     :raises Refused: if the file cannot be read, is no such table, or if the corner is missing
     """
-    factor = checkedUnit(unit)
+    factor = UNITS[unit]
     try:
         text = readWhole(path).decode("utf-8-sig")
     except OSError as error:

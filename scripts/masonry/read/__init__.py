@@ -3,6 +3,7 @@
 
 - :mod:`masonry.read.files`: curve.csv and run.json; :mod:`masonry.read.frames`: the frames for ParaView
 - :mod:`masonry.read.curves`, :mod:`masonry.read.loops`: numbers of a curve, and of loops
+- :mod:`masonry.read.quantities`: the one list of numbers of a run; :mod:`masonry.read.run_data`: what they are found from
 - :mod:`masonry.read.bilinear`: the bilinear curve of a push, and its drifts, as a program, too
 - :mod:`masonry.read.cracks`: where joints are cracked and crushed, and how a wall gave way
 - :mod:`masonry.read.measure`: all numbers of a run, as a program, too

@@ -60,7 +60,7 @@ NEEDED = ["area", "bodies", "crushing", "damage_compression", "joint_dissipated"
 
 def layOut(
     frame: dict[str, Any], wall: dict[str, Any]
-) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """Joints of a frame on the grid of the brickwork.
 
     :param frame: of the joints

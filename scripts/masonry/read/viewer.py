@@ -126,7 +126,7 @@ def inParaView(directories: Sequence[FilePath], at: Any, magnification: float | 
     numbers = [frameNear(d, at) for d in directories]
     shape = size[0] / len(directories) / size[1]
     still = bool(target) and not film
-    job = {
+    job: dict[str, Any] = {
         "runs": [sceneOf(d, n, magnification, shape, still) for d, n in zip(directories, numbers)],
         "time": frameTimes(directories[0])[numbers[0]],
         "size": size,

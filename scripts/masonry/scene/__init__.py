@@ -15,7 +15,7 @@
 - :mod:`masonry.scene.options`: the options of the command line, which :mod:`masonry.scene.parsing` reads;
   :mod:`masonry.scene.settings`: ``--set``; :mod:`masonry.scene.keywords`: options that the script gives to ``Scene``
 - :mod:`masonry.scene.bounds`: limit analysis beside a run
-- :mod:`masonry.scene.outcome`: what comes out; :mod:`masonry.scene.wall`: of a wall in running bond
+- :mod:`masonry.scene.outcome`: what comes out; :mod:`masonry.scene.figure`: what curve.png shows; :mod:`masonry.scene.wall`: of a wall in running bond
 - :mod:`masonry.scene.facts`: what a scene is, in words
 - :mod:`masonry.scene.showing`: a scene in a notebook, and its curve as arrays
 - :mod:`masonry.scene.words`: the words of a script, as data; :mod:`masonry.scene.resuming`: what a resumed run finds in place
