@@ -677,6 +677,19 @@ TEST_CASE("when the normal force falls slip and twist are cut, and they are lost
     CHECK(endFriction(s.state) == 0);
 }
 
+TEST_CASE("where the normal flips the contact is another one: what was stored is lost, and friction begins anew") {
+    Slider s;
+    s.act();
+    s.go({1e-7, 0, 0}, 0);
+    const double stored = s.last.stored;
+    REQUIRE(stored > 0);
+    s.state.normal = -s.state.normal;
+    s.act();
+    CHECK(s.last.lost == doctest::Approx(stored).epsilon(1e-12));
+    CHECK(s.last.force.norm() == 0);
+    CHECK(s.last.stored == 0);
+}
+
 TEST_CASE("a ratio of damping gives its restitution, and none makes a contact pull") {
     for (double restitution : {0.1, 0.13, 0.14, 0.3, 0.5, 0.8, 0.99, 1.0}) {
         const double ratio = dampingRatio(restitution);

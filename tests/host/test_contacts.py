@@ -68,6 +68,29 @@ def test_a_brick_falls_freely_then_comes_to_rest_and_does_not_sink(scene):
     assert (s.pos - there).norm() < 1e-12
 
 
+@pytest.mark.parametrize("swapped", [False, True])
+def test_the_force_of_a_pair_is_opposite_on_both_blocks_and_has_one_line(scene, swapped):  # fmt: skip
+    """Turned and shifted blocks that lie in each other; the force itself is tested in tests/contact."""
+    dice = np.random.default_rng(4)
+    for _ in range(20):
+        O.reset()
+        turns = [Quaternion(*dice.normal(size=4)).normalized() for _ in (0, 1)]
+        sizes = 10 ** dice.uniform(-2, 0) * dice.uniform(0.2, 1, (2, 3))
+        places = [10 * dice.uniform(-1, 1, 3)] * 2
+        places[1] = places[0] + 0.3 * sizes.min() * dice.uniform(-1, 1, 3)
+        ids = [box(sizes[n], places[n], turns[n]) for n in ((1, 0) if swapped else (0, 1))]  # fmt: skip
+        contacts = prepare(1e-9, gravity=(0, 0, 0))
+        O.step()
+        one, other = ids
+        force = O.forces.f(other)
+        assert contacts.touching() == 1 and force.norm() > 0
+        assert contacts.forceOf(one, other) == force == -contacts.forceOf(other, one)
+        assert O.forces.f(one) == -force
+        arm = O.bodies[other].state.pos - O.bodies[one].state.pos
+        rest = O.forces.t(one) + O.forces.t(other) + arm.cross(force)
+        assert rest.norm() <= 1e-12 * force.norm() * (arm.norm() + sizes.max())
+
+
 @pytest.mark.parametrize("angle", [20, 26])
 def test_a_block_rests_on_an_incline_below_the_angle_of_friction(scene, angle):
     turn = Quaternion(Vector3(0, 1, 0), math.radians(angle))
@@ -116,6 +139,19 @@ def test_a_block_slides_down_an_incline_as_friction_says(scene, angle):
 
 
 ABOUT_Y = Vector3(0, 1, 0)
+
+
+def test_a_bar_that_turns_meets_what_lay_beside_it(scene):
+    """Its end goes down by 12.5 mm, onto a block 10 mm below, while its middle stays where it is: pairs are looked for anew."""
+    bar = box((1, 0.05, 0.05))
+    box((0.1, 0.1, 0.1), (0.45, 0, -0.085))
+    contacts = prepare(1e-9, gravity=(0, 0, 0))
+    O.step()
+    assert contacts.touching() == 0
+    O.bodies[bar].state.ori = Quaternion(ABOUT_Y, 0.025) * O.bodies[bar].state.ori
+    O.step()
+    assert contacts.touching() == 1
+
 
 #: Turn of the second cube, and how far energy may be off, over what there is.
 MEETINGS = {

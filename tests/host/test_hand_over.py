@@ -98,6 +98,42 @@ def test_a_joint_that_is_not_due_is_not_handed_over(scene):
     assert contacts.handed == 0
 
 
+def test_a_joint_that_turns_while_its_bond_holds_is_not_handed_over(scene):
+    """A bond so tough that at 60° none of it is gone."""
+    tough = lambda: joint(tensileStrength=1e3, cohesion=2e3, modeIFractureEnergy=1e6, modeIIFractureEnergy=1e6)  # fmt: skip
+    contacts = standing(joint=tough)
+    with pytest.raises(RuntimeError, match="^collapsed: block 1 has turned by"):
+        until(3)
+    assert contacts.handed == 0
+
+
+@pytest.mark.parametrize("axis", [0, 1], ids="xy")
+def test_a_joint_slides_out_of_its_place_along_either_side(scene, axis):
+    """Handed over at 2 % of its length: without that the run would end where the block has left the joint."""
+    slippery = lambda: joint(friction=0.05, residualFriction=0.05)
+    contacts = standing(push=0, joint=slippery, step=0.9)
+    gravity = [0, 0, -G]
+    gravity[axis] = 0.15 * G
+    engine("integrator").gravity = gravity
+    s = O.bodies[1].state
+    while contacts.handed == 0:
+        run(10)
+        assert s.pos[axis] - s.refPos[axis] < 0.05 * B
+    assert s.pos[axis] - s.refPos[axis] == pytest.approx(0.02 * B, rel=0.2)
+
+
+def test_the_largest_energy_of_a_fallen_block_has_its_spin(scene):
+    contacts = standing()
+    s, most = O.bodies[1].state, 0
+    while O.time < 0.55:
+        run(50)
+        spin = s.ori.conjugate() * s.angVel
+        turning = 0.5 * sum(i * w * w for i, w in zip(s.inertia, spin))
+        most = max(most, 0.5 * s.mass * s.vel.squaredNorm() + turning)
+    assert turning > 0.1 * most
+    assert contacts.fallen()[1]["most"] == pytest.approx(most, rel=0.02)
+
+
 def test_a_joint_of_a_block_without_contacts_is_not_handed_over(scene):
     """Nothing would take its place, so the run ends where the joint does."""
     contacts = standing()

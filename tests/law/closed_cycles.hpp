@@ -3,20 +3,12 @@
 // displacement jump in three dimensions, for joints drawn at random with all that the cyclic law can do.
 #pragma once
 #include "law/cyclic_softening/CyclicLaw.hpp"
+#include "states.hpp"
 #include <array>
 #include <cmath>
-#include <random>
 #include <vector>
 
 namespace masonry {
-
-struct Chance {
-    std::mt19937_64 engine;
-    double between(double low, double high) { return std::uniform_real_distribution<>(low, high)(engine); }
-    double logarithmic(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
-    bool happens(double p) { return between(0, 1) < p; }
-    std::size_t oneOf(std::size_t count) { return std::uniform_int_distribution<std::size_t>(0, count - 1)(engine); }
-};
 
 // A joint whose strengths lie close together and whose bond is brittle, so that a path of a few elastic displacements
 // opens, slips and crushes it.

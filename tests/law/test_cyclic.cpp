@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What the cyclic law promises (yade_plugin/law/cyclic_softening/README.md), at the bed joint of the CS walls and at
 // joints drawn at random. The main function of the tests stands in test_law.cpp.
+#include "../within.hpp"
 #include "closed_cycles.hpp"
 #include "law/piecewise_softening/PiecewiseLaw.hpp"
 #include <doctest/doctest.h>
@@ -35,7 +36,6 @@ ElasticStiffness lumped(const JointProperties& p) { // with calcium-silicate uni
 }
 
 double length(const Shear& v) { return std::sqrt(v.a * v.a + v.b * v.b); }
-double total(const Energies& e) { return e.tension + e.shear + e.compression; }
 double elasticOpening(const CyclicState& s) { return s.opening + s.crushing - s.dilation; }
 
 template <class L> struct PathOf {
@@ -50,7 +50,7 @@ template <class L> struct PathOf {
     double step(const Jump& jump) { // returns what is dissipated
         const double normal = state.normalStress;
         const Shear shear = state.shearStress;
-        const double dissipated = total(law.advance(k, state, jump));
+        const double dissipated = sum(law.advance(k, state, jump));
         lost += dissipated;
         work += 0.5 * ((normal + state.normalStress) * jump.opening + (shear.a + state.shearStress.a) * jump.slide.a +
                        (shear.b + state.shearStress.b) * jump.slide.b);
@@ -64,13 +64,9 @@ template <class L> struct PathOf {
         }
     }
     void press(double sigma, int steps = 10) { move({sigma / k.normal - elasticOpening(state), {}}, steps); }
-    double stored() const { return total(law.stored(k, state)); }
+    double stored() const { return sum(law.stored(k, state)); }
 };
 using Path = PathOf<CyclicLaw>;
-
-doctest::Approx within(double value, double relative) {
-    return doctest::Approx(value).epsilon(relative).scale(value == 0 ? 1 : 0);
-}
 
 } // namespace
 

@@ -2,6 +2,7 @@
 // Pure kinematics: damping, the energy ledger, a step of rigid bodies, frames and jumps of joints, and the largest
 // eigenvalue. Expected numbers come from closed forms and from a reference that is written with Eigen's rotations.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include "../within.hpp"
 #include "common/Vectorised.hpp"
 #include "motion/Damping.hpp"
 #include "motion/EnergyLedger.hpp"
@@ -26,11 +27,6 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-
-// doctest's Approx adds 1 to the size of the numbers unless another scale is set, and would call small numbers equal.
-doctest::Approx within(double value, double relative) {
-    return doctest::Approx(value).epsilon(relative).scale(value == 0 ? 1 : 0);
-}
 
 struct Dice {
     std::mt19937 engine;
