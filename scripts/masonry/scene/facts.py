@@ -45,9 +45,11 @@ def properties(description, masonry):
     if not description.plane:
         return None
     length, _, height = (b - a for a, b in zip(description.low, description.high))
-    whole = Bricks(description.bricks).whole()
-    sides = [[b - a for a, b in zip(one.low, one.high)] for one in whole]
-    usual = lambda axis: statistics.median(side[axis] for side in sides)
+    boxes = {}  # of whole bricks, of which there may be two halves
+    for block in description.bricks:
+        low, high = boxes.get(block.brick, (block.low, block.high))
+        boxes[block.brick] = tuple(map(min, low, block.low)), tuple(map(max, high, block.high))  # fmt: skip
+    usual = lambda axis: statistics.median(high[axis] - low[axis] for low, high in boxes.values())  # fmt: skip
     pressed = [t.pressed for t in description.targets.values() if t.pressed]
     bed = masonry.joints["bed"]
     of = lambda name: getattr(bed, name, 0.0)
