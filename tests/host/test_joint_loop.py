@@ -293,9 +293,13 @@ def test_a_run_is_the_same_bit_for_bit_with_any_number_of_threads(blocks, tmp_pa
             env=dict(
                 os.environ,
                 MASONRY_THREADS="always",
-                PYTHONPATH=os.path.dirname(__file__)
-                + os.pathsep
-                + os.environ.get("PYTHONPATH", ""),
+                PYTHONPATH=os.pathsep.join(
+                    [
+                        os.path.dirname(__file__),
+                        os.path.join(ROOT, "tests"),
+                        os.environ.get("PYTHONPATH", ""),
+                    ]
+                ),
             ),
             check=True,
             capture_output=True,

@@ -129,7 +129,7 @@ def test_a_scene_shows_itself_before_between_and_after_its_stages(kernel, tmp_pa
     assert len(pictures(page)) == 2 and "push: peak" in page
     kernel.say("scene.finish()")
     page = shown(kernel.say("scene"))
-    assert len(pictures(page)) == 2 and "peak of the force at the supports" in page
+    assert len(pictures(page)) == 2 and "force at the supports at the peak" in page
     run = json.load(open(tmp_path / "shown" / "run.json"))
     assert f"{run['peak_base_shear_kN']:.4g}" in page
     folder = "from masonry.read.shown import RunFolder\nRunFolder('shown')"

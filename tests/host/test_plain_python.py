@@ -225,7 +225,7 @@ TIMES = re.compile(
 
 #: The same in a report: when the run ended, and how long it took; and numbers of its picture, whose last digits depend on where
 #: LAPACK finds its arrays in the memory.
-CLOCK = re.compile(r"\d{4}-\d\d-\d\d [\d:]+ UTC|time of the run</th><td[^>]*>[^<]*|<script type.*?</script>", re.S)  # fmt: skip
+CLOCK = re.compile(r"\d{4}-\d\d-\d\d [\d:]+ UTC|time of (the run|a step[^<]*)</th><td[^>]*>[^<]*|<script type.*?</script>", re.S)  # fmt: skip
 
 
 def both(tmp_path, name, *words):

@@ -68,6 +68,7 @@ def test_a_signal_ends_limit_analysis_and_the_run_says_so(
     assert carryOut(SMALL, parsed(*SHORT, "--out", str(tmp_path))) == 130
     assert time.monotonic() - sent[0] < PROMPT
     gone = f"/proc/{asked.read_text()}"
+    time.sleep(0.2)  # a process that was killed with its parent needs a moment to end
     assert not os.path.exists(gone) or "(zombie)" in open(gone + "/status").read()
     run = readRun(str(tmp_path))
     assert run["interrupted"] and run["bounds"][0]["note"] == GIVEN_UP
