@@ -73,6 +73,7 @@ LONG = [
 
 #: Tests whose cases take some tenths of a second to a second each: the quick ring has the first case alone.
 FIRST_CASE = [
+    "test_two_cubes_that_meet_keep_momentum_and_energy_at_any_time_step",
     "test_a_block_that_is_erased_is_an_error_or_left_out",
     "test_a_dry_pier_tips_about_its_toe_or_slides",
     "test_a_forked_process_goes_on",

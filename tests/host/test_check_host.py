@@ -18,6 +18,7 @@ spec.loader.exec_module(host)
 KNOWN = {known.version: known for known in host.knownYades()}
 
 
+@pytest.mark.slow
 def test_the_yade_that_is_installed_fits_as_its_own_version(capsys):
     folder = os.path.dirname(glob.glob("/usr/lib/*/yade-double/libyade.so")[0])
     with pytest.raises(SystemExit) as end:

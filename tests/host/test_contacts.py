@@ -44,6 +44,7 @@ def prepare(step=0.5, gravity=(0, 0, -G), **properties):
     return contacts
 
 
+@pytest.mark.slow
 def test_a_brick_falls_freely_then_comes_to_rest_and_does_not_sink(scene):
     ground()
     brick = box(UNIT, (0.3, 0.1, 0.05 + UNIT[2] / 2))
@@ -233,6 +234,7 @@ def test_faces_that_meet_have_the_given_restitution(scene, restitution):
     assert abs(balance()["error"]) < 1e-3
 
 
+@pytest.mark.slow
 def test_a_block_rocks_in_the_time_of_a_pivot(scene):
     """A slender block that is let go falls back to its base in the time that the motion about its edge takes."""
     ground()

@@ -246,6 +246,7 @@ def test_without_dilatancy_a_wall_carries_less_and_no_joint_is_above_its_frictio
     assert opening[pressed].max() < 0.05 * np.linalg.norm(slide, axis=1).max()
 
 
+@pytest.mark.slow
 def test_a_wedge_over_open_head_joints_is_found(scene):
     """The wedge of courses 1 to 5 about the lower right corner, of which the head joints are open: by hand, with n half
     units in course n, the factor is 0.05 Σn² / (0.1 Σn² - 0.05 Σn). The engine falls there, too.
@@ -338,6 +339,7 @@ def test_a_push_has_its_bound_beside_it(scene, tmp_path):
     assert (tmp_path / "r" / "mechanism.png").exists()
 
 
+@pytest.mark.slow
 def test_the_preset_bound_runs_nothing(scene, tmp_path, capsys):
     out = tmp_path / "r"
     s, top = small("--out", str(out), "--preset", "bound")
@@ -395,6 +397,7 @@ def test_the_bound_of_a_push_lacks_what_dead_loads_push_already(scene, tmp_path,
     assert entry["factor"] == pytest.approx(1e-3 * (slides - sign * dead), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_lean_that_limit_analysis_finds_held_stays(scene, tmp_path):
     s, highest, weight = stones(tmp_path, (0, 0, 0))
     assert s.lean(0.2) == "at rest"
@@ -446,6 +449,7 @@ def test_scaled_masses_change_no_bound(scene, tmp_path):
     assert tilted["factor"] == pytest.approx(math.tan(angle), rel=1e-5)
 
 
+@pytest.mark.slow
 def test_a_cycle_has_the_bounds_of_both_directions(scene, tmp_path):
     dead = 100.0  # [N] along x
     s, highest, weight = stones(tmp_path, (dead, 0, 0))
@@ -492,6 +496,7 @@ def test_the_bound_of_a_tilt_turns_weight_and_not_dead_loads(scene, tmp_path, sh
     assert leant["factor"] == pytest.approx((1 + share) * b / h, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_tilt_that_slides_is_the_same_with_and_without_dilatancy(scene, tmp_path):
     """W sin(a) slides the stack on its base, 0.3 (W cos(a) + P) holds it: no stone above has as much weight for its P."""
     s, _, weight = stones(tmp_path, (0, 0, -400), friction=0.3)

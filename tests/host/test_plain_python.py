@@ -58,6 +58,7 @@ def done(code, **more):
 # -- how YADE starts --------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_scene_finds_yade_and_starts_it_as_it_must(tmp_path):
     begin = "import sys; before = list(sys.argv), list(sys.path)\n"
     end = """

@@ -61,6 +61,7 @@ def test_forces_motions_and_records_of_yades_engines_hold_beside_ours(scene, tmp
     assert said.count("the work of ForceEngine is not known") == 1, said
 
 
+@pytest.mark.slow
 def test_the_check_in_yades_form_passes_and_names_what_is_wrong(tmp_path):
     path = os.path.join(ROOT, "tests", "host", "checkMasonryJoint.py")
     again = tmp_path / "checkMasonryJoint.py"
