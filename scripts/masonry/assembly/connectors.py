@@ -70,8 +70,11 @@ class Connectors:
     def news(self):
         """Sentences on connectors that have yielded or broken since this was asked last."""
         since, self.saidUntil = min(self.saidUntil, O.iter), O.iter
-        for one in self.description.connectors:
-            for what, subject in one.events(since):
+        for kind, made in self.engines.items():
+            for one, what in kind.events(self.description.connectorsOf(kind), made, since):  # fmt: skip
+                subject = (
+                    one.overlay or one.name
+                )  # fibres are named by their layer, once
                 if (what, subject) not in self.said:
                     self.said.add((what, subject))
                     yield f"{subject} {what}: between {one.ends[0].words} and {one.ends[1].words}"  # fmt: skip

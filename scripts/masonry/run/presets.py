@@ -201,7 +201,7 @@ def fidelityOf(args):
 
 
 def outsideOf(properties):
-    """Sentences on properties of a scene in which a scene is unlike the walls on which ``fast`` was measured.
+    """Sentences on properties in which a scene is unlike the walls on which ``fast`` was measured.
 
     :param properties: values by name, as :func:`masonry.scene.facts.properties` gives them; None: it moves in space
     """
@@ -222,7 +222,8 @@ def presetOf(args, scene, properties):
 
     ``name`` is the preset's. ``overrides`` are options given beside it. ``outside`` are sentences on what was not measured.
     ``promise`` is None if there are any of both. Else it holds ``peak_error`` and ``work_error`` [-]; of a wall on which
-    it was measured also ``stiffness_error`` [-], ``until_mm`` and ``seconds``; of another one that is like these ``walls``, how many these are, and ``missed``, how many of them had larger errors.
+    it was measured also ``stiffness_error`` [-], ``until_mm`` and ``seconds``; of another one that is like these
+    ``walls``, how many these are, and ``missed``, how many of them had larger errors.
 
     :param args: the parsed options
     :param scene: name of the scene

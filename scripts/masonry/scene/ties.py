@@ -111,12 +111,15 @@ class Tie(Settable):
         """Tighten ties to a share of their prestress [-]."""
         engine.rest = [one.rest(share) for one in records]
 
-    def events(self, since: int) -> Iterator[tuple[str, str]]:
-        """What has happened to it since a time step, and the name under which that is said: of fibres that of their layer."""
-        engine, n = self.engine, self.number
+    @staticmethod
+    def events(
+        records: list[Tie], engine: Any, since: int
+    ) -> Iterator[tuple[Tie, str]]:
+        """Ties to which something has happened since a time step, and what."""
         for what, steps in (("yields", engine.yieldedAt), ("breaks", engine.brokenAt)):
-            if len(steps) and steps[n] >= since:
-                yield what, self.overlay or self.name
+            for one, step in zip(records, steps):
+                if step >= since:
+                    yield one, what
 
     def known(self) -> dict[str, Property]:
         """As of :class:`Settable`, and so are those that follow."""
@@ -249,7 +252,8 @@ class Spring(Settable):
     def grow(records: list[Spring], engine: Any, share: float) -> None:
         pass
 
-    def events(self, since: int) -> Iterator[tuple[str, str]]:
+    @staticmethod
+    def events(records: list[Spring], engine: Any, since: int) -> Iterator[Any]:
         return iter(())
 
     def known(self) -> dict[str, Property]:
